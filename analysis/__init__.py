@@ -1,0 +1,36 @@
+"""How a given linkage moves and how good it is. NumPy only: the independent judge of the synthesis."""
+
+from grashof.analysis.extent import reach_box
+from grashof.analysis.mobility import (
+    GrashofClass,
+    branch_index,
+    circuit_index,
+    driver_ranges,
+    full_rotation,
+    grashof_class,
+    rotatability,
+    triple_rocker_kind,
+)
+from grashof.analysis.position import Position, solve_position
+from grashof.analysis.transmission import transmission_angle, worst_transmission, worst_transmission_cycle
+from grashof.analysis.verify import Defect, Verdict, verify
+
+__all__ = [
+    "Defect",
+    "GrashofClass",
+    "Position",
+    "Verdict",
+    "branch_index",
+    "circuit_index",
+    "driver_ranges",
+    "full_rotation",
+    "grashof_class",
+    "reach_box",
+    "rotatability",
+    "solve_position",
+    "transmission_angle",
+    "triple_rocker_kind",
+    "verify",
+    "worst_transmission",
+    "worst_transmission_cycle",
+]

@@ -1,0 +1,185 @@
+"""How a linkage does a motion task: where it comes nearest to each pose, and the way between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from grashof.analysis.mobility import driver_ranges, full_rotation, range_index
+from grashof.analysis.position import solve_position
+from grashof.problems import FourBar, MotionTask
+from grashof.problems.checks import FloatArray, IntArray
+
+TURN = 2 * np.pi
+_STEADY = 1e-9  # rad: a driver step so small counts as none
+
+
+@dataclass(frozen=True, slots=True)
+class Targets:
+    """The linkage at each target, as near as it comes.
+
+    Parameters
+    ----------
+    theta2 : ndarray, shape (N,), rad
+        Driver angle.
+    assembly : ndarray of int, shape (N,)
+        Assembly on which it is nearest: the linkage's own unless the other one is nearer.
+    position_error, angle_error : ndarray, shape (N,), length and rad
+        Distance from the target position, and turn from the target orientation.
+    """
+
+    theta2: FloatArray
+    assembly: IntArray
+    position_error: FloatArray
+    angle_error: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """The motion of the driver that visits the targets.
+
+    Parameters
+    ----------
+    theta2 : ndarray, shape (N,), rad
+        Driver angles at the targets, counted on along the motion.
+    start, end : float, rad
+        Ends of the motion used.
+    direction : int
+        Sense of the driver: +1 counter-clockwise, -1 clockwise.
+    in_order : bool
+        The driver meets the targets in sequence, in one sense, within one turn.
+    """
+
+    theta2: FloatArray
+    start: float
+    end: float
+    direction: int
+    in_order: bool
+
+
+def nearest_to_poses(linkage: FourBar, task: MotionTask) -> Targets:
+    """Driver angle, assembly and error at each pose, from the linkage alone.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        A single linkage.
+    task : MotionTask
+
+    Returns
+    -------
+    Targets
+
+    Notes
+    -----
+    The first guess turns the driver towards where A would be if the body stood in the pose;
+    Gauss-Newton steps in the driver angle then reduce |dp|^2 + (angle_length * dangle)^2, on both
+    assemblies.
+    """
+    theta3 = task.angles - linkage.body_angle
+    coupler = complex(*linkage.coupler_point)
+    a = task.positions @ np.array([1, 1j]) - coupler * np.exp(1j * theta3) - complex(*linkage.o2)
+    own = int(linkage.assembly)
+    signs = np.array([[own], [-own]])
+    angle = np.broadcast_to(_into_ranges(linkage, np.angle(a)), (2, len(task)))
+    best = _miss(linkage, task, theta3, angle, signs)
+    for _ in range(20):
+        moved = _into_ranges(linkage, angle + _gauss_newton_step(linkage, task, theta3, angle, signs))
+        miss = _miss(linkage, task, theta3, moved, signs)
+        better = miss < best
+        if not better.any():
+            break
+        angle, best = np.where(better, moved, angle), np.where(better, miss, best)
+    chosen, target = np.argmin(best, axis=0), np.arange(len(task))
+    angle, sign = angle[chosen, target], signs[chosen, 0]
+    state = solve_position(linkage, angle, sign)
+    gap, turned = state.p - task.positions, _wrapped(state.theta3 - theta3)
+    distance = np.nan_to_num(np.hypot(gap[:, 0], gap[:, 1]), nan=np.inf)
+    return Targets(angle, sign, distance, np.nan_to_num(np.abs(turned), nan=np.pi))
+
+
+def driver_way(linkage: FourBar, theta2: FloatArray, ordered: bool) -> Way:
+    """The motion of the driver through given angles.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        A single linkage.
+    theta2 : ndarray, shape (N,), rad
+        Driver angle at each target.
+    ordered : bool
+        Meet the targets in sequence. Otherwise in any: the shortest motion that holds them all.
+
+    Returns
+    -------
+    Way
+    """
+    turns = bool(full_rotation(linkage))
+    index, inside = range_index(linkage, theta2)
+    if not turns and (index >= 0).all() and np.ptp(index) == 0:  # one range: no way around
+        step = np.diff(inside)
+        direction = 1 if inside[-1] >= inside[0] else -1
+        in_order = bool((direction * step >= -_STEADY).all())
+        if ordered and in_order:
+            return Way(inside, float(inside[0]), float(inside[-1]), direction, True)
+        return Way(inside, float(inside.min()), float(inside.max()), direction, in_order)
+    ways = [_turning(theta2, direction) for direction in (1, -1)]
+    best = min(ways, key=lambda way: abs(way.end - way.start))
+    return best if ordered else _shortest_arc(theta2, best)
+
+
+def _turning(theta2: FloatArray, direction: int) -> Way:
+    step = (direction * np.diff(theta2) + _STEADY) % TURN - _STEADY
+    counted = theta2[0] + direction * np.concatenate([[0.0], np.cumsum(step)])
+    in_order = bool(step.sum() <= TURN + _STEADY)
+    return Way(counted, float(counted[0]), float(counted[-1]), direction, in_order)
+
+
+def _shortest_arc(theta2: FloatArray, ordered: Way) -> Way:
+    around = np.sort(theta2 % TURN)
+    gap = np.diff(around, append=around[0] + TURN)
+    start = around[(np.argmax(gap) + 1) % len(around)]
+    counted = start + (theta2 - start + _STEADY) % TURN - _STEADY
+    return Way(counted, float(start), float(start + TURN - gap.max()), 1, ordered.in_order)
+
+
+def _miss(
+    linkage: FourBar, task: MotionTask, theta3: FloatArray, theta2: FloatArray, signs: FloatArray
+) -> FloatArray:
+    state = solve_position(linkage, theta2, signs)
+    gap = ((state.p - task.positions) ** 2).sum(axis=-1)
+    return np.nan_to_num(
+        gap + (task.angle_length * _wrapped(state.theta3 - theta3)) ** 2, nan=np.inf, posinf=np.inf
+    )
+
+
+def _gauss_newton_step(
+    linkage: FourBar, task: MotionTask, theta3: FloatArray, theta2: FloatArray, signs: FloatArray
+) -> FloatArray:
+    state = solve_position(linkage, theta2, signs)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rate3 = linkage.r2 * np.sin(state.theta4 - theta2) / (linkage.r3 * np.sin(state.theta3 - state.theta4))
+    coupler = complex(*linkage.coupler_point) * np.exp(1j * state.theta3)
+    gap = (state.p - task.positions) @ np.array([1, 1j])
+    square = task.angle_length**2
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rate_p = 1j * (linkage.r2 * np.exp(1j * theta2) + coupler * rate3)
+        slope = (rate_p.conj() * gap).real + square * rate3 * _wrapped(state.theta3 - theta3)
+        step = -slope / (np.abs(rate_p) ** 2 + square * rate3**2)
+    return np.where(np.isfinite(step), np.clip(step, -0.5, 0.5), 0.0)
+
+
+def _into_ranges(linkage: FourBar, theta2: FloatArray) -> FloatArray:
+    """Driver angles, moved to the nearest end of a range where they lie outside all."""
+    index, _ = range_index(linkage, theta2, slack=0.0)
+    ends = driver_ranges(linkage).ravel()
+    ends = ends[np.isfinite(ends)]
+    if not ends.size:
+        return theta2
+    distance = np.abs(_wrapped(theta2[..., None] - ends))
+    return np.where(index >= 0, theta2, ends[np.argmin(distance, axis=-1)])
+
+
+def _wrapped(angle: FloatArray) -> FloatArray:
+    return (angle + np.pi) % TURN - np.pi

@@ -1,0 +1,288 @@
+"""The judge: does this linkage do the task under the requirements? From the linkage alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from grashof.analysis.extent import diagonal, reach_box
+from grashof.analysis.mobility import (
+    GrashofClass,
+    branch_index,
+    circuit_index,
+    full_rotation,
+    grashof_class,
+    rotatability,
+)
+from grashof.analysis.motion import Targets, Way, driver_way, nearest_to_poses
+from grashof.analysis.position import Position, solve_position
+from grashof.analysis.transmission import worst_transmission, worst_transmission_cycle
+from grashof.problems import Box, FourBar, MotionTask, Requirements, Rotatability, TransmissionOver
+from grashof.problems.checks import FloatArray, Limits
+
+# Limits are inclusive; rounding may carry a design this far past them (sizes, rad or ratio).
+SLACK = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class Defect:
+    """One requirement that a design misses.
+
+    Parameters
+    ----------
+    requirement : str
+        Its key; "exact" for targets that are not met.
+    what : str
+        The quantity judged, such as "r3".
+    found : float
+        Its value, as tables print it (degrees for angles).
+    allowed : str
+    miss : float
+        By how much it is missed: share of the size, rad, or ratio.
+    """
+
+    requirement: str
+    what: str
+    found: float
+    allowed: str
+    miss: float
+
+    def __str__(self) -> str:
+        return f"{self.requirement}: {self.what} is {self.found:.6g}, allowed is {self.allowed}"
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What a linkage does with a task, and every defect.
+
+    Parameters
+    ----------
+    theta2 : ndarray, shape (N,), rad
+        Driver angle at each target, counted on along the motion.
+    assembly : ndarray of int, shape (N,)
+        Assembly at each target.
+    position_error, angle_error : ndarray, shape (N,), length and rad
+    direction : int
+        Sense of the driver, +1 counter-clockwise.
+    grashof_class : GrashofClass
+    full_rotation, circuit_ok, branch_ok, order_ok : bool
+    transmission_min_task, transmission_min_cycle : float, rad
+        Worst min(mu, pi - mu) over the motion used and over the turn.
+    size : float, length
+        Diagonal of the box around O2, O4 and all that A, B and P reach in the motion used.
+    defects : tuple of Defect
+        Empty for a design that does what is required.
+    """
+
+    theta2: FloatArray
+    assembly: FloatArray
+    position_error: FloatArray
+    angle_error: FloatArray
+    direction: int
+    grashof_class: GrashofClass
+    full_rotation: bool
+    circuit_ok: bool
+    branch_ok: bool
+    order_ok: bool
+    transmission_min_task: float
+    transmission_min_cycle: float
+    size: float
+    defects: tuple[Defect, ...]
+
+    @property
+    def ok(self) -> bool:
+        """Whether the linkage has no defect."""
+        return not self.defects
+
+    @property
+    def error_max(self) -> float:
+        """Greatest distance from a target position."""
+        return float(self.position_error.max())
+
+    @property
+    def error_sse(self) -> float:
+        """Sum of squared distances from the target positions."""
+        return float((self.position_error**2).sum())
+
+    @property
+    def error_rms(self) -> float:
+        """Root mean square distance from the target positions."""
+        return float(np.sqrt(np.mean(self.position_error**2)))
+
+
+def verify(linkage: FourBar, task: MotionTask, requirements: Requirements) -> Verdict:
+    """Judge a single linkage.
+
+    Parameters
+    ----------
+    linkage : FourBar
+    task : MotionTask
+    requirements : Requirements
+        Defaults that depend on the size of the task are filled in.
+
+    Returns
+    -------
+    Verdict
+
+    Notes
+    -----
+    Circuit, branch and order defects as Chase & Mirth (1993) define them. With ``order = false``
+    the motion used is the shortest that holds all targets.
+
+    Examples
+    --------
+    >>> from grashof.analysis.planted import planted_motion
+    >>> task, linkage = planted_motion(np.random.default_rng(0), poses=4)
+    >>> verdict = verify(linkage, task, Requirements())
+    >>> verdict.ok, bool(verdict.error_max < 1e-12 * task.size)
+    (True, True)
+    """
+    wanted = requirements.resolved(task.size)
+    targets = nearest_to_poses(linkage, task)
+    way = driver_way(linkage, targets.theta2, wanted.order)
+    circuits = circuit_index(linkage, targets.theta2, targets.assembly)
+    branches = branch_index(linkage, targets.theta2, targets.assembly)
+    circuit_ok = bool((circuits == circuits[0]).all() and circuits[0] >= 0)
+    branch_ok = circuit_ok and bool((branches == branches[0]).all())
+    task_worst = float(worst_transmission(linkage, way.start, way.end))
+    cycle_worst = float(worst_transmission_cycle(linkage))
+    over_task = wanted.transmission_over is TransmissionOver.TASK
+    defects = [
+        *_exactness(targets, task, wanted),
+        *_motion_defects(circuit_ok, branch_ok, way, wanted),
+        *_rotatability(linkage, wanted),
+        *_least_transmission(task_worst if over_task else cycle_worst, wanted),
+        *_geometry(linkage, task, wanted),
+        *_places(linkage, solve_position(linkage, targets.theta2, targets.assembly), task, wanted),
+        *_angles(linkage, targets, wanted),
+    ]
+    return Verdict(
+        theta2=way.theta2,
+        assembly=targets.assembly,
+        position_error=targets.position_error,
+        angle_error=targets.angle_error,
+        direction=way.direction,
+        grashof_class=grashof_class(linkage),
+        full_rotation=bool(full_rotation(linkage)),
+        circuit_ok=circuit_ok,
+        branch_ok=branch_ok,
+        order_ok=way.in_order,
+        transmission_min_task=task_worst,
+        transmission_min_cycle=cycle_worst,
+        size=diagonal(reach_box(linkage, way.start, way.end)),
+        defects=tuple(defects),
+    )
+
+
+def _exactness(targets: Targets, task: MotionTask, wanted: Requirements) -> list[Defect]:
+    worst, turned = float(targets.position_error.max()), float(targets.angle_error.max())
+    allowed = wanted.tolerance * task.size
+    defects = []
+    if not worst <= allowed:
+        miss = worst / task.size - wanted.tolerance
+        defects.append(Defect("exact", "the largest position error", worst, f"up to {allowed:.6g}", miss))
+    if not turned * task.angle_length <= allowed:
+        limit = float(np.degrees(allowed / task.angle_length))
+        miss = turned - allowed / task.angle_length
+        found = float(np.degrees(turned))
+        defects.append(Defect("exact", "the largest angle error in deg", found, f"up to {limit:.6g}", miss))
+    return defects
+
+
+def _motion_defects(circuit_ok: bool, branch_ok: bool, way: Way, wanted: Requirements) -> list[Defect]:
+    defects = []
+    if wanted.same_branch and not branch_ok:
+        what = "branches used (a dead position lies between)" if circuit_ok else "circuits used"
+        defects.append(Defect("same_branch", f"the number of {what}", 2, "1", 1.0))
+    if wanted.order and not way.in_order:
+        turns = abs(way.end - way.start) / (2 * np.pi)
+        defects.append(Defect("order", "turns of the driver to meet the targets in sequence", turns, "up to 1", 1.0))
+    return defects
+
+
+def _rotatability(linkage: FourBar, wanted: Requirements) -> list[Defect]:
+    if wanted.rotatability is Rotatability.ANY:
+        return []
+    shares = rotatability(linkage)
+    least = float(shares.min())
+    defects = []
+    if least < wanted.rotatability_margin - SLACK:
+        miss = wanted.rotatability_margin - least
+        allowed = f"from {wanted.rotatability_margin:g} ({wanted.rotatability})"
+        defects.append(Defect("rotatability", "the margin of full rotation", least, allowed, miss))
+    kind = {Rotatability.CRANK_ROCKER: 1, Rotatability.DOUBLE_CRANK: -1}.get(wanted.rotatability, 0)
+    difference = float(linkage.r1 - linkage.r2)
+    if kind * difference < 0:
+        which = "greater" if kind > 0 else "less"
+        miss = abs(difference) / float(linkage.lengths.sum())
+        allowed = f"{which} than 0 ({wanted.rotatability})"
+        defects.append(Defect("rotatability", "r1 - r2", difference, allowed, miss))
+    return defects
+
+
+def _least_transmission(worst: float, wanted: Requirements) -> list[Defect]:
+    least = np.radians(wanted.transmission_min_deg)
+    if worst >= least - SLACK:
+        return []
+    what = f"the worst transmission angle over the {wanted.transmission_over} in deg"
+    allowed = f"from {wanted.transmission_min_deg:g}"
+    return [Defect("transmission_min_deg", what, float(np.degrees(worst)), allowed, float(least - worst))]
+
+
+def _geometry(linkage: FourBar, task: MotionTask, wanted: Requirements) -> list[Defect]:
+    defects = []
+    for name, value, limits in zip(("r1", "r2", "r3", "r4"), linkage.lengths, wanted.link_lengths, strict=True):
+        key = "link_length" if getattr(wanted, name) is None else name
+        defects += _within(key, name, float(value), limits, task.size)
+    arm = complex(*linkage.coupler_point)
+    for name, value in (("A-P", abs(arm)), ("B-P", abs(arm - complex(linkage.r3)))):
+        defects += _within("coupler_arms", name, value, wanted.coupler_arms, task.size)
+    ratio = float(linkage.lengths.max() / linkage.lengths.min())
+    if ratio > wanted.link_ratio_max * (1 + SLACK):
+        miss = ratio / wanted.link_ratio_max - 1
+        allowed = f"up to {wanted.link_ratio_max:g}"
+        defects.append(Defect("link_ratio_max", "longest to shortest link", ratio, allowed, miss))
+    return defects
+
+
+def _places(linkage: FourBar, state: Position, task: MotionTask, wanted: Requirements) -> list[Defect]:
+    defects = []
+    places = {
+        "o2": linkage.o2[None], "o4": linkage.o4[None], "a": state.a, "b": state.b,
+    }  # fmt: skip
+    for name, points in places.items():
+        box: Box = getattr(wanted, name) or Box()
+        for axis, limits in enumerate((box.x, box.y)):
+            values = points[:, axis]
+            for value in (values.min(), values.max()):
+                found = _within(name, f"{name}.{'xy'[axis]}", float(value), limits, task.size)
+                if found and found[0] not in defects:
+                    defects += found
+    return defects
+
+
+def _angles(linkage: FourBar, targets: Targets, wanted: Requirements) -> list[Defect]:
+    defects = []
+    for key, angle in (("ground_angle_deg", linkage.theta1), ("theta2_start_deg", targets.theta2[0])):
+        value = getattr(wanted, key)
+        if value is not None:
+            miss = float(np.abs(np.angle(np.exp(1j * (angle - np.radians(value))))))
+            if miss > SLACK:
+                found = float(np.degrees(angle))
+                defects.append(Defect(key, "the angle in deg", found, f"{value:g}", miss))
+    return defects
+
+
+def _within(key: str, what: str, value: float, limits: Limits | None, size: float) -> list[Defect]:
+    low, high = limits if limits is not None else (-np.inf, np.inf)
+    miss = max(low - value, value - high) / size
+    if miss <= SLACK:
+        return []
+    return [Defect(key, what, value, _range(low, high), miss)]
+
+
+def _range(low: float, high: float) -> str:
+    if low == -np.inf:
+        return f"up to {high:.6g}"
+    return f"from {low:.6g}" if high == np.inf else f"{low:.6g} to {high:.6g}"

@@ -1,0 +1,114 @@
+"""Array types, and checks at the boundary: each raises one clear `ProblemError`."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import reprlib
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from numbers import Real
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from grashof.problems.errors import ProblemError
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+IntArray: TypeAlias = npt.NDArray[np.int64]
+BoolArray: TypeAlias = npt.NDArray[np.bool_]
+ComplexArray: TypeAlias = npt.NDArray[np.complex128]
+Limits: TypeAlias = tuple[float, float]
+
+
+def frozen_array(values: npt.ArrayLike) -> FloatArray:
+    """Read-only float64 copy of `values` (a NumPy scalar where they have no shape)."""
+    array = np.array(values, dtype=np.float64)
+    array.setflags(write=False)
+    return array[()] if array.ndim == 0 else array
+
+
+def finite_rows(values: npt.ArrayLike, columns: int, where: str, row_means: str) -> FloatArray:
+    """Array of shape (N, `columns`), each row checked by itself so that the message can name it."""
+    if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
+        raise ProblemError(f"{where} is {values!r}; allowed is a list of {row_means}")
+    rows = []
+    for index, row in enumerate(values):
+        name = f"{where}[{index}]"
+        try:
+            numbers = np.asarray(row)
+        except ValueError:  # rows of unequal length inside
+            raise ProblemError(f"{name} is {row!r}; allowed is {row_means}") from None
+        if numbers.dtype.kind not in "iuf":
+            raise ProblemError(f"{name} is {row!r}; allowed is {row_means}")
+        if numbers.shape != (columns,):
+            count = counted(numbers.size, "number") if numbers.ndim == 1 else "no plain list of numbers"
+            raise ProblemError(f"{name} is {_plain(row)}, {count}; allowed is {row_means}")
+        if not np.isfinite(numbers).all():
+            raise ProblemError(f"{name} is {_plain(row)}; all numbers must be finite")
+        rows.append(numbers.astype(np.float64))
+    return frozen_array(np.array(rows, dtype=np.float64).reshape(-1, columns))
+
+
+def outline(values: npt.ArrayLike, where: str) -> FloatArray:
+    """Array of shape (N, 2), the corners of something drawn."""
+    corners = finite_rows(values, 2, where, "a corner [x, y]")
+    if len(corners) < 2:
+        raise ProblemError(f"{where} has {counted(len(corners), 'corner')}; allowed are two or more")
+    return corners
+
+
+def finite_number(value: float, where: str) -> float:
+    """`value` as a float, refused when it is no finite number."""
+    if isinstance(value, Real) and not isinstance(value, bool):
+        with suppress(OverflowError):  # a whole number beyond the floats
+            if math.isfinite(value):
+                return float(value)
+    raise ProblemError(f"{where} is {reprlib.repr(value)}; allowed is a finite number")
+
+
+def number_within(value: float, low: float, high: float, where: str) -> float:
+    """`value` as a float, refused outside [low, high]."""
+    number = finite_number(value, where)
+    if not low <= number <= high:
+        raise ProblemError(f"{where} is {number:.15g}; allowed is {low:g} to {high:g}")
+    return number
+
+
+def whole_number(value: int, low: int, where: str) -> int:
+    """`value` as an int, refused below `low` or when it is not whole."""
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < low:
+        raise ProblemError(f"{where} is {value!r}; allowed is a whole number from {low}")
+    return int(value)
+
+
+def limits(values: Limits, where: str, *, least: float = -np.inf) -> Limits:
+    """A pair (lo, hi) with least <= lo <= hi, both finite."""
+    try:
+        low, high = values
+    except (TypeError, ValueError):
+        raise ProblemError(f"{where} is {values!r}; allowed is [lo, hi]") from None
+    low, high = finite_number(low, f"{where}[0]"), finite_number(high, f"{where}[1]")
+    if low > high:
+        found = f"[{low:.15g}, {high:.15g}]"
+        raise ProblemError(f"{where} is {found}: lo exceeds hi; allowed is [lo, hi] with lo <= hi")
+    if low < least:
+        raise ProblemError(f"{where} is [{low:.15g}, {high:.15g}]; allowed is lo from {least:g}")
+    return low, high
+
+
+def counted(number: int, noun: str) -> str:
+    """Count with its noun: 1 corner, 2 corners."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def near_miss(word: str, allowed: Sequence[str]) -> str | None:
+    """The one of `allowed` that `word` may be a misspelling of, if any."""
+    by_folded = {name.casefold(): name for name in allowed}
+    close = difflib.get_close_matches(word.casefold(), by_folded, n=1)
+    return by_folded[close[0]] if close else None
+
+
+def _plain(row: object) -> str:
+    return str(row.tolist()) if isinstance(row, np.ndarray) else str(row)

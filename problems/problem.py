@@ -1,0 +1,91 @@
+"""A problem: the task, the requirements, what is best, and how hard to search."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from grashof.problems.checks import FloatArray, finite_number, outline, whole_number
+from grashof.problems.errors import ProblemError
+from grashof.problems.requirements import Requirements
+from grashof.problems.task import MotionTask
+
+
+@dataclass(frozen=True, slots=True)
+class Objective:
+    """What makes one design better than another; weights are relative.
+
+    Parameters
+    ----------
+    transmission : float
+        Weight of the worst transmission angle, as a share of 90 deg.
+    compactness : float
+        Weight of the (small) size of the linkage in its motion, in sizes of the task.
+    """
+
+    transmission: float = 1.0
+    compactness: float = 0.0
+
+    def __post_init__(self) -> None:
+        weights = (self.transmission, self.compactness)
+        for name, weight in zip(("transmission", "compactness"), weights, strict=True):
+            if finite_number(weight, f"objective.maximise.{name}") < 0:
+                raise ProblemError(f"objective.maximise.{name} is {weight:g}; allowed is a weight from 0")
+        if sum(weights) <= 0:
+            raise ProblemError("objective.maximise has no weight greater than zero; one at least is needed")
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """How hard to search.
+
+    Parameters
+    ----------
+    starts : int
+        Most Ipopt solves.
+    enough : int
+        Stop between batches once so many distinct designs are verified.
+    seed : int
+        Of all randomness.
+    """
+
+    starts: int = 200
+    enough: int = 50
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        whole_number(self.starts, 1, "search.starts")
+        whole_number(self.enough, 1, "search.enough")
+        whole_number(self.seed, 0, "search.seed")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Problem:
+    """All that is asked, as a problem file states it.
+
+    Parameters
+    ----------
+    task : MotionTask
+    requirements : Requirements
+    objective : Objective
+    search : Search
+    name, title, source, length_unit : str
+        For people: file names, headings, axis labels.
+    outlines : sequence of array_like, shape (M, 2), length
+        The scene: drawn, no constraint.
+    """
+
+    task: MotionTask
+    requirements: Requirements = field(default_factory=Requirements)
+    objective: Objective = field(default_factory=Objective)
+    search: Search = field(default_factory=Search)
+    name: str = "problem"
+    title: str = ""
+    source: str = ""
+    length_unit: str = ""
+    outlines: tuple[FloatArray, ...] = ()
+
+    def __post_init__(self) -> None:
+        checked = tuple(
+            outline(corners, f"scene.outlines[{index}]") for index, corners in enumerate(self.outlines)
+        )
+        object.__setattr__(self, "outlines", checked)

@@ -1,0 +1,168 @@
+"""Requirements on a design. Every field is spelled as its key in a problem file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+
+from grashof.problems.checks import Limits, finite_number, limits, number_within
+from grashof.problems.errors import ProblemError
+
+
+class Rotatability(StrEnum):
+    """What the driver must be able to do."""
+
+    FULL_CRANK = "full-crank"
+    CRANK_ROCKER = "crank-rocker"
+    DOUBLE_CRANK = "double-crank"
+    ANY = "any"
+
+
+class TransmissionOver(StrEnum):
+    """The motion over which the transmission angle is judged."""
+
+    TASK = "task"
+    CYCLE = "cycle"
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """An upright rectangle x[0] <= x <= x[1], y[0] <= y <= y[1]; an infinite side is open."""
+
+    x: Limits = (-np.inf, np.inf)
+    y: Limits = (-np.inf, np.inf)
+
+    def __post_init__(self) -> None:
+        for axis in ("x", "y"):
+            object.__setattr__(self, axis, _side(getattr(self, axis), axis))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Requirements:
+    """What a design must satisfy besides doing the task.
+
+    Lengths are in the problem's unit; None means the default, which excludes only the absurd
+    and is taken from the size of the task (see `resolved`).
+
+    Parameters
+    ----------
+    tolerance : float
+        A design is exact when its largest error is at most ``tolerance * size``.
+    rotatability : Rotatability
+        full-crank (the driver turns fully), crank-rocker, double-crank, or any (the driver
+        covers the task).
+    rotatability_margin : float
+        r3+r4-r1-r2 and |r1-r2|-|r3-r4| are at least this share of r1+r2+r3+r4.
+    order : bool
+        The driver meets the targets in sequence, in one sense, within one turn.
+    same_branch : bool
+        One assembly and no dead position over the whole motion used.
+    transmission_min_deg : float, deg
+        Least min(mu, pi - mu) over `transmission_over`.
+    transmission_over : TransmissionOver
+        task (the motion from first to last target) or cycle (the whole turn).
+    link_length : tuple of float, optional
+        (lo, hi) for all four links; r1, r2, r3, r4 override it for single ones.
+    link_ratio_max : float
+        Longest to shortest of r1..r4.
+    coupler_arms : tuple of float, optional
+        (lo, hi) for the distances A-P and B-P.
+    o2, o4, a, b : Box, optional
+        Where the ground pivots may lie; where A and B may be at every target.
+    ground_angle_deg : float, deg, optional
+        Direction O2->O4.
+    theta2_start_deg : float, deg, optional
+        Driver angle at the first target.
+    """
+
+    tolerance: float = 1e-6
+    rotatability: Rotatability = Rotatability.FULL_CRANK
+    rotatability_margin: float = 1e-3
+    order: bool = True
+    same_branch: bool = True
+    transmission_min_deg: float = 0.0
+    transmission_over: TransmissionOver = TransmissionOver.TASK
+    link_length: Limits | None = None
+    r1: Limits | None = None
+    r2: Limits | None = None
+    r3: Limits | None = None
+    r4: Limits | None = None
+    link_ratio_max: float = 20.0
+    coupler_arms: Limits | None = None
+    o2: Box | None = None
+    o4: Box | None = None
+    a: Box | None = None
+    b: Box | None = None
+    ground_angle_deg: float | None = None
+    theta2_start_deg: float | None = None
+
+    def __post_init__(self) -> None:
+        for name, kind in (("rotatability", Rotatability), ("transmission_over", TransmissionOver)):
+            object.__setattr__(self, name, _member(kind, getattr(self, name), f"requirements.{name}"))
+        for name, (low, high) in _RANGES.items():
+            value = number_within(getattr(self, name), low, high, f"requirements.{name}")
+            object.__setattr__(self, name, value)
+        for name in ("link_length", "r1", "r2", "r3", "r4", "coupler_arms"):
+            if getattr(self, name) is not None:
+                pair = limits(getattr(self, name), f"requirements.{name}", least=0.0)
+                object.__setattr__(self, name, pair)
+        for name in ("ground_angle_deg", "theta2_start_deg"):
+            if getattr(self, name) is not None:
+                angle = finite_number(getattr(self, name), f"requirements.{name}")
+                object.__setattr__(self, name, angle)
+        for name in ("o2", "o4", "a", "b"):
+            if not isinstance(getattr(self, name), Box | None):
+                raise ProblemError(f"requirements.{name} is {getattr(self, name)!r}; allowed is a Box")
+
+    @property
+    def link_lengths(self) -> tuple[Limits, Limits, Limits, Limits]:
+        """Limits of r1, r2, r3, r4 (of resolved requirements)."""
+        every = self.link_length or (0.0, np.inf)
+        return self.r1 or every, self.r2 or every, self.r3 or every, self.r4 or every
+
+    def resolved(self, size: float) -> Requirements:
+        """These requirements with every default that depends on the size of the task filled in.
+
+        Examples
+        --------
+        >>> Requirements().resolved(2.0).link_length
+        (0.02, 40.0)
+        """
+        return replace(
+            self,
+            link_length=self.link_length or (0.01 * size, 20.0 * size),
+            coupler_arms=self.coupler_arms or (0.0, 30.0 * size),
+            o2=self.o2 or Box(),
+            o4=self.o4 or Box(),
+            a=self.a or Box(),
+            b=self.b or Box(),
+        )
+
+
+_RANGES = {
+    "tolerance": (1e-12, 1.0),
+    "rotatability_margin": (0.0, 0.25),
+    "transmission_min_deg": (0.0, 90.0),
+    "link_ratio_max": (1.0, 1e6),
+}
+
+
+def _side(values: Limits, name: str) -> Limits:
+    allowed = "allowed is [lo, hi] with lo <= hi"
+    try:
+        low, high = (float(value) for value in values)
+    except (TypeError, ValueError):
+        raise ProblemError(f"{name} is {values!r}; {allowed}") from None
+    if not (low <= high and low < np.inf and high > -np.inf):
+        raise ProblemError(f"{name} is [{low:.15g}, {high:.15g}]; {allowed}")
+    return low, high
+
+
+def _member(kind: type[StrEnum], value: str, where: str) -> StrEnum:
+    try:
+        return kind(value)
+    except ValueError:
+        allowed = ", ".join(kind)
+        raise ProblemError(f"{where} is {value!r}; allowed is one of {allowed}") from None

@@ -1,0 +1,139 @@
+"""Results: verified designs, ranked, and what became of all the others."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from os import PathLike
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from grashof.analysis import Verdict
+from grashof.problems import FourBar, NoSolutionError, Objective, Problem, TransmissionOver
+from grashof.problems.checks import BoolArray
+from grashof.synth.distinct import DISTINCT, pick_apart, signature
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """A design with the judge's verdict on it.
+
+    Parameters
+    ----------
+    linkage : FourBar
+    verdict : Verdict
+    start : int
+        Number of the start that it came from.
+    iterations : int
+        Of Ipopt.
+    """
+
+    linkage: FourBar
+    verdict: Verdict
+    start: int
+    iterations: int
+
+    @property
+    def id(self) -> str:
+        """Name by the design itself: the same for the same numbers (to six digits) in any list."""
+        numbers = [*signature(self.linkage), self.linkage.assembly, self.linkage.body_angle]
+        text = " ".join(f"{number + 0.0:.5e}" for number in numbers)
+        return hashlib.sha256(text.encode()).hexdigest()[:8]
+
+    def transmission(self, over: TransmissionOver) -> float:
+        """Worst transmission angle over the task or the cycle, rad."""
+        if over is TransmissionOver.CYCLE:
+            return self.verdict.transmission_min_cycle
+        return self.verdict.transmission_min_task
+
+    def score(self, problem: Problem) -> float:
+        """How good the design is by the problem's objective; greater is better."""
+        transmission = self.transmission(problem.requirements.transmission_over)
+        return weigh(problem.objective, transmission, self.verdict.size / problem.task.size)
+
+
+def weigh(objective: Objective, transmission: float, size: float) -> float:
+    """Score of a transmission angle (rad) and a size (in sizes of the task)."""
+    return objective.transmission * transmission / (np.pi / 2) - objective.compactness * size
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """A ranked list of verified, distinct designs, best first; `nearest` when there is none.
+
+    Parameters
+    ----------
+    problem : Problem
+    candidates : tuple of Candidate
+    nearest : tuple of Candidate
+        For an empty list: designs with one requirement missed, each as little as was possible.
+    counts : mapping of str to int
+        Solves by outcome.
+    seconds : mapping of str to float
+        Time by stage.
+    note : str
+        Why the list is empty or was cut short; empty otherwise.
+    complete : bool
+        False when the search was interrupted.
+    """
+
+    problem: Problem
+    candidates: tuple[Candidate, ...]
+    nearest: tuple[Candidate, ...]
+    counts: Mapping[str, int]
+    seconds: Mapping[str, float]
+    note: str = ""
+    complete: bool = True
+
+    @property
+    def best(self) -> Candidate:
+        """The first design; `NoSolutionError` says what stood in the way when there is none."""
+        if not self.candidates:
+            raise NoSolutionError(self.note)
+        return self.candidates[0]
+
+    def __len__(self) -> int:
+        return len(self.candidates)
+
+    def to_frame(self) -> pd.DataFrame:
+        """One verified design a row, best first; columns as the README lists them."""
+        from grashof.synth.table import to_frame  # pandas takes half a second to import
+
+        return to_frame(self.problem, self.candidates)
+
+    def to_csv(self, path: str | PathLike[str]) -> None:
+        """Write `to_frame` with floats in full precision."""
+        self.to_frame().to_csv(path, index=False, lineterminator="\n")
+
+
+def ranked(problem: Problem, candidates: list[Candidate]) -> tuple[Candidate, ...]:
+    """Distinct candidates, best first; of two that are not distinct the better one stays."""
+    if not candidates:
+        return ()
+    score = np.array([candidate.score(problem) for candidate in candidates])
+    signatures = np.array([signature(candidate.linkage) for candidate in candidates])
+    return tuple(candidates[i] for i in pick_apart(signatures, score, DISTINCT, len(candidates)))
+
+
+def pareto_optimal(problem: Problem, candidates: tuple[Candidate, ...]) -> BoolArray:
+    """Which candidates no other one beats in error, worst transmission and size; shape (n,).
+
+    Errors up to 1e-9 sizes are exact and count as equal.
+    """
+    over = problem.requirements.transmission_over
+    costs = np.array([
+        (
+            max(candidate.verdict.error_rms / problem.task.size, 1e-9),
+            -candidate.transmission(over),
+            candidate.verdict.size,
+        )
+        for candidate in candidates
+    ]).reshape(-1, 3)  # fmt: skip
+    no_worse = (costs[:, None] <= costs[None]).all(axis=2)
+    better = (costs[:, None] < costs[None]).any(axis=2)
+    return ~(no_worse & better).any(axis=0)

@@ -1,0 +1,220 @@
+"""From a problem to a ranked list: starts, solves in batches, verification, ranking."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from multiprocessing import get_context
+from signal import SIG_IGN, SIGINT, signal
+from time import perf_counter
+
+import numpy as np
+
+from grashof.problems import Problem, ProblemError, Search, SolverError
+from grashof.problems.checks import whole_number
+from grashof.synth import four_poses
+from grashof.synth.attempt import Attempt, attempt
+from grashof.synth.result import Candidate, Result, ranked
+from grashof.synth.setup import Setup
+from grashof.synth.start import Start
+
+BATCH = 16  # solves between two looks at what is verified; fixed, so that workers change nothing
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """How far a search is.
+
+    Parameters
+    ----------
+    solved, starts : int
+        Solves done, and most that there can be.
+    verified, enough : int
+        Distinct verified designs, and how many are enough.
+    """
+
+    solved: int
+    starts: int
+    verified: int
+    enough: int
+
+
+def synthesize(
+    problem: Problem,
+    *,
+    starts: int | None = None,
+    enough: int | None = None,
+    seed: int | None = None,
+    workers: int = 1,
+    executor: Executor | None = None,
+    time_limit: float | None = None,
+    progress: Callable[[Progress], object] | None = None,
+    stop: Callable[[], bool] | None = None,
+) -> Result:
+    """Find, verify and rank linkages for a problem.
+
+    Parameters
+    ----------
+    problem : Problem
+    starts, enough, seed : int, optional
+        Override the problem's own (see `Search`).
+    workers : int
+        Processes. The result does not depend on it; a search of a second or two gains nothing.
+    executor : concurrent.futures.Executor, optional
+        Where to solve instead; not shut down.
+    time_limit : float, s, optional
+        No new batch is begun after it.
+    progress : callable, optional
+        Called with a `Progress` after every batch.
+    stop : callable, optional
+        Asked before every batch; the search ends when it says True.
+
+    Returns
+    -------
+    Result
+        Perhaps empty; then `Result.note` and `Result.nearest` say what stood in the way.
+
+    Raises
+    ------
+    ProblemError
+        The problem cannot be stated to this version.
+    SolverError
+        A worker process or the executor was lost.
+
+    Examples
+    --------
+    >>> from grashof import load
+    >>> result = synthesize(load("luggage"), enough=5)
+    >>> result.best.verdict.ok, bool(result.best.verdict.error_max < 1e-9)
+    (True, True)
+    """
+    given = {"starts": starts, "enough": enough, "seed": seed}
+    search = replace(problem.search, **{name: n for name, n in given.items() if n is not None})
+    whole_number(workers, 1, "workers")
+    if time_limit is not None and not time_limit > 0:
+        raise ProblemError(f"time_limit is {time_limit!r}; allowed is a time in s greater than zero")
+    if len(problem.task) != 4:
+        raise ProblemError(f"motion.poses has {len(problem.task)} poses; this version synthesises exactly four")
+    begun = perf_counter()
+    setup = Setup.of(problem)
+    reason = four_poses.degenerate(setup)
+    if reason:
+        return Result(problem, (), (), {}, {"total": perf_counter() - begun}, note=f"no design: {reason}")
+
+    def ended() -> bool:
+        out_of_time = time_limit is not None and perf_counter() - begun > time_limit
+        return out_of_time or (stop is not None and stop())
+
+    return _search(setup, search, begun, ended, progress, workers, executor)
+
+
+def _search(
+    setup: Setup,
+    search: Search,
+    begun: float,
+    ended: Callable[[], bool],
+    progress: Callable[[Progress], object] | None,
+    workers: int,
+    executor: Executor | None,
+) -> Result:
+    problem = setup.problem
+    rng = np.random.default_rng(np.random.SeedSequence(search.seed))
+    queue, feasible = four_poses.starts(setup, search.starts, search.enough, rng)
+    screened = perf_counter()
+    counts = Counter({"feasible pairs": feasible})
+    verified: list[Candidate] = []
+    best: tuple[Candidate, ...] = ()
+    complete = True
+    with _solving(workers, executor) as solve:
+        for begin in range(0, len(queue), BATCH):
+            if ended():
+                complete = False
+                break
+            batch = queue[begin : begin + BATCH]
+            for result in solve(setup, batch, begin):
+                counts[f"solver: {result.status}"] += 1
+                counts[_outcome(result)] += 1
+                if result.candidate is not None and result.candidate.verdict.ok:
+                    verified.append(result.candidate)
+            best = ranked(problem, verified)
+            if progress is not None:
+                progress(Progress(begin + len(batch), len(queue), len(best), search.enough))
+            if len(best) >= search.enough:
+                break
+        solved = perf_counter()
+        nearest = ()
+        if not best and complete:
+            misses = solve(setup, four_poses.relaxed_starts(setup, rng), len(queue))
+            nearest = _nearest(misses)
+    counts["verified and distinct"] = len(best)
+    seconds = {"screening": screened - begun, "solving": solved - screened, "total": perf_counter() - begun}
+    note = "" if best else _why(nearest, complete)
+    return Result(problem, best, nearest, dict(counts), seconds, note, complete)
+
+
+@contextmanager
+def _solving(
+    workers: int, executor: Executor | None
+) -> Iterator[Callable[[Setup, list[Start], int], list[Attempt]]]:
+    """A function that makes attempts, in the order of their starts, here or in other processes."""
+    own = None
+    if executor is None and workers > 1:
+        own = executor = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_ignore_interrupt)
+
+    def solve(setup: Setup, batch: list[Start], first: int) -> list[Attempt]:
+        numbers = range(first, first + len(batch))
+        if executor is None:
+            return [attempt(setup, start, number) for start, number in zip(batch, numbers, strict=True)]
+        try:
+            return list(executor.map(attempt, [setup] * len(batch), batch, numbers))
+        except BrokenExecutor as error:
+            raise SolverError(f"a worker process was lost: {error}") from error
+
+    try:
+        yield solve
+    finally:
+        if own is not None:
+            own.shutdown(cancel_futures=True)
+
+
+def _ignore_interrupt() -> None:
+    """Ctrl-C reaches every process of a terminal; the parent alone decides what it means."""
+    signal(SIGINT, SIG_IGN)
+
+
+def _outcome(result: Attempt) -> str:
+    if result.candidate is None:
+        return "no linkage"
+    if result.candidate.verdict.ok:
+        return "verified"
+    return f"rejected: {result.candidate.verdict.defects[0].requirement}"
+
+
+def _nearest(attempts: list[Attempt]) -> tuple[Candidate, ...]:
+    """The closest miss for each set of missed requirements, fewest and smallest misses first."""
+    closest: dict[frozenset[str], tuple[float, Candidate]] = {}
+    for result in attempts:
+        if result.candidate is None or result.candidate.verdict.ok:
+            continue
+        defects = result.candidate.verdict.defects
+        kind = frozenset(defect.requirement for defect in defects)
+        miss = sum(defect.miss for defect in defects)
+        if kind not in closest or miss < closest[kind][0]:
+            closest[kind] = (miss, result.candidate)
+    if not closest:
+        return ()
+    fewest = min(len(kind) for kind in closest)
+    found = [(miss, sorted(kind), candidate) for kind, (miss, candidate) in closest.items() if len(kind) == fewest]
+    return tuple(candidate for _, _, candidate in sorted(found, key=lambda item: item[:2]))
+
+
+def _why(nearest: tuple[Candidate, ...], complete: bool) -> str:
+    if not complete:
+        return "no design: the search was stopped before it found one"
+    if not nearest:
+        return "no design: the search found none, nor a near miss"
+    ways = "; or ".join(" and ".join(str(d) for d in candidate.verdict.defects) for candidate in nearest)
+    return f"no design meets all requirements; in the way stands {ways}"

@@ -1,0 +1,71 @@
+"""The candidate list as a table: the columns of candidates.csv."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from grashof.problems import Problem
+from grashof.synth.result import Candidate, pareto_optimal
+
+# Columns without a meaning for a task, or whose analysis is not built yet, stay empty.
+COLUMNS = (
+    "rank", "id", "family", "grashof_class", "direction", "assembly", "o2_x", "o2_y", "o4_x", "o4_y",
+    "r1", "r2", "r3", "r4", "p_u", "p_v", "body_angle_deg", "theta2_start_deg", "theta2_end_deg",
+    "error_max", "error_rms", "error_sse", "angle_error_max_deg", "angle_error_rms_deg",
+    "transmission_min_task_deg", "transmission_min_cycle_deg", "circuit_ok", "branch_ok", "order_ok",
+    "full_rotation", "omega4_max", "point_speed_max", "point_acceleration_max", "torque_peak",
+    "torque_rms", "joint_force_peak", "coupler_fit_r2", "size", "pareto", "cognate_of", "start", "iterations",
+)  # fmt: skip
+
+
+def to_frame(problem: Problem, candidates: tuple[Candidate, ...]) -> pd.DataFrame:
+    """Candidates as rows, in the order given, with the columns `COLUMNS`."""
+    best = pareto_optimal(problem, candidates)
+    rows = [
+        {"rank": rank, "pareto": bool(front), **_row(candidate)}
+        for rank, (candidate, front) in enumerate(zip(candidates, best, strict=True), start=1)
+    ]
+    return pd.DataFrame(rows, columns=list(COLUMNS))
+
+
+def _row(candidate: Candidate) -> dict[str, Any]:
+    linkage, verdict = candidate.linkage, candidate.verdict
+    r1, r2, r3, r4 = (float(length) for length in linkage.lengths)
+    angle_error = np.degrees(verdict.angle_error)
+    return {
+        "id": candidate.id,
+        "family": "four-bar",
+        "grashof_class": str(verdict.grashof_class),
+        "direction": verdict.direction,
+        "assembly": int(linkage.assembly),
+        "o2_x": float(linkage.o2[0]),
+        "o2_y": float(linkage.o2[1]),
+        "o4_x": float(linkage.o4[0]),
+        "o4_y": float(linkage.o4[1]),
+        "r1": r1,
+        "r2": r2,
+        "r3": r3,
+        "r4": r4,
+        "p_u": float(linkage.coupler_point[0]),
+        "p_v": float(linkage.coupler_point[1]),
+        "body_angle_deg": float(np.degrees(linkage.body_angle)),
+        "theta2_start_deg": float(np.degrees(verdict.theta2[0])),
+        "theta2_end_deg": float(np.degrees(verdict.theta2[-1])),
+        "error_max": verdict.error_max,
+        "error_rms": verdict.error_rms,
+        "error_sse": verdict.error_sse,
+        "angle_error_max_deg": float(angle_error.max()),
+        "angle_error_rms_deg": float(np.sqrt(np.mean(angle_error**2))),
+        "transmission_min_task_deg": float(np.degrees(verdict.transmission_min_task)),
+        "transmission_min_cycle_deg": float(np.degrees(verdict.transmission_min_cycle)),
+        "circuit_ok": verdict.circuit_ok,
+        "branch_ok": verdict.branch_ok,
+        "order_ok": verdict.order_ok,
+        "full_rotation": verdict.full_rotation,
+        "size": verdict.size,
+        "start": candidate.start,
+        "iterations": candidate.iterations,
+    }

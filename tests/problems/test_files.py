@@ -1,0 +1,169 @@
+"""Loading problems: the catalogue, and files."""
+
+import os
+import re
+import subprocess
+import sys
+from importlib import resources
+from pathlib import Path
+
+import pytest
+
+from grashof.problems import ProblemError, Rotatability, TransmissionOver, catalogue, load, problem_text
+
+GOOD = 'kind = "motion"\ntitle = "mine"\n[motion]\nposes = [[0, 0, 0], [3, 4, 90]]\n'
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def refused(problem: str | os.PathLike[str]) -> str:
+    with pytest.raises(ProblemError) as caught:
+        load(problem)
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("name", catalogue())
+def test_every_problem_of_the_catalogue_loads_and_says_what_it_is(name: str) -> None:
+    problem = load(name)
+    assert problem.name == name
+    assert problem.title
+    assert problem.source
+    assert problem.length_unit
+    assert len(problem.task) >= 2
+
+
+def test_the_catalogue_is_sorted_and_is_the_folder() -> None:
+    data = resources.files("grashof.problems") / "data"
+    assert list(catalogue()) == sorted(
+        file.name[:-5] for file in data.iterdir() if file.name.endswith(".toml")
+    )
+    assert "luggage" in catalogue()
+
+
+def test_the_luggage_problem_is_the_one_asked_for() -> None:
+    luggage = load("luggage")
+    assert luggage.task.positions.tolist() == [[5, 4], [3.5, 4], [2, 3], [1, 0]]
+    assert luggage.requirements.rotatability is Rotatability.FULL_CRANK
+    assert luggage.requirements.link_length == luggage.requirements.coupler_arms == (0.3, 8.0)
+    assert luggage.requirements.transmission_min_deg == 15
+    assert luggage.requirements.transmission_over is TransmissionOver.TASK
+    assert luggage.task.body is not None
+    assert luggage.task.body.tolist() == [[0, 0], [1, 0], [1, 1], [0, 1]]
+    assert [outline.tolist() for outline in luggage.outlines] == [[[0, 0], [5, 0], [5, 4], [8, 4]]]
+    assert luggage.length_unit == "m"
+
+
+def test_the_text_of_a_catalogue_problem_is_a_file_to_copy(folder: Path) -> None:
+    (folder / "copy.toml").write_text(problem_text("luggage"), encoding="utf-8")
+    copy = load("copy.toml")
+    assert copy.name == "copy"
+    assert copy.requirements == load("luggage").requirements
+
+
+def test_the_text_of_an_unknown_problem() -> None:
+    with pytest.raises(
+        ProblemError, match=r"^'lugage' is no problem of the catalogue; did you mean luggage\?$"
+    ):
+        problem_text("lugage")
+
+
+@pytest.mark.parametrize("way", [Path, str, lambda path: f"./{path.name}", lambda path: path.name])
+def test_a_file_by_its_path(folder: Path, way: type) -> None:
+    path = folder / "mine.toml"
+    path.write_text(GOOD, encoding="utf-8")
+    problem = load(way(path))
+    assert (problem.name, problem.title) == ("mine", "mine")
+    assert problem.task.size == 5.0
+
+
+def test_a_bare_name_is_the_catalogue_first_and_then_a_file(folder: Path) -> None:
+    for name in ("luggage", "mine"):
+        (folder / name).write_text(GOOD, encoding="utf-8")
+    assert load("mine").title == "mine"
+    assert load("luggage").title != "mine"
+    assert load("./luggage").title == "mine"
+    assert load(Path("luggage")).title == "mine"
+
+
+def test_windows_line_ends_and_byte_order_mark(folder: Path) -> None:
+    (folder / "notepad.toml").write_bytes(b"\xef\xbb\xbf" + GOOD.replace("\n", "\r\n").encode())
+    assert load("notepad.toml").title == "mine"
+
+
+def test_unknown_name(folder: Path) -> None:
+    names = ", ".join(catalogue())
+    assert refused("lugage") == "'lugage' is no problem of the catalogue and no file; did you mean luggage?"
+    assert refused("zzzz") == f"'zzzz' is no problem of the catalogue and no file; the catalogue has {names}"
+    assert refused("").startswith("'' is no problem of the catalogue and no file;")
+
+
+def test_missing_file(folder: Path) -> None:
+    assert refused("lugage.toml") == "lugage.toml: there is no such file; did you mean luggage?"
+    assert refused(folder / "zzzz.toml").startswith(
+        f"{folder}{os.sep}zzzz.toml: there is no such file; the catalogue"
+    )
+    assert refused("no/such/folder").startswith(f"no{os.sep}such{os.sep}folder: there is no such file;")
+
+
+def test_folder_in_the_place_of_a_file(folder: Path) -> None:
+    (folder / "sub").mkdir()
+    (folder / "odd.toml").mkdir()
+    assert refused("sub") == "sub: is a folder; allowed is a problem file"
+    assert refused("odd.toml") == "odd.toml: is a folder; allowed is a problem file"
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root reads everything")
+def test_file_without_leave_to_read(folder: Path) -> None:
+    path = folder / "locked.toml"
+    path.write_text(GOOD, encoding="utf-8")
+    path.chmod(0)
+    assert refused("locked.toml") == "locked.toml: cannot be read: Permission denied"
+
+
+def test_a_file_in_the_place_of_a_folder(folder: Path) -> None:
+    (folder / "mine.toml").write_text(GOOD, encoding="utf-8")
+    assert refused("mine.toml/luggage.toml").startswith(f"mine.toml{os.sep}luggage.toml: ")
+
+
+def test_names_that_no_file_can_have(folder: Path) -> None:
+    assert refused("a\0b.toml").startswith(r"'a\x00b.toml': cannot be read: embedded null")
+    assert re.match(r"x{5000}\.toml: cannot be read: ", refused("x" * 5000 + ".toml"))
+    assert refused("x" * 5000).startswith("'xxx")
+
+
+def test_a_file_that_is_not_utf8(folder: Path) -> None:
+    (folder / "latin.toml").write_bytes('title = "Gelände"'.encode("latin-1"))
+    assert refused("latin.toml") == "latin.toml: is not UTF-8 text, at byte 12"
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ('kind = "motion"\nposes = [1,,2]', "is not TOML: Invalid value (at line 2, column 12)"),
+        ("kind = motion", "is not TOML: Invalid value (at line 1, column 8)"),
+        ("a = 1\na = 2\n", "is not TOML: Cannot overwrite a value (at line 2, column 6)"),
+        ("seed = " + "9" * 5000, "is not TOML: Exceeds the limit"),
+        ("a = " + "[" * 100_000, "is not TOML: "),
+    ],
+)
+def test_a_file_that_is_not_toml(folder: Path, text: str, expected: str) -> None:
+    (folder / "bad.toml").write_text(text, encoding="utf-8")
+    assert refused("bad.toml").startswith(f"bad.toml: {expected}")
+
+
+def test_errors_inside_a_file_begin_with_its_name(folder: Path) -> None:
+    (folder / "bad.toml").write_text(GOOD + "[requirements]\nlink_lenght = [1, 2]\n", encoding="utf-8")
+    assert refused("bad.toml") == "bad.toml: requirements.link_lenght is unknown; did you mean link_length?"
+    (folder / "empty.toml").touch()
+    assert refused("empty.toml") == "empty.toml: kind is missing (and 1 more error)"
+
+
+def test_importing_the_package_does_not_load_what_only_files_need() -> None:
+    code = "import sys, grashof.problems; print(sorted({'pydantic', 'casadi'} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"

@@ -1,0 +1,158 @@
+"""The four-bar linkage as a value."""
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from grashof.problems import FourBar, ProblemError
+
+
+def crank_rocker() -> FourBar:
+    return FourBar(
+        o2=(1, 2), o4=(4, 6), r2=1, r3=4, r4=3, coupler_point=(0.5, -2), assembly=-1, body_angle=0.3
+    )
+
+
+def batch_of(count: int) -> FourBar:
+    lengths = 1.0 + np.arange(count)
+    o4 = np.stack([lengths, 2 * lengths], axis=-1)
+    return FourBar(
+        o2=(0, 0), o4=o4, r2=lengths, r3=4.0, r4=lengths + 1, assembly=[(-1) ** n for n in range(count)]
+    )
+
+
+def test_ground_link_from_the_pivots() -> None:
+    linkage = crank_rocker()
+    assert linkage.r1 == 5.0
+    assert linkage.theta1 == pytest.approx(np.arctan2(4, 3), abs=1e-15)
+    assert linkage.lengths.tolist() == [5.0, 1.0, 4.0, 3.0]
+
+
+def test_defaults_put_the_coupler_point_on_a() -> None:
+    linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
+    assert linkage.coupler_point.tolist() == [0.0, 0.0]
+    assert linkage.shape == ()
+    assert linkage.assembly == 1.0
+    assert linkage.body_angle == 0.0
+
+
+def test_fields_of_a_batch_share_their_leading_axes() -> None:
+    batch = batch_of(3)
+    assert batch.shape == (3,)
+    assert batch.o2.shape == batch.o4.shape == batch.coupler_point.shape == (3, 2)
+    assert batch.r3.tolist() == [4.0, 4.0, 4.0]
+    assert batch.lengths.shape == (3, 4)
+    np.testing.assert_allclose(batch.r1, np.sqrt(5) * np.array([1, 2, 3]), rtol=1e-15)
+
+
+def test_indexing_takes_linkages_out() -> None:
+    batch = batch_of(4)
+    one = batch[2]
+    assert one == FourBar(o2=(0, 0), o4=(3, 6), r2=3, r3=4, r4=4, assembly=1)
+    assert batch[1:3].r2.tolist() == [2.0, 3.0]
+    assert batch[[3, 0]].r2.tolist() == [4.0, 1.0]
+    assert batch[np.array([False, True, False, True])].assembly.tolist() == [-1.0, -1.0]
+    assert [float(batch[n].r2) for n in range(4)] == [1.0, 2.0, 3.0, 4.0]
+
+
+def test_an_empty_selection_is_an_empty_batch() -> None:
+    none = batch_of(3)[np.zeros(3, dtype=bool)]
+    assert none.shape == (0,)
+    assert none.o4.shape == (0, 2)
+
+
+def test_indexing_adds_axes() -> None:
+    batch = batch_of(3)
+    assert batch[:, None].shape == (3, 1)
+    assert batch[:, None].o4.shape == (3, 1, 2)
+    assert crank_rocker()[None].shape == (1,)
+    assert crank_rocker()[None][0] == crank_rocker()
+    assert batch[..., 0] == batch[0]
+
+
+def test_a_single_linkage_has_nothing_to_index() -> None:
+    with pytest.raises(IndexError):
+        crank_rocker()[0]
+    with pytest.raises(IndexError):
+        batch_of(2)[2]
+
+
+@given(arrays(np.float64, (3, 2), elements=st.floats(0.1, 10)), st.integers(0, 2))
+def test_an_element_of_a_batch_equals_the_linkage_it_was_made_of(lengths: np.ndarray, index: int) -> None:
+    batch = FourBar(o2=lengths, o4=(20, 0), r2=lengths[:, 0], r3=lengths[:, 1], r4=2)
+    alone = FourBar(o2=lengths[index], o4=(20, 0), r2=lengths[index, 0], r3=lengths[index, 1], r4=2)
+    assert batch[index] == alone
+    assert batch[index].r1 == batch.r1[index]
+
+
+def test_equality_and_hash_go_by_value() -> None:
+    assert crank_rocker() == crank_rocker()
+    assert len({crank_rocker(), crank_rocker()}) == 1
+    assert crank_rocker() != crank_rocker()[None]
+    assert batch_of(3) == batch_of(3)
+    assert batch_of(3) != batch_of(4)
+    assert crank_rocker() != "crank-rocker"
+
+
+def test_every_field_counts_in_equality() -> None:
+    names = ("o2", "o4", "r2", "r3", "r4", "coupler_point", "assembly", "body_angle")
+    values = {name: getattr(crank_rocker(), name) for name in names}
+    for name in names:
+        other = values | {name: -values[name] if name == "assembly" else values[name] + 1}
+        assert FourBar(**other) != crank_rocker(), name
+
+
+def test_equal_linkages_have_equal_hashes_whatever_the_sign_of_zero() -> None:
+    positive = FourBar(o2=(0.0, 0), o4=(4, 0), r2=1, r3=4, r4=3, body_angle=0.0)
+    negative = FourBar(o2=(-0.0, 0), o4=(4, 0), r2=1, r3=4, r4=3, body_angle=-0.0)
+    assert positive == negative
+    assert hash(positive) == hash(negative)
+
+
+@pytest.mark.parametrize("linkage", [crank_rocker(), batch_of(3)])
+def test_copies_are_equal_and_stay_read_only(linkage: FourBar) -> None:
+    for twin in (pickle.loads(pickle.dumps(linkage)), copy.deepcopy(linkage)):
+        assert twin == linkage
+        assert twin.shape == linkage.shape
+        with pytest.raises(ValueError, match="read-only"):
+            twin.o2[..., 0] = 9
+
+
+def test_a_linkage_cannot_be_changed() -> None:
+    linkage = crank_rocker()
+    with pytest.raises(AttributeError):
+        linkage.r2 = 5.0  # type: ignore[misc, assignment]
+    with pytest.raises(ValueError, match="read-only"):
+        linkage.coupler_point[0] = 5.0
+
+
+def test_a_linkage_does_not_share_memory_with_what_it_was_made_of() -> None:
+    o2 = np.array([0.0, 0.0])
+    linkage = FourBar(o2=o2, o4=(4, 0), r2=1, r3=4, r4=3)
+    o2[0] = 99
+    assert linkage.o2.tolist() == [0.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"r2": 0}, "r2 is 0; allowed are lengths greater than zero"),
+        ({"r4": [1, -2]}, r"r4 is \[1, -2\]; allowed are lengths greater than zero"),
+        ({"r3": np.nan}, "r3 is nan; all numbers must be finite"),
+        ({"o2": (0, np.inf)}, r"o2 is \(0, inf\); all numbers must be finite"),
+        ({"o4": (1, 2, 3)}, r"o4 has shape \(3,\); allowed is \(..., 2\)"),
+        ({"coupler_point": 1}, r"coupler_point has shape \(\); allowed is \(..., 2\)"),
+        ({"r2": "long"}, "r2 is 'long'; allowed are numbers"),
+        ({"assembly": 0}, r"assembly is 0; allowed is \+1 or -1"),
+        ({"r2": [1, 2], "r3": [1, 2, 3]}, "the fields of a batch have shapes .* that do not fit together"),
+    ],
+)
+def test_bad_input_is_refused_by_name(change: dict[str, object], message: str) -> None:
+    good: dict[str, object] = {"o2": (0, 0), "o4": (4, 0), "r2": 1, "r3": 4, "r4": 3}
+    with pytest.raises(ProblemError, match=rf"^{message}$"):
+        FourBar(**(good | change))  # type: ignore[arg-type]

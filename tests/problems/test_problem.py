@@ -1,0 +1,78 @@
+"""Objective, search and the whole problem."""
+
+import math
+import pickle
+
+import pytest
+
+from grashof.problems import MotionTask, Objective, Problem, ProblemError, Requirements, Search
+
+TASK = MotionTask.from_degrees([[0, 0, 0], [3, 4, 90]])
+
+
+def test_defaults() -> None:
+    problem = Problem(task=TASK)
+    assert problem.objective == Objective(transmission=1.0, compactness=0.0)
+    assert problem.search == Search(starts=200, enough=50, seed=0)
+    assert problem.requirements == Requirements()
+    assert (problem.name, problem.title, problem.source, problem.length_unit) == ("problem", "", "", "")
+    assert problem.outlines == ()
+
+
+def test_outlines_become_read_only_arrays_of_their_own_length() -> None:
+    problem = Problem(task=TASK, outlines=([[0, 0], [1, 0]], [[0, 0], [1, 1], [2, 0]]))  # type: ignore[arg-type]
+    assert [outline.tolist() for outline in problem.outlines] == [[[0, 0], [1, 0]], [[0, 0], [1, 1], [2, 0]]]
+    with pytest.raises(ValueError, match="read-only"):
+        problem.outlines[0][0] = 1
+
+
+@pytest.mark.parametrize(
+    ("outlines", "message"),
+    [
+        (
+            [[[0, 0], [1, 0]], [[0, 0], [1, 0, 0]]],
+            r"scene.outlines\[1\]\[1\] is \[1, 0, 0\], 3 numbers; allowed is a corner",
+        ),
+        ([[[0, 0], [math.inf, 0]]], r"scene.outlines\[0\]\[1\] is \[inf, 0\]; all numbers must be finite"),
+        ([[[0, 0]]], r"scene.outlines\[0\] has 1 corner; allowed are two or more"),
+    ],
+)
+def test_bad_outlines(outlines: list[list[list[float]]], message: str) -> None:
+    with pytest.raises(ProblemError, match=rf"^{message}"):
+        Problem(task=TASK, outlines=tuple(outlines))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("weights", "message"),
+    [
+        ((-1, 2), "objective.maximise.transmission is -1; allowed is a weight from 0"),
+        ((1, -0.5), "objective.maximise.compactness is -0.5; allowed is a weight from 0"),
+        ((1, math.nan), "objective.maximise.compactness is nan; allowed is a finite number"),
+        ((0, 0), "objective.maximise has no weight greater than zero; one at least is needed"),
+    ],
+)
+def test_bad_weights(weights: tuple[float, float], message: str) -> None:
+    with pytest.raises(ProblemError, match=rf"^{message}$"):
+        Objective(*weights)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"starts": 0}, "search.starts is 0; allowed is a whole number from 1"),
+        ({"enough": 2.5}, "search.enough is 2.5; allowed is a whole number from 1"),
+        ({"seed": -1}, "search.seed is -1; allowed is a whole number from 0"),
+    ],
+)
+def test_bad_search(change: dict[str, int], message: str) -> None:
+    with pytest.raises(ProblemError, match=rf"^{message}$"):
+        Search(**change)
+
+
+def test_a_problem_pickles() -> None:
+    problem = Problem(task=TASK, name="lift", outlines=([[0, 0], [1, 0]],), search=Search(seed=7))  # type: ignore[arg-type]
+    twin = pickle.loads(pickle.dumps(problem))
+    assert twin.name == "lift"
+    assert twin.search == Search(seed=7)
+    assert twin.task.positions.tolist() == TASK.positions.tolist()
+    assert twin.outlines[0].tolist() == [[0, 0], [1, 0]]

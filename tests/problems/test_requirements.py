@@ -1,0 +1,122 @@
+"""Requirements and boxes."""
+
+import dataclasses
+import math
+import pickle
+
+import pytest
+
+from grashof.problems import Box, ProblemError, Requirements, Rotatability, TransmissionOver
+
+
+def test_defaults_demand_only_what_is_not_absurd() -> None:
+    requirements = Requirements()
+    assert requirements.rotatability is Rotatability.FULL_CRANK
+    assert requirements.transmission_over is TransmissionOver.TASK
+    assert (requirements.tolerance, requirements.rotatability_margin) == (1e-6, 1e-3)
+    assert (requirements.transmission_min_deg, requirements.link_ratio_max) == (0.0, 20.0)
+    assert requirements.order
+    assert requirements.same_branch
+
+
+def test_resolved_fills_in_what_depends_on_the_size() -> None:
+    resolved = Requirements().resolved(5.0)
+    assert resolved.link_length == (0.05, 100.0)
+    assert resolved.coupler_arms == (0.0, 150.0)
+    assert resolved.o2 == resolved.o4 == resolved.a == resolved.b == Box()
+
+
+def test_resolved_keeps_what_is_given() -> None:
+    given = Requirements(
+        link_length=(0.3, 8), coupler_arms=(0, 0), o2=Box((0, 1), (2, 3)), theta2_start_deg=30, order=False
+    )
+    resolved = given.resolved(5.0)
+    assert resolved.link_length == (0.3, 8.0)
+    assert resolved.coupler_arms == (0.0, 0.0)
+    assert resolved.o2 == Box((0, 1), (2, 3))
+    assert resolved.theta2_start_deg == 30
+    assert not resolved.order
+    assert resolved.resolved(7.0) == resolved
+
+
+def test_single_link_lengths_override_the_common_one() -> None:
+    requirements = Requirements(link_length=(0.3, 8), r2=(1, 2), r4=(3, 3))
+    assert requirements.link_lengths == ((0.3, 8.0), (1.0, 2.0), (0.3, 8.0), (3.0, 3.0))
+    assert Requirements().link_lengths == ((0.0, math.inf),) * 4
+
+
+def test_words_and_members_are_the_same() -> None:
+    assert Requirements(rotatability="any").rotatability is Rotatability.ANY  # type: ignore[arg-type]
+    assert Requirements(transmission_over=TransmissionOver.CYCLE).transmission_over == "cycle"
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (
+            {"rotatability": "full"},
+            "rotatability is 'full'; allowed is one of full-crank, crank-rocker, double-crank, any",
+        ),
+        ({"transmission_over": "turn"}, "transmission_over is 'turn'; allowed is one of task, cycle"),
+        ({"tolerance": 0}, "tolerance is 0; allowed is 1e-12 to 1"),
+        ({"rotatability_margin": 0.3}, "rotatability_margin is 0.3; allowed is 0 to 0.25"),
+        ({"transmission_min_deg": 91}, "transmission_min_deg is 91; allowed is 0 to 90"),
+        ({"transmission_min_deg": math.nan}, "transmission_min_deg is nan; allowed is a finite number"),
+        ({"link_ratio_max": 0.5}, r"link_ratio_max is 0.5; allowed is 1 to 1e\+06"),
+        (
+            {"link_length": (8, 0.3)},
+            r"link_length is \[8, 0.3\]: lo exceeds hi; allowed is \[lo, hi\] with lo <= hi",
+        ),
+        ({"r3": (-1, 2)}, r"r3 is \[-1, 2\]; allowed is lo from 0"),
+        ({"coupler_arms": (0, math.inf)}, r"coupler_arms\[1\] is inf; allowed is a finite number"),
+        ({"ground_angle_deg": math.inf}, "ground_angle_deg is inf; allowed is a finite number"),
+        ({"theta2_start_deg": "30"}, "theta2_start_deg is '30'; allowed is a finite number"),
+        ({"o4": (0, 0)}, r"o4 is \(0, 0\); allowed is a Box"),
+    ],
+)
+def test_bad_values_are_named(change: dict[str, object], message: str) -> None:
+    with pytest.raises(ProblemError, match=rf"^requirements.{message}$"):
+        Requirements(**change)  # type: ignore[arg-type]
+
+
+def test_numbers_are_kept_as_floats() -> None:
+    requirements = Requirements(link_length=(1, 2), ground_angle_deg=30, transmission_min_deg=15)
+    assert repr(requirements.link_length) == "(1.0, 2.0)"
+    assert repr(requirements.ground_angle_deg) == "30.0"
+    assert repr(requirements.transmission_min_deg) == "15.0"
+
+
+def test_a_box_is_open_where_nothing_is_said() -> None:
+    assert Box(x=(0, 1)) == Box((0.0, 1.0), (-math.inf, math.inf))
+    assert Box(y=(-math.inf, 3)).y == (-math.inf, 3.0)
+    assert Box((2, 2), (3, 3)).x == (2.0, 2.0)
+
+
+@pytest.mark.parametrize(
+    ("side", "found"),
+    [
+        ((2, 1), r"\[2, 1\]"),
+        ((math.nan, 1), r"\[nan, 1\]"),
+        ((math.inf, math.inf), r"\[inf, inf\]"),
+        ((-math.inf, -math.inf), r"\[-inf, -inf\]"),
+        ((1,), r"\(1,\)"),
+        ((1, 2, 3), r"\(1, 2, 3\)"),
+        (4, "4"),
+        ("ab", "'ab'"),
+    ],
+)
+def test_a_bad_side_is_named(side: tuple[float, float], found: str) -> None:
+    allowed = r"allowed is \[lo, hi\] with lo <= hi"
+    with pytest.raises(ProblemError, match=rf"^x is {found}; {allowed}$"):
+        Box(x=side)
+    with pytest.raises(ProblemError, match=rf"^y is {found}; {allowed}$"):
+        Box(y=side)
+
+
+def test_requirements_are_values() -> None:
+    requirements = Requirements(o2=Box(x=(0, 1)), r1=(1, 2))
+    assert requirements == Requirements(o2=Box(x=(0, 1)), r1=(1, 2))
+    assert pickle.loads(pickle.dumps(requirements)) == requirements
+    assert dataclasses.replace(requirements, r1=None) == Requirements(o2=Box(x=(0, 1)))
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        requirements.order = False  # type: ignore[misc]

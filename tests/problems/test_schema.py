@@ -1,0 +1,383 @@
+"""Problem files: every key reaches its field, and every error names its key path."""
+
+import dataclasses
+import math
+import tomllib
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grashof.problems import Box, Objective, Problem, ProblemError, Requirements, Search
+from grashof.problems.schema import RequirementsTable, problem_from
+
+POSES = "poses = [[5, 4, 0], [3.5, 4, -5], [2, 3, -5], [1, 0, 0]]"
+HEAD = f'kind = "motion"\n[motion]\n{POSES}\n'
+
+EVERY_KEY = f"""
+kind = "motion"
+title = "Up and over"
+source = "a report"
+length_unit = "cm"
+
+[motion]
+{POSES}
+angle_length = 2
+body = [[0, 0], [1, 0], [1, 1.5]]
+
+[scene]
+outlines = [[[0, 0], [5, 0]], [[1, 1], [2, 2], [3, 1]]]
+
+[requirements]
+exact = true
+tolerance = 1e-7
+rotatability = "crank-rocker"
+rotatability_margin = 0.01
+order = false
+same_branch = false
+transmission_min_deg = 15
+transmission_over = "cycle"
+link_length = [0.3, 8]
+r1 = [1, 2]
+r2 = [2, 3]
+r3 = [3, 4]
+r4 = [4, 5]
+link_ratio_max = 10
+coupler_arms = [0, 6]
+o2 = {{ x = [-4, 10], y = [-7, 7] }}
+o4 = [1, 2]
+a = {{ x = [-inf, 3] }}
+b = {{ y = [0, 5] }}
+ground_angle_deg = 10
+theta2_start_deg = 30
+
+[objective]
+maximise = {{ transmission = 2, compactness = 0.5 }}
+
+[search]
+starts = 100
+enough = 20
+seed = 4
+"""
+
+
+def problem(text: str) -> Problem:
+    return problem_from(tomllib.loads(text), "test")
+
+
+def message(text: str) -> str:
+    with pytest.raises(ProblemError) as caught:
+        problem(text)
+    assert caught.value.__cause__ is None
+    return str(caught.value)
+
+
+def test_every_key_reaches_its_field() -> None:
+    every = problem(EVERY_KEY)
+    assert (every.name, every.title, every.source, every.length_unit) == (
+        "test",
+        "Up and over",
+        "a report",
+        "cm",
+    )
+    assert every.task.positions.tolist() == [[5, 4], [3.5, 4], [2, 3], [1, 0]]
+    np.testing.assert_allclose(np.degrees(every.task.angles), [0, -5, -5, 0], rtol=1e-15)
+    assert every.task.angle_length == 2.0
+    assert every.task.body is not None
+    assert every.task.body.tolist() == [[0, 0], [1, 0], [1, 1.5]]
+    assert [outline.tolist() for outline in every.outlines] == [[[0, 0], [5, 0]], [[1, 1], [2, 2], [3, 1]]]
+    assert every.requirements == Requirements(
+        tolerance=1e-7,
+        rotatability="crank-rocker",  # type: ignore[arg-type]
+        rotatability_margin=0.01,
+        order=False,
+        same_branch=False,
+        transmission_min_deg=15,
+        transmission_over="cycle",  # type: ignore[arg-type]
+        link_length=(0.3, 8),
+        r1=(1, 2),
+        r2=(2, 3),
+        r3=(3, 4),
+        r4=(4, 5),
+        link_ratio_max=10,
+        coupler_arms=(0, 6),
+        o2=Box((-4, 10), (-7, 7)),
+        o4=Box((1, 1), (2, 2)),
+        a=Box(x=(-math.inf, 3)),
+        b=Box(y=(0, 5)),
+        ground_angle_deg=10,
+        theta2_start_deg=30,
+    )
+    assert every.objective == Objective(2.0, 0.5)
+    assert every.search == Search(starts=100, enough=20, seed=4)
+
+
+def test_the_example_above_uses_every_requirement() -> None:
+    fields = {field.name for field in dataclasses.fields(Requirements)}
+    assert set(tomllib.loads(EVERY_KEY)["requirements"]) == fields | {"exact"}
+    assert set(RequirementsTable.model_fields) == fields | {"exact"}
+    given_away = problem(EVERY_KEY).requirements
+    assert [name for name in fields if getattr(given_away, name) == getattr(Requirements(), name)] == []
+
+
+def test_what_is_not_said_has_the_defaults_of_the_value_types() -> None:
+    plain = problem(HEAD)
+    assert plain.requirements == Requirements()
+    assert plain.objective == Objective()
+    assert plain.search == Search()
+    assert plain.outlines == ()
+    assert (plain.title, plain.source, plain.length_unit) == ("", "", "")
+    assert plain.task.body is None
+    assert plain.task.angle_length == plain.task.size == pytest.approx(math.sqrt(32))
+
+
+def test_empty_tables_change_nothing() -> None:
+    text = HEAD + "[scene]\n[requirements]\n[objective]\n[search]\n"
+    assert problem(text).requirements == Requirements()
+    assert problem(text).objective == Objective()
+
+
+@pytest.mark.parametrize(
+    ("maximise", "expected"),
+    [
+        ('"transmission"', Objective(1, 0)),
+        ('"compactness"', Objective(0, 1)),
+        ("{ compactness = 3 }", Objective(0, 3)),
+        ("{ transmission = 0.5 }", Objective(0.5, 0)),
+    ],
+)
+def test_objective(maximise: str, expected: Objective) -> None:
+    assert problem(HEAD + f"[objective]\nmaximise = {maximise}").objective == expected
+
+
+@pytest.mark.parametrize("count", [2, 3, 7])
+def test_other_numbers_of_poses_load(count: int) -> None:
+    poses = [[n, n * n, 10 * n] for n in range(count)]
+    assert len(problem(f'kind = "motion"\n[motion]\nposes = {poses}').task) == count
+
+
+@given(
+    st.lists(
+        st.tuples(*[st.floats(-1e6, 1e6) | st.integers(-1000, 1000)] * 3),
+        min_size=2,
+        max_size=6,
+        unique_by=lambda pose: (float(pose[0]), float(pose[1])),
+    )
+)
+def test_poses_come_through_unchanged(poses: list[tuple[float, float, float]]) -> None:
+    text = f'kind = "motion"\n[motion]\nposes = {[list(pose) for pose in poses]}'
+    task = problem(text).task
+    assert task.positions.tolist() == [[x, y] for x, y, _ in poses]
+    assert task.angles.tolist() == np.radians([angle for _, _, angle in poses]).tolist()
+
+
+STRUCTURE = [
+    (f"[motion]\n{POSES}", "kind is missing"),
+    ('kind = "motion"', "motion is missing"),
+    ('kind = "motion"\n[motion]', "motion.poses is missing"),
+    ('kind = "motion"\nmotion = 5', "motion is 5; allowed is a table"),
+    (f'kind = "dance"\n[motion]\n{POSES}', "kind is 'dance'; allowed is motion"),
+    (f"kind = 3\n[motion]\n{POSES}", "kind is 3; allowed is a string"),
+    ("title = 3\n" + HEAD, "title is 3; allowed is a string"),
+    (HEAD + "angle_length = '1'", "motion.angle_length is '1'; allowed is a number"),
+    (HEAD + "body = 5", "motion.body is 5; allowed is a list of corners [x, y]"),
+    (HEAD + "body = [5]", "motion.body[0] is 5; allowed is a corner [x, y]"),
+    (
+        HEAD + "[scene]\noutlines = 5",
+        "scene.outlines is 5; allowed is a list of outlines, each a list of corners [x, y]",
+    ),
+    (HEAD + "[[requirements]]\norder = true", "requirements is [{'order': True}]; allowed is a table"),
+    (HEAD + "[requirements]\norder = 'yes'", "requirements.order is 'yes'; allowed is true or false"),
+    (HEAD + "[requirements]\norder = 1", "requirements.order is 1; allowed is true or false"),
+    (HEAD + "[requirements]\ntolerance = '5'", "requirements.tolerance is '5'; allowed is a number"),
+    (HEAD + "[requirements]\ntolerance = true", "requirements.tolerance is true; allowed is a number"),
+    (HEAD + "[requirements]\nrotatability = true", "requirements.rotatability is true; allowed is a string"),
+    (HEAD + "[requirements]\nlink_length = 5", "requirements.link_length is 5; allowed is [lo, hi]"),
+    (
+        HEAD + "[requirements]\nlink_length = [1, 'a']",
+        "requirements.link_length[1] is 'a'; allowed is a number",
+    ),
+    (
+        HEAD + "[requirements]\no2 = 5",
+        "requirements.o2 is 5; allowed is [x, y] or { x = [lo, hi], y = [lo, hi] }",
+    ),
+    (
+        HEAD + "[requirements]\no2 = [1, 2, 3]",
+        "requirements.o2 is [1, 2, 3]; allowed is [x, y] or { x = [lo, hi], y = [lo, hi] }",
+    ),
+    (HEAD + "[requirements]\no2 = [1, true]", "requirements.o2[1] is true; allowed is a number"),
+    (HEAD + "[requirements]\no2 = { x = 5 }", "requirements.o2.x is 5; allowed is [lo, hi]"),
+    (HEAD + "[requirements]\no2 = { x = [1, {}] }", "requirements.o2.x[1] is a table; allowed is a number"),
+    (
+        HEAD + "[objective]\nmaximise = 3",
+        "objective.maximise is 3; allowed is transmission, compactness or a table of weights",
+    ),
+    (
+        HEAD + "[objective]\nmaximise = 'speed'",
+        "objective.maximise is 'speed'; allowed is transmission or compactness",
+    ),
+    (
+        HEAD + "[objective]\nmaximise = { transmission = true }",
+        "objective.maximise.transmission is true; allowed is a number",
+    ),
+    (HEAD + "[search]\nstarts = 5.0", "search.starts is 5.0; allowed is a whole number"),
+    (HEAD + "[search]\nseed = false", "search.seed is false; allowed is a whole number"),
+]
+
+
+@pytest.mark.parametrize(("text", "expected"), STRUCTURE)
+def test_wrong_structure(text: str, expected: str) -> None:
+    assert message(text) == expected
+
+
+POSES_TEXT = [
+    ("5", "motion.poses is 5; allowed is a list of poses [x, y, angle in degrees]"),
+    ("[]", "motion.poses has 0 poses; allowed are two or more"),
+    ("[[1, 2, 3]]", "motion.poses has 1 pose; allowed are two or more"),
+    ("[[1, 2, 3], 5]", "motion.poses[1] is 5; allowed is a pose [x, y, angle in degrees]"),
+    (
+        "[[1, 2, 3], [3.5, 4]]",
+        "motion.poses[1] is [3.5, 4.0], 2 numbers; allowed is a pose [x, y, angle in degrees]",
+    ),
+    ("[[1, 2, 3], [1, 2, '3']]", "motion.poses[1][2] is '3'; allowed is a number"),
+    ("[[1, 2, 3], [1, 2, true]]", "motion.poses[1][2] is true; allowed is a number"),
+    ("[[1, nan, 3], [1, 2, 3]]", "motion.poses[0] is [1.0, nan, 3.0]; all numbers must be finite"),
+    ("[[1, 2, 3], [1, 2, -inf]]", "motion.poses[1] is [1.0, 2.0, -inf]; all numbers must be finite"),
+    (
+        "[[1, 2, 3], [1, 2, 363]]",
+        "motion.poses[0] and motion.poses[1] are equal; consecutive poses must differ",
+    ),
+    ("[[1, 2, 3], [1, 2, 9]]", "motion.angle_length is missing: a pure rotation has no size to take it from"),
+    (
+        "[[1, 2, 3], { x = 2, y = 3 }]",
+        "motion.poses[1] is a table, which is not supported by this version; "
+        "allowed is a pose [x, y, angle in degrees]",
+    ),
+]
+
+
+@pytest.mark.parametrize(("poses", "expected"), POSES_TEXT)
+def test_bad_poses(poses: str, expected: str) -> None:
+    assert message(f'kind = "motion"\n[motion]\nposes = {poses}') == expected
+
+
+SENSE = [
+    (
+        "[requirements]\nlink_length = [8, 0.3]",
+        "requirements.link_length is [8, 0.3]: lo exceeds hi; allowed is [lo, hi] with lo <= hi",
+    ),
+    (
+        "[requirements]\nlink_length = [1, 2, 3]",
+        "requirements.link_length is [1.0, 2.0, 3.0]; allowed is [lo, hi]",
+    ),
+    ("[requirements]\nr2 = [1, nan]", "requirements.r2[1] is nan; allowed is a finite number"),
+    (
+        "[requirements]\nrotatability = 'full'",
+        "requirements.rotatability is 'full'; allowed is one of full-crank, crank-rocker, double-crank, any",
+    ),
+    (
+        "[requirements]\ntransmission_min_deg = 91",
+        "requirements.transmission_min_deg is 91; allowed is 0 to 90",
+    ),
+    ("[requirements]\ntolerance = inf", "requirements.tolerance is inf; allowed is a finite number"),
+    ("[requirements]\no2 = { x = [3, 1] }", "requirements.o2.x is [3, 1]; allowed is [lo, hi] with lo <= hi"),
+    ("[requirements]\nb = { y = [3] }", "requirements.b.y is [3.0]; allowed is [lo, hi] with lo <= hi"),
+    ("[requirements]\no4 = [0, nan]", "requirements.o4.y is [nan, nan]; allowed is [lo, hi] with lo <= hi"),
+    (
+        "[objective]\nmaximise = {}",
+        "objective.maximise has no weight greater than zero; one at least is needed",
+    ),
+    (
+        "[objective]\nmaximise = { transmission = -1 }",
+        "objective.maximise.transmission is -1; allowed is a weight from 0",
+    ),
+    ("[search]\nstarts = 0", "search.starts is 0; allowed is a whole number from 1"),
+    (
+        "[scene]\noutlines = [[[0, 0], [1]]]",
+        "scene.outlines[0][1] is [1.0], 1 number; allowed is a corner [x, y]",
+    ),
+    ("[scene]\noutlines = [[]]", "scene.outlines[0] has 0 corners; allowed are two or more"),
+    ("angle_length = 0", "motion.angle_length is 0; allowed is a length greater than zero"),
+    ("body = [[0, 0], [1, inf]]", "motion.body[1] is [1.0, inf]; all numbers must be finite"),
+]
+
+
+@pytest.mark.parametrize(("text", "expected"), SENSE)
+def test_values_without_sense(text: str, expected: str) -> None:
+    assert message(HEAD + text) == expected
+
+
+UNKNOWN = [
+    (
+        HEAD + "[requirements]\nlink_lenght = [1, 2]",
+        "requirements.link_lenght is unknown; did you mean link_length?",
+    ),
+    (HEAD + "[requirements]\nO2 = [1, 2]", "requirements.O2 is unknown; did you mean o2?"),
+    (HEAD + "[requirement]\nr1 = [1, 2]", "requirement is unknown; did you mean requirements?"),
+    (HEAD + "[search]\nworkers = 2", "search.workers is unknown; allowed are starts, enough, seed"),
+    (HEAD + "[requirements]\no2 = { z = [1, 2] }", "requirements.o2.z is unknown; allowed are x, y"),
+    (
+        HEAD + "[objective]\nmaximise = { compact = 1 }",
+        "objective.maximise.compact is unknown; did you mean compactness?",
+    ),
+    (HEAD + "title = 'below its table'", "motion.title is unknown; did you mean title?"),
+    ("link_length = [1, 2]\n" + HEAD, "link_length is unknown; did you mean requirements.link_length?"),
+    (HEAD + '"a b\\n" = 1', 'motion."a b\\n" is unknown; allowed are poses, angle_length, body'),
+    (f'kinds = "motion"\n[motion]\n{POSES}', "kinds is unknown; did you mean kind? (and 1 more error)"),
+]
+
+
+@pytest.mark.parametrize(("text", "expected"), UNKNOWN)
+def test_unknown_keys(text: str, expected: str) -> None:
+    assert message(text) == expected
+
+
+LATER = [
+    ("weights = [1, 1, 1, 2]", "motion.weights is not supported by this version"),
+    ("[path]\npoints = [[1, 2]]", "path is not supported by this version"),
+    ("[dynamics]\nspeed_rpm = 10", "dynamics is not supported by this version"),
+    ("[manufacturing]\nlength_tolerance = 0.1", "manufacturing is not supported by this version"),
+    (
+        "[requirements]\nkeep_out = [[[0, 0], [1, 0], [1, 1]]]",
+        "requirements.keep_out is not supported by this version",
+    ),
+    ("[requirements]\nkeep_out_for = ['o2']", "requirements.keep_out_for is not supported by this version"),
+    (
+        "[requirements]\nexact = false",
+        "requirements.exact is false, which is not supported by this version; allowed is true",
+    ),
+    (
+        "[objective]\nmaximise = 'torque'",
+        "objective.maximise is 'torque', which is not supported by this version; "
+        "allowed is transmission or compactness",
+    ),
+    ("[objective]\nmaximise = { torque = 1 }", "objective.maximise.torque is not supported by this version"),
+]
+
+
+@pytest.mark.parametrize(("text", "expected"), LATER)
+def test_keys_of_later_versions_are_refused_by_name(text: str, expected: str) -> None:
+    assert message(HEAD + text) == expected
+
+
+def test_a_path_problem_is_refused_by_its_kind_alone() -> None:
+    text = 'kind = "path"\n[path]\npoints = [[20, 20], [20, 25]]\n[requirements]\nexact = false'
+    assert message(text) == "kind is 'path', which is not supported by this version; allowed is motion"
+
+
+def test_the_first_of_several_errors_is_told_and_the_others_counted() -> None:
+    structure = "[requirements]\ntolerance = '1'\norder = 1\nspeed = 3\n"
+    sense = "[search]\nstarts = 0\n"
+    assert (
+        message(HEAD + structure) == "requirements.tolerance is '1'; allowed is a number (and 2 more errors)"
+    )
+    assert message(HEAD + structure + sense).endswith("(and 3 more errors)")
+    assert message(HEAD + sense + "[requirements]\ntolerance = 2").startswith("requirements.tolerance is 2;")
+
+
+def test_long_values_are_shortened_and_stay_on_one_line() -> None:
+    text = message("title = [" + "1, " * 500 + "]\n" + HEAD)
+    assert text.startswith("title is [1, 1, 1,")
+    assert len(text) < 100
+    assert "\n" not in message(HEAD + '[requirements]\ntolerance = """a\nb"""')

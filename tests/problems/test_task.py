@@ -1,0 +1,123 @@
+"""Motion tasks."""
+
+import pickle
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grashof.problems import MotionTask, ProblemError
+
+LUGGAGE: list[list[float]] = [[5, 4, 0], [3.5, 4, -5], [2, 3, -5], [1, 0, 0]]
+
+
+def test_degrees_become_radians() -> None:
+    task = MotionTask.from_degrees(LUGGAGE)
+    assert task.positions.tolist() == [[5, 4], [3.5, 4], [2, 3], [1, 0]]
+    np.testing.assert_allclose(task.angles, [0, -np.pi / 36, -np.pi / 36, 0], rtol=1e-15)
+    assert len(task) == 4
+
+
+def test_size_is_the_greatest_distance_and_the_default_angle_length() -> None:
+    task = MotionTask.from_degrees(LUGGAGE)
+    assert task.size == pytest.approx(np.sqrt(32), rel=1e-15)
+    assert task.angle_length == task.size
+
+
+def test_angle_length_is_the_size_of_a_pure_rotation() -> None:
+    task = MotionTask.from_degrees([[1, 1, 0], [1, 1, 40]], angle_length=2.5)
+    assert task.size == 2.5
+    assert MotionTask.from_degrees(LUGGAGE, angle_length=2.5).size == pytest.approx(np.sqrt(32))
+    with pytest.raises(ProblemError, match=r"^motion.angle_length is missing: a pure rotation"):
+        MotionTask.from_degrees([[1, 1, 0], [1, 1, 40]])
+
+
+def test_body_is_kept() -> None:
+    task = MotionTask.from_degrees(LUGGAGE, body=[[0, 0], [1, 0], [1, 1]])
+    assert task.body is not None
+    assert task.body.tolist() == [[0, 0], [1, 0], [1, 1]]
+    assert MotionTask.from_degrees(LUGGAGE).body is None
+
+
+def test_arrays_are_read_only() -> None:
+    task = MotionTask.from_degrees(LUGGAGE)
+    for array in (task.positions, task.angles):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 9
+
+
+def test_a_task_pickles() -> None:
+    task = MotionTask.from_degrees(LUGGAGE, body=[[0, 0], [1, 0]], angle_length=3)
+    twin = pickle.loads(pickle.dumps(task))
+    assert twin.positions.tolist() == task.positions.tolist()
+    assert twin.angles.tolist() == task.angles.tolist()
+    assert twin.angle_length == 3
+    assert twin.body.tolist() == [[0, 0], [1, 0]]
+
+
+@pytest.mark.parametrize(
+    ("poses", "message"),
+    [
+        ([], "motion.poses has 0 poses; allowed are two or more"),
+        ([[1, 2, 3]], "motion.poses has 1 pose; allowed are two or more"),
+        (
+            [[1, 2, 3], [1, 2]],
+            r"motion.poses\[1\] is \[1, 2\], 2 numbers; allowed is a pose \[x, y, angle in degrees\]",
+        ),
+        ([[1, 2, 3], [np.nan, 2, 3]], r"motion.poses\[1\] is \[nan, 2, 3\]; all numbers must be finite"),
+        ([[1, 2, 3], [1, 2, np.inf]], r"motion.poses\[1\] is \[1, 2, inf\]; all numbers must be finite"),
+        ([[1e308, 0, 0], [-1e308, 0, 0]], "motion.poses are farther apart than the largest number"),
+    ],
+)
+def test_bad_poses(poses: list[list[float]], message: str) -> None:
+    with pytest.raises(ProblemError, match=rf"^{message}$"):
+        MotionTask.from_degrees(poses)
+
+
+@pytest.mark.parametrize(
+    ("angles", "message"),
+    [
+        ([0], r"motion.poses has 2 positions and angles of shape \(1,\)"),
+        ([0, np.nan], "motion.poses has an angle that is not finite"),
+        ([0, "right"], "motion.poses has angles .*; allowed are numbers"),
+    ],
+)
+def test_bad_angles(angles: list[float], message: str) -> None:
+    with pytest.raises(ProblemError, match=rf"^{message}$"):
+        MotionTask([[0, 0], [1, 0]], angles)
+
+
+@pytest.mark.parametrize("angle_length", [0, -1, np.nan, np.inf, "1", True])
+def test_bad_angle_length(angle_length: float) -> None:
+    with pytest.raises(ProblemError, match=r"^motion.angle_length is .*; allowed is a"):
+        MotionTask.from_degrees(LUGGAGE, angle_length=angle_length)
+
+
+def test_bad_body() -> None:
+    with pytest.raises(
+        ProblemError, match=r"^motion.body\[1\] is \[1\], 1 number; allowed is a corner \[x, y\]$"
+    ):
+        MotionTask.from_degrees(LUGGAGE, body=[[0, 0], [1]])
+    with pytest.raises(ProblemError, match=r"^motion.body has 0 corners; allowed are two or more$"):
+        MotionTask.from_degrees(LUGGAGE, body=[])
+
+
+@given(st.integers(0, 3), st.integers(-3, 3))
+def test_consecutive_equal_poses_are_refused_modulo_the_whole_turn(index: int, turns: int) -> None:
+    x, y, angle = LUGGAGE[index]
+    poses = [*LUGGAGE[: index + 1], [x, y, angle + 360 * turns], *LUGGAGE[index + 1 :]]
+    expected = (
+        rf"^motion.poses\[{index}\] and motion.poses\[{index + 1}\] are equal; consecutive poses must differ$"
+    )
+    with pytest.raises(ProblemError, match=expected):
+        MotionTask.from_degrees(poses)
+
+
+def test_equal_poses_that_are_not_neighbours_are_allowed() -> None:
+    assert len(MotionTask.from_degrees([[0, 0, 0], [1, 0, 0], [0, 0, 0]])) == 3
+
+
+def test_a_move_without_a_turn_and_a_turn_without_a_move_are_poses() -> None:
+    task = MotionTask.from_degrees([[0, 0, 5], [1, 0, 5], [1, 0, 5.001]])
+    assert len(task) == 3
