@@ -13,6 +13,7 @@ from grashof.problems.checks import FloatArray, IntArray
 
 TURN = 2 * np.pi
 _STEADY = 1e-9  # rad: a driver step so small counts as none
+_EXACT = 1e-13  # errors below this share of the size are rounding
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,10 +83,13 @@ def nearest_to_poses(linkage: FourBar, task: MotionTask) -> Targets:
     a = task.positions @ np.array([1, 1j]) - coupler * np.exp(1j * theta3) - complex(*linkage.o2)
     own = int(linkage.assembly)
     signs = np.array([[own], [-own]])
-    angle = np.broadcast_to(_into_ranges(linkage, np.angle(a)), (2, len(task)))
+    ends = driver_ranges(linkage)
+    angle = np.broadcast_to(_into_ranges(ends, np.angle(a)), (2, len(task)))
     best = _miss(linkage, task, theta3, angle, signs)
     for _ in range(20):
-        moved = _into_ranges(linkage, angle + _gauss_newton_step(linkage, task, theta3, angle, signs))
+        if (best.min(axis=0) <= (_EXACT * task.angle_length) ** 2).all():
+            break
+        moved = _into_ranges(ends, angle + _gauss_newton_step(linkage, task, theta3, angle, signs))
         miss = _miss(linkage, task, theta3, moved, signs)
         better = miss < best
         if not better.any():
@@ -159,7 +163,9 @@ def _gauss_newton_step(
 ) -> FloatArray:
     state = solve_position(linkage, theta2, signs)
     with np.errstate(divide="ignore", invalid="ignore"):
-        rate3 = linkage.r2 * np.sin(state.theta4 - theta2) / (linkage.r3 * np.sin(state.theta3 - state.theta4))
+        rate3 = (
+            linkage.r2 * np.sin(state.theta4 - theta2) / (linkage.r3 * np.sin(state.theta3 - state.theta4))
+        )
     coupler = complex(*linkage.coupler_point) * np.exp(1j * state.theta3)
     gap = (state.p - task.positions) @ np.array([1, 1j])
     square = task.angle_length**2
@@ -170,15 +176,17 @@ def _gauss_newton_step(
     return np.where(np.isfinite(step), np.clip(step, -0.5, 0.5), 0.0)
 
 
-def _into_ranges(linkage: FourBar, theta2: FloatArray) -> FloatArray:
+def _into_ranges(ranges: FloatArray, theta2: FloatArray) -> FloatArray:
     """Driver angles, moved to the nearest end of a range where they lie outside all."""
-    index, _ = range_index(linkage, theta2, slack=0.0)
-    ends = driver_ranges(linkage).ravel()
-    ends = ends[np.isfinite(ends)]
-    if not ends.size:
+    low, high = ranges[np.isfinite(ranges[:, 0])].T
+    if not low.size:
         return theta2
-    distance = np.abs(_wrapped(theta2[..., None] - ends))
-    return np.where(index >= 0, theta2, ends[np.argmin(distance, axis=-1)])
+    inside = ((theta2[..., None] - low) % TURN <= high - low).any(axis=-1)
+    if inside.all():
+        return theta2
+    ends = np.concatenate([low, high])
+    nearest = ends[np.argmin(np.abs(_wrapped(theta2[..., None] - ends)), axis=-1)]
+    return np.where(inside, theta2, nearest)
 
 
 def _wrapped(angle: FloatArray) -> FloatArray:

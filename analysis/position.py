@@ -31,7 +31,9 @@ class Position:
     p: FloatArray
 
 
-def solve_position(linkage: FourBar, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None) -> Position:
+def solve_position(
+    linkage: FourBar, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None
+) -> Position:
     """Position of every link for given driver angles.
 
     Parameters

@@ -95,7 +95,7 @@ def worst_transmission_cycle(linkage: FourBar) -> FloatArray:
 
 
 def _turn_extremes(linkage: FourBar) -> tuple[FloatArray, FloatArray]:
-    """mu with O2A along the ground line, towards O4 and away from it."""
+    """Mu with O2A along the ground line, towards O4 and away from it."""
     r1, r2 = linkage.r1, linkage.r2
     return (
         _angle_opposite(np.abs(r1 - r2), linkage.r3, linkage.r4),

@@ -197,7 +197,9 @@ def _motion_defects(circuit_ok: bool, branch_ok: bool, way: Way, wanted: Require
         defects.append(Defect("same_branch", f"the number of {what}", 2, "1", 1.0))
     if wanted.order and not way.in_order:
         turns = abs(way.end - way.start) / (2 * np.pi)
-        defects.append(Defect("order", "turns of the driver to meet the targets in sequence", turns, "up to 1", 1.0))
+        defects.append(
+            Defect("order", "turns of the driver to meet the targets in sequence", turns, "up to 1", 1.0)
+        )
     return defects
 
 
@@ -232,7 +234,9 @@ def _least_transmission(worst: float, wanted: Requirements) -> list[Defect]:
 
 def _geometry(linkage: FourBar, task: MotionTask, wanted: Requirements) -> list[Defect]:
     defects = []
-    for name, value, limits in zip(("r1", "r2", "r3", "r4"), linkage.lengths, wanted.link_lengths, strict=True):
+    for name, value, limits in zip(
+        ("r1", "r2", "r3", "r4"), linkage.lengths, wanted.link_lengths, strict=True
+    ):
         key = "link_length" if getattr(wanted, name) is None else name
         defects += _within(key, name, float(value), limits, task.size)
     arm = complex(*linkage.coupler_point)

@@ -9,7 +9,7 @@ import numpy as np
 from grashof.problems import Objective, ProblemError
 from grashof.problems.checks import BoolArray, FloatArray, IntArray
 from grashof.synth.burmester import Dyads, trace_four_pose_curves
-from grashof.synth.distinct import apart, pick_apart, signature
+from grashof.synth.distinct import pick_apart, signature
 from grashof.synth.result import weigh
 from grashof.synth.screen import GROUPS, Pairs, near_misses, screen
 from grashof.synth.setup import Setup
@@ -20,7 +20,8 @@ PAIRS, NEAR_PAIRS = 1_000_000, 150_000  # judged
 POOL = 6000  # feasible pairs among which starts are picked
 PEAKS, PEAK_SPACING = 8, 0.25
 SPACINGS = (0.5, 0.35, 0.25, 0.18, 0.12, 0.08, 0.06, 0.04, 0.03, 0.02, 0.015)
-MISSES, MISS_SPACING = 40, 0.05  # starts from pairs that lack something
+MISSES, MISS_SPACING = 40, 0.05  # starts from pairs that lack something, the least first
+NEARLY = 0.1  # pairs that lack no more are also spread over, for variety
 UNSOLVED = frozenset({"order", "same_branch"})  # no smooth constraint can relax these
 
 
@@ -72,18 +73,18 @@ def starts(setup: Setup, most: int, enough: int, rng: np.random.Generator) -> tu
     rng : numpy.random.Generator
     """
     dyads = _dyads(setup, rng)
-    pairs = screen(setup.motion, setup.body, dyads, setup.wanted, PAIRS)
-    found = len(pairs)
-    chosen: list[Start] = []
-    if found:
-        pairs = pairs[_pool(_merit(setup, pairs))]
-        chosen += _peaks(setup, pairs) + _spread(setup, pairs, enough)
+    feasible = screen(setup.motion, setup.body, dyads, setup.wanted, PAIRS)
+    chosen = _peaks_and_spread(setup, feasible, enough)
     if len(chosen) < min(most, enough):
         near = near_misses(setup.motion, setup.body, dyads, setup.wanted, NEAR_PAIRS)
         near = near[~near.feasible]
         shortfall = near.lacks.sum(axis=1)
         chosen += _distinct_starts(setup, near, -shortfall, MISSES)
-    return chosen[:most], found
+        near = near[shortfall < NEARLY]
+        if len(near):
+            spread = _peaks_and_spread(setup, near, enough)
+            chosen += [replace(start, radius=np.inf, stay=True) for start in spread]
+    return chosen[:most], len(feasible)
 
 
 def relaxed_starts(setup: Setup, rng: np.random.Generator, groups: int = 3, each: int = 5) -> list[Start]:
@@ -124,14 +125,20 @@ def _dyads(setup: Setup, rng: np.random.Generator) -> Dyads:
     return trace_four_pose_curves(setup.motion, reach, LINES, CELL, phase=float(rng.uniform(0.1, 0.9)))
 
 
-def _peaks(setup: Setup, pairs: Pairs) -> list[Start]:
-    merit = _merit(setup, pairs)
-    return _distinct_starts(setup, pairs, merit, PEAKS, PEAK_SPACING)
-
-
-def _spread(setup: Setup, pairs: Pairs, enough: int) -> list[Start]:
-    """About 1.4 times `enough` pairs as far apart as can be, with neighbourhoods that do not overlap."""
+def _peaks_and_spread(setup: Setup, pairs: Pairs, enough: int) -> list[Start]:
+    if not len(pairs):
+        return []
+    pairs = pairs[_pool(_merit(setup, pairs))]
     merit, signatures = _merit(setup, pairs), _signatures(setup, pairs)
+    peaks = pick_apart(signatures, merit, PEAK_SPACING, PEAKS)
+    free = [Start.of_pair(pairs, int(index), setup.problem.objective) for index in peaks]
+    return free + _spread(setup, pairs, merit, signatures, enough)
+
+
+def _spread(
+    setup: Setup, pairs: Pairs, merit: FloatArray, signatures: FloatArray, enough: int
+) -> list[Start]:
+    """About 1.4 times `enough` pairs as far apart as can be, with neighbourhoods that do not overlap."""
     wanted = enough + (2 * enough + 4) // 5
     picked, spacing = np.zeros(0, dtype=np.int64), 0.0
     for spacing in SPACINGS:
@@ -140,7 +147,9 @@ def _spread(setup: Setup, pairs: Pairs, enough: int) -> list[Start]:
             break
     points = pairs.points[picked]
     coordinates = np.concatenate([points.real, points.imag], axis=1)
-    gap = np.abs(coordinates[:, None] - coordinates).max(axis=2) + np.where(np.eye(len(picked)) > 0, np.inf, 0)
+    gap = np.abs(coordinates[:, None] - coordinates).max(axis=2) + np.where(
+        np.eye(len(picked)) > 0, np.inf, 0
+    )
     nearest = gap.min(axis=1, initial=1.0)
     return [
         replace(Start.of_pair(pairs, int(index), setup.problem.objective), radius=float(0.4 * distance))
@@ -148,11 +157,9 @@ def _spread(setup: Setup, pairs: Pairs, enough: int) -> list[Start]:
     ]
 
 
-def _distinct_starts(
-    setup: Setup, pairs: Pairs, merit: FloatArray, most: int, spacing: float = MISS_SPACING
-) -> list[Start]:
+def _distinct_starts(setup: Setup, pairs: Pairs, merit: FloatArray, most: int) -> list[Start]:
     best = _pool(merit)
-    picked = best[pick_apart(_signatures(setup, pairs[best]), merit[best], spacing, most)]
+    picked = best[pick_apart(_signatures(setup, pairs[best]), merit[best], MISS_SPACING, most)]
     return [Start.of_pair(pairs, int(index), setup.problem.objective) for index in picked]
 
 
@@ -177,4 +184,4 @@ def _merit(setup: Setup, pairs: Pairs) -> FloatArray:
         body = setup.motion.apply(np.full(len(pairs), setup.body))
         every = np.concatenate([*places, body, pairs.points[:, :2]], axis=1)
         size = np.hypot(np.ptp(every.real, axis=1), np.ptp(every.imag, axis=1))
-    return np.array([weigh(objective, t, s) for t, s in zip(pairs.transmission, size, strict=True)])
+    return weigh(objective, pairs.transmission, size)

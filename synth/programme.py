@@ -39,6 +39,8 @@ class Form:
         Transmission is judged over the task, not over the turn.
     ratio, box_a, box_b, compact : bool
         Whether these requirements, and the size, have a part in it.
+    stay : bool
+        The distance from the start is the objective.
     elastic : bool
         Requirements may be missed; how far is the objective.
     """
@@ -51,6 +53,7 @@ class Form:
     box_a: bool
     box_b: bool
     compact: bool
+    stay: bool
     elastic: bool
 
     @classmethod
@@ -66,7 +69,8 @@ class Form:
             ratio=bool(start.relaxed) or high > low * wanted.link_ratio_max,
             box_a=wanted.a != Box() and wanted.a is not None,
             box_b=wanted.b != Box() and wanted.b is not None,
-            compact=start.objective.compactness > 0,
+            compact=start.objective.compactness > 0 and not start.stay,
+            stay=start.stay,
             elastic=bool(start.relaxed),
         )
 
@@ -117,9 +121,7 @@ def solve(
     lbx, ubx = _unknown_limits(programme.form, wanted, start)
     lbg, ubg = _constraint_limits(programme, wanted, start)
     parameters = _parameters(motion, body, wanted, start)
-    answer = programme.solver(
-        x0=np.clip(guess, lbx, ubx), lbx=lbx, ubx=ubx, lbg=lbg, ubg=ubg, p=parameters
-    )
+    answer = programme.solver(x0=np.clip(guess, lbx, ubx), lbx=lbx, ubx=ubx, lbg=lbg, ubg=ubg, p=parameters)
     stats = programme.solver.stats()
     found = np.asarray(answer["x"]).ravel()[:8]
     o2, o4, a, b = (complex(x, y) for x, y in found.reshape(4, 2))
@@ -214,6 +216,8 @@ def _programme(form: Form, max_iter: int) -> _Programme:
     cost = -given.weights[0] * tau / (np.pi / 2)
     if form.compact:
         cost += given.weights[1] * _diagonal(rows, given, unknown, places)
+    if form.stay:
+        cost = ca.sumsqr(ca.vertcat(o2, o4, a, b) - given.start)
     if form.elastic:
         rows.require("link_length", r - given.lengths[:4], given.lengths[4:] - r)
         rows.require("o2", o2 - given.box["o2"][0], given.box["o2"][1] - o2)
@@ -243,7 +247,9 @@ def _closure(rows: _Rows, unknown: dict[str, ca.SX], places: list[tuple[ca.SX, c
     rows.add("zero", (ca.sumsqr(unknown["b"] - unknown["a"]) - r[2] ** 2) / 2)
 
 
-def _transmission(rows: _Rows, form: Form, unknown: dict[str, ca.SX], places: list[tuple[ca.SX, ca.SX]]) -> None:
+def _transmission(
+    rows: _Rows, form: Form, unknown: dict[str, ca.SX], places: list[tuple[ca.SX, ca.SX]]
+) -> None:
     """cos(tau) bounds |cos(mu)|, which is monotone between the ends of the way and the ground line."""
     r, o4, tau = unknown["r"], unknown["o4"], unknown["tau"]
 
@@ -288,6 +294,7 @@ class _Given:
     weights: ca.SX
     arms: ca.SX
     lengths: ca.SX
+    start: ca.SX
     box: dict[str, tuple[ca.SX, ca.SX]]
     relaxed: ca.SX
 
@@ -296,7 +303,7 @@ class _Given:
         sizes = {
             "rotation": 2 * poses, "shift": 2 * poses, "body": 2, "direction": 1, "assembly": 1, "longer": 1,
             "margin": 1, "ratio": 1, "least_transmission": 1, "weights": 2, "arms": 2, "lengths": 8,
-            "boxes": 16, "relaxed": len(GROUPS),
+            "start": 8, "boxes": 16, "relaxed": len(GROUPS),
         }  # fmt: skip
         parts = {name: ca.SX.sym(name, size) for name, size in sizes.items()}
         vector = ca.vertcat(*parts.values())
@@ -334,13 +341,14 @@ def _parameters(
         [start.objective.transmission, start.objective.compactness],
         _inset(wanted.coupler_arms or (0.0, FAR)),
         lengths.T.ravel(),
+        _interleaved(start.points),
         corners,
         [float(group in start.relaxed) for group in GROUPS],
     ])  # fmt: skip
 
 
 def _guess(form: Form, motion: Displacements, body: complex, start: Start) -> FloatArray:
-    points = np.array([start.o2, start.o4, start.a, start.b])
+    points = start.points
     guess = [*_interleaved(points), *start.lengths, start.theta1, *start.theta2, 0.0]
     if form.compact:
         places = motion.apply(np.array([start.a, start.b, body])).ravel()
@@ -372,7 +380,9 @@ def _unknown_limits(form: Form, wanted: Requirements, start: Start) -> tuple[Flo
     return np.minimum(low_high[:, 0], low_high[:, 1]), low_high[:, 1]
 
 
-def _constraint_limits(programme: _Programme, wanted: Requirements, start: Start) -> tuple[FloatArray, FloatArray]:
+def _constraint_limits(
+    programme: _Programme, wanted: Requirements, start: Start
+) -> tuple[FloatArray, FloatArray]:
     first, last = start.half_turns
     low, high = min(first, last) + 1, max(first, last)
     passed = {number % 2 for number in range(low, high + 1)}

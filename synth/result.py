@@ -12,7 +12,7 @@ import numpy as np
 
 from grashof.analysis import Verdict
 from grashof.problems import FourBar, NoSolutionError, Objective, Problem, TransmissionOver
-from grashof.problems.checks import BoolArray
+from grashof.problems.checks import BoolArray, FloatArray
 from grashof.synth.distinct import DISTINCT, pick_apart, signature
 
 if TYPE_CHECKING:
@@ -54,11 +54,12 @@ class Candidate:
     def score(self, problem: Problem) -> float:
         """How good the design is by the problem's objective; greater is better."""
         transmission = self.transmission(problem.requirements.transmission_over)
-        return weigh(problem.objective, transmission, self.verdict.size / problem.task.size)
+        size = self.verdict.size / problem.task.size
+        return float(weigh(problem.objective, np.array(transmission), np.array(size)))
 
 
-def weigh(objective: Objective, transmission: float, size: float) -> float:
-    """Score of a transmission angle (rad) and a size (in sizes of the task)."""
+def weigh(objective: Objective, transmission: FloatArray, size: FloatArray) -> FloatArray:
+    """Scores of transmission angles (rad) and sizes (in sizes of the task), shape (n,)."""
     return objective.transmission * transmission / (np.pi / 2) - objective.compactness * size
 
 

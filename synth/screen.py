@@ -128,7 +128,9 @@ def screen(motion: Displacements, body: complex, dyads: Dyads, wanted: Requireme
     return judged[judged.feasible]
 
 
-def near_misses(motion: Displacements, body: complex, dyads: Dyads, wanted: Requirements, pairs: int) -> Pairs:
+def near_misses(
+    motion: Displacements, body: complex, dyads: Dyads, wanted: Requirements, pairs: int
+) -> Pairs:
     """All pairs of (thinned) dyads with what each lacks, feasible or not."""
     driver, driven = _sides(motion, body, dyads, wanted)
     stride = max(1, int(np.ceil(len(driver) / np.sqrt(pairs))))
@@ -149,7 +151,9 @@ def _sides(motion: Displacements, body: complex, dyads: Dyads, wanted: Requireme
         lacks[:, GROUPS.index("link_length")] = _outside(length, limits)
         lacks[:, GROUPS.index("coupler_arms")] = _outside(np.abs(dyads.moving - body), wanted.coupler_arms)
         box = getattr(wanted, pivot)
-        lacks[:, GROUPS.index(pivot)] = _outside(dyads.ground.real, box.x) + _outside(dyads.ground.imag, box.y)
+        lacks[:, GROUPS.index(pivot)] = _outside(dyads.ground.real, box.x) + _outside(
+            dyads.ground.imag, box.y
+        )
         box, places = getattr(wanted, joint), motion.apply(dyads.moving)
         missed = _outside(places.real, box.x) + _outside(places.imag, box.y)
         lacks[:, GROUPS.index(joint)] = missed.max(axis=1)
@@ -241,7 +245,14 @@ def _judge(motion: Displacements, driver: _Side, driven: _Side, wanted: Requirem
         turned = ground * np.exp(-1j * np.radians(wanted.ground_angle_deg))
         lack("ground_angle_deg", np.abs(np.angle(turned)))
     return Pairs(
-        driver.dyads, driven.dyads, driver.visit, driver.theta2, driver.direction, assembly, lacks, transmission
+        driver.dyads,
+        driven.dyads,
+        driver.visit,
+        driver.theta2,
+        driver.direction,
+        assembly,
+        lacks,
+        transmission,
     )
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems import Objective
+from grashof.problems.checks import ComplexArray
 from grashof.synth.screen import Pairs
 
 
@@ -31,6 +32,8 @@ class Start:
         What the solve makes best.
     radius : float, sizes
         How far it may move each coordinate of the pivots.
+    stay : bool
+        Move no farther than the requirements make it, whatever the objective.
     relaxed : tuple of str
         Requirements (keys) that it may miss, coming as near as it can; all others hold.
     """
@@ -45,7 +48,13 @@ class Start:
     assembly: int
     objective: Objective = Objective()
     radius: float = np.inf
+    stay: bool = False
     relaxed: tuple[str, ...] = ()
+
+    @property
+    def points(self) -> ComplexArray:
+        """O2, O4, and A, B at the first pose, shape (4,), sizes."""
+        return np.array([self.o2, self.o4, self.a, self.b])
 
     @property
     def theta1(self) -> float:
@@ -60,7 +69,9 @@ class Start:
     @property
     def half_turns(self) -> tuple[int, int]:
         """In which half turn from the ground line, counted in pi, the driver starts and ends."""
-        first, last = (int(np.floor((angle - self.theta1) / np.pi)) for angle in (self.theta2[0], self.theta2[-1]))
+        first, last = (
+            int(np.floor((angle - self.theta1) / np.pi)) for angle in (self.theta2[0], self.theta2[-1])
+        )
         return first, last
 
     @classmethod

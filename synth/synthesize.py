@@ -22,6 +22,7 @@ from grashof.synth.setup import Setup
 from grashof.synth.start import Start
 
 BATCH = 16  # solves between two looks at what is verified; fixed, so that workers change nothing
+FRUITLESS = 64  # so many solves without one verified design end the search
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +98,9 @@ def synthesize(
     if time_limit is not None and not time_limit > 0:
         raise ProblemError(f"time_limit is {time_limit!r}; allowed is a time in s greater than zero")
     if len(problem.task) != 4:
-        raise ProblemError(f"motion.poses has {len(problem.task)} poses; this version synthesises exactly four")
+        raise ProblemError(
+            f"motion.poses has {len(problem.task)} poses; this version synthesises exactly four"
+        )
     begun = perf_counter()
     setup = Setup.of(problem)
     reason = four_poses.degenerate(setup)
@@ -140,9 +143,10 @@ def _search(
                 if result.candidate is not None and result.candidate.verdict.ok:
                     verified.append(result.candidate)
             best = ranked(problem, verified)
+            done = begin + len(batch)
             if progress is not None:
-                progress(Progress(begin + len(batch), len(queue), len(best), search.enough))
-            if len(best) >= search.enough:
+                progress(Progress(done, len(queue), len(best), search.enough))
+            if len(best) >= search.enough or (not best and done >= FRUITLESS):
                 break
         solved = perf_counter()
         nearest = ()
@@ -162,7 +166,9 @@ def _solving(
     """A function that makes attempts, in the order of their starts, here or in other processes."""
     own = None
     if executor is None and workers > 1:
-        own = executor = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_ignore_interrupt)
+        own = executor = ProcessPoolExecutor(
+            workers, mp_context=get_context("spawn"), initializer=_ignore_interrupt
+        )
 
     def solve(setup: Setup, batch: list[Start], first: int) -> list[Attempt]:
         numbers = range(first, first + len(batch))
@@ -207,7 +213,9 @@ def _nearest(attempts: list[Attempt]) -> tuple[Candidate, ...]:
     if not closest:
         return ()
     fewest = min(len(kind) for kind in closest)
-    found = [(miss, sorted(kind), candidate) for kind, (miss, candidate) in closest.items() if len(kind) == fewest]
+    found = [
+        (miss, sorted(kind), candidate) for kind, (miss, candidate) in closest.items() if len(kind) == fewest
+    ]
     return tuple(candidate for _, _, candidate in sorted(found, key=lambda item: item[:2]))
 
 
@@ -216,5 +224,5 @@ def _why(nearest: tuple[Candidate, ...], complete: bool) -> str:
         return "no design: the search was stopped before it found one"
     if not nearest:
         return "no design: the search found none, nor a near miss"
-    ways = "; or ".join(" and ".join(str(d) for d in candidate.verdict.defects) for candidate in nearest)
-    return f"no design meets all requirements; in the way stands {ways}"
+    missed = " and ".join(str(defect) for defect in nearest[0].verdict.defects)
+    return f"no design meets all requirements; the closest one misses {missed}"
