@@ -49,15 +49,16 @@ def _peaks(curves: FloatArray) -> FloatArray:
     """Maximum of each column, through the parabola about its largest sample."""
     column = np.arange(curves.shape[1])
     top = np.argmax(curves, axis=0)
-    inner = np.clip(top, 1, max(len(curves) - 2, 1))
+    largest: FloatArray = curves[top, column]
     if len(curves) < 3:
-        return curves[top, column]
+        return largest
+    inner = np.clip(top, 1, len(curves) - 2)
     before, middle, after = (curves[inner + shift, column] for shift in (-1, 0, 1))
     bend = before - 2 * middle + after
     with np.errstate(divide="ignore", invalid="ignore"):
         vertex = middle - (after - before) ** 2 / (8 * bend)
     inside = (bend < 0) & (inner == top) & (np.abs(after - before) <= -2 * bend)
-    return np.where(inside, vertex, curves[top, column])
+    return np.where(inside, vertex, largest)
 
 
 def diagonal(box: FloatArray) -> float:

@@ -95,12 +95,14 @@ def rotatability(linkage: FourBar) -> FloatArray:
     """
     r1, r2, r3, r4 = np.moveaxis(linkage.lengths, -1, 0)
     stretched, folded = r3 + r4 - r1 - r2, np.abs(r1 - r2) - np.abs(r3 - r4)
-    return np.stack([stretched, folded], axis=-1) / (r1 + r2 + r3 + r4)[..., None]
+    shares: FloatArray = np.stack([stretched, folded], axis=-1) / (r1 + r2 + r3 + r4)[..., None]
+    return shares
 
 
 def full_rotation(linkage: FourBar) -> BoolArray:
     """Whether the driver turns fully without a dead position, shape (...)."""
-    return (rotatability(linkage) > 0).all(axis=-1)
+    turns: BoolArray = np.all(rotatability(linkage) > 0, axis=-1)
+    return turns
 
 
 def driver_ranges(linkage: FourBar) -> FloatArray:
@@ -145,7 +147,8 @@ def driver_ranges(linkage: FourBar) -> FloatArray:
     two = ~through_ground & ~through_back & assembled
     first = np.stack([np.where(assembled, low, np.nan), np.where(assembled, high, np.nan)], axis=-1)
     second = np.stack([np.where(two, -reach, np.nan), np.where(two, -gap, np.nan)], axis=-1)
-    return linkage.theta1[..., None, None] + np.stack([first, second], axis=-2)
+    ranges: FloatArray = linkage.theta1[..., None, None] + np.stack([first, second], axis=-2)
+    return ranges
 
 
 def range_index(linkage: FourBar, theta2: npt.ArrayLike, slack: float = 1e-9) -> tuple[IntArray, FloatArray]:

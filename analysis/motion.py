@@ -153,9 +153,9 @@ def _miss(
 ) -> FloatArray:
     state = solve_position(linkage, theta2, signs)
     gap = ((state.p - task.positions) ** 2).sum(axis=-1)
-    return np.nan_to_num(
-        gap + (task.angle_length * _wrapped(state.theta3 - theta3)) ** 2, nan=np.inf, posinf=np.inf
-    )
+    turn = task.angle_length * _wrapped(state.theta3 - theta3)
+    miss: FloatArray = np.nan_to_num(gap + turn**2, nan=np.inf, posinf=np.inf)
+    return miss
 
 
 def _gauss_newton_step(

@@ -49,7 +49,8 @@ def uneven_driver_angles(rng: np.random.Generator, count: int) -> FloatArray:
     gaps = rng.uniform(1, 4, count - 1)
     spread = rng.choice([-1, 1]) * np.radians(rng.uniform(70, 340))
     steps = np.concatenate([[0.0], np.cumsum(gaps) / gaps.sum()])
-    return rng.uniform(-np.pi, np.pi) + spread * steps
+    angles: FloatArray = rng.uniform(-np.pi, np.pi) + spread * steps
+    return angles
 
 
 def planted_motion(rng: np.random.Generator, poses: int) -> tuple[MotionTask, FourBar]:

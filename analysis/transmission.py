@@ -44,7 +44,8 @@ def transmission_angle(linkage: FourBar, theta2: npt.ArrayLike) -> FloatArray:
 def quality(mu: npt.ArrayLike) -> FloatArray:
     """min(mu, pi - mu), what a transmission angle is judged by; 0 where mu is NaN. Shape (...), rad."""
     mu = np.asarray(mu, dtype=np.float64)
-    return np.nan_to_num(np.minimum(mu, np.pi - mu), nan=0.0)
+    folded: FloatArray = np.nan_to_num(np.minimum(mu, np.pi - mu), nan=0.0)
+    return folded
 
 
 def worst_transmission(linkage: FourBar, start: npt.ArrayLike, end: npt.ArrayLike) -> FloatArray:

@@ -19,7 +19,7 @@ from grashof.analysis.motion import Targets, Way, driver_way, nearest_to_poses
 from grashof.analysis.position import Position, solve_position
 from grashof.analysis.transmission import worst_transmission, worst_transmission_cycle
 from grashof.problems import Box, FourBar, MotionTask, Requirements, Rotatability, TransmissionOver
-from grashof.problems.checks import FloatArray, Limits
+from grashof.problems.checks import FloatArray, IntArray, Limits
 
 # Limits are inclusive; rounding may carry a design this far past them (sizes, rad or ratio).
 SLACK = 1e-9
@@ -76,7 +76,7 @@ class Verdict:
     """
 
     theta2: FloatArray
-    assembly: FloatArray
+    assembly: IntArray
     position_error: FloatArray
     angle_error: FloatArray
     direction: int

@@ -37,7 +37,8 @@ def load(problem: str | os.PathLike[str]) -> Problem:
     if isinstance(problem, str) and not _looks_like_path(problem):
         if problem in catalogue():
             return _parsed(problem_text(problem), f"{problem}.toml", problem)
-        if not problem or not os.path.exists(problem):
+        # Path.exists raises for names that no file can have; this says False.
+        if not problem or not os.path.exists(problem):  # noqa: PTH110
             raise ProblemError(f"{problem!r} is no problem of the catalogue and no file; {_hint(problem)}")
     path = Path(problem)
     return _parsed(_text(path), str(path), path.stem)
@@ -89,7 +90,7 @@ def _looks_like_path(problem: str) -> bool:
 
 
 def _text(path: Path) -> str:
-    if os.path.isdir(path):
+    if os.path.isdir(path):  # noqa: PTH112
         raise ProblemError(f"{path}: is a folder; allowed is a problem file")
     try:
         # utf-8-sig: editors on Windows put a byte order mark first, which TOML does not know.

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.problems.checks import ComplexArray, FloatArray
+from grashof.problems.checks import BoolArray, ComplexArray, FloatArray, IntArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ class Dyads:
     def __len__(self) -> int:
         return len(self.moving)
 
-    def __getitem__(self, index: object) -> Dyads:
+    def __getitem__(self, index: IntArray | BoolArray) -> Dyads:
         return Dyads(self.moving[index], self.ground[index])
 
 
@@ -96,7 +96,8 @@ def circle_points_on_lines(motion: Displacements, origin: ComplexArray, along: c
     constant = np.stack([at_origin.real, at_origin.imag, half], axis=-1)
     slope = np.stack([step.real, step.imag, half_step], axis=-1)
     line, root = _real_roots(_determinant_cubic(constant, slope))
-    return origin[line] + root * along
+    points: ComplexArray = origin[line] + root * along
+    return points
 
 
 def centre_points(motion: Displacements, moving: ComplexArray) -> ComplexArray:
@@ -119,7 +120,8 @@ def centre_points(motion: Displacements, moving: ComplexArray) -> ComplexArray:
     xx, yy, xy = (chord.real**2).sum(1), (chord.imag**2).sum(1), (chord.real * chord.imag).sum(1)
     x, y = (chord.real * half).sum(1), (chord.imag * half).sum(1)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return (yy * x - xy * y + 1j * (xx * y - xy * x)) / (xx * yy - xy**2)
+        centre: ComplexArray = (yy * x - xy * y + 1j * (xx * y - xy * x)) / (xx * yy - xy**2)
+    return centre
 
 
 def polish(motion: Displacements, dyads: Dyads, steps: int = 4) -> Dyads:
@@ -143,7 +145,9 @@ def polish(motion: Displacements, dyads: Dyads, steps: int = 4) -> Dyads:
 
 def radius_error(motion: Displacements, dyads: Dyads) -> FloatArray:
     """Largest less smallest distance from the ground pivot over all poses, shape (n,), length."""
-    return np.ptp(np.abs(motion.apply(dyads.moving) - dyads.ground[:, None]), axis=1)
+    radius: FloatArray = np.abs(motion.apply(dyads.moving) - dyads.ground[:, None])
+    error: FloatArray = radius.max(axis=1) - radius.min(axis=1)
+    return error
 
 
 def trace_four_pose_curves(
@@ -192,7 +196,7 @@ def trace_four_pose_curves(
 _NEAR = 0.5  # sizes: within this distance of the origin the lines are evenly spaced
 
 
-def _one_per_cell(dyads: Dyads, cell: float) -> FloatArray:
+def _one_per_cell(dyads: Dyads, cell: float) -> IntArray:
     coordinates = np.stack([dyads.moving.real, dyads.moving.imag, dyads.ground.real, dyads.ground.imag])
     cells = np.floor(np.arcsinh(coordinates / _NEAR) * (_NEAR / cell)).astype(np.int64)
     return np.sort(np.unique(cells, axis=1, return_index=True)[1])
@@ -203,7 +207,8 @@ def _determinant_cubic(constant: FloatArray, slope: FloatArray) -> FloatArray:
     p, q = np.moveaxis(constant, -2, 0), np.moveaxis(slope, -2, 0)
 
     def triple(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
-        return (a * np.cross(b, c)).sum(-1)
+        product: FloatArray = np.vecdot(a, np.cross(b, c))
+        return product
 
     return np.stack([
         triple(p[0], p[1], p[2]),
@@ -213,7 +218,7 @@ def _determinant_cubic(constant: FloatArray, slope: FloatArray) -> FloatArray:
     ], axis=-1)  # fmt: skip
 
 
-def _real_roots(cubic: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _real_roots(cubic: FloatArray) -> tuple[IntArray, FloatArray]:
     """Row numbers and real roots of cubics (m, 4), constant first, by companion matrices."""
     scale = np.abs(cubic).max(axis=1, keepdims=True)
     rows = np.flatnonzero(scale[:, 0] > 0)
@@ -225,7 +230,7 @@ def _real_roots(cubic: FloatArray) -> tuple[FloatArray, FloatArray]:
     companion = np.zeros((len(rows), 3, 3))
     companion[:, 1, 0] = companion[:, 2, 1] = 1.0
     companion[:, :, 2] = -monic[:, :3] / lead[:, None]
-    good = np.isfinite(companion).all(axis=(1, 2))
+    good: BoolArray = np.all(np.isfinite(companion), axis=(1, 2))
     roots = np.linalg.eigvals(np.where(good[:, None, None], companion, 0.0)).astype(np.complex128)
     real = good[:, None] & (np.abs(roots.imag) <= 1e-6 * (1e-3 + np.abs(roots.real)))
     values = roots.real

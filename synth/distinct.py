@@ -30,7 +30,8 @@ def apart(one: FloatArray, others: FloatArray) -> FloatArray:
         Above `DISTINCT` for distinct designs.
     """
     scale = np.maximum(np.abs(one).max(), np.abs(others).max(axis=1))
-    return np.abs(others - one).max(axis=1) / scale
+    difference: FloatArray = np.abs(others - one).max(axis=1) / scale
+    return difference
 
 
 def pick_apart(signatures: FloatArray, merit: FloatArray, least: float, most: int) -> IntArray:

@@ -34,17 +34,26 @@ class Frame:
     def requirements(self, requirements: Requirements) -> Requirements:
         """Resolved `requirements` with lengths in sizes and boxes in this frame."""
         whole = requirements.resolved(self.scale)
-        lengths = {
-            name: self._lengths(getattr(whole, name))
-            for name in ("link_length", "r1", "r2", "r3", "r4", "coupler_arms")
-        }
-        boxes = {name: self._box(getattr(whole, name)) for name in ("o2", "o4", "a", "b")}
-        return replace(whole, **lengths, **boxes)
+        return replace(
+            whole,
+            link_length=self._lengths(whole.link_length),
+            r1=self._lengths(whole.r1),
+            r2=self._lengths(whole.r2),
+            r3=self._lengths(whole.r3),
+            r4=self._lengths(whole.r4),
+            coupler_arms=self._lengths(whole.coupler_arms),
+            o2=self._box(whole.o2),
+            o4=self._box(whole.o4),
+            a=self._box(whole.a),
+            b=self._box(whole.b),
+        )
 
     def _lengths(self, limits: Limits | None) -> Limits | None:
         return None if limits is None else (limits[0] / self.scale, limits[1] / self.scale)
 
-    def _box(self, box: Box) -> Box:
+    def _box(self, box: Box | None) -> Box | None:
+        if box is None:
+            return None
         x, y = self.origin.real, self.origin.imag
         return Box(
             x=((box.x[0] - x) / self.scale, (box.x[1] - x) / self.scale),

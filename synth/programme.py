@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import lru_cache
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -119,7 +120,7 @@ def solve(
     programme = _programme(Form.of(wanted, start), max_iter)
     guess = _guess(programme.form, motion, body, start)
     lbx, ubx = _unknown_limits(programme.form, wanted, start)
-    lbg, ubg = _constraint_limits(programme, wanted, start)
+    lbg, ubg = _constraint_limits(programme, start)
     parameters = _parameters(motion, body, wanted, start)
     answer = programme.solver(x0=np.clip(guess, lbx, ubx), lbx=lbx, ubx=ubx, lbg=lbg, ubg=ubg, p=parameters)
     stats = programme.solver.stats()
@@ -155,24 +156,20 @@ class _Programme:
     names: tuple[str, ...]
 
 
-_OPTIONS = {
-    "print_time": False,
-    "show_eval_warnings": False,
-    "ipopt": {
-        "print_level": 0,
-        "sb": "yes",
-        "tol": 1e-8,
-        "constr_viol_tol": 1e-10,
-        "acceptable_iter": 5,
-        "acceptable_tol": 1e-6,
-        "acceptable_constr_viol_tol": 1e-9,
-        "bound_relax_factor": 0.0,
-        "bound_push": 1e-6,
-        "bound_frac": 1e-6,
-        "mu_init": 1e-3,
-        "mumps_pivot_order": 0,
-        "max_wall_time": 10.0,
-    },
+_IPOPT = {
+    "print_level": 0,
+    "sb": "yes",
+    "tol": 1e-8,
+    "constr_viol_tol": 1e-10,
+    "acceptable_iter": 5,
+    "acceptable_tol": 1e-6,
+    "acceptable_constr_viol_tol": 1e-9,
+    "bound_relax_factor": 0.0,
+    "bound_push": 1e-6,
+    "bound_frac": 1e-6,
+    "mu_init": 1e-3,
+    "mumps_pivot_order": 0,
+    "max_wall_time": 10.0,
 }
 
 
@@ -225,8 +222,13 @@ def _programme(form: Form, max_iter: int) -> _Programme:
         rows.require("transmission_min_deg", tau - given.least_transmission)
         cost = unknown["slack"]
     programme = {"x": x, "p": given.vector, "f": cost, "g": ca.vertcat(*rows.expressions)}
-    options = {**_OPTIONS, "ipopt": {**_OPTIONS["ipopt"], "max_iter": max_iter}}
-    return _Programme(form, ca.nlpsol("four_bar_motion", "ipopt", programme, options), tuple(rows.names))
+    options: dict[str, Any] = {
+        "print_time": False,
+        "show_eval_warnings": False,
+        "ipopt": {**_IPOPT, "max_iter": max_iter},
+    }
+    solver = ca.nlpsol("four_bar_motion", "ipopt", programme, options)
+    return _Programme(form, solver, tuple(rows.names))
 
 
 def _unknowns(form: Form) -> tuple[ca.SX, dict[str, ca.SX]]:
@@ -376,13 +378,10 @@ def _unknown_limits(form: Form, wanted: Requirements, start: Start) -> tuple[Flo
     limits.append((max(LEAST_TRANSMISSION, least), np.pi / 2))
     limits += [(-FAR, FAR)] * (4 * form.compact) + [(0.0, FAR)] * form.elastic
     low_high = np.array(limits)
-    # A start outside the limits pulls its neighbourhood along rather than emptying it.
-    return np.minimum(low_high[:, 0], low_high[:, 1]), low_high[:, 1]
+    return low_high[:, 0], low_high[:, 1]
 
 
-def _constraint_limits(
-    programme: _Programme, wanted: Requirements, start: Start
-) -> tuple[FloatArray, FloatArray]:
+def _constraint_limits(programme: _Programme, start: Start) -> tuple[FloatArray, FloatArray]:
     first, last = start.half_turns
     low, high = min(first, last) + 1, max(first, last)
     passed = {number % 2 for number in range(low, high + 1)}

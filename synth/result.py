@@ -137,4 +137,5 @@ def pareto_optimal(problem: Problem, candidates: tuple[Candidate, ...]) -> BoolA
     ]).reshape(-1, 3)  # fmt: skip
     no_worse = (costs[:, None] <= costs[None]).all(axis=2)
     better = (costs[:, None] < costs[None]).any(axis=2)
-    return ~(no_worse & better).any(axis=0)
+    beaten: BoolArray = np.any(no_worse & better, axis=0)
+    return ~beaten

@@ -54,7 +54,7 @@ class Pairs:
     @property
     def feasible(self) -> BoolArray:
         """Which pairs lack nothing, shape (n,)."""
-        return (self.lacks <= 0).all(axis=1)
+        return _met(self.lacks)
 
     @property
     def points(self) -> ComplexArray:
@@ -92,7 +92,7 @@ class _Side:
     theta2: FloatArray
     direction: FloatArray
 
-    def __getitem__(self, index: IntArray | BoolArray) -> _Side:
+    def __getitem__(self, index: IntArray | BoolArray | slice) -> _Side:
         return _Side(*(getattr(self, name)[index] for name in self.__slots__))
 
     def __len__(self) -> int:
@@ -118,7 +118,7 @@ def screen(motion: Displacements, body: complex, dyads: Dyads, wanted: Requireme
     Pairs
     """
     driver, driven = _sides(motion, body, dyads, wanted)
-    driver, driven = driver[(driver.lacks <= 0).all(axis=1)], driven[(driven.lacks <= 0).all(axis=1)]
+    driver, driven = driver[_met(driver.lacks)], driven[_met(driven.lacks)]
     stride = max(1, int(np.ceil(np.sqrt(len(driver) * len(driven) / pairs))))
     driver, driven = driver[::stride], driven[::stride]
     if not len(driver) or not len(driven):
@@ -229,7 +229,7 @@ def _judge(motion: Displacements, driver: _Side, driven: _Side, wanted: Requirem
         output = motion.apply(driven.dyads.moving) - driven.dyads.ground[:, None]
         sine = ((coupler[:, None] * motion.rotation).conj() * output).imag / (r3 * r4)[:, None]
         assembly = np.where(np.sum(np.sign(sine), axis=1) >= 0, 1.0, -1.0)
-        span, cycle = _cos_transmission(motion, driver, driven, r1, r2, r3, r4)
+        span, cycle = _cos_transmission(driver, driven, r1, r2, r3, r4)
     over = cycle if wanted.transmission_over is TransmissionOver.CYCLE else span
     transmission = np.nan_to_num(np.arccos(np.minimum(over, 1.0)))
     if wanted.same_branch:
@@ -257,7 +257,6 @@ def _judge(motion: Displacements, driver: _Side, driven: _Side, wanted: Requirem
 
 
 def _cos_transmission(
-    motion: Displacements,
     driver: _Side,
     driven: _Side,
     r1: FloatArray,
@@ -295,9 +294,16 @@ def _rotatability_lack(
         Rotatability.CRANK_ROCKER: r1 - r2,
         Rotatability.DOUBLE_CRANK: r2 - r1,
     }[wanted.rotatability]
-    return margin - np.minimum(r3 + r4 - r1 - r2, difference - np.abs(r3 - r4))
+    lack: FloatArray = margin - np.minimum(r3 + r4 - r1 - r2, difference - np.abs(r3 - r4))
+    return lack
 
 
 def _outside(values: FloatArray, limits: Limits | None) -> FloatArray:
     low, high = limits if limits is not None else (-np.inf, np.inf)
-    return np.maximum(np.maximum(low - values, values - high), 0.0)
+    missed: FloatArray = np.maximum(np.maximum(low - values, values - high), 0.0)
+    return missed
+
+
+def _met(lacks: FloatArray) -> BoolArray:
+    met: BoolArray = lacks.max(axis=1, initial=0.0) <= 0
+    return met

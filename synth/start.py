@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -46,7 +46,7 @@ class Start:
     theta2: tuple[float, ...]
     direction: int
     assembly: int
-    objective: Objective = Objective()
+    objective: Objective = field(default_factory=Objective)
     radius: float = np.inf
     stay: bool = False
     relaxed: tuple[str, ...] = ()

@@ -149,7 +149,7 @@ def _search(
             if len(best) >= search.enough or (not best and done >= FRUITLESS):
                 break
         solved = perf_counter()
-        nearest = ()
+        nearest: tuple[Candidate, ...] = ()
         if not best and complete:
             misses = solve(setup, four_poses.relaxed_starts(setup, rng), len(queue))
             nearest = _nearest(misses)
