@@ -8,7 +8,7 @@ from grashof.analysis.position import solve_position
 from grashof.problems import FourBar
 from grashof.problems.checks import FloatArray
 
-_SAMPLES = 361
+_SAMPLES = 721
 
 
 def reach_box(linkage: FourBar, start: float, end: float) -> FloatArray:
@@ -27,16 +27,17 @@ def reach_box(linkage: FourBar, start: float, end: float) -> FloatArray:
 
     Notes
     -----
-    The motion is sampled; a parabola through the samples about each extreme gives it to about the
-    fourth power of the step.
+    The motion is sampled, closer towards its ends, where near a dead position the linkage runs away
+    from the driver; a parabola through the samples about each extreme refines it.
 
     Examples
     --------
     >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
     >>> reach_box(crank_rocker, 0.0, 2 * np.pi).round(6).tolist()
-    [[-1.0, -1.0], [4.309017, 2.987522]]
+    [[-1.0, -1.0], [4.0, 3.0]]
     """
-    state = solve_position(linkage, np.linspace(start, end, _SAMPLES))
+    towards_end = (1 - np.cos(np.linspace(0, np.pi, _SAMPLES))) / 2
+    state = solve_position(linkage, start + (end - start) * towards_end)
     track = np.concatenate([state.a, state.b, state.p], axis=-1)
     track = track[np.isfinite(track).all(axis=-1)]
     corners = [linkage.o2, linkage.o4]

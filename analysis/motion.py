@@ -6,14 +6,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.analysis.mobility import driver_ranges, full_rotation, range_index
+from grashof.analysis.mobility import driver_ranges, range_index, rotatability
 from grashof.analysis.position import solve_position
 from grashof.problems import FourBar, MotionTask
 from grashof.problems.checks import FloatArray, IntArray
 
 TURN = 2 * np.pi
-_STEADY = 1e-9  # rad: a driver step so small counts as none
+STEADY = 1e-9  # rad: a driver step so small counts as none
 _EXACT = 1e-13  # errors below this share of the size are rounding
+_STILL = 1e-12  # rad: a step so small no longer improves the driver angle
+_SAMPLES = 181
+_VALLEYS = 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,28 +78,24 @@ def nearest_to_poses(linkage: FourBar, task: MotionTask) -> Targets:
     Notes
     -----
     The first guess turns the driver towards where A would be if the body stood in the pose;
-    Gauss-Newton steps in the driver angle then reduce |dp|^2 + (angle_length * dangle)^2, on both
-    assemblies.
+    damped Gauss-Newton steps in the driver angle then reduce |dp|^2 + (angle_length * dangle)^2, on
+    both assemblies. Where that does not meet the poses, they start again from the lowest valleys of a
+    scan over all driver angles.
     """
     theta3 = task.angles - linkage.body_angle
     coupler = complex(*linkage.coupler_point)
     a = task.positions @ np.array([1, 1j]) - coupler * np.exp(1j * theta3) - complex(*linkage.o2)
     own = int(linkage.assembly)
-    signs = np.array([[own], [-own]])
     ends = driver_ranges(linkage)
-    angle = np.broadcast_to(_into_ranges(ends, np.angle(a)), (2, len(task)))
-    best = _miss(linkage, task, theta3, angle, signs)
-    for _ in range(20):
-        if (best.min(axis=0) <= (_EXACT * task.angle_length) ** 2).all():
-            break
-        moved = _into_ranges(ends, angle + _gauss_newton_step(linkage, task, theta3, angle, signs))
-        miss = _miss(linkage, task, theta3, moved, signs)
-        better = miss < best
-        if not better.any():
-            break
-        angle, best = np.where(better, moved, angle), np.where(better, miss, best)
-    chosen, target = np.argmin(best, axis=0), np.arange(len(task))
-    angle, sign = angle[chosen, target], signs[chosen, 0]
+    signs = np.broadcast_to(np.array([[own], [-own]]), (2, len(task)))
+    angle = np.broadcast_to(_into_ranges(ends, np.angle(a)), signs.shape)
+    angle, miss = _descend(linkage, task, theta3, angle, signs)
+    if not _met(miss, task):
+        more, more_signs = _scan(linkage, task, theta3)
+        angle, signs = np.concatenate([angle, more]), np.concatenate([signs, more_signs])
+        angle, miss = _descend(linkage, task, theta3, angle, signs)
+    chosen, target = np.argmin(miss, axis=0), np.arange(len(task))
+    angle, sign = angle[chosen, target], signs[chosen, target]
     state = solve_position(linkage, angle, sign)
     gap, turned = state.p - task.positions, _wrapped(state.theta3 - theta3)
     distance = np.nan_to_num(np.hypot(gap[:, 0], gap[:, 1]), nan=np.inf)
@@ -119,12 +118,12 @@ def driver_way(linkage: FourBar, theta2: FloatArray, ordered: bool) -> Way:
     -------
     Way
     """
-    turns = bool(full_rotation(linkage))
+    turns = bool((rotatability(linkage) >= 0).all())  # through a change point too, as circuits count it
     index, inside = range_index(linkage, theta2)
     if not turns and (index >= 0).all() and np.ptp(index) == 0:  # one range: no way around
         step = np.diff(inside)
         direction = 1 if inside[-1] >= inside[0] else -1
-        in_order = bool((direction * step >= -_STEADY).all())
+        in_order = bool((direction * step >= -STEADY).all())
         if ordered and in_order:
             return Way(inside, float(inside[0]), float(inside[-1]), direction, True)
         return Way(inside, float(inside.min()), float(inside.max()), direction, in_order)
@@ -134,9 +133,9 @@ def driver_way(linkage: FourBar, theta2: FloatArray, ordered: bool) -> Way:
 
 
 def _turning(theta2: FloatArray, direction: int) -> Way:
-    step = (direction * np.diff(theta2) + _STEADY) % TURN - _STEADY
+    step = (direction * np.diff(theta2) + STEADY) % TURN - STEADY
     counted = theta2[0] + direction * np.concatenate([[0.0], np.cumsum(step)])
-    in_order = bool(step.sum() <= TURN + _STEADY)
+    in_order = bool(step.sum() <= TURN + STEADY)
     return Way(counted, float(counted[0]), float(counted[-1]), direction, in_order)
 
 
@@ -144,7 +143,7 @@ def _shortest_arc(theta2: FloatArray, ordered: Way) -> Way:
     around = np.sort(theta2 % TURN)
     gap = np.diff(around, append=around[0] + TURN)
     start = around[(np.argmax(gap) + 1) % len(around)]
-    counted = start + (theta2 - start + _STEADY) % TURN - _STEADY
+    counted = start + (theta2 - start + STEADY) % TURN - STEADY
     return Way(counted, float(start), float(start + TURN - gap.max()), 1, ordered.in_order)
 
 
@@ -156,6 +155,42 @@ def _miss(
     turn = task.angle_length * _wrapped(state.theta3 - theta3)
     miss: FloatArray = np.nan_to_num(gap + turn**2, nan=np.inf, posinf=np.inf)
     return miss
+
+
+def _met(miss: FloatArray, task: MotionTask) -> bool:
+    return bool((miss.min(axis=0) <= (_EXACT * task.angle_length) ** 2).all())
+
+
+def _descend(
+    linkage: FourBar, task: MotionTask, theta3: FloatArray, angle: FloatArray, signs: IntArray
+) -> tuple[FloatArray, FloatArray]:
+    """Driver angles after damped Gauss-Newton steps, and what they miss by; each shape (..., N)."""
+    ends = driver_ranges(linkage)
+    best, damping = _miss(linkage, task, theta3, angle, signs), np.ones(np.shape(angle))
+    for _ in range(40):
+        if _met(best, task):
+            break
+        step = damping * _gauss_newton_step(linkage, task, theta3, angle, signs)
+        if (np.abs(step) < _STILL).all():
+            break
+        moved = _into_ranges(ends, angle + step)
+        miss = _miss(linkage, task, theta3, moved, signs)
+        better = miss < best
+        angle, best = np.where(better, moved, angle), np.where(better, miss, best)
+        damping = np.where(better, np.minimum(2 * damping, 1.0), damping / 4)
+    return angle, best
+
+
+def _scan(linkage: FourBar, task: MotionTask, theta3: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Driver angles and assemblies at the lowest valleys of the miss over all driver angles, (K, N)."""
+    ends = driver_ranges(linkage)
+    ends = ends[np.isfinite(ends[:, 0])]
+    around = np.concatenate([np.linspace(low, high, _SAMPLES) for low, high in ends] or [[0.0]])
+    signs = np.array([1, -1])[:, None, None]
+    miss = _miss(linkage, task, theta3, around[:, None], signs)
+    valley = (miss <= np.roll(miss, 1, axis=1)) & (miss <= np.roll(miss, -1, axis=1))
+    lowest = np.argsort(np.where(valley, miss, np.inf).reshape(-1, len(task)), axis=0)[:_VALLEYS]
+    return around[lowest % len(around)], np.where(lowest < len(around), 1, -1)
 
 
 def _gauss_newton_step(

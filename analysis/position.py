@@ -69,10 +69,10 @@ def solve_position(
     ax = linkage.o2[..., 0] + linkage.r2 * np.cos(angle)
     ay = linkage.o2[..., 1] + linkage.r2 * np.sin(angle)
     x, y = linkage.o4[..., 0] - ax, linkage.o4[..., 1] - ay
-    s = np.hypot(x, y)
+    s = _kept_closed(np.hypot(x, y), r3, r4, np.abs(ax) + np.abs(ay) + np.abs(linkage.o4).sum(axis=-1))
     with np.errstate(invalid="ignore", divide="ignore"):
         along = (s + (r3 - r4) * (r3 + r4) / s) / 2
-        beside = sign * np.sqrt((r3 + r4 - s) * (r3 + r4 + s) * (s - r3 + r4) * (s + r3 - r4)) / (2 * s)
+        beside = sign * np.sqrt((r3 + r4 - s) * (r3 + r4 + s) * (s - (r3 - r4)) * (s + (r3 - r4))) / (2 * s)
         cos3, sin3 = (along * x - beside * y) / s, (along * y + beside * x) / s
     bx, by = ax + cos3, ay + sin3
     cos3, sin3 = cos3 / r3, sin3 / r3
@@ -85,3 +85,10 @@ def solve_position(
         b=np.stack([bx, by], axis=-1),
         p=np.stack([ax + u * cos3 - v * sin3, ay + u * sin3 + v * cos3], axis=-1),
     )
+
+
+def _kept_closed(diagonal: FloatArray, r3: FloatArray, r4: FloatArray, reach: FloatArray) -> FloatArray:
+    """The diagonal A-O4, put back where only rounding carries it past a dead position."""
+    nearest = np.clip(diagonal, np.abs(r3 - r4), r3 + r4)
+    rounding = 8 * np.finfo(np.float64).eps * (reach + r3 + r4)
+    return np.where(np.abs(diagonal - nearest) <= rounding, nearest, diagonal)

@@ -15,7 +15,7 @@ from grashof.analysis.mobility import (
     grashof_class,
     rotatability,
 )
-from grashof.analysis.motion import Targets, Way, driver_way, nearest_to_poses
+from grashof.analysis.motion import STEADY, Targets, Way, driver_way, nearest_to_poses
 from grashof.analysis.position import Position, solve_position
 from grashof.analysis.transmission import worst_transmission, worst_transmission_cycle
 from grashof.problems import Box, FourBar, MotionTask, Requirements, Rotatability, TransmissionOver
@@ -150,7 +150,8 @@ def verify(linkage: FourBar, task: MotionTask, requirements: Requirements) -> Ve
     over_task = wanted.transmission_over is TransmissionOver.TASK
     defects = [
         *_exactness(targets, task, wanted),
-        *_motion_defects(circuit_ok, branch_ok, way, wanted),
+        *_same_branch(circuit_ok, branch_ok, int(linkage.assembly), targets, wanted),
+        *_order(way, wanted),
         *_rotatability(linkage, wanted),
         *_least_transmission(task_worst if over_task else cycle_worst, wanted),
         *_geometry(linkage, task, wanted),
@@ -190,17 +191,31 @@ def _exactness(targets: Targets, task: MotionTask, wanted: Requirements) -> list
     return defects
 
 
-def _motion_defects(circuit_ok: bool, branch_ok: bool, way: Way, wanted: Requirements) -> list[Defect]:
-    defects = []
-    if wanted.same_branch and not branch_ok:
+def _same_branch(
+    circuit_ok: bool, branch_ok: bool, declared: int, targets: Targets, wanted: Requirements
+) -> list[Defect]:
+    if not wanted.same_branch:
+        return []
+    if not branch_ok:
         what = "branches used (a dead position lies between)" if circuit_ok else "circuits used"
-        defects.append(Defect("same_branch", f"the number of {what}", 2, "1", 1.0))
-    if wanted.order and not way.in_order:
-        turns = abs(way.end - way.start) / (2 * np.pi)
-        defects.append(
-            Defect("order", "turns of the driver to meet the targets in sequence", turns, "up to 1", 1.0)
-        )
-    return defects
+        return [Defect("same_branch", f"the number of {what}", 2, "1", 1.0)]
+    used = int(targets.assembly[0])
+    if used != declared:
+        allowed = f"{declared:+d}, the linkage's own"
+        return [Defect("same_branch", "the assembly at the targets", used, allowed, 1.0)]
+    return []
+
+
+def _order(way: Way, wanted: Requirements) -> list[Defect]:
+    if not wanted.order or way.in_order:
+        return []
+    turns = abs(way.end - way.start) / (2 * np.pi)
+    if turns > 1:
+        what = "turns of the driver to meet the targets in sequence"
+        return [Defect("order", what, turns, "up to 1", 1.0)]
+    step = np.diff(way.theta2)
+    reversals = np.count_nonzero(np.diff(np.sign(step[np.abs(step) > STEADY])))
+    return [Defect("order", "the number of reversals of the driver between targets", reversals, "0", 1.0)]
 
 
 def _rotatability(linkage: FourBar, wanted: Requirements) -> list[Defect]:
@@ -281,7 +296,7 @@ def _angles(linkage: FourBar, targets: Targets, wanted: Requirements) -> list[De
 def _within(key: str, what: str, value: float, limits: Limits | None, size: float) -> list[Defect]:
     low, high = limits if limits is not None else (-np.inf, np.inf)
     miss = max(low - value, value - high) / size
-    if miss <= SLACK:
+    if not miss > SLACK:  # NaN where the linkage does not close, which "exact" tells
         return []
     return [Defect(key, what, value, _range(low, high), miss)]
 

@@ -23,6 +23,7 @@ from grashof.synth.start import Start
 FAR = 1e3  # sizes: stands for "no limit"
 INSET = 1e-8  # sizes, rad: limits are tightened by this much, so that the polished design keeps them
 LEAST_STEP = 1e-4  # rad, of the driver between two targets
+ANGLES = ("ground_angle_deg", "theta2_start_deg")  # equalities: fixed unknowns unless they are relaxed
 LEAST_TRANSMISSION = 1e-3  # rad: keeps the motion away from dead positions
 
 
@@ -220,6 +221,9 @@ def _programme(form: Form, max_iter: int) -> _Programme:
         rows.require("o2", o2 - given.box["o2"][0], given.box["o2"][1] - o2)
         rows.require("o4", o4 - given.box["o4"][0], given.box["o4"][1] - o4)
         rows.require("transmission_min_deg", tau - given.least_transmission)
+        at_first = ca.dot(given.at_first, theta2)
+        for i, (key, angle) in enumerate(zip(ANGLES, (unknown["theta1"], at_first), strict=True)):
+            rows.require(key, angle - given.angles[i], given.angles[i] - angle, name=key)
         cost = unknown["slack"]
     programme = {"x": x, "p": given.vector, "f": cost, "g": ca.vertcat(*rows.expressions)}
     options: dict[str, Any] = {
@@ -297,6 +301,8 @@ class _Given:
     arms: ca.SX
     lengths: ca.SX
     start: ca.SX
+    angles: ca.SX
+    at_first: ca.SX
     box: dict[str, tuple[ca.SX, ca.SX]]
     relaxed: ca.SX
 
@@ -305,7 +311,7 @@ class _Given:
         sizes = {
             "rotation": 2 * poses, "shift": 2 * poses, "body": 2, "direction": 1, "assembly": 1, "longer": 1,
             "margin": 1, "ratio": 1, "least_transmission": 1, "weights": 2, "arms": 2, "lengths": 8,
-            "start": 8, "boxes": 16, "relaxed": len(GROUPS),
+            "start": 8, "angles": 2, "at_first": poses, "boxes": 16, "relaxed": len(GROUPS),
         }  # fmt: skip
         parts = {name: ca.SX.sym(name, size) for name, size in sizes.items()}
         vector = ca.vertcat(*parts.values())
@@ -344,6 +350,9 @@ def _parameters(
         _inset(wanted.coupler_arms or (0.0, FAR)),
         lengths.T.ravel(),
         _interleaved(start.points),
+        [_lifted(wanted.ground_angle_deg, start.theta1)],
+        [_lifted(wanted.theta2_start_deg, start.theta2[visit.index(0)])],
+        [float(pose == 0) for pose in visit],
         corners,
         [float(group in start.relaxed) for group in GROUPS],
     ])  # fmt: skip
@@ -370,10 +379,10 @@ def _unknown_limits(form: Form, wanted: Requirements, start: Start) -> tuple[Flo
             limits.append((max(low, middle - start.radius), min(high, middle + start.radius)))
     for low, high in wanted.link_lengths:
         limits.append((1e-6, FAR) if form.elastic else _inset((max(low, 1e-6), min(high, FAR))))
-    limits.append(_turned(wanted.ground_angle_deg, start.theta1))
+    ground, first = (None if key in start.relaxed else getattr(wanted, key) for key in ANGLES)
+    limits.append(_turned(ground, start.theta1))
     for k, pose in enumerate(start.visit):
-        fixed = wanted.theta2_start_deg if pose == 0 else None
-        limits.append(_turned(fixed, start.theta2[k]))
+        limits.append(_turned(first if pose == 0 else None, start.theta2[k]))
     least = 0.0 if form.elastic else np.radians(wanted.transmission_min_deg) + INSET
     limits.append((max(LEAST_TRANSMISSION, least), np.pi / 2))
     limits += [(-FAR, FAR)] * (4 * form.compact) + [(0.0, FAR)] * form.elastic
@@ -396,17 +405,23 @@ def _constraint_limits(programme: _Programme, start: Start) -> tuple[FloatArray,
         "stretched": (0.0, np.inf) if cycle or 1 in passed else free,
         "first": (first * np.pi, (first + 1) * np.pi),
         "last": (last * np.pi, (last + 1) * np.pi),
+        **{key: (0.0, np.inf) if key in start.relaxed else free for key in ANGLES},
     }
     both = np.array([limits[name] for name in programme.names])
     return both[:, 0], both[:, 1]
 
 
 def _turned(required_deg: float | None, start: float) -> Limits:
-    """Limits of a lifted angle: fixed at the required angle nearest to where it starts, or free."""
+    """Limits of a lifted angle: fixed at the required angle, or free."""
     if required_deg is None:
         return -10 * np.pi, 10 * np.pi
-    off = (np.radians(required_deg) - start + np.pi) % (2 * np.pi) - np.pi
-    return start + off, start + off
+    return _lifted(required_deg, start), _lifted(required_deg, start)
+
+
+def _lifted(required_deg: float | None, start: float) -> float:
+    """The required angle (0 where none is) in rad, moved by whole turns to be nearest to `start`."""
+    off = (np.radians(required_deg or 0.0) - start + np.pi) % (2 * np.pi) - np.pi
+    return float(start + off)
 
 
 def _inset(limits: Limits) -> Limits:

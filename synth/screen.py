@@ -229,7 +229,8 @@ def _judge(motion: Displacements, driver: _Side, driven: _Side, wanted: Requirem
         output = motion.apply(driven.dyads.moving) - driven.dyads.ground[:, None]
         sine = ((coupler[:, None] * motion.rotation).conj() * output).imag / (r3 * r4)[:, None]
         assembly = np.where(np.sum(np.sign(sine), axis=1) >= 0, 1.0, -1.0)
-        span, cycle = _cos_transmission(driver, driven, r1, r2, r3, r4)
+        way, span, cycle = _ways(driver, ground, r1, r2, r3, r4, wanted.order)
+    lacks[:, GROUPS.index("order")] = way.lacks[:, GROUPS.index("order")]
     over = cycle if wanted.transmission_over is TransmissionOver.CYCLE else span
     transmission = np.nan_to_num(np.arccos(np.minimum(over, 1.0)))
     if wanted.same_branch:
@@ -247,40 +248,64 @@ def _judge(motion: Displacements, driver: _Side, driven: _Side, wanted: Requirem
     return Pairs(
         driver.dyads,
         driven.dyads,
-        driver.visit,
-        driver.theta2,
-        driver.direction,
+        way.visit,
+        way.theta2,
+        way.direction,
         assembly,
         lacks,
         transmission,
     )
 
 
-def _cos_transmission(
+def _ways(
     driver: _Side,
-    driven: _Side,
+    ground: ComplexArray,
     r1: FloatArray,
     r2: FloatArray,
     r3: FloatArray,
     r4: FloatArray,
-) -> tuple[FloatArray, FloatArray]:
-    """Greatest |cos mu| over the driver's way through the poses, and over a turn; above 1: no closure."""
+    ordered: bool,
+) -> tuple[_Side, FloatArray, FloatArray]:
+    """Drivers with the way that each linkage lets them go, greatest |cos mu| over it and over a turn.
+
+    Above 1 the linkage does not close. A driver that cannot turn, with all targets in one of its
+    ranges, has no way around.
+    """
 
     def cos_mu(diagonal2: FloatArray) -> FloatArray:
         return np.abs((r3**2 + r4**2 - diagonal2) / (2 * r3 * r4))
 
-    folded, stretched = cos_mu((r1 - r2) ** 2), cos_mu((r1 + r2) ** 2)
-    theta1 = np.angle(driven.dyads.ground - driver.dyads.ground)
-    ends = driver.theta2[:, [0, -1]]
-    crossed = np.floor((np.sort(ends, axis=1) - theta1[:, None]) / np.pi)
+    folded, stretched, theta1 = cos_mu((r1 - r2) ** 2), cos_mu((r1 + r2) ** 2), np.angle(ground)[:, None]
+    ends = driver.theta2[:, [0, -1]] - theta1
+    inside = driver.theta2 - theta1
+    inside = np.where((stretched > 1)[:, None], (inside + np.pi) % TURN - np.pi, inside % TURN)
+    one_side = (folded <= 1) | (stretched <= 1) | (np.ptp(np.sign(inside), axis=1) == 0)
+    rows = np.flatnonzero(one_side & ((folded > 1) | (stretched > 1)))
+    ends[rows] = np.stack([inside[rows].min(axis=1), inside[rows].max(axis=1)], axis=1)
+    way = _kept_inside(driver, rows, (inside + theta1)[rows], ordered)
+    crossed = np.floor(np.sort(ends, axis=1) / np.pi)
     count = crossed[:, 1] - crossed[:, 0]
     even = (count >= 2) | ((count == 1) & (crossed[:, 1] % 2 == 0))
     odd = (count >= 2) | ((count == 1) & (crossed[:, 1] % 2 == 1))
     span = np.maximum(np.where(even, folded, 0.0), np.where(odd, stretched, 0.0))
     for end in ends.T:
-        diagonal = driver.dyads.ground + r2 * np.exp(1j * end) - driven.dyads.ground
-        span = np.maximum(span, cos_mu(np.abs(diagonal) ** 2))
-    return span, np.maximum(folded, stretched)
+        span = np.maximum(span, cos_mu((r1 - r2) ** 2 + 4 * r1 * r2 * np.sin(end / 2) ** 2))
+    return way, span, np.maximum(folded, stretched)
+
+
+def _kept_inside(driver: _Side, rows: IntArray, inside: FloatArray, ordered: bool) -> _Side:
+    """Drivers of which some, `rows`, meet the targets at the angles `inside` of a range they cannot leave."""
+    visit, theta2, lacks = driver.visit.copy(), driver.theta2.copy(), driver.lacks.copy()
+    if ordered:  # out of order, the angles stay those of a driver that could turn
+        step = np.diff(inside, axis=1)
+        lacks[rows, GROUPS.index("order")] = np.minimum(
+            (-step).max(axis=1, initial=0.0), step.max(axis=1, initial=0.0)
+        )
+    else:
+        sequence = np.argsort(inside, axis=1)
+        visit[rows] = np.take_along_axis(visit[rows], sequence, axis=1)
+        theta2[rows] = np.take_along_axis(inside, sequence, axis=1)
+    return _Side(driver.dyads, lacks, driver.length, visit, theta2, driver.direction)
 
 
 def _rotatability_lack(

@@ -1,0 +1,101 @@
+"""Measure motion generation through four poses: times after imports, best designs, planted problems.
+
+Prints one line a case. Times are wall-clock medians on this machine; run it on a quiet one.
+"""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from time import perf_counter
+
+import numpy as np
+
+from grashof import load, synthesize
+from grashof.analysis.planted import planted_motion
+from grashof.problems import Box, Problem, Requirements
+
+LUGGAGE_RECORDS = (
+    ("full-crank, cycle, limit 5", 13.4, {"limit": 5}),
+    ("full-crank, cycle, limit 8", 22.6, {"limit": 8}),
+    ("full-crank, cycle, limit 12", 30.1, {"limit": 12}),
+    ("full-crank, cycle, limit 8, O2 and O4 at y >= 0", 15.7, {"limit": 8, "floor": True}),
+    ("any, task, limit 5", 23.7, {"limit": 5, "rotatability": "any", "over": "task"}),
+)
+
+
+def luggage_time(workers: int, runs: int) -> None:
+    """Time of the shipped luggage problem, with this many workers."""
+    problem, seconds = load("luggage"), []
+    for _ in range(runs):
+        begun = perf_counter()
+        result = synthesize(problem, workers=workers)
+        seconds.append(perf_counter() - begun)
+    worst = max(candidate.verdict.error_max for candidate in result.candidates) / problem.task.size
+    print(
+        f"luggage, {workers} workers: {len(result)} designs, largest error {worst:.1e} sizes, "
+        f"median {np.median(seconds):.2f} s, range {min(seconds):.2f} to {max(seconds):.2f} s"
+    )
+
+
+def luggage_records() -> None:
+    """Best worst-case transmission angle found under various limits."""
+    problem = load("luggage")
+    for name, least, case in LUGGAGE_RECORDS:
+        upper = Box(y=(0, np.inf)) if case.get("floor") else None
+        over = case.get("over", "cycle")
+        wanted = Requirements(
+            rotatability=case.get("rotatability", "full-crank"),
+            transmission_over=over,
+            link_length=(0.3, case["limit"]),
+            coupler_arms=(0, case["limit"]),
+            o2=upper,
+            o4=upper,
+        )
+        begun = perf_counter()
+        result = synthesize(replace(problem, requirements=wanted))
+        seconds = perf_counter() - begun
+        best = np.degrees(result.best.transmission(wanted.transmission_over))
+        print(f"luggage, {name}: {best:.3f} deg (wanted {least}), {len(result)} designs, {seconds:.2f} s")
+
+
+def planted(count: int, seed: int) -> None:
+    """Random four-pose tasks of random full-crank four-bars, under default requirements."""
+    seconds, designs, first = [], [], []
+    for number in range(count):
+        task, _ = planted_motion(np.random.default_rng([seed, number]), poses=4)
+        begun, reached = perf_counter(), []
+
+        def note(step: object, begun: float = begun, reached: list[float] = reached) -> None:
+            if step.verified and not reached:
+                reached.append(perf_counter() - begun)
+
+        result = synthesize(Problem(task=task), progress=note)
+        seconds.append(perf_counter() - begun)
+        designs.append(len(result))
+        first += reached
+    solved = int(np.count_nonzero(designs))
+    print(
+        f"planted: {solved} of {count} solved, median {np.median(designs):.0f} designs, "
+        f"median {np.median(seconds):.2f} s, 95th percentile {np.percentile(seconds, 95):.2f} s, "
+        f"first batch of designs after {np.median(first):.2f} s (median)"
+    )
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run all measurements."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--planted", type=int, default=100, help="number of planted problems")
+    parser.add_argument("--runs", type=int, default=5, help="repetitions of the timed case")
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args(argv)
+    synthesize(load("luggage"), enough=1)  # imports and the first build of the programme
+    for workers in (1, 2):
+        luggage_time(workers, options.runs)
+    luggage_records()
+    planted(options.planted, options.seed)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
