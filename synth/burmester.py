@@ -85,7 +85,7 @@ def circle_points_on_lines(motion: Displacements, origin: ComplexArray, along: c
     >>> quarter_turns = np.radians([0, 40, 80, 150])
     >>> motion = Displacements.from_poses(np.array([0, 1 + 2j, 3 + 2j, 5]), quarter_turns)
     >>> points = circle_points_on_lines(motion, np.array([0.5 + 0j]), 1j)
-    >>> bool(np.ptp(np.abs(motion.apply(points) - centre_points(motion, points)[:, None])) < 1e-9)
+    >>> bool(radius_error(motion, Dyads(points, centre_points(motion, points))).max() < 1e-9)
     True
     """
     turned, shift = motion.rotation[1:], motion.shift[1:]

@@ -14,16 +14,19 @@ RECORD = "run.json"
 
 
 def check_writable(folder: Path) -> None:
-    """Refuse, before any work is done, a folder that cannot be made or written.
+    """Refuse, before any work is done, a folder that cannot be made or written; leave no trace.
 
     Raises
     ------
     ProblemError
     """
+    missing = [path for path in (folder, *folder.parents) if not path.exists()]
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             pass
+        for path in missing:
+            path.rmdir()
     except OSError as error:
         reason = error.strerror or "it cannot be written"
         raise ProblemError(f"--out {folder}: {reason}; allowed is a folder that can be written") from None
@@ -46,6 +49,7 @@ def replacing_own_files(folder: Path) -> Iterator[Path]:
     Path
         Empty folder beside the files, on the same disk.
     """
+    folder.mkdir(parents=True, exist_ok=True)
     before = own_files(folder)
     with tempfile.TemporaryDirectory(dir=folder, prefix=".writing-") as name:
         fresh = Path(name)
@@ -68,4 +72,5 @@ def own_files(folder: Path) -> set[str]:
     if not isinstance(names, list):
         return set()
     # Plain names only: a record that was tampered with must not reach outside the folder.
-    return {name for name in names if isinstance(name, str) and Path(name).name == name}
+    plain = (name for name in names if isinstance(name, str) and Path(name).name == name)
+    return {name for name in plain if (folder / name).is_file()}

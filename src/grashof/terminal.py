@@ -116,7 +116,8 @@ def summary(problem: Problem) -> list[str]:
     arms = wanted.coupler_arms or (0.0, np.inf)
     lines = [
         f"{problem.name}: {problem.title}" if problem.title else problem.name,
-        f"  motion through {len(task)} poses, size {task.size:g}{unit}, angle_length {task.angle_length:g}{unit}",
+        f"  motion through {len(task)} poses, size {task.size:g}{unit}, "
+        f"angle_length {task.angle_length:g}{unit}",
         f"  rotatability {wanted.rotatability}, margin {wanted.rotatability_margin:g}; "
         f"order {_yes(wanted.order)}, same branch {_yes(wanted.same_branch)}",
         f"  transmission at least {wanted.transmission_min_deg:g} deg over the {wanted.transmission_over}",

@@ -1,0 +1,140 @@
+"""What the tests of the analysis share: published figures, linkages of every class, positions found anew."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hypothesis import strategies as st
+
+from grashof.analysis import GrashofClass
+from grashof.problems import FourBar
+
+_SHORTEST_IN = {
+    GrashofClass.DOUBLE_CRANK: 0,
+    GrashofClass.CRANK_ROCKER: 1,
+    GrashofClass.DOUBLE_ROCKER: 2,
+    GrashofClass.ROCKER_CRANK: 3,
+}
+
+
+@pytest.fixture(scope="session")
+def golden() -> dict[str, Any]:
+    """The reference figures, 20 digits each; their conventions stand inside the file."""
+    return json.loads((Path(__file__).parents[1] / "data" / "golden.json").read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="session")
+def golden_linkages(golden: dict[str, Any]) -> dict[str, FourBar]:
+    """The linkages whose states golden.json gives, all with assembly +1."""
+    return {
+        "pumpjack": _pumpjack(golden["pumpjack_report_geometry"]["inputs"]),
+        "lufkin": _lufkin(golden["pumpjack_lufkin_C912D_427_144"]["inputs_in"]),
+        "bag": _bag(golden["bag_mechanism_exact"]),
+        "table7": _table7(golden["table7_lengths_theta1_0"]),
+    }
+
+
+def _pumpjack(given: dict[str, Any]) -> FourBar:
+    r3 = float(given["r3"])
+    return FourBar(
+        o2=_pair(given["O2"]),
+        o4=_pair(given["O4"]),
+        r2=float(given["r2"]),
+        r3=r3,
+        r4=float(given["r4"]),
+        coupler_point=(r3 / 2 * np.cos(0.4), r3 / 2 * np.sin(0.4)),
+    )
+
+
+def _lufkin(given: dict[str, Any]) -> FourBar:
+    names = {name: float(value) for name, value in given.items()}
+    return FourBar(
+        o2=(0, 0), o4=(names["I"], names["H"] - names["G"]), r2=names["R"], r3=names["P"], r4=names["C"]
+    )
+
+
+def _bag(given: dict[str, Any]) -> FourBar:
+    r3 = float(given["r3"])
+    return FourBar(
+        o2=_pair(given["O2"]),
+        o4=_pair(given["O4"]),
+        r2=float(given["r2"]),
+        r3=r3,
+        r4=float(given["r4"]),
+        coupler_point=r3 * np.array(_pair(given["coupler_ratio"])),
+        body_angle=-float(given["states_at_poses"][0]["theta3"]),
+    )
+
+
+def _table7(given: dict[str, Any]) -> FourBar:
+    r1, r2, r3, r4 = map(float, given["r"])
+    return FourBar(o2=(0, 0), o4=(r1, 0), r2=r2, r3=r3, r4=r4)
+
+
+def _pair(values: list[str]) -> tuple[float, float]:
+    x, y = values
+    return float(x), float(y)
+
+
+@pytest.fixture(scope="session")
+def close_loop() -> Callable[..., tuple[npt.NDArray[np.complex128], ...]]:
+    """A, B and P as complex numbers, by the law of cosines; B is NaN where the loop cannot close."""
+
+    def positions(
+        linkage: FourBar, theta2: npt.ArrayLike, assembly: float
+    ) -> tuple[npt.NDArray[np.complex128], ...]:
+        a = complex(*linkage.o2) + linkage.r2 * np.exp(1j * np.asarray(theta2))
+        diagonal = complex(*linkage.o4) - a
+        length = np.abs(diagonal)
+        cosine = (length**2 + linkage.r3**2 - linkage.r4**2) / (2 * length * linkage.r3)
+        inner = np.arccos(np.where(np.abs(cosine) <= 1, cosine, np.nan))
+        coupler = diagonal / length * np.exp(1j * assembly * inner)
+        return a, a + linkage.r3 * coupler, a + complex(*linkage.coupler_point) * coupler
+
+    return positions
+
+
+@pytest.fixture(scope="session")
+def four_bars() -> Callable[[GrashofClass], st.SearchStrategy[FourBar]]:
+    """Strategy for linkages of a class, well away from change points unless they are asked for."""
+    return _four_bars
+
+
+@st.composite
+def _four_bars(draw: st.DrawFn, kind: GrashofClass) -> FourBar:
+    lengths = draw(_lengths(kind))
+    scale = np.exp(draw(st.floats(-2, 2)))
+    theta1 = draw(st.floats(-np.pi, np.pi))
+    r1, r2, r3, r4 = scale * np.array(lengths)
+    place = st.floats(-3, 3)
+    o2 = scale * np.array([draw(place), draw(place)])
+    return FourBar(
+        o2=o2,
+        o4=o2 + r1 * np.array([np.cos(theta1), np.sin(theta1)]),
+        r2=r2,
+        r3=r3,
+        r4=r4,
+        coupler_point=(scale * draw(place), scale * draw(place)),
+        assembly=draw(st.sampled_from([-1, 1])),
+        body_angle=draw(st.floats(-np.pi, np.pi)),
+    )
+
+
+@st.composite
+def _lengths(draw: st.DrawFn, kind: GrashofClass) -> list[float]:
+    """r1 to r4 with shortest link 1: its place and the longest length make the class."""
+    middle = [draw(st.integers(11, 32)) / 8, draw(st.integers(11, 32)) / 8]
+    balance = sum(middle) - 1
+    if kind is GrashofClass.CHANGE_POINT:
+        return draw(st.permutations([1.0, *middle, balance]))
+    share = draw(st.floats(0.1, 0.9))
+    if kind is GrashofClass.NON_GRASHOF:
+        return draw(st.permutations([1.0, *middle, balance + 2 * share]))
+    longest = max(middle) + share * (balance - max(middle))
+    others = draw(st.permutations([*middle, longest]))
+    others.insert(_SHORTEST_IN[kind], 1.0)
+    return others

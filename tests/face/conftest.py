@@ -1,0 +1,39 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from grashof import load, synthesize
+from grashof.cli import app
+from grashof.problems import problem_text
+from grashof.synth import Result
+
+Grashof = Callable[..., Any]
+
+
+@pytest.fixture
+def grashof(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Grashof:
+    """The command, run in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+    runner = CliRunner()
+    return lambda *arguments: runner.invoke(app, [str(argument) for argument in arguments])
+
+
+@pytest.fixture(scope="session")
+def few() -> Result:
+    """A dozen designs for the luggage problem."""
+    return synthesize(load("luggage"), enough=12, starts=16)
+
+
+@pytest.fixture
+def impossible(tmp_path: Path) -> Path:
+    """A problem that no design satisfies."""
+    text = problem_text("luggage").replace("transmission_min_deg = 15", "transmission_min_deg = 60")
+    text = text.replace('"task"', '"cycle"').replace("[0.3, 8]", "[0.3, 5]")
+    path = tmp_path / "impossible.toml"
+    path.write_text(text, encoding="utf-8")
+    return path

@@ -1,0 +1,195 @@
+"""The command line: files, exit codes, messages."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pytest
+
+from grashof.analysis import verify
+from grashof.problems import FourBar, load, problem_text
+
+Grashof = Callable[..., Any]
+QUICK = ("--top", "12", "--starts", "32", "--drawings", "2")
+
+
+def test_solve_writes_a_verified_list(grashof: Grashof, tmp_path: Path) -> None:
+    done = grashof("solve", "luggage", *QUICK)
+    assert done.exit_code == 0, done.output
+    folder = tmp_path / "luggage-designs"
+    drawings = {f"design-0{rank}.{kind}" for rank in (1, 2) for kind in ("png", "svg")}
+    expected = {"candidates.csv", "candidates.json", "run.json"} | drawings
+    assert {path.name for path in folder.iterdir()} == expected
+    table = pd.read_csv(folder / "candidates.csv")
+    assert 1 <= len(table) <= 12
+    assert table["rank"].tolist() == list(range(1, len(table) + 1))
+    designs = json.loads((folder / "candidates.json").read_text())["designs"]
+    assert [design["id"] for design in designs] == table["id"].tolist()
+    problem = load("luggage")
+    for design in designs:
+        verdict = verify(FourBar(**design["linkage"]), problem.task, problem.requirements)
+        assert verdict.ok
+        assert verdict.theta2.tolist() == design["theta2"]
+    record = json.loads((folder / "run.json").read_text())
+    assert set(record["files"]) == expected
+    assert record["designs"] == len(table)
+    assert record["settings"]["seed"] == 0
+    assert str(len(table)) in done.stdout
+    assert table["id"][0] in done.stdout
+
+
+def test_progress_is_plain_lines_when_piped(grashof: Grashof) -> None:
+    done = grashof("solve", "luggage", *QUICK)
+    assert "\x1b" not in done.output
+    assert "of 78 starts solved" in done.stderr or "of 32 starts solved" in done.stderr
+
+
+def test_second_run_replaces_only_its_own_files(grashof: Grashof, tmp_path: Path, impossible: Path) -> None:
+    out = tmp_path / "out"
+    assert grashof("solve", "luggage", "--out", out, *QUICK).exit_code == 0
+    (out / "notes.txt").write_text("mine")
+    (out / "design-99.png").write_text("mine too")
+    assert (
+        grashof("solve", "luggage", "--out", out, "--top", "3", "--starts", "8", "--drawings", "1").exit_code
+        == 0
+    )
+    names = {path.name for path in out.iterdir()}
+    assert {"notes.txt", "design-99.png", "design-01.png"} <= names
+    assert "design-02.png" not in names
+    assert grashof("solve", impossible, "--out", out, "--starts", "16").exit_code == 1
+    assert {path.name for path in out.iterdir()} == {"notes.txt", "design-99.png", "nearest.csv", "run.json"}
+
+
+def test_impossible_problem_names_what_stands_in_the_way(
+    grashof: Grashof, tmp_path: Path, impossible: Path
+) -> None:
+    done = grashof("solve", impossible)
+    assert done.exit_code == 1
+    assert "transmission_min_deg" in done.stderr
+    assert "is 13.4" in done.stderr
+    assert "from 60" in done.stderr
+    nearest = pd.read_csv(tmp_path / "impossible-designs" / "nearest.csv")
+    assert nearest["transmission_min_cycle_deg"][0] == pytest.approx(13.44, abs=0.01)
+    assert nearest["misses"][0].startswith("transmission_min_deg")
+    assert not (tmp_path / "impossible-designs" / "candidates.csv").exists()
+
+
+BAD = {
+    "one pose": (
+        "poses = [[5, 4, 0], [3.5, 4, -5], [2, 3, -5], [1, 0, 0]]",
+        "poses = [[5, 4, 0]]",
+        "two or more",
+    ),
+    "not a number": ("[3.5, 4, -5]", "[nan, 4, -5]", "finite"),
+    "infinite": ("[3.5, 4, -5]", "[inf, 4, -5]", "finite"),
+    "two numbers": ("[3.5, 4, -5]", "[3.5, 4]", "motion.poses[1]"),
+    "equal poses": ("[3.5, 4, -5]", "[5, 4, 360]", "equal"),
+    "lo above hi": ("link_length = [0.3, 8]", "link_length = [8, 0.3]", "link_length"),
+    "misspelt": ("coupler_arms", "coupler_arm", "did you mean coupler_arms?"),
+    "not built yet": ("[requirements]", "[requirements]\nkeep_out = []", "not supported by this version"),
+    "not TOML": ("[motion]", "[motion", "TOML"),
+    "five poses": ("[1, 0, 0]]", "[1, 0, 0], [0, 0, 9]]", "exactly four"),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_bad_input_is_one_line_and_writes_nothing(grashof: Grashof, tmp_path: Path, case: str) -> None:
+    old, new, said = BAD[case]
+    text = problem_text("luggage")
+    assert old in text
+    (tmp_path / "mine.toml").write_text(text.replace(old, new), encoding="utf-8")
+    done = grashof("solve", "mine.toml")
+    assert done.exit_code == 2
+    assert said in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.toml"]
+
+
+def test_missing_file_and_misspelt_name(grashof: Grashof) -> None:
+    for name in ("nowhere.toml", "lugage"):
+        done = grashof("solve", name)
+        assert done.exit_code == 2
+        assert name in done.stderr
+    assert "did you mean luggage?" in grashof("solve", "lugage").stderr
+
+
+def test_output_folder_that_cannot_be_written(grashof: Grashof, tmp_path: Path) -> None:
+    (tmp_path / "taken").write_text("a file")
+    for out in (tmp_path / "taken", tmp_path / "taken" / "below"):
+        done = grashof("solve", "luggage", "--out", out)
+        assert done.exit_code == 2
+        assert str(out) in done.stderr
+        assert done.stderr.count("\n") == 1
+    assert (tmp_path / "taken").read_text() == "a file"
+
+
+@pytest.mark.parametrize(
+    "option", [("--starts", "0"), ("--workers", "none"), ("--time-limit", "-1"), ("--resume",)]
+)
+def test_bad_options(grashof: Grashof, tmp_path: Path, option: tuple[str, ...]) -> None:
+    assert grashof("solve", "luggage", *option).exit_code == 2
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_full_disk_is_told_and_keeps_the_old_run(
+    grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert grashof("solve", "luggage", *QUICK).exit_code == 0
+    before = {path: path.read_bytes() for path in (tmp_path / "luggage-designs").iterdir()}
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("grashof.output._write_json", full)
+    done = grashof("solve", "luggage", *QUICK, "--seed", "5")
+    assert done.exit_code == 3
+    assert "No space left" in done.stderr
+    assert {path: path.read_bytes() for path in (tmp_path / "luggage-designs").iterdir()} == before
+
+
+def test_check_and_problems(grashof: Grashof, tmp_path: Path) -> None:
+    done = grashof("check", "luggage")
+    assert done.exit_code == 0
+    for said in ("4 poses", "5.65685 m", "at least 15 deg over the task", "r4 0.3 to 8", "full-crank"):
+        assert said in done.stdout
+    assert "luggage" in grashof("problems").stdout
+    text = grashof("problems", "luggage").stdout
+    (tmp_path / "copy.toml").write_text(text, encoding="utf-8")
+    assert grashof("check", "copy.toml").exit_code == 0
+    assert grashof("problems", "nothing").exit_code == 2
+    assert grashof("check", "nothing").exit_code == 2
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
+def test_interrupt_writes_what_was_verified(tmp_path: Path) -> None:
+    text = problem_text("luggage") + "\n[search]\nstarts = 5000\nenough = 3000\n"
+    (tmp_path / "long.toml").write_text(text, encoding="utf-8")
+    command = [
+        sys.executable,
+        "-c",
+        "from grashof.cli import main; main()",
+        "solve",
+        "long.toml",
+        "--drawings",
+        "0",
+    ]
+    running = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+    assert running.stderr is not None
+    seen = ""
+    while "starts solved" not in seen:
+        seen = running.stderr.readline()
+    time.sleep(0.2)
+    running.send_signal(signal.SIGINT)
+    running.communicate(timeout=60)
+    assert running.returncode == 130
+    table = pd.read_csv(tmp_path / "long-designs" / "candidates.csv")
+    assert len(table) > 0
+    assert json.loads((tmp_path / "long-designs" / "run.json").read_text())["complete"] is False

@@ -1,0 +1,53 @@
+"""The drawing shows the linkage where it really is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.colors import to_hex
+
+from grashof.draw import BODY, DRIVER, PATH, draw_design, save
+from grashof.synth import Result
+
+
+def test_drivers_end_on_circles_about_o2(few: Result) -> None:
+    candidate = few.candidates[0]
+    axes = draw_design(few.problem, candidate, 1).axes[0]
+    drivers = [line.get_xydata() for line in axes.lines if to_hex(line.get_color()) == DRIVER]
+    assert len(drivers) == 4
+    for ends in drivers:
+        np.testing.assert_allclose(ends[0], candidate.linkage.o2)
+        np.testing.assert_allclose(np.hypot(*(ends[1] - ends[0])), candidate.linkage.r2)
+
+
+def test_path_of_p_passes_the_poses_and_bodies_stand_there(few: Result) -> None:
+    candidate, task = few.candidates[0], few.problem.task
+    axes = draw_design(few.problem, candidate, 1).axes[0]
+    path = next(line.get_xydata() for line in axes.lines if "first to last" in str(line.get_label()))
+    for position in task.positions:
+        assert np.hypot(*(path - position).T).min() < 0.02 * task.size
+    np.testing.assert_allclose(
+        path[[0, -1]][:: candidate.verdict.direction], task.positions[[0, -1]], atol=1e-9
+    )
+    bodies = [patch for patch in axes.patches if to_hex(patch.get_edgecolor()) == BODY]
+    assert len(bodies) == 4
+    np.testing.assert_allclose([body.get_xy()[0] for body in bodies], task.positions)
+
+
+def test_axes_are_equal_and_carry_the_unit(few: Result) -> None:
+    axes = draw_design(few.problem, few.candidates[0], 7).axes[0]
+    assert axes.get_aspect() == 1
+    assert axes.get_xlabel() == "x (m)"
+    assert "design 7" in axes.get_title()
+    assert f"{np.degrees(few.candidates[0].verdict.transmission_min_task):.1f} deg" in axes.get_title()
+    assert {to_hex(text.get_color()) for text in axes.texts if text.get_text() in set("1234")} == {PATH}
+
+
+def test_same_design_same_bytes(few: Result, tmp_path: Path) -> None:
+    for folder in ("one", "two"):
+        (tmp_path / folder).mkdir()
+        figure = draw_design(few.problem, few.candidates[0], 1)
+        save(figure, [tmp_path / folder / "d.png", tmp_path / folder / "d.svg"])
+    for name in ("d.png", "d.svg"):
+        assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()

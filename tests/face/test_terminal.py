@@ -1,0 +1,56 @@
+"""What the terminal shows."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from grashof.problems import Box, Requirements, load
+from grashof.synth import Progress, Result
+from grashof.terminal import print_table, search_progress, summary
+
+
+def test_table_shows_what_one_decides_by(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
+    print_table(few)
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].startswith(f"{len(few)} distinct verified designs")
+    best = few.candidates[0]
+    row = next(line for line in lines if best.id in line)
+    for angle in (best.verdict.transmission_min_task, best.verdict.transmission_min_cycle):
+        assert f" {np.degrees(angle):.1f} " in row
+    for length in best.linkage.lengths:
+        assert f" {length:.4g} " in row
+    assert max(map(len, lines)) < 140
+
+
+def test_a_long_list_is_cut_and_says_so(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
+    print_table(replace(few, candidates=few.candidates * 2))
+    out = capsys.readouterr().out
+    assert "the best 12" in out
+    assert "\n 13 " not in out
+
+
+def test_progress_lines(capsys: pytest.CaptureFixture[str]) -> None:
+    with search_progress("mine") as show:
+        show(Progress(solved=16, starts=78, verified=9, enough=50))
+    assert capsys.readouterr().err.splitlines() == [
+        "mine: searching",
+        "9 of 50 designs verified, 16 of 78 starts solved",
+    ]
+
+
+def test_summary_names_every_requirement_given() -> None:
+    wanted = Requirements(
+        o2=Box(x=(0, 1)), b=Box(y=(2, 3)), ground_angle_deg=30, theta2_start_deg=-20, r3=(1, 2)
+    )
+    text = "\n".join(summary(replace(load("luggage"), requirements=wanted)))
+    for said in (
+        "o2: x 0 to 1",
+        "b: x -inf to inf, y 2 to 3",
+        "ground_angle_deg 30",
+        "theta2_start_deg -20",
+        "r3 1 to 2",
+    ):
+        assert said in text

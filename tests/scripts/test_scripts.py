@@ -1,0 +1,43 @@
+"""The scripts run as a user would run them, and say the truth."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from grashof import load, synthesize
+
+SCRIPTS = Path(__file__).parents[2] / "scripts"
+
+
+def run(script: str, *arguments: str, cwd: Path) -> str:
+    command = [sys.executable, str(SCRIPTS / script), *arguments]
+    return subprocess.run(command, cwd=cwd, check=True, capture_output=True, text=True).stdout
+
+
+def test_luggage_states_the_shipped_problem(tmp_path: Path) -> None:
+    said = run("luggage.py", "results", cwd=tmp_path)
+    table = pd.read_csv(tmp_path / "results" / "luggage.csv")
+    shipped = synthesize(load("luggage")).to_frame()
+    np.testing.assert_array_equal(table[["r1", "r2", "r3", "r4"]], shipped[["r1", "r2", "r3", "r4"]])
+    assert f"{len(table)} designs" in said
+    assert (tmp_path / "results" / "luggage-3.svg").exists()
+
+
+def test_benchmark_measures(tmp_path: Path) -> None:
+    said = run("benchmark_motion.py", "--planted", "1", "--runs", "1", cwd=tmp_path)
+    assert "planted: 1 of 1 solved" in said
+    assert "limit 12: 30.17" in said
+
+
+def test_an_analysis_module_beside_the_script_does_no_harm(tmp_path: Path) -> None:
+    (tmp_path / "analysis.py").write_text("raise RuntimeError('not this one')\n")
+    (tmp_path / "mine.py").write_text("import grashof.analysis\nprint(grashof.analysis.verify.__name__)\n")
+    done = subprocess.run(
+        [sys.executable, "mine.py"], cwd=tmp_path, check=True, capture_output=True, text=True
+    )
+    assert done.stdout == "verify\n"

@@ -1,0 +1,188 @@
+"""Shared by the tests of the synthesis: luggage problems, and a judge that shares no code with Grashof."""
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+import pytest
+
+from grashof import load, synthesize
+from grashof.analysis.planted import planted_motion
+from grashof.problems import FourBar, MotionTask, Problem, Requirements
+from grashof.problems.checks import ComplexArray, FloatArray
+from grashof.synth import Candidate, Result
+from grashof.synth.burmester import trace_four_pose_curves
+from grashof.synth.screen import Pairs, near_misses, screen
+from grashof.synth.setup import Setup
+
+DESIGN_STEPS = 3000  # of the driver between two targets, and a third of those of a turn
+
+
+@dataclass(frozen=True)
+class Findings:
+    """What the independent judge finds: errors in sizes and rad, transmission in deg."""
+
+    position_error: float
+    angle_error: float
+    in_order: bool
+    on_one_branch: bool
+    turns: bool
+    transmission_task: float
+    transmission_cycle: float
+    lengths: FloatArray
+    arms: FloatArray
+
+
+Judge: TypeAlias = Callable[[FourBar, MotionTask], Findings]
+
+
+def complex_point(point: FloatArray) -> complex:
+    return complex(float(point[0]), float(point[1]))
+
+
+def meeting_points(a: ComplexArray, o4: complex, r3: float, r4: float) -> tuple[ComplexArray, ComplexArray]:
+    """Both places of B for places of A, left of A->O4 first; NaN where the circles do not meet."""
+    to_o4 = o4 - a
+    distance = np.abs(to_o4)
+    foot = (distance**2 + r3**2 - r4**2) / (2 * distance)
+    with np.errstate(invalid="ignore"):
+        height = np.sqrt(r3**2 - foot**2)
+    ahead = to_o4 / distance
+    return a + ahead * (foot + 1j * height), a + ahead * (foot - 1j * height)
+
+
+def folded_angle(a: ComplexArray, b: ComplexArray, o4: complex) -> FloatArray:
+    """Angle in deg between AB and O4B, 0 to 90."""
+    coupler, output = b - a, b - o4
+    cosine = np.abs((coupler.conj() * output).real) / (np.abs(coupler) * np.abs(output))
+    return np.degrees(np.arccos(np.minimum(cosine, 1.0)))
+
+
+def judge(linkage: FourBar, task: MotionTask) -> Findings:
+    o2, o4 = complex_point(linkage.o2), complex_point(linkage.o4)
+    r2, r3, r4 = float(linkage.r2), float(linkage.r3), float(linkage.r4)
+    p, side = complex_point(linkage.coupler_point), int(linkage.assembly)
+
+    def b_of(a: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        left, right = meeting_points(a, o4, r3, r4)
+        return (left, right) if side > 0 else (right, left)
+
+    targets = task.positions[:, 0] + 1j * task.positions[:, 1]
+    direction3 = np.exp(1j * (task.angles - float(linkage.body_angle)))
+    theta2 = np.angle(targets - p * direction3 - o2)
+    a = o2 + r2 * np.exp(1j * theta2)
+    b, _ = b_of(a)
+    coupler = (b - a) / r3
+    position_error = np.abs(a + p * coupler - targets).max() / task.size
+    angle_error = np.abs(np.angle(coupler / direction3)).max()
+
+    in_order = on_one_branch = False
+    transmission_task = 0.0
+    for sense in (1, -1):
+        steps = (sense * np.diff(theta2)) % (2 * np.pi)
+        if steps.sum() > 2 * np.pi + 1e-9:
+            continue
+        in_order = True
+        on_way = np.concatenate([
+            begin + sense * np.linspace(0, step, DESIGN_STEPS)
+            for begin, step in zip(theta2[:-1], steps, strict=True)
+        ])  # fmt: skip
+        places = o2 + r2 * np.exp(1j * on_way)
+        way, other = b_of(places)
+        # Continuity: the next place of B on this assembly is nearer than that on the other one.
+        followed = np.abs(np.diff(way)) < np.abs(other[1:] - way[:-1])
+        if np.isfinite(way).all() and followed.all():
+            on_one_branch = True
+            transmission_task = float(folded_angle(places, way, o4).min())
+    # Whole turn: with the driver along the ground line as well, where the extremes lie.
+    turn = np.angle(o4 - o2) + np.linspace(0, 2 * np.pi, 3 * DESIGN_STEPS + 1)
+    places = o2 + r2 * np.exp(1j * turn)
+    around, _ = b_of(places)
+    turns = bool(np.isfinite(around).all())
+    return Findings(
+        position_error=float(position_error),
+        angle_error=float(angle_error),
+        in_order=in_order,
+        on_one_branch=on_one_branch,
+        turns=turns,
+        transmission_task=transmission_task,
+        transmission_cycle=float(folded_angle(places, around, o4).min()) if turns else 0.0,
+        lengths=np.array([abs(o4 - o2), r2, r3, r4]),
+        arms=np.array([abs(p), abs(p - r3)]),
+    )
+
+
+@pytest.fixture(scope="session")
+def independent_judge() -> Judge:
+    return judge
+
+
+@pytest.fixture(scope="session")
+def golden() -> dict[str, Any]:
+    path = Path(__file__).parents[1] / "data" / "golden.json"
+    contents: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    return contents
+
+
+@pytest.fixture(scope="session")
+def luggage() -> Problem:
+    return load("luggage")
+
+
+@pytest.fixture(scope="session")
+def luggage_result(luggage: Problem) -> Result:
+    return synthesize(luggage)
+
+
+@pytest.fixture(scope="session")
+def luggage_designs(luggage_result: Result) -> tuple[Candidate, ...]:
+    return luggage_result.candidates
+
+
+SetupOf: TypeAlias = Callable[..., Setup]
+
+
+@pytest.fixture(scope="session")
+def luggage_setup(luggage: Problem) -> SetupOf:
+    """Setup of the luggage task under other requirements: links and arms 0.3 to 8 unless said otherwise."""
+
+    def of(**wanted: Any) -> Setup:
+        limits = {"link_length": (0.3, 8.0), "coupler_arms": (0.3, 8.0)}
+        return Setup.of(Problem(task=luggage.task, requirements=Requirements(**(limits | wanted))))
+
+    return of
+
+
+@pytest.fixture(scope="session")
+def planted_setup() -> Callable[..., tuple[Setup, FourBar]]:
+    """Setup of a planted task, and the linkage that does it."""
+
+    def of(seed: int, **wanted: Any) -> tuple[Setup, FourBar]:
+        task, linkage = planted_motion(np.random.default_rng(seed), poses=4)
+        return Setup.of(Problem(task=task, requirements=Requirements(**wanted))), linkage
+
+    return of
+
+
+PairsOf: TypeAlias = Callable[[Setup], Pairs]
+
+
+@pytest.fixture(scope="session")
+def feasible_pairs() -> PairsOf:
+    def of(setup: Setup) -> Pairs:
+        dyads = trace_four_pose_curves(setup.motion, reach=6.0, lines=200, cell=0.03)
+        return screen(setup.motion, setup.body, dyads, setup.wanted, pairs=60_000)
+
+    return of
+
+
+@pytest.fixture(scope="session")
+def all_pairs() -> PairsOf:
+    def of(setup: Setup) -> Pairs:
+        dyads = trace_four_pose_curves(setup.motion, reach=5.0, lines=40, cell=0.1)
+        return near_misses(setup.motion, setup.body, dyads, setup.wanted, pairs=20_000)
+
+    return of

@@ -1,0 +1,64 @@
+"""From pivots in the frame of the search back to linkages: what is put in comes out."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from grashof.analysis import solve_position
+from grashof.problems import FourBar, ProblemError
+from grashof.problems.checks import ComplexArray
+from grashof.synth.setup import Setup
+
+PlantedSetup = Callable[..., tuple[Setup, FourBar]]
+
+
+def pivots_of(setup: Setup, linkage: FourBar) -> ComplexArray:
+    """O2, O4, and A, B at the first pose, from the body's place and the coupler's numbers."""
+    task, frame = setup.problem.task, setup.frame
+    coupler = np.exp(1j * (task.angles[0] - float(linkage.body_angle)))
+    a = complex(*task.positions[0]) - complex(*linkage.coupler_point) * coupler
+    every = np.array([complex(*linkage.o2), complex(*linkage.o4), a, a + float(linkage.r3) * coupler])
+    return (every - frame.origin) / frame.scale
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_the_planted_linkage_comes_back_from_its_pivots(planted_setup: PlantedSetup, seed: int) -> None:
+    setup, linkage = planted_setup(seed)
+    back = setup.linkages(pivots_of(setup, linkage), linkage.assembly)
+    for name in ("o2", "o4", "r2", "r3", "r4", "coupler_point", "assembly"):
+        np.testing.assert_allclose(
+            getattr(back, name), getattr(linkage, name), rtol=1e-11, atol=1e-11 * setup.frame.scale
+        )
+    assert abs(np.exp(1j * float(back.body_angle)) - np.exp(1j * float(linkage.body_angle))) < 1e-12
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_displacements_carry_the_body_and_the_dyads(planted_setup: PlantedSetup, seed: int) -> None:
+    setup, linkage = planted_setup(seed)
+    targets = setup.frame.inward(setup.problem.task.positions)
+    np.testing.assert_allclose(setup.motion.apply(np.array([setup.body]))[0], targets, atol=1e-12)
+    o2, _, a, b = pivots_of(setup, linkage)
+    places = setup.motion.apply(np.array([a, b]))
+    theta2 = np.angle(places[0] - o2)
+    state = solve_position(linkage, theta2)
+    np.testing.assert_allclose(setup.frame.inward(state.a), places[0], atol=1e-9)
+    np.testing.assert_allclose(setup.frame.inward(state.b), places[1], atol=1e-9)
+
+
+def test_a_batch_is_its_members(planted_setup: PlantedSetup) -> None:
+    setup, linkage = planted_setup(0)
+    one = pivots_of(setup, linkage)
+    other = one + np.array([0.1, -0.2j, 0.3, 0.1j])
+    batch = setup.linkages(np.array([one, other]), np.array([1.0, -1.0]))
+    assert batch.shape == (2,)
+    assert batch[0] == setup.linkages(one, np.array(1.0))
+    assert batch[1] == setup.linkages(other, np.array(-1.0))
+
+
+def test_coinciding_joints_are_refused(planted_setup: PlantedSetup) -> None:
+    setup, linkage = planted_setup(0)
+    points = pivots_of(setup, linkage)
+    points[2] = points[0]
+    with pytest.raises(ProblemError, match="r2"):
+        setup.linkages(points, np.array(1.0))
