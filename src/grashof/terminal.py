@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import numpy as np
+import typer
 from rich import box
 from rich.console import Console
 from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
@@ -13,11 +14,13 @@ from rich.progress import Progress as Bar
 from rich.table import Table
 
 from grashof.problems import Problem
+from grashof.problems.checks import counted
 from grashof.synth import Candidate, Progress, Result
 from grashof.synth.result import pareto_optimal
 
 _ROWS = 12
 _PIPED_WIDTH = 140
+_WIDE = 100  # columns; narrower terminals get fewer digits
 
 
 def console(*, stderr: bool = False) -> Console:
@@ -33,8 +36,7 @@ def search_progress(name: str) -> Iterator[Callable[[Progress], None]]:
     """Something to give as `progress=`: a bar on a terminal, plain lines elsewhere; on stderr."""
     out = console(stderr=True)
     if not out.is_terminal:
-        out.print(f"{name}: searching")
-        yield lambda step: out.print(_step(step))
+        yield lambda step: out.print(f"{name}: {_step(step)}")
         return
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[step]}"))
     with Bar(*columns, TimeElapsedColumn(), console=out, transient=True) as bar:
@@ -53,56 +55,55 @@ def _step(step: Progress) -> str:
 def print_table(result: Result) -> None:
     """Print the best designs, with what an engineer decides by."""
     out = console()
+    typer.echo(_heading(result))
     with out.capture() as captured:
-        out.print(_table(result))
+        out.print(_table(result, digits=4 if out.width >= _WIDE else 3))
     for line in captured.get().splitlines():
-        print(line.rstrip())  # noqa: T201
+        typer.echo(line.rstrip())
 
 
-def _table(result: Result) -> Table:
-    problem = result.problem
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, title=_heading(result), title_justify="left")
-    table.title_style = "bold"
-    table.add_column("#", justify="right")
-    for name in ("id", "class"):
-        table.add_column(name, no_wrap=True)
-    for name in (
-        "worst mu\ntask deg",
-        "worst mu\nturn deg",
-        f"size\n{problem.length_unit}",
-        "r1",
-        "r2",
-        "r3",
-        "r4",
-    ):
+def _table(result: Result, digits: int) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+    for name in ("#", "mu task\ndeg", "mu turn\ndeg", "size", "r1", "r2", "r3", "r4"):
         table.add_column(name, justify="right", no_wrap=True)
     for name in ("O2", "O4"):
         table.add_column(name, justify="center", no_wrap=True)
-    table.add_column("Pareto", justify="center")
-    front = pareto_optimal(problem, result.candidates)
+    mixed = len(_classes(result)) > 1
+    if mixed:
+        table.add_column("class")
+    front = pareto_optimal(result.problem, result.candidates)
     for rank, candidate in enumerate(result.candidates[:_ROWS], start=1):
-        table.add_row(str(rank), *_cells(candidate), "*" if front[rank - 1] else "")
+        kind = [str(candidate.verdict.grashof_class)] if mixed else []
+        table.add_row(f"{rank}{'*' if front[rank - 1] else ' '}", *_cells(candidate, digits), *kind)
     return table
 
 
 def _heading(result: Result) -> str:
     worst = max(candidate.verdict.error_max for candidate in result.candidates)
-    shown = f"; the best {_ROWS}" if len(result) > _ROWS else ""
-    kinds = "design" if len(result) == 1 else "designs"
-    return f"{len(result)} distinct verified {kinds}, largest position error {worst:.1e}{shown}:"
+    classes = _classes(result)
+    kind = f"{classes.pop()} design" if len(classes) == 1 else "design"
+    unit = result.problem.length_unit
+    lengths = f" Lengths in {unit}." if unit else ""
+    shown = f" The best {_ROWS}:" if len(result) > _ROWS else ""
+    return (
+        f"{counted(len(result), f'distinct verified {kind}')}, largest position error {worst:.1e}.{lengths}\n"
+        f"mu: worst transmission angle; *: Pareto-optimal in mu and size.{shown}"
+    )
 
 
-def _cells(candidate: Candidate) -> list[str]:
+def _classes(result: Result) -> set[str]:
+    return {str(candidate.verdict.grashof_class) for candidate in result.candidates}
+
+
+def _cells(candidate: Candidate, digits: int) -> list[str]:
     linkage, verdict = candidate.linkage, candidate.verdict
     task, turn = np.degrees([verdict.transmission_min_task, verdict.transmission_min_cycle])
     return [
-        candidate.id,
-        str(verdict.grashof_class),
         f"{task:.1f}",
         f"{turn:.1f}" if verdict.full_rotation else "-",
-        f"{verdict.size:.4g}",
-        *(f"{length:.4g}" for length in linkage.lengths),
-        *(f"({x:.3g}, {y:.3g})" for x, y in (linkage.o2, linkage.o4)),
+        f"{verdict.size:.{digits}g}",
+        *(f"{length:.{digits}g}" for length in linkage.lengths),
+        *(f"{x:.3g}, {y:.3g}" for x, y in (linkage.o2, linkage.o4)),
     ]
 
 

@@ -42,8 +42,7 @@ def test_solve_writes_a_verified_list(grashof: Grashof, tmp_path: Path) -> None:
     assert set(record["files"]) == expected
     assert record["designs"] == len(table)
     assert record["settings"]["seed"] == 0
-    assert str(len(table)) in done.stdout
-    assert table["id"][0] in done.stdout
+    assert done.stdout.startswith(f"{len(table)} distinct verified crank-rocker designs")
 
 
 def test_progress_is_plain_lines_when_piped(grashof: Grashof) -> None:

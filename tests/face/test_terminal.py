@@ -10,34 +10,48 @@ import pytest
 from grashof.problems import Box, Requirements, load
 from grashof.synth import Progress, Result
 from grashof.terminal import print_table, search_progress, summary
+from rich.console import Console
 
 
 def test_table_shows_what_one_decides_by(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
     print_table(few)
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0].startswith(f"{len(few)} distinct verified designs")
+    assert lines[0].startswith(f"{len(few)} distinct verified")
     best = few.candidates[0]
-    row = next(line for line in lines if best.id in line)
+    row = next(line for line in lines if line.startswith("  1"))
     for angle in (best.verdict.transmission_min_task, best.verdict.transmission_min_cycle):
         assert f" {np.degrees(angle):.1f} " in row
     for length in best.linkage.lengths:
         assert f" {length:.4g} " in row
-    assert max(map(len, lines)) < 140
+    for x, y in (best.linkage.o2, best.linkage.o4):
+        assert f"{x:.3g}, {y:.3g}" in row
+    assert max(map(len, lines)) < 100
+
+
+@pytest.mark.parametrize("columns", [80, 100])
+def test_table_fits_the_terminal_uncut(
+    few: Result, columns: int, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    terminal = Console(width=columns, highlight=False, markup=False)
+    monkeypatch.setattr("grashof.terminal.console", lambda: terminal)
+    print_table(few)
+    lines = capsys.readouterr().out.splitlines()[2:]
+    assert max(map(len, lines)) <= columns
+    assert "…" not in "".join(lines)
 
 
 def test_a_long_list_is_cut_and_says_so(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
     print_table(replace(few, candidates=few.candidates * 2))
     out = capsys.readouterr().out
-    assert "the best 12" in out
-    assert "\n 13 " not in out
+    assert "The best 12" in out
+    assert "\n  13" not in out
 
 
 def test_progress_lines(capsys: pytest.CaptureFixture[str]) -> None:
     with search_progress("mine") as show:
         show(Progress(solved=16, starts=78, verified=9, enough=50))
     assert capsys.readouterr().err.splitlines() == [
-        "mine: searching",
-        "9 of 50 designs verified, 16 of 78 starts solved",
+        "mine: 9 of 50 designs verified, 16 of 78 starts solved",
     ]
 
 

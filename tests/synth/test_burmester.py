@@ -84,9 +84,7 @@ def test_points_found_on_a_line_lie_on_it_and_on_circles(
 
 @bounded
 @given(four_poses, coordinate)
-def test_no_point_of_a_line_is_missed(
-    poses: list[tuple[float, float, float]], offset: float
-) -> None:
+def test_no_point_of_a_line_is_missed(poses: list[tuple[float, float, float]], offset: float) -> None:
     """Between sign changes of an independent determinant lies an odd number of the points found."""
     found = circle_points_on_lines(displacements(poses), np.array([complex(offset)]), 1j).imag
     assert len(found) in (1, 2, 3)

@@ -1,5 +1,7 @@
 """Distinct designs, by the definition: largest difference above 1 % of the largest number."""
 
+from random import Random
+
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -9,7 +11,7 @@ from grashof.problems import FourBar
 from grashof.problems.checks import FloatArray
 from grashof.synth.distinct import DISTINCT, apart, pick_apart, signature
 
-bounded = settings(derandomize=True, max_examples=80, deadline=None)
+bounded = settings(derandomize=True, max_examples=50, deadline=None)
 number = st.floats(-10, 10).filter(lambda value: value == 0 or abs(value) > 1e-3)
 signatures = arrays(np.float64, st.tuples(st.integers(2, 12), st.just(9)), elements=number).filter(
     lambda rows: bool((np.abs(rows).max(axis=1) > 0.1).all())
@@ -41,7 +43,9 @@ def test_apart_is_the_definition_and_symmetric(rows: FloatArray) -> None:
 
 @bounded
 @given(signatures, st.randoms(use_true_random=False), st.floats(0.01, 0.8))
-def test_picked_are_apart_best_first_and_nobody_else_fits(rows: FloatArray, random, least: float) -> None:
+def test_picked_are_apart_best_first_and_nobody_else_fits(
+    rows: FloatArray, random: Random, least: float
+) -> None:
     merit = np.array([random.uniform(0, 1) for _ in rows])
     picked = pick_apart(rows, merit, least, len(rows)).tolist()
     assert picked[0] == int(np.argmax(merit))
