@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 from grashof.problems import Box, Requirements, load
 from grashof.synth import Progress, Result
 from grashof.terminal import print_table, search_progress, summary
-from rich.console import Console
 
 
 def test_table_shows_what_one_decides_by(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
@@ -18,7 +18,7 @@ def test_table_shows_what_one_decides_by(few: Result, capsys: pytest.CaptureFixt
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith(f"{len(few)} distinct verified")
     best = few.candidates[0]
-    row = next(line for line in lines if line.startswith("  1"))
+    row = next(line for line in lines if line.lstrip().startswith("1"))
     for angle in (best.verdict.transmission_min_task, best.verdict.transmission_min_cycle):
         assert f" {np.degrees(angle):.1f} " in row
     for length in best.linkage.lengths:
