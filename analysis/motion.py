@@ -14,8 +14,7 @@ from grashof.problems.checks import FloatArray, IntArray
 TURN = 2 * np.pi
 STEADY = 1e-9  # rad: a driver step so small counts as none
 _EXACT = 1e-13  # errors below this share of the size are rounding
-_STILL = 1e-12  # rad: a step so small no longer improves the driver angle
-_SAMPLES = 181
+_SAMPLES = 361
 _VALLEYS = 6
 
 
@@ -78,9 +77,9 @@ def nearest_to_poses(linkage: FourBar, task: MotionTask) -> Targets:
     Notes
     -----
     The first guess turns the driver towards where A would be if the body stood in the pose;
-    damped Gauss-Newton steps in the driver angle then reduce |dp|^2 + (angle_length * dangle)^2, on
-    both assemblies. Where that does not meet the poses, they start again from the lowest valleys of a
-    scan over all driver angles.
+    Gauss-Newton steps in the driver angle then reduce |dp|^2 + (angle_length * dangle)^2, on both
+    assemblies. Where that does not meet every pose, a scan over all driver angles finds the lowest
+    valleys, and closer scans their bottoms.
     """
     theta3 = task.angles - linkage.body_angle
     coupler = complex(*linkage.coupler_point)
@@ -164,33 +163,39 @@ def _met(miss: FloatArray, task: MotionTask) -> bool:
 def _descend(
     linkage: FourBar, task: MotionTask, theta3: FloatArray, angle: FloatArray, signs: IntArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Driver angles after damped Gauss-Newton steps, and what they miss by; each shape (..., N)."""
+    """Driver angles after Gauss-Newton steps, and what they miss by; each shape (K, N)."""
     ends = driver_ranges(linkage)
-    best, damping = _miss(linkage, task, theta3, angle, signs), np.ones(np.shape(angle))
-    for _ in range(40):
+    best = _miss(linkage, task, theta3, angle, signs)
+    for _ in range(6):
         if _met(best, task):
             break
-        step = damping * _gauss_newton_step(linkage, task, theta3, angle, signs)
-        if (np.abs(step) < _STILL).all():
-            break
-        moved = _into_ranges(ends, angle + step)
+        moved = _into_ranges(ends, angle + _gauss_newton_step(linkage, task, theta3, angle, signs))
         miss = _miss(linkage, task, theta3, moved, signs)
         better = miss < best
+        if not better.any():
+            break
         angle, best = np.where(better, moved, angle), np.where(better, miss, best)
-        damping = np.where(better, np.minimum(2 * damping, 1.0), damping / 4)
     return angle, best
 
 
 def _scan(linkage: FourBar, task: MotionTask, theta3: FloatArray) -> tuple[FloatArray, IntArray]:
-    """Driver angles and assemblies at the lowest valleys of the miss over all driver angles, (K, N)."""
+    """Driver angles and assemblies in the lowest valleys of the miss over all driver angles, (K, N)."""
     ends = driver_ranges(linkage)
-    ends = ends[np.isfinite(ends[:, 0])]
-    around = np.concatenate([np.linspace(low, high, _SAMPLES) for low, high in ends] or [[0.0]])
-    signs = np.array([1, -1])[:, None, None]
-    miss = _miss(linkage, task, theta3, around[:, None], signs)
+    ranges = ends[np.isfinite(ends[:, 0])]
+    # Closer towards dead positions, where a linkage runs away from its driver.
+    share = (1 - np.cos(np.linspace(0, np.pi, _SAMPLES))) / 2
+    around = np.concatenate([low + (high - low) * share for low, high in ranges] or [[0.0]])
+    miss = _miss(linkage, task, theta3, around[:, None], np.array([1, -1])[:, None, None])
     valley = (miss <= np.roll(miss, 1, axis=1)) & (miss <= np.roll(miss, -1, axis=1))
     lowest = np.argsort(np.where(valley, miss, np.inf).reshape(-1, len(task)), axis=0)[:_VALLEYS]
-    return around[lowest % len(around)], np.where(lowest < len(around), 1, -1)
+    angle, signs = around[lowest % len(around)], np.where(lowest < len(around), 1, -1)
+    width = TURN / _SAMPLES * np.pi / 2  # no two samples lie farther apart
+    for _ in range(12):
+        tried = _into_ranges(ends, angle + width * np.linspace(-1, 1, 9)[:, None, None])
+        nearest = np.argmin(_miss(linkage, task, theta3, tried, signs), axis=0)
+        angle = np.take_along_axis(tried, nearest[None], axis=0)[0]
+        width /= 4
+    return angle, signs
 
 
 def _gauss_newton_step(

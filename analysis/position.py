@@ -18,7 +18,7 @@ class Position:
     Parameters
     ----------
     theta2, theta3, theta4 : ndarray, shape (...), rad
-        Directions O2->A, A->B, O4->B; theta3 and theta4 in (-pi, pi].
+        Directions O2->A, A->B, O4->B; theta3 and theta4 in [-pi, pi].
     a, b, p : ndarray, shape (..., 2), length
         Moving pivots and coupler point.
     """
@@ -70,7 +70,7 @@ def solve_position(
     ay = linkage.o2[..., 1] + linkage.r2 * np.sin(angle)
     x, y = linkage.o4[..., 0] - ax, linkage.o4[..., 1] - ay
     s = _kept_closed(np.hypot(x, y), r3, r4, np.abs(ax) + np.abs(ay) + np.abs(linkage.o4).sum(axis=-1))
-    with np.errstate(invalid="ignore", divide="ignore"):
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         along = (s + (r3 - r4) * (r3 + r4) / s) / 2
         beside = sign * np.sqrt((r3 + r4 - s) * (r3 + r4 + s) * (s - (r3 - r4)) * (s + (r3 - r4))) / (2 * s)
         cos3, sin3 = (along * x - beside * y) / s, (along * y + beside * x) / s

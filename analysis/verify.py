@@ -214,7 +214,7 @@ def _order(way: Way, wanted: Requirements) -> list[Defect]:
         what = "turns of the driver to meet the targets in sequence"
         return [Defect("order", what, turns, "up to 1", 1.0)]
     step = np.diff(way.theta2)
-    reversals = np.count_nonzero(np.diff(np.sign(step[np.abs(step) > STEADY])))
+    reversals = int(np.count_nonzero(np.diff(np.sign(step[np.abs(step) > STEADY]))))
     return [Defect("order", "the number of reversals of the driver between targets", reversals, "0", 1.0)]
 
 
@@ -230,9 +230,9 @@ def _rotatability(linkage: FourBar, wanted: Requirements) -> list[Defect]:
         defects.append(Defect("rotatability", "the margin of full rotation", least, allowed, miss))
     kind = {Rotatability.CRANK_ROCKER: 1, Rotatability.DOUBLE_CRANK: -1}.get(wanted.rotatability, 0)
     difference = float(linkage.r1 - linkage.r2)
-    if kind * difference < 0:
+    miss = -kind * difference / float(linkage.lengths.sum())
+    if miss > SLACK:
         which = "greater" if kind > 0 else "less"
-        miss = abs(difference) / float(linkage.lengths.sum())
         allowed = f"{which} than 0 ({wanted.rotatability})"
         defects.append(Defect("rotatability", "r1 - r2", difference, allowed, miss))
     return defects

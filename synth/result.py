@@ -40,10 +40,13 @@ class Candidate:
 
     @property
     def id(self) -> str:
-        """Name by the design itself: the same for the same numbers (to six digits) in any list."""
+        """Name by the design itself: the same for the same numbers (to six digits) in any list.
+
+        It begins with a letter, so that no spreadsheet takes it for a number.
+        """
         numbers = [*signature(self.linkage), self.linkage.assembly, self.linkage.body_angle]
         text = " ".join(f"{number + 0.0:.5e}" for number in numbers)
-        return hashlib.sha256(text.encode()).hexdigest()[:8]
+        return "d" + hashlib.sha256(text.encode()).hexdigest()[:7]
 
     def transmission(self, over: TransmissionOver) -> float:
         """Worst transmission angle over the task or the cycle, rad."""

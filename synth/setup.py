@@ -57,7 +57,8 @@ class Setup:
             Batch of shape (...), in the problem's unit.
         """
         o2, o4, a, b = np.moveaxis(points, -1, 0)
-        coupler = (b - a) / np.abs(b - a)
+        with np.errstate(invalid="ignore"):  # FourBar refuses a coupler of no length
+            coupler = (b - a) / np.abs(b - a)
         arm = (self.body - a) * coupler.conj() * self.frame.scale
         return FourBar(
             o2=self.frame.outward(o2),
@@ -67,5 +68,5 @@ class Setup:
             r4=np.abs(b - o4) * self.frame.scale,
             coupler_point=np.stack([arm.real, arm.imag], axis=-1),
             assembly=assembly,
-            body_angle=np.angle(np.exp(1j * self.problem.task.angles[0]) / coupler),
+            body_angle=np.angle(np.exp(1j * self.problem.task.angles[0]) * coupler.conj()),
         )

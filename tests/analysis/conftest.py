@@ -90,9 +90,10 @@ def close_loop() -> Callable[..., tuple[npt.NDArray[np.complex128], ...]]:
         a = complex(*linkage.o2) + linkage.r2 * np.exp(1j * np.asarray(theta2))
         diagonal = complex(*linkage.o4) - a
         length = np.abs(diagonal)
-        with np.errstate(divide="ignore", invalid="ignore"):  # A may stand on O4
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # A may stand on O4
             cosine = (length**2 + linkage.r3**2 - linkage.r4**2) / (2 * length * linkage.r3)
-            inner = np.arccos(np.where(np.abs(cosine) <= 1, cosine, np.nan))
+            cosine = np.where(np.abs(cosine) <= 1 + 1e-14, np.clip(cosine, -1, 1), np.nan)
+            inner = np.arccos(cosine)
             coupler = diagonal / length * np.exp(1j * assembly * inner)
         return a, a + linkage.r3 * coupler, a + complex(*linkage.coupler_point) * coupler
 

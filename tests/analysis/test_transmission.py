@@ -13,7 +13,7 @@ from grashof.analysis import GrashofClass, transmission_angle, worst_transmissio
 from grashof.analysis.transmission import quality
 from grashof.problems import FourBar
 
-CHECKED = settings(derandomize=True, deadline=None, max_examples=60)
+CHECKED = settings(derandomize=True, deadline=None, max_examples=40)
 TURN = 2 * np.pi
 Brute = Callable[..., tuple[npt.NDArray[np.complex128], ...]]
 Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
@@ -111,8 +111,8 @@ def test_worst_over_an_interval_is_the_least_of_a_sweep(
     worst = float(worst_transmission(linkage, start, end))
     swept, step = least_of_sweep(linkage, start, end)
     # Near 0 the sweep's own arc cosine has half its digits.
-    assert worst <= swept + 1e-12 or swept < 1e-6
-    assert worst >= swept - step - 1e-12
+    rounding = 1e-12 if swept > 1e-6 else 1e-6
+    assert swept - step - rounding <= worst <= swept + rounding
     assert worst == worst_transmission(linkage, end, start)
 
 
@@ -136,7 +136,7 @@ def test_worst_over_the_turn_is_the_least_of_a_sweep(
     else:
         assert worst == 0
     for span in (TURN * (1 + 1e-12), -1.5 * TURN, 7.3 * TURN):
-        assert worst_transmission(linkage, start, start + span) == worst
+        assert worst_transmission(linkage, start, start + span) == pytest.approx(worst, rel=1e-12)
 
 
 @pytest.mark.parametrize("theta1", [0.0, 0.7, -2.9])

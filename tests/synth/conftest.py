@@ -13,12 +13,12 @@ from grashof import load, synthesize
 from grashof.analysis.planted import planted_motion
 from grashof.problems import FourBar, MotionTask, Problem, Requirements
 from grashof.problems.checks import ComplexArray, FloatArray
-from grashof.synth import Candidate, Result
+from grashof.synth import Candidate, Result, four_poses
 from grashof.synth.burmester import trace_four_pose_curves
 from grashof.synth.screen import Pairs, near_misses, screen
 from grashof.synth.setup import Setup
 
-DESIGN_STEPS = 3000  # of the driver between two targets, and a third of those of a turn
+STEPS = 3000  # of the driver between two targets; three times as many over the turn
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ def judge(linkage: FourBar, task: MotionTask) -> Findings:
             continue
         in_order = True
         on_way = np.concatenate([
-            begin + sense * np.linspace(0, step, DESIGN_STEPS)
+            begin + sense * np.linspace(0, step, STEPS)
             for begin, step in zip(theta2[:-1], steps, strict=True)
         ])  # fmt: skip
         places = o2 + r2 * np.exp(1j * on_way)
@@ -98,7 +98,7 @@ def judge(linkage: FourBar, task: MotionTask) -> Findings:
             on_one_branch = True
             transmission_task = float(folded_angle(places, way, o4).min())
     # Whole turn: with the driver along the ground line as well, where the extremes lie.
-    turn = np.angle(o4 - o2) + np.linspace(0, 2 * np.pi, 3 * DESIGN_STEPS + 1)
+    turn = np.angle(o4 - o2) + np.linspace(0, 2 * np.pi, 3 * STEPS + 1)
     places = o2 + r2 * np.exp(1j * turn)
     around, _ = b_of(places)
     turns = bool(np.isfinite(around).all())
@@ -186,3 +186,10 @@ def all_pairs() -> PairsOf:
         return near_misses(setup.motion, setup.body, dyads, setup.wanted, pairs=20_000)
 
     return of
+
+
+@pytest.fixture
+def coarse_curves(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Dyad curves traced coarsely: several times as fast, for tests of anything but the best designs."""
+    monkeypatch.setattr(four_poses, "LINES", 300)
+    monkeypatch.setattr(four_poses, "CELL", 0.02)

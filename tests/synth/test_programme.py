@@ -1,5 +1,6 @@
 """The programme: what it ends with keeps every requirement and is no worse than where it began."""
 
+from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -9,14 +10,14 @@ import pytest
 from scipy.optimize import minimize
 
 from grashof.analysis import Verdict, reach_box, verify
-from grashof.problems import Box, FourBar, Objective, Requirements, TransmissionOver
+from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, TransmissionOver
 from grashof.problems.checks import FloatArray
 from grashof.synth.attempt import attempt
 from grashof.synth.burmester import trace_four_pose_curves
 from grashof.synth.distinct import pick_apart, signature
 from grashof.synth.programme import Solve, solve
 from grashof.synth.result import Candidate
-from grashof.synth.screen import Pairs, near_misses
+from grashof.synth.screen import GROUPS, Pairs, near_misses
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
 
@@ -37,7 +38,7 @@ ALONE: dict[str, dict[str, Any]] = {
     "link_length": {"link_length": (1.0, 5.5)},
     "r1": {"r1": (2.0, 5.0)},
     "r2": {"r2": (0.3, 4.0)},
-    "r3": {"r3": (2.0, 3.0)},
+    "r3": {"r3": (3.0, 4.5)},
     "r4": {"r4": (0.3, 4.5)},
     "link_ratio_max": {"link_ratio_max": 1.6},
     "coupler_arms": {"coupler_arms": (2.0, 6.0)},
@@ -84,7 +85,7 @@ def transmission(setup: Setup, verdict: Verdict) -> float:
 
 def check_climb(setup: Setup, starts: list[Start]) -> None:
     for start in starts:
-        begun = judged(setup, (start.o2, start.o4, start.a, start.b), start.assembly)
+        begun = judged(setup, start_points(start), start.assembly)
         assert begun.ok
         verdict = ended(setup, start).verdict
         assert verdict.defects == ()
@@ -102,7 +103,7 @@ def test_from_a_feasible_pair_it_ends_at_least_as_good_and_keeps_the_requirement
     check_climb(setup, starts)
 
 
-@pytest.mark.parametrize("seed", [0, 3, 8])
+@pytest.mark.parametrize("seed", [0, 7, 16])
 def test_double_cranks(
     planted_setup: Callable[..., tuple[Setup, FourBar]], feasible_pairs: PairsOf, seed: int
 ) -> None:
@@ -118,11 +119,12 @@ def test_required_angles_are_kept(luggage_setup: SetupOf, feasible_pairs: PairsO
     pairs = feasible_pairs(free)
     for start in best_apart(free, pairs, 3):
         angle = np.degrees(start.theta1 if key == "ground_angle_deg" else start.theta2[0])
+        begun = judged(free, start_points(start), start.assembly)
         for turns in (0, 360, -720):
             setup = luggage_setup(**{key: float(angle) + turns})
             verdict = ended(setup, start).verdict
             assert verdict.defects == ()  # to 1e-9 rad
-            assert verdict.transmission_min_task >= judged(setup, start_points(start), start.assembly).transmission_min_task - 1e-6
+            assert verdict.transmission_min_task >= begun.transmission_min_task - 1e-6
 
 
 def start_points(start: Start) -> tuple[complex, ...]:
@@ -186,9 +188,8 @@ def nearest_by_slsqp(setup: Setup, target: FloatArray) -> float:
 def test_stay_goes_to_the_nearest_feasible_design(luggage_setup: SetupOf, feasible_pairs: PairsOf) -> None:
     wide = luggage_setup(rotatability="any")
     tight = luggage_setup(rotatability="any", link_length=(1.0, 5.0), coupler_arms=(0.3, 4.5))
-    pairs = feasible_pairs(wide)
-    points = np.array([start.points for start in best_apart(wide, pairs, 6)])
-    for start, point in zip(best_apart(wide, pairs, 6), points, strict=True):
+    for start in best_apart(wide, feasible_pairs(wide), 6):
+        point = start.points
         solved = run(tight, replace(start, stay=True))
         assert solved.status == "Solve_Succeeded"
         assert judged(tight, solved.points, start.assembly).ok
@@ -212,9 +213,7 @@ def test_relaxed_transmission_comes_as_near_as_the_best_without_the_limit(
     asked = luggage_setup(transmission_over=over, transmission_min_deg=60)
     starts = best_apart(free, feasible_pairs(free), 4)
     best = max(transmission(free, ended(free, start).verdict) for start in starts)
-    relaxed = [
-        ended(asked, replace(start, relaxed=("transmission_min_deg",))).verdict for start in starts
-    ]
+    relaxed = [ended(asked, replace(start, relaxed=("transmission_min_deg",))).verdict for start in starts]
     for verdict in relaxed:
         assert {defect.requirement for defect in verdict.defects} == {"transmission_min_deg"}
     nearest = max(transmission(asked, verdict) for verdict in relaxed)
@@ -236,31 +235,28 @@ RELAXED: dict[str, tuple[str, dict[str, Any]]] = {
 }  # fmt: skip
 
 
+LENGTH_KEYS: dict[str, set[str]] = defaultdict(set, link_length={"r1", "r2", "r3", "r4"})
+
+
 @pytest.mark.parametrize("kind", RELAXED)
-def test_relaxed_misses_nothing_else_and_less_than_any_traced_pair(
-    luggage_setup: SetupOf, kind: str
-) -> None:
+def test_relaxed_misses_nothing_else_and_less_than_any_traced_pair(luggage_setup: SetupOf, kind: str) -> None:
     key, wanted = RELAXED[kind]
     setup = luggage_setup(**wanted)
     dyads = trace_four_pose_curves(setup.motion, reach=6.0, lines=100, cell=0.05)
     pairs = near_misses(setup.motion, setup.body, dyads, setup.wanted, pairs=60_000)
-    from grashof.synth.screen import GROUPS
-
     column = GROUPS.index(key)
     others = np.delete(pairs.lacks, column, axis=1).max(axis=1) <= 0
     pairs = pairs[others]
     assert (pairs.lacks[:, column] > 0).all()
     order = np.argsort(pairs.lacks[:, column])[:200:40]
     linkages = setup.linkages(pairs.points, pairs.assembly)
-    before = [
-        verify(linkages[int(i)], setup.problem.task, setup.problem.requirements).defects for i in order
-    ]
+    before = [verify(linkages[int(i)], setup.problem.task, setup.problem.requirements).defects for i in order]
     least = min(max(defect.miss for defect in defects) for defects in before)
     after = []
     for index in order:
         start = replace(Start.of_pair(pairs, int(index), Objective()), relaxed=(key,))
         defects = ended(setup, start).verdict.defects
-        assert {d.requirement if d.requirement not in ("r1", "r2", "r3", "r4") else "link_length" for d in defects} == {key}
+        assert {d.requirement for d in defects} <= {key, *LENGTH_KEYS[key]}
         after.append(max(defect.miss for defect in defects))
     assert min(after) <= least * (1 + 1e-6)
 
@@ -278,6 +274,69 @@ def test_compactness_makes_smaller_and_transmission_better(
         theta2 = small.verdict.theta2
         corners = reach_box(small.linkage, theta2[0], theta2[-1])
         assert small.verdict.size == pytest.approx(float(np.hypot(*(corners[1] - corners[0]))), rel=1e-9)
+
+
+def out_of_order(setup: Setup) -> Pairs:
+    """Pairs that lack the order and nothing else."""
+    dyads = trace_four_pose_curves(setup.motion, reach=6.0, lines=150, cell=0.04)
+    pairs = near_misses(setup.motion, setup.body, dyads, setup.wanted, pairs=100_000)
+    column = GROUPS.index("order")
+    others = np.delete(pairs.lacks, column, axis=1).max(axis=1)
+    return pairs[(others <= 0) & (pairs.lacks[:, column] > 0)]
+
+
+def check_no_success(setup: Setup, start: Start) -> None:
+    result = attempt(setup, replace(start, stay=True), 0)
+    assert result.candidate is not None
+    assert result.candidate.verdict.ok or result.status != "Solve_Succeeded"
+
+
+@pytest.mark.parametrize("seed", [8, 11, 20, 36])
+def test_no_success_going_back(planted_setup: Callable[..., tuple[Setup, FourBar]], seed: int) -> None:
+    """From starts whose driver goes to and fro, and that may stay there but for the order."""
+    setup, _ = planted_setup(seed, rotatability="any", link_ratio_max=1000.0)
+    pairs = out_of_order(setup)
+    pairs = pairs[np.ptp(np.sign(np.diff(np.unwrap(pairs.theta2), axis=1)), axis=1) > 0]
+    assert len(pairs) > 10
+    for index in range(0, len(pairs), len(pairs) // 5):
+        start = Start.of_pair(pairs, index, Objective())
+        theta2 = np.unwrap(start.theta2)
+        sense = 1 if theta2[-1] > theta2[0] else -1
+        check_no_success(setup, replace(start, theta2=tuple(theta2), direction=sense))
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2, 7])
+def test_no_success_beyond_a_turn(planted_setup: Callable[..., tuple[Setup, FourBar]], seed: int) -> None:
+    """From starts that need more than a turn: the poses of a planted task, two of them exchanged."""
+    planted, _ = planted_setup(seed)
+    task, exchanged = planted.problem.task, [0, 2, 1, 3]
+    setup = Setup.of(Problem(task=MotionTask(task.positions[exchanged], task.angles[exchanged])))
+    pairs = out_of_order(setup)
+    assert len(pairs) > 10
+    for index in range(0, len(pairs), len(pairs) // 4):
+        start = Start.of_pair(pairs, index, Objective())
+        assert abs(start.theta2[-1] - start.theta2[0]) > 2 * np.pi
+        check_no_success(setup, start)
+
+
+@pytest.mark.parametrize("kind", ALONE)
+def test_success_means_that_the_judge_agrees(luggage_setup: SetupOf, all_pairs: PairsOf, kind: str) -> None:
+    """From pairs that lack one thing or another."""
+    setup = luggage_setup(**ALONE[kind])
+    pairs = all_pairs(setup)
+    o2, o4, a, _ = pairs.points.T
+    # No double-crank does the luggage task, so a start with r1 < r2 leads nowhere.
+    pairs = pairs[~pairs.feasible & (np.abs(o4 - o2) > np.abs(a - o2))]
+    least_first = np.argsort(pairs.lacks.sum(axis=1), kind="stable")
+    succeeded = 0
+    for index in least_first[: len(pairs) // 20 : len(pairs) // 160]:
+        start = replace(Start.of_pair(pairs, int(index), Objective()), stay=True)
+        result = attempt(setup, start, 0)
+        if result.status == "Solve_Succeeded":
+            assert result.candidate is not None
+            assert result.candidate.verdict.defects == ()
+            succeeded += 1
+    assert succeeded > 0
 
 
 def test_a_solve_does_not_depend_on_those_before_it(

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Callable
-from functools import lru_cache
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -65,7 +65,7 @@ def misses(verdict: Verdict) -> dict[str, float]:
     return found
 
 
-@lru_cache(maxsize=None)
+@cache
 def compared(number: int) -> tuple[list[str], Counter[tuple[str, bool]]]:
     """Disagreements about two dozen pairs of a random task, and how often each requirement was met."""
     rng = np.random.default_rng([7, number])

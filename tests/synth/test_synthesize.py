@@ -1,0 +1,243 @@
+"""From a problem to a list: exact, verified, distinct designs, or what stood in the way."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+import pytest
+
+from grashof import load, synthesize
+from grashof.analysis.planted import planted_motion
+from grashof.problems import (
+    Box,
+    FourBar,
+    MotionTask,
+    NoSolutionError,
+    Objective,
+    Problem,
+    ProblemError,
+    Requirements,
+)
+from grashof.synth import Result
+
+LIMITS = {"link_length": (0.3, 8.0), "coupler_arms": (0.3, 8.0)}
+HIGH = Box(y=(0.0, np.inf))
+
+
+def numbers(linkage: FourBar) -> list[float]:
+    lengths = [float(length) for length in (linkage.r2, linkage.r3, linkage.r4)]
+    return [*linkage.o2, *linkage.o4, *lengths, *linkage.coupler_point]
+
+
+def share_apart(one: FourBar, other: FourBar) -> float:
+    """As DESIGN section 2 words it; above 0.01 for distinct designs."""
+    pairs = list(zip(numbers(one), numbers(other), strict=True))
+    return max(abs(x - y) for x, y in pairs) / max(abs(value) for pair in pairs for value in pair)
+
+
+def luggage_with(**wanted: Any) -> Problem:
+    return Problem(task=load("luggage").task, requirements=Requirements(**(LIMITS | wanted)))
+
+
+def check_designs(result: Result, judge: Callable[[FourBar, MotionTask], Any], turns: bool = True) -> None:
+    """Every design is exact, in order, on one branch, inside the limits, and none is there twice."""
+    task, wanted = result.problem.task, result.problem.requirements
+    whole = wanted.resolved(task.size)
+    for candidate in result.candidates:
+        linkage, verdict = candidate.linkage, candidate.verdict
+        found = judge(linkage, task)
+        assert verdict.ok
+        assert found.position_error < 1e-9
+        assert found.angle_error < 1e-9
+        assert found.in_order
+        assert found.on_one_branch
+        assert found.turns or not turns
+        slack = 1e-8 * task.size
+        for length, (low, high) in zip(found.lengths, whole.link_lengths, strict=True):
+            assert low - slack <= length <= high + slack
+        assert whole.coupler_arms is not None
+        assert whole.coupler_arms[0] - slack <= found.arms.min()
+        assert found.arms.max() <= whole.coupler_arms[1] + slack
+        # Sampled: at most a little better than the exact least.
+        exact = np.degrees(verdict.transmission_min_task)
+        assert exact - 1e-6 <= found.transmission_task <= exact + 0.02
+        if found.turns:
+            exact = np.degrees(verdict.transmission_min_cycle)
+            assert found.transmission_cycle == pytest.approx(exact, abs=1e-6)
+    assert all(share_apart(x.linkage, y.linkage) > 0.01 for x, y in combinations(result.candidates, 2))
+
+
+def test_luggage_gives_twenty_and_more(luggage_result: Result, independent_judge: Any) -> None:
+    assert len(luggage_result) >= 20
+    assert luggage_result.complete
+    assert luggage_result.note == ""
+    assert luggage_result.nearest == ()
+    check_designs(luggage_result, independent_judge)
+    assert all(np.degrees(c.verdict.transmission_min_task) >= 15 - 1e-6 for c in luggage_result.candidates)
+    # A choice, not one optimum many times: half of all pairs are farther than 20 % apart.
+    shares = [share_apart(x.linkage, y.linkage) for x, y in combinations(luggage_result.candidates, 2)]
+    assert np.median(shares) > 0.2
+
+
+PUBLISHED: dict[str, tuple[float, dict[str, Any]]] = {
+    "5": (13.4, {"link_length": (0.3, 5), "coupler_arms": (0, 5)}),
+    "8": (22.6, {"link_length": (0.3, 8), "coupler_arms": (0, 8)}),
+    "12": (30.1, {"link_length": (0.3, 12), "coupler_arms": (0, 12)}),
+    "8, pivots up": (15.7, {"link_length": (0.3, 8), "coupler_arms": (0, 8), "o2": HIGH, "o4": HIGH}),
+}
+
+
+@pytest.mark.parametrize("limit", PUBLISHED)
+def test_best_worst_case_transmission_over_the_turn(limit: str, independent_judge: Any) -> None:
+    least, wanted = PUBLISHED[limit]
+    result = synthesize(luggage_with(transmission_over="cycle", **wanted), enough=20)
+    check_designs(result, independent_judge)
+    best = independent_judge(result.best.linkage, result.problem.task)
+    assert best.transmission_cycle >= least
+    assert best.lengths.max() <= float(limit.split(",")[0]) + 1e-8
+    for candidate in result.candidates:
+        for pivot, box in (("o2", wanted.get("o2")), ("o4", wanted.get("o4"))):
+            assert box is None or getattr(candidate.linkage, pivot)[1] >= -1e-8
+
+
+def test_best_transmission_over_the_task_of_any_driver(independent_judge: Any) -> None:
+    result = synthesize(luggage_with(rotatability="any", link_length=(0.3, 5), coupler_arms=(0, 5)))
+    check_designs(result, independent_judge, turns=False)
+    assert independent_judge(result.best.linkage, result.problem.task).transmission_task >= 23.7
+
+
+@pytest.mark.parametrize("seed", [101, 102, 103, 104, 105, 106, 107, 108])
+def test_planted_problems_are_solved(seed: int, independent_judge: Any) -> None:
+    task, _ = planted_motion(np.random.default_rng(seed), poses=4)
+    result = synthesize(Problem(task=task), enough=8)
+    assert len(result) >= 1
+    check_designs(result, independent_judge)
+
+
+def test_an_objective_of_compactness_gives_small_designs(luggage_result: Result) -> None:
+    compact = replace(luggage_result.problem, objective=Objective(transmission=0, compactness=1))
+    result = synthesize(compact, enough=20)
+    sizes = [candidate.verdict.size for candidate in result.candidates]
+    assert sizes == sorted(sizes)
+    assert sizes[0] < min(candidate.verdict.size for candidate in luggage_result.candidates) * (1 + 1e-6)
+
+
+def test_too_much_transmission_is_named_with_the_nearest_design(independent_judge: Any) -> None:
+    wanted: dict[str, Any] = {"link_length": (0.3, 5), "coupler_arms": (0, 5)}
+    result = synthesize(luggage_with(transmission_over="cycle", transmission_min_deg=60, **wanted))
+    assert len(result) == 0
+    assert result.complete
+    assert "transmission_min_deg" in result.note
+    assert " 13.4" in result.note
+    with pytest.raises(NoSolutionError) as refused:
+        _ = result.best
+    assert str(refused.value) == result.note
+    defects = result.nearest[0].verdict.defects
+    assert [defect.requirement for defect in defects] == ["transmission_min_deg"]
+    found = independent_judge(result.nearest[0].linkage, result.problem.task)
+    assert found.position_error < 1e-9
+    assert found.in_order
+    assert found.on_one_branch
+    assert found.turns
+    assert found.lengths.max() < 5 + 1e-8
+    assert 13.4 <= found.transmission_cycle < 13.5
+
+
+IMPOSSIBLE: dict[str, tuple[str, Problem]] = {
+    "o2 far away": ("o2", luggage_with(o2=Box((100, 101), (100, 101)))),
+    "double-crank": ("rotatability", luggage_with(rotatability="double-crank")),
+    "short links": ("link_length", luggage_with(link_length=(0.3, 1.5))),
+    "ground angle": ("ground_angle_deg", luggage_with(ground_angle_deg=0)),
+    "start angle": ("theta2_start_deg", luggage_with(theta2_start_deg=30)),
+    "order": (
+        "order",
+        Problem(
+            task=MotionTask.from_degrees([[5, 4, 0], [2, 3, -5], [1, 0, 0], [3.5, 4, -5]]),
+            requirements=Requirements(**LIMITS),
+        ),
+    ),
+}
+
+
+@pytest.mark.usefixtures("coarse_curves")
+@pytest.mark.parametrize("kind", IMPOSSIBLE)
+def test_the_requirement_in_the_way_is_named(kind: str) -> None:
+    key, problem = IMPOSSIBLE[kind]
+    result = synthesize(problem, starts=16)
+    assert len(result) == 0
+    assert result.complete
+    assert f"misses {key}: " in result.note
+    assert {defect.requirement for defect in result.nearest[0].verdict.defects} == {key}
+    assert result.counts["verified and distinct"] == 0
+
+
+def test_a_required_ground_angle_is_kept(independent_judge: Any) -> None:
+    problem = Problem(task=load("luggage").task, requirements=Requirements(ground_angle_deg=0))
+    result = synthesize(problem, enough=5)
+    assert len(result) > 1
+    check_designs(result, independent_judge)
+    for candidate in result.candidates:
+        ground = candidate.linkage.o4 - candidate.linkage.o2
+        assert abs(np.arctan2(ground[1], ground[0])) < 1e-9
+
+
+def test_a_pivot_required_on_a_line_is_on_it(independent_judge: Any) -> None:
+    result = synthesize(luggage_with(o2=Box(y=(-3, -3))), enough=8)
+    assert len(result) > 1
+    check_designs(result, independent_judge)
+    for candidate in result.candidates:
+        assert abs(candidate.linkage.o2[1] + 3) < 1e-9 * result.problem.task.size
+
+
+def test_a_required_start_angle_is_kept(independent_judge: Any) -> None:
+    result = synthesize(luggage_with(theta2_start_deg=75), enough=8)
+    assert len(result) > 1
+    check_designs(result, independent_judge)
+    for candidate in result.candidates:
+        assert abs(np.degrees(candidate.verdict.theta2[0]) - 75) < 1e-7
+
+
+def rotation_about(x: float, y: float) -> list[list[float]]:
+    turns = (0, 30, 50, 120)
+    return [[x + 2 * np.cos(np.radians(t)), y + 2 * np.sin(np.radians(t)), t] for t in turns]
+
+
+DEGENERATE = {
+    "pure translation": ([[0, 0, 10], [1, 0, 10], [2, 1, 10], [0, 3, 370]], "pure translations"),
+    "pure rotation": (rotation_about(3, 1), r"pure rotation about \(3, 1\)"),
+}
+REFUSED = {
+    "equal later": ([[0, 0, 0], [1, 0, 20], [0, 0, 360], [0, 3, 30]], r"\[0\] and .*\[2\] are equal"),
+    "five": ([[0, 0, 0], [1, 0, 20], [0, 2, 10], [0, 3, 30], [1, 1, 1]], "5 poses"),
+    "three": ([[0, 0, 0], [1, 0, 20], [0, 2, 10]], "3 poses"),
+    "two": ([[0, 0, 0], [1, 0, 20]], "2 poses"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", DEGENERATE)
+def test_degenerate_poses_are_explained(kind: str) -> None:
+    rows, why = DEGENERATE[kind]
+    result = synthesize(Problem(task=MotionTask.from_degrees(rows)))
+    assert len(result) == 0
+    with pytest.raises(NoSolutionError, match=f"no design: .*{why}"):
+        _ = result.best
+
+
+@pytest.mark.parametrize("kind", REFUSED)
+def test_poses_of_another_kind_are_refused(kind: str) -> None:
+    rows, why = REFUSED[kind]
+    with pytest.raises(ProblemError, match=why):
+        synthesize(Problem(task=MotionTask.from_degrees(rows)))
+
+
+def test_counts_add_up(luggage_result: Result) -> None:
+    counts = luggage_result.counts
+    solves = sum(count for name, count in counts.items() if name.startswith("solver: "))
+    ends = ("verified", "no linkage")
+    outcomes = sum(count for name, count in counts.items() if name in ends or name.startswith("rejected: "))
+    assert solves == outcomes
+    assert counts["verified and distinct"] == len(luggage_result)
+    assert counts["feasible pairs"] > 1000
+    assert {"screening", "solving", "total"} <= set(luggage_result.seconds)

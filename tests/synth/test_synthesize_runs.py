@@ -1,0 +1,168 @@
+"""How a search runs: where, how long, in what order, with what told on the way."""
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import BrokenExecutor, Executor, Future
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import replace
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grashof import synthesize
+from grashof.problems import Box, Problem, ProblemError, Search, SolverError
+from grashof.synth import Progress, Result
+
+pytestmark = pytest.mark.usefixtures("coarse_curves")
+
+OPTIONS: list[dict[str, Any]] = [
+    {"starts": 0}, {"enough": 0}, {"seed": -1}, {"workers": 0}, {"time_limit": 0.0}, {"time_limit": -1.0},
+    {"time_limit": float("nan")}, {"workers": 1.5},
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("options", OPTIONS)
+def test_options_out_of_range_are_refused(luggage: Problem, options: dict[str, Any]) -> None:
+    with pytest.raises(ProblemError, match=next(iter(options))):
+        synthesize(luggage, **options)
+
+
+def csv_of(result: Result, folder: Path, name: str = "out.csv") -> bytes:
+    result.to_csv(folder / name)
+    return (folder / name).read_bytes()
+
+
+def test_workers_and_repetition_change_no_byte(luggage: Problem, tmp_path: Path) -> None:
+    few = {"starts": 36, "enough": 40, "seed": 5}
+    alone = csv_of(synthesize(luggage, **few), tmp_path)
+    assert alone.count(b"\n") > 20
+    assert csv_of(synthesize(luggage, workers=2, **few), tmp_path) == alone
+    assert csv_of(synthesize(luggage, **few), tmp_path) == alone
+    assert csv_of(synthesize(luggage, **(few | {"seed": 6})), tmp_path) != alone
+
+
+class Inline(Executor):
+    """Runs everything at once, here, and counts; threads would crash CasADi."""
+
+    def __init__(self) -> None:
+        self.jobs, self.closed = 0, False
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        self.jobs += 1
+        done: Future[Any] = Future()
+        done.set_result(fn(*args, **kwargs))
+        return done
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        self.closed = True
+
+
+def test_an_executor_does_the_work_and_stays_open(luggage: Problem, tmp_path: Path) -> None:
+    executor = Inline()
+    result = synthesize(luggage, starts=10, executor=executor)
+    assert executor.jobs == 10
+    assert not executor.closed
+    assert csv_of(result, tmp_path) == csv_of(synthesize(luggage, starts=10), tmp_path)
+
+
+class Broken(Executor):
+    """Has lost its workers."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        raise BrokenExecutor("the scheduler is gone")
+
+
+class Breaking(Inline):
+    """Loses a worker in the middle of a batch."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        done = super().submit(fn, *args, **kwargs)
+        if self.jobs > 3:
+            done = Future()
+            done.set_exception(BrokenProcessPool("a process ended abruptly"))
+        return done
+
+
+@pytest.mark.parametrize(
+    ("executor", "why"), [(Broken(), "scheduler is gone"), (Breaking(), "ended abruptly")]
+)
+def test_a_lost_executor_is_an_error_of_the_surroundings(
+    luggage: Problem, executor: Executor, why: str
+) -> None:
+    with pytest.raises(SolverError, match=why):
+        synthesize(luggage, starts=10, executor=executor)
+
+
+def test_progress_grows_until_enough(luggage: Problem) -> None:
+    seen: list[Progress] = []
+    result = synthesize(luggage, enough=25, progress=seen.append)
+    assert len(seen) >= 2
+    assert [step.solved for step in seen] == sorted({step.solved for step in seen})
+    assert [step.verified for step in seen] == sorted(step.verified for step in seen)
+    assert all(step.solved <= step.starts and step.enough == 25 for step in seen)
+    assert seen[-1].verified == len(result) >= 25
+    assert seen[-2].verified < 25
+
+
+def test_enough_is_enough(luggage: Problem) -> None:
+    seen: list[Progress] = []
+    synthesize(luggage, enough=8, progress=seen.append)
+    assert [step.solved for step in seen] == [16]
+    assert seen[0].starts > 16
+
+
+def test_a_fruitless_search_ends(luggage: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(import_module("grashof.synth.synthesize"), "FRUITLESS", 16)
+    seen: list[Progress] = []
+    far = replace(luggage.requirements, o2=Box((100, 101), (100, 101)))
+    synthesize(replace(luggage, requirements=far), progress=seen.append)
+    assert [step.solved for step in seen] == [16]
+    assert seen[0].starts > 16
+
+
+@pytest.mark.parametrize("starts", [1, 5, 17])
+def test_no_more_solves_than_starts(luggage: Problem, starts: int) -> None:
+    executor = Inline()
+    result = synthesize(luggage, starts=starts, executor=executor)
+    assert executor.jobs == starts
+    solves = sum(count for name, count in result.counts.items() if name.startswith("solver: "))
+    assert solves == starts
+    assert 1 <= len(result) <= starts
+    assert {candidate.start for candidate in result.candidates} <= set(range(starts))
+
+
+def test_the_problems_own_search_counts_unless_overridden(luggage: Problem) -> None:
+    small = replace(luggage, search=Search(starts=3, enough=2, seed=9))
+    executor = Inline()
+    synthesize(small, executor=executor)
+    assert executor.jobs == 3
+    synthesize(small, starts=4, executor=executor)
+    assert executor.jobs == 3 + 4
+
+
+def asked(answers: Iterator[bool]) -> Callable[[], bool]:
+    return lambda: next(answers)
+
+
+def test_stop_ends_the_search_between_batches(luggage: Problem) -> None:
+    executor = Inline()
+    result = synthesize(luggage, stop=asked(iter([False, True])), executor=executor)
+    assert executor.jobs == 16
+    assert not result.complete
+    assert 1 <= len(result) <= 16
+
+
+def test_stopped_before_anything_was_found(luggage: Problem) -> None:
+    result = synthesize(luggage, stop=lambda: True)
+    assert (len(result), result.complete, result.nearest) == (0, False, ())
+    assert "stopped" in result.note
+    assert "solver: Solve_Succeeded" not in result.counts
+
+
+def test_a_time_limit_ends_the_search(luggage: Problem) -> None:
+    executor = Inline()
+    result = synthesize(luggage, time_limit=1e-6, executor=executor)
+    assert not result.complete
+    assert executor.jobs == 0
+    assert synthesize(luggage, starts=3, time_limit=1000).complete
