@@ -147,7 +147,7 @@ def _shortest_arc(theta2: FloatArray, ordered: Way) -> Way:
 
 
 def _miss(
-    linkage: FourBar, task: MotionTask, theta3: FloatArray, theta2: FloatArray, signs: FloatArray
+    linkage: FourBar, task: MotionTask, theta3: FloatArray, theta2: FloatArray, signs: IntArray
 ) -> FloatArray:
     state = solve_position(linkage, theta2, signs)
     gap = ((state.p - task.positions) ** 2).sum(axis=-1)
@@ -199,7 +199,7 @@ def _scan(linkage: FourBar, task: MotionTask, theta3: FloatArray) -> tuple[Float
 
 
 def _gauss_newton_step(
-    linkage: FourBar, task: MotionTask, theta3: FloatArray, theta2: FloatArray, signs: FloatArray
+    linkage: FourBar, task: MotionTask, theta3: FloatArray, theta2: FloatArray, signs: IntArray
 ) -> FloatArray:
     state = solve_position(linkage, theta2, signs)
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -71,8 +71,8 @@ def worst_transmission(linkage: FourBar, start: npt.ArrayLike, end: npt.ArrayLik
     high = np.maximum(start, end) - linkage.theta1
     first, last = np.floor(low / np.pi), np.floor(high / np.pi)
     crossed = last - first
-    even = (crossed >= 2) | ((crossed == 1) & (last % 2 == 0)) | (low == first * np.pi) & (first % 2 == 0)
-    odd = (crossed >= 2) | ((crossed == 1) & (last % 2 == 1)) | (low == first * np.pi) & (first % 2 == 1)
+    even = (crossed >= 2) | ((crossed == 1) & (last % 2 == 0))
+    odd = (crossed >= 2) | ((crossed == 1) & (last % 2 == 1))
     worst = np.minimum(
         quality(transmission_angle(linkage, low + linkage.theta1)),
         quality(transmission_angle(linkage, high + linkage.theta1)),

@@ -13,14 +13,30 @@ import numpy as np
 
 from grashof import load, synthesize
 from grashof.analysis.planted import planted_motion
-from grashof.problems import Box, Problem, Requirements
+from grashof.problems import Box, Problem, Requirements, Rotatability, TransmissionOver
+from grashof.synth import Progress
 
-LUGGAGE_RECORDS = (
-    ("full-crank, cycle, limit 5", 13.4, {"limit": 5}),
-    ("full-crank, cycle, limit 8", 22.6, {"limit": 8}),
-    ("full-crank, cycle, limit 12", 30.1, {"limit": 12}),
-    ("full-crank, cycle, limit 8, O2 and O4 at y >= 0", 15.7, {"limit": 8, "floor": True}),
-    ("any, task, limit 5", 23.7, {"limit": 5, "rotatability": "any", "over": "task"}),
+UPPER = Box(y=(0, np.inf))
+
+
+def cycle(limit: float) -> Requirements:
+    """Full crank, judged over the turn, links from 0.3 and coupler arms from 0 up to a limit."""
+    return Requirements(
+        transmission_over=TransmissionOver.CYCLE, link_length=(0.3, limit), coupler_arms=(0, limit)
+    )
+
+
+# What is asked, the worst transmission angle wanted in deg, and the requirements.
+RECORDS = (
+    ("full-crank, cycle, limit 5", 13.4, cycle(5)),
+    ("full-crank, cycle, limit 8", 22.6, cycle(8)),
+    ("full-crank, cycle, limit 12", 30.1, cycle(12)),
+    ("full-crank, cycle, limit 8, O2 and O4 at y >= 0", 15.7, replace(cycle(8), o2=UPPER, o4=UPPER)),
+    (
+        "any, task, limit 5",
+        23.7,
+        replace(cycle(5), rotatability=Rotatability.ANY, transmission_over=TransmissionOver.TASK),
+    ),
 )
 
 
@@ -41,17 +57,7 @@ def luggage_time(workers: int, runs: int) -> None:
 def luggage_records() -> None:
     """Best worst-case transmission angle found under various limits."""
     problem = load("luggage")
-    for name, least, case in LUGGAGE_RECORDS:
-        upper = Box(y=(0, np.inf)) if case.get("floor") else None
-        over = case.get("over", "cycle")
-        wanted = Requirements(
-            rotatability=case.get("rotatability", "full-crank"),
-            transmission_over=over,
-            link_length=(0.3, case["limit"]),
-            coupler_arms=(0, case["limit"]),
-            o2=upper,
-            o4=upper,
-        )
+    for name, least, wanted in RECORDS:
         begun = perf_counter()
         result = synthesize(replace(problem, requirements=wanted))
         seconds = perf_counter() - begun
@@ -61,12 +67,15 @@ def luggage_records() -> None:
 
 def planted(count: int, seed: int) -> None:
     """Random four-pose tasks of random full-crank four-bars, under default requirements."""
-    seconds, designs, first = [], [], []
+    seconds: list[float] = []
+    designs: list[int] = []
+    first: list[float] = []
     for number in range(count):
         task, _ = planted_motion(np.random.default_rng([seed, number]), poses=4)
-        begun, reached = perf_counter(), []
+        reached: list[float] = []
+        begun = perf_counter()
 
-        def note(step: object, begun: float = begun, reached: list[float] = reached) -> None:
+        def note(step: Progress, begun: float = begun, reached: list[float] = reached) -> None:
             if step.verified and not reached:
                 reached.append(perf_counter() - begun)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib import rc_context
@@ -19,7 +20,12 @@ from grashof.synth import Candidate
 DRIVER, COUPLER, OUTPUT = "#c0392b", "#1f618d", "#1e8449"
 BODY, PATH, SCENE, GROUND = "#b9770e", "#7d3c98", "#5d6d7e", "#17202a"
 # Fixed names inside the SVG and no date: the same design gives the same bytes.
-_STYLE = {"svg.hashsalt": "grashof", "font.size": 9, "axes.spines.top": False, "axes.spines.right": False}
+_STYLE: Any = {
+    "svg.hashsalt": "grashof",
+    "font.size": 9,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+}
 
 
 def draw_design(problem: Problem, candidate: Candidate, rank: int) -> Figure:
