@@ -28,14 +28,16 @@ class Targets:
         Driver angle.
     assembly : ndarray of int, shape (N,)
         Assembly on which it is nearest: the linkage's own unless the other one is nearer.
-    position_error, angle_error : ndarray, shape (N,), length and rad
-        Distance from the target position, and turn from the target orientation.
+    position_error : ndarray, shape (N,), length
+        Distance from the target position.
+    angle_error : ndarray, shape (N,), rad, or None
+        Turn from the target orientation; None where points are asked for, not poses.
     """
 
     theta2: FloatArray
     assembly: IntArray
     position_error: FloatArray
-    angle_error: FloatArray
+    angle_error: FloatArray | None
 
 
 @dataclass(frozen=True, slots=True)

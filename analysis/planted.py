@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.analysis.position import solve_position
-from grashof.problems import FourBar, MotionTask
+from grashof.problems import FourBar, MotionTask, PathTask
 from grashof.problems.checks import FloatArray
 
 
@@ -74,3 +74,23 @@ def planted_motion(rng: np.random.Generator, poses: int) -> tuple[MotionTask, Fo
     linkage = random_full_crank(rng)
     state = solve_position(linkage, uneven_driver_angles(rng, poses))
     return MotionTask(state.p, state.theta3 + linkage.body_angle), linkage
+
+
+def planted_path(rng: np.random.Generator, points: int, *, timed: bool = False) -> tuple[PathTask, FourBar]:
+    """A path task, and a full-crank four-bar that does it exactly, in order, on one assembly.
+
+    Parameters
+    ----------
+    rng : numpy.random.Generator
+    points : int
+    timed : bool
+        The driver rotations are prescribed.
+
+    Returns
+    -------
+    PathTask, FourBar
+    """
+    linkage = random_full_crank(rng)
+    theta2 = uneven_driver_angles(rng, points)
+    timing = np.abs(theta2 - theta2[0]) if timed else None
+    return PathTask(solve_position(linkage, theta2).p, timing=timing), linkage

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from grashof.analysis.curve_distance import curve_distances
 from grashof.analysis.extent import diagonal, reach_box
 from grashof.analysis.mobility import (
     GrashofClass,
@@ -16,9 +17,10 @@ from grashof.analysis.mobility import (
     rotatability,
 )
 from grashof.analysis.motion import STEADY, Targets, Way, driver_way, nearest_to_poses
+from grashof.analysis.path import nearest_to_points
 from grashof.analysis.position import Position, solve_position
 from grashof.analysis.transmission import worst_transmission, worst_transmission_cycle
-from grashof.problems import Box, FourBar, MotionTask, Requirements, Rotatability, TransmissionOver
+from grashof.problems import Box, FourBar, PathTask, Requirements, Rotatability, Task, TransmissionOver
 from grashof.problems.checks import FloatArray, IntArray, Limits
 
 # Limits are inclusive; rounding may carry a design this far past them (sizes, rad or ratio).
@@ -62,7 +64,9 @@ class Verdict:
         Driver angle at each target, counted on along the motion.
     assembly : ndarray of int, shape (N,)
         Assembly at each target.
-    position_error, angle_error : ndarray, shape (N,), length and rad
+    position_error : ndarray, shape (N,), length
+    angle_error : ndarray, shape (N,), rad, or None
+        None for a path.
     direction : int
         Sense of the driver, +1 counter-clockwise.
     grashof_class : GrashofClass
@@ -73,12 +77,14 @@ class Verdict:
         Diagonal of the box around O2, O4 and all that A, B and P reach in the motion used.
     defects : tuple of Defect
         Empty for a design that does what is required.
+    hausdorff, frechet : float, length, or None
+        Distances between the target polygon and the coupler curve, of a closed path.
     """
 
     theta2: FloatArray
     assembly: IntArray
     position_error: FloatArray
-    angle_error: FloatArray
+    angle_error: FloatArray | None
     direction: int
     grashof_class: GrashofClass
     full_rotation: bool
@@ -89,6 +95,8 @@ class Verdict:
     transmission_min_cycle: float
     size: float
     defects: tuple[Defect, ...]
+    hausdorff: float | None = None
+    frechet: float | None = None
 
     @property
     def ok(self) -> bool:
@@ -111,13 +119,13 @@ class Verdict:
         return float(np.sqrt(np.mean(self.position_error**2)))
 
 
-def verify(linkage: FourBar, task: MotionTask, requirements: Requirements) -> Verdict:
+def verify(linkage: FourBar, task: Task, requirements: Requirements) -> Verdict:
     """Judge a single linkage.
 
     Parameters
     ----------
     linkage : FourBar
-    task : MotionTask
+    task : MotionTask or PathTask
     requirements : Requirements
         Defaults that depend on the size of the task are filled in.
 
@@ -128,7 +136,7 @@ def verify(linkage: FourBar, task: MotionTask, requirements: Requirements) -> Ve
     Notes
     -----
     Circuit, branch and order defects as Chase & Mirth (1993) define them. With ``order = false``
-    the motion used is the shortest that holds all targets.
+    the motion used is the shortest that holds all targets; on a closed path it is the whole turn.
 
     Examples
     --------
@@ -139,21 +147,24 @@ def verify(linkage: FourBar, task: MotionTask, requirements: Requirements) -> Ve
     (True, True)
     """
     wanted = requirements.resolved(task.size)
-    targets = nearest_to_poses(linkage, task)
-    way = driver_way(linkage, targets.theta2, wanted.order)
+    targets, way = _met(linkage, task, wanted)
     circuits = circuit_index(linkage, targets.theta2, targets.assembly)
     branches = branch_index(linkage, targets.theta2, targets.assembly)
     circuit_ok = bool((circuits == circuits[0]).all() and circuits[0] >= 0)
     branch_ok = circuit_ok and bool((branches == branches[0]).all())
-    task_worst = float(worst_transmission(linkage, way.start, way.end))
+    # Without a motion that joins the targets nothing is transmitted.
+    task_worst = float(worst_transmission(linkage, way.start, way.end)) if branch_ok else 0.0
     cycle_worst = float(worst_transmission_cycle(linkage))
+    hausdorff, frechet = _curve_distances(linkage, task, way)
     over_task = wanted.transmission_over is TransmissionOver.TASK
+    worst = task_worst if over_task else cycle_worst
     defects = [
-        *_exactness(targets, task, wanted),
+        *(_exactness(targets, task, wanted) if wanted.is_exact(task) else []),
         *_same_branch(circuit_ok, branch_ok, int(linkage.assembly), targets, wanted),
         *_order(way, wanted),
-        *_rotatability(linkage, wanted),
-        *_least_transmission(task_worst if over_task else cycle_worst, wanted),
+        *_rotatability(linkage, task, wanted),
+        *_covered(targets),
+        *(_least_transmission(worst, wanted) if branch_ok or not wanted.same_branch else []),
         *_geometry(linkage, task, wanted),
         *_places(linkage, solve_position(linkage, targets.theta2, targets.assembly), task, wanted),
         *_angles(linkage, targets, wanted),
@@ -173,16 +184,41 @@ def verify(linkage: FourBar, task: MotionTask, requirements: Requirements) -> Ve
         transmission_min_cycle=cycle_worst,
         size=diagonal(reach_box(linkage, way.start, way.end)),
         defects=tuple(defects),
+        hausdorff=hausdorff,
+        frechet=frechet,
     )
 
 
-def _exactness(targets: Targets, task: MotionTask, wanted: Requirements) -> list[Defect]:
-    worst, turned = float(targets.position_error.max()), float(targets.angle_error.max())
+def _met(linkage: FourBar, task: Task, wanted: Requirements) -> tuple[Targets, Way]:
+    if isinstance(task, PathTask):
+        start = None if wanted.theta2_start_deg is None else float(np.radians(wanted.theta2_start_deg))
+        return nearest_to_points(
+            linkage, task, ordered=wanted.order, same_branch=wanted.same_branch, theta2_start=start
+        )
+    targets = nearest_to_poses(linkage, task)
+    return targets, driver_way(linkage, targets.theta2, wanted.order)
+
+
+def _closed(task: Task) -> bool:
+    return isinstance(task, PathTask) and task.closed
+
+
+def _curve_distances(linkage: FourBar, task: Task, way: Way) -> tuple[float | None, float | None]:
+    if not _closed(task) or not full_rotation(linkage):
+        return None, None
+    return curve_distances(linkage, task.positions, way.direction)
+
+
+def _exactness(targets: Targets, task: Task, wanted: Requirements) -> list[Defect]:
+    worst = float(targets.position_error.max())
     allowed = wanted.tolerance * task.size
     defects = []
     if not worst <= allowed:
         miss = worst / task.size - wanted.tolerance
         defects.append(Defect("exact", "the largest position error", worst, f"up to {allowed:.6g}", miss))
+    if targets.angle_error is None or isinstance(task, PathTask):
+        return defects
+    turned = float(targets.angle_error.max())
     if not turned * task.angle_length <= allowed:
         limit = float(np.degrees(allowed / task.angle_length))
         miss = turned - allowed / task.angle_length
@@ -218,15 +254,17 @@ def _order(way: Way, wanted: Requirements) -> list[Defect]:
     return [Defect("order", "the number of reversals of the driver between targets", reversals, "0", 1.0)]
 
 
-def _rotatability(linkage: FourBar, wanted: Requirements) -> list[Defect]:
+def _rotatability(linkage: FourBar, task: Task, wanted: Requirements) -> list[Defect]:
+    margin, why = wanted.rotatability_margin, str(wanted.rotatability)
     if wanted.rotatability is Rotatability.ANY:
-        return []
-    shares = rotatability(linkage)
-    least = float(shares.min())
+        if not _closed(task):
+            return []
+        margin, why = 0.0, "a closed path takes a whole turn"
+    least = float(rotatability(linkage).min())
     defects = []
-    if least < wanted.rotatability_margin - SLACK:
-        miss = wanted.rotatability_margin - least
-        allowed = f"from {wanted.rotatability_margin:g} ({wanted.rotatability})"
+    if least < margin - SLACK:
+        miss = margin - least
+        allowed = f"from {margin:g} ({why})"
         defects.append(Defect("rotatability", "the margin of full rotation", least, allowed, miss))
     kind = {Rotatability.CRANK_ROCKER: 1, Rotatability.DOUBLE_CRANK: -1}.get(wanted.rotatability, 0)
     difference = float(linkage.r1 - linkage.r2)
@@ -238,6 +276,14 @@ def _rotatability(linkage: FourBar, wanted: Requirements) -> list[Defect]:
     return defects
 
 
+def _covered(targets: Targets) -> list[Defect]:
+    missed = int(np.count_nonzero(~np.isfinite(targets.position_error)))
+    if not missed:
+        return []
+    what = "the number of targets at which the linkage cannot be assembled"
+    return [Defect("rotatability", what, missed, "0", 1.0)]
+
+
 def _least_transmission(worst: float, wanted: Requirements) -> list[Defect]:
     least = np.radians(wanted.transmission_min_deg)
     if worst >= least - SLACK:
@@ -247,7 +293,7 @@ def _least_transmission(worst: float, wanted: Requirements) -> list[Defect]:
     return [Defect("transmission_min_deg", what, float(np.degrees(worst)), allowed, float(least - worst))]
 
 
-def _geometry(linkage: FourBar, task: MotionTask, wanted: Requirements) -> list[Defect]:
+def _geometry(linkage: FourBar, task: Task, wanted: Requirements) -> list[Defect]:
     defects = []
     for name, value, limits in zip(
         ("r1", "r2", "r3", "r4"), linkage.lengths, wanted.link_lengths, strict=True
@@ -265,7 +311,7 @@ def _geometry(linkage: FourBar, task: MotionTask, wanted: Requirements) -> list[
     return defects
 
 
-def _places(linkage: FourBar, state: Position, task: MotionTask, wanted: Requirements) -> list[Defect]:
+def _places(linkage: FourBar, state: Position, task: Task, wanted: Requirements) -> list[Defect]:
     defects = []
     places = {
         "o2": linkage.o2[None], "o4": linkage.o4[None], "a": state.a, "b": state.b,

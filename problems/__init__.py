@@ -5,7 +5,7 @@ from grashof.problems.files import catalogue, load, problem_text
 from grashof.problems.linkage import FourBar
 from grashof.problems.problem import Objective, Problem, Search
 from grashof.problems.requirements import Box, Requirements, Rotatability, TransmissionOver
-from grashof.problems.task import MotionTask
+from grashof.problems.task import MotionTask, PathTask, Task
 
 __all__ = [
     "AssemblyError",
@@ -15,12 +15,14 @@ __all__ = [
     "MotionTask",
     "NoSolutionError",
     "Objective",
+    "PathTask",
     "Problem",
     "ProblemError",
     "Requirements",
     "Rotatability",
     "Search",
     "SolverError",
+    "Task",
     "TransmissionOver",
     "catalogue",
     "load",

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from grashof.problems.checks import FloatArray, finite_number, outline, whole_number
 from grashof.problems.errors import ProblemError
 from grashof.problems.requirements import Requirements
-from grashof.problems.task import MotionTask
+from grashof.problems.task import Task
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +64,7 @@ class Problem:
 
     Parameters
     ----------
-    task : MotionTask
+    task : MotionTask or PathTask
     requirements : Requirements
     objective : Objective
     search : Search
@@ -74,7 +74,7 @@ class Problem:
         The scene: drawn, no constraint.
     """
 
-    task: MotionTask
+    task: Task
     requirements: Requirements = field(default_factory=Requirements)
     objective: Objective = field(default_factory=Objective)
     search: Search = field(default_factory=Search)

@@ -9,6 +9,7 @@ import numpy as np
 
 from grashof.problems.checks import Limits, finite_number, limits, number_within
 from grashof.problems.errors import ProblemError
+from grashof.problems.task import Task
 
 
 class Rotatability(StrEnum):
@@ -48,6 +49,9 @@ class Requirements:
 
     Parameters
     ----------
+    exact : bool, optional
+        Every target is met; False: least squares. By default exact wherever linkages that meet
+        every target can be expected (see `is_exact`).
     tolerance : float
         A design is exact when its largest error is at most ``tolerance * size``.
     rotatability : Rotatability
@@ -77,6 +81,7 @@ class Requirements:
         Driver angle at the first target.
     """
 
+    exact: bool | None = None
     tolerance: float = 1e-6
     rotatability: Rotatability = Rotatability.FULL_CRANK
     rotatability_margin: float = 1e-3
@@ -99,6 +104,8 @@ class Requirements:
     theta2_start_deg: float | None = None
 
     def __post_init__(self) -> None:
+        if not isinstance(self.exact, bool | None):
+            raise ProblemError(f"requirements.exact is {self.exact!r}; allowed is true or false")
         for name, kind in (("rotatability", Rotatability), ("transmission_over", TransmissionOver)):
             object.__setattr__(self, name, _member(kind, getattr(self, name), f"requirements.{name}"))
         for name, (low, high) in _RANGES.items():
@@ -121,6 +128,18 @@ class Requirements:
         """Limits of r1, r2, r3, r4 (of resolved requirements)."""
         every = self.link_length or (0.0, np.inf)
         return self.r1 or every, self.r2 or every, self.r3 or every, self.r4 or every
+
+    def is_exact(self, task: Task) -> bool:
+        """Whether a design has to meet every target of the task.
+
+        Examples
+        --------
+        >>> from grashof.problems import PathTask
+        >>> line = PathTask([[0, 0], [1, 0], [2, 0]])
+        >>> Requirements().is_exact(line), Requirements(exact=False).is_exact(line)
+        (True, False)
+        """
+        return task.exact_by_default if self.exact is None else self.exact
 
     def resolved(self, size: float) -> Requirements:
         """These requirements with every default that depends on the size of the task filled in.

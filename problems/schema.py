@@ -27,7 +27,7 @@ from grashof.problems.checks import FloatArray, counted, near_miss, outline
 from grashof.problems.errors import ProblemError
 from grashof.problems.problem import Objective, Problem, Search
 from grashof.problems.requirements import Box, Requirements
-from grashof.problems.task import MotionTask
+from grashof.problems.task import MotionTask, PathTask, Task
 
 
 def problem_from(document: dict[str, Any], name: str) -> Problem:
@@ -100,12 +100,6 @@ def _one_of(supported: Sequence[str], later: Sequence[str]) -> AfterValidator:
     return AfterValidator(refuse)
 
 
-def _only_true(value: bool) -> bool:
-    if not value:
-        raise PydanticCustomError(_UNSUPPORTED, "true")
-    return value
-
-
 class _Table(BaseModel):
     """A table of the file. Its value type is built once here, so that what it refuses is counted too."""
 
@@ -135,6 +129,17 @@ class MotionTable(_Table):
 
     def value(self) -> MotionTask:
         return MotionTask.from_degrees(self.poses, angle_length=self.angle_length, body=self.body)
+
+
+class PathTable(_Table):
+    points: Annotated[
+        list[Annotated[list[float], _listed("a point [x, y]")]], _listed("a list of points [x, y]")
+    ]
+    timing_deg: Annotated[list[float], _listed("a list of angles")] | None = None
+    closed: bool = False
+
+    def value(self) -> PathTask:
+        return PathTask.from_degrees(self.points, timing_deg=self.timing_deg, closed=self.closed)
 
 
 class SceneTable(_Table):
@@ -181,7 +186,7 @@ Place = Annotated[
 
 
 class RequirementsTable(_Table):
-    exact: Annotated[bool, AfterValidator(_only_true)] = True
+    exact: bool | None = None
     tolerance: float | None = None
     rotatability: str | None = None
     rotatability_margin: float | None = None
@@ -204,7 +209,7 @@ class RequirementsTable(_Table):
     theta2_start_deg: float | None = None
 
     def value(self) -> Requirements:
-        given: dict[str, Any] = {key: getattr(self, key) for key in self.model_fields_set - {"exact"}}
+        given: dict[str, Any] = {key: getattr(self, key) for key in self.model_fields_set}
         for key in given.keys() & {"o2", "o4", "a", "b"}:
             given[key] = _box(given[key])
         return Requirements(**given)
@@ -246,15 +251,26 @@ class SearchTable(_Table):
 
 
 class ProblemFile(_Table):
-    kind: Annotated[str, _one_of(("motion",), later=("path",))]
+    kind: Annotated[str, _one_of(("motion", "path"), later=())]
     title: str = ""
     source: str = ""
     length_unit: str = ""
-    motion: MotionTable
+    motion: MotionTable | None = None
+    path: PathTable | None = None
     scene: SceneTable = SceneTable()
     requirements: RequirementsTable = RequirementsTable()
     objective: ObjectiveTable = ObjectiveTable()
     search: SearchTable = SearchTable()
+
+    def value(self) -> Task:
+        tables = {"motion": self.motion, "path": self.path}
+        mine = tables.pop(self.kind)
+        for other, table in tables.items():
+            if table is not None:
+                raise ProblemError(f'{other} does not belong to kind = "{self.kind}"')
+        if mine is None:
+            raise ProblemError(f"{self.kind} is missing")
+        return mine.value()
 
     def problem(self, name: str) -> Problem:
         return Problem(
@@ -262,7 +278,7 @@ class ProblemFile(_Table):
             title=self.title,
             source=self.source,
             length_unit=self.length_unit,
-            task=self.motion.value(),
+            task=self.value(),
             outlines=self.scene.value(),
             requirements=self.requirements.value(),
             objective=self.objective.value(),
@@ -273,6 +289,7 @@ class ProblemFile(_Table):
 _TABLES: dict[str, type[_Table]] = {
     "": ProblemFile,
     "motion": MotionTable,
+    "path": PathTable,
     "scene": SceneTable,
     "requirements": RequirementsTable,
     "requirements.o2": BoxTable,
@@ -287,7 +304,6 @@ _TABLES: dict[str, type[_Table]] = {
 # Keys of the contract that are not built yet. They are no fields of the tables above, so that a table
 # holds only what does something.
 _LATER = {
-    "path",
     "dynamics",
     "manufacturing",
     "motion.weights",
@@ -309,9 +325,7 @@ def _message(errors: list[ErrorDetails]) -> str:
     # A missing key comes last: most often it stands in the file, misspelt, and that error says more.
     first = min(errors, key=lambda error: error["type"] == "missing")
     others = len(errors) - 1
-    if not others or (first["loc"] == ("kind",) and first["type"] == _UNSUPPORTED):
-        return _described(first)
-    return f"{_described(first)} (and {counted(others, 'more error')})"
+    return f"{_described(first)} (and {counted(others, 'more error')})" if others else _described(first)
 
 
 def _described(error: ErrorDetails) -> str:

@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from grashof.analysis import verify
 from grashof.problems import ProblemError
+from grashof.problems.checks import ComplexArray
 from grashof.synth.burmester import Dyads, polish
-from grashof.synth.four_poses import UNSOLVED
+from grashof.synth.cognates import assembly_of, cognate_points, position_of
+from grashof.synth.finds import Configurations, dyad_lacks, judge, met
+from grashof.synth.path_polish import Polished, polish_path
 from grashof.synth.programme import Solve, solve
 from grashof.synth.result import Candidate
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
+
+UNSOLVED = frozenset({"order", "same_branch"})  # no smooth constraint can relax these
+NUDGE = 0.1  # sizes: a polish that moves a start farther has lost it
+CLOSE = 1e-4  # sizes: a least-squares design so near to its targets can be made exact
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,14 +33,17 @@ class Attempt:
         Ipopt's return status.
     candidate : Candidate or None
         The design, judged, defects or not; None when the numbers make no linkage.
+    cognates : tuple of Candidate
+        For a path: other linkages with the same coupler curve, without defects.
     """
 
     status: str
     candidate: Candidate | None
+    cognates: tuple[Candidate, ...] = ()
 
 
 def attempt(setup: Setup, start: Start, number: int) -> Attempt:
-    """Solve from a start, polish the poses to be exact, verify.
+    """Solve from a start, polish the design to be exact, verify.
 
     Parameters
     ----------
@@ -46,18 +56,104 @@ def attempt(setup: Setup, start: Start, number: int) -> Attempt:
     -------
     Attempt
     """
-    if UNSOLVED.isdisjoint(start.relaxed):
-        solved = solve(setup.motion, setup.body, setup.wanted, start)
-    else:
-        solved = Solve((start.o2, start.o4, start.a, start.b), "Not_Solved", 0)
+    if setup.motion is None and setup.exact:
+        start = _on_targets(setup, start)
+    points = (start.o2, start.o4, start.a, start.b, start.p)
+    solved = Solve(points, start.theta2, start.theta3, "Not_Solved", 0)
+    as_it_is = start.settled or not UNSOLVED.isdisjoint(start.relaxed)
+    candidate = _made(setup, start, solved, number) if as_it_is else None
+    if not as_it_is or (start.settled and (candidate is None or not candidate.verdict.ok)):
+        solved = solve(setup, start)
+        candidate = _made(setup, start, solved, number)
+    if candidate is None or not candidate.verdict.ok or setup.motion is not None:
+        return Attempt(solved.status, candidate)
+    return Attempt(solved.status, candidate, _cognates(setup, candidate))
+
+
+def _on_targets(setup: Setup, start: Start) -> Start:
+    """A start of an exact path task moved onto the targets, where that takes no more than a nudge."""
+    polished = _on_path(setup, start.visit, start.points, start.theta2, start.theta3)
+    if polished is None or np.abs(polished.points - start.points).max() > NUDGE:
+        return start
+    visit = list(start.visit)
+    o2, o4, a, b, p = (complex(point) for point in polished.points)
+    theta3 = np.unwrap(np.angle(polished.coupler[visit]))
+    theta3 += 2 * np.pi * np.round((start.theta3[0] - theta3[0]) / (2 * np.pi))
+    theta2 = tuple(polished.theta2[visit].tolist())
+    return replace(start, o2=o2, o4=o4, a=a, b=b, p=p, theta2=theta2, theta3=tuple(theta3.tolist()))
+
+
+def _on_path(
+    setup: Setup,
+    visit: tuple[int, ...],
+    points: ComplexArray,
+    in_order2: tuple[float, ...],
+    in_order3: tuple[float, ...],
+) -> Polished | None:
+    """A path design polished; None where that leads astray. Angles are in the order of visit."""
+    order = np.argsort(visit)
+    theta2, theta3 = np.array(in_order2)[order], np.array(in_order3)[order]
+    o2, o4, a, b, p = points
+    at_a, turned = o2 + abs(a - o2) * np.exp(1j * theta2), np.exp(1j * theta3)
+    at_b, at_p = at_a + abs(b - a) * turned, at_a + (p - a) * turned / turned[0]
+    if not setup.exact and np.abs(at_p - setup.targets).max() > CLOSE:
+        return None
+    assembly = np.where((turned.conj() * (at_b - o4)).imag >= 0, 1.0, -1.0)
+    polished = polish_path(points, theta2, assembly, setup.targets, setup.timing is not None)
+    return polished if polished.error < CLOSE and np.isfinite(polished.points).all() else None
+
+
+def _made(setup: Setup, start: Start, solved: Solve, number: int) -> Candidate | None:
     points = np.array(solved.points)
     if not np.isfinite(points).all():
-        return Attempt(solved.status, None)
-    dyads = polish(setup.motion, Dyads(moving=points[2:], ground=points[:2]))
-    pivots = np.concatenate([dyads.ground, dyads.moving])
+        return None
+    if setup.motion is not None:
+        dyads = polish(setup.motion, Dyads(moving=points[2:4], ground=points[:2]))
+        points = np.concatenate([dyads.ground, dyads.moving, points[4:]])
+    else:
+        polished = _on_path(setup, start.visit, points, solved.theta2, solved.theta3)
+        points = points if polished is None else polished.points
+    return _candidate(setup, points, start.assembly, number, solved.iterations)
+
+
+def _candidate(
+    setup: Setup, points: ComplexArray, assembly: int, number: int, iterations: int, cognate_of: str = ""
+) -> Candidate | None:
     try:
-        linkage = setup.linkages(pivots, np.array(start.assembly))
-    except ProblemError:  # the solver ended where two pivots coincide
-        return Attempt(solved.status, None)
+        linkage = setup.linkages(points, np.array(assembly))
+    except ProblemError:  # two pivots coincide
+        return None
     verdict = verify(linkage, setup.problem.task, setup.problem.requirements)
-    return Attempt(solved.status, Candidate(linkage, verdict, number, solved.iterations))
+    return Candidate(linkage, verdict, number, iterations, cognate_of)
+
+
+def _cognates(setup: Setup, candidate: Candidate) -> tuple[Candidate, ...]:
+    """The cognates without defects; none where pivots or start angle are fixed."""
+    wanted = setup.wanted
+    fixed = (box.x[0] == box.x[1] and box.y[0] == box.y[1] for box in (wanted.o2, wanted.o4) if box)
+    if any(fixed) or wanted.theta2_start_deg is not None:
+        return ()
+    position = position_of(candidate.linkage, float(candidate.verdict.theta2[0]))
+    points = [
+        (cognate - setup.frame.origin) / setup.frame.scale
+        for cognate in cognate_points(position, setup.timing is not None)
+    ]
+    found = []
+    for cognate in points:
+        if np.isfinite(cognate).all() and _worth_judging(setup, cognate):
+            assembly = assembly_of(cognate)
+            made = _candidate(setup, cognate, assembly, candidate.start, candidate.iterations, candidate.id)
+            if made is not None and made.verdict.ok:
+                found.append(made)
+    return tuple(found)
+
+
+def _worth_judging(setup: Setup, points: ComplexArray) -> bool:
+    """Whether lengths, pivots and rotatability of a linkage are as required: cheap to know beforehand."""
+    o2, o4, a, b, p = points[:, None]
+    one, none = np.zeros((1, 1), dtype=np.int64), np.zeros(1)
+    theta2 = np.angle(a - o2)[:, None]
+    places = Configurations(o2, o4, a[:, None], b[:, None], one, theta2, none + 1)
+    lacks = dyad_lacks("o2", o2, a[:, None], p, setup.wanted)
+    lacks += dyad_lacks("o4", o4, b[:, None], p, setup.wanted)
+    return bool(met(judge(places, p, none, lacks, setup.wanted).lacks)[0])

@@ -7,13 +7,20 @@ import numpy as np
 from grashof.problems import FourBar
 from grashof.problems.checks import FloatArray, IntArray
 
-DISTINCT = 0.01  # share of the largest number of two designs by which they differ at least
+# Share of the largest number of two designs by which they differ at least: 1 %, and a quarter more
+# because pivots are measured from the middle of the task, where the largest number is smaller.
+DISTINCT = 0.0125
 
 
-def signature(linkage: FourBar) -> FloatArray:
-    """The numbers that tell designs apart: O2, O4, r2, r3, r4, u, v; shape (..., 9), length."""
+def signature(linkage: FourBar, origin: FloatArray | None = None) -> FloatArray:
+    """The numbers that tell designs apart: O2, O4, r2, r3, r4, u, v; shape (..., 9), length.
+
+    Pivots are measured from `origin`, shape (2,), where one is given: with the middle of the task
+    there, what is distinct does not depend on where the user's own origin lies.
+    """
     lengths = np.stack([linkage.r2, linkage.r3, linkage.r4], axis=-1)
-    return np.concatenate([linkage.o2, linkage.o4, lengths, linkage.coupler_point], axis=-1)
+    middle = np.zeros(2) if origin is None else origin
+    return np.concatenate([linkage.o2 - middle, linkage.o4 - middle, lengths, linkage.coupler_point], axis=-1)
 
 
 def apart(one: FloatArray, others: FloatArray) -> FloatArray:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from grashof.problems import Box, MotionTask, Requirements
+from grashof.problems import Box, Requirements, Task
 from grashof.problems.checks import ComplexArray, FloatArray, Limits
 
 
@@ -18,7 +18,7 @@ class Frame:
     scale: float
 
     @classmethod
-    def of(cls, task: MotionTask) -> Frame:
+    def of(cls, task: Task) -> Frame:
         """The frame of a task."""
         return cls(complex(*task.positions.mean(axis=0)), task.size)
 

@@ -31,12 +31,15 @@ class Candidate:
         Number of the start that it came from.
     iterations : int
         Of Ipopt.
+    cognate_of : str
+        Id of the design whose coupler curve this one traces too; empty for the others.
     """
 
     linkage: FourBar
     verdict: Verdict
     start: int
     iterations: int
+    cognate_of: str = ""
 
     @property
     def id(self) -> str:
@@ -55,7 +58,12 @@ class Candidate:
         return self.verdict.transmission_min_task
 
     def score(self, problem: Problem) -> float:
-        """How good the design is by the problem's objective; greater is better."""
+        """How good the design is by the problem's objective; greater is better.
+
+        With ``exact = false`` the error comes first.
+        """
+        if not problem.requirements.is_exact(problem.task):
+            return -self.verdict.error_rms / problem.task.size
         transmission = self.transmission(problem.requirements.transmission_over)
         size = self.verdict.size / problem.task.size
         return float(weigh(problem.objective, np.array(transmission), np.array(size)))
@@ -120,7 +128,8 @@ def ranked(problem: Problem, candidates: list[Candidate]) -> tuple[Candidate, ..
     if not candidates:
         return ()
     score = np.array([candidate.score(problem) for candidate in candidates])
-    signatures = np.array([signature(candidate.linkage) for candidate in candidates])
+    origin = problem.task.positions.mean(axis=0)
+    signatures = np.array([signature(candidate.linkage, origin) for candidate in candidates])
     return tuple(candidates[i] for i in pick_apart(signatures, score, DISTINCT, len(candidates)))
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from grashof.problems import Objective
 from grashof.problems.checks import ComplexArray
-from grashof.synth.screen import Pairs
+from grashof.synth.finds import Finds
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,12 +21,14 @@ class Start:
 
     Parameters
     ----------
-    o2, o4, a, b : complex, sizes
-        Pivots, the moving ones at the first pose.
+    o2, o4, a, b, p : complex, sizes
+        Pivots and coupler point, the moving ones at the first target.
     visit : tuple of int
-        Poses in the order in which the driver meets them.
+        Targets in the order in which the driver meets them.
     theta2 : tuple of float, rad
         Driver angles in that order, counted on along the motion.
+    theta3 : tuple of float, rad
+        Coupler angles in that order, each near the last.
     direction, assembly : int
     objective : Objective
         What the solve makes best.
@@ -34,6 +36,8 @@ class Start:
         How far it may move each coordinate of the pivots.
     stay : bool
         Move no farther than the requirements make it, whatever the objective.
+    settled : bool
+        The targets leave no freedom: the design is there already, or nowhere near.
     relaxed : tuple of str
         Requirements (keys) that it may miss, coming as near as it can; all others hold.
     """
@@ -42,24 +46,40 @@ class Start:
     o4: complex
     a: complex
     b: complex
+    p: complex
     visit: tuple[int, ...]
     theta2: tuple[float, ...]
+    theta3: tuple[float, ...]
     direction: int
     assembly: int
     objective: Objective = field(default_factory=Objective)
     radius: float = np.inf
     stay: bool = False
+    settled: bool = False
     relaxed: tuple[str, ...] = ()
 
     @property
     def points(self) -> ComplexArray:
-        """O2, O4, and A, B at the first pose, shape (4,), sizes."""
-        return np.array([self.o2, self.o4, self.a, self.b])
+        """O2, O4, and A, B, P at the first target, shape (5,), sizes."""
+        return np.array([self.o2, self.o4, self.a, self.b, self.p])
 
     @property
     def theta1(self) -> float:
         """Direction O2->O4, rad."""
         return float(np.angle(self.o4 - self.o2))
+
+    @property
+    def arm(self) -> complex:
+        """The coupler point as u + iv."""
+        return (self.p - self.a) * abs(self.b - self.a) / (self.b - self.a)
+
+    @property
+    def track(self) -> ComplexArray:
+        """A, B and P at every target in the order of visit, shape (3, N), sizes."""
+        _, r2, r3, _ = self.lengths
+        a = self.o2 + r2 * np.exp(1j * np.array(self.theta2))
+        turned = np.exp(1j * np.array(self.theta3))
+        return np.stack([a, a + r3 * turned, a + self.arm * turned])
 
     @property
     def lengths(self) -> tuple[float, float, float, float]:
@@ -69,23 +89,25 @@ class Start:
     @property
     def half_turns(self) -> tuple[int, int]:
         """In which half turn from the ground line, counted in pi, the driver starts and ends."""
-        first, last = (
-            int(np.floor((angle - self.theta1) / np.pi)) for angle in (self.theta2[0], self.theta2[-1])
-        )
+        ends = (self.theta2[0], self.theta2[-1])
+        first, last = (int(np.floor((angle - self.theta1) / np.pi)) for angle in ends)
         return first, last
 
     @classmethod
-    def of_pair(cls, pairs: Pairs, index: int, objective: Objective) -> Start:
-        """The start that entry `index` of screened pairs makes."""
-        o2, o4, a, b = (complex(point) for point in pairs.points[index])
+    def of_find(cls, finds: Finds, index: int, objective: Objective) -> Start:
+        """The start that entry `index` of the finds of a search makes."""
+        visit = finds.visit[index]
+        o2, o4, a, b, p = (complex(point) for point in finds.points[index])
         return cls(
             o2=o2,
             o4=o4,
             a=a,
             b=b,
-            visit=tuple(int(pose) for pose in pairs.visit[index]),
-            theta2=tuple(float(angle) for angle in pairs.theta2[index]),
-            direction=int(pairs.direction[index]),
-            assembly=int(pairs.assembly[index]),
+            p=p,
+            visit=tuple(int(target) for target in visit),
+            theta2=tuple(float(angle) for angle in finds.theta2[index]),
+            theta3=tuple(float(angle) for angle in np.unwrap(np.angle(finds.coupler[index][visit]))),
+            direction=int(finds.direction[index]),
+            assembly=int(finds.assembly[index]),
             objective=objective,
         )

@@ -6,16 +6,16 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from multiprocessing import get_context
 from signal import SIG_IGN, SIGINT, signal
 from time import perf_counter
 
 import numpy as np
 
-from grashof.problems import Problem, ProblemError, Search, SolverError
+from grashof.problems import MotionTask, Problem, ProblemError, Search, SolverError
 from grashof.problems.checks import whole_number
-from grashof.synth import four_poses
+from grashof.synth import four_poses, paths
 from grashof.synth.attempt import Attempt, attempt
 from grashof.synth.result import Candidate, Result, ranked
 from grashof.synth.setup import Setup
@@ -23,6 +23,7 @@ from grashof.synth.start import Start
 
 BATCH = 16  # solves between two looks at what is verified; fixed, so that workers change nothing
 FRUITLESS = 64  # so many solves without one verified design end the search
+STALE, STALE_EXACT = 3, 20  # so many rounds of starts on end that add no design to the list, too
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,15 +96,12 @@ def synthesize(
     given = {"starts": starts, "enough": enough, "seed": seed}
     search = replace(problem.search, **{name: n for name, n in given.items() if n is not None})
     whole_number(workers, 1, "workers")
-    if time_limit is not None and not time_limit > 0:
+    if time_limit is not None and not 0 < time_limit < np.inf:
         raise ProblemError(f"time_limit is {time_limit!r}; allowed is a time in s greater than zero")
-    if len(problem.task) != 4:
-        raise ProblemError(
-            f"motion.poses has {len(problem.task)} poses; this version synthesises exactly four"
-        )
+    refuse_unsupported(problem)
     begun = perf_counter()
     setup = Setup.of(problem)
-    reason = four_poses.degenerate(setup)
+    reason = "" if setup.motion is None else four_poses.degenerate(setup)
     if reason:
         return Result(problem, (), (), {}, {"total": perf_counter() - begun}, note=f"no design: {reason}")
 
@@ -112,6 +110,18 @@ def synthesize(
         return out_of_time or (stop is not None and stop())
 
     return _search(setup, search, begun, ended, progress, workers, executor)
+
+
+def refuse_unsupported(problem: Problem) -> None:
+    """Raise `ProblemError` for a problem that this version cannot search for."""
+    task = problem.task
+    if not isinstance(task, MotionTask):
+        return
+    if len(task) != 4:
+        raise ProblemError(f"motion.poses has {len(task)} poses; this version synthesises exactly four")
+    if not problem.requirements.is_exact(task):
+        raise ProblemError("requirements.exact is false; this version meets four poses exactly")
+    four_poses.refuse_equal_poses(task)
 
 
 def _search(
@@ -123,40 +133,84 @@ def _search(
     workers: int,
     executor: Executor | None,
 ) -> Result:
-    problem = setup.problem
     rng = np.random.default_rng(np.random.SeedSequence(search.seed))
-    queue, feasible = four_poses.starts(setup, search.starts, search.enough, rng)
-    screened = perf_counter()
-    counts = Counter({"feasible pairs": feasible})
-    verified: list[Candidate] = []
-    best: tuple[Candidate, ...] = ()
-    complete = True
+    finder = four_poses if setup.motion is not None else paths
+    found = _Found(setup.problem)
+    complete, seconds = True, {"screening": 0.0, "solving": 0.0}
     with _solving(workers, executor) as solve:
-        for begin in range(0, len(queue), BATCH):
+        since = perf_counter()
+        for starts, feasible in finder.rounds(setup, search.enough, rng):
+            screened = perf_counter()
+            seconds["screening"] += screened - since
+            found.counts["feasible finds"] += feasible
+            before = len(found.best)
+            _solve_round(setup, starts, search, solve, found, ended, progress)
+            since = perf_counter()
+            seconds["solving"] += since - screened
+            found.stale = found.stale + 1 if 0 < before == len(found.best) else 0
+            if not found.wants_more(search):
+                break
             if ended():
                 complete = False
                 break
-            batch = queue[begin : begin + BATCH]
-            for result in solve(setup, batch, begin):
-                counts[f"solver: {result.status}"] += 1
-                counts[_outcome(result)] += 1
-                if result.candidate is not None and result.candidate.verdict.ok:
-                    verified.append(result.candidate)
-            best = ranked(problem, verified)
-            done = begin + len(batch)
-            if progress is not None:
-                progress(Progress(done, len(queue), len(best), search.enough))
-            if len(best) >= search.enough or (not best and done >= FRUITLESS):
-                break
-        solved = perf_counter()
         nearest: tuple[Candidate, ...] = ()
-        if not best and complete:
-            misses = solve(setup, four_poses.relaxed_starts(setup, rng), len(queue))
-            nearest = _nearest(misses)
-    counts["verified and distinct"] = len(best)
-    seconds = {"screening": screened - begun, "solving": solved - screened, "total": perf_counter() - begun}
-    note = "" if best else _why(nearest, complete)
-    return Result(problem, best, nearest, dict(counts), seconds, note, complete)
+        if not found.best and complete:
+            nearest = _nearest(solve(setup, finder.relaxed_starts(setup, rng), found.solved))
+    found.counts["verified and distinct"] = len(found.best)
+    times = {**seconds, "total": perf_counter() - begun}
+    note = "" if found.best else _why(nearest, complete)
+    return Result(setup.problem, found.best, nearest, dict(found.counts), times, note, complete)
+
+
+@dataclass(slots=True)
+class _Found:
+    """What a search has found so far."""
+
+    problem: Problem
+    verified: list[Candidate] = field(default_factory=list)
+    best: tuple[Candidate, ...] = ()
+    counts: Counter[str] = field(default_factory=Counter)
+    solved: int = 0
+    stale: int = 0
+
+    def wants_more(self, search: Search) -> bool:
+        """Whether the list is too short and solves are left."""
+        exact = self.problem.requirements.is_exact(self.problem.task)
+        stale = self.stale >= (STALE_EXACT if exact else STALE)
+        hopeless = stale or (not self.best and self.solved >= FRUITLESS)
+        return len(self.best) < search.enough and self.solved < search.starts and not hopeless
+
+    def take(self, attempts: list[Attempt]) -> None:
+        """Count a batch, keep what is verified, and rank it."""
+        for made in attempts:
+            self.counts[f"solver: {made.status}"] += 1
+            self.counts[_outcome(made)] += 1
+            if made.candidate is not None and made.candidate.verdict.ok:
+                self.verified += [made.candidate, *made.cognates]
+                self.counts["cognates verified"] += len(made.cognates)
+        self.solved += len(attempts)
+        self.best = ranked(self.problem, self.verified)
+
+
+def _solve_round(
+    setup: Setup,
+    starts: list[Start],
+    search: Search,
+    solve: Callable[[Setup, list[Start], int], list[Attempt]],
+    found: _Found,
+    ended: Callable[[], bool],
+    progress: Callable[[Progress], object] | None,
+) -> None:
+    """Solve starts batch by batch until enough is found or the search is ended."""
+    most, batch = min(len(starts), search.starts - found.solved), min(BATCH, search.enough)
+    for begin in range(0, most, batch):
+        if ended():
+            return
+        found.take(solve(setup, starts[begin : min(begin + batch, most)], found.solved))
+        if progress is not None:
+            progress(Progress(found.solved, search.starts, len(found.best), search.enough))
+        if not found.wants_more(search):
+            return
 
 
 @contextmanager

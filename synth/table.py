@@ -18,6 +18,7 @@ COLUMNS = (
     "transmission_min_task_deg", "transmission_min_cycle_deg", "circuit_ok", "branch_ok", "order_ok",
     "full_rotation", "omega4_max", "point_speed_max", "point_acceleration_max", "torque_peak",
     "torque_rms", "joint_force_peak", "coupler_fit_r2", "size", "pareto", "cognate_of", "start", "iterations",
+    "hausdorff", "frechet",
 )  # fmt: skip
 
 
@@ -34,7 +35,14 @@ def to_frame(problem: Problem, candidates: tuple[Candidate, ...]) -> pd.DataFram
 def _row(candidate: Candidate) -> dict[str, Any]:
     linkage, verdict = candidate.linkage, candidate.verdict
     r1, r2, r3, r4 = (float(length) for length in linkage.lengths)
-    angle_error = np.degrees(verdict.angle_error)
+    angles = {}
+    if verdict.angle_error is not None:
+        angle_error = np.degrees(verdict.angle_error)
+        angles = {
+            "body_angle_deg": float(np.degrees(linkage.body_angle)),
+            "angle_error_max_deg": float(angle_error.max()),
+            "angle_error_rms_deg": float(np.sqrt(np.mean(angle_error**2))),
+        }
     return {
         "id": candidate.id,
         "family": "four-bar",
@@ -51,14 +59,12 @@ def _row(candidate: Candidate) -> dict[str, Any]:
         "r4": r4,
         "p_u": float(linkage.coupler_point[0]),
         "p_v": float(linkage.coupler_point[1]),
-        "body_angle_deg": float(np.degrees(linkage.body_angle)),
         "theta2_start_deg": float(np.degrees(verdict.theta2[0])),
         "theta2_end_deg": float(np.degrees(verdict.theta2[-1])),
         "error_max": verdict.error_max,
         "error_rms": verdict.error_rms,
         "error_sse": verdict.error_sse,
-        "angle_error_max_deg": float(angle_error.max()),
-        "angle_error_rms_deg": float(np.sqrt(np.mean(angle_error**2))),
+        **angles,
         "transmission_min_task_deg": float(np.degrees(verdict.transmission_min_task)),
         "transmission_min_cycle_deg": float(np.degrees(verdict.transmission_min_cycle)),
         "circuit_ok": verdict.circuit_ok,
@@ -66,6 +72,9 @@ def _row(candidate: Candidate) -> dict[str, Any]:
         "order_ok": verdict.order_ok,
         "full_rotation": verdict.full_rotation,
         "size": verdict.size,
+        "cognate_of": candidate.cognate_of or None,
+        "hausdorff": verdict.hausdorff,
+        "frechet": verdict.frechet,
         "start": candidate.start,
         "iterations": candidate.iterations,
     }

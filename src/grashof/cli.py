@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Callable, Iterator
+import sys
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from enum import IntEnum
 from pathlib import Path
 from threading import Event
 from types import FrameType
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from grashof.problems import Problem, ProblemError, SolverError, catalogue, load, problem_text
+from grashof.problems.checks import counted
+from grashof.streams import say
 
 
 class Exit(IntEnum):
@@ -28,8 +32,30 @@ class Exit(IntEnum):
 
 
 TOP = 50
+# Names of the contract that later versions bring.
+_LATER_COMMANDS = ("analyse", "export")
+_LATER_OPTIONS = ("--resume", "--scheduler")
+# Typer makes the base of its usage errors public only through this one.
+_UsageError: type[Exception] = typer.BadParameter.__bases__[0]
+
+
+class _Commands(TyperGroup):
+    """The commands, with one line for a usage error."""
+
+    def main(self, args: Sequence[str] | None = None, *rest: Any, **options: Any) -> Any:
+        given = list(sys.argv[1:] if args is None else args)
+        if not given:  # the help
+            return super().main(given, *rest, **options)
+        try:
+            code = super().main(given, *rest, **{**options, "standalone_mode": False})
+        except _UsageError as error:
+            say(f"grashof: {_later(given) or _one_line(error)}", err=True)
+            code = Exit.BAD_INPUT
+        sys.exit(code or Exit.OK)
+
 
 app = typer.Typer(
+    cls=_Commands,
     help="Find planar four-bar linkages that do a job, verify them, and rank them.",
     no_args_is_help=True,
     add_completion=False,
@@ -55,7 +81,10 @@ def solve(
         float | None, typer.Option(help="Seconds after which no new solves begin.", show_default=False)
     ] = None,
     top: Annotated[
-        int | None, typer.Option(min=1, help="Most designs in the list.", show_default=str(TOP))
+        int | None,
+        typer.Option(
+            min=1, help="Most designs in the list.", show_default=f"{TOP}, or search.enough if more"
+        ),
     ] = None,
     drawings: Annotated[int, typer.Option(min=0, help="How many of them to draw.")] = 8,
 ) -> None:
@@ -71,11 +100,14 @@ def solve(
 @app.command()
 def check(problem: ProblemArgument) -> None:
     """Read PROBLEM and say what will be asked of a design, without solving."""
+    from grashof.synth.synthesize import refuse_unsupported
     from grashof.terminal import summary
 
     with _errors_told():
-        for line in summary(load(problem)):
-            typer.echo(line)
+        loaded = load(problem)
+        refuse_unsupported(loaded)
+        for line in summary(loaded):
+            say(line)
 
 
 @app.command()
@@ -87,10 +119,10 @@ def problems(
     """List the problems of the catalogue, or print one."""
     with _errors_told():
         if name is not None:
-            typer.echo(problem_text(name), nl=False)
+            say(problem_text(name).removesuffix("\n"))
             return
         for each in catalogue():
-            typer.echo(f"{each:20} {load(each).title}")
+            say(f"{each:20} {load(each).title}")
 
 
 def main() -> None:
@@ -114,36 +146,37 @@ def _solve(
     from grashof.terminal import print_table, search_progress
 
     folder = out if out is not None else Path(f"{problem.name}-designs")
-    check_writable(folder)
+    check_writable(folder, drawings)
     enough = max(problem.search.enough, top or 0)
-    top = top or TOP
-    with _interruptible() as interrupted, search_progress(problem.name) as progress:
-        result = synthesize(
-            problem,
-            starts=starts,
-            enough=enough,
-            seed=seed,
-            workers=workers,
-            time_limit=time_limit,
-            progress=progress,
-            stop=interrupted,
-        )
-    result = replace(result, candidates=result.candidates[:top])
-    if result.candidates or result.complete:  # an interrupted search with nothing to show replaces nothing
-        settings = {
-            "starts": starts or problem.search.starts,
-            "seed": problem.search.seed if seed is None else seed,
-            "enough": enough,
-            "workers": workers,
-            "time_limit": time_limit,
-            "top": top,
-        }
-        files = write_run(folder, result, settings, drawings)
-        _report(result.note, files, folder)
-    else:
-        typer.echo(result.note, err=True)
-    if result.candidates:
-        print_table(result)
+    top = top or max(TOP, enough)
+    settings = {
+        "starts": starts or problem.search.starts,
+        "seed": problem.search.seed if seed is None else seed,
+        "enough": enough,
+        "workers": workers,
+        "time_limit": time_limit,
+        "top": top,
+    }
+    with _interruptible() as interrupted:
+        with search_progress(problem.name) as progress:
+            found = synthesize(
+                problem,
+                starts=starts,
+                enough=enough,
+                seed=seed,
+                workers=workers,
+                time_limit=time_limit,
+                progress=progress,
+                stop=interrupted,
+            )
+        result = replace(found, candidates=found.candidates[:top])
+        if result.candidates or result.complete:  # an interrupted search with nothing replaces nothing
+            files = write_run(folder, result, settings, drawings, stop=interrupted)
+            _report(result.note, files, folder)
+        else:
+            say(result.note, err=True)
+        if result.candidates:
+            print_table(result, len(found))
     if interrupted():
         return Exit.INTERRUPTED
     return Exit.OK if result.candidates else Exit.NO_DESIGN
@@ -151,11 +184,23 @@ def _solve(
 
 def _report(note: str, files: list[str], folder: Path) -> None:
     if note:
-        typer.echo(note, err=True)
+        say(note, err=True)
     drawn = sum(name.endswith(".png") for name in files)
     named = [name for name in files if name.endswith((".csv", ".json"))]
-    pictures = f" and {drawn} drawings (PNG, SVG)" if drawn else ""
-    typer.echo(f"{folder}: {', '.join(named)}{pictures}", err=True)
+    pictures = f" and {counted(drawn, 'drawing')} (PNG, SVG)" if drawn else ""
+    say(f"{folder}: {', '.join(named)}{pictures}", err=True)
+
+
+def _later(given: list[str]) -> str:
+    """What to say of a name that only a later version knows; empty when none is given."""
+    words = [word for word in given[:1] if word in _LATER_COMMANDS]
+    words += [word for word in given if word.partition("=")[0] in _LATER_OPTIONS]
+    return f"{words[0].partition('=')[0]} is not in this version" if words else ""
+
+
+def _one_line(error: Exception) -> str:
+    message: str = getattr(error, "format_message", error.__str__)()
+    return f"{' '.join(message.split()).rstrip('.')}; see grashof --help"
 
 
 @contextmanager
@@ -164,10 +209,10 @@ def _errors_told() -> Iterator[None]:
     try:
         yield
     except ProblemError as error:
-        typer.echo(f"grashof: {error}", err=True)
+        say(f"grashof: {error}", err=True)
         raise typer.Exit(Exit.BAD_INPUT) from None
     except (SolverError, OSError) as error:
-        typer.echo(f"grashof: {error}", err=True)
+        say(f"grashof: {error}", err=True)
         raise typer.Exit(Exit.SURROUNDINGS) from None
     except KeyboardInterrupt:
         raise typer.Exit(Exit.INTERRUPTED) from None

@@ -1,76 +1,112 @@
-"""The output folder of a run: written whole or not at all, and only its own files replaced."""
+"""The output folder of a run: lists written whole or not at all, and only a run's own files replaced."""
 
 from __future__ import annotations
 
 import json
+import re
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from grashof.problems import ProblemError
 
 RECORD = "run.json"
+# Every name that a run writes; a drawing's carries its rank.
+_NAMES = re.compile(r"candidates\.(csv|json)|nearest\.csv|run\.json|design-(?P<rank>[0-9]{2,})\.(png|svg)")
 
 
-def check_writable(folder: Path) -> None:
-    """Refuse, before any work is done, a folder that cannot be made or written; leave no trace.
+def check_writable(folder: Path, drawings: int = 0) -> None:
+    """Refuse, before any work is done, a folder that a run cannot write into; leave no trace.
+
+    Parameters
+    ----------
+    folder : Path
+    drawings : int
+        How many designs may be drawn.
 
     Raises
     ------
     ProblemError
+        It cannot be made or written, or a file would be replaced that no run of Grashof wrote.
     """
-    missing = [path for path in (folder, *folder.parents) if not path.exists()]
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            pass
-        for path in missing:
-            path.rmdir()
+        with _made(folder), tempfile.TemporaryDirectory(dir=folder, prefix=".writing-") as name:
+            (Path(name) / "candidates.json").touch()
+        taken = _taken(folder, drawings) if folder.exists() else []
     except OSError as error:
         reason = error.strerror or "it cannot be written"
         raise ProblemError(f"--out {folder}: {reason}; allowed is a folder that can be written") from None
+    if taken:
+        raise ProblemError(
+            f"--out {folder}: {taken[0]} in it is not Grashof's own; allowed is a folder without it"
+        )
 
 
 @contextmanager
-def replacing_own_files(folder: Path) -> Iterator[Path]:
+def replacing_own_files(folder: Path, keep: Collection[str] = ()) -> Iterator[Path]:
     """A folder to write files into, which at the end take the place of those of the last run.
 
     What the last run wrote and this one does not is removed; other files are left alone. If
-    anything fails, the folder stays as it was.
+    anything fails, the folder stays as it was, and goes if it was made here.
 
     Parameters
     ----------
     folder : Path
         Its `RECORD` lists the files of the last run under "files".
+    keep : collection of str
+        Names of the last run's files that stay.
 
     Yields
     ------
     Path
         Empty folder beside the files, on the same disk.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    before = own_files(folder)
-    with tempfile.TemporaryDirectory(dir=folder, prefix=".writing-") as name:
-        fresh = Path(name)
-        yield fresh
-        written = sorted(path.name for path in fresh.iterdir())
-        # The record goes last: until then the old one still knows every old file.
-        for file in sorted(written, key=lambda file: file == RECORD):
-            (fresh / file).replace(folder / file)
-    for file in before - set(written):
-        (folder / file).unlink(missing_ok=True)
+    with _made(folder):
+        before = own_files(folder)
+        with tempfile.TemporaryDirectory(dir=folder, prefix=".writing-") as name:
+            fresh = Path(name)
+            yield fresh
+            written = sorted(path.name for path in fresh.iterdir())
+            # The record goes last: until then the old one still knows every old file.
+            for file in sorted(written, key=lambda file: file == RECORD):
+                (fresh / file).replace(folder / file)
+        for file in before - {*written, *keep}:
+            (folder / file).unlink(missing_ok=True)
 
 
 def own_files(folder: Path) -> set[str]:
     """Names of the files that the last run wrote into a folder; empty where there was none."""
     try:
         record = json.loads((folder / RECORD).read_text(encoding="utf-8"))
-        names = record["files"]
-    except (OSError, ValueError, KeyError, TypeError):  # no run, or a record that is not ours
+        names, versions = record["files"], record["versions"]
+    # No run, or a record that is not ours; the last of the errors for lists nested a thousand deep.
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return set()
-    if not isinstance(names, list):
+    if not (isinstance(names, list) and isinstance(versions, dict) and "grashof" in versions):
         return set()
-    # Plain names only: a record that was tampered with must not reach outside the folder.
-    plain = (name for name in names if isinstance(name, str) and Path(name).name == name)
-    return {name for name in plain if (folder / name).is_file()}
+    # Our names only: a record that was tampered with must not reach any other file.
+    ours = {name for name in names if isinstance(name, str) and _NAMES.fullmatch(name)}
+    return {name for name in ours if (folder / name).is_file()}
+
+
+def _taken(folder: Path, drawings: int) -> list[str]:
+    """Names that a run may write and that something else has."""
+    own = own_files(folder)
+    found = [(path.name, _NAMES.fullmatch(path.name)) for path in folder.iterdir()]
+    return sorted(
+        name for name, ours in found if ours and name not in own and int(ours["rank"] or 0) <= drawings
+    )
+
+
+@contextmanager
+def _made(folder: Path) -> Iterator[None]:
+    """The folder, with its parents; those made here go again if they stay empty."""
+    missing = [path for path in (folder, *folder.parents) if not path.exists()]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        yield
+    finally:
+        for path in missing:
+            with suppress(OSError):
+                path.rmdir()

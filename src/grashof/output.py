@@ -4,20 +4,31 @@ from __future__ import annotations
 
 import json
 import platform
+from collections.abc import Callable, Iterable
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from grashof.folder import RECORD, replacing_own_files
 from grashof.problems import FourBar
 from grashof.synth import Candidate, Result
+from grashof.synth.result import pareto_optimal
 from grashof.synth.table import to_frame
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 _PACKAGES = ("grashof", "casadi", "numpy", "scipy", "pandas", "matplotlib")
 
 
-def write_run(folder: Path, result: Result, settings: dict[str, Any], drawings: int) -> list[str]:
-    """Write all files of a run.
+def write_run(
+    folder: Path,
+    result: Result,
+    settings: dict[str, Any],
+    drawings: int,
+    stop: Callable[[], bool] = lambda: False,
+) -> list[str]:
+    """Write all files of a run, the lists first: a drawing that fails does not cost them.
 
     Parameters
     ----------
@@ -27,6 +38,8 @@ def write_run(folder: Path, result: Result, settings: dict[str, Any], drawings: 
         How the search was run; goes into the record.
     drawings : int
         How many of the best designs to draw.
+    stop : callable
+        Asked before every drawing; the others are left out when it says True.
 
     Returns
     -------
@@ -36,57 +49,75 @@ def write_run(folder: Path, result: Result, settings: dict[str, Any], drawings: 
     Raises
     ------
     OSError
-        The disk is full or the folder is lost; it then holds what it held before.
+        The disk is full or the folder is lost; it then holds what it held before, or the lists alone.
     """
     with replacing_own_files(folder) as fresh:
         if result.candidates:
-            result.to_csv(fresh / "candidates.csv")
+            _write_csv(fresh / "candidates.csv", result.to_frame())
             _write_json(fresh / "candidates.json", _designs(result))
         if result.nearest:
             misses = ["; ".join(str(d) for d in candidate.verdict.defects) for candidate in result.nearest]
-            frame = to_frame(result.problem, result.nearest).assign(misses=misses)
-            frame.to_csv(fresh / "nearest.csv", index=False, lineterminator="\n")
-        _draw(fresh, result, drawings)
-        files = sorted([*(path.name for path in fresh.iterdir()), RECORD])
-        _write_json(fresh / RECORD, _record(result, settings, files))
+            _write_csv(fresh / "nearest.csv", to_frame(result.problem, result.nearest).assign(misses=misses))
+        files = _write_record(fresh, result, settings)
+    if drawings and result.candidates and not stop():
+        with replacing_own_files(folder, keep=files) as fresh:
+            _draw(fresh, result, drawings, stop)
+            files = _write_record(fresh, result, settings, files)
     return files
 
 
-def _draw(folder: Path, result: Result, drawings: int) -> None:
-    drawn = result.candidates[:drawings]
-    if not drawn:
-        return
+def _draw(folder: Path, result: Result, drawings: int, stop: Callable[[], bool]) -> None:
     from grashof.draw import draw_design, save  # matplotlib takes half a second to import
 
-    for rank, candidate in enumerate(drawn, start=1):
+    for rank, candidate in enumerate(result.candidates[:drawings], start=1):
+        if stop():
+            return
         stem = folder / f"design-{rank:02d}"
         figure = draw_design(result.problem, candidate, rank)
         save(figure, [stem.with_suffix(".png"), stem.with_suffix(".svg")])
 
 
+def _write_record(
+    folder: Path, result: Result, settings: dict[str, Any], others: Iterable[str] = ()
+) -> list[str]:
+    """Write the record of the files in a folder and of others, and return their names, sorted."""
+    files = sorted({*(path.name for path in folder.iterdir()), *others, RECORD})
+    _write_json(folder / RECORD, _record(result, settings, files))
+    return files
+
+
 def _designs(result: Result) -> dict[str, Any]:
     problem = result.problem
+    front = pareto_optimal(problem, result.candidates)
     return {
         "problem": problem.name,
         "title": problem.title,
         "length_unit": problem.length_unit,
         "angle_unit": "rad",
-        "designs": [_design(rank, candidate) for rank, candidate in enumerate(result.candidates, start=1)],
+        "designs": [
+            {"rank": rank, **_design(candidate), "pareto": bool(best)}
+            for rank, (candidate, best) in enumerate(zip(result.candidates, front, strict=True), start=1)
+        ],
     }
 
 
-def _design(rank: int, candidate: Candidate) -> dict[str, Any]:
+def _design(candidate: Candidate) -> dict[str, Any]:
     verdict = candidate.verdict
+    angle_error = {} if verdict.angle_error is None else {"angle_error": verdict.angle_error.tolist()}
     return {
-        "rank": rank,
         "id": candidate.id,
         "family": "four-bar",
         "linkage": _linkage(candidate.linkage),
         "theta2": verdict.theta2.tolist(),
+        "assembly": verdict.assembly.tolist(),
         "position_error": verdict.position_error.tolist(),
-        "angle_error": verdict.angle_error.tolist(),
+        **angle_error,
         "grashof_class": str(verdict.grashof_class),
         "direction": verdict.direction,
+        "circuit_ok": verdict.circuit_ok,
+        "branch_ok": verdict.branch_ok,
+        "order_ok": verdict.order_ok,
+        "full_rotation": verdict.full_rotation,
         "transmission_min_task": verdict.transmission_min_task,
         "transmission_min_cycle": verdict.transmission_min_cycle,
         "size": verdict.size,
@@ -126,6 +157,11 @@ def _record(result: Result, settings: dict[str, Any], files: list[str]) -> dict[
 
 # What ended solves that would otherwise have gone on.
 _GUARDS = ("Maximum_Iterations_Exceeded", "Maximum_WallTime_Exceeded")
+
+
+def _write_csv(path: Path, frame: pd.DataFrame) -> None:
+    with path.open("w", encoding="utf-8", newline="") as file:  # pandas would read ~ as a home
+        frame.to_csv(file, index=False, lineterminator="\n")
 
 
 def _write_json(path: Path, content: dict[str, Any]) -> None:

@@ -2,25 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import sys
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from io import StringIO
 
 import numpy as np
-import typer
 from rich import box
-from rich.console import Console
+from rich.console import Console, JustifyMethod
 from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
 from rich.progress import Progress as Bar
 from rich.table import Table
 
-from grashof.problems import Problem
+from grashof.problems import PathTask, Problem, Task
 from grashof.problems.checks import counted
+from grashof.streams import say
 from grashof.synth import Candidate, Progress, Result
 from grashof.synth.result import pareto_optimal
 
 _ROWS = 12
 _PIPED_WIDTH = 140
 _WIDE = 100  # columns; narrower terminals get fewer digits
+_UNBOUNDED = 1000
+# Columns that a narrow terminal does without, first to last.
+_DROPPED = (("class",), ("O2", "O4"), ("size",), ("mu turn",))
+_JUSTIFY: dict[str, JustifyMethod] = {"O2": "center", "O4": "center", "class": "left"}
 
 
 def console(*, stderr: bool = False) -> Console:
@@ -35,59 +41,91 @@ def console(*, stderr: bool = False) -> Console:
 def search_progress(name: str) -> Iterator[Callable[[Progress], None]]:
     """Something to give as `progress=`: a bar on a terminal, plain lines elsewhere; on stderr."""
     out = console(stderr=True)
-    if not out.is_terminal:
-        yield lambda step: out.print(f"{name}: {_step(step)}")
+    if not (out.is_terminal and sys.stderr.isatty()):  # the first alone can be forced by FORCE_COLOR
+        yield lambda step: say(f"{name}: {_step(step)}", err=True)
         return
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[step]}"))
     with Bar(*columns, TimeElapsedColumn(), console=out, transient=True) as bar:
         task = bar.add_task(name, total=None, step="tracing dyads and judging pairs")
 
         def show(step: Progress) -> None:
-            bar.update(task, completed=step.verified, total=step.enough, step=_step(step))
+            bar.update(task, completed=min(step.verified, step.enough), total=step.enough, step=_step(step))
 
         yield show
 
 
 def _step(step: Progress) -> str:
-    return f"{step.verified} of {step.enough} designs verified, {step.solved} of {step.starts} starts solved"
+    verified = f"{counted(step.verified, 'design')} verified ({step.enough} wanted)"
+    return f"{verified}, {step.solved} of {step.starts} starts solved"
 
 
-def print_table(result: Result) -> None:
-    """Print the best designs, with what an engineer decides by."""
-    out = console()
-    typer.echo(_heading(result))
-    with out.capture() as captured:
-        out.print(_table(result, digits=4 if out.width >= _WIDE else 3))
-    for line in captured.get().splitlines():
-        typer.echo(line.rstrip())
+def print_table(result: Result, verified: int | None = None) -> None:
+    """Print the best designs, with what an engineer decides by.
+
+    Parameters
+    ----------
+    result : Result
+    verified : int, optional
+        How many designs were found, where `result` lists only the best of them.
+    """
+    width = console().width
+    say(_heading(result, verified or len(result)))
+    for line in _fitting(result, width):
+        say(line)
 
 
-def _table(result: Result, digits: int) -> Table:
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
-    for name in ("#", "mu task\ndeg", "mu turn\ndeg", "size", "r1", "r2", "r3", "r4"):
-        table.add_column(name, justify="right", no_wrap=True)
-    for name in ("O2", "O4"):
-        table.add_column(name, justify="center", no_wrap=True)
-    mixed = len(_classes(result)) > 1
-    if mixed:
-        table.add_column("class")
+def _fitting(result: Result, width: int) -> list[str]:
+    """Lines of the table with as many columns as fit; no number is ever cut."""
+    digits = 4 if width >= _WIDE else 3
+    for dropped in range(len(_DROPPED) + 1):
+        page = Console(file=StringIO(), width=_UNBOUNDED, highlight=False, markup=False, color_system=None)
+        left_out = [name for names in _DROPPED[:dropped] for name in names]
+        with page.capture() as captured:
+            page.print(_table(result, digits, left_out))
+        lines = [line.rstrip() for line in captured.get().splitlines()]
+        if max(map(len, lines)) <= width:
+            break
+    return lines
+
+
+def _table(result: Result, digits: int, left_out: Sequence[str]) -> Table:
     front = pareto_optimal(result.problem, result.candidates)
-    for rank, candidate in enumerate(result.candidates[:_ROWS], start=1):
-        kind = [str(candidate.verdict.grashof_class)] if mixed else []
-        table.add_row(f"{rank}{'*' if front[rank - 1] else ' '}", *_cells(candidate, digits), *kind)
+    rows = [
+        {"#": f"{rank}{'*' if front[rank - 1] else ' '}", **_cells(candidate, digits)}
+        for rank, candidate in enumerate(result.candidates[:_ROWS], start=1)
+    ]
+    left_out = [
+        *left_out,
+        *(["error rms"] if result.problem.requirements.is_exact(result.problem.task) else []),
+        *(["class"] if len(_classes(result)) == 1 else []),
+    ]
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+    names = [name for name in rows[0] if name not in left_out]
+    for name in names:
+        heading = name.replace(" ", "\n") if name == "error rms" or "size" in left_out else name
+        unit = "\ndeg" if name.startswith("mu") else ""
+        table.add_column(f"{heading}{unit}", justify=_JUSTIFY.get(name, "right"), no_wrap=True)
+    for row in rows:
+        table.add_row(*(row[name] for name in names))
     return table
 
 
-def _heading(result: Result) -> str:
-    worst = max(candidate.verdict.error_max for candidate in result.candidates)
+def _heading(result: Result, verified: int) -> str:
+    exact = result.problem.requirements.is_exact(result.problem.task)
+    errors = [candidate.verdict.error_max for candidate in result.candidates]
+    error = f"largest position error {max(errors):.1e}" if exact else f"smallest error {min(errors):.3g}"
     classes = _classes(result)
-    kind = f"{classes.pop()} design" if len(classes) == 1 else "design"
+    kind = f"{classes.pop()} " if len(classes) == 1 else ""
+    found = counted(verified, f"distinct verified {kind}design")
+    if verified > len(result):  # nothing is known here of the class of the others
+        found = f"{verified} distinct designs verified, the best {len(result)} listed"
+        found += f" ({kind.strip()})" if kind else ""
     unit = result.problem.length_unit
     lengths = f" Lengths in {unit}." if unit else ""
     shown = f" The best {_ROWS}:" if len(result) > _ROWS else ""
     return (
-        f"{counted(len(result), f'distinct verified {kind}')}, largest position error {worst:.1e}.{lengths}\n"
-        f"mu: worst transmission angle; *: Pareto-optimal in mu and size.{shown}"
+        f"{found}, {error}.{lengths}\n"
+        f"mu: worst transmission angle; *: Pareto-optimal in {'' if exact else 'error, '}mu and size.{shown}"
     )
 
 
@@ -95,16 +133,18 @@ def _classes(result: Result) -> set[str]:
     return {str(candidate.verdict.grashof_class) for candidate in result.candidates}
 
 
-def _cells(candidate: Candidate, digits: int) -> list[str]:
+def _cells(candidate: Candidate, digits: int) -> dict[str, str]:
     linkage, verdict = candidate.linkage, candidate.verdict
     task, turn = np.degrees([verdict.transmission_min_task, verdict.transmission_min_cycle])
-    return [
-        f"{task:.1f}",
-        f"{turn:.1f}" if verdict.full_rotation else "-",
-        f"{verdict.size:.{digits}g}",
-        *(f"{length:.{digits}g}" for length in linkage.lengths),
-        *(f"{x:.3g}, {y:.3g}" for x, y in (linkage.o2, linkage.o4)),
-    ]
+    return {
+        "error rms": f"{verdict.error_rms:.2g}",
+        "mu task": f"{task:.1f}",
+        "mu turn": f"{turn:.1f}" if verdict.full_rotation else "-",
+        "size": f"{verdict.size:.{digits}g}",
+        **{f"r{i}": f"{length:.{digits}g}" for i, length in enumerate(linkage.lengths, start=1)},
+        **{name: f"{x:.3g}, {y:.3g}" for name, (x, y) in (("O2", linkage.o2), ("O4", linkage.o4))},
+        "class": str(verdict.grashof_class),
+    }
 
 
 def summary(problem: Problem) -> list[str]:
@@ -117,8 +157,7 @@ def summary(problem: Problem) -> list[str]:
     arms = wanted.coupler_arms or (0.0, np.inf)
     lines = [
         f"{problem.name}: {problem.title}" if problem.title else problem.name,
-        f"  motion through {len(task)} poses, size {task.size:g}{unit}, "
-        f"angle_length {task.angle_length:g}{unit}",
+        f"  {_task(task, unit)}; {_exactness(problem)}",
         f"  rotatability {wanted.rotatability}, margin {wanted.rotatability_margin:g}; "
         f"order {_yes(wanted.order)}, same branch {_yes(wanted.same_branch)}",
         f"  transmission at least {wanted.transmission_min_deg:g} deg over the {wanted.transmission_over}",
@@ -138,6 +177,21 @@ def summary(problem: Problem) -> list[str]:
         f"  objective: transmission {weights.transmission:g}, compactness {weights.compactness:g}",
         f"  search: up to {search.starts} starts, {search.enough} designs, seed {search.seed}",
     ]
+
+
+def _task(task: Task, unit: str) -> str:
+    if isinstance(task, PathTask):
+        kind = "closed path" if task.closed else "path"
+        timing = "" if task.timing is None else f" timed over {abs(np.degrees(task.timing[-1])):g} deg"
+        return f"{kind} through {len(task)} points{timing}, size {task.size:g}{unit}"
+    size = f"size {task.size:g}{unit}, angle_length {task.angle_length:g}{unit}"
+    return f"motion through {len(task)} poses, {size}"
+
+
+def _exactness(problem: Problem) -> str:
+    if not problem.requirements.is_exact(problem.task):
+        return "least squares"
+    return f"every target met within {problem.requirements.tolerance:g} sizes"
 
 
 def _yes(value: bool) -> str:

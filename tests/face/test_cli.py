@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -13,9 +14,12 @@ from typing import Any
 
 import pandas as pd
 import pytest
+from matplotlib.figure import Figure
 
+import grashof.draw as grashof_draw
 from grashof.analysis import verify
-from grashof.problems import FourBar, load, problem_text
+from grashof.problems import FourBar, Problem, load, problem_text
+from grashof.synth import Candidate
 
 Grashof = Callable[..., Any]
 QUICK = ("--top", "12", "--starts", "32", "--drawings", "2")
@@ -42,7 +46,12 @@ def test_solve_writes_a_verified_list(grashof: Grashof, tmp_path: Path) -> None:
     assert set(record["files"]) == expected
     assert record["designs"] == len(table)
     assert record["settings"]["seed"] == 0
-    assert done.stdout.startswith(f"{len(table)} distinct verified crank-rocker designs")
+    assert record["counts"]["verified and distinct"] >= len(table)
+    assert "distinct" in done.stdout
+    for design, row in zip(designs, table.itertuples(), strict=True):
+        for key in ("circuit_ok", "branch_ok", "order_ok", "full_rotation", "pareto"):
+            assert design[key] is bool(getattr(row, key))
+        assert design["assembly"] == [row.assembly] * 4
 
 
 def test_progress_is_plain_lines_when_piped(grashof: Grashof) -> None:
@@ -131,11 +140,60 @@ def test_output_folder_that_cannot_be_written(grashof: Grashof, tmp_path: Path) 
 
 
 @pytest.mark.parametrize(
-    "option", [("--starts", "0"), ("--workers", "none"), ("--time-limit", "-1"), ("--resume",)]
+    ("arguments", "said"),
+    [
+        ("solve luggage --starts 0", "--starts"),
+        ("solve luggage --workers none", "--workers"),
+        ("solve luggage --time-limit -1", "time_limit is -1.0"),
+        ("solve luggage --time-limit inf", "time_limit is inf"),
+        ("solve luggage --time-limit nan", "time_limit is nan"),
+        ("solve luggage --sed 1", "--seed"),
+        ("solve", "PROBLEM"),
+        ("solv luggage", "solve"),
+        ("solve luggage --resume", "--resume is not in this version"),
+        ("solve luggage --scheduler=here", "--scheduler is not in this version"),
+        ("analyse crank.toml", "analyse is not in this version"),
+        ("export crank.toml", "export is not in this version"),
+        (f"solve luggage --out {'x' * 300}", "File name too long"),
+    ],
 )
-def test_bad_options(grashof: Grashof, tmp_path: Path, option: tuple[str, ...]) -> None:
-    assert grashof("solve", "luggage", *option).exit_code == 2
+def test_bad_usage_is_one_line(grashof: Grashof, tmp_path: Path, arguments: str, said: str) -> None:
+    done = grashof(*arguments.split())
+    assert done.exit_code == 2
+    assert said in done.stderr
+    assert done.stderr.startswith("grashof: ")
+    assert done.stderr.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
+
+
+def test_help_is_no_error(grashof: Grashof) -> None:
+    assert grashof("--help").exit_code == 0
+    assert "--time-limit" in grashof("solve", "--help").stdout
+    assert "Usage" in grashof().output
+
+
+def test_a_tilde_is_a_name(grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    assert grashof("solve", "luggage", "--out", "~", "--starts", "8", "--drawings", "1").exit_code == 0
+    names = {"candidates.csv", "candidates.json", "run.json", "design-01.png", "design-01.svg"}
+    assert {path.name for path in (tmp_path / "~").iterdir()} == names
+    assert [path.name for path in tmp_path.iterdir()] == ["~"]
+
+
+def test_foreign_files_are_refused_before_solving(grashof: Grashof, tmp_path: Path) -> None:
+    (tmp_path / "run.json").write_text('{"files": ["thesis.txt"]}')
+    done = grashof("solve", "luggage", "--out", ".")
+    assert done.exit_code == 2
+    assert done.stderr.count("\n") == 1
+    assert "run.json" in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["run.json"]
+
+
+def test_the_list_holds_what_the_file_wants(grashof: Grashof, tmp_path: Path) -> None:
+    text = problem_text("luggage") + "\n[search]\nenough = 60\n"
+    (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
+    assert grashof("solve", "mine.toml", "--drawings", "0").exit_code == 0
+    assert len(pd.read_csv(tmp_path / "mine-designs" / "candidates.csv")) == 60
 
 
 def test_full_disk_is_told_and_keeps_the_old_run(
@@ -165,6 +223,86 @@ def test_check_and_problems(grashof: Grashof, tmp_path: Path) -> None:
     assert grashof("check", "copy.toml").exit_code == 0
     assert grashof("problems", "nothing").exit_code == 2
     assert grashof("check", "nothing").exit_code == 2
+
+
+@pytest.mark.parametrize("case", ["five poses", "equal poses"])
+def test_check_refuses_what_solve_refuses(grashof: Grashof, tmp_path: Path, case: str) -> None:
+    old, new, said = BAD[case]
+    (tmp_path / "mine.toml").write_text(problem_text("luggage").replace(old, new), encoding="utf-8")
+    done = grashof("check", "mine.toml")
+    assert done.exit_code == 2
+    assert said in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert done.stdout == ""
+
+
+def test_check_refuses_repeated_poses(grashof: Grashof, tmp_path: Path) -> None:
+    text = problem_text("luggage").replace("[1, 0, 0]]", "[5, 4, 0]]")
+    (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
+    done = grashof("check", "mine.toml")
+    assert done.exit_code == 2
+    assert done.stderr == grashof("solve", "mine.toml").stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
+def test_interrupt_while_drawing_leaves_drawings_out(
+    grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    draw = grashof_draw.draw_design
+
+    def interrupted(problem: Problem, candidate: Candidate, rank: int) -> Figure:
+        if rank == 2:
+            signal.raise_signal(signal.SIGINT)
+        return draw(problem, candidate, rank)
+
+    monkeypatch.setattr(grashof_draw, "draw_design", interrupted)
+    done = grashof("solve", "luggage", "--starts", "16")
+    assert done.exit_code == 130
+    names = {"candidates.csv", "candidates.json", "run.json"}
+    names |= {f"design-0{rank}.{kind}" for rank in (1, 2) for kind in ("png", "svg")}
+    folder = tmp_path / "luggage-designs"
+    assert {path.name for path in folder.iterdir()} == names
+    assert set(json.loads((folder / "run.json").read_text())["files"]) == names
+
+
+@pytest.mark.parametrize(("error", "code"), [(OSError(28, "disk full"), 3), (KeyboardInterrupt(), 130)])
+def test_a_drawing_that_fails_does_not_cost_the_lists(
+    grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException, code: int
+) -> None:
+    def fail(*_: object) -> None:
+        raise error
+
+    monkeypatch.setattr(grashof_draw, "save", fail)
+    assert grashof("solve", "luggage", "--starts", "16").exit_code == code
+    folder = tmp_path / "luggage-designs"
+    names = {"candidates.csv", "candidates.json", "run.json"}
+    assert {path.name for path in folder.iterdir()} == names
+    assert set(json.loads((folder / "run.json").read_text())["files"]) == names
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes of another kind")
+@pytest.mark.parametrize("merged", [True, False])
+def test_a_reader_that_leaves_ends_nothing(tmp_path: Path, merged: bool) -> None:
+    # FORCE_COLOR makes rich take a pipe for a terminal.
+    program = "from grashof.cli import main; main()"
+    command = [sys.executable, "-c", program, "solve", "luggage", "--drawings", "0"]
+    running = subprocess.Popen(
+        command,
+        cwd=tmp_path,
+        env={**os.environ, "FORCE_COLOR": "1"} if merged else None,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT if merged else subprocess.PIPE,
+        text=True,
+    )
+    assert running.stdout is not None
+    if merged:
+        running.stdout.readline()
+    running.stdout.close()
+    said = "" if merged else running.communicate(timeout=60)[1]
+    assert running.wait(timeout=60) == 0
+    assert "Error" not in said
+    assert "Exception" not in said
+    assert len(pd.read_csv(tmp_path / "luggage-designs" / "candidates.csv")) == 50
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 from matplotlib.colors import to_hex
 
 from grashof.draw import BODY, DRIVER, PATH, draw_design, save
@@ -42,6 +44,37 @@ def test_axes_are_equal_and_carry_the_unit(few: Result) -> None:
     assert "design 7" in axes.get_title()
     assert f"{np.degrees(few.candidates[0].verdict.transmission_min_task):.1f} deg" in axes.get_title()
     assert {to_hex(text.get_color()) for text in axes.texts if text.get_text() in set("1234")} == {PATH}
+
+
+def test_names_legend_and_sense_of_the_driver(few: Result) -> None:
+    candidate = few.candidates[0]
+    axes = draw_design(few.problem, candidate, 1).axes[0]
+    named = {text.get_text(): text.xy for text in axes.texts}
+    assert {"O2", "O4", "A", "B", "P"} <= set(named)
+    np.testing.assert_allclose(named["P"], few.problem.task.positions[-1], atol=1e-9)
+    legend = axes.get_legend()
+    assert legend is not None
+    assert legend.get_title().get_text() == "light to dark: first to last target"
+    assert "body" in {text.get_text() for text in legend.get_texts()}
+    arrow = next(t for t in axes.texts if t.arrow_patch and to_hex(t.arrow_patch.get_edgecolor()) == DRIVER)
+    tail, head = np.array(arrow.xyann) - candidate.linkage.o2, np.array(arrow.xy) - candidate.linkage.o2
+    assert np.sign(tail[0] * head[1] - tail[1] * head[0]) == candidate.verdict.direction
+
+
+@pytest.mark.parametrize("circuit_ok", [True, False])
+def test_a_defect_is_told_and_no_motion_is_drawn(few: Result, circuit_ok: bool) -> None:
+    verdict = replace(few.candidates[0].verdict, branch_ok=False, circuit_ok=circuit_ok)
+    axes = draw_design(few.problem, replace(few.candidates[0], verdict=verdict), 1).axes[0]
+    assert f"{'branch' if circuit_ok else 'circuit'} defect" in axes.get_title()
+    assert not any("first to last" in str(line.get_label()) for line in axes.lines)
+    assert "defect" not in draw_design(few.problem, few.candidates[0], 1).axes[0].get_title()
+
+
+def test_dollars_and_backslashes_are_plain_text(few: Result, tmp_path: Path) -> None:
+    problem = replace(few.problem, title=r"$\nonsense{ for 5$", length_unit="$^$")
+    figure = draw_design(problem, few.candidates[0], 1)
+    save(figure, [tmp_path / "d.png", tmp_path / "d.svg"])
+    assert figure.axes[0].get_title().startswith(r"$\nonsense{ for 5$: design 1")
 
 
 def test_same_design_same_bytes(few: Result, tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
+from grashof.analysis.mobility import GrashofClass
 from grashof.problems import Box, Requirements, load
 from grashof.synth import Progress, Result
 from grashof.terminal import print_table, search_progress, summary
@@ -28,16 +29,39 @@ def test_table_shows_what_one_decides_by(few: Result, capsys: pytest.CaptureFixt
     assert max(map(len, lines)) < 100
 
 
-@pytest.mark.parametrize("columns", [80, 100])
+@pytest.mark.parametrize("mixed", [False, True])
+@pytest.mark.parametrize("columns", [40, 60, 80, 100])
 def test_table_fits_the_terminal_uncut(
-    few: Result, columns: int, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    few: Result,
+    columns: int,
+    mixed: bool,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     terminal = Console(width=columns, highlight=False, markup=False)
     monkeypatch.setattr("grashof.terminal.console", lambda: terminal)
+    if mixed:
+        first = few.candidates[0]
+        other = replace(first, verdict=replace(first.verdict, grashof_class=GrashofClass.DOUBLE_CRANK))
+        few = replace(few, candidates=(other, *few.candidates[1:]))
     print_table(few)
     lines = capsys.readouterr().out.splitlines()[2:]
     assert max(map(len, lines)) <= columns
     assert "…" not in "".join(lines)
+    heading = " ".join(" ".join(lines[:4]).split())
+    assert all(name in heading.split() for name in ("r1", "r2", "r3", "r4", "mu"))
+    assert ("size" in heading) == (columns >= 60)
+    assert ("O2" in heading) == (columns >= 80)
+    assert ("class" in heading) == (mixed and columns >= 100)
+    for candidate in few.candidates:
+        lengths = [f"{length:.{4 if columns >= 100 else 3}g}" for length in candidate.linkage.lengths]
+        assert any(all(length in line.split() for length in lengths) for line in lines)
+
+
+def test_heading_tells_of_designs_not_listed(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
+    print_table(few, 56)
+    said = f"56 distinct designs verified, the best {len(few)} listed (crank-rocker)"
+    assert capsys.readouterr().out.startswith(said)
 
 
 def test_a_long_list_is_cut_and_says_so(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
@@ -50,8 +74,10 @@ def test_a_long_list_is_cut_and_says_so(few: Result, capsys: pytest.CaptureFixtu
 def test_progress_lines(capsys: pytest.CaptureFixture[str]) -> None:
     with search_progress("mine") as show:
         show(Progress(solved=16, starts=78, verified=9, enough=50))
+        show(Progress(solved=64, starts=78, verified=56, enough=50))
     assert capsys.readouterr().err.splitlines() == [
-        "mine: 9 of 50 designs verified, 16 of 78 starts solved",
+        "mine: 9 designs verified (50 wanted), 16 of 78 starts solved",
+        "mine: 56 designs verified (50 wanted), 64 of 78 starts solved",
     ]
 
 
@@ -68,3 +94,15 @@ def test_summary_names_every_requirement_given() -> None:
         "r3 1 to 2",
     ):
         assert said in text
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("path-vertical-line", "path through 6 points, size 25; every target met within 1e-06 sizes"),
+        ("path-18-timed", "closed path through 18 points timed over 340 deg, size 0.96566; least squares"),
+        ("luggage", "motion through 4 poses, size 5.65685 m, angle_length 5.65685 m; every target met"),
+    ],
+)
+def test_summary_tells_the_task(name: str, said: str) -> None:
+    assert said in summary(load(name))[1]

@@ -33,7 +33,6 @@ def test_every_problem_of_the_catalogue_loads_and_says_what_it_is(name: str) -> 
     assert problem.name == name
     assert problem.title
     assert problem.source
-    assert problem.length_unit
     assert len(problem.task) >= 2
 
 
@@ -160,7 +159,7 @@ def test_errors_inside_a_file_begin_with_its_name(folder: Path) -> None:
     (folder / "bad.toml").write_text(GOOD + "[requirements]\nlink_lenght = [1, 2]\n", encoding="utf-8")
     assert refused("bad.toml") == "bad.toml: requirements.link_lenght is unknown; did you mean link_length?"
     (folder / "empty.toml").touch()
-    assert refused("empty.toml") == "empty.toml: kind is missing (and 1 more error)"
+    assert refused("empty.toml") == "empty.toml: kind is missing"
 
 
 def test_importing_the_package_does_not_load_what_only_files_need() -> None:

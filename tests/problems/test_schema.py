@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grashof.problems import Box, Objective, Problem, ProblemError, Requirements, Search
+from grashof.problems import Box, MotionTask, Objective, PathTask, Problem, ProblemError, Requirements, Search
 from grashof.problems.schema import RequirementsTable, problem_from
 
 POSES = "poses = [[5, 4, 0], [3.5, 4, -5], [2, 3, -5], [1, 0, 0]]"
@@ -81,6 +81,7 @@ def test_every_key_reaches_its_field() -> None:
         "a report",
         "cm",
     )
+    assert isinstance(every.task, MotionTask)
     assert every.task.positions.tolist() == [[5, 4], [3.5, 4], [2, 3], [1, 0]]
     np.testing.assert_allclose(np.degrees(every.task.angles), [0, -5, -5, 0], rtol=1e-15)
     assert every.task.angle_length == 2.0
@@ -88,6 +89,7 @@ def test_every_key_reaches_its_field() -> None:
     assert every.task.body.tolist() == [[0, 0], [1, 0], [1, 1.5]]
     assert [outline.tolist() for outline in every.outlines] == [[[0, 0], [5, 0]], [[1, 1], [2, 2], [3, 1]]]
     assert every.requirements == Requirements(
+        exact=True,
         tolerance=1e-7,
         rotatability="crank-rocker",  # type: ignore[arg-type]
         rotatability_margin=0.01,
@@ -115,8 +117,8 @@ def test_every_key_reaches_its_field() -> None:
 
 def test_the_example_above_uses_every_requirement() -> None:
     fields = {field.name for field in dataclasses.fields(Requirements)}
-    assert set(tomllib.loads(EVERY_KEY)["requirements"]) == fields | {"exact"}
-    assert set(RequirementsTable.model_fields) == fields | {"exact"}
+    assert set(tomllib.loads(EVERY_KEY)["requirements"]) == fields
+    assert set(RequirementsTable.model_fields) == fields
     given_away = problem(EVERY_KEY).requirements
     assert [name for name in fields if getattr(given_away, name) == getattr(Requirements(), name)] == []
 
@@ -177,7 +179,7 @@ STRUCTURE = [
     ('kind = "motion"', "motion is missing"),
     ('kind = "motion"\n[motion]', "motion.poses is missing"),
     ('kind = "motion"\nmotion = 5', "motion is 5; allowed is a table"),
-    (f'kind = "dance"\n[motion]\n{POSES}', "kind is 'dance'; allowed is motion"),
+    (f'kind = "dance"\n[motion]\n{POSES}', "kind is 'dance'; allowed is motion or path"),
     (f"kind = 3\n[motion]\n{POSES}", "kind is 3; allowed is a string"),
     ("title = 3\n" + HEAD, "title is 3; allowed is a string"),
     (HEAD + "angle_length = '1'", "motion.angle_length is '1'; allowed is a number"),
@@ -335,7 +337,6 @@ def test_unknown_keys(text: str, expected: str) -> None:
 
 LATER = [
     ("weights = [1, 1, 1, 2]", "motion.weights is not supported by this version"),
-    ("[path]\npoints = [[1, 2]]", "path is not supported by this version"),
     ("[dynamics]\nspeed_rpm = 10", "dynamics is not supported by this version"),
     ("[manufacturing]\nlength_tolerance = 0.1", "manufacturing is not supported by this version"),
     (
@@ -343,10 +344,6 @@ LATER = [
         "requirements.keep_out is not supported by this version",
     ),
     ("[requirements]\nkeep_out_for = ['o2']", "requirements.keep_out_for is not supported by this version"),
-    (
-        "[requirements]\nexact = false",
-        "requirements.exact is false, which is not supported by this version; allowed is true",
-    ),
     (
         "[objective]\nmaximise = 'torque'",
         "objective.maximise is 'torque', which is not supported by this version; "
@@ -361,9 +358,66 @@ def test_keys_of_later_versions_are_refused_by_name(text: str, expected: str) ->
     assert message(HEAD + text) == expected
 
 
-def test_a_path_problem_is_refused_by_its_kind_alone() -> None:
-    text = 'kind = "path"\n[path]\npoints = [[20, 20], [20, 25]]\n[requirements]\nexact = false'
-    assert message(text) == "kind is 'path', which is not supported by this version; allowed is motion"
+LINE = 'kind = "path"\n[path]\npoints = [[20, 20], [20, 25], [21, 30]]\n'
+
+
+def test_every_key_of_a_path_reaches_its_field() -> None:
+    task = problem(LINE + "timing_deg = [0, -20, -45.5]\nclosed = true\n").task
+    assert isinstance(task, PathTask)
+    assert task.points.tolist() == [[20, 20], [20, 25], [21, 30]]
+    assert task.timing is not None
+    assert task.timing.tolist() == np.radians([0, -20, -45.5]).tolist()
+    assert task.closed
+    plain = problem(LINE).task
+    assert isinstance(plain, PathTask)
+    assert (plain.timing, plain.closed) == (None, False)
+
+
+@pytest.mark.parametrize(("given", "expected"), [("true", True), ("false", False), (None, None)])
+@pytest.mark.parametrize("head", [HEAD, LINE])
+def test_exact_is_true_false_or_left_to_the_task(head: str, given: str | None, expected: bool | None) -> None:
+    text = head + ("" if given is None else f"[requirements]\nexact = {given}")
+    assert problem(text).requirements.exact is expected
+
+
+PATHS = [
+    ('kind = "path"', "path is missing"),
+    ('kind = "path"\n[path]', "path.points is missing"),
+    (LINE + f"[motion]\n{POSES}", 'motion does not belong to kind = "path"'),
+    (HEAD + "[path]\npoints = [[20, 20], [20, 25], [21, 30]]", 'path does not belong to kind = "motion"'),
+    (f'kind = "path"\n[motion]\n{POSES}', 'motion does not belong to kind = "path"'),
+    ('kind = "path"\n[paht]\npoints = [[1, 2]]', "paht is unknown; did you mean path?"),
+    (LINE + "timing = [0, 1, 2]", "path.timing is unknown; did you mean timing_deg?"),
+    (LINE + "poses = 3", "path.poses is unknown; did you mean motion.poses?"),
+    ('kind = "path"\n[path]\npoints = 5', "path.points is 5; allowed is a list of points [x, y]"),
+    ('kind = "path"\n[path]\npoints = [5]', "path.points[0] is 5; allowed is a point [x, y]"),
+    (
+        'kind = "path"\n[path]\npoints = [[1, 2], [3, "4"]]',
+        "path.points[1][1] is '4'; allowed is a number",
+    ),
+    (
+        'kind = "path"\n[path]\npoints = [[1, 2], [3, 4, 5], [6, 7]]',
+        "path.points[1] is [3.0, 4.0, 5.0], 3 numbers; allowed is a point [x, y]",
+    ),
+    (
+        'kind = "path"\n[path]\npoints = [[1, 2], [3, 4]]',
+        "path.points has 2 points; allowed are three or more",
+    ),
+    (LINE + "closed = 1", "path.closed is 1; allowed is true or false"),
+    (LINE + "timing_deg = 20", "path.timing_deg is 20; allowed is a list of angles"),
+    (LINE + "timing_deg = [0, '20', 40]", "path.timing_deg[1] is '20'; allowed is a number"),
+    (LINE + "timing_deg = [0, 20]", "path.timing_deg has 2 angles for 3 points"),
+    (LINE + "timing_deg = [5, 20, 30]", "path.timing_deg[0] is 5; allowed is 0, at the first point"),
+    (
+        LINE + "timing_deg = [0, 20, 10]",
+        "path.timing_deg[2] is 10 after 20; allowed are angles that only grow, or only fall",
+    ),
+]
+
+
+@pytest.mark.parametrize(("text", "expected"), PATHS)
+def test_bad_paths(text: str, expected: str) -> None:
+    assert message(text) == expected
 
 
 def test_the_first_of_several_errors_is_told_and_the_others_counted() -> None:

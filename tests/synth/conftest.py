@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 
 from grashof import load, synthesize
-from grashof.analysis.planted import planted_motion
-from grashof.problems import FourBar, MotionTask, Problem, Requirements
+from grashof.analysis.planted import planted_motion, planted_path
+from grashof.problems import FourBar, MotionTask, PathTask, Problem, Requirements
 from grashof.problems.checks import ComplexArray, FloatArray
 from grashof.synth import Candidate, Result, four_poses
 from grashof.synth.burmester import trace_four_pose_curves
-from grashof.synth.screen import Pairs, near_misses, screen
+from grashof.synth.finds import Finds
+from grashof.synth.screen import near_misses, screen
 from grashof.synth.setup import Setup
 
 STEPS = 3000  # of the driver between two targets; three times as many over the turn
@@ -115,6 +116,54 @@ def judge(linkage: FourBar, task: MotionTask) -> Findings:
     )
 
 
+@dataclass(frozen=True)
+class PathFindings:
+    """What the independent judge finds at the driver angles of a verdict: lengths in sizes, angles in deg."""
+
+    errors: FloatArray
+    in_order: bool
+    on_one_branch: bool
+    turns: bool
+    transmission_task: float
+    transmission_cycle: float
+    lengths: FloatArray
+    arms: FloatArray
+
+
+PathJudge: TypeAlias = Callable[[FourBar, FloatArray, PathTask], PathFindings]
+
+
+def judge_path(linkage: FourBar, theta2: FloatArray, task: PathTask) -> PathFindings:
+    o2, o4 = complex_point(linkage.o2), complex_point(linkage.o4)
+    r2, r3, r4 = float(linkage.r2), float(linkage.r3), float(linkage.r4)
+    p, side = complex_point(linkage.coupler_point), int(linkage.assembly)
+
+    def places(angle: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+        a = o2 + r2 * np.exp(1j * angle)
+        return a, meeting_points(a, o4, r3, r4)[0 if side > 0 else 1]
+
+    a, b = places(theta2)
+    targets = task.points[:, 0] + 1j * task.points[:, 1]
+    steps, sense = np.diff(theta2), np.sign(theta2[-1] - theta2[0])
+    gone = 2 * np.pi if task.closed else abs(theta2[-1] - theta2[0])
+    way = theta2[0] + sense * np.linspace(0, gone, 3 * STEPS)
+    at_a, at_b = places(way)
+    turn = np.angle(o4 - o2) + np.linspace(0, 2 * np.pi, 3 * STEPS + 1)
+    round_a, round_b = places(turn)
+    turns, closes = bool(np.isfinite(round_b).all()), bool(np.isfinite(at_b).all())
+    size = task.size
+    return PathFindings(
+        errors=np.abs(a + p * (b - a) / r3 - targets) / size,
+        in_order=bool((sense * steps >= -1e-9).all() and gone <= 2 * np.pi + 1e-9),
+        on_one_branch=closes,
+        turns=turns,
+        transmission_task=float(folded_angle(at_a, at_b, o4).min()) if closes else 0.0,
+        transmission_cycle=float(folded_angle(round_a, round_b, o4).min()) if turns else 0.0,
+        lengths=np.array([abs(o4 - o2), r2, r3, r4]),
+        arms=np.array([abs(p), abs(p - r3)]),
+    )
+
+
 @pytest.fixture(scope="session")
 def independent_judge() -> Judge:
     return judge
@@ -167,23 +216,39 @@ def planted_setup() -> Callable[..., tuple[Setup, FourBar]]:
     return of
 
 
-PairsOf: TypeAlias = Callable[[Setup], Pairs]
+@pytest.fixture(scope="session")
+def path_judge() -> PathJudge:
+    return judge_path
+
+
+@pytest.fixture(scope="session")
+def path_setup() -> Callable[..., tuple[Setup, FourBar]]:
+    """Setup of a planted path task, and the linkage that does it."""
+
+    def of(seed: int, points: int, timed: bool = False, **wanted: Any) -> tuple[Setup, FourBar]:
+        task, linkage = planted_path(np.random.default_rng(seed), points, timed=timed)
+        return Setup.of(Problem(task=task, requirements=Requirements(**wanted))), linkage
+
+    return of
+
+
+PairsOf: TypeAlias = Callable[[Setup], Finds]
 
 
 @pytest.fixture(scope="session")
 def feasible_pairs() -> PairsOf:
-    def of(setup: Setup) -> Pairs:
+    def of(setup: Setup) -> Finds:
         dyads = trace_four_pose_curves(setup.motion, reach=6.0, lines=200, cell=0.03)
-        return screen(setup.motion, setup.body, dyads, setup.wanted, pairs=60_000)
+        return screen(setup.motion, setup.targets[0], dyads, setup.wanted, pairs=60_000)
 
     return of
 
 
 @pytest.fixture(scope="session")
 def all_pairs() -> PairsOf:
-    def of(setup: Setup) -> Pairs:
+    def of(setup: Setup) -> Finds:
         dyads = trace_four_pose_curves(setup.motion, reach=5.0, lines=40, cell=0.1)
-        return near_misses(setup.motion, setup.body, dyads, setup.wanted, pairs=20_000)
+        return near_misses(setup.motion, setup.targets[0], dyads, setup.wanted, pairs=20_000)
 
     return of
 

@@ -11,7 +11,7 @@ from grashof.problems import Box, FourBar
 from grashof.problems.checks import FloatArray
 from grashof.synth import attempt as module
 from grashof.synth.attempt import attempt
-from grashof.synth.four_poses import starts
+from grashof.synth.four_poses import rounds
 from grashof.synth.programme import Solve
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
@@ -20,7 +20,7 @@ SetupOf = Callable[..., Setup]
 
 
 def first_starts(setup: Setup, count: int) -> list[Start]:
-    return starts(setup, count, 50, np.random.default_rng(0))[0]
+    return next(rounds(setup, 50, np.random.default_rng(0)))[0][:count]
 
 
 def off_circles(linkage: FourBar, setup: Setup) -> float:
@@ -87,7 +87,13 @@ def test_numbers_that_are_not_finite_are_no_linkage(
 ) -> None:
     setup = luggage_setup()
     start = first_starts(setup, 1)[0]
-    broken = Solve((complex("nan"), start.o4, start.a, start.b), "Invalid_Number_Detected", 7)
+    broken = Solve(
+        (complex("nan"), start.o4, start.a, start.b, start.p),
+        start.theta2,
+        start.theta3,
+        "Invalid_Number_Detected",
+        7,
+    )
     monkeypatch.setattr(module, "solve", lambda *_: broken)
     result = attempt(setup, start, 0)
     assert (result.status, result.candidate) == ("Invalid_Number_Detected", None)
@@ -97,8 +103,9 @@ def test_the_solver_is_not_believed(luggage_setup: SetupOf, monkeypatch: pytest.
     """A solve that says it succeeded, but ended somewhere else, is judged by where it ended."""
     setup = luggage_setup()
     start = first_starts(setup, 1)[0]
-    moved = (start.o2 + 2, start.o4 - 3j, start.a, start.b)
-    monkeypatch.setattr(module, "solve", lambda *_: Solve(moved, "Solve_Succeeded", 7))
+    moved = (start.o2 + 2, start.o4 - 3j, start.a, start.b, start.p)
+    ended = Solve(moved, start.theta2, start.theta3, "Solve_Succeeded", 7)
+    monkeypatch.setattr(module, "solve", lambda *_: ended)
     candidate = attempt(setup, start, 0).candidate
     assert candidate is None or not candidate.verdict.ok
 

@@ -8,9 +8,10 @@ import pytest
 
 from grashof.analysis import verify
 from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, ProblemError, Requirements
+from grashof.synth.choose import PEAK_SPACING, PEAKS
 from grashof.synth.distinct import apart, signature
-from grashof.synth.four_poses import PEAK_SPACING, PEAKS, degenerate, relaxed_starts, starts
-from grashof.synth.screen import GROUPS
+from grashof.synth.finds import GROUPS
+from grashof.synth.four_poses import degenerate, refuse_equal_poses, relaxed_starts, rounds
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
 
@@ -19,8 +20,9 @@ pytestmark = pytest.mark.usefixtures("coarse_curves")
 SetupOf = Callable[..., Setup]
 
 
-def queue_of(setup: Setup, most: int = 200, enough: int = 50, seed: int = 0) -> tuple[list[Start], int]:
-    return starts(setup, most, enough, np.random.default_rng(seed))
+def queue_of(setup: Setup, enough: int = 50, seed: int = 0) -> tuple[list[Start], int]:
+    (queue,) = rounds(setup, enough, np.random.default_rng(seed))
+    return queue
 
 
 def linkage_of(setup: Setup, start: Start) -> FourBar:
@@ -64,9 +66,9 @@ def test_pure_rotation_is_told_with_its_centre() -> None:
 
 @pytest.mark.parametrize("again", [20.0, 380.0])
 def test_equal_poses_that_do_not_follow_each_other_are_refused(again: float) -> None:
-    setup = poses([[0, 0, 0], [1, 0, 20], [2, 1, 50], [1, 0, again]])
+    task = MotionTask.from_degrees([[0, 0, 0], [1, 0, 20], [2, 1, 50], [1, 0, again]])
     with pytest.raises(ProblemError, match=r"motion.poses\[1\] and motion.poses\[3\] are equal"):
-        degenerate(setup)
+        refuse_equal_poses(task)
 
 
 def test_the_best_are_free_and_apart_then_all_over_the_family(luggage_setup: SetupOf) -> None:
@@ -78,7 +80,8 @@ def test_the_best_are_free_and_apart_then_all_over_the_family(luggage_setup: Set
     assert all(start.radius == np.inf for start in free)
     assert len(spread) == 70  # 1.4 times enough
     assert all(0 < start.radius < np.inf for start in spread)
-    signatures = np.array([signature(linkage_of(setup, start)) for start in free])
+    middle = setup.problem.task.positions.mean(axis=0)
+    signatures = np.array([signature(linkage_of(setup, start), middle) for start in free])
     for number in range(1, len(free)):
         assert (apart(signatures[number], signatures[:number]) > PEAK_SPACING).all()
 
@@ -113,13 +116,6 @@ def test_compactness_begins_with_small_linkages(luggage: Problem) -> None:
     assert sizes[1] < 0.8 * sizes[0]
 
 
-def test_no_more_starts_than_asked_for_and_the_same_ones_first(luggage_setup: SetupOf) -> None:
-    setup = luggage_setup()
-    every, _ = queue_of(setup)
-    assert queue_of(setup, most=1)[0] == every[:1]
-    assert queue_of(setup, most=20)[0] == every[:20]
-
-
 def test_the_seed_decides(luggage_setup: SetupOf) -> None:
     setup = luggage_setup()
     assert queue_of(setup, seed=3) == queue_of(setup, seed=3)
@@ -131,15 +127,15 @@ def test_planted_tasks_have_feasible_starts(
     planted_setup: Callable[..., tuple[Setup, FourBar]], seed: int
 ) -> None:
     setup, _ = planted_setup(seed)
-    queue, feasible = queue_of(setup, most=20, enough=10)
+    queue, feasible = queue_of(setup, enough=10)
     assert feasible > 0
-    assert len(queue) == 20
-    assert all(ok(setup, start) for start in queue)
+    assert len(queue) >= 20
+    assert all(ok(setup, start) for start in queue[:20])
 
 
 def test_an_equality_leaves_near_misses_to_start_from(luggage_setup: SetupOf) -> None:
     setup = luggage_setup(o2=Box(y=(-3.0, -3.0)))
-    queue, feasible = queue_of(setup, most=200, enough=20)
+    queue, feasible = queue_of(setup, enough=20)
     assert feasible == 0
     assert len(queue) > 40
     assert any(start.stay for start in queue)

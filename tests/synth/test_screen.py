@@ -12,7 +12,8 @@ from grashof.analysis import Verdict, verify
 from grashof.analysis.planted import planted_motion
 from grashof.problems import Box, Problem, Requirements, Rotatability, TransmissionOver
 from grashof.synth.burmester import Dyads, trace_four_pose_curves
-from grashof.synth.screen import GROUPS, Pairs, near_misses, screen
+from grashof.synth.finds import GROUPS, Finds
+from grashof.synth.screen import near_misses, screen
 from grashof.synth.setup import Setup
 
 NEAR = 1e-6  # sizes, rad or ratio: so close to a limit either judgement will do
@@ -72,7 +73,7 @@ def compared(number: int) -> tuple[list[str], Counter[tuple[str, bool]]]:
     task, _ = planted_motion(rng, poses=4)
     wanted = requirements(rng, task.size, KINDS[number])
     setup = Setup.of(Problem(task=task, requirements=wanted))
-    pairs = near_misses(setup.motion, setup.body, traced(setup), setup.wanted, pairs=5000)
+    pairs = near_misses(setup.motion, setup.targets[0], traced(setup), setup.wanted, pairs=5000)
     pairs = pairs[np.sort(rng.choice(len(pairs), 24, replace=False))]
     linkages = setup.linkages(pairs.points, pairs.assembly)
     wrong, seen = [], Counter[tuple[str, bool]]()
@@ -117,8 +118,8 @@ def test_feasible_pairs_have_no_defect(number: int) -> None:
         o4=Box(x=(task.positions[0, 0] - 4 * task.size, np.inf)),
     )
     setup = Setup.of(Problem(task=task, requirements=wanted))
-    pairs = screen(setup.motion, setup.body, traced(setup), setup.wanted, pairs=10**7)
-    every = near_misses(setup.motion, setup.body, traced(setup), setup.wanted, pairs=10**7)
+    pairs = screen(setup.motion, setup.targets[0], traced(setup), setup.wanted, pairs=10**7)
+    every = near_misses(setup.motion, setup.targets[0], traced(setup), setup.wanted, pairs=10**7)
     # The cheap tests lose no pair, and let none pass.
     assert points_of(pairs) == points_of(every[every.feasible])
     some = pairs[:: max(1, len(pairs) // 20)]
@@ -127,7 +128,7 @@ def test_feasible_pairs_have_no_defect(number: int) -> None:
         assert verify(linkages[index], task, wanted).defects == ()
 
 
-def points_of(pairs: Pairs) -> list[bytes]:
+def points_of(pairs: Finds) -> list[bytes]:
     return sorted(row.tobytes() for row in pairs.points)
 
 
@@ -139,9 +140,9 @@ def test_the_way_through_the_poses_is_one_that_the_driver_can_go(
     count = 0
     for seed in range(8):
         setup, _ = planted_setup(seed, rotatability="any", order=order)
-        pairs = screen(setup.motion, setup.body, traced(setup), setup.wanted, pairs=10**6)
+        pairs = screen(setup.motion, setup.targets[0], traced(setup), setup.wanted, pairs=10**6)
         for index in range(0, len(pairs), max(1, len(pairs) // 15)):
-            o2, o4, a, b = pairs.points[index]
+            o2, o4, a, b, _ = pairs.points[index]
             visit, theta2 = pairs.visit[index], pairs.theta2[index]
             assert sorted(visit) == [0, 1, 2, 3]
             assert not order or visit.tolist() == [0, 1, 2, 3]
@@ -163,7 +164,7 @@ def test_the_planted_pair_is_feasible(planted_setup: Callable[..., tuple[Setup, 
         a = complex(*setup.problem.task.positions[0]) - complex(*linkage.coupler_point) * coupler
         moving = setup.frame.inward(np.array([[p.real, p.imag] for p in (a, a + linkage.r3 * coupler)]))
         ground = setup.frame.inward(np.array([linkage.o2, linkage.o4]))
-        pairs = near_misses(setup.motion, setup.body, Dyads(moving, ground), setup.wanted, pairs=100)
+        pairs = near_misses(setup.motion, setup.targets[0], Dyads(moving, ground), setup.wanted, pairs=100)
         own = np.abs(pairs.points[:, 0] - ground[0]) < 1e-9
         assert pairs[own].feasible.tolist() == [True]
         assert pairs.assembly[own].tolist() == [float(linkage.assembly)]
@@ -173,9 +174,9 @@ def test_no_dyads_no_pairs(luggage_setup: Callable[..., Setup]) -> None:
     setup = luggage_setup()
     none = Dyads(np.zeros(0, dtype=np.complex128), np.zeros(0, dtype=np.complex128))
     for found in (
-        screen(setup.motion, setup.body, none, setup.wanted, pairs=100),
-        near_misses(setup.motion, setup.body, none, setup.wanted, pairs=100),
+        screen(setup.motion, setup.targets[0], none, setup.wanted, pairs=100),
+        near_misses(setup.motion, setup.targets[0], none, setup.wanted, pairs=100),
     ):
         assert len(found) == 0
         assert found.feasible.tolist() == []
-        assert found.points.shape == (0, 4)
+        assert found.points.shape == (0, 5)

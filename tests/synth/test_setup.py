@@ -14,11 +14,12 @@ PlantedSetup = Callable[..., tuple[Setup, FourBar]]
 
 
 def pivots_of(setup: Setup, linkage: FourBar) -> ComplexArray:
-    """O2, O4, and A, B at the first pose, from the body's place and the coupler's numbers."""
+    """O2, O4, and A, B, P at the first pose, from the body's place and the coupler's numbers."""
     task, frame = setup.problem.task, setup.frame
     coupler = np.exp(1j * (task.angles[0] - float(linkage.body_angle)))
-    a = complex(*task.positions[0]) - complex(*linkage.coupler_point) * coupler
-    every = np.array([complex(*linkage.o2), complex(*linkage.o4), a, a + float(linkage.r3) * coupler])
+    p = complex(*task.positions[0])
+    a = p - complex(*linkage.coupler_point) * coupler
+    every = np.array([complex(*linkage.o2), complex(*linkage.o4), a, a + float(linkage.r3) * coupler, p])
     return (every - frame.origin) / frame.scale
 
 
@@ -37,8 +38,8 @@ def test_the_planted_linkage_comes_back_from_its_pivots(planted_setup: PlantedSe
 def test_displacements_carry_the_body_and_the_dyads(planted_setup: PlantedSetup, seed: int) -> None:
     setup, linkage = planted_setup(seed)
     targets = setup.frame.inward(setup.problem.task.positions)
-    np.testing.assert_allclose(setup.motion.apply(np.array([setup.body]))[0], targets, atol=1e-12)
-    o2, _, a, b = pivots_of(setup, linkage)
+    np.testing.assert_allclose(setup.motion.apply(np.array([setup.targets[0]]))[0], targets, atol=1e-12)
+    o2, _, a, b, _ = pivots_of(setup, linkage)
     places = setup.motion.apply(np.array([a, b]))
     theta2 = np.angle(places[0] - o2)
     state = solve_position(linkage, theta2)
@@ -49,7 +50,7 @@ def test_displacements_carry_the_body_and_the_dyads(planted_setup: PlantedSetup,
 def test_a_batch_is_its_members(planted_setup: PlantedSetup) -> None:
     setup, linkage = planted_setup(0)
     one = pivots_of(setup, linkage)
-    other = one + np.array([0.1, -0.2j, 0.3, 0.1j])
+    other = one + np.array([0.1, -0.2j, 0.3, 0.1j, 0.2])
     batch = setup.linkages(np.array([one, other]), np.array([1.0, -1.0]))
     assert batch.shape == (2,)
     assert batch[0] == setup.linkages(one, np.array(1.0))

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grashof.problems import Objective
-from grashof.synth.screen import Pairs
+from grashof.synth.finds import Finds
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
 
@@ -24,8 +24,10 @@ def start_with(theta1: float, theta2: tuple[float, ...]) -> Start:
         o4=o2 + 2 * complex(np.exp(1j * theta1)),
         a=complex(a),
         b=complex(a + 1.5),
+        p=complex(a + 0.6 + 0.4j),
         visit=tuple(range(len(theta2))),
         theta2=theta2,
+        theta3=tuple(0.3 * angle for angle in theta2),
         direction=1 if theta2[-1] > theta2[0] else -1,
         assembly=1,
     )
@@ -36,7 +38,7 @@ def test_lengths_and_directions() -> None:
     assert start.theta1 == pytest.approx(0.4, abs=1e-12)
     r4 = abs(start.b - start.o4)
     assert start.lengths == pytest.approx((2, 0.7, 1.5, r4), rel=1e-12)
-    assert start.points.tolist() == [start.o2, start.o4, start.a, start.b]
+    assert start.points.tolist() == [start.o2, start.o4, start.a, start.b, start.p]
 
 
 @bounded
@@ -56,16 +58,16 @@ def test_half_turns_tell_how_often_the_driver_lies_along_the_ground(
 
 
 def test_a_start_of_a_pair_is_that_pair(
-    luggage_setup: Callable[..., Setup], feasible_pairs: Callable[[Setup], Pairs]
+    luggage_setup: Callable[..., Setup], feasible_pairs: Callable[[Setup], Finds]
 ) -> None:
     setup = luggage_setup()
     pairs = feasible_pairs(setup)
     objective = Objective(transmission=0.5, compactness=2)
     for index in range(0, len(pairs), max(1, len(pairs) // 10)):
-        start = Start.of_pair(pairs, index, objective)
+        start = Start.of_find(pairs, index, objective)
         assert start.points.tobytes() == pairs.points[index].tobytes()
         assert start.objective == objective
-        assert (start.radius, start.stay, start.relaxed) == (np.inf, False, ())
+        assert (start.radius, start.stay, start.settled, start.relaxed) == (np.inf, False, False, ())
         places = setup.motion.apply(np.array([start.a]))[0][list(start.visit)]
         arms = places - start.o2
         np.testing.assert_allclose(np.exp(1j * np.array(start.theta2)), arms / np.abs(arms), atol=1e-9)

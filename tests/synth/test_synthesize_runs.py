@@ -5,6 +5,7 @@ from concurrent.futures import BrokenExecutor, Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from importlib import import_module
+from itertools import chain, repeat
 from pathlib import Path
 from typing import Any
 
@@ -108,8 +109,9 @@ def test_progress_grows_until_enough(luggage: Problem) -> None:
 def test_enough_is_enough(luggage: Problem) -> None:
     seen: list[Progress] = []
     synthesize(luggage, enough=8, progress=seen.append)
-    assert [step.solved for step in seen] == [16]
-    assert seen[0].starts > 16
+    assert [step.solved for step in seen] == [8, 16]  # a batch is no greater than enough
+    assert seen[0].verified < 8 <= seen[1].verified
+    assert seen[0].starts == luggage.search.starts > 16
 
 
 def test_a_fruitless_search_ends(luggage: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -118,7 +120,7 @@ def test_a_fruitless_search_ends(luggage: Problem, monkeypatch: pytest.MonkeyPat
     far = replace(luggage.requirements, o2=Box((100, 101), (100, 101)))
     synthesize(replace(luggage, requirements=far), progress=seen.append)
     assert [step.solved for step in seen] == [16]
-    assert seen[0].starts > 16
+    assert seen[0].starts == luggage.search.starts > 16
 
 
 @pytest.mark.parametrize("starts", [1, 5, 17])
@@ -147,7 +149,7 @@ def asked(answers: Iterator[bool]) -> Callable[[], bool]:
 
 def test_stop_ends_the_search_between_batches(luggage: Problem) -> None:
     executor = Inline()
-    result = synthesize(luggage, stop=asked(iter([False, True])), executor=executor)
+    result = synthesize(luggage, stop=asked(chain([False], repeat(True))), executor=executor)
     assert executor.jobs == 16
     assert not result.complete
     assert 1 <= len(result) <= 16

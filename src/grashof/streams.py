@@ -1,0 +1,20 @@
+"""Lines for people on stdout and stderr, which may be pipes that nobody reads to the end."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+import typer
+
+
+def say(line: str, *, err: bool = False) -> None:
+    """Print a line; from the moment that nobody reads the stream any more (`| head`), nothing."""
+    stream = sys.stderr if err else sys.stdout
+    try:
+        typer.echo(line, err=err)
+    except BrokenPipeError:
+        # Not only this line: what the stream still holds is flushed when the interpreter ends.
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, stream.fileno())
+        os.close(nowhere)

@@ -1,0 +1,133 @@
+"""Which finds of a search become starts: the best, and the most different of the rest."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from grashof.problems.checks import BoolArray, FloatArray, IntArray
+from grashof.synth.distinct import pick_apart, signature
+from grashof.synth.finds import GROUPS, Finds
+from grashof.synth.result import weigh
+from grashof.synth.setup import Setup
+from grashof.synth.start import Start
+
+POOL = 6000  # finds among which starts are picked
+PEAKS, PEAK_SPACING = 8, 0.25
+SPACINGS = (0.5, 0.35, 0.25, 0.18, 0.12, 0.08, 0.06, 0.04, 0.03, 0.02, 0.015)
+MISSES, MISS_SPACING = 40, 0.05  # starts from finds that lack something, the least first
+NEARLY = 0.1  # finds that lack no more are also spread over, for variety
+
+
+def feasible_starts(setup: Setup, finds: Finds, enough: int) -> list[Start]:
+    """Starts from finds that lack nothing.
+
+    The best well separated ones first, free to climb to the best optima, then about 1.4 times
+    `enough` spread over all, each kept to its own neighbourhood so that the list offers a choice.
+    """
+    if not len(finds):
+        return []
+    finds = finds[_pool(_merit(setup, finds))]
+    merit, signatures = _merit(setup, finds), _signatures(setup, finds)
+    spacing = PEAK_SPACING if setup.exact else MISS_SPACING
+    peaks = pick_apart(signatures, merit, spacing, PEAKS)
+    free = [Start.of_find(finds, int(index), setup.problem.objective) for index in peaks]
+    if not setup.exact:  # what counts is the error, and a neighbourhood would only keep it large
+        return free
+    return free + _spread(setup, finds, merit, signatures, enough)
+
+
+def mended_starts(setup: Setup, finds: Finds, enough: int) -> list[Start]:
+    """Starts from finds that lack something: the least first, then spread ones to be mended in place."""
+    short = finds[~finds.feasible]
+    shortfall = short.lacks.sum(axis=1)
+    merit = -shortfall - short.error
+    if not setup.exact:
+        return _distinct_starts(setup, short, merit, PEAKS)
+    chosen = _distinct_starts(setup, short, merit, MISSES)
+    nearly = feasible_starts(setup, short[shortfall < NEARLY], enough)
+    return chosen + [replace(start, radius=np.inf, stay=True) for start in nearly]
+
+
+def relaxed_starts(setup: Setup, finds: Finds, groups: int = 3, each: int = 5) -> list[Start]:
+    """Starts that may miss what stands in the way: one requirement where one is enough, else a few."""
+    if not len(finds):
+        return []
+    missed = finds.lacks > 0
+    fewest = missed.sum(axis=1).min()
+    if fewest == 0:  # feasible but not solved: nothing to relax
+        return []
+    chosen: list[Start] = []
+    for combination, rows in _combinations(finds, missed, int(fewest))[:groups]:
+        part = finds[rows]
+        picked = _distinct_starts(setup, part, -part.lacks.sum(axis=1), each)
+        chosen += [replace(start, relaxed=combination) for start in picked]
+    return chosen
+
+
+def _combinations(finds: Finds, missed: BoolArray, fewest: int) -> list[tuple[tuple[str, ...], IntArray]]:
+    """Sets of `fewest` requirements that finds miss, with those finds; the least missed set first."""
+    rows = np.flatnonzero(missed.sum(axis=1) == fewest)
+    kinds, which = np.unique(missed[rows], axis=0, return_inverse=True)
+    which = which.ravel()
+    found = []
+    for number, kind in enumerate(kinds):
+        mine = rows[which == number]
+        least = finds.lacks[mine].sum(axis=1).min()
+        found.append((least, tuple(np.array(GROUPS)[kind].tolist()), mine))
+    found.sort(key=lambda item: (item[0], item[1]))
+    return [(names, mine) for _, names, mine in found]
+
+
+def _spread(
+    setup: Setup, finds: Finds, merit: FloatArray, signatures: FloatArray, enough: int
+) -> list[Start]:
+    """Finds as far apart as can be, with neighbourhoods that do not overlap."""
+    wanted = enough + (2 * enough + 4) // 5
+    picked, spacing = np.zeros(0, dtype=np.int64), 0.0
+    for spacing in SPACINGS:
+        picked = pick_apart(signatures, merit, spacing, wanted)
+        if len(picked) == wanted:
+            break
+    points = finds.points[picked]
+    coordinates = np.concatenate([points.real, points.imag], axis=1)
+    gap = np.abs(coordinates[:, None] - coordinates).max(axis=2) + np.where(
+        np.eye(len(picked)) > 0, np.inf, 0
+    )
+    nearest = gap.min(axis=1, initial=1.0)
+    return [
+        replace(Start.of_find(finds, int(index), setup.problem.objective), radius=float(0.4 * distance))
+        for index, distance in zip(picked, nearest, strict=True)
+    ]
+
+
+def _distinct_starts(setup: Setup, finds: Finds, merit: FloatArray, most: int) -> list[Start]:
+    best = _pool(merit)
+    picked = best[pick_apart(_signatures(setup, finds[best]), merit[best], MISS_SPACING, most)]
+    return [Start.of_find(finds, int(index), setup.problem.objective) for index in picked]
+
+
+def _pool(merit: FloatArray) -> IntArray:
+    """At most `POOL` indices: the best half of them, and evenly many of the rest, best first."""
+    order = np.argsort(-merit, kind="stable")
+    if len(order) <= POOL:
+        return order
+    top, rest = order[: POOL // 2], order[POOL // 2 :]
+    return np.concatenate([top, rest[:: -(-len(rest) // (POOL // 2))]])
+
+
+def _signatures(setup: Setup, finds: Finds) -> FloatArray:
+    origin = np.array([setup.frame.origin.real, setup.frame.origin.imag])
+    return signature(setup.linkages(finds.points, finds.assembly), origin)
+
+
+def _merit(setup: Setup, finds: Finds) -> FloatArray:
+    """Score of each find; its size is that of a box around what is known of it at the first target."""
+    if not setup.exact:
+        return -finds.error
+    objective = setup.problem.objective
+    size = np.zeros(len(finds))
+    if objective.compactness > 0:
+        size = np.hypot(np.ptp(finds.points.real, axis=1), np.ptp(finds.points.imag, axis=1))
+    return weigh(objective, finds.transmission, size)

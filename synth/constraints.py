@@ -1,0 +1,165 @@
+"""The constraints of the four-bar programme: each requirement as the field writes it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import casadi as ca
+
+from grashof.synth.finds import GROUPS
+from grashof.synth.form import Form, Given, Unknowns
+
+ANGLES = ("ground_angle_deg", "theta2_start_deg")  # equalities: fixed unknowns unless they are relaxed
+
+
+@dataclass(slots=True)
+class Rows:
+    """Constraints as they are collected: expressions, and the name that their limits go by."""
+
+    slack: ca.SX | None
+    relaxed: ca.SX
+    expressions: list[ca.SX] = field(default_factory=list)
+    names: list[str] = field(default_factory=list)
+
+    def add(self, name: str, *expressions: ca.SX) -> None:
+        """Add expressions with the limits `name`."""
+        for expression in expressions:
+            self.expressions.append(expression)
+            self.names += [name] * expression.numel()
+
+    def require(self, group: str, *expressions: ca.SX, name: str = "nonnegative") -> None:
+        """Add expressions that must not be negative, but by the slack where the group is relaxed."""
+        give = 0.0 if self.slack is None else self.slack * self.relaxed[GROUPS.index(group)]
+        self.add(name, *(expression + give for expression in expressions))
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """A, B and P at every target, in the order of visit, and the vectors from P to A and B."""
+
+    a: list[ca.SX]
+    b: list[ca.SX]
+    p: list[ca.SX]
+    arms: tuple[ca.SX, ca.SX]
+
+
+def close_at_poses(rows: Rows, given: Given, unknown: Unknowns) -> Places:
+    """Points of the body are displaced with it; A and B stay at their distances from O2 and O4."""
+    a, b, n = unknown["a"], unknown["b"], unknown["theta2"].numel()
+    places = Places(
+        a=[given.displaced(a, k) for k in range(n)],
+        b=[given.displaced(b, k) for k in range(n)],
+        p=[given.displaced(given.body, k) for k in range(n)],
+        arms=(a - given.body, b - given.body),
+    )
+    r, theta2 = unknown["r"], unknown["theta2"]
+    for k in range(n):
+        rows.add("zero", places.a[k] - unknown["o2"] - r[1] * unit(theta2[k]))
+        rows.add("zero", (ca.sumsqr(places.b[k] - unknown["o4"]) - r[3] ** 2) / 2)
+    rows.add("zero", (ca.sumsqr(b - a) - r[2] ** 2) / 2)
+    return places
+
+
+def close_at_points(rows: Rows, form: Form, given: Given, unknown: Unknowns) -> Places:
+    """The loop O2-A-B-O4 closes at every driver angle; P is fixed to the coupler."""
+    r, theta2, theta3, arm = (unknown[name] for name in ("r", "theta2", "theta3", "arm"))
+    n = form.targets
+    a = [unknown["o2"] + r[1] * unit(theta2[k]) for k in range(n)]
+    b = [a[k] + r[2] * unit(theta3[k]) for k in range(n)]
+    p = [a[k] + rotated(arm, theta3[k]) for k in range(n)]
+    for k in range(n):
+        rows.add("zero", (ca.sumsqr(b[k] - unknown["o4"]) - r[3] ** 2) / 2)
+        if form.exact:
+            rows.add("zero", p[k] - given.target(k))
+        if form.timed and k:
+            rows.add("zero", theta2[k] - theta2[0] - given.direction * (given.timing[k] - given.timing[0]))
+    for name, at in (("a", a), ("b", b)):
+        first = sum((given.at_first[k] * at[k] for k in range(n)), ca.SX.zeros(2))
+        rows.add("zero", unknown[name] - first)
+    return Places(a, b, p, (arm, arm - ca.vertcat(r[2], 0)))
+
+
+def require_all(rows: Rows, form: Form, given: Given, unknown: Unknowns, places: Places) -> None:
+    """Every requirement that is no plain limit of an unknown."""
+    r, o4, theta2 = unknown["r"], unknown["o4"], unknown["theta2"]
+    rows.add("zero", o4 - unknown["o2"] - r[0] * unit(unknown["theta1"]))
+    for k in range(form.targets - 1):
+        rows.add("step", given.direction * (theta2[k + 1] - theta2[k]))
+    rows.add("turn", given.direction * (theta2[form.targets - 1] - theta2[0]))
+    if form.same_branch:
+        for at_a, at_b in zip(places.a, places.b, strict=True):
+            sine = cross(at_b - at_a, at_b - o4) / (r[2] * r[3])
+            rows.require("same_branch", given.assembly * sine - 1e-6)
+    if form.crank:
+        _rotatability(rows, given, r)
+    _transmission(rows, form, unknown, places)
+    for arm in places.arms:
+        arm2 = ca.sumsqr(arm)
+        rows.require("coupler_arms", arm2 - given.arms[0] ** 2, given.arms[1] ** 2 - arm2)
+    if form.ratio:
+        pairs = [(i, j) for i in range(4) for j in range(4) if i != j]
+        rows.require("link_ratio_max", *(r[i] - r[j] / given.ratio for i, j in pairs))
+    for wished, name, at in ((form.box_a, "a", places.a), (form.box_b, "b", places.b)):
+        for place in at if wished else ():
+            rows.require(name, place - given.box[name][0], given.box[name][1] - place)
+
+
+def require_limits(rows: Rows, given: Given, unknown: Unknowns) -> None:
+    """The plain limits of unknowns as rows, so that they can be relaxed too."""
+    rows.require("link_length", unknown["r"] - given.lengths[:4], given.lengths[4:] - unknown["r"])
+    for name in ("o2", "o4"):
+        rows.require(name, unknown[name] - given.box[name][0], given.box[name][1] - unknown[name])
+    rows.require("transmission_min_deg", unknown["tau"] - given.least_transmission)
+    angles = (unknown["theta1"], ca.dot(given.at_first, unknown["theta2"]))
+    for i, (key, angle) in enumerate(zip(ANGLES, angles, strict=True)):
+        rows.require(key, angle - given.angles[i], given.angles[i] - angle, name=key)
+
+
+def diagonal(rows: Rows, unknown: Unknowns, places: Places) -> ca.SX:
+    """Diagonal of a box around the pivots at all targets."""
+    for point in (unknown["o2"], unknown["o4"], *places.a, *places.b, *places.p):
+        rows.add("nonnegative", point - unknown["low"], unknown["high"] - point)
+    return ca.sqrt(ca.sumsqr(unknown["high"] - unknown["low"]) + 1e-12)
+
+
+def _rotatability(rows: Rows, given: Given, r: ca.SX) -> None:
+    margin, longer, total = given.margin, given.longer * (r[0] - r[1]), ca.sum1(r)
+    rows.require(
+        "rotatability",
+        (r[2] + r[3] - r[0] - r[1]) / total - margin,
+        (longer - (r[2] - r[3])) / total - margin,
+        (longer + (r[2] - r[3])) / total - margin,
+    )
+
+
+def _transmission(rows: Rows, form: Form, unknown: Unknowns, places: Places) -> None:
+    """cos(tau) bounds |cos(mu)|, which is monotone between the ends of the way and the ground line."""
+    r, o4, tau = unknown["r"], unknown["o4"], unknown["tau"]
+
+    def bound(diagonal2: ca.SX) -> tuple[ca.SX, ca.SX]:
+        cos_mu = (r[2] ** 2 + r[3] ** 2 - diagonal2) / (2 * r[2] * r[3])
+        return ca.cos(tau) - cos_mu, ca.cos(tau) + cos_mu
+
+    rows.add("folded", *bound((r[0] - r[1]) ** 2))
+    rows.add("stretched", *bound((r[0] + r[1]) ** 2))
+    if form.over_task:
+        for at_a in (places.a[0], places.a[-1]):
+            rows.add("nonnegative", *bound(ca.sumsqr(at_a - o4)))
+        rows.add("first", unknown["theta2"][0] - unknown["theta1"])
+        rows.add("last", unknown["theta2"][form.targets - 1] - unknown["theta1"])
+
+
+def unit(angle: ca.SX) -> ca.SX:
+    """Unit vector in a direction."""
+    return ca.vertcat(ca.cos(angle), ca.sin(angle))
+
+
+def rotated(vector: ca.SX, angle: ca.SX) -> ca.SX:
+    """A vector turned by an angle."""
+    cos, sin = ca.cos(angle), ca.sin(angle)
+    return ca.vertcat(cos * vector[0] - sin * vector[1], sin * vector[0] + cos * vector[1])
+
+
+def cross(first: ca.SX, second: ca.SX) -> ca.SX:
+    """Cross product of two plane vectors."""
+    return first[0] * second[1] - first[1] * second[0]

@@ -1,0 +1,159 @@
+"""What a nonlinear programme contains, its unknowns and its parameters, as CasADi symbols."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import casadi as ca
+
+from grashof.problems import Box, Rotatability, TransmissionOver
+from grashof.synth.finds import GROUPS
+from grashof.synth.setup import Setup
+from grashof.synth.start import Start
+
+BOXES = ("o2", "o4", "a", "b")
+
+
+@dataclass(frozen=True, slots=True)
+class Form:
+    """What the programme contains; one is built, and kept, for each form.
+
+    Parameters
+    ----------
+    targets : int
+    poses : bool
+        Targets are poses (motion), not points (path).
+    exact : bool
+        Every target is met; otherwise the squared distances are the objective.
+    timed : bool
+        Driver rotations from the first target are prescribed.
+    crank : bool
+        The driver turns fully.
+    same_branch : bool
+    over_task : bool
+        Transmission is judged over the task, not over the turn.
+    ratio, box_a, box_b, compact : bool
+        Whether these requirements, and the size, have a part in it.
+    stay : bool
+        The distance from the start is the objective.
+    elastic : bool
+        Requirements may be missed; how far is the objective.
+    """
+
+    targets: int
+    poses: bool
+    exact: bool
+    timed: bool
+    crank: bool
+    same_branch: bool
+    over_task: bool
+    ratio: bool
+    box_a: bool
+    box_b: bool
+    compact: bool
+    stay: bool
+    elastic: bool
+
+    @classmethod
+    def of(cls, setup: Setup, start: Start) -> Form:
+        """The form that a problem and a start call for."""
+        wanted, closed = setup.wanted, getattr(setup.problem.task, "closed", False)
+        low = min(limits[0] for limits in wanted.link_lengths)
+        high = max(limits[1] for limits in wanted.link_lengths)
+        return cls(
+            targets=len(start.visit),
+            poses=setup.motion is not None,
+            exact=setup.exact,
+            timed=setup.timing is not None,
+            crank=wanted.rotatability is not Rotatability.ANY,
+            same_branch=wanted.same_branch,
+            over_task=wanted.transmission_over is TransmissionOver.TASK and not closed,
+            ratio=bool(start.relaxed) or high > low * wanted.link_ratio_max,
+            box_a=wanted.a != Box() and wanted.a is not None,
+            box_b=wanted.b != Box() and wanted.b is not None,
+            compact=start.objective.compactness > 0 and not start.stay and setup.exact,
+            stay=start.stay,
+            elastic=bool(start.relaxed),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Unknowns:
+    """The unknowns: pivots and coupler point at the first target, lengths, angles, and what is worst.
+
+    Angles are lifted, so that order is a linear constraint and no arc function is differentiated.
+    `theta3` and `arm` (u, v) are unknowns of a path only; for poses they follow.
+    """
+
+    vector: ca.SX
+    parts: dict[str, ca.SX]
+
+    @classmethod
+    def of(cls, form: Form) -> Unknowns:
+        """Symbols for a form."""
+        n = form.targets
+        sizes = {"o2": 2, "o4": 2, "a": 2, "b": 2, "r": 4, "theta1": 1, "theta2": n, "tau": 1}
+        if not form.poses:
+            sizes |= {"theta3": n, "arm": 2}
+        if form.compact:
+            sizes |= {"low": 2, "high": 2}
+        if form.elastic:
+            sizes |= {"slack": 1}
+        parts = {name: ca.SX.sym(name, size) for name, size in sizes.items()}
+        return cls(ca.vertcat(*parts.values()), parts)
+
+    def __getitem__(self, name: str) -> ca.SX:
+        return self.parts[name]
+
+
+@dataclass(frozen=True, slots=True)
+class Given:
+    """The parameters, cut from one vector; targets stand in the order of visit."""
+
+    vector: ca.SX
+    rotation: ca.SX
+    shift: ca.SX
+    targets: ca.SX
+    timing: ca.SX
+    at_first: ca.SX
+    body: ca.SX
+    direction: ca.SX
+    assembly: ca.SX
+    longer: ca.SX
+    margin: ca.SX
+    ratio: ca.SX
+    least_transmission: ca.SX
+    weights: ca.SX
+    error_scale: ca.SX
+    arms: ca.SX
+    lengths: ca.SX
+    start: ca.SX
+    angles: ca.SX
+    relaxed: ca.SX
+    box: dict[str, tuple[ca.SX, ca.SX]]
+
+    @classmethod
+    def of(cls, form: Form) -> Given:
+        """Symbols for a form."""
+        n = form.targets
+        sizes = {
+            "rotation": 2 * n, "shift": 2 * n, "targets": 2 * n, "timing": n, "at_first": n, "body": 2,
+            "direction": 1, "assembly": 1, "longer": 1, "margin": 1, "ratio": 1, "least_transmission": 1,
+            "weights": 2, "error_scale": 1, "arms": 2, "lengths": 8, "start": 8, "angles": 2,
+            "relaxed": len(GROUPS), "boxes": 16,
+        }  # fmt: skip
+        parts = {name: ca.SX.sym(name, size) for name, size in sizes.items()}
+        vector = ca.vertcat(*parts.values())
+        boxes = ca.reshape(parts.pop("boxes"), 2, 8)
+        box = {name: (boxes[:, 2 * i], boxes[:, 2 * i + 1]) for i, name in enumerate(BOXES)}
+        return cls(vector=vector, box=box, **parts)
+
+    def displaced(self, point: ca.SX, pose: int) -> ca.SX:
+        """Where a point of the body at the first pose is at another one."""
+        cos, sin = self.rotation[2 * pose], self.rotation[2 * pose + 1]
+        turned = ca.vertcat(cos * point[0] - sin * point[1], sin * point[0] + cos * point[1])
+        return turned + self.shift[2 * pose : 2 * pose + 2]
+
+    def target(self, k: int) -> ca.SX:
+        """Where P has to be."""
+        return self.targets[2 * k : 2 * k + 2]

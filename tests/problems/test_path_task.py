@@ -1,0 +1,129 @@
+"""Path tasks: points, timing, and what both kinds of task share."""
+
+import pickle
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grashof.problems import MotionTask, PathTask, ProblemError, Requirements
+
+LINE: list[list[float]] = [[0, 0], [3, 0], [3, 4], [0, 4]]
+
+
+def test_points_are_the_positions() -> None:
+    task = PathTask(LINE)
+    assert task.points.tolist() == task.positions.tolist() == LINE
+    assert len(task) == 4
+    assert task.size == 5.0
+    assert (task.timing, task.closed, task.kind) == (None, False, "path")
+    assert MotionTask.from_degrees([[0, 0, 0], [1, 0, 0]]).kind == "motion"
+
+
+def test_degrees_become_radians() -> None:
+    task = PathTask.from_degrees(LINE, timing_deg=[0, 90, 180, 360], closed=True)
+    assert task.timing is not None
+    assert task.timing.tolist() == [0, np.pi / 2, np.pi, 2 * np.pi]
+    assert task.closed
+
+
+def test_arrays_are_read_only_copies() -> None:
+    given = np.array(LINE)
+    task = PathTask(given, timing=[0, 1, 2, 3])
+    given[0] = 9
+    assert task.points[0].tolist() == [0, 0]
+    for array in (task.points, task.timing):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 9
+
+
+def test_a_task_pickles() -> None:
+    task = PathTask(LINE, timing=[0, -1, -2, -3], closed=True)
+    twin = pickle.loads(pickle.dumps(task))
+    assert twin.points.tolist() == task.points.tolist()
+    assert twin.timing.tolist() == [0, -1, -2, -3]
+    assert twin.closed
+
+
+@pytest.mark.parametrize(
+    ("count", "timed", "exact"), [(9, False, True), (10, False, False), (5, True, True), (6, True, False)]
+)
+def test_exact_by_default_as_far_as_linkages_can_be_expected(count: int, timed: bool, exact: bool) -> None:
+    points = [[k, k * k] for k in range(count)]
+    task = PathTask(points, timing=np.arange(count) / 9 if timed else None)
+    assert task.exact_by_default is exact
+    assert Requirements().is_exact(task) is exact
+    assert Requirements(exact=not exact).is_exact(task) is not exact
+
+
+@pytest.mark.parametrize(("count", "exact"), [(2, True), (5, True), (6, False)])
+def test_motion_is_exact_by_default_up_to_five_poses(count: int, exact: bool) -> None:
+    task = MotionTask.from_degrees([[k, 0, 0] for k in range(count)])
+    assert task.exact_by_default is Requirements().is_exact(task) is exact
+
+
+def test_exact_is_checked() -> None:
+    with pytest.raises(ProblemError, match=r"^requirements.exact is 1; allowed is true or false$"):
+        Requirements(exact=1)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("points", "message"),
+    [
+        ([], "path.points has 0 points; allowed are three or more"),
+        ([[1, 2], [3, 4]], "path.points has 2 points; allowed are three or more"),
+        ([[1, 2], [3], [5, 6]], r"path.points\[1\] is \[3\], 1 number; allowed is a point \[x, y\]"),
+        ([[1, 2], [3, np.nan], [5, 6]], r"path.points\[1\] is \[3, nan\]; all numbers must be finite"),
+        ([[1e308, 0], [-1e308, 0], [0, 1]], "path.points are farther apart than the largest number"),
+        (
+            [[1, 2], [1, 2], [5, 6]],
+            r"path.points\[0\] and path.points\[1\] are equal; consecutive points must differ",
+        ),
+    ],
+)
+def test_bad_points(points: list[list[float]], message: str) -> None:
+    with pytest.raises(ProblemError, match=rf"^{message}$"):
+        PathTask(points)
+
+
+def test_the_last_point_may_repeat_the_first() -> None:
+    assert len(PathTask([*LINE, LINE[0]], closed=True)) == 5
+
+
+@pytest.mark.parametrize(
+    ("timing", "message"),
+    [
+        ([0, 1, 2], "path.timing_deg has 3 angles for 4 points"),
+        ([1, 2, 3, 4], r"path.timing_deg\[0\] is 1; allowed is 0, at the first point"),
+        ([0, 0, 3, 4], r"path.timing_deg\[1\] is 0 after 0; allowed are angles that only grow, or only fall"),
+        (
+            [0, 1, -3, 4],
+            r"path.timing_deg\[2\] is -3 after 1; allowed are angles that only grow, or only fall",
+        ),
+        ([0, -1, -3, -2], r"path.timing_deg\[3\] is -2 after -3; allowed are .*"),
+        ([0, 1, 3, 360.1], r"path.timing_deg\[3\] is 360.1; allowed is up to one turn, 360"),
+        ([0, -1, -3, -361], r"path.timing_deg\[3\] is -361; allowed is up to one turn, 360"),
+        ([0, 1, np.inf, 4], r"path.timing_deg\[2\] is inf; all numbers must be finite"),
+        ([0, "a", 2, 3], "path.timing_deg is .*; allowed is a list of angles"),
+        ([0, [1], 2, 3], "path.timing_deg is .*; allowed is a list of angles"),
+        (7, "path.timing_deg is 7; allowed is a list of angles"),
+        (True, "path.timing_deg is True; allowed is a list of angles"),
+    ],
+)
+def test_bad_timing(timing: list[float], message: str) -> None:
+    with pytest.raises(ProblemError, match=rf"^{message}$"):
+        PathTask.from_degrees(LINE, timing_deg=timing)
+
+
+def test_closed_is_checked() -> None:
+    with pytest.raises(ProblemError, match=r"^path.closed is 'yes'; allowed is true or false$"):
+        PathTask(LINE, closed="yes")  # type: ignore[arg-type]
+
+
+@given(st.lists(st.integers(1, 50), min_size=2, max_size=7), st.sampled_from([-1, 1]))
+def test_any_monotone_timing_of_at_most_a_turn_is_kept(steps: list[int], sense: int) -> None:
+    timing = sense * np.concatenate([[0], np.cumsum(steps)])
+    task = PathTask.from_degrees([[k, k % 2] for k in range(len(timing))], timing_deg=timing)
+    assert task.timing is not None
+    assert task.timing.tolist() == np.radians(timing).tolist()

@@ -1,0 +1,218 @@
+"""Path generation from a problem to a list: published cases, planted problems, cognates, bytes."""
+
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from grashof import synthesize
+from grashof.analysis.planted import planted_path
+from grashof.problems import Box, FourBar, PathTask, Problem, Requirements
+from grashof.problems.checks import ComplexArray, FloatArray
+from grashof.synth import Candidate, Result, paths
+
+LINE = [[20.0, 20 + 5.0 * k] for k in range(6)]
+EIGHTEEN = [
+    [0.5, 1.1], [0.4, 1.1], [0.3, 1.1], [0.2, 1.0], [0.1, 0.9], [0.05, 0.75], [0.02, 0.6], [0.0, 0.5],
+    [0.0, 0.4], [0.03, 0.3], [0.1, 0.25], [0.15, 0.2], [0.2, 0.3], [0.3, 0.4], [0.4, 0.5], [0.5, 0.7],
+    [0.6, 0.9], [0.6, 1.0],
+]  # fmt: skip
+ELLIPSE = [
+    [20.0, 10.0], [17.66, 15.142], [11.736, 17.878], [5.0, 16.928], [0.60307, 12.736], [0.60307, 7.2638],
+    [5.0, 3.0718], [11.736, 2.1215], [17.66, 4.8577], [20.0, 10.0],
+]  # fmt: skip
+
+
+def case1(**wanted: Any) -> Problem:
+    within = Box((-60, 60), (-60, 60))
+    limits = {"rotatability": "crank-rocker", "link_length": (5, 60), "o2": within, "o4": within}
+    return Problem(task=PathTask(LINE), requirements=Requirements(**(limits | wanted)))
+
+
+@pytest.fixture(scope="module")
+def case1_result() -> Result:
+    return synthesize(case1(), enough=50)
+
+
+def numbers(linkage: FourBar) -> FloatArray:
+    return np.array([*linkage.o2, *linkage.o4, linkage.r2, linkage.r3, linkage.r4, *linkage.coupler_point])
+
+
+def share_apart(one: FourBar, other: FourBar) -> float:
+    """As DESIGN section 2 words it; above 0.01 for distinct designs."""
+    x, y = numbers(one), numbers(other)
+    return float(np.abs(x - y).max() / np.abs([x, y]).max())
+
+
+def check_designs(result: Result, judge: Any) -> None:
+    """Every design does the task as the list says it does, by a judge that shares no code with Grashof."""
+    task, wanted = result.problem.task, result.problem.requirements
+    whole = wanted.resolved(task.size)
+    assert isinstance(task, PathTask)
+    assert len(result)
+    for candidate in result.candidates:
+        linkage, verdict = candidate.linkage, candidate.verdict
+        assert verdict.ok
+        found = judge(linkage, verdict.theta2, task)
+        if wanted.is_exact(task):
+            assert found.errors.max() < 1e-6
+        sse = float((found.errors**2).sum()) * task.size**2
+        assert sse == pytest.approx(verdict.error_sse, rel=1e-6, abs=1e-12 * task.size**2)
+        assert found.in_order
+        assert found.on_one_branch
+        assert found.turns or wanted.rotatability == "any"
+        slack = 1e-8 * task.size
+        for length, (low, high) in zip(found.lengths, whole.link_lengths, strict=True):
+            assert low - slack <= length <= high + slack
+        assert found.lengths.max() <= whole.link_ratio_max * found.lengths.min() * (1 + 1e-9)
+        assert whole.coupler_arms is not None
+        assert found.arms.max() <= whole.coupler_arms[1] + slack
+        exact = np.degrees(verdict.transmission_min_task)
+        assert exact - 1e-6 <= found.transmission_task <= exact + 0.05
+        assert found.transmission_task >= wanted.transmission_min_deg - 1e-6
+        if found.turns:
+            assert found.transmission_cycle == pytest.approx(
+                np.degrees(verdict.transmission_min_cycle), abs=1e-5
+            )
+        if task.timing is not None:
+            turned = np.abs(verdict.theta2 - verdict.theta2[0])
+            np.testing.assert_allclose(turned, np.abs(task.timing), atol=1e-9)
+        for pivot in ("o2", "o4"):
+            box, place = getattr(wanted, pivot), getattr(linkage, pivot)
+            if box is not None:
+                assert box.x[0] - slack <= place[0] <= box.x[1] + slack
+                assert box.y[0] - slack <= place[1] <= box.y[1] + slack
+    assert all(share_apart(x.linkage, y.linkage) > 0.01 for x, y in combinations(result.candidates, 2))
+
+
+def test_case_1_gives_fifty_exact_designs_and_a_good_best_one(case1_result: Result, path_judge: Any) -> None:
+    assert len(case1_result) >= 50
+    assert case1_result.complete
+    check_designs(case1_result, path_judge)
+    best = case1_result.best
+    found = path_judge(best.linkage, best.verdict.theta2, case1_result.problem.task)
+    assert found.transmission_task >= 50
+    for candidate in case1_result.candidates:
+        r1, r2, r3, r4 = candidate.linkage.lengths
+        assert r2 < min(r1, r3, r4)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_case_3_reaches_the_best_published_error(seed: int, path_judge: Any) -> None:
+    task = PathTask.from_degrees(EIGHTEEN, timing_deg=[20.0 * k for k in range(18)])
+    wanted = Requirements(rotatability="crank-rocker")
+    result = synthesize(Problem(task=task, requirements=wanted), enough=1, seed=seed)
+    check_designs(result, path_judge)
+    best = result.best
+    errors = path_judge(best.linkage, best.verdict.theta2, task).errors * task.size
+    assert (errors**2).sum() <= 0.0090289
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_case_5_reaches_the_best_published_error(seed: int, path_judge: Any) -> None:
+    within = Box((-80, 80), (-80, 80))
+    wanted = Requirements(rotatability="crank-rocker", link_length=(5, 80), o2=within, o4=within)
+    task = PathTask(ELLIPSE)
+    result = synthesize(Problem(task=task, requirements=wanted), enough=1, seed=seed)
+    check_designs(result, path_judge)
+    best = result.best
+    errors = path_judge(best.linkage, best.verdict.theta2, task).errors * task.size
+    assert (errors**2).sum() <= 4.0200e-4
+
+
+PLANTED = [(9, False, seed) for seed in range(5)] + [(n, True, n) for n in (4, 5, 6, 12, 24)]
+
+
+@pytest.mark.parametrize(("points", "timed", "seed"), PLANTED)
+def test_planted_problems_are_solved(points: int, timed: bool, seed: int, path_judge: Any) -> None:
+    task, _ = planted_path(np.random.default_rng([31, seed]), points, timed=timed)
+    result = synthesize(Problem(task=task), enough=1)
+    check_designs(result, path_judge)
+    best = result.best
+    assert path_judge(best.linkage, best.verdict.theta2, task).errors.max() < 1e-6
+
+
+def test_closed_curves_are_gone_round(path_judge: Any) -> None:
+    angle = np.linspace(0, 2 * np.pi, 12, endpoint=False)
+    curve = np.exp(1j * angle) + 0.25 * np.exp(-1j * angle) + 0.1 * np.exp(2j * angle)
+    task = PathTask(np.stack([curve.real, curve.imag], axis=1), closed=True)
+    result = synthesize(Problem(task=task), enough=3)
+    check_designs(result, path_judge)
+    for candidate in result.candidates:
+        assert candidate.verdict.hausdorff is not None
+        assert candidate.verdict.frechet is not None
+        assert 0 < candidate.verdict.hausdorff <= candidate.verdict.frechet
+
+
+def test_a_driver_that_rocks_does_it_too(path_judge: Any) -> None:
+    result = synthesize(case1(rotatability="any"), enough=10)
+    check_designs(result, path_judge)
+    assert np.degrees(result.best.verdict.transmission_min_task) >= 50
+
+
+def curve_of(linkage: FourBar, count: int) -> ComplexArray:
+    """P over the turn on both assemblies where the loop closes, by circle intersection."""
+    o2, o4, arm = (complex(*point) for point in (linkage.o2, linkage.o4, linkage.coupler_point))
+    r2, r3, r4 = float(linkage.r2), float(linkage.r3), float(linkage.r4)
+    a = o2 + r2 * np.exp(1j * np.linspace(0, 2 * np.pi, count))
+    distance = np.abs(o4 - a)
+    foot = (distance**2 + r3**2 - r4**2) / (2 * distance)
+    with np.errstate(invalid="ignore"):
+        height = np.sqrt(r3**2 - foot**2)
+    coupler = (foot + 1j * np.array([[1], [-1]]) * height) * (o4 - a) / distance
+    traced = (a + arm * coupler / r3).ravel()
+    return traced[np.isfinite(traced)]
+
+
+def test_cognates_trace_the_curve_of_the_design_that_they_name() -> None:
+    result = synthesize(case1(rotatability="any", link_length=(3, 90), o2=None, o4=None), enough=24)
+    named = {candidate.id: candidate for candidate in result.candidates}
+    cognates = [candidate for candidate in result.candidates if candidate.cognate_of]
+    assert len(cognates) >= 3
+    known = [candidate for candidate in cognates if candidate.cognate_of in named]
+    assert known
+    for candidate in known[:4]:
+        check_family(candidate, named[candidate.cognate_of])
+
+
+def check_family(candidate: Candidate, origin: Candidate) -> None:
+    assert origin.cognate_of == ""
+    mine, theirs = curve_of(candidate.linkage, 300), curve_of(origin.linkage, 30_001)
+    back = curve_of(origin.linkage, 300), curve_of(candidate.linkage, 30_001)
+    for few, many in ((mine, theirs), back):
+        gap = np.abs(few[:, None] - many).min(axis=1)
+        assert np.median(gap) < 1e-3 * np.ptp(many.real) + 1e-3 * np.ptp(many.imag)
+        assert gap.max() < 2e-2 * (np.ptp(many.real) + np.ptp(many.imag))
+
+
+def test_fixed_pivots_have_no_cognates() -> None:
+    task = PathTask(LINE[:4])
+    fixed = Requirements(o2=Box((0, 0), (0, 0)), link_length=(5, 60))
+    result = synthesize(Problem(task=task, requirements=fixed), enough=6)
+    assert len(result) >= 6
+    assert all(candidate.cognate_of == "" for candidate in result.candidates)
+    assert all(np.abs(candidate.linkage.o2).max() < 1e-9 for candidate in result.candidates)
+
+
+def csv_of(result: Result, folder: Path) -> bytes:
+    result.to_csv(folder / "out.csv")
+    return (folder / "out.csv").read_bytes()
+
+
+def test_workers_change_no_byte(tmp_path: Path) -> None:
+    problem = Problem(task=PathTask(LINE), requirements=case1().requirements)
+    few: dict[str, Any] = {"starts": 40, "enough": 20, "seed": 3}
+    alone = csv_of(synthesize(problem, **few), tmp_path)
+    assert alone.count(b"\n") > 10
+    assert csv_of(synthesize(problem, workers=2, **few), tmp_path) == alone
+    assert csv_of(synthesize(problem, **(few | {"seed": 4})), tmp_path) != alone
+
+
+def test_an_impossible_path_says_what_stands_in_the_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(paths, "BARREN", 2)
+    far = Box((1000, 1001), (1000, 1001))
+    result = synthesize(case1(o2=far), enough=5, starts=8)
+    assert len(result) == 0
+    assert "no design" in result.note
