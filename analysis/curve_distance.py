@@ -37,7 +37,7 @@ def curve_distances(linkage: FourBar, points: FloatArray, direction: int) -> tup
     >>> linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)  # P is A: a circle of radius 1
     >>> angle = np.linspace(0, 2 * np.pi, 1000)
     >>> circle = 1.5 * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    >>> [round(distance, 4) for distance in curve_distances(linkage, circle, 1)]
+    >>> [round(distance, 3) for distance in curve_distances(linkage, circle, 1)]
     [0.5, 0.5]
     """
     corners = points @ np.array([1, 1j])

@@ -70,10 +70,10 @@ def met_in_order(
     theta2, value = _refined(linkage, near)
     moved = _beside(linkage, near, theta2, value)
     if (moved != theta2).any():
-        near = [
-            (replace(guess, theta2=row), passage) for (guess, passage), row in zip(near, moved, strict=True)
-        ]
-        theta2, value = _refined(linkage, near)
+        shifted = [(replace(item[0], theta2=row), item[1]) for item, row in zip(near, moved, strict=True)]
+        moved, depth = _refined(linkage, shifted)
+        deeper = (depth.sum(axis=1) < value.sum(axis=1))[:, None]
+        theta2, value = np.where(deeper, moved, theta2), np.where(deeper, depth, value)
     total = value.sum(axis=1)
     level = total <= total.min() * (1 + 1e-9) + len(task) * (ROUNDING * task.size) ** 2
     row = int(np.argmin(np.where(level, np.ptp(theta2, axis=1), np.inf)))
