@@ -89,7 +89,8 @@ def scipy_best(task: PathTask, wanted: Requirements, rng: np.random.Generator, s
         return FourBar(o2, o4, scale * r2, scale * r3, scale * r4, scale * x[7:9], sign)
 
     def residual(x: FloatArray) -> FloatArray:
-        return (solve_position(linkage(x), x[9:]).p - points).ravel()
+        gaps: FloatArray = (solve_position(linkage(x), x[9:]).p - points).ravel()
+        return gaps
 
     best = np.inf
     for _ in range(starts):
