@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from grashof.analysis import solve_position
 from grashof.problems import FourBar
 from grashof.problems.checks import ComplexArray
 
@@ -50,8 +51,6 @@ def assembly_of(points: ComplexArray) -> int:
 
 def position_of(linkage: FourBar, theta2: float) -> ComplexArray:
     """O2, O4, A, B, P of a linkage at a driver angle, shape (5,)."""
-    from grashof.analysis import solve_position
-
     state = solve_position(linkage, theta2)
     pairs = (linkage.o2, linkage.o4, state.a, state.b, state.p)
     return np.array([complex(*pair) for pair in pairs])
