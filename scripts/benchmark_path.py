@@ -15,7 +15,7 @@ from grashof import load, synthesize
 from grashof.analysis import solve_position, verify
 from grashof.analysis.planted import planted_path
 from grashof.problems import FourBar, PathTask, Problem, Requirements, Rotatability
-from grashof.problems.checks import FloatArray
+from grashof.problems.checks import ComplexArray, FloatArray
 from grashof.synth import Result
 
 
@@ -58,6 +58,22 @@ def planted(points: int, count: int, is_timed: bool) -> None:
         f"median {np.median(seconds):.3f} s, "
         f"95th percentile {np.percentile(seconds, 95):.3f} s, longest {max(seconds):.2f} s"
     )
+
+
+def interpolated(seeds: int) -> None:
+    """All linkages through nine points near a circle, in any order: triplets among the designs."""
+    problem, size = load("nine-points"), load("nine-points").task.size
+    for seed in range(seeds):
+        result, time = timed(lambda: synthesize(problem, enough=200, seed=seed))  # noqa: B023
+        triplets: list[ComplexArray] = []
+        for candidate in result.candidates:
+            linkage = candidate.linkage
+            o2, o4 = complex(*linkage.o2), complex(*linkage.o4)
+            o6 = o2 + (o4 - o2) * complex(*linkage.coupler_point) / linkage.r3
+            pivots = np.array([o2 + o4 + o6, o2 * o4 + o4 * o6 + o6 * o2])
+            if all(np.abs(pivots - other).max() > 1e-4 * size for other in triplets):
+                triplets.append(pivots)
+        print(f"near-circle nine points: {len(result)} designs, {len(triplets)} triplets in {time:.1f} s")
 
 
 def fourier_curve(rng: np.random.Generator, points: int) -> PathTask:
@@ -154,6 +170,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     planted(9, options.nine, is_timed=False)
     for points in (6, 12, 24):
         planted(points, options.timed, is_timed=True)
+    interpolated(min(options.seeds, 2))
     closed_curves(options.closed, options.scipy)
     return 0
 

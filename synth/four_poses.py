@@ -13,7 +13,7 @@ from grashof.synth.choose import feasible_starts, mended_starts
 from grashof.synth.choose import relaxed_starts as relaxed
 from grashof.synth.screen import near_misses, screen
 from grashof.synth.setup import Setup
-from grashof.synth.start import Start
+from grashof.synth.start import Round, Start
 
 LINES, CELL = 800, 0.01  # of the traced curves, in sizes
 PAIRS, NEAR_PAIRS = 1_000_000, 150_000  # judged
@@ -48,8 +48,8 @@ def degenerate(setup: Setup) -> str:
     return ""
 
 
-def rounds(setup: Setup, enough: int, rng: np.random.Generator) -> Iterator[tuple[list[Start], int]]:
-    """The one round of starts that there is, with the number of feasible pairs.
+def rounds(setup: Setup, enough: int, rng: np.random.Generator) -> Iterator[Round]:
+    """The one round of starts that there is, with the number of feasible pairs of dyads.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def rounds(setup: Setup, enough: int, rng: np.random.Generator) -> Iterator[tupl
 
     Yields
     ------
-    list of Start, int
+    Round
     """
     motion, body, dyads = _motion(setup), setup.targets[0], _dyads(setup, rng)
     feasible = screen(motion, body, dyads, setup.wanted, PAIRS)
@@ -68,7 +68,7 @@ def rounds(setup: Setup, enough: int, rng: np.random.Generator) -> Iterator[tupl
     if len(starts) < enough:
         near = near_misses(motion, body, dyads, setup.wanted, NEAR_PAIRS)
         starts += mended_starts(setup, near, enough)
-    yield starts, len(feasible)
+    yield Round(starts, {"feasible finds": len(feasible)})
 
 
 def relaxed_starts(setup: Setup, rng: np.random.Generator) -> list[Start]:

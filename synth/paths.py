@@ -7,13 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from grashof.problems.checks import BoolArray
+from grashof.problems.checks import BoolArray, ComplexArray, FloatArray
 from grashof.synth.choose import feasible_starts, mended_starts
 from grashof.synth.choose import relaxed_starts as relaxed
-from grashof.synth.finds import Configurations, Finds, as_they_come, dyad_lacks, judge
-from grashof.synth.path_search import Batch, PathTarget, Placed, draw, improve, place
+from grashof.synth.cognates import cognate_points
+from grashof.synth.finds import Configurations, Finds, as_they_come, dyad_lacks, follow, judge
+from grashof.synth.nine_points import coupler_turns, linkages_through
+from grashof.synth.path_search import PathTarget, Placed, draw, improve, place
 from grashof.synth.setup import Setup
-from grashof.synth.start import Start
+from grashof.synth.start import Round, Start
 
 TURN = 2 * np.pi
 # Draws, and how many of the best go on for how many steps: few solutions, or a whole family of them.
@@ -22,11 +24,12 @@ FAMILY = (6000, ((1500, 10), (800, 10)))
 TIMED = (600, ((60, 6), (20, 60)))
 BARREN = 12  # so many rounds on end without a start end the search
 EXACT = 1e-16  # sizes squared: such an error is left to the solver
+SEARCHES = 6  # rounds of the search before all linkages through nine points are computed
 FOUND = 1e-5  # sizes: rms error of a start for an exact task
 
 
-def rounds(setup: Setup, enough: int, rng: np.random.Generator) -> Iterator[tuple[list[Start], int]]:
-    """Rounds of starts, each with the number of feasible finds; later ones only when more are needed.
+def rounds(setup: Setup, enough: int, rng: np.random.Generator) -> Iterator[Round]:
+    """Rounds of starts; later ones only when more are needed.
 
     Parameters
     ----------
@@ -37,19 +40,70 @@ def rounds(setup: Setup, enough: int, rng: np.random.Generator) -> Iterator[tupl
 
     Yields
     ------
-    list of Start, int
+    Round
     """
+    if _has_nine_points(setup):
+        # All linkages can be had, but for points in order the search is most often there sooner.
+        for _ in range(SEARCHES if setup.wanted.order else 0):
+            yield _search_round(setup, enough, rng)
+        yield _all_round(setup, rng)
+        return
     barren = 0
     while barren < BARREN:
-        finds, family = search(setup, enough, rng), _family(setup, path_target(setup))
-        feasible = finds[finds.feasible]
-        starts = feasible_starts(setup, feasible, enough)
-        if len(starts) < enough:
-            starts += mended_starts(setup, finds, enough)
-        # Without freedom, or with no error left to reduce, a find is the design already.
-        settled = not family and (setup.exact or finds.error.min(initial=1.0) < FOUND)
-        barren = 0 if starts else barren + 1
-        yield [replace(start, settled=settled) for start in starts], len(feasible)
+        found = _search_round(setup, enough, rng)
+        barren = 0 if found.starts else barren + 1
+        yield found
+
+
+def _search_round(setup: Setup, enough: int, rng: np.random.Generator) -> Round:
+    finds, family = search(setup, enough, rng), _family(setup, path_target(setup))
+    feasible = finds[finds.feasible]
+    starts = feasible_starts(setup, feasible, enough)
+    if len(starts) < enough:
+        starts += mended_starts(setup, finds, enough)
+    # Without freedom, or with no error left to reduce, a find is the design already.
+    settled = not family and (setup.exact or finds.error.min(initial=1.0) < FOUND)
+    return Round([replace(start, settled=settled) for start in starts], {"feasible finds": len(feasible)})
+
+
+def _all_round(setup: Setup, rng: np.random.Generator) -> Round:
+    """Of every triplet of cognates through nine points the first feasible one; the others follow."""
+    target = path_target(setup)
+    linkages = linkages_through(target.points, rng)
+    every = _from_every_side(linkages).reshape(-1, 5)
+    finds = _judged(setup, target, *_as_found(every, target))
+    feasible = finds.feasible.reshape(-1, 3, 2)
+    usable = feasible.any(axis=2)
+    first = usable & (np.cumsum(usable, axis=1) == 1)
+    chosen = np.flatnonzero(feasible & first[..., None])
+    starts = [
+        replace(Start.of_find(finds, int(index), setup.problem.objective), settled=True) for index in chosen
+    ]
+    counts = {"feasible finds": int(feasible.sum()), "linkages through the points": 3 * len(linkages)}
+    return Round(starts, counts)
+
+
+def _from_every_side(linkages: ComplexArray) -> ComplexArray:
+    """Linkages (n, 5), their cognates, and all of them driven from the other side; (n, 3, 2, 5)."""
+    swap = [1, 0, 3, 2, 4]
+    cognates = cognate_points(linkages.T, timed=False)
+    one_side = [linkages.T, *cognates[:2]]
+    other_side = [linkages.T[swap], *cognates[2:]]
+    return np.stack([one_side, other_side]).transpose(3, 1, 0, 2)
+
+
+def _as_found(points: ComplexArray, target: PathTarget) -> tuple[Placed, FloatArray]:
+    """Linkages (n, 5) that pass all points: where they stand there, and the shorter sense of the driver."""
+    o2, _, a, b, p = (column[:, None] for column in points.T)
+    turns = coupler_turns(points, target.points)
+    a, b = target.points + (a - p) * turns, target.points + (b - p) * turns
+    theta2 = np.angle(a - o2)
+    forth, back = (follow(theta2, np.full(len(points), sense)) for sense in (1.0, -1.0))
+    shorter = np.abs(forth[:, -1] - theta2[:, 0]) <= np.abs(back[:, -1] - theta2[:, 0])
+    theta2 = np.where(shorter[:, None], forth, back)
+    p = np.broadcast_to(target.points, a.shape)
+    placed = Placed(np.zeros(len(points)), points[:, 0], points[:, 1], a, b, p, theta2)
+    return placed, np.where(shorter, 1.0, -1.0)
 
 
 def relaxed_starts(setup: Setup, rng: np.random.Generator) -> list[Start]:
@@ -74,7 +128,7 @@ def search(setup: Setup, enough: int, rng: np.random.Generator, *, to_boxes: boo
     sound = np.isfinite(placed.error)
     if setup.exact:
         sound &= placed.error <= len(target.points) * FOUND**2
-    return _judged(setup, target, batch[sound], _at(placed, sound))
+    return _judged(setup, target, _at(placed, sound), batch.direction[sound])
 
 
 def path_target(setup: Setup) -> PathTarget:
@@ -109,17 +163,23 @@ def _family(setup: Setup, target: PathTarget) -> bool:
     return setup.exact and unknowns > 2 * len(target.points)
 
 
+def _has_nine_points(setup: Setup) -> bool:
+    """Whether the task is exact passage of nine distinct points without timing: finitely many linkages."""
+    points = path_target(setup).points
+    apart = np.abs(points[:, None] - points) + np.eye(len(points))
+    return setup.exact and setup.timing is None and len(points) == 9 and bool(apart.min() > 1e-9)
+
+
 def _at(placed: Placed, rows: BoolArray) -> Placed:
     return Placed(*(getattr(placed, name)[rows] for name in placed.__slots__))
 
 
-def _judged(setup: Setup, target: PathTarget, batch: Batch, placed: Placed) -> Finds:
+def _judged(setup: Setup, target: PathTarget, placed: Placed, direction: FloatArray) -> Finds:
     a, b, theta2 = placed.a, placed.b, placed.theta2
     if _repeats(setup):
         a, b = (np.concatenate([points, points[:, :1]], axis=1) for points in (a, b))
-        theta2 = np.concatenate([theta2, theta2[:, :1] + TURN * batch.direction[:, None]], axis=1)
+        theta2 = np.concatenate([theta2, theta2[:, :1] + TURN * direction[:, None]], axis=1)
     visit = np.broadcast_to(np.arange(theta2.shape[1]), theta2.shape)
-    direction = batch.direction
     if not target.wanted.order:
         visit, theta2, direction = as_they_come(theta2)
     p = placed.p[:, 0]

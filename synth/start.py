@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -111,3 +112,19 @@ class Start:
             assembly=int(finds.assembly[index]),
             objective=objective,
         )
+
+
+@dataclass(frozen=True, slots=True)
+class Round:
+    """What one round of a search came up with.
+
+    Parameters
+    ----------
+    starts : list of Start
+        The most promising first.
+    counts : mapping of str to int
+        Of what was looked at.
+    """
+
+    starts: list[Start]
+    counts: Mapping[str, int]

@@ -139,12 +139,12 @@ def _search(
     complete, seconds = True, {"screening": 0.0, "solving": 0.0}
     with _solving(workers, executor) as solve:
         since = perf_counter()
-        for starts, feasible in finder.rounds(setup, search.enough, rng):
+        for made in finder.rounds(setup, search.enough, rng):
             screened = perf_counter()
             seconds["screening"] += screened - since
-            found.counts["feasible finds"] += feasible
+            found.counts.update(made.counts)
             before = len(found.best)
-            _solve_round(setup, starts, search, solve, found, ended, progress)
+            _solve_round(setup, made.starts, search, solve, found, ended, progress)
             since = perf_counter()
             seconds["solving"] += since - screened
             found.stale = found.stale + 1 if 0 < before == len(found.best) else 0
@@ -158,7 +158,7 @@ def _search(
             nearest = _nearest(solve(setup, finder.relaxed_starts(setup, rng), found.solved))
     found.counts["verified and distinct"] = len(found.best)
     times = {**seconds, "total": perf_counter() - begun}
-    note = "" if found.best else _why(nearest, complete)
+    note = "" if found.best else _why(nearest, complete, found.counts["linkages through the points"])
     return Result(setup.problem, found.best, nearest, dict(found.counts), times, note, complete)
 
 
@@ -273,10 +273,18 @@ def _nearest(attempts: list[Attempt]) -> tuple[Candidate, ...]:
     return tuple(candidate for _, _, candidate in sorted(found, key=lambda item: item[:2]))
 
 
-def _why(nearest: tuple[Candidate, ...], complete: bool) -> str:
+def _why(nearest: tuple[Candidate, ...], complete: bool, all_linkages: int) -> str:
     if not complete:
         return "no design: the search was stopped before it found one"
+    if all_linkages:
+        closest = f"; the closest one misses {_missed(nearest[0])}" if nearest else ""
+        return (
+            f"no design: none of {all_linkages} linkages through the points meets all requirements{closest}"
+        )
     if not nearest:
         return "no design: the search found none, nor a near miss"
-    missed = " and ".join(str(defect) for defect in nearest[0].verdict.defects)
-    return f"no design meets all requirements; the closest one misses {missed}"
+    return f"no design meets all requirements; the closest one misses {_missed(nearest[0])}"
+
+
+def _missed(candidate: Candidate) -> str:
+    return " and ".join(str(defect) for defect in candidate.verdict.defects)

@@ -1,0 +1,30 @@
+"""Make synth/data/nine_points.npz anew: all solutions of the nine-point problem for general points.
+
+Takes some minutes. From another seed come other points, and as many solutions.
+"""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from grashof.synth.monodromy import collect, general_problem
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Find the solutions and write them."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("file", type=Path)
+    parser.add_argument("--seed", type=int, default=0)
+    options = parser.parse_args(argv)
+    rng = np.random.default_rng(options.seed)
+    displacements, first = general_problem(rng)
+    solutions = collect(displacements, first, rng, progress=lambda known: print(known, flush=True))
+    np.savez_compressed(options.file, displacements=displacements, solutions=solutions)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
