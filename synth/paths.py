@@ -25,6 +25,7 @@ TIMED = (600, ((60, 6), (20, 60)))
 BARREN = 12  # so many rounds on end without a start end the search
 EXACT = 1e-16  # sizes squared: such an error is left to the solver
 SEARCHES = 6  # rounds of the search before all linkages through nine points are computed
+SAME_CURVE = 0.1  # of the rms error: two least-squares finds closer at every target are one
 FOUND = 1e-5  # sizes: rms error of a start for an exact task
 
 
@@ -48,11 +49,28 @@ def rounds(setup: Setup, enough: int, rng: np.random.Generator) -> Iterator[Roun
             yield _search_round(setup, enough, rng)
         yield _all_round(setup, rng)
         return
-    barren = 0
+    barren, curves = 0, list[ComplexArray]()
     while barren < BARREN:
         found = _search_round(setup, enough, rng)
+        if not setup.exact:
+            found = replace(found, starts=_new_curves(setup, found.starts, curves))
         barren = 0 if found.starts else barren + 1
         yield found
+
+
+def _new_curves(setup: Setup, starts: list[Start], curves: list[ComplexArray]) -> list[Start]:
+    """Least-squares starts that pass the targets by another way than all before, which `curves` keeps.
+
+    Cognates pass them by the same way; they are added to every design afterwards.
+    """
+    new = []
+    for start in starts:
+        p = start.track[2][np.argsort(start.visit)]
+        near = SAME_CURVE * np.sqrt(np.mean(np.abs(p - setup.targets) ** 2))
+        if all(np.abs(p - other).max() > near for other in curves):
+            new.append(start)
+            curves.append(p)
+    return new
 
 
 def _search_round(setup: Setup, enough: int, rng: np.random.Generator) -> Round:

@@ -23,7 +23,9 @@ from grashof.synth.start import Start
 
 BATCH = 16  # solves between two looks at what is verified; fixed, so that workers change nothing
 FRUITLESS = 64  # so many solves without one verified design end the search
-STALE, STALE_EXACT = 3, 20  # so many rounds of starts on end that add no design to the list, too
+# So many rounds of starts on end that gain nothing, too: least squares and exact.
+STALE, STALE_EXACT = 3, 20
+GAIN = 1e-4  # of the error
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,11 +145,11 @@ def _search(
             screened = perf_counter()
             seconds["screening"] += screened - since
             found.counts.update(made.counts)
-            before = len(found.best)
+            before = found.best
             _solve_round(setup, made.starts, search, solve, found, ended, progress)
             since = perf_counter()
             seconds["solving"] += since - screened
-            found.stale = found.stale + 1 if 0 < before == len(found.best) else 0
+            found.stale = found.stale + 1 if before and not found.gained_on(before) else 0
             if not found.wants_more(search):
                 break
             if ended():
@@ -179,6 +181,12 @@ class _Found:
         stale = self.stale >= (STALE_EXACT if exact else STALE)
         hopeless = stale or (not self.best and self.solved >= FRUITLESS)
         return len(self.best) < search.enough and self.solved < search.starts and not hopeless
+
+    def gained_on(self, before: tuple[Candidate, ...]) -> bool:
+        """Whether there are more exact designs than before, or a better least-squares one."""
+        if self.problem.requirements.is_exact(self.problem.task):
+            return len(self.best) > len(before)
+        return self.best[0].score(self.problem) > (1 - GAIN) * before[0].score(self.problem)
 
     def take(self, attempts: list[Attempt]) -> None:
         """Count a batch, keep what is verified, and rank it."""

@@ -20,7 +20,7 @@ SetupOf = Callable[..., Setup]
 
 
 def first_starts(setup: Setup, count: int) -> list[Start]:
-    return next(rounds(setup, 50, np.random.default_rng(0)))[0][:count]
+    return next(rounds(setup, 50, np.random.default_rng(0))).starts[:count]
 
 
 def off_circles(linkage: FourBar, setup: Setup) -> float:

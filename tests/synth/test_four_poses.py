@@ -22,7 +22,7 @@ SetupOf = Callable[..., Setup]
 
 def queue_of(setup: Setup, enough: int = 50, seed: int = 0) -> tuple[list[Start], int]:
     (queue,) = rounds(setup, enough, np.random.default_rng(seed))
-    return queue
+    return queue.starts, queue.counts["feasible finds"]
 
 
 def linkage_of(setup: Setup, start: Start) -> FourBar:

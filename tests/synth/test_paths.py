@@ -12,7 +12,7 @@ from grashof.synth import paths
 from grashof.synth.finds import GROUPS, Finds
 from grashof.synth.paths import path_target, relaxed_starts, rounds, search
 from grashof.synth.setup import Setup
-from grashof.synth.start import Start
+from grashof.synth.start import Round, Start
 
 PathSetup = Callable[..., tuple[Setup, FourBar]]
 
@@ -28,7 +28,7 @@ def setup_of(points: list[list[float]], closed: bool = False, timing: Any = None
     return Setup.of(Problem(task=task, requirements=Requirements(**wanted)))
 
 
-def first_rounds(setup: Setup, count: int, enough: int = 5, seed: int = 0) -> list[tuple[list[Start], int]]:
+def first_rounds(setup: Setup, count: int, enough: int = 5, seed: int = 0) -> list[Round]:
     return list(islice(rounds(setup, enough, np.random.default_rng(seed)), count))
 
 
@@ -58,8 +58,9 @@ def test_the_seed_decides() -> None:
 
 def test_a_family_has_feasible_starts_that_are_apart() -> None:
     setup = setup_of(LINE, link_length=(5, 60), rotatability="crank-rocker")
-    ((starts, feasible),) = first_rounds(setup, 1, enough=20)
-    assert feasible >= len(starts) > 20
+    (first,) = first_rounds(setup, 1, enough=20)
+    starts = first.starts
+    assert first.counts["feasible finds"] >= len(starts) > 20
     assert not any(start.settled for start in starts)
     check_tracks(setup, starts, 1e-5)
     scale = setup.frame.scale
@@ -81,7 +82,7 @@ def test_a_family_has_feasible_starts_that_are_apart() -> None:
 @pytest.mark.parametrize("seed", range(4))
 def test_nine_points_settle_their_designs(path_setup: PathSetup, seed: int) -> None:
     setup, _ = path_setup([1, seed], 9)
-    starts = [start for found, _ in first_rounds(setup, 4, enough=1) for start in found]
+    starts = [start for found in first_rounds(setup, 4, enough=1) for start in found.starts]
     assert starts
     assert all(start.settled for start in starts)
     check_tracks(setup, starts, 1e-5)
@@ -97,7 +98,7 @@ def test_prescribed_rotations_are_kept(path_setup: PathSetup, points: int, any_d
     assert setup.timing is not None
     turned = finds.direction[:, None] * (finds.theta2 - finds.theta2[:, :1])
     np.testing.assert_allclose(turned, np.tile(setup.timing, (len(finds), 1)), atol=1e-9)
-    check_tracks(setup, first_rounds(setup, 1)[0][0][:10], 1e-5 if setup.exact else 1.0)
+    check_tracks(setup, first_rounds(setup, 1)[0].starts[:10], 1e-5 if setup.exact else 1.0)
 
 
 @pytest.mark.parametrize("exact", [True, False])
@@ -112,7 +113,7 @@ def test_a_last_point_that_repeats_the_first_is_met_after_a_turn(exact: bool) ->
     turn = finds.theta2[:, -1] - finds.theta2[:, 0]
     np.testing.assert_allclose(turn, 2 * np.pi * finds.direction, atol=1e-12)
     assert finds.theta2.shape == (len(finds), len(points) + 1)
-    starts = first_rounds(setup, 1)[0][0]
+    starts = first_rounds(setup, 1)[0].starts
     check_tracks(setup, starts, 1e-5 if exact else 0.5)
 
 
@@ -187,9 +188,9 @@ def test_interpolation_mixes_assemblies() -> None:
 @pytest.mark.parametrize("wanted", [{"o2": Box((0, 0), (0, 0))}, {"ground_angle_deg": 0.0}])
 def test_an_equality_leaves_near_misses_to_start_from(wanted: dict[str, Any]) -> None:
     setup = setup_of(LINE[:4], link_length=(5, 60), **wanted)
-    ((starts, feasible),) = first_rounds(setup, 1, enough=10)
-    assert feasible == 0
-    assert len(starts) >= 10
+    (first,) = first_rounds(setup, 1, enough=10)
+    assert first.counts["feasible finds"] == 0
+    assert len(first.starts) >= 10
 
 
 def test_relaxed_starts_miss_one_requirement() -> None:
@@ -208,4 +209,4 @@ def test_rounds_without_a_start_end(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(paths, "search", lambda *_: none)
     found = list(rounds(setup, 5, np.random.default_rng(0)))
     assert 1 < len(found) < 100
-    assert all(starts == [] for starts, _ in found)
+    assert all(not each.starts for each in found)
