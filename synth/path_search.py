@@ -200,7 +200,6 @@ class _Loop:
     r4: FloatArray
     by_lengths: FloatArray  # (n, 3 lengths, 3 proportions)
     theta2: FloatArray
-    by_theta2: FloatArray  # (n, N, M)
     e2: ComplexArray
     e3: ComplexArray
     e4: ComplexArray
@@ -213,7 +212,7 @@ class _Loop:
         else:
             lengths, by_lengths = _full_crank_lengths(batch)
         r2, r3, r4 = lengths
-        theta2, by_theta2 = _driver_angles(target, batch)
+        theta2 = _driver_angles(target, batch)
         e2 = np.exp(1j * theta2)
         diagonal = 1 - r2[:, None] * e2
         s = np.abs(diagonal)
@@ -223,9 +222,7 @@ class _Loop:
         beside = batch.assembly * np.sqrt(np.where(beside2 > 0, beside2, 1.0))
         coupler = (along + 1j * beside) * diagonal / s
         output = r2[:, None] * e2 + coupler - 1
-        return cls(
-            r2, r3, r4, by_lengths, theta2, by_theta2, e2, coupler / r3[:, None], output / r4[:, None], closes
-        )
+        return cls(r2, r3, r4, by_lengths, theta2, e2, coupler / r3[:, None], output / r4[:, None], closes)
 
 
 def _full_crank_lengths(batch: Batch) -> tuple[tuple[FloatArray, FloatArray, FloatArray], FloatArray]:
@@ -255,25 +252,38 @@ def _any_lengths(batch: Batch) -> tuple[tuple[FloatArray, FloatArray, FloatArray
     return (r2, r3, r4), lengths[:, :, None] * np.eye(3)
 
 
-def _driver_angles(target: PathTarget, batch: Batch) -> tuple[FloatArray, FloatArray]:
-    """Driver angles (n, N) and their derivatives (n, N, M)."""
-    unknowns, sense = batch.unknowns, batch.direction
-    count, n = len(batch), len(target.points)
-    derivative = np.zeros((count, n, unknowns.shape[1]))
+def _driver_angles(target: PathTarget, batch: Batch) -> FloatArray:
+    """Driver angles (n, N)."""
+    unknowns, sense = batch.unknowns, batch.direction[:, None]
     if target.timing is not None:
-        derivative[:, :, 3] = 1
-        return unknowns[:, 3:4] + sense[:, None] * target.timing, derivative
+        return unknowns[:, 3:4] + sense * target.timing
     if not target.wanted.order:
-        derivative[:, :, 3:] = np.eye(n)
-        return unknowns[:, 3:], derivative
-    derivative[:, :, 3] = 1
-    share = np.exp(unknowns[:, 4:] - unknowns[:, 4:].max(axis=1, keepdims=True))
+        return unknowns[:, 3:]
+    _, gone = shares_of_turn(unknowns[:, 4:])
+    return unknowns[:, 3:4] + TURN * sense * gone
+
+
+def _by_unknowns(target: PathTarget, batch: Batch) -> FloatArray:
+    """Derivative of the driver angles, (n, N, M)."""
+    n = len(target.points)
+    slope = np.zeros((len(batch), n, batch.unknowns.shape[1]))
+    if target.timing is None and not target.wanted.order:
+        slope[:, :, 3:] = np.eye(n)
+        return slope
+    slope[:, :, 3] = 1
+    if target.timing is None:
+        share, gone = shares_of_turn(batch.unknowns[:, 4:])
+        before = np.tril(np.ones((n, n)), -1)
+        np.subtract(before, gone[:, :, None], out=slope[:, :, 4:])
+        slope[:, :, 4:] *= (TURN * batch.direction[:, None] * share)[:, None]
+    return slope
+
+
+def shares_of_turn(log_gaps: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """What gaps between N driver angles, and the rest, have of a turn; and what is gone at each; (n, N)."""
+    share = np.exp(log_gaps - log_gaps.max(axis=1, keepdims=True))
     share /= share.sum(axis=1, keepdims=True)
-    gone = np.concatenate([np.zeros((count, 1)), np.cumsum(share[:, :-1], axis=1)], axis=1)
-    before = np.tril(np.ones((n, n)), -1)
-    slope = share[:, None, :] * (before - gone[:, :, None])
-    derivative[:, :, 4:] = TURN * sense[:, None, None] * slope
-    return unknowns[:, 3:4] + TURN * sense[:, None] * gone, derivative
+    return share, np.concatenate([np.zeros((len(share), 1)), np.cumsum(share[:, :-1], axis=1)], axis=1)
 
 
 def _project(target: PathTarget, loop: _Loop) -> tuple[ComplexArray, ComplexArray, ComplexArray, FloatArray]:
@@ -307,13 +317,14 @@ def _linearised(target: PathTarget, batch: Batch) -> tuple[FloatArray, FloatArra
         root = np.sqrt(target.weights)
         fit = z[:, :1] + z[:, 1:2] * loop.e2 + z[:, 2:] * loop.e3
         residual = (target.points - fit) * root
-        by_theta3 = _by_theta3(loop)
+        by_theta2 = _by_unknowns(target, batch)
+        by_theta3 = _by_theta3(loop, by_theta2)
         turned2, turned3 = 1j * z[:, 1:2] * loop.e2, 1j * z[:, 2:] * loop.e3
-        slope = turned2[..., None] * loop.by_theta2 + turned3[..., None] * by_theta3
+        slope = turned2[..., None] * by_theta2 + turned3[..., None] * by_theta3
         slope *= root[:, None]
         share = np.swapaxes(q.conj(), 1, 2) @ slope
         slope -= q @ share
-        pull, by_pull = _pulls(target, loop, z, -_back_substituted(r, share))
+        pull, by_pull = _pulls(target, loop, by_theta2[:, 0], z, -_back_substituted(r, share))
         both = np.concatenate([residual.real, residual.imag, pull], axis=1)
         jacobian = np.concatenate([-slope.real, -slope.imag, by_pull], axis=1)
         cost: FloatArray = error + (pull**2).sum(axis=1)
@@ -321,7 +332,7 @@ def _linearised(target: PathTarget, batch: Batch) -> tuple[FloatArray, FloatArra
 
 
 def _pulls(
-    target: PathTarget, loop: _Loop, z: ComplexArray, by_z: ComplexArray
+    target: PathTarget, loop: _Loop, by_start: FloatArray, z: ComplexArray, by_z: ComplexArray
 ) -> tuple[FloatArray, FloatArray]:
     """How far limits are overstepped, weighted (n, L), and the derivative by the unknowns (n, L, M)."""
     wanted = target.wanted
@@ -341,23 +352,64 @@ def _pulls(
     by_ratio = np.where((ratio > 0)[:, None], by_ratio, 0.0)
     arm = _overstep(np.log(np.abs(z[:, 2])), -np.inf, np.log((wanted.coupler_arms or (0.0, np.inf))[1]))
     by_arm = np.where((arm != 0)[:, None], by_log_z[:, 2], 0.0)
-    pulls = [over, ratio[:, None], arm[:, None]]
-    slopes = [by_over, by_ratio[:, None], by_arm[:, None]]
-    ground = z[:, 1] / loop.r2
-    by_ground = ground[:, None] * (by_z[:, 1] / z[:, 1, None] - by_log_length[:, 1])
-    for box, pivot, by_pivot in (
-        (wanted.o2, z[:, 0], by_z[:, 0]),
-        (wanted.o4, z[:, 0] + ground, by_z[:, 0] + by_ground),
-    ):
-        for side, value, slope in (
-            (box.x if box else None, pivot.real, by_pivot.real),
-            (box.y if box else None, pivot.imag, by_pivot.imag),
-        ):
-            if side is not None and side != (-np.inf, np.inf):
-                outside = _overstep(value, *side)
-                pulls.append(outside[:, None])
-                slopes.append(np.where((outside != 0)[:, None], slope, 0.0)[:, None])
-    return PULL * np.concatenate(pulls, axis=1), PULL * np.concatenate(slopes, axis=1)
+    ground = _ComplexRow(np.log(z[:, 1] / loop.r2), by_z[:, 1] / z[:, 1, None] - by_log_length[:, 1])
+    others = [
+        *_pivot_rows(wanted, z, by_z, ground),
+        *_angle_rows(wanted, ground, _Row(loop.theta2[:, 0], by_start)),
+    ]
+    pulls = np.concatenate([over, np.stack([ratio, arm, *(row.value for row in others)], axis=1)], axis=1)
+    slopes = np.stack([by_ratio, by_arm, *(row.slope for row in others)], axis=1)
+    return PULL * pulls, PULL * np.concatenate([by_over, slopes], axis=1)
+
+
+@dataclass(frozen=True, slots=True)
+class _Row:
+    """A quantity of every linkage (n,), and its derivative by the unknowns (n, M)."""
+
+    value: FloatArray
+    slope: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class _ComplexRow:
+    value: ComplexArray
+    slope: ComplexArray
+
+    @property
+    def real(self) -> _Row:
+        return _Row(self.value.real, self.slope.real)
+
+    @property
+    def imag(self) -> _Row:
+        return _Row(self.value.imag, self.slope.imag)
+
+
+def _pivot_rows(
+    wanted: Requirements, z: ComplexArray, by_z: ComplexArray, log_ground: _ComplexRow
+) -> list[_Row]:
+    """How far the ground pivots lie outside their boxes."""
+    ground = np.exp(log_ground.value)
+    o2 = _ComplexRow(z[:, 0], by_z[:, 0])
+    o4 = _ComplexRow(o2.value + ground, o2.slope + ground[:, None] * log_ground.slope)
+    rows = []
+    for box, pivot in ((wanted.o2, o2), (wanted.o4, o4)):
+        for side, part in ((box.x, pivot.real), (box.y, pivot.imag)) if box else ():
+            outside = _overstep(part.value, *side)
+            if side != (-np.inf, np.inf):
+                rows.append(_Row(outside, np.where((outside != 0)[:, None], part.slope, 0.0)))
+    return rows
+
+
+def _angle_rows(wanted: Requirements, log_ground: _ComplexRow, driver: _Row) -> list[_Row]:
+    """How far ground line and driver (from it) at the first point are turned from where they are wanted."""
+    ground = log_ground.imag
+    driver = _Row(ground.value + driver.value, ground.slope + driver.slope)
+    wishes = ((wanted.ground_angle_deg, ground), (wanted.theta2_start_deg, driver))
+    return [
+        _Row(np.angle(np.exp(1j * (angle.value - np.radians(wish)))), angle.slope)
+        for wish, angle in wishes
+        if wish is not None
+    ]
 
 
 def _overstep(value: FloatArray, low: FloatArray | float, high: FloatArray | float) -> FloatArray:
@@ -365,11 +417,11 @@ def _overstep(value: FloatArray, low: FloatArray | float, high: FloatArray | flo
     return np.maximum(value - high, 0.0) - np.maximum(low - value, 0.0)
 
 
-def _by_theta3(loop: _Loop) -> FloatArray:
+def _by_theta3(loop: _Loop, by_theta2: FloatArray) -> FloatArray:
     """Derivative of theta3 by the unknowns, (n, N, M), from the loop equation projected on O4B."""
     driver, coupler = loop.e2 * loop.e4.conj(), loop.e3 * loop.e4.conj()
     below = loop.r3[:, None] * coupler.imag
-    slope = (-(loop.r2[:, None] * driver.imag) / below)[..., None] * loop.by_theta2
+    slope = (-(loop.r2[:, None] * driver.imag) / below)[..., None] * by_theta2
     by_r2, by_r3, by_r4 = (loop.by_lengths[:, None, i] for i in range(3))
     lengths = driver.real[..., None] * by_r2 + coupler.real[..., None] * by_r3 - by_r4
     slope[:, :, :3] += lengths / below[..., None]

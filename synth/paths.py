@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from grashof.problems import Requirements
 from grashof.problems.checks import BoolArray, ComplexArray, FloatArray
 from grashof.synth.choose import feasible_starts, mended_starts
 from grashof.synth.choose import relaxed_starts as relaxed
@@ -14,6 +15,7 @@ from grashof.synth.cognates import cognate_points
 from grashof.synth.finds import Configurations, Finds, as_they_come, dyad_lacks, follow, judge
 from grashof.synth.nine_points import coupler_turns, linkages_through
 from grashof.synth.path_search import PathTarget, Placed, draw, improve, place
+from grashof.synth.path_thinning import refined, thinned
 from grashof.synth.setup import Setup
 from grashof.synth.start import Round, Start
 
@@ -22,6 +24,7 @@ TURN = 2 * np.pi
 ISOLATED = (4000, ((300, 8), (80, 12), (20, 50)))
 FAMILY = (6000, ((1500, 10), (800, 10)))
 TIMED = (600, ((60, 6), (20, 60)))
+FEW_POINTS = 48  # of a longer path decide which finds are worth the rest
 BARREN = 12  # so many rounds on end without a start end the search
 EXACT = 1e-16  # sizes squared: such an error is left to the solver
 SEARCHES = 6  # rounds of the search before all linkages through nine points are computed
@@ -135,13 +138,16 @@ def search(setup: Setup, enough: int, rng: np.random.Generator, *, to_boxes: boo
     target = path_target(setup)
     if not to_boxes:
         target = replace(target, wanted=replace(target.wanted, o2=None, o4=None))
-    draws, stages = _effort(setup, target)
-    batch = draw(target, draws, rng)
+    draws, (*stages, (keep, steps)) = _effort(setup, target)
+    some, index = thinned(target, FEW_POINTS)
+    batch = draw(some, draws, rng)
     with np.errstate(all="ignore"):
-        error = place(target, batch).error
-        for keep, steps in stages:
-            best = np.argsort(error, kind="stable")[:keep]
-            batch, error = improve(target, batch[best], steps, EXACT, until=min(enough, keep))
+        error = place(some, batch).error
+        for keep_now, steps_now in stages:
+            best = np.argsort(error, kind="stable")[:keep_now]
+            batch, error = improve(some, batch[best], steps_now, EXACT, until=min(enough, keep_now))
+        batch = refined(target, index, batch[np.argsort(error, kind="stable")[:keep]])
+        batch, _ = improve(target, batch, steps, EXACT, until=min(enough, keep))
         placed = place(target, batch)
     sound = np.isfinite(placed.error)
     if setup.exact:
@@ -178,7 +184,14 @@ def _effort(setup: Setup, target: PathTarget) -> tuple[int, tuple[tuple[int, int
 def _family(setup: Setup, target: PathTarget) -> bool:
     """Whether exact designs have freedom left: more unknowns than equations."""
     unknowns = target.unknowns + 6 - (target.wanted.order and target.timing is None)
-    return setup.exact and unknowns > 2 * len(target.points)
+    return setup.exact and unknowns > 2 * len(target.points) + _equalities(setup.wanted)
+
+
+def _equalities(wanted: Requirements) -> int:
+    """How many numbers the requirements fix: coordinates of pivots, and angles."""
+    sides = [side for box in (wanted.o2, wanted.o4) if box is not None for side in (box.x, box.y)]
+    fixed = [wanted.ground_angle_deg is not None, wanted.theta2_start_deg is not None]
+    return sum(low == high for low, high in sides) + sum(fixed)
 
 
 def _has_nine_points(setup: Setup) -> bool:
