@@ -353,10 +353,8 @@ def _pulls(
     arm = _overstep(np.log(np.abs(z[:, 2])), -np.inf, np.log((wanted.coupler_arms or (0.0, np.inf))[1]))
     by_arm = np.where((arm != 0)[:, None], by_log_z[:, 2], 0.0)
     ground = _ComplexRow(np.log(z[:, 1] / loop.r2), by_z[:, 1] / z[:, 1, None] - by_log_length[:, 1])
-    others = [
-        *_pivot_rows(wanted, z, by_z, ground),
-        *_angle_rows(wanted, ground, _Row(loop.theta2[:, 0], by_start)),
-    ]
+    driver = _Row(loop.theta2[:, 0], by_start)
+    others = [*_pivot_rows(wanted, z, by_z, ground), *_angle_rows(wanted, ground, driver)]
     pulls = np.concatenate([over, np.stack([ratio, arm, *(row.value for row in others)], axis=1)], axis=1)
     slopes = np.stack([by_ratio, by_arm, *(row.slope for row in others)], axis=1)
     return PULL * pulls, PULL * np.concatenate([by_over, slopes], axis=1)

@@ -51,9 +51,11 @@ def refined(target: PathTarget, index: IntArray, batch: Batch) -> Batch:
     Batch
     """
     count = len(target.points)
+    if len(index) == count:
+        return batch
     assembly = np.broadcast_to(batch.assembly[:, :1], (len(batch), count))
     unknowns = batch.unknowns
-    if target.timing is None and len(index) < count:
+    if target.timing is None:
         length = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(target.points)))])
         _, gone = shares_of_turn(unknowns[:, 4:])
         every = np.stack([np.interp(length, length[index], row) for row in gone])
