@@ -115,7 +115,8 @@ def linkages_through(points: ComplexArray, rng: np.random.Generator) -> ComplexA
     found[again], reached[again] = follow(system, solutions[again], start, target, CAREFUL)
     found = _real(found[reached], target)
     x, _, a, _, y, _, b, _ = found.T
-    return points[0] + size * np.stack([a, b, x, y, np.zeros_like(a)], axis=1)
+    placed: ComplexArray = points[0] + size * np.stack([a, b, x, y, np.zeros_like(a)], axis=1)
+    return placed
 
 
 def coupler_turns(points: ComplexArray, targets: ComplexArray) -> ComplexArray:
