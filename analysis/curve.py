@@ -11,7 +11,7 @@ import numpy.typing as npt
 from grashof.analysis.descent import Model
 from grashof.analysis.mobility import driver_ranges, range_index, rotatability
 from grashof.analysis.motion import TURN
-from grashof.analysis.position import solve_position
+from grashof.analysis.position import Position, solve_position
 from grashof.problems import FourBar
 from grashof.problems.checks import ComplexArray, FloatArray, IntArray
 
@@ -43,6 +43,18 @@ def coupler_curve(
     once and twice, each time multiplied by the conjugate of the direction that drops out.
     """
     state = solve_position(linkage, theta2, assembly)
+    omega3, alpha3 = coupler_rates(linkage, state)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        crank = linkage.r2 * np.exp(1j * state.theta2)
+        u, v = linkage.coupler_point[..., 0], linkage.coupler_point[..., 1]
+        arm = (u + 1j * v) * np.exp(1j * state.theta3)
+        rate = 1j * (crank + omega3 * arm)
+        bend = -crank + (1j * alpha3 - omega3**2) * arm
+    return state.p[..., 0] + 1j * state.p[..., 1], rate, bend
+
+
+def coupler_rates(linkage: FourBar, state: Position) -> tuple[FloatArray, FloatArray]:
+    """First and second derivative of theta3 by the driver angle; see `coupler_curve`."""
     r2, r3, r4 = linkage.r2, linkage.r3, linkage.r4
     spread = np.sin(state.theta3 - state.theta4)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -52,12 +64,7 @@ def coupler_curve(
             state.theta3 - state.theta4
         )
         alpha3 = (r4 * omega4**2 - inward) / (r3 * spread)
-        crank = r2 * np.exp(1j * state.theta2)
-        u, v = linkage.coupler_point[..., 0], linkage.coupler_point[..., 1]
-        arm = (u + 1j * v) * np.exp(1j * state.theta3)
-        rate = 1j * (crank + omega3 * arm)
-        bend = -crank + (1j * alpha3 - omega3**2) * arm
-    return state.p[..., 0] + 1j * state.p[..., 1], rate, bend
+    return omega3, alpha3
 
 
 def squared_distance(

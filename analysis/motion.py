@@ -29,9 +29,9 @@ class Targets:
     assembly : ndarray of int, shape (N,)
         Assembly on which it is nearest: the linkage's own unless the other one is nearer.
     position_error : ndarray, shape (N,), length
-        Distance from the target position.
+        Distance from the target position; NaN where none is given.
     angle_error : ndarray, shape (N,), rad, or None
-        Turn from the target orientation; None where points are asked for, not poses.
+        Turn from the target orientation, NaN where none is given; None for a path.
     """
 
     theta2: FloatArray
@@ -89,18 +89,29 @@ def nearest_to_poses(linkage: FourBar, task: MotionTask) -> Targets:
     own = int(linkage.assembly)
     ends = driver_ranges(linkage)
     signs = np.broadcast_to(np.array([[own], [-own]]), (2, len(task)))
-    angle = np.broadcast_to(_into_ranges(ends, np.angle(a)), signs.shape)
+    guess = np.where(task.has_position & task.has_angle, np.angle(a), 0.0)
+    angle = np.broadcast_to(_into_ranges(ends, guess), signs.shape)
     angle, miss = _descend(linkage, task, theta3, angle, signs)
     if not _met(miss, task):
         more, more_signs = _scan(linkage, task, theta3)
         angle, signs = np.concatenate([angle, more]), np.concatenate([signs, more_signs])
         angle, miss = _descend(linkage, task, theta3, angle, signs)
     chosen, target = np.argmin(miss, axis=0), np.arange(len(task))
-    angle, sign = angle[chosen, target], signs[chosen, target]
-    state = solve_position(linkage, angle, sign)
-    gap, turned = state.p - task.positions, _wrapped(state.theta3 - theta3)
+    return at_poses(linkage, task, angle[chosen, target], signs[chosen, target])
+
+
+def at_poses(linkage: FourBar, task: MotionTask, theta2: FloatArray, assembly: IntArray) -> Targets:
+    """What a linkage misses poses by at given driver angles and assemblies, each of shape (N,)."""
+    state = solve_position(linkage, theta2, assembly)
+    gap = state.p - task.positions
     distance = np.nan_to_num(np.hypot(gap[:, 0], gap[:, 1]), nan=np.inf)
-    return Targets(angle, sign, distance, np.nan_to_num(np.abs(turned), nan=np.pi))
+    turned = np.abs(_wrapped(state.theta3 + linkage.body_angle - task.angles))
+    return Targets(
+        theta2,
+        assembly,
+        np.where(task.has_position, distance, np.nan),
+        np.where(task.has_angle, np.nan_to_num(turned, nan=np.pi), np.nan),
+    )
 
 
 def driver_way(linkage: FourBar, theta2: FloatArray, ordered: bool) -> Way:
@@ -152,8 +163,8 @@ def _miss(
     linkage: FourBar, task: MotionTask, theta3: FloatArray, theta2: FloatArray, signs: IntArray
 ) -> FloatArray:
     state = solve_position(linkage, theta2, signs)
-    gap = ((state.p - task.positions) ** 2).sum(axis=-1)
-    turn = task.angle_length * _wrapped(state.theta3 - theta3)
+    gap = np.where(task.has_position, ((state.p - task.positions) ** 2).sum(axis=-1), 0.0)
+    turn = np.where(task.has_angle, task.angle_length * _wrapped(state.theta3 - theta3), 0.0)
     miss: FloatArray = np.nan_to_num(gap + turn**2, nan=np.inf, posinf=np.inf)
     return miss
 
@@ -209,12 +220,13 @@ def _gauss_newton_step(
             linkage.r2 * np.sin(state.theta4 - theta2) / (linkage.r3 * np.sin(state.theta3 - state.theta4))
         )
     coupler = complex(*linkage.coupler_point) * np.exp(1j * state.theta3)
-    gap = (state.p - task.positions) @ np.array([1, 1j])
-    square = task.angle_length**2
+    gap = np.where(task.has_position, (state.p - task.positions) @ np.array([1, 1j]), 0.0)
+    turn = np.where(task.has_angle, _wrapped(state.theta3 - theta3), 0.0)
+    square = np.where(task.has_angle, task.angle_length**2, 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         rate_p = 1j * (linkage.r2 * np.exp(1j * theta2) + coupler * rate3)
-        slope = (rate_p.conj() * gap).real + square * rate3 * _wrapped(state.theta3 - theta3)
-        step = -slope / (np.abs(rate_p) ** 2 + square * rate3**2)
+        slope = (rate_p.conj() * gap).real + square * rate3 * turn
+        step = -slope / (task.has_position * np.abs(rate_p) ** 2 + square * rate3**2)
     return np.where(np.isfinite(step), np.clip(step, -0.5, 0.5), 0.0)
 
 

@@ -18,6 +18,7 @@ from grashof.analysis.mobility import (
 )
 from grashof.analysis.motion import STEADY, Targets, Way, driver_way, nearest_to_poses
 from grashof.analysis.path import nearest_to_points
+from grashof.analysis.poses_in_order import poses_in_order
 from grashof.analysis.position import Position, solve_position
 from grashof.analysis.transmission import worst_transmission, worst_transmission_cycle
 from grashof.problems import Box, FourBar, PathTask, Requirements, Rotatability, Task, TransmissionOver
@@ -65,8 +66,11 @@ class Verdict:
     assembly : ndarray of int, shape (N,)
         Assembly at each target.
     position_error : ndarray, shape (N,), length
+        NaN where a pose has no position.
     angle_error : ndarray, shape (N,), rad, or None
-        None for a path.
+        NaN where a pose has no angle; None for a path.
+    square : float, length squared
+        What least squares makes small: the weighted sum of |dp|^2 + (angle_length * dangle)^2.
     direction : int
         Sense of the driver, +1 counter-clockwise.
     grashof_class : GrashofClass
@@ -85,6 +89,7 @@ class Verdict:
     assembly: IntArray
     position_error: FloatArray
     angle_error: FloatArray | None
+    square: float
     direction: int
     grashof_class: GrashofClass
     full_rotation: bool
@@ -106,17 +111,17 @@ class Verdict:
     @property
     def error_max(self) -> float:
         """Greatest distance from a target position."""
-        return float(self.position_error.max())
+        return float(np.nanmax(self.position_error))
 
     @property
     def error_sse(self) -> float:
         """Sum of squared distances from the target positions."""
-        return float((self.position_error**2).sum())
+        return float(np.nansum(self.position_error**2))
 
     @property
     def error_rms(self) -> float:
         """Root mean square distance from the target positions."""
-        return float(np.sqrt(np.mean(self.position_error**2)))
+        return float(np.sqrt(np.nanmean(self.position_error**2)))
 
 
 def verify(linkage: FourBar, task: Task, requirements: Requirements) -> Verdict:
@@ -174,6 +179,7 @@ def verify(linkage: FourBar, task: Task, requirements: Requirements) -> Verdict:
         assembly=targets.assembly,
         position_error=targets.position_error,
         angle_error=targets.angle_error,
+        square=_square(targets, task),
         direction=way.direction,
         grashof_class=grashof_class(linkage),
         full_rotation=bool(full_rotation(linkage)),
@@ -196,7 +202,17 @@ def _met(linkage: FourBar, task: Task, wanted: Requirements) -> tuple[Targets, W
             linkage, task, ordered=wanted.order, same_branch=wanted.same_branch, theta2_start=start
         )
     targets = nearest_to_poses(linkage, task)
-    return targets, driver_way(linkage, targets.theta2, wanted.order)
+    way = driver_way(linkage, targets.theta2, wanted.order)
+    if wanted.order and not way.in_order and not wanted.is_exact(task):
+        return poses_in_order(linkage, task, targets, way)
+    return targets, way
+
+
+def _square(targets: Targets, task: Task) -> float:
+    if isinstance(task, PathTask) or targets.angle_error is None:
+        return float((targets.position_error**2).sum())
+    turned = task.angle_length * targets.angle_error
+    return float(np.nansum(task.weights * targets.position_error**2) + np.nansum(task.weights * turned**2))
 
 
 def _closed(task: Task) -> bool:
@@ -210,15 +226,15 @@ def _curve_distances(linkage: FourBar, task: Task, way: Way) -> tuple[float | No
 
 
 def _exactness(targets: Targets, task: Task, wanted: Requirements) -> list[Defect]:
-    worst = float(targets.position_error.max())
+    worst = float(np.nanmax(targets.position_error))
     allowed = wanted.tolerance * task.size
     defects = []
     if not worst <= allowed:
         miss = worst / task.size - wanted.tolerance
         defects.append(Defect("exact", "the largest position error", worst, f"up to {allowed:.6g}", miss))
-    if targets.angle_error is None or isinstance(task, PathTask):
+    if targets.angle_error is None or isinstance(task, PathTask) or not task.has_angle.any():
         return defects
-    turned = float(targets.angle_error.max())
+    turned = float(np.nanmax(targets.angle_error))
     if not turned * task.angle_length <= allowed:
         limit = float(np.degrees(allowed / task.angle_length))
         miss = turned - allowed / task.angle_length
@@ -277,7 +293,7 @@ def _rotatability(linkage: FourBar, task: Task, wanted: Requirements) -> list[De
 
 
 def _covered(targets: Targets) -> list[Defect]:
-    missed = int(np.count_nonzero(~np.isfinite(targets.position_error)))
+    missed = int(np.count_nonzero(np.isinf(targets.position_error)))
     if not missed:
         return []
     what = "the number of targets at which the linkage cannot be assembled"

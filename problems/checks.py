@@ -98,6 +98,13 @@ def limits(values: Limits, where: str, *, least: float = -np.inf) -> Limits:
     return low, high
 
 
+def span(points: FloatArray) -> float:
+    """Greatest distance between two of N points (N, 2); infinite beyond the floats."""
+    with np.errstate(over="ignore"):
+        separation = points[:, None] - points[None]
+        return float(np.hypot(separation[..., 0], separation[..., 1]).max(initial=0.0))
+
+
 def counted(number: int, noun: str) -> str:
     """Count with its noun: 1 corner, 2 corners."""
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

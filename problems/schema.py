@@ -80,15 +80,6 @@ def _listed(allowed: str) -> BeforeValidator:
     return BeforeValidator(refuse)
 
 
-def _whole_pose(pose: object) -> object:
-    allowed = "a pose [x, y, angle in degrees]"
-    if isinstance(pose, dict):
-        raise PydanticCustomError(_UNSUPPORTED, allowed)
-    if not isinstance(pose, list):
-        raise PydanticCustomError(_WRONG, allowed)
-    return pose
-
-
 def _one_of(supported: Sequence[str], later: Sequence[str]) -> AfterValidator:
     """Validator of a word: one of those supported; those of a later version are refused by name."""
 
@@ -118,17 +109,19 @@ class _Table(BaseModel):
 Corners = Annotated[
     list[Annotated[list[float], _listed("a corner [x, y]")]], _listed("a list of corners [x, y]")
 ]
-Pose = Annotated[list[float], BeforeValidator(_whole_pose)]
 Pair = Annotated[list[float], _listed("[lo, hi]")]
 
 
 class MotionTable(_Table):
-    poses: Annotated[list[Pose], _listed("a list of poses [x, y, angle in degrees]")]
+    poses: Annotated[list[Any], _listed("a list of poses [x, y, angle in degrees]")]
+    weights: Annotated[list[float], _listed("a list of numbers")] | None = None
     angle_length: float | None = None
     body: Corners | None = None
 
     def value(self) -> MotionTask:
-        return MotionTask.from_degrees(self.poses, angle_length=self.angle_length, body=self.body)
+        return MotionTask.from_degrees(
+            self.poses, weights=self.weights, angle_length=self.angle_length, body=self.body
+        )
 
 
 class PathTable(_Table):
@@ -306,7 +299,6 @@ _TABLES: dict[str, type[_Table]] = {
 _LATER = {
     "dynamics",
     "manufacturing",
-    "motion.weights",
     "requirements.keep_out",
     "requirements.keep_out_for",
     "objective.maximise.torque",

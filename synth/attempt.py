@@ -12,7 +12,7 @@ from grashof.problems.checks import ComplexArray
 from grashof.synth.burmester import Dyads, polish
 from grashof.synth.cognates import assembly_of, cognate_points, position_of
 from grashof.synth.finds import Configurations, dyad_lacks, judge, met
-from grashof.synth.path_polish import Polished, polish_path
+from grashof.synth.path_polish import Polished, Wish, polish_path
 from grashof.synth.programme import Solve, solve
 from grashof.synth.result import Candidate
 from grashof.synth.setup import Setup
@@ -59,68 +59,90 @@ def attempt(setup: Setup, start: Start, number: int) -> Attempt:
     if setup.motion is None and setup.exact:
         start = _on_targets(setup, start)
     points = (start.o2, start.o4, start.a, start.b, start.p)
-    solved = Solve(points, start.theta2, start.theta3, "Not_Solved", 0)
+    solved = Solve(points, start.theta2, start.theta3, start.body_angle, "Not_Solved", 0)
     as_it_is = start.settled or not UNSOLVED.isdisjoint(start.relaxed)
     candidate = _made(setup, start, solved, number) if as_it_is else None
-    if not as_it_is or (start.settled and (candidate is None or not candidate.verdict.ok)):
+    free = setup.motion is None or len(setup.targets) < 5  # five poses leave nothing to solve for
+    if not as_it_is or (free and start.settled and (candidate is None or not candidate.verdict.ok)):
         solved = solve(setup, start)
         candidate = _made(setup, start, solved, number)
-    if candidate is None or not candidate.verdict.ok or setup.motion is not None:
+    if candidate is None or not candidate.verdict.ok or setup.turns is not None:
         return Attempt(solved.status, candidate)
     return Attempt(solved.status, candidate, _cognates(setup, candidate))
 
 
 def _on_targets(setup: Setup, start: Start) -> Start:
     """A start of an exact path task moved onto the targets, where that takes no more than a nudge."""
-    polished = _on_path(setup, start.visit, start.points, start.theta2, start.theta3)
+    polished = _on_path(setup, start.visit, start.points, start)
     if polished is None or np.abs(polished.points - start.points).max() > NUDGE:
         return start
     visit = list(start.visit)
     o2, o4, a, b, p = (complex(point) for point in polished.points)
     theta3 = np.unwrap(np.angle(polished.coupler[visit]))
     theta3 += 2 * np.pi * np.round((start.theta3[0] - theta3[0]) / (2 * np.pi))
-    theta2 = tuple(polished.theta2[visit].tolist())
-    return replace(start, o2=o2, o4=o4, a=a, b=b, p=p, theta2=theta2, theta3=tuple(theta3.tolist()))
+    angles = {
+        "theta2": tuple(polished.theta2[visit].tolist()),
+        "theta3": tuple(theta3.tolist()),
+        "body_angle": polished.body_angle,
+    }
+    return replace(start, o2=o2, o4=o4, a=a, b=b, p=p, **angles)
 
 
 def _on_path(
     setup: Setup,
     visit: tuple[int, ...],
     points: ComplexArray,
-    in_order2: tuple[float, ...],
-    in_order3: tuple[float, ...],
+    angles: Start | Solve,
 ) -> Polished | None:
-    """A path design polished; None where that leads astray. Angles are in the order of visit."""
+    """A design polished, with its angles in the order of visit; None where that leads astray."""
     order = np.argsort(visit)
-    theta2, theta3 = np.array(in_order2)[order], np.array(in_order3)[order]
+    theta2, theta3 = np.array(angles.theta2)[order], np.array(angles.theta3)[order]
     o2, o4, a, b, p = points
     at_a, turned = o2 + abs(a - o2) * np.exp(1j * theta2), np.exp(1j * theta3)
     at_b, at_p = at_a + abs(b - a) * turned, at_a + (p - a) * turned / turned[0]
-    if not setup.exact and np.abs(at_p - setup.targets).max() > CLOSE:
+    if not setup.exact and setup.missed(at_p, theta3 + angles.body_angle) > CLOSE:
         return None
     assembly = np.where((turned.conj() * (at_b - o4)).imag >= 0, 1.0, -1.0)
-    polished = polish_path(points, theta2, assembly, setup.targets, setup.timing is not None)
+    none = np.zeros(len(order))
+    wish = Wish(
+        points=setup.targets,
+        has_point=setup.weights > 0,
+        turns=none if setup.turns is None else setup.turns,
+        has_turn=none > 0 if setup.turn_weights is None else setup.turn_weights > 0,
+        timed=setup.timing is not None,
+    )
+    polished = polish_path(points, theta2, angles.body_angle, assembly, wish)
     return polished if polished.error < CLOSE and np.isfinite(polished.points).all() else None
 
 
 def _made(setup: Setup, start: Start, solved: Solve, number: int) -> Candidate | None:
-    points = np.array(solved.points)
+    points, body_angle = np.array(solved.points), solved.body_angle
     if not np.isfinite(points).all():
         return None
     if setup.motion is not None:
         dyads = polish(setup.motion, Dyads(moving=points[2:4], ground=points[:2]))
         points = np.concatenate([dyads.ground, dyads.moving, points[4:]])
     else:
-        polished = _on_path(setup, start.visit, points, solved.theta2, solved.theta3)
-        points = points if polished is None else polished.points
-    return _candidate(setup, points, start.assembly, number, solved.iterations)
+        polished = _on_path(setup, start.visit, points, solved)
+        if polished is not None:
+            points, body_angle = polished.points, polished.body_angle
+    made = _Made(points, body_angle, start.assembly)
+    return _candidate(setup, made, number, solved.iterations)
+
+
+@dataclass(frozen=True, slots=True)
+class _Made:
+    points: ComplexArray
+    body_angle: float
+    assembly: int
 
 
 def _candidate(
-    setup: Setup, points: ComplexArray, assembly: int, number: int, iterations: int, cognate_of: str = ""
+    setup: Setup, made: _Made, number: int, iterations: int, cognate_of: str = ""
 ) -> Candidate | None:
+    body_angle = None if setup.motion is not None else np.array(made.body_angle)
     try:
-        linkage = setup.linkages(points, np.array(assembly))
+        linkage = setup.linkages(made.points, np.array(made.assembly), body_angle)
     except ProblemError:  # two pivots coincide
         return None
     verdict = verify(linkage, setup.problem.task, setup.problem.requirements)
@@ -141,10 +163,10 @@ def _cognates(setup: Setup, candidate: Candidate) -> tuple[Candidate, ...]:
     found = []
     for cognate in points:
         if np.isfinite(cognate).all() and _worth_judging(setup, cognate):
-            assembly = assembly_of(cognate)
-            made = _candidate(setup, cognate, assembly, candidate.start, candidate.iterations, candidate.id)
-            if made is not None and made.verdict.ok:
-                found.append(made)
+            made = _Made(cognate, 0.0, assembly_of(cognate))
+            other = _candidate(setup, made, candidate.start, candidate.iterations, candidate.id)
+            if other is not None and other.verdict.ok:
+                found.append(other)
     return tuple(found)
 
 

@@ -69,14 +69,28 @@ def close_at_points(rows: Rows, form: Form, given: Given, unknown: Unknowns) -> 
     p = [a[k] + rotated(arm, theta3[k]) for k in range(n)]
     for k in range(n):
         rows.add("zero", (ca.sumsqr(b[k] - unknown["o4"]) - r[3] ** 2) / 2)
-        if form.exact:
+        if form.exact and form.positions[k]:
             rows.add("zero", p[k] - given.target(k))
+        if form.exact and form.angles[k]:
+            rows.add("zero", theta3[k] + unknown["body_angle"] - given.turns[k])
         if form.timed and k:
             rows.add("zero", theta2[k] - theta2[0] - given.direction * (given.timing[k] - given.timing[0]))
     for name, at in (("a", a), ("b", b)):
         first = sum((given.at_first[k] * at[k] for k in range(n)), ca.SX.zeros(2))
         rows.add("zero", unknown[name] - first)
     return Places(a, b, p, (arm, arm - ca.vertcat(r[2], 0)))
+
+
+def square(form: Form, given: Given, unknown: Unknowns, places: Places) -> ca.SX:
+    """Weighted sum of squared distances and turns from the targets."""
+    cost = ca.SX(0)
+    for k in range(form.targets):
+        if form.positions[k]:
+            cost += given.square_weights[k] * ca.sumsqr(places.p[k] - given.target(k))
+        if form.angles[k]:
+            off = unknown["theta3"][k] + unknown["body_angle"] - given.turns[k]
+            cost += given.square_weights[form.targets + k] * off**2
+    return cost
 
 
 def require_all(rows: Rows, form: Form, given: Given, unknown: Unknowns, places: Places) -> None:

@@ -51,6 +51,8 @@ class Finds:
         From A to B at every target, in the order of the targets.
     error : ndarray, shape (n,), sizes
         Root mean square distance from the targets.
+    body_angle : ndarray, shape (n,), rad
+        From the coupler to the body, where the first pose does not say it; else zero.
     """
 
     points: ComplexArray
@@ -62,6 +64,7 @@ class Finds:
     transmission: FloatArray
     coupler: ComplexArray
     error: FloatArray
+    body_angle: FloatArray
 
     def __len__(self) -> int:
         return len(self.points)
@@ -100,7 +103,12 @@ class Configurations:
 
 
 def judge(
-    found: Configurations, p: ComplexArray, error: FloatArray, lacks: FloatArray, wanted: Requirements
+    found: Configurations,
+    p: ComplexArray,
+    error: FloatArray,
+    lacks: FloatArray,
+    wanted: Requirements,
+    body_angle: FloatArray | None = None,
 ) -> Finds:
     """Judge linkages by everything but what single dyads decide.
 
@@ -115,6 +123,7 @@ def judge(
         What is known to be lacking already (see `dyad_lacks`).
     wanted : Requirements
         In the frame of the search.
+    body_angle : ndarray, shape (n,), rad, optional
 
     Returns
     -------
@@ -162,6 +171,7 @@ def judge(
         transmission=transmission,
         coupler=coupler,
         error=error,
+        body_angle=np.zeros(len(points)) if body_angle is None else body_angle,
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import casadi as ca
+import numpy as np
 
 from grashof.problems import Box, Rotatability, TransmissionOver
 from grashof.synth.finds import GROUPS
@@ -22,7 +23,9 @@ class Form:
     ----------
     targets : int
     poses : bool
-        Targets are poses (motion), not points (path).
+        Targets are whole poses, met exactly: A, B and P move with the body.
+    positions, angles : tuple of bool
+        Which targets, in the order of visit, have a position, and a body angle.
     exact : bool
         Every target is met; otherwise the squared distances are the objective.
     timed : bool
@@ -42,6 +45,8 @@ class Form:
 
     targets: int
     poses: bool
+    positions: tuple[bool, ...]
+    angles: tuple[bool, ...]
     exact: bool
     timed: bool
     crank: bool
@@ -58,11 +63,14 @@ class Form:
     def of(cls, setup: Setup, start: Start) -> Form:
         """The form that a problem and a start call for."""
         wanted, closed = setup.wanted, getattr(setup.problem.task, "closed", False)
+        turn_weights = np.zeros(len(setup.targets)) if setup.turn_weights is None else setup.turn_weights
         low = min(limits[0] for limits in wanted.link_lengths)
         high = max(limits[1] for limits in wanted.link_lengths)
         return cls(
             targets=len(start.visit),
             poses=setup.motion is not None,
+            positions=tuple((setup.weights > 0)[list(start.visit)].tolist()),
+            angles=tuple((turn_weights > 0)[list(start.visit)].tolist()),
             exact=setup.exact,
             timed=setup.timing is not None,
             crank=wanted.rotatability is not Rotatability.ANY,
@@ -82,7 +90,7 @@ class Unknowns:
     """The unknowns: pivots and coupler point at the first target, lengths, angles, and what is worst.
 
     Angles are lifted, so that order is a linear constraint and no arc function is differentiated.
-    `theta3` and `arm` (u, v) are unknowns of a path only; for poses they follow.
+    `theta3` and `arm` (u, v) follow where whole poses are met exactly; `body_angle` is there for others.
     """
 
     vector: ca.SX
@@ -95,6 +103,8 @@ class Unknowns:
         sizes = {"o2": 2, "o4": 2, "a": 2, "b": 2, "r": 4, "theta1": 1, "theta2": n, "tau": 1}
         if not form.poses:
             sizes |= {"theta3": n, "arm": 2}
+        if any(form.angles) and not form.poses:
+            sizes |= {"body_angle": 1}
         if form.compact:
             sizes |= {"low": 2, "high": 2}
         if form.elastic:
@@ -114,6 +124,8 @@ class Given:
     rotation: ca.SX
     shift: ca.SX
     targets: ca.SX
+    turns: ca.SX
+    square_weights: ca.SX
     timing: ca.SX
     at_first: ca.SX
     body: ca.SX
@@ -137,7 +149,8 @@ class Given:
         """Symbols for a form."""
         n = form.targets
         sizes = {
-            "rotation": 2 * n, "shift": 2 * n, "targets": 2 * n, "timing": n, "at_first": n, "body": 2,
+            "rotation": 2 * n, "shift": 2 * n, "targets": 2 * n, "turns": n,
+            "square_weights": 2 * n, "timing": n, "at_first": n, "body": 2,
             "direction": 1, "assembly": 1, "longer": 1, "margin": 1, "ratio": 1, "least_transmission": 1,
             "weights": 2, "error_scale": 1, "arms": 2, "lengths": 8, "start": 8, "angles": 2,
             "relaxed": len(GROUPS), "boxes": 16,

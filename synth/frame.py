@@ -20,7 +20,7 @@ class Frame:
     @classmethod
     def of(cls, task: Task) -> Frame:
         """The frame of a task."""
-        return cls(complex(*task.positions.mean(axis=0)), task.size)
+        return cls(complex(*np.nanmean(task.positions, axis=0)), task.size)
 
     def inward(self, points: FloatArray) -> ComplexArray:
         """Points (..., 2) of the problem as complex numbers in this frame."""

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from grashof.problems.checks import IntArray
-from grashof.synth.path_search import Batch, PathTarget, shares_of_turn
+from grashof.synth.path_loop import Batch, PathTarget, shares_of_turn
 
 SMALLEST = 1e-6  # share of a turn: gaps get no smaller
 
@@ -31,8 +31,12 @@ def thinned(target: PathTarget, most: int) -> tuple[PathTarget, IntArray]:
     if count <= most or (target.timing is None and not target.wanted.order):
         return target, index
     index = np.unique(np.round(np.linspace(0, count - 1, most)).astype(np.int64))
-    timing = None if target.timing is None else target.timing[index]
-    return replace(target, points=target.points[index], weights=target.weights[index], timing=timing), index
+    parts = {
+        name: getattr(target, name)[index]
+        for name in ("points", "weights", "timing", "turns", "turn_weights")
+        if getattr(target, name) is not None
+    }
+    return replace(target, **parts), index
 
 
 def refined(target: PathTarget, index: IntArray, batch: Batch) -> Batch:
@@ -56,7 +60,7 @@ def refined(target: PathTarget, index: IntArray, batch: Batch) -> Batch:
     assembly = np.broadcast_to(batch.assembly[:, :1], (len(batch), count))
     unknowns = batch.unknowns
     if target.timing is None:
-        length = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(target.points)))])
+        length = np.concatenate([[0.0], np.cumsum(target.steps)])
         _, gone = shares_of_turn(unknowns[:, 4:])
         every = np.stack([np.interp(length, length[index], row) for row in gone])
         gaps = np.concatenate([np.diff(every, axis=1), 1 - every[:, -1:]], axis=1)

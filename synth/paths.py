@@ -7,14 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from grashof.problems import Requirements
+from grashof.problems import PathTask, Requirements
 from grashof.problems.checks import BoolArray, ComplexArray, FloatArray
 from grashof.synth.choose import feasible_starts, mended_starts
 from grashof.synth.choose import relaxed_starts as relaxed
 from grashof.synth.cognates import cognate_points
 from grashof.synth.finds import Configurations, Finds, as_they_come, dyad_lacks, follow, judge
 from grashof.synth.nine_points import coupler_turns, linkages_through
-from grashof.synth.path_search import PathTarget, Placed, draw, improve, place
+from grashof.synth.path_loop import PathTarget
+from grashof.synth.path_search import Placed, draw, improve, place
 from grashof.synth.path_thinning import refined, thinned
 from grashof.synth.setup import Setup
 from grashof.synth.start import Round, Start
@@ -28,6 +29,8 @@ FEW_POINTS = 48  # of a longer path decide which finds are worth the rest
 BARREN = 12  # so many rounds on end without a start end the search
 EXACT = 1e-16  # sizes squared: such an error is left to the solver
 SEARCHES = 6  # rounds of the search before all linkages through nine points are computed
+MOST_CURVES = 6  # least-squares starts of a round
+NEAR_BEST = 1.6  # times the least error of a round: least-squares finds beyond are not solved
 SAME_CURVE = 0.1  # of the rms error: two least-squares finds closer at every target are one
 FOUND = 1e-5  # sizes: rms error of a start for an exact task
 
@@ -68,16 +71,19 @@ def _new_curves(setup: Setup, starts: list[Start], curves: list[ComplexArray]) -
     """
     new = []
     for start in starts:
-        p = start.track[2][np.argsort(start.visit)]
-        near = SAME_CURVE * np.sqrt(np.mean(np.abs(p - setup.targets) ** 2))
+        order = np.argsort(start.visit)
+        p, turned = start.track[2][order], np.array(start.theta3)[order] + start.body_angle
+        near = SAME_CURVE * setup.missed(p, turned)
         if all(np.abs(p - other).max() > near for other in curves):
             new.append(start)
             curves.append(p)
-    return new
+    return new[:MOST_CURVES]
 
 
 def _search_round(setup: Setup, enough: int, rng: np.random.Generator) -> Round:
     finds, family = search(setup, enough, rng), _family(setup, path_target(setup))
+    if not setup.exact:
+        finds = finds[finds.error <= NEAR_BEST * finds.error.min(initial=np.inf)]
     feasible = finds[finds.feasible]
     starts = feasible_starts(setup, feasible, enough)
     if len(starts) < enough:
@@ -123,7 +129,8 @@ def _as_found(points: ComplexArray, target: PathTarget) -> tuple[Placed, FloatAr
     shorter = np.abs(forth[:, -1] - theta2[:, 0]) <= np.abs(back[:, -1] - theta2[:, 0])
     theta2 = np.where(shorter[:, None], forth, back)
     p = np.broadcast_to(target.points, a.shape)
-    placed = Placed(np.zeros(len(points)), points[:, 0], points[:, 1], a, b, p, theta2)
+    none = np.zeros(len(points))
+    placed = Placed(none, points[:, 0], points[:, 1], a, b, p, theta2, body_angle=none)
     return placed, np.where(shorter, 1.0, -1.0)
 
 
@@ -157,22 +164,32 @@ def search(setup: Setup, enough: int, rng: np.random.Generator, *, to_boxes: boo
 
 def path_target(setup: Setup) -> PathTarget:
     """What the search has to pass; a last point that repeats the first counts as its second half."""
-    points, timing = setup.targets, setup.timing
-    weights = np.ones(len(points))
-    if _repeats(setup):
-        points, weights = points[:-1], weights[:-1]
-        weights[0] = 2.0
-        timing = None if timing is None else timing[:-1]
+    last = -1 if _repeats(setup) else None
+    weights, turn_weights = setup.weights[:last].copy(), setup.turn_weights
+    if last:
+        weights[0] += setup.weights[-1]
+    if turn_weights is not None:
+        added = turn_weights[-1] if last else 0.0
+        turn_weights = turn_weights[:last] + np.eye(1, len(weights))[0] * added
     return PathTarget(
-        points=points,
+        points=setup.targets[:last],
         weights=weights,
-        timing=None if timing is None else np.abs(timing),
+        timing=None if setup.timing is None else np.abs(setup.timing[:last]),
         wanted=setup.wanted,
+        turns=None if setup.turns is None else setup.turns[:last],
+        turn_weights=turn_weights,
     )
 
 
 def _repeats(setup: Setup) -> bool:
-    return bool(abs(setup.targets[0] - setup.targets[-1]) < 1e-12)
+    """Whether the last target is the first one again."""
+    given, apart = setup.weights[[0, -1]] > 0, abs(setup.targets[0] - setup.targets[-1])
+    same = given[0] == given[1] and apart < 1e-12
+    if setup.turns is not None and setup.turn_weights is not None:
+        given = setup.turn_weights[[0, -1]] > 0
+        apart = abs(np.exp(1j * setup.turns[0]) - np.exp(1j * setup.turns[-1]))
+        same = same and given[0] == given[1] and apart < 1e-12
+    return bool(same)
 
 
 def _effort(setup: Setup, target: PathTarget) -> tuple[int, tuple[tuple[int, int], ...]]:
@@ -184,7 +201,10 @@ def _effort(setup: Setup, target: PathTarget) -> tuple[int, tuple[tuple[int, int
 def _family(setup: Setup, target: PathTarget) -> bool:
     """Whether exact designs have freedom left: more unknowns than equations."""
     unknowns = target.unknowns + 6 - (target.wanted.order and target.timing is None)
-    return setup.exact and unknowns > 2 * len(target.points) + _equalities(setup.wanted)
+    equations = 2 * np.count_nonzero(target.weights) + _equalities(setup.wanted)
+    if target.turn_weights is not None:
+        unknowns, equations = unknowns + 1, equations + np.count_nonzero(target.turn_weights)
+    return bool(setup.exact and unknowns > equations)
 
 
 def _equalities(wanted: Requirements) -> int:
@@ -196,6 +216,8 @@ def _equalities(wanted: Requirements) -> int:
 
 def _has_nine_points(setup: Setup) -> bool:
     """Whether the task is exact passage of nine distinct points without timing: finitely many linkages."""
+    if not isinstance(setup.problem.task, PathTask):
+        return False
     points = path_target(setup).points
     apart = np.abs(points[:, None] - points) + np.eye(len(points))
     return setup.exact and setup.timing is None and len(points) == 9 and bool(apart.min() > 1e-9)
@@ -216,5 +238,5 @@ def _judged(setup: Setup, target: PathTarget, placed: Placed, direction: FloatAr
     p = placed.p[:, 0]
     lacks = dyad_lacks("o2", placed.o2, a, p, setup.wanted) + dyad_lacks("o4", placed.o4, b, p, setup.wanted)
     found = Configurations(placed.o2, placed.o4, a, b, visit, theta2, direction)
-    error = np.sqrt(placed.error / max(len(setup.targets), 1))
-    return judge(found, p, error, lacks, setup.wanted)
+    error = np.sqrt(placed.error / len(setup.targets))
+    return judge(found, p, error, lacks, setup.wanted, placed.body_angle)

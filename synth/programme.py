@@ -19,6 +19,7 @@ from grashof.synth.constraints import (
     diagonal,
     require_all,
     require_limits,
+    square,
 )
 from grashof.synth.finds import GROUPS
 from grashof.synth.form import Form, Given, Unknowns
@@ -42,6 +43,8 @@ class Solve:
         O2, O4, and A, B, P at the first target, in the frame of the search.
     theta2, theta3 : tuple of float, rad
         Driver and coupler angles in the order of visit.
+    body_angle : float, rad
+        See `Start`.
     status : str
         Ipopt's return status.
     iterations : int
@@ -50,6 +53,7 @@ class Solve:
     points: tuple[complex, complex, complex, complex, complex]
     theta2: tuple[float, ...]
     theta3: tuple[float, ...]
+    body_angle: float
     status: str
     iterations: int
 
@@ -75,20 +79,23 @@ def solve(setup: Setup, start: Start, max_iter: int = 150) -> Solve:
     fixed = np.count_nonzero(lbx == ubx) + np.count_nonzero(lbg == ubg)
     if (lbx > ubx).any() or fixed > len(lbx):  # the limits leave nothing to solve for
         points = (start.o2, start.o4, start.a, start.b, start.p)
-        return Solve(points, start.theta2, start.theta3, "Contradictory_Limits", 0)
+        return Solve(points, start.theta2, start.theta3, start.body_angle, "Contradictory_Limits", 0)
     parameters = _parameters(form, setup, start)
     answer = programme.solver(x0=np.clip(guess, lbx, ubx), lbx=lbx, ubx=ubx, lbg=lbg, ubg=ubg, p=parameters)
     stats = programme.solver.stats()
     x = np.asarray(answer["x"]).ravel()
     o2, o4, a, b = (complex(*pair) for pair in x[:8].reshape(4, 2))
-    n, p, theta3 = form.targets, complex(setup.targets[0]), start.theta3
+    n, p, theta3, body_angle = form.targets, complex(setup.targets[0]), start.theta3, start.body_angle
     if not form.poses:
         theta3, arm = tuple(x[14 + n : 14 + 2 * n].tolist()), complex(*x[14 + 2 * n : 16 + 2 * n])
         p = a + arm * np.exp(1j * theta3[start.visit.index(0)])
+    if any(form.angles) and not form.poses:
+        body_angle = float(x[16 + 2 * n])
     return Solve(
         points=(o2, o4, a, b, p),
         theta2=tuple(x[13 : 13 + n].tolist()),
         theta3=theta3,
+        body_angle=body_angle,
         status=str(stats["return_status"]),
         iterations=int(stats["iter_count"]),
     )
@@ -131,8 +138,7 @@ def _programme(form: Form, max_iter: int) -> _Programme:
     if form.compact:
         cost += given.weights[1] * diagonal(rows, unknown, places)
     if not form.exact:  # the error comes first; the rest only settles what the error leaves open
-        square = sum(ca.sumsqr(p - given.target(k)) for k, p in enumerate(places.p))
-        cost = given.error_scale * square - 1e-8 * unknown["tau"]
+        cost = given.error_scale * square(form, given, unknown, places) - 1e-8 * unknown["tau"]
     if form.stay:
         moved = ca.vertcat(*(unknown[name] for name in ("o2", "o4", "a", "b"))) - given.start
         cost = ca.sumsqr(moved)
@@ -162,6 +168,9 @@ def _parameters(form: Form, setup: Setup, start: Start) -> FloatArray:
         _interleaved(none if setup.motion is None else setup.motion.rotation[visit]),
         _interleaved(none if setup.motion is None else setup.motion.shift[visit]),
         _interleaved(setup.targets[visit]),
+        _turns(setup, start),
+        setup.weights[visit],
+        none.real if setup.turn_weights is None else setup.turn_weights[visit],
         none.real if setup.timing is None else np.abs(setup.timing[visit]),
         [float(target == 0) for target in visit],
         _interleaved(setup.targets[:1]),
@@ -186,6 +195,8 @@ def _guess(form: Form, setup: Setup, start: Start) -> FloatArray:
     if not form.poses:
         arm = start.arm
         guess += [*start.theta3, arm.real, arm.imag]
+    if any(form.angles) and not form.poses:
+        guess += [start.body_angle]
     if form.compact:
         every = np.concatenate([start.points, start.track.ravel(), setup.targets])
         guess += [every.real.min(), every.imag.min(), every.real.max(), every.imag.max()]
@@ -195,8 +206,19 @@ def _guess(form: Form, setup: Setup, start: Start) -> FloatArray:
 
 
 def _square(setup: Setup, start: Start) -> float:
-    """Squared distances of the start from its targets."""
-    return float((np.abs(start.track[2] - setup.targets[list(start.visit)]) ** 2).sum())
+    """Weighted squares that the start misses its targets by."""
+    order = np.argsort(start.visit)
+    turned = np.array(start.theta3)[order] + start.body_angle
+    return float(setup.missed(start.track[2][order], turned)) ** 2 * len(order)
+
+
+def _turns(setup: Setup, start: Start) -> FloatArray:
+    """Angles of the body in the order of visit, moved by whole turns to be nearest to the start."""
+    if setup.turns is None:
+        return np.zeros(len(start.visit))
+    turned = np.array(start.theta3) + start.body_angle
+    off = setup.turns[list(start.visit)] - turned
+    return turned + np.angle(np.exp(1j * off))
 
 
 def _unknown_limits(form: Form, setup: Setup, start: Start) -> tuple[FloatArray, FloatArray]:
@@ -216,6 +238,7 @@ def _unknown_limits(form: Form, setup: Setup, start: Start) -> tuple[FloatArray,
     limits.append((max(LEAST_TRANSMISSION, least), np.pi / 2))
     if not form.poses:
         limits += [(-100.0, 100.0)] * form.targets + [(-FAR, FAR)] * 2
+        limits += [(-100.0, 100.0)] * any(form.angles)
     limits += [(-FAR, FAR)] * (4 * form.compact) + [(0.0, FAR)] * form.elastic
     low_high = np.array(limits)
     return low_high[:, 0], low_high[:, 1]

@@ -63,7 +63,7 @@ class Candidate:
         With ``exact = false`` the error comes first.
         """
         if not problem.requirements.is_exact(problem.task):
-            return -self.verdict.error_rms / problem.task.size
+            return -float(np.sqrt(self.verdict.square / len(problem.task))) / problem.task.size
         transmission = self.transmission(problem.requirements.transmission_over)
         size = self.verdict.size / problem.task.size
         return float(weigh(problem.objective, np.array(transmission), np.array(size)))
@@ -128,7 +128,7 @@ def ranked(problem: Problem, candidates: list[Candidate]) -> tuple[Candidate, ..
     if not candidates:
         return ()
     score = np.array([candidate.score(problem) for candidate in candidates])
-    origin = problem.task.positions.mean(axis=0)
+    origin = np.nanmean(problem.task.positions, axis=0)
     signatures = np.array([signature(candidate.linkage, origin) for candidate in candidates])
     return tuple(candidates[i] for i in pick_apart(signatures, score, DISTINCT, len(candidates)))
 

@@ -21,9 +21,16 @@ class Setup:
     problem : Problem
     frame : Frame
     targets : ndarray of complex, shape (N,), sizes
-        Where the coupler point P has to be, in the frame.
+        Where the coupler point P has to be, in the frame; zero where its position is free.
+    weights : ndarray, shape (N,)
+        Of the squared distances; zero where the position is free.
+    turns : ndarray, shape (N,), rad, or None
+        Angles of the body, zero where they are free; None for a path.
+    turn_weights : ndarray, shape (N,), sizes squared, or None
+        Of the squared turns from there; zero where the angle is free.
     motion : Displacements or None
-        Of the body from the first pose to every pose, in the frame; None for a path.
+        Of the body from the first pose to every pose, in the frame, where whole poses are met
+        exactly; None for all other tasks.
     timing : ndarray, shape (N,), rad, or None
         Driver rotation from the first target, where it is prescribed.
     wanted : Requirements
@@ -35,6 +42,9 @@ class Setup:
     problem: Problem
     frame: Frame
     targets: ComplexArray
+    weights: FloatArray
+    turns: FloatArray | None
+    turn_weights: FloatArray | None
     motion: Displacements | None
     timing: FloatArray | None
     wanted: Requirements
@@ -44,18 +54,46 @@ class Setup:
     def of(cls, problem: Problem) -> Setup:
         """Make a problem ready."""
         task, frame = problem.task, Frame.of(problem.task)
-        targets = frame.inward(task.positions)
+        exact, targets = problem.requirements.is_exact(task), frame.inward(task.positions)
+        weights, turns, turn_weights, motion = np.ones(len(task)), None, None, None
+        if isinstance(task, MotionTask):
+            weights, turns = task.weights * task.has_position, np.nan_to_num(task.angles)
+            turn_weights = task.weights * task.has_angle * (task.angle_length / frame.scale) ** 2
+            targets = np.where(task.has_position, targets, 0.0)
+            if exact and task.is_whole:
+                motion = Displacements.from_poses(targets, turns)
         return cls(
             problem=problem,
             frame=frame,
             targets=targets,
-            motion=Displacements.from_poses(targets, task.angles) if isinstance(task, MotionTask) else None,
+            weights=weights,
+            turns=turns,
+            turn_weights=turn_weights,
+            motion=motion,
             timing=task.timing if isinstance(task, PathTask) else None,
             wanted=frame.requirements(problem.requirements),
-            exact=problem.requirements.is_exact(task),
+            exact=exact,
         )
 
-    def linkages(self, points: ComplexArray, assembly: FloatArray) -> FourBar:
+    def missed(self, p: ComplexArray, turned: FloatArray) -> FloatArray:
+        """Root mean weighted square of what targets are missed by, sizes.
+
+        Parameters
+        ----------
+        p : ndarray of complex, shape (..., N), sizes
+        turned : ndarray, shape (..., N), rad
+            Angles of the body.
+        """
+        square = (self.weights * np.abs(p - self.targets) ** 2).sum(axis=-1)
+        if self.turns is not None and self.turn_weights is not None:
+            off = np.angle(np.exp(1j * (turned - self.turns)))
+            square = square + (self.turn_weights * off**2).sum(axis=-1)
+        missed: FloatArray = np.sqrt(square / len(self.targets))
+        return missed
+
+    def linkages(
+        self, points: ComplexArray, assembly: FloatArray, body_angle: FloatArray | None = None
+    ) -> FourBar:
         """The linkages with given pivots.
 
         Parameters
@@ -63,6 +101,8 @@ class Setup:
         points : ndarray of complex, shape (..., 5), sizes
             O2, O4, and A, B, P at the first target.
         assembly : ndarray, shape (...)
+        body_angle : ndarray, shape (...), rad, optional
+            From the coupler to the body. By default as the first of whole poses asks for it.
 
         Returns
         -------
@@ -78,9 +118,9 @@ class Setup:
         with np.errstate(invalid="ignore"):  # FourBar refuses a coupler of no length
             coupler = (b - a) / np.abs(b - a)
         arm = (p - a) * coupler.conj() * self.frame.scale
-        task = self.problem.task
-        first = task.angles[0] if isinstance(task, MotionTask) else None
-        turned = 0.0 if first is None else np.angle(np.exp(1j * first) * coupler.conj())
+        if body_angle is None:
+            first = 0.0 if self.turns is None else np.angle(np.exp(1j * self.turns[0]) * coupler.conj())
+            body_angle = np.asarray(first)
         return FourBar(
             o2=self.frame.outward(o2),
             o4=self.frame.outward(o4),
@@ -89,5 +129,5 @@ class Setup:
             r4=np.abs(b - o4) * self.frame.scale,
             coupler_point=np.stack([arm.real, arm.imag], axis=-1),
             assembly=assembly,
-            body_angle=turned,
+            body_angle=body_angle,
         )

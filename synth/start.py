@@ -33,6 +33,8 @@ class Start:
     direction, assembly : int
     objective : Objective
         What the solve makes best.
+    body_angle : float, rad
+        From the coupler to the body, where the first pose does not say it; else zero.
     radius : float, sizes
         How far it may move each coordinate of the pivots.
     stay : bool
@@ -54,6 +56,7 @@ class Start:
     direction: int
     assembly: int
     objective: Objective = field(default_factory=Objective)
+    body_angle: float = 0.0
     radius: float = np.inf
     stay: bool = False
     settled: bool = False
@@ -111,6 +114,7 @@ class Start:
             direction=int(finds.direction[index]),
             assembly=int(finds.assembly[index]),
             objective=objective,
+            body_angle=float(finds.body_angle[index]),
         )
 
 

@@ -13,9 +13,10 @@ from time import perf_counter
 
 import numpy as np
 
+from grashof.analysis import verify
 from grashof.problems import MotionTask, Problem, ProblemError, Search, SolverError
 from grashof.problems.checks import whole_number
-from grashof.synth import four_poses, paths
+from grashof.synth import exact_poses, paths
 from grashof.synth.attempt import Attempt, attempt
 from grashof.synth.result import Candidate, Result, ranked
 from grashof.synth.setup import Setup
@@ -24,7 +25,7 @@ from grashof.synth.start import Start
 BATCH = 16  # solves between two looks at what is verified; fixed, so that workers change nothing
 FRUITLESS = 64  # so many solves without one verified design end the search
 # So many rounds of starts on end that gain nothing, too: least squares and exact.
-STALE, STALE_EXACT = 3, 20
+STALE, STALE_EXACT = 2, 20
 GAIN = 1e-4  # of the error
 
 
@@ -103,7 +104,7 @@ def synthesize(
     refuse_unsupported(problem)
     begun = perf_counter()
     setup = Setup.of(problem)
-    reason = "" if setup.motion is None else four_poses.degenerate(setup)
+    reason = "" if setup.motion is None else exact_poses.degenerate(setup)
     if reason:
         return Result(problem, (), (), {}, {"total": perf_counter() - begun}, note=f"no design: {reason}")
 
@@ -117,13 +118,8 @@ def synthesize(
 def refuse_unsupported(problem: Problem) -> None:
     """Raise `ProblemError` for a problem that this version cannot search for."""
     task = problem.task
-    if not isinstance(task, MotionTask):
-        return
-    if len(task) != 4:
-        raise ProblemError(f"motion.poses has {len(task)} poses; this version synthesises exactly four")
-    if not problem.requirements.is_exact(task):
-        raise ProblemError("requirements.exact is false; this version meets four poses exactly")
-    four_poses.refuse_equal_poses(task)
+    if isinstance(task, MotionTask) and problem.requirements.is_exact(task) and task.is_whole:
+        exact_poses.refuse_equal_poses(task)
 
 
 def _search(
@@ -136,8 +132,9 @@ def _search(
     executor: Executor | None,
 ) -> Result:
     rng = np.random.default_rng(np.random.SeedSequence(search.seed))
-    finder = four_poses if setup.motion is not None else paths
+    finder = exact_poses if setup.motion is not None else paths
     found = _Found(setup.problem)
+    obstacle = ""
     complete, seconds = True, {"screening": 0.0, "solving": 0.0}
     with _solving(workers, executor) as solve:
         since = perf_counter()
@@ -158,9 +155,12 @@ def _search(
         nearest: tuple[Candidate, ...] = ()
         if not found.best and complete:
             nearest = _nearest(solve(setup, finder.relaxed_starts(setup, rng), found.solved))
+            nearest += _approximate(setup, search, ended)
+            if setup.motion is not None:
+                obstacle = exact_poses.obstacle(setup, rng)
     found.counts["verified and distinct"] = len(found.best)
     times = {**seconds, "total": perf_counter() - begun}
-    note = "" if found.best else _why(nearest, complete, found.counts["linkages through the points"])
+    note = "" if found.best else _why(nearest, complete, obstacle or _exhausted(found))
     return Result(setup.problem, found.best, nearest, dict(found.counts), times, note, complete)
 
 
@@ -281,14 +281,31 @@ def _nearest(attempts: list[Attempt]) -> tuple[Candidate, ...]:
     return tuple(candidate for _, _, candidate in sorted(found, key=lambda item: item[:2]))
 
 
-def _why(nearest: tuple[Candidate, ...], complete: bool, all_linkages: int) -> str:
+def _approximate(setup: Setup, search: Search, ended: Callable[[], bool]) -> tuple[Candidate, ...]:
+    """For exact poses that leave nothing to choose: designs that come as near as they can."""
+    problem = setup.problem
+    if setup.motion is None or len(setup.targets) < 5 or ended():
+        return ()
+    loose = replace(problem, requirements=replace(problem.requirements, exact=False))
+    result = synthesize(loose, starts=min(search.starts, FRUITLESS), enough=1, seed=search.seed, stop=ended)
+    judged = (
+        replace(found, verdict=verify(found.linkage, problem.task, problem.requirements))
+        for found in result.candidates
+    )
+    return tuple(found for found in judged if not found.verdict.ok)
+
+
+def _exhausted(found: _Found) -> str:
+    every = found.counts["linkages through the points"]
+    return f"none of the {every} linkages through the points meets all requirements" if every else ""
+
+
+def _why(nearest: tuple[Candidate, ...], complete: bool, obstacle: str) -> str:
     if not complete:
         return "no design: the search was stopped before it found one"
-    if all_linkages:
+    if obstacle:
         closest = f"; the closest one misses {_missed(nearest[0])}" if nearest else ""
-        return (
-            f"no design: none of {all_linkages} linkages through the points meets all requirements{closest}"
-        )
+        return f"no design: {obstacle}{closest}"
     if not nearest:
         return "no design: the search found none, nor a near miss"
     return f"no design meets all requirements; the closest one misses {_missed(nearest[0])}"

@@ -36,12 +36,12 @@ def _row(candidate: Candidate) -> dict[str, Any]:
     linkage, verdict = candidate.linkage, candidate.verdict
     r1, r2, r3, r4 = (float(length) for length in linkage.lengths)
     angles = {}
-    if verdict.angle_error is not None:
+    if verdict.angle_error is not None and not np.isnan(verdict.angle_error).all():
         angle_error = np.degrees(verdict.angle_error)
         angles = {
             "body_angle_deg": float(np.degrees(linkage.body_angle)),
-            "angle_error_max_deg": float(angle_error.max()),
-            "angle_error_rms_deg": float(np.sqrt(np.mean(angle_error**2))),
+            "angle_error_max_deg": float(np.nanmax(angle_error)),
+            "angle_error_rms_deg": float(np.sqrt(np.nanmean(angle_error**2))),
         }
     return {
         "id": candidate.id,

@@ -240,22 +240,23 @@ POSES_TEXT = [
     ("[[1, 2, 3], 5]", "motion.poses[1] is 5; allowed is a pose [x, y, angle in degrees]"),
     (
         "[[1, 2, 3], [3.5, 4]]",
-        "motion.poses[1] is [3.5, 4.0], 2 numbers; allowed is a pose [x, y, angle in degrees]",
+        "motion.poses[1] is [3.5, 4], 2 numbers; allowed is a pose [x, y, angle in degrees]",
     ),
-    ("[[1, 2, 3], [1, 2, '3']]", "motion.poses[1][2] is '3'; allowed is a number"),
-    ("[[1, 2, 3], [1, 2, true]]", "motion.poses[1][2] is true; allowed is a number"),
-    ("[[1, nan, 3], [1, 2, 3]]", "motion.poses[0] is [1.0, nan, 3.0]; all numbers must be finite"),
-    ("[[1, 2, 3], [1, 2, -inf]]", "motion.poses[1] is [1.0, 2.0, -inf]; all numbers must be finite"),
+    ("[[1, 2, 3], [1, 2, '3']]", "motion.poses[1][2] is '3'; allowed is a finite number"),
+    ("[[1, 2, 3], [1, 2, true]]", "motion.poses[1][2] is True; allowed is a finite number"),
+    ("[[1, nan, 3], [1, 2, 3]]", "motion.poses[0] is [1, nan, 3]; all numbers must be finite"),
+    ("[[1, 2, 3], [1, 2, -inf]]", "motion.poses[1] is [1, 2, -inf]; all numbers must be finite"),
     (
         "[[1, 2, 3], [1, 2, 363]]",
         "motion.poses[0] and motion.poses[1] are equal; consecutive poses must differ",
     ),
     ("[[1, 2, 3], [1, 2, 9]]", "motion.angle_length is missing: a pure rotation has no size to take it from"),
     (
-        "[[1, 2, 3], { x = 2, y = 3 }]",
-        "motion.poses[1] is a table, which is not supported by this version; "
-        "allowed is a pose [x, y, angle in degrees]",
+        "[[1, 2, 3], { x = 2, z = 3 }]",
+        "motion.poses[1].z is unknown; allowed are x, y, angle",
     ),
+    ("[[1, 2, 3], { x = 2 }]", "motion.poses[1] has one of x and y; allowed are both or neither"),
+    ("[[1, 2, 3], {}]", "motion.poses[1] has neither position nor angle"),
 ]
 
 
@@ -325,7 +326,7 @@ UNKNOWN = [
     ),
     (HEAD + "title = 'below its table'", "motion.title is unknown; did you mean title?"),
     ("link_length = [1, 2]\n" + HEAD, "link_length is unknown; did you mean requirements.link_length?"),
-    (HEAD + '"a b\\n" = 1', 'motion."a b\\n" is unknown; allowed are poses, angle_length, body'),
+    (HEAD + '"a b\\n" = 1', 'motion."a b\\n" is unknown; allowed are poses, weights, angle_length, body'),
     (f'kinds = "motion"\n[motion]\n{POSES}', "kinds is unknown; did you mean kind? (and 1 more error)"),
 ]
 
@@ -336,7 +337,6 @@ def test_unknown_keys(text: str, expected: str) -> None:
 
 
 LATER = [
-    ("weights = [1, 1, 1, 2]", "motion.weights is not supported by this version"),
     ("[dynamics]\nspeed_rpm = 10", "dynamics is not supported by this version"),
     ("[manufacturing]\nlength_tolerance = 0.1", "manufacturing is not supported by this version"),
     (

@@ -79,7 +79,7 @@ def test_bad_poses(poses: list[list[float]], message: str) -> None:
     ("angles", "message"),
     [
         ([0], r"motion.poses has 2 positions and angles of shape \(1,\)"),
-        ([0, np.nan], "motion.poses has an angle that is not finite"),
+        ([0, np.inf], "motion.poses has angles that are infinite; allowed are numbers, NaN for free ones"),
         ([0, "right"], "motion.poses has angles .*; allowed are numbers"),
     ],
 )

@@ -13,7 +13,7 @@ from grashof import load, synthesize
 from grashof.analysis.planted import planted_motion, planted_path
 from grashof.problems import FourBar, MotionTask, PathTask, Problem, Requirements
 from grashof.problems.checks import ComplexArray, FloatArray
-from grashof.synth import Candidate, Result, four_poses
+from grashof.synth import Candidate, Result, exact_poses
 from grashof.synth.burmester import trace_four_pose_curves
 from grashof.synth.finds import Finds
 from grashof.synth.screen import near_misses, screen
@@ -256,5 +256,5 @@ def all_pairs() -> PairsOf:
 @pytest.fixture
 def coarse_curves(monkeypatch: pytest.MonkeyPatch) -> None:
     """Dyad curves traced coarsely: several times as fast, for tests of anything but the best designs."""
-    monkeypatch.setattr(four_poses, "LINES", 300)
-    monkeypatch.setattr(four_poses, "CELL", 0.02)
+    monkeypatch.setattr(exact_poses, "LINES", 300)
+    monkeypatch.setattr(exact_poses, "CELL", 0.02)

@@ -11,7 +11,7 @@ from grashof.problems import Box, FourBar
 from grashof.problems.checks import FloatArray
 from grashof.synth import attempt as module
 from grashof.synth.attempt import attempt
-from grashof.synth.four_poses import rounds
+from grashof.synth.exact_poses import rounds
 from grashof.synth.programme import Solve
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start

@@ -23,7 +23,7 @@ from grashof.synth.setup import Setup
 
 coordinate = st.floats(-5, 5)
 angle = st.floats(-np.pi, np.pi)
-four_poses = st.lists(st.tuples(coordinate, coordinate, angle), min_size=4, max_size=4).filter(
+exact_poses = st.lists(st.tuples(coordinate, coordinate, angle), min_size=4, max_size=4).filter(
     lambda poses: all(
         np.hypot(p[0] - q[0], p[1] - q[1]) > 0.1 and abs(np.angle(np.exp(1j * (p[2] - q[2])))) > 0.05
         for i, p in enumerate(poses)
@@ -69,7 +69,7 @@ def determinant(poses: list[tuple[float, float, float]], point: complex) -> floa
 
 
 @bounded
-@given(four_poses, coordinate, angle)
+@given(exact_poses, coordinate, angle)
 def test_points_found_on_a_line_lie_on_it_and_on_circles(
     poses: list[tuple[float, float, float]], offset: float, direction: float
 ) -> None:
@@ -83,7 +83,7 @@ def test_points_found_on_a_line_lie_on_it_and_on_circles(
 
 
 @bounded
-@given(four_poses, coordinate)
+@given(exact_poses, coordinate)
 def test_no_point_of_a_line_is_missed(poses: list[tuple[float, float, float]], offset: float) -> None:
     """Between sign changes of an independent determinant lies an odd number of the points found."""
     found = circle_points_on_lines(displacements(poses), np.array([complex(offset)]), 1j).imag
@@ -97,7 +97,7 @@ def test_no_point_of_a_line_is_missed(poses: list[tuple[float, float, float]], o
 
 
 @bounded
-@given(four_poses, angle)
+@given(exact_poses, angle)
 def test_random_lines_through_a_circle_point_find_it(
     poses: list[tuple[float, float, float]], direction: float
 ) -> None:
@@ -139,7 +139,7 @@ def test_luggage_lines_give_circles() -> None:
 
 
 @bounded
-@given(four_poses)
+@given(exact_poses)
 def test_seen_from_the_body_circle_and_centre_points_change_places(
     poses: list[tuple[float, float, float]],
 ) -> None:

@@ -6,7 +6,7 @@ import pytest
 from grashof.analysis.planted import random_full_crank, uneven_driver_angles
 from grashof.problems.checks import ComplexArray, FloatArray
 from grashof.synth import path_polish
-from grashof.synth.path_polish import Polished, polish_path
+from grashof.synth.path_polish import Polished, Wish, polish_path
 
 CASES = [(seed, timed, mixed) for seed in range(1, 7) for timed in (False, True) for mixed in (False, True)]
 
@@ -40,6 +40,12 @@ def unknowns_of(points: ComplexArray) -> FloatArray:
     ])  # fmt: skip
 
 
+def wish_of(targets: ComplexArray, timed: bool) -> Wish:
+    """Points only."""
+    every = np.ones(len(targets), dtype=bool)
+    return Wish(targets, every, np.zeros(len(targets)), ~every, timed)
+
+
 class Planted:
     """A linkage (one size or so) at driver angles, the points it passes, and one that is a little off."""
 
@@ -62,7 +68,7 @@ class Planted:
     def polished(self, timed: bool) -> Polished:
         angles = self.theta2 + 1e-4 if timed else self.near_angles
         first = pivots(self.near, float(angles[0]), float(self.assembly[0]))
-        return polish_path(first, angles, self.assembly, self.targets, timed)
+        return polish_path(first, angles, 0.0, self.assembly, wish_of(self.targets, timed))
 
 
 def count_of(timed: bool, seed: int) -> int:
@@ -129,7 +135,7 @@ def test_a_step_is_the_least_one(
 def test_what_is_on_its_targets_stays(timed: bool) -> None:
     planted = Planted(1, 5)
     first = pivots(planted.unknowns, float(planted.theta2[0]), float(planted.assembly[0]))
-    polished = polish_path(first, planted.theta2, planted.assembly, planted.targets, timed)
+    polished = polish_path(first, planted.theta2, 0.0, planted.assembly, wish_of(planted.targets, timed))
     np.testing.assert_allclose(polished.points, first, atol=1e-12)
     np.testing.assert_allclose(polished.theta2, planted.theta2, atol=1e-12)
 
@@ -138,4 +144,4 @@ def test_a_loop_that_does_not_close_has_no_error() -> None:
     planted = Planted(0, 5)
     first = np.array([0, 10, 1, 2, 1 + 1j], dtype=np.complex128)
     angles = np.linspace(0, 3, 5)
-    assert np.isnan(polish_path(first, angles, planted.assembly, planted.targets, False).error)
+    assert np.isnan(polish_path(first, angles, 0.0, planted.assembly, wish_of(planted.targets, False)).error)

@@ -10,7 +10,9 @@ from grashof.analysis.planted import planted_path
 from grashof.problems import Box, Problem, Requirements
 from grashof.problems.checks import ComplexArray, FloatArray
 from grashof.synth import paths
-from grashof.synth.path_search import PULL, Batch, PathTarget, Placed, _linearised, draw, improve
+from grashof.synth.path_loop import Batch, PathTarget
+from grashof.synth.path_pulls import PULL
+from grashof.synth.path_search import Placed, _linearised, draw, improve
 from grashof.synth.path_search import place as place_batch
 from grashof.synth.setup import Setup
 

@@ -3,7 +3,8 @@
 import numpy as np
 
 from grashof.problems import Requirements
-from grashof.synth.path_search import PathTarget, draw, place
+from grashof.synth.path_loop import PathTarget
+from grashof.synth.path_search import draw, place
 from grashof.synth.path_thinning import refined, thinned
 
 

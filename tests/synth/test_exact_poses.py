@@ -10,8 +10,8 @@ from grashof.analysis import verify
 from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, ProblemError, Requirements
 from grashof.synth.choose import PEAK_SPACING, PEAKS
 from grashof.synth.distinct import apart, signature
+from grashof.synth.exact_poses import degenerate, refuse_equal_poses, relaxed_starts, rounds
 from grashof.synth.finds import GROUPS
-from grashof.synth.four_poses import degenerate, refuse_equal_poses, relaxed_starts, rounds
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
 
