@@ -1,4 +1,4 @@
-"""Measure motion generation through four poses: times after imports, best designs, planted problems.
+"""Measure motion generation: times after imports, best designs, planted problems, five-pose dyads.
 
 Prints one line a case. Times are wall-clock medians on this machine; run it on a quiet one.
 """
@@ -15,6 +15,8 @@ from grashof import load, synthesize
 from grashof.analysis.planted import planted_motion
 from grashof.problems import Box, Problem, Requirements, Rotatability, TransmissionOver
 from grashof.synth import Progress
+from grashof.synth.burmester import Displacements
+from grashof.synth.five_poses import five_pose_dyads, five_pose_dyads_of_sets
 
 UPPER = Box(y=(0, np.inf))
 
@@ -91,11 +93,35 @@ def planted(count: int, seed: int) -> None:
     )
 
 
+def five_poses(sets: int, seed: int) -> None:
+    """All dyads of random sets of five poses, in one batch and one by one."""
+    rng = np.random.default_rng(seed)
+    positions = rng.normal(size=(sets, 5, 2)) @ np.array([1, 1j])
+    angles = rng.uniform(-np.pi, np.pi, (sets, 5))
+    motions = [Displacements.from_poses(*poses) for poses in zip(positions, angles, strict=True)]
+    rotation, shift = (np.array([getattr(one, part) for one in motions]) for part in ("rotation", "shift"))
+    begun = perf_counter()
+    dyads = five_pose_dyads_of_sets(rotation, shift)
+    batch = perf_counter() - begun
+    begun = perf_counter()
+    for motion in motions:
+        five_pose_dyads(motion)
+    single = perf_counter() - begun
+    radii = np.abs(dyads.moving[..., None] * rotation[:, None] + shift[:, None] - dyads.ground[..., None])
+    share = np.bincount(np.isfinite(dyads.moving).sum(axis=1), minlength=5) / sets
+    print(
+        f"five poses, {sets} random sets: {batch / sets * 1e6:.0f} us a set in one batch, "
+        f"{single / sets * 1e6:.0f} us one by one, largest error {np.nanmax(np.ptp(radii, axis=-1)):.1e}, "
+        f"0, 2 and 4 dyads in {share[0]:.1%}, {share[2]:.1%} and {share[4]:.1%}"
+    )
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run all measurements."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--planted", type=int, default=100, help="number of planted problems")
     parser.add_argument("--runs", type=int, default=5, help="repetitions of the timed case")
+    parser.add_argument("--sets", type=int, default=3000, help="random sets of five poses")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args(argv)
     synthesize(load("luggage"), enough=1)  # imports and the first build of the programme
@@ -103,6 +129,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         luggage_time(workers, options.runs)
     luggage_records()
     planted(options.planted, options.seed)
+    five_poses(options.sets, options.seed)
     return 0
 
 

@@ -29,9 +29,10 @@ def test_luggage_states_the_shipped_problem(tmp_path: Path) -> None:
 
 
 def test_benchmark_measures(tmp_path: Path) -> None:
-    said = run("benchmark_motion.py", "--planted", "1", "--runs", "1", cwd=tmp_path)
+    said = run("benchmark_motion.py", "--planted", "1", "--runs", "1", "--sets", "100", cwd=tmp_path)
     assert "planted: 1 of 1 solved" in said
     assert "limit 12: 30.17" in said
+    assert "five poses, 100 random sets" in said
 
 
 def test_an_analysis_module_beside_the_script_does_no_harm(tmp_path: Path) -> None:
