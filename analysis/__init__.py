@@ -12,6 +12,7 @@ from grashof.analysis.mobility import (
     triple_rocker_kind,
 )
 from grashof.analysis.position import Position, solve_position
+from grashof.analysis.tolerance import Robustness, robustness, sensitivity
 from grashof.analysis.transmission import transmission_angle, worst_transmission, worst_transmission_cycle
 from grashof.analysis.verify import Defect, Verdict, verify
 
@@ -19,6 +20,7 @@ __all__ = [
     "Defect",
     "GrashofClass",
     "Position",
+    "Robustness",
     "Verdict",
     "branch_index",
     "circuit_index",
@@ -26,7 +28,9 @@ __all__ = [
     "full_rotation",
     "grashof_class",
     "reach_box",
+    "robustness",
     "rotatability",
+    "sensitivity",
     "solve_position",
     "transmission_angle",
     "triple_rocker_kind",

@@ -3,6 +3,7 @@
 from grashof.problems.errors import AssemblyError, GrashofError, NoSolutionError, ProblemError, SolverError
 from grashof.problems.files import catalogue, load, problem_text
 from grashof.problems.linkage import FourBar
+from grashof.problems.manufacturing import Manufacturing
 from grashof.problems.problem import Objective, Problem, Search
 from grashof.problems.requirements import Box, Requirements, Rotatability, TransmissionOver
 from grashof.problems.task import MotionTask, PathTask, Task
@@ -12,6 +13,7 @@ __all__ = [
     "Box",
     "FourBar",
     "GrashofError",
+    "Manufacturing",
     "MotionTask",
     "NoSolutionError",
     "Objective",

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from grashof.problems.checks import FloatArray, finite_number, outline, whole_number
 from grashof.problems.errors import ProblemError
+from grashof.problems.manufacturing import Manufacturing
 from grashof.problems.requirements import Requirements
 from grashof.problems.task import Task
 
@@ -72,6 +73,8 @@ class Problem:
         For people: file names, headings, axis labels.
     outlines : sequence of array_like, shape (M, 2), length
         The scene: drawn, no constraint.
+    manufacturing : Manufacturing, optional
+        How exactly linkages are made; without it nothing is said about made ones.
     """
 
     task: Task
@@ -83,6 +86,7 @@ class Problem:
     source: str = ""
     length_unit: str = ""
     outlines: tuple[FloatArray, ...] = ()
+    manufacturing: Manufacturing | None = None
 
     def __post_init__(self) -> None:
         checked = tuple(

@@ -25,6 +25,7 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 
 from grashof.problems.checks import FloatArray, counted, near_miss, outline
 from grashof.problems.errors import ProblemError
+from grashof.problems.manufacturing import Manufacturing
 from grashof.problems.problem import Objective, Problem, Search
 from grashof.problems.requirements import Box, Requirements
 from grashof.problems.task import MotionTask, PathTask, Task
@@ -233,6 +234,14 @@ class ObjectiveTable(_Table):
         return Objective(float(self.maximise == "transmission"), float(self.maximise == "compactness"))
 
 
+class ManufacturingTable(_Table):
+    length_tolerance: float
+    band: float | None = None
+
+    def value(self) -> Manufacturing:
+        return Manufacturing(self.length_tolerance, self.band)
+
+
 class SearchTable(_Table):
     starts: int | None = None
     enough: int | None = None
@@ -253,6 +262,7 @@ class ProblemFile(_Table):
     scene: SceneTable = SceneTable()
     requirements: RequirementsTable = RequirementsTable()
     objective: ObjectiveTable = ObjectiveTable()
+    manufacturing: ManufacturingTable | None = None
     search: SearchTable = SearchTable()
 
     def value(self) -> Task:
@@ -275,6 +285,7 @@ class ProblemFile(_Table):
             outlines=self.scene.value(),
             requirements=self.requirements.value(),
             objective=self.objective.value(),
+            manufacturing=None if self.manufacturing is None else self.manufacturing.value(),
             search=self.search.value(),
         )
 
@@ -291,6 +302,7 @@ _TABLES: dict[str, type[_Table]] = {
     "requirements.b": BoxTable,
     "objective": ObjectiveTable,
     "objective.maximise": WeightsTable,
+    "manufacturing": ManufacturingTable,
     "search": SearchTable,
 }
 
@@ -298,7 +310,6 @@ _TABLES: dict[str, type[_Table]] = {
 # holds only what does something.
 _LATER = {
     "dynamics",
-    "manufacturing",
     "requirements.keep_out",
     "requirements.keep_out_for",
     "objective.maximise.torque",

@@ -18,7 +18,6 @@ from grashof.problems.checks import ComplexArray, Limits, counted
 from grashof.synth.burmester import (
     Displacements,
     Dyads,
-    centre_points,
     polish,
     radius_error,
     trace_four_pose_curves,
@@ -29,6 +28,12 @@ from grashof.synth.five_poses import five_pose_dyads, five_pose_guides
 from grashof.synth.screen import near_misses, screen
 from grashof.synth.setup import Setup
 from grashof.synth.start import Round, Start
+from grashof.synth.three_poses import (
+    bisector_dyads,
+    bisector_dyads_of_ground,
+    circle_dyads,
+    circle_dyads_of_ground,
+)
 
 LINES, CELL = 800, 0.01  # of the traced curves, in sizes
 SAMPLES = 4000  # dyads, where they are free in two or three numbers
@@ -146,27 +151,20 @@ def _sampled(
     low, high = max(arms[0], 0.01), min(max(arms[1], 0.02), 100.0)
     radius = np.exp(rng.uniform(np.log(low), np.log(high), SAMPLES))
     moving = setup.targets[0] + radius * np.exp(1j * rng.uniform(-np.pi, np.pi, SAMPLES))
-    by_joint = Dyads(moving, _centres(motion, moving, longest, rng))
     ground = np.concatenate([_pivots(box, longest, rng) for box in (setup.wanted.o2, setup.wanted.o4)])
-    by_pivot = Dyads(_centres(motion.inverse(), ground, longest, rng), ground)
-    both = Dyads(
-        np.concatenate([by_joint.moving, by_pivot.moving]),
-        np.concatenate([by_joint.ground, by_pivot.ground]),
-    )
+    if len(setup.targets) == 3:
+        halves = circle_dyads(motion, moving), circle_dyads_of_ground(motion, ground)
+    else:
+        halves = (
+            bisector_dyads(motion, moving, rng.normal(0, min(longest, 3.0), len(moving))),
+            bisector_dyads_of_ground(motion, ground, rng.normal(0, min(longest, 3.0), len(ground))),
+        )
+    both = _joined(*halves)
     return both[np.isfinite(both.moving) & np.isfinite(both.ground)]
 
 
-def _centres(
-    motion: Displacements, points: ComplexArray, longest: float, rng: np.random.Generator
-) -> ComplexArray:
-    """Points at equal distance from all places of each of `points`; one of many for two poses."""
-    if len(motion.shift) > 2:
-        return centre_points(motion, points)
-    first, second = motion.apply(points).T
-    along = rng.normal(size=len(points)) * min(longest, 3.0)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        centre: ComplexArray = (first + second) / 2 + 1j * along * (second - first) / np.abs(second - first)
-    return centre
+def _joined(first: Dyads, second: Dyads) -> Dyads:
+    return Dyads(np.concatenate([first.moving, second.moving]), np.concatenate([first.ground, second.ground]))
 
 
 def _pivots(box: Box | None, longest: float, rng: np.random.Generator) -> ComplexArray:
@@ -195,12 +193,7 @@ def _dyads_of_fives(motion: Displacements, rng: np.random.Generator) -> Dyads:
             dyads = polish(motion, dyads[near])
             dyads = dyads[radius_error(motion, dyads) < EXACT]
         apart = np.abs(dyads.moving[:, None] - found.moving).min(axis=1, initial=np.inf) > 1e-6
-        found = Dyads(
-            *(
-                np.concatenate([getattr(d, side) for d in (found, dyads[apart])])
-                for side in ("moving", "ground")
-            )
-        )
+        found = _joined(found, dyads[apart])
         if len(found) >= 4:
             break
     return found

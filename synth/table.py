@@ -7,9 +7,15 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from grashof.analysis import robustness
+from grashof.analysis.tolerance import DIMENSIONS
 from grashof.problems import Problem
 from grashof.synth.result import Candidate, pareto_optimal
 
+# Filled when the problem says how exactly linkages are made.
+MANUFACTURING = (
+    *(f"move_{name}" for name in DIMENSIONS), "worst_move", "share_within_linear", "share_within_made",
+)  # fmt: skip
 # Columns without a meaning for a task, or whose analysis is not built yet, stay empty.
 COLUMNS = (
     "rank", "id", "family", "grashof_class", "direction", "assembly", "o2_x", "o2_y", "o4_x", "o4_y",
@@ -18,7 +24,7 @@ COLUMNS = (
     "transmission_min_task_deg", "transmission_min_cycle_deg", "circuit_ok", "branch_ok", "order_ok",
     "full_rotation", "omega4_max", "point_speed_max", "point_acceleration_max", "torque_peak",
     "torque_rms", "joint_force_peak", "coupler_fit_r2", "size", "pareto", "cognate_of", "start", "iterations",
-    "hausdorff", "frechet",
+    "hausdorff", "frechet", *MANUFACTURING,
 )  # fmt: skip
 
 
@@ -26,10 +32,18 @@ def to_frame(problem: Problem, candidates: tuple[Candidate, ...]) -> pd.DataFram
     """Candidates as rows, in the order given, with the columns `COLUMNS`."""
     best = pareto_optimal(problem, candidates)
     rows = [
-        {"rank": rank, "pareto": bool(front), **_row(candidate)}
+        {"rank": rank, "pareto": bool(front), **_row(candidate), **_made(problem, candidate)}
         for rank, (candidate, front) in enumerate(zip(candidates, best, strict=True), start=1)
     ]
     return pd.DataFrame(rows, columns=list(COLUMNS))
+
+
+def _made(problem: Problem, candidate: Candidate) -> dict[str, float]:
+    if problem.manufacturing is None:
+        return {}
+    made = robustness(candidate.linkage, problem.task, candidate.verdict, problem.manufacturing)
+    figures = (*made.moves.tolist(), made.worst_move, made.share_linear, made.share_made)
+    return dict(zip(MANUFACTURING, figures, strict=True))
 
 
 def _row(candidate: Candidate) -> dict[str, Any]:

@@ -9,11 +9,13 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from grashof.folder import RECORD, replacing_own_files
 from grashof.problems import FourBar
 from grashof.synth import Candidate, Result
 from grashof.synth.result import pareto_optimal
-from grashof.synth.table import to_frame
+from grashof.synth.table import MANUFACTURING, to_frame
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -53,8 +55,9 @@ def write_run(
     """
     with replacing_own_files(folder) as fresh:
         if result.candidates:
-            _write_csv(fresh / "candidates.csv", result.to_frame())
-            _write_json(fresh / "candidates.json", _designs(result))
+            frame = result.to_frame()
+            _write_csv(fresh / "candidates.csv", frame)
+            _write_json(fresh / "candidates.json", _designs(result, frame))
         if result.nearest:
             misses = ["; ".join(str(d) for d in candidate.verdict.defects) for candidate in result.nearest]
             _write_csv(fresh / "nearest.csv", to_frame(result.problem, result.nearest).assign(misses=misses))
@@ -86,7 +89,7 @@ def _write_record(
     return files
 
 
-def _designs(result: Result) -> dict[str, Any]:
+def _designs(result: Result, frame: pd.DataFrame) -> dict[str, Any]:
     problem = result.problem
     front = pareto_optimal(problem, result.candidates)
     return {
@@ -95,8 +98,10 @@ def _designs(result: Result) -> dict[str, Any]:
         "length_unit": problem.length_unit,
         "angle_unit": "rad",
         "designs": [
-            {"rank": rank, **_design(candidate), "pareto": bool(best)}
-            for rank, (candidate, best) in enumerate(zip(result.candidates, front, strict=True), start=1)
+            {"rank": rank, **_design(candidate), "pareto": bool(best), **made}
+            for rank, (candidate, best, made) in enumerate(
+                zip(result.candidates, front, _made(result, frame), strict=True), start=1
+            )
         ],
     }
 
@@ -124,6 +129,15 @@ def _design(candidate: Candidate) -> dict[str, Any]:
         "start": candidate.start,
         "iterations": candidate.iterations,
     }
+
+
+def _made(result: Result, frame: pd.DataFrame) -> list[dict[str, Any]]:
+    """The columns of each design about made linkages, null where they are not finite."""
+    columns = [] if result.problem.manufacturing is None else list(MANUFACTURING)
+    rows = frame[columns].to_numpy(dtype=np.float64).tolist()
+    return [
+        {name: x if np.isfinite(x) else None for name, x in zip(columns, row, strict=True)} for row in rows
+    ]
 
 
 def _linkage(linkage: FourBar) -> dict[str, Any]:

@@ -170,6 +170,9 @@ def summary(problem: Problem) -> list[str]:
             lines.append(f"  {name}: x {place.x[0]:g} to {place.x[1]:g}, y {place.y[0]:g} to {place.y[1]:g}")
     angles = {key: getattr(wanted, key) for key in ("ground_angle_deg", "theta2_start_deg")}
     lines += [f"  {key} {value:g}" for key, value in angles.items() if value is not None]
+    if problem.manufacturing is not None:
+        made = problem.manufacturing
+        lines.append(f"  made to within {made.length_tolerance:g}{unit}, band {made.band:g}{unit}")
     weights = problem.objective
     search = problem.search
     return [

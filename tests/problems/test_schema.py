@@ -338,7 +338,6 @@ def test_unknown_keys(text: str, expected: str) -> None:
 
 LATER = [
     ("[dynamics]\nspeed_rpm = 10", "dynamics is not supported by this version"),
-    ("[manufacturing]\nlength_tolerance = 0.1", "manufacturing is not supported by this version"),
     (
         "[requirements]\nkeep_out = [[[0, 0], [1, 0], [1, 1]]]",
         "requirements.keep_out is not supported by this version",
