@@ -60,7 +60,7 @@ def all_double_points(linkage: FourBar) -> DoublePoints:
     linear equations for the direction e of the coupler, Re(conj(p) w e) = s and
     Re(conj(q) (w - r3) e) = t. A second unit e solves both only where they are one equation. Their left
     sides are in proportion on the circle on which O2O4 is seen under the angle A-P-B (Roberts 1875; Hunt,
-    *Kinematic Geometry of Mechanisms*, ch. 7): q / p = k |w| |w - r3| / (w conj(w - r3)) with k real.
+    *Kinematic Geometry of Mechanisms*, 1978): q / p = k |w| |w - r3| / (w conj(w - r3)) with k real.
     The right sides then leave a cubic in k. A few Newton steps on P(theta2) = P(theta2') end it.
 
     Examples
