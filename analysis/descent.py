@@ -13,7 +13,7 @@ from grashof.problems.checks import BoolArray, FloatArray
 
 # What is minimised: its value, first and second derivative, and a positive stand-in for the second.
 Model: TypeAlias = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
-_STEPS = 40
+_STEPS = 60  # enough for a way of more than half a turn at _REACH
 _REACH = 0.1  # rad: no first step is longer
 _SAME = 1e-12  # rad
 _EDGE = 3e-7  # share of a range: so near its end derivatives have no digits

@@ -121,14 +121,15 @@ def _linearised(
         moves = [1, 1j, 0, 0, e2, 0, 0, e3, 1j * e3, 0]
         turns.append(turn(1j * r2 * e2))
         moves.append(1j * r2 * e2)
-    by_turn = np.stack([np.broadcast_to(column, s.shape) for column in turns], axis=1)
-    by_move = np.stack([np.broadcast_to(column, s.shape) for column in moves], axis=1)
-    by_point = by_move + 1j * (arm * e3)[:, None] * by_turn
-    by_turn[:, 9] = 1.0
-    if not wish.timed:
-        by_turn, by_point = (
-            np.concatenate([slope[:, :10], np.diag(slope[:, 10])], axis=1) for slope in (by_turn, by_point)
-        )
+        by_turn = np.stack([np.broadcast_to(column, s.shape) for column in turns], axis=1)
+        by_move = np.stack([np.broadcast_to(column, s.shape) for column in moves], axis=1)
+        by_point = by_move + 1j * (arm * e3)[:, None] * by_turn
+        by_turn[:, 9] = 1.0
+        if not wish.timed:
+            by_turn, by_point = (
+                np.concatenate([slope[:, :10], np.diag(slope[:, 10])], axis=1)
+                for slope in (by_turn, by_point)
+            )
     off = (p - wish.points)[wish.has_point]
     turned = np.angle(e3 * np.exp(1j * (body_angle - wish.turns)))[wish.has_turn]
     slope = by_point[wish.has_point]

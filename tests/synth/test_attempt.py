@@ -91,6 +91,7 @@ def test_numbers_that_are_not_finite_are_no_linkage(
         (complex("nan"), start.o4, start.a, start.b, start.p),
         start.theta2,
         start.theta3,
+        start.body_angle,
         "Invalid_Number_Detected",
         7,
     )
@@ -104,7 +105,7 @@ def test_the_solver_is_not_believed(luggage_setup: SetupOf, monkeypatch: pytest.
     setup = luggage_setup()
     start = first_starts(setup, 1)[0]
     moved = (start.o2 + 2, start.o4 - 3j, start.a, start.b, start.p)
-    ended = Solve(moved, start.theta2, start.theta3, "Solve_Succeeded", 7)
+    ended = Solve(moved, start.theta2, start.theta3, start.body_angle, "Solve_Succeeded", 7)
     monkeypatch.setattr(module, "solve", lambda *_: ended)
     candidate = attempt(setup, start, 0).candidate
     assert candidate is None or not candidate.verdict.ok
