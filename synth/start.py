@@ -7,9 +7,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from grashof.problems import Objective
+from grashof.analysis import Verdict, solve_position
+from grashof.problems import FourBar, Objective
 from grashof.problems.checks import ComplexArray
 from grashof.synth.finds import Finds
+from grashof.synth.setup import Setup
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +63,27 @@ class Start:
     stay: bool = False
     settled: bool = False
     relaxed: tuple[str, ...] = ()
+
+    @classmethod
+    def of_linkage(cls, setup: Setup, linkage: FourBar, verdict: Verdict) -> Start:
+        """The start that a linkage makes where the judge found it nearest to the targets, in order."""
+        state = solve_position(linkage, verdict.theta2, verdict.assembly)
+        at_first = (linkage.o2, linkage.o4, state.a[0], state.b[0], state.p[0])
+        o2, o4, a, b, p = (complex(setup.frame.inward(point)) for point in at_first)
+        return cls(
+            o2=o2,
+            o4=o4,
+            a=a,
+            b=b,
+            p=p,
+            visit=tuple(range(len(verdict.theta2))),
+            theta2=tuple(verdict.theta2.tolist()),
+            theta3=tuple(np.unwrap(state.theta3).tolist()),
+            direction=verdict.direction,
+            assembly=int(linkage.assembly),
+            objective=setup.problem.objective,
+            body_angle=float(linkage.body_angle),
+        )
 
     @property
     def points(self) -> ComplexArray:
