@@ -1,6 +1,7 @@
 """How a given linkage moves and how good it is: the independent judge of the synthesis, without CasADi."""
 
 from grashof.analysis.curvature import curvature, cusps
+from grashof.analysis.design import Constraint, Design
 from grashof.analysis.double_points import DoublePoints, all_double_points, double_points
 from grashof.analysis.extent import reach_box
 from grashof.analysis.fit import (
@@ -32,7 +33,9 @@ from grashof.analysis.verify import Defect, Verdict, verify
 __all__ = [
     "BestCircle",
     "BestLine",
+    "Constraint",
     "Defect",
+    "Design",
     "DoublePoints",
     "FourierSeries",
     "GrashofClass",

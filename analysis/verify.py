@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from grashof.analysis.curve_distance import curve_distances
+from grashof.analysis.design import Constraint, Design, greatest, name_of
 from grashof.analysis.extent import diagonal, reach_box
 from grashof.analysis.mobility import (
     GrashofClass,
@@ -124,7 +126,9 @@ class Verdict:
         return float(np.sqrt(np.nanmean(self.position_error**2)))
 
 
-def verify(linkage: FourBar, task: Task, requirements: Requirements) -> Verdict:
+def verify(
+    linkage: FourBar, task: Task, requirements: Requirements, constraints: Sequence[Constraint] = ()
+) -> Verdict:
     """Judge a single linkage.
 
     Parameters
@@ -133,6 +137,8 @@ def verify(linkage: FourBar, task: Task, requirements: Requirements) -> Verdict:
     task : MotionTask or PathTask
     requirements : Requirements
         Defaults that depend on the size of the task are filled in.
+    constraints : sequence of callable
+        The user's own: functions of a `Design`, zero or negative where met.
 
     Returns
     -------
@@ -173,6 +179,7 @@ def verify(linkage: FourBar, task: Task, requirements: Requirements) -> Verdict:
         *_geometry(linkage, task, wanted),
         *_places(linkage, solve_position(linkage, targets.theta2, targets.assembly), task, wanted),
         *_angles(linkage, targets, wanted),
+        *_own(linkage, targets, way, constraints),
     ]
     return Verdict(
         theta2=way.theta2,
@@ -352,6 +359,19 @@ def _angles(linkage: FourBar, targets: Targets, wanted: Requirements) -> list[De
             if miss > SLACK:
                 found = float(np.degrees(angle))
                 defects.append(Defect(key, "the angle in deg", found, f"{value:g}", miss))
+    return defects
+
+
+def _own(linkage: FourBar, targets: Targets, way: Way, constraints: Sequence[Constraint]) -> list[Defect]:
+    if not constraints:
+        return []
+    visit = np.argsort(way.direction * way.theta2, kind="stable")
+    design = Design.of(linkage, way.theta2[visit], targets.assembly[visit])
+    defects = []
+    for constraint in constraints:
+        value = greatest(constraint, design)
+        if not value <= SLACK:
+            defects.append(Defect("constraints", name_of(constraint), value, "up to 0", value))
     return defects
 
 

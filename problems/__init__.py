@@ -4,9 +4,11 @@ from grashof.problems.errors import AssemblyError, GrashofError, NoSolutionError
 from grashof.problems.files import catalogue, load, problem_text
 from grashof.problems.linkage import FourBar
 from grashof.problems.manufacturing import Manufacturing
+from grashof.problems.motion_task import MotionTask
+from grashof.problems.path_task import PathTask
 from grashof.problems.problem import Objective, Problem, Search
 from grashof.problems.requirements import Box, Requirements, Rotatability, TransmissionOver
-from grashof.problems.task import MotionTask, PathTask, Task
+from grashof.problems.task import Task
 
 __all__ = [
     "AssemblyError",

@@ -26,9 +26,11 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 from grashof.problems.checks import FloatArray, counted, near_miss, outline
 from grashof.problems.errors import ProblemError
 from grashof.problems.manufacturing import Manufacturing
+from grashof.problems.motion_task import MotionTask
+from grashof.problems.path_task import PathTask
 from grashof.problems.problem import Objective, Problem, Search
 from grashof.problems.requirements import Box, Requirements
-from grashof.problems.task import MotionTask, PathTask, Task
+from grashof.problems.task import Task
 
 
 def problem_from(document: dict[str, Any], name: str) -> Problem:

@@ -80,12 +80,9 @@ def _on_targets(setup: Setup, start: Start) -> Start:
     o2, o4, a, b, p = (complex(point) for point in polished.points)
     theta3 = np.unwrap(np.angle(polished.coupler[visit]))
     theta3 += 2 * np.pi * np.round((start.theta3[0] - theta3[0]) / (2 * np.pi))
-    angles = {
-        "theta2": tuple(polished.theta2[visit].tolist()),
-        "theta3": tuple(theta3.tolist()),
-        "body_angle": polished.body_angle,
-    }
-    return replace(start, o2=o2, o4=o4, a=a, b=b, p=p, **angles)
+    theta2, body_angle = tuple(polished.theta2[visit].tolist()), polished.body_angle
+    moved = replace(start, o2=o2, o4=o4, a=a, b=b, p=p, body_angle=body_angle)
+    return replace(moved, theta2=theta2, theta3=tuple(theta3.tolist()))
 
 
 def _on_path(
@@ -145,7 +142,7 @@ def _candidate(
         linkage = setup.linkages(made.points, np.array(made.assembly), body_angle)
     except ProblemError:  # two pivots coincide
         return None
-    verdict = verify(linkage, setup.problem.task, setup.problem.requirements)
+    verdict = verify(linkage, setup.problem.task, setup.problem.requirements, setup.constraints)
     return Candidate(linkage, verdict, number, iterations, cognate_of)
 
 

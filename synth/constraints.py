@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import casadi as ca
 
+from grashof.analysis.design import Constraint, Design
 from grashof.synth.finds import GROUPS
 from grashof.synth.form import Form, Given, Unknowns
 
+OWN_INSET = 1e-8  # the user's constraints are tightened by so much, so that the polished design keeps them
 ANGLES = ("ground_angle_deg", "theta2_start_deg")  # equalities: fixed unknowns unless they are relaxed
 
 
@@ -127,6 +130,41 @@ def require_limits(rows: Rows, given: Given, unknown: Unknowns) -> None:
     angles = (unknown["theta1"], ca.dot(given.at_first, unknown["theta2"]))
     for i, (key, angle) in enumerate(zip(ANGLES, angles, strict=True)):
         rows.require(key, angle - given.angles[i], given.angles[i] - angle, name=key)
+
+
+def require_own(
+    rows: Rows, given: Given, unknown: Unknowns, places: Places, constraints: Sequence[Constraint]
+) -> None:
+    """The user's own constraints, on the symbols of the design in the problem's unit."""
+    if not constraints:
+        return
+    design = symbolic_design(given, unknown, places)
+    for constraint in constraints:
+        value = constraint(design)
+        for one in value if isinstance(value, (list, tuple)) else [value]:
+            rows.require("constraints", -ca.vec(ca.SX(one)) - OWN_INSET)
+
+
+def symbolic_design(given: Given, unknown: Unknowns, places: Places) -> Design:
+    """What a user's constraint sees of the unknowns."""
+    scale, r = given.scale, unknown["r"]
+    coupler, arm = places.b[0] - places.a[0], places.p[0] - places.a[0]
+    along, beside = ca.dot(coupler, arm) / r[2], cross(coupler, arm) / r[2]
+    r1, r2, r3, r4 = (scale * r[i] for i in range(4))
+    return Design(
+        o2=given.outward(unknown["o2"]),
+        o4=given.outward(unknown["o4"]),
+        r1=r1,
+        r2=r2,
+        r3=r3,
+        r4=r4,
+        theta1=unknown["theta1"],
+        coupler_point=scale * ca.vertcat(along, beside),
+        theta2=unknown["theta2"],
+        a=[given.outward(point) for point in places.a],
+        b=[given.outward(point) for point in places.b],
+        p=[given.outward(point) for point in places.p],
+    )
 
 
 def diagonal(rows: Rows, unknown: Unknowns, places: Places) -> ca.SX:

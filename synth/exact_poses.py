@@ -113,8 +113,8 @@ def obstacle(setup: Setup, rng: np.random.Generator) -> str:
     """What theory says of poses without a design; empty where it says nothing."""
     count, dyads = len(setup.targets), _dyads(setup, rng)
     if count > 4:
-        guides = five_pose_guides(_motion(setup)) if count == 5 else []
-        sliding = f"; {counted(len(guides), 'dyad')} would have to be a slider" if len(guides) else ""
+        guides = len(five_pose_guides(_motion(setup))) if count == 5 else 0
+        sliding = f"; {counted(guides, 'dyad')} would have to be a slider" if guides else ""
         if len(dyads) < 2:
             found = "no real dyad" if not len(dyads) else "a single real dyad"
             return f"the {count} poses have {found}, and a linkage needs two{sliding}"

@@ -26,6 +26,7 @@ GROUPS = (
     "b",
     "ground_angle_deg",
     "theta2_start_deg",
+    "constraints",
 )
 
 

@@ -142,6 +142,8 @@ class Given:
     start: ca.SX
     angles: ca.SX
     relaxed: ca.SX
+    origin: ca.SX
+    scale: ca.SX
     box: dict[str, tuple[ca.SX, ca.SX]]
 
     @classmethod
@@ -153,7 +155,7 @@ class Given:
             "square_weights": 2 * n, "timing": n, "at_first": n, "body": 2,
             "direction": 1, "assembly": 1, "longer": 1, "margin": 1, "ratio": 1, "least_transmission": 1,
             "weights": 2, "error_scale": 1, "arms": 2, "lengths": 8, "start": 8, "angles": 2,
-            "relaxed": len(GROUPS), "boxes": 16,
+            "relaxed": len(GROUPS), "origin": 2, "scale": 1, "boxes": 16,
         }  # fmt: skip
         parts = {name: ca.SX.sym(name, size) for name, size in sizes.items()}
         vector = ca.vertcat(*parts.values())
@@ -166,6 +168,10 @@ class Given:
         cos, sin = self.rotation[2 * pose], self.rotation[2 * pose + 1]
         turned = ca.vertcat(cos * point[0] - sin * point[1], sin * point[0] + cos * point[1])
         return turned + self.shift[2 * pose : 2 * pose + 2]
+
+    def outward(self, point: ca.SX) -> ca.SX:
+        """A point of the frame in the problem's unit."""
+        return self.scale * point + self.origin
 
     def target(self, k: int) -> ca.SX:
         """Where P has to be."""

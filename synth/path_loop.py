@@ -53,7 +53,8 @@ class PathTarget:
             given = self.turn_weights > 0
             turned = np.abs(np.angle(np.exp(1j * np.diff(self.turns)))) * (given[1:] & given[:-1])
             step = np.hypot(step, np.sqrt(self.turn_weights.max()) * turned)
-        return np.maximum(step, SHORTEST * max(step.max(), SHORTEST))
+        steps: FloatArray = np.maximum(step, SHORTEST * max(step.max(), SHORTEST))
+        return steps
 
     @property
     def unknowns(self) -> int:

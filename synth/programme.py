@@ -9,6 +9,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from grashof.analysis.design import Constraint
 from grashof.problems import Box, Rotatability
 from grashof.problems.checks import ComplexArray, FloatArray, Limits
 from grashof.synth.constraints import (
@@ -19,6 +20,7 @@ from grashof.synth.constraints import (
     diagonal,
     require_all,
     require_limits,
+    require_own,
     square,
 )
 from grashof.synth.finds import GROUPS
@@ -71,7 +73,7 @@ def solve(setup: Setup, start: Start, max_iter: int = 150) -> Solve:
     -------
     Solve
     """
-    programme = _programme(Form.of(setup, start), max_iter)
+    programme = _programme(Form.of(setup, start), max_iter, setup.constraints)
     form = programme.form
     guess = _guess(form, setup, start)
     lbx, ubx = _unknown_limits(form, setup, start)
@@ -126,7 +128,7 @@ _IPOPT = {
 
 
 @lru_cache(maxsize=32)
-def _programme(form: Form, max_iter: int) -> _Programme:
+def _programme(form: Form, max_iter: int, constraints: tuple[Constraint, ...]) -> _Programme:
     unknown, given = Unknowns.of(form), Given.of(form)
     rows = Rows(unknown["slack"] if form.elastic else None, given.relaxed)
     if form.poses:
@@ -134,6 +136,7 @@ def _programme(form: Form, max_iter: int) -> _Programme:
     else:
         places = close_at_points(rows, form, given, unknown)
     require_all(rows, form, given, unknown, places)
+    require_own(rows, given, unknown, places, constraints)
     cost = -given.weights[0] * unknown["tau"] / (np.pi / 2)
     if form.compact:
         cost += given.weights[1] * diagonal(rows, unknown, places)
@@ -186,6 +189,7 @@ def _parameters(form: Form, setup: Setup, start: Start) -> FloatArray:
         [_lifted(wanted.ground_angle_deg, start.theta1)],
         [_lifted(wanted.theta2_start_deg, start.theta2[visit.index(0)])],
         [float(group in start.relaxed) for group in GROUPS],
+        [setup.frame.origin.real, setup.frame.origin.imag, setup.frame.scale],
         corners,
     ])  # fmt: skip
 
@@ -218,7 +222,8 @@ def _turns(setup: Setup, start: Start) -> FloatArray:
         return np.zeros(len(start.visit))
     turned = np.array(start.theta3) + start.body_angle
     off = setup.turns[list(start.visit)] - turned
-    return turned + np.angle(np.exp(1j * off))
+    nearest: FloatArray = turned + np.angle(np.exp(1j * off))
+    return nearest
 
 
 def _unknown_limits(form: Form, setup: Setup, start: Start) -> tuple[FloatArray, FloatArray]:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from grashof.analysis.design import Constraint
 from grashof.problems import FourBar, MotionTask, PathTask, Problem, Requirements
 from grashof.problems.checks import ComplexArray, FloatArray
 from grashof.synth.burmester import Displacements
@@ -37,6 +39,8 @@ class Setup:
         Resolved, in the frame.
     exact : bool
         Every target is met; otherwise least squares.
+    constraints : tuple of callable
+        The user's own.
     """
 
     problem: Problem
@@ -49,18 +53,21 @@ class Setup:
     timing: FloatArray | None
     wanted: Requirements
     exact: bool
+    constraints: tuple[Constraint, ...] = ()
 
     @classmethod
-    def of(cls, problem: Problem) -> Setup:
+    def of(cls, problem: Problem, constraints: Sequence[Constraint] = ()) -> Setup:
         """Make a problem ready."""
         task, frame = problem.task, Frame.of(problem.task)
         exact, targets = problem.requirements.is_exact(task), frame.inward(task.positions)
         weights, turns, turn_weights, motion = np.ones(len(task)), None, None, None
         if isinstance(task, MotionTask):
-            weights, turns = task.weights * task.has_position, np.nan_to_num(task.angles)
-            turn_weights = task.weights * task.has_angle * (task.angle_length / frame.scale) ** 2
+            weights = task.weights * task.has_position
+            if task.has_angle.any():
+                turns = np.nan_to_num(task.angles)
+                turn_weights = task.weights * task.has_angle * (task.angle_length / frame.scale) ** 2
             targets = np.where(task.has_position, targets, 0.0)
-            if exact and task.is_whole:
+            if exact and task.is_whole and turns is not None:
                 motion = Displacements.from_poses(targets, turns)
         return cls(
             problem=problem,
@@ -73,6 +80,7 @@ class Setup:
             timing=task.timing if isinstance(task, PathTask) else None,
             wanted=frame.requirements(problem.requirements),
             exact=exact,
+            constraints=tuple(constraints),
         )
 
     def missed(self, p: ComplexArray, turned: FloatArray) -> FloatArray:

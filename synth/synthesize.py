@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -14,10 +14,12 @@ from time import perf_counter
 import numpy as np
 
 from grashof.analysis import verify
+from grashof.analysis.design import Constraint
 from grashof.problems import MotionTask, Problem, ProblemError, Search, SolverError
 from grashof.problems.checks import whole_number
 from grashof.synth import exact_poses, paths
 from grashof.synth.attempt import Attempt, attempt
+from grashof.synth.own import mended, refuse_unusable
 from grashof.synth.result import Candidate, Result, ranked
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
@@ -50,6 +52,7 @@ class Progress:
 def synthesize(
     problem: Problem,
     *,
+    constraints: Sequence[Constraint] = (),
     starts: int | None = None,
     enough: int | None = None,
     seed: int | None = None,
@@ -64,6 +67,9 @@ def synthesize(
     Parameters
     ----------
     problem : Problem
+    constraints : sequence of callable
+        Your own: functions of a `Design`, zero or negative where met, made of arithmetic that works
+        on symbols (`**`, `casadi.sin`, not ``np.max``). With more processes, functions of a module.
     starts, enough, seed : int, optional
         Override the problem's own (see `Search`).
     workers : int
@@ -103,7 +109,8 @@ def synthesize(
         raise ProblemError(f"time_limit is {time_limit!r}; allowed is a time in s greater than zero")
     refuse_unsupported(problem)
     begun = perf_counter()
-    setup = Setup.of(problem)
+    setup = Setup.of(problem, constraints)
+    refuse_unusable(setup, in_processes=workers > 1 or executor is not None)
     reason = "" if setup.motion is None else exact_poses.degenerate(setup)
     if reason:
         return Result(problem, (), (), {}, {"total": perf_counter() - begun}, note=f"no design: {reason}")
@@ -143,7 +150,7 @@ def _search(
             seconds["screening"] += screened - since
             found.counts.update(made.counts)
             before = found.best
-            _solve_round(setup, made.starts, search, solve, found, ended, progress)
+            _solve_round(setup, mended(setup, made.starts), search, solve, found, ended, progress)
             since = perf_counter()
             seconds["solving"] += since - screened
             found.stale = found.stale + 1 if before and not found.gained_on(before) else 0
@@ -287,9 +294,13 @@ def _approximate(setup: Setup, search: Search, ended: Callable[[], bool]) -> tup
     if setup.motion is None or len(setup.targets) < 5 or ended():
         return ()
     loose = replace(problem, requirements=replace(problem.requirements, exact=False))
-    result = synthesize(loose, starts=min(search.starts, FRUITLESS), enough=1, seed=search.seed, stop=ended)
+    most = min(search.starts, FRUITLESS)
+    result = synthesize(
+        loose, constraints=setup.constraints, starts=most, enough=1, seed=search.seed, stop=ended
+    )
+    wanted, own = problem.requirements, setup.constraints
     judged = (
-        replace(found, verdict=verify(found.linkage, problem.task, problem.requirements))
+        replace(found, verdict=verify(found.linkage, problem.task, wanted, own))
         for found in result.candidates
     )
     return tuple(found for found in judged if not found.verdict.ok)
