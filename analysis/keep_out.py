@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from grashof.analysis.motion import Targets, Way
 from grashof.analysis.position import solve_position
@@ -14,9 +16,9 @@ from grashof.problems import FourBar, Requirements
 from grashof.problems.areas import solid
 from grashof.problems.checks import ComplexArray, FloatArray, IntArray
 
-_SAMPLES = 721
-_ALONG = 17  # samples along the piece of a link that lies inside
-_PEAKS = 4  # of the depth over the motion that are looked at more closely
+_SAMPLES = 541
+_ALONG = 33  # samples along the piece of a link that lies inside
+_PEAKS = 3  # of the depth over the motion that are looked at more closely
 _ROUNDS, _NEARBY = 18, np.linspace(-1, 1, 7)  # each three times as close
 _ROUGH = 5  # rounds along a link, while looking for the driver angles where it reaches deepest
 _LINKS = {
@@ -108,7 +110,7 @@ def segment_depth(area: Area, begin: FloatArray, end: FloatArray, rounds: int = 
     """
     deepest: FloatArray = np.maximum(depth(area, begin), depth(area, end))
     long = np.flatnonzero((begin != end).any(axis=1))
-    segment = shapely.linestrings(np.stack([begin, end], axis=1)[long])
+    segment = cast("NDArray[np.object_]", shapely.linestrings(np.stack([begin, end], axis=1)[long]))
     apart = shapely.distance(area.solid, segment)
     deepest[long] = np.where(apart > 0, -apart, np.maximum(deepest[long], 0.0))
     crossing = apart == 0
@@ -175,8 +177,9 @@ def _depth_of(
         ]
         found = np.full(len(theta2), -np.inf)
         closed = np.isfinite(np.concatenate(places, axis=-1)).all(axis=-1)
-        places = [place[closed] for place in places]
-        found[closed] = depth(area, places[0]) if len(places) == 1 else segment_depth(area, *places, rounds)
+        begin, end = places[0][closed], places[-1][closed]
+        one = len(places) == 1
+        found[closed] = depth(area, begin) if one else segment_depth(area, begin, end, rounds)
         return found
 
     return at
@@ -188,16 +191,18 @@ def _deepest_over(at: Callable[[FloatArray, int], FloatArray], start: float, end
     angle = start + (end - start) * towards_end
     found = at(angle, _ROUGH)
     around = np.pad(found, 1, constant_values=-np.inf)
-    peak = np.flatnonzero((found >= around[:-2]) & (found >= around[2:]))
+    step = np.abs(np.diff(found[np.isfinite(found)])).max(initial=0.0)
+    # Between samples it is hardly deeper than by a step: the others stay outside.
+    peak = np.flatnonzero((found >= around[:-2]) & (found >= around[2:]) & (found > -2 * step))
     peak = peak[np.argsort(-found[peak], kind="stable")[:_PEAKS]]
     width = np.pi / 2 * abs(end - start) / _SAMPLES  # no two samples lie farther apart
     middle = angle[peak]
-    for _ in range(_ROUNDS):
+    for _ in range(_ROUNDS if len(peak) else 0):
         tried = np.clip(middle[:, None] + width * _NEARBY, min(start, end), max(start, end))
         chosen = np.argmax(at(tried.ravel(), _ROUGH).reshape(tried.shape), axis=1)[:, None]
         middle = np.take_along_axis(tried, chosen, axis=1)[:, 0]
         width /= 3
-    return float(at(middle, _ROUNDS).max(initial=-np.inf))
+    return float(at(middle, _ROUNDS).max(initial=-np.inf)) if len(middle) else -np.inf
 
 
 def _deepest_along(area: Area, ends: ComplexArray, rounds: int) -> FloatArray:

@@ -28,10 +28,10 @@ def polygons(values: Iterable[npt.ArrayLike], where: str) -> tuple[FloatArray, .
 
     Examples
     --------
-    >>> polygons([[[0, 0], [2, 2], [2, 0], [0, 2]]], "keep_out")
+    >>> polygons([[[0, 0], [2, 2], [0, 0]]], "keep_out")
     Traceback (most recent call last):
         ...
-    grashof.problems.errors.ProblemError: keep_out[0] crosses or touches itself at (1, 1); allowed is a simple polygon
+    grashof.problems.errors.ProblemError: keep_out[0] has 2 distinct corners; allowed are three or more
     """
     if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
         raise ProblemError(f"{where} is {values!r}; allowed is a list of polygons")

@@ -153,6 +153,12 @@ def judge(
         turned = ground * np.exp(-1j * np.radians(wanted.ground_angle_deg))
         lack("ground_angle_deg", np.abs(np.angle(turned)))
     points = np.stack([found.o2, found.o4, found.a[:, 0], found.b[:, 0], p], axis=1)
+    if wanted.keep_out:
+        from grashof.synth.on_the_way import depth_on_the_way
+
+        sound = met(lacks)  # the others need not be looked at so closely
+        deep = depth_on_the_way(points[sound], assembly[sound], found.theta2[sound], wanted)
+        lacks[sound, GROUPS.index("keep_out")] = deep
     return Finds(
         points=points,
         visit=found.visit,

@@ -159,7 +159,7 @@ class Given:
             "rotation": 2 * n, "shift": 2 * n, "targets": 2 * n, "timing": n, "at_first": n, "body": 2,
             "direction": 1, "assembly": 1, "longer": 1, "margin": 1, "ratio": 1, "least_transmission": 1,
             "weights": 2, "error_scale": 1, "arms": 2, "lengths": 8, "start": 8, "angles": 2,
-            "relaxed": len(GROUPS), "planes": 3 * PLANES * sum(form.places_of(name) for name in form.keep_out),
+            "relaxed": len(GROUPS), "planes": 3 * PLANES * sum(map(form.places_of, form.keep_out)),
             "boxes": 16,
         }  # fmt: skip
         parts = {name: ca.SX.sym(name, size) for name, size in sizes.items()}

@@ -79,7 +79,7 @@ def half_planes(area: shapely.Geometry, point: complex) -> FloatArray:
     Examples
     --------
     >>> stairs = solid([np.array([[0, -9], [0, 0], [5, 0], [5, 4], [9, 4], [9, -9]])])
-    >>> half_planes(stairs, 3 + 2j)[:3].tolist()
+    >>> half_planes(stairs, 3 + 1j)[:3].tolist()
     [[0.0, 1.0, 0.0], [-1.0, 0.0, -5.0], [0.0, 0.0, -1.0]]
     """
     planes = np.tile(_EVERY_PLANE, (PLANES, 1))
@@ -128,7 +128,9 @@ def _sides(area: shapely.Geometry) -> tuple[ComplexArray, ComplexArray]:
     return np.concatenate(begins), np.concatenate(ends)
 
 
-def _nearest_line(begin: ComplexArray, end: ComplexArray, outward: ComplexArray, point: complex) -> FloatArray:
+def _nearest_line(
+    begin: ComplexArray, end: ComplexArray, outward: ComplexArray, point: complex
+) -> FloatArray:
     """The line through the side nearest to a point; at a corner the side it is farther outside of."""
     along, offset = end - begin, point - begin
     share = np.clip((offset * along.conj()).real / np.abs(along) ** 2, 0, 1)
@@ -143,6 +145,6 @@ def _part_in(area: shapely.Geometry, plane: FloatArray) -> shapely.Geometry:
     """The part of an area in a half-plane, without slivers."""
     normal = complex(plane[0], plane[1])
     foot = normal * (plane[2] + TOUCHING)
-    far = 4 * (np.abs(area.bounds).max() + abs(foot))
+    far = 4 * (np.abs(shapely.bounds(area)).max() + abs(foot))
     corners = foot + far * np.array([-1j, 1 - 1j, 1 + 1j, 1j]) * normal
     return shapely.intersection(area, shapely.Polygon(np.stack([corners.real, corners.imag], axis=-1)))

@@ -158,6 +158,7 @@ def _search(
         nearest: tuple[Candidate, ...] = ()
         if not found.best and complete:
             nearest = _nearest(solve(setup, finder.relaxed_starts(setup, rng), found.solved))
+            nearest = nearest or _nearest(found.rejected)
     found.counts["verified and distinct"] = len(found.best)
     times = {**seconds, "total": perf_counter() - begun}
     note = "" if found.best else _why(nearest, complete, found.counts["linkages through the points"])
@@ -170,6 +171,7 @@ class _Found:
 
     problem: Problem
     verified: list[Candidate] = field(default_factory=list)
+    rejected: list[Attempt] = field(default_factory=list)
     best: tuple[Candidate, ...] = ()
     counts: Counter[str] = field(default_factory=Counter)
     solved: int = 0
@@ -196,6 +198,8 @@ class _Found:
             if made.candidate is not None and made.candidate.verdict.ok:
                 self.verified += [made.candidate, *made.cognates]
                 self.counts["cognates verified"] += len(made.cognates)
+            else:
+                self.rejected.append(made)
         self.solved += len(attempts)
         self.best = ranked(self.problem, self.verified)
 
