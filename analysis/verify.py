@@ -180,6 +180,7 @@ def verify(
         *_places(linkage, solve_position(linkage, targets.theta2, targets.assembly), task, wanted),
         *_angles(linkage, targets, wanted),
         *_own(linkage, targets, way, constraints),
+        *(_kept_out(linkage, targets, way, task, wanted, joined=branch_ok) if wanted.keep_out else []),
     ]
     return Verdict(
         theta2=way.theta2,
@@ -373,6 +374,19 @@ def _own(linkage: FourBar, targets: Targets, way: Way, constraints: Sequence[Con
         if not value <= SLACK:
             defects.append(Defect("constraints", name_of(constraint), value, "up to 0", value))
     return defects
+
+
+def _kept_out(
+    linkage: FourBar, targets: Targets, way: Way, task: Task, wanted: Requirements, *, joined: bool
+) -> list[Defect]:
+    # Here, not above: shapely takes a while to import, and few problems have areas.
+    from grashof.analysis.keep_out import intrusions
+
+    return [
+        Defect("keep_out", f"the depth of {part} inside", deep, "0", deep / task.size)
+        for part, deep in intrusions(linkage, wanted, targets, way, joined=joined).items()
+        if deep > SLACK * task.size
+    ]
 
 
 def _within(key: str, what: str, value: float, limits: Limits | None, size: float) -> list[Defect]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 from enum import StrEnum
 
 import numpy as np
 
-from grashof.problems.checks import Limits, finite_number, limits, number_within
+from grashof.problems.checks import FloatArray, Limits, finite_number, limits, number_within
 from grashof.problems.errors import ProblemError
 from grashof.problems.task import Task
 
@@ -79,6 +80,11 @@ class Requirements:
         Direction O2->O4.
     theta2_start_deg : float, deg, optional
         Driver angle at the first target.
+    keep_out : sequence of array_like, shape (M, 2), length
+        Polygons; their boundary may be touched. Where two overlap or share a side they are one.
+    keep_out_for : sequence of {"o2", "o4", "a", "b", "p", "links"}
+        What keeps out of them: pivots, coupler point, or all links as straight lines (O2A, AB, O4B,
+        AP, BP); all but o2 and o4 over the motion from first to last target.
     """
 
     exact: bool | None = None
@@ -102,6 +108,8 @@ class Requirements:
     b: Box | None = None
     ground_angle_deg: float | None = None
     theta2_start_deg: float | None = None
+    keep_out: tuple[FloatArray, ...] = ()
+    keep_out_for: tuple[str, ...] = ("o2", "o4")
 
     def __post_init__(self) -> None:
         if not isinstance(self.exact, bool | None):
@@ -122,6 +130,21 @@ class Requirements:
         for name in ("o2", "o4", "a", "b"):
             if not isinstance(getattr(self, name), Box | None):
                 raise ProblemError(f"requirements.{name} is {getattr(self, name)!r}; allowed is a Box")
+        object.__setattr__(self, "keep_out", _areas(self.keep_out))
+        object.__setattr__(self, "keep_out_for", _kept_out(self.keep_out_for))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Requirements):
+            return NotImplemented
+        return self._comparable() == other._comparable()
+
+    def __hash__(self) -> int:
+        return hash(self._comparable())
+
+    def _comparable(self) -> tuple[object, ...]:
+        """Every field, the arrays among them as tuples."""
+        areas = tuple(tuple(map(tuple, corners.tolist())) for corners in self.keep_out)
+        return areas, *(getattr(self, field.name) for field in fields(self) if field.name != "keep_out")
 
     @property
     def link_lengths(self) -> tuple[Limits, Limits, Limits, Limits]:
@@ -166,6 +189,28 @@ _RANGES = {
     "transmission_min_deg": (0.0, 90.0),
     "link_ratio_max": (1.0, 1e6),
 }
+
+
+_MAY_KEEP_OUT = ("o2", "o4", "a", "b", "p", "links")
+
+
+def _areas(values: Sequence[FloatArray]) -> tuple[FloatArray, ...]:
+    if isinstance(values, Sequence) and not len(values):
+        return ()
+    # Here, not above: shapely takes a while to import, and few problems have areas.
+    from grashof.problems.areas import polygons
+
+    return polygons(values, "requirements.keep_out")
+
+
+def _kept_out(names: Sequence[str]) -> tuple[str, ...]:
+    allowed = f"allowed is a list of {', '.join(_MAY_KEEP_OUT[:-1])} and {_MAY_KEEP_OUT[-1]}"
+    if isinstance(names, str) or not isinstance(names, Sequence) or not len(names):
+        raise ProblemError(f"requirements.keep_out_for is {names!r}; {allowed}")
+    for index, name in enumerate(names):
+        if name not in _MAY_KEEP_OUT:
+            raise ProblemError(f"requirements.keep_out_for[{index}] is {name!r}; {allowed}")
+    return tuple(dict.fromkeys(names))
 
 
 def _side(values: Limits, name: str) -> Limits:

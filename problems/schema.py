@@ -203,6 +203,10 @@ class RequirementsTable(_Table):
     b: Place | None = None
     ground_angle_deg: float | None = None
     theta2_start_deg: float | None = None
+    keep_out: (
+        Annotated[list[Corners], _listed("a list of polygons, each a list of corners [x, y]")] | None
+    ) = None
+    keep_out_for: Annotated[list[str], _listed("a list of o2, o4, a, b, p and links")] | None = None
 
     def value(self) -> Requirements:
         given: dict[str, Any] = {key: getattr(self, key) for key in self.model_fields_set}
@@ -312,8 +316,6 @@ _TABLES: dict[str, type[_Table]] = {
 # holds only what does something.
 _LATER = {
     "dynamics",
-    "requirements.keep_out",
-    "requirements.keep_out_for",
     "objective.maximise.torque",
 }
 

@@ -67,6 +67,30 @@ def luggage_records() -> None:
         print(f"luggage, {name}: {best:.3f} deg (wanted {least}), {len(result)} designs, {seconds:.2f} s")
 
 
+def luggage_keep_out() -> None:
+    """Ground pivots kept out of the staircase as a solid that ends at x = 9, and of one that goes on."""
+    problem = load("luggage")
+    for name, (right, bottom) in {"ends at x = 9": (9, -9), "goes on": (30, -30)}.items():
+        solid = np.array([[0, bottom], [0, 0], [5, 0], [5, 4], [right, 4], [right, bottom]])
+        for limit, rotatability in ((8, Rotatability.ANY), (12, Rotatability.FULL_CRANK)):
+            wanted = replace(
+                cycle(limit),
+                rotatability=rotatability,
+                transmission_over=TransmissionOver.TASK,
+                keep_out=(solid,),
+            )
+            begun = perf_counter()
+            result = synthesize(replace(problem, requirements=wanted))
+            seconds = perf_counter() - begun
+            found = result.note
+            if result.candidates:
+                best = np.degrees(result.best.verdict.transmission_min_task)
+                found = f"{best:.3f} deg, {len(result)} designs"
+            print(
+                f"luggage, stairs kept out ({name}), {rotatability}, limit {limit}: {found}, {seconds:.2f} s"
+            )
+
+
 def planted(count: int, seed: int) -> None:
     """Random four-pose tasks of random full-crank four-bars, under default requirements."""
     seconds: list[float] = []
@@ -128,6 +152,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     for workers in (1, 2):
         luggage_time(workers, options.runs)
     luggage_records()
+    luggage_keep_out()
     planted(options.planted, options.seed)
     five_poses(options.sets, options.seed)
     return 0

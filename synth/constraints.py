@@ -9,7 +9,7 @@ import casadi as ca
 
 from grashof.analysis.design import Constraint, Design
 from grashof.synth.finds import GROUPS
-from grashof.synth.form import Form, Given, Unknowns
+from grashof.synth.form import PLANES, Form, Given, Unknowns
 
 OWN_INSET = 1e-8  # the user's constraints are tightened by so much, so that the polished design keeps them
 ANGLES = ("ground_angle_deg", "theta2_start_deg")  # equalities: fixed unknowns unless they are relaxed
@@ -119,6 +119,7 @@ def require_all(rows: Rows, form: Form, given: Given, unknown: Unknowns, places:
     for wished, name, at in ((form.box_a, "a", places.a), (form.box_b, "b", places.b)):
         for place in at if wished else ():
             rows.require(name, place - given.box[name][0], given.box[name][1] - place)
+    _keep_out(rows, form, given, unknown, places)
 
 
 def require_limits(rows: Rows, given: Given, unknown: Unknowns) -> None:
@@ -199,6 +200,16 @@ def _transmission(rows: Rows, form: Form, unknown: Unknowns, places: Places) -> 
             rows.add("nonnegative", *bound(ca.sumsqr(at_a - o4)))
         rows.add("first", unknown["theta2"][0] - unknown["theta1"])
         rows.add("last", unknown["theta2"][form.targets - 1] - unknown["theta1"])
+
+
+def _keep_out(rows: Rows, form: Form, given: Given, unknown: Unknowns, places: Places) -> None:
+    """Every half-plane of its free region holds each point that keeps out."""
+    moving = {"a": places.a, "b": places.b, "p": places.p}
+    held = [place for name in form.keep_out for place in moving.get(name, [unknown[name]])]
+    planes = ca.reshape(given.planes, 3, PLANES * len(held))
+    for k, place in enumerate(held):
+        for plane in ca.horzsplit(planes[:, PLANES * k : PLANES * (k + 1)]):
+            rows.require("keep_out", ca.dot(plane[:2], place) - plane[2])
 
 
 def unit(angle: ca.SX) -> ca.SX:

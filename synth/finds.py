@@ -27,6 +27,7 @@ GROUPS = (
     "ground_angle_deg",
     "theta2_start_deg",
     "constraints",
+    "keep_out",
 )
 
 
@@ -162,6 +163,12 @@ def judge(
         turned = ground * np.exp(-1j * np.radians(wanted.ground_angle_deg))
         lack("ground_angle_deg", np.abs(np.angle(turned)))
     points = np.stack([found.o2, found.o4, found.a[:, 0], found.b[:, 0], p], axis=1)
+    if wanted.keep_out:
+        from grashof.synth.on_the_way import depth_on_the_way
+
+        sound = met(lacks)  # the others need not be looked at so closely
+        deep = depth_on_the_way(points[sound], assembly[sound], found.theta2[sound], wanted)
+        lacks[sound, GROUPS.index("keep_out")] = deep
     return Finds(
         points=points,
         visit=found.visit,
@@ -205,10 +212,22 @@ def dyad_lacks(
         box = getattr(wanted, name)
         missed = outside(points.real, box.x) + outside(points.imag, box.y)
         lacks[:, GROUPS.index(name)] = missed.max(axis=1)
+        lacks[:, GROUPS.index("keep_out")] += keep_out_lack(name, points, wanted)
     if pivot == "o2" and wanted.theta2_start_deg is not None:
         off = np.angle(places[:, 0] - ground) - np.radians(wanted.theta2_start_deg)
         lacks[:, GROUPS.index("theta2_start_deg")] = np.abs(np.angle(np.exp(1j * off)))
     return lacks
+
+
+def keep_out_lack(name: str, points: ComplexArray, wanted: Requirements) -> FloatArray:
+    """How deep a pivot or the coupler point lies in areas kept out, deepest of its places (n, k); (n,)."""
+    if not wanted.keep_out:
+        return np.zeros(len(points))
+    # Here, not above: shapely takes a while to import, and few problems have areas.
+    from grashof.synth.free_region import depth
+
+    deepest: FloatArray = depth(wanted, name, points).max(axis=1)
+    return deepest
 
 
 def as_they_come(angle: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:

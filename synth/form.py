@@ -13,6 +13,7 @@ from grashof.synth.setup import Setup
 from grashof.synth.start import Start
 
 BOXES = ("o2", "o4", "a", "b")
+PLANES = 4  # half-planes that bound a free region
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +38,8 @@ class Form:
         Transmission is judged over the task, not over the turn.
     ratio, box_a, box_b, compact : bool
         Whether these requirements, and the size, have a part in it.
+    keep_out : tuple of str
+        Of o2, o4, a, b, p: which are held in free regions, the moving ones at every target.
     stay : bool
         The distance from the start is the objective.
     elastic : bool
@@ -56,6 +59,7 @@ class Form:
     box_a: bool
     box_b: bool
     compact: bool
+    keep_out: tuple[str, ...]
     stay: bool
     elastic: bool
 
@@ -80,9 +84,23 @@ class Form:
             box_a=wanted.a != Box() and wanted.a is not None,
             box_b=wanted.b != Box() and wanted.b is not None,
             compact=start.objective.compactness > 0 and not start.stay and setup.exact,
+            keep_out=_held(setup),
             stay=start.stay,
             elastic=bool(start.relaxed),
         )
+
+    def places_of(self, name: str) -> int:
+        """At how many places a point is held in free regions."""
+        return 1 if name in ("o2", "o4") else self.targets
+
+
+def _held(setup: Setup) -> tuple[str, ...]:
+    """Points that the programme can hold in free regions: P is where the targets have it."""
+    if not setup.wanted.keep_out:
+        return ()
+    from grashof.synth.free_region import points_kept_out
+
+    return tuple(name for name in points_kept_out(setup.wanted) if name != "p" or not setup.exact)
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,6 +162,7 @@ class Given:
     relaxed: ca.SX
     origin: ca.SX
     scale: ca.SX
+    planes: ca.SX
     box: dict[str, tuple[ca.SX, ca.SX]]
 
     @classmethod
@@ -155,7 +174,8 @@ class Given:
             "square_weights": 2 * n, "timing": n, "at_first": n, "body": 2,
             "direction": 1, "assembly": 1, "longer": 1, "margin": 1, "ratio": 1, "least_transmission": 1,
             "weights": 2, "error_scale": 1, "arms": 2, "lengths": 8, "start": 8, "angles": 2,
-            "relaxed": len(GROUPS), "origin": 2, "scale": 1, "boxes": 16,
+            "relaxed": len(GROUPS), "origin": 2, "scale": 1,
+            "planes": 3 * PLANES * sum(map(form.places_of, form.keep_out)), "boxes": 16,
         }  # fmt: skip
         parts = {name: ca.SX.sym(name, size) for name, size in sizes.items()}
         vector = ca.vertcat(*parts.values())

@@ -46,10 +46,15 @@ class Frame:
             o4=self._box(whole.o4),
             a=self._box(whole.a),
             b=self._box(whole.b),
+            keep_out=tuple(self._area(corners) for corners in whole.keep_out),
         )
 
     def _lengths(self, limits: Limits | None) -> Limits | None:
         return None if limits is None else (limits[0] / self.scale, limits[1] / self.scale)
+
+    def _area(self, corners: FloatArray) -> FloatArray:
+        inside = self.inward(corners)
+        return np.stack([inside.real, inside.imag], axis=-1)
 
     def _box(self, box: Box | None) -> Box | None:
         if box is None:

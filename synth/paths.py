@@ -12,7 +12,16 @@ from grashof.problems.checks import BoolArray, ComplexArray, FloatArray
 from grashof.synth.choose import feasible_starts, mended_starts
 from grashof.synth.choose import relaxed_starts as relaxed
 from grashof.synth.cognates import cognate_points
-from grashof.synth.finds import Configurations, Finds, as_they_come, dyad_lacks, follow, judge
+from grashof.synth.finds import (
+    GROUPS,
+    Configurations,
+    Finds,
+    as_they_come,
+    dyad_lacks,
+    follow,
+    judge,
+    keep_out_lack,
+)
 from grashof.synth.nine_points import coupler_turns, linkages_through
 from grashof.synth.path_loop import PathTarget
 from grashof.synth.path_search import Placed, draw, improve, place
@@ -237,6 +246,7 @@ def _judged(setup: Setup, target: PathTarget, placed: Placed, direction: FloatAr
         visit, theta2, direction = as_they_come(theta2)
     p = placed.p[:, 0]
     lacks = dyad_lacks("o2", placed.o2, a, p, setup.wanted) + dyad_lacks("o4", placed.o4, b, p, setup.wanted)
+    lacks[:, GROUPS.index("keep_out")] += keep_out_lack("p", placed.p, setup.wanted)
     found = Configurations(placed.o2, placed.o4, a, b, visit, theta2, direction)
     error = np.sqrt(placed.error / len(setup.targets))
     return judge(found, p, error, lacks, setup.wanted, placed.body_angle)

@@ -190,8 +190,20 @@ def _parameters(form: Form, setup: Setup, start: Start) -> FloatArray:
         [_lifted(wanted.theta2_start_deg, start.theta2[visit.index(0)])],
         [float(group in start.relaxed) for group in GROUPS],
         [setup.frame.origin.real, setup.frame.origin.imag, setup.frame.scale],
+        _planes(form, setup, start),
         corners,
     ])  # fmt: skip
+
+
+def _planes(form: Form, setup: Setup, start: Start) -> FloatArray:
+    """Half-planes of the free regions about the points that keep out of areas."""
+    if not form.keep_out:
+        return np.zeros(0)
+    from grashof.synth.free_region import free_regions
+
+    planes = free_regions(setup.wanted, start, form.keep_out)
+    planes[..., 2] += INSET
+    return planes.ravel()
 
 
 def _guess(form: Form, setup: Setup, start: Start) -> FloatArray:

@@ -21,6 +21,7 @@ from grashof.synth.finds import (
     dyad_lacks,
     follow,
     judge,
+    keep_out_lack,
     met,
 )
 
@@ -97,6 +98,7 @@ def _sides(motion: Displacements, body: complex, dyads: Dyads, wanted: Requireme
         lacks = dyad_lacks(pivot, dyads.ground, places, p, wanted)
         if pivot == "o2":
             lacks[:, GROUPS.index("order")] = disorder
+            lacks[:, GROUPS.index("keep_out")] += keep_out_lack("p", motion.apply(p[:1]), wanted)
         sides.append(_Side(dyads, places, lacks, visit, theta2, direction))
     return sides[0], sides[1]
 

@@ -162,6 +162,7 @@ def _search(
         nearest: tuple[Candidate, ...] = ()
         if not found.best and complete:
             nearest = _nearest(solve(setup, finder.relaxed_starts(setup, rng), found.solved))
+            nearest = nearest or _nearest(found.rejected)
             nearest += _approximate(setup, search, ended)
             if setup.motion is not None:
                 obstacle = exact_poses.obstacle(setup, rng)
@@ -177,6 +178,7 @@ class _Found:
 
     problem: Problem
     verified: list[Candidate] = field(default_factory=list)
+    rejected: list[Attempt] = field(default_factory=list)
     best: tuple[Candidate, ...] = ()
     counts: Counter[str] = field(default_factory=Counter)
     solved: int = 0
@@ -203,6 +205,8 @@ class _Found:
             if made.candidate is not None and made.candidate.verdict.ok:
                 self.verified += [made.candidate, *made.cognates]
                 self.counts["cognates verified"] += len(made.cognates)
+            else:
+                self.rejected.append(made)
         self.solved += len(attempts)
         self.best = ranked(self.problem, self.verified)
 

@@ -19,6 +19,7 @@ from grashof.synth import Candidate
 
 DRIVER, COUPLER, OUTPUT = "#c0392b", "#1f618d", "#1e8449"
 BODY, PATH, SCENE, GROUND, TARGET = "#b9770e", "#7d3c98", "#5d6d7e", "#17202a", "#d35400"
+KEPT_OUT = "#909497"
 _CROWD = 6  # points of a path up to which the linkage is drawn at each
 _NUMBERED = 24  # points of a path up to which each carries its number
 # Fixed names inside the SVG and no date: the same design gives the same bytes.
@@ -51,6 +52,7 @@ def draw_design(problem: Problem, candidate: Candidate, rank: int) -> Figure:
     with rc_context(_STYLE):
         figure = Figure(figsize=(8.5, 7.0))
         axes = figure.add_axes((0.08, 0.08, 0.89, 0.83))
+        _keep_out(axes, problem)
         _scene(axes, problem)
         _paths(axes, problem, candidate)
         state = solve_position(candidate.linkage, candidate.verdict.theta2, candidate.verdict.assembly)
@@ -103,6 +105,18 @@ def _scene(axes: Axes, problem: Problem) -> None:
     for index, outline in enumerate(problem.outlines):
         label = "scene" if index == 0 else None
         axes.plot(*outline.T, color=SCENE, linewidth=3, solid_joinstyle="miter", label=label, zorder=1)
+
+
+def _keep_out(axes: Axes, problem: Problem) -> None:
+    """Areas kept out, hatched; the legend says for what."""
+    wanted = problem.requirements
+    names = ", ".join(name if name == "links" else name.upper() for name in wanted.keep_out_for)
+    for index, corners in enumerate(wanted.keep_out):
+        label = f"kept out: {names}" if index == 0 else None
+        axes.fill(
+            *corners.T, facecolor="#d5d8dc", edgecolor=KEPT_OUT, hatch="///", linewidth=0.8, alpha=0.6,
+            label=label, zorder=0.5,
+        )  # fmt: skip
 
 
 def _paths(axes: Axes, problem: Problem, candidate: Candidate) -> None:

@@ -168,6 +168,9 @@ def summary(problem: Problem) -> list[str]:
         place = getattr(problem.requirements, name)
         if place is not None:
             lines.append(f"  {name}: x {place.x[0]:g} to {place.x[1]:g}, y {place.y[0]:g} to {place.y[1]:g}")
+    if wanted.keep_out:
+        names = ", ".join(wanted.keep_out_for)
+        lines.append(f"  kept out of {counted(len(wanted.keep_out), 'area')}: {names}")
     angles = {key: getattr(wanted, key) for key in ("ground_angle_deg", "theta2_start_deg")}
     lines += [f"  {key} {value:g}" for key, value in angles.items() if value is not None]
     if problem.manufacturing is not None:

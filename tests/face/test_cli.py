@@ -102,7 +102,16 @@ BAD = {
     "equal poses": ("[3.5, 4, -5]", "[5, 4, 360]", "equal"),
     "lo above hi": ("link_length = [0.3, 8]", "link_length = [8, 0.3]", "link_length"),
     "misspelt": ("coupler_arms", "coupler_arm", "did you mean coupler_arms?"),
-    "not built yet": ("[requirements]", "[requirements]\nkeep_out = []", "not supported by this version"),
+    "not built yet": (
+        "[requirements]",
+        "[dynamics]\nspeed_rpm = 10\n[requirements]",
+        "not supported by this version",
+    ),
+    "area that crosses itself": (
+        "[requirements]",
+        "[requirements]\nkeep_out = [[[0, 0], [2, 2], [2, 0], [0, 2]]]",
+        "requirements.keep_out[0] crosses or touches itself at (1, 1)",
+    ),
     "not TOML": ("[motion]", "[motion", "TOML"),
     "half a position": ("[1, 0, 0]]", "[1, 0, 0], { x = 2 }]", "has one of x and y"),
 }

@@ -70,6 +70,19 @@ def test_a_defect_is_told_and_no_motion_is_drawn(few: Result, circuit_ok: bool) 
     assert "defect" not in draw_design(few.problem, few.candidates[0], 1).axes[0].get_title()
 
 
+def test_areas_kept_out_are_hatched_where_they_are(few: Result) -> None:
+    areas = ([[0, -9], [0, 0], [5, 0], [5, -9]], [[8, 8], [9, 8], [9, 9]])
+    wanted = replace(few.problem.requirements, keep_out=areas, keep_out_for=("o2", "links"))
+    axes = draw_design(replace(few.problem, requirements=wanted), few.candidates[0], 1).axes[0]
+    hatched = [patch for patch in axes.patches if patch.get_hatch()]
+    assert [patch.get_xy()[:-1].tolist() for patch in hatched] == list(areas)
+    legend = axes.get_legend()
+    assert legend is not None
+    assert "kept out: O2, links" in {text.get_text() for text in legend.get_texts()}
+    plain = draw_design(few.problem, few.candidates[0], 1).axes[0]
+    assert not any(patch.get_hatch() for patch in plain.patches)
+
+
 def test_dollars_and_backslashes_are_plain_text(few: Result, tmp_path: Path) -> None:
     problem = replace(few.problem, title=r"$\nonsense{ for 5$", length_unit="$^$")
     figure = draw_design(problem, few.candidates[0], 1)

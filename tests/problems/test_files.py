@@ -163,6 +163,6 @@ def test_errors_inside_a_file_begin_with_its_name(folder: Path) -> None:
 
 
 def test_importing_the_package_does_not_load_what_only_files_need() -> None:
-    code = "import sys, grashof.problems; print(sorted({'pydantic', 'casadi'} & set(sys.modules)))"
+    code = "import sys, grashof.problems; print(sorted({'pydantic', 'casadi', 'shapely'} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "[]\n"

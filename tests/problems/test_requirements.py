@@ -4,6 +4,7 @@ import dataclasses
 import math
 import pickle
 
+import numpy as np
 import pytest
 
 from grashof.problems import Box, ProblemError, Requirements, Rotatability, TransmissionOver
@@ -120,3 +121,16 @@ def test_requirements_are_values() -> None:
     assert dataclasses.replace(requirements, r1=None) == Requirements(o2=Box(x=(0, 1)))
     with pytest.raises(dataclasses.FrozenInstanceError):
         requirements.order = False  # type: ignore[misc]
+
+
+def test_requirements_with_areas_are_values_too() -> None:
+    corners = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0]])
+    requirements = Requirements(keep_out=(corners,), keep_out_for=("a", "o2", "a"))
+    assert requirements == Requirements(keep_out=[corners.tolist()], keep_out_for=["a", "o2"])  # type: ignore[arg-type]
+    assert hash(requirements) == hash(dataclasses.replace(requirements))
+    assert requirements != Requirements(keep_out=(corners + 1,), keep_out_for=("a", "o2"))
+    assert requirements != Requirements(keep_out=(corners,))
+    assert requirements != "requirements"
+    assert pickle.loads(pickle.dumps(requirements)) == requirements
+    with pytest.raises(ValueError, match="read-only"):
+        requirements.keep_out[0][0, 0] = 1.0

@@ -51,6 +51,8 @@ a = {{ x = [-inf, 3] }}
 b = {{ y = [0, 5] }}
 ground_angle_deg = 10
 theta2_start_deg = 30
+keep_out = [[[0, -9], [0, 0], [5, 0], [5, -9]], [[1, 1], [2, 1], [2, 2.5]]]
+keep_out_for = ["o4", "links"]
 
 [objective]
 maximise = {{ transmission = 2, compactness = 0.5 }}
@@ -110,6 +112,8 @@ def test_every_key_reaches_its_field() -> None:
         b=Box(y=(0, 5)),
         ground_angle_deg=10,
         theta2_start_deg=30,
+        keep_out=([[0, -9], [0, 0], [5, 0], [5, -9]], [[1, 1], [2, 1], [2, 2.5]]),  # type: ignore[arg-type]
+        keep_out_for=("o4", "links"),
     )
     assert every.objective == Objective(2.0, 0.5)
     assert every.search == Search(starts=100, enough=20, seed=4)
@@ -339,11 +343,6 @@ def test_unknown_keys(text: str, expected: str) -> None:
 LATER = [
     ("[dynamics]\nspeed_rpm = 10", "dynamics is not supported by this version"),
     (
-        "[requirements]\nkeep_out = [[[0, 0], [1, 0], [1, 1]]]",
-        "requirements.keep_out is not supported by this version",
-    ),
-    ("[requirements]\nkeep_out_for = ['o2']", "requirements.keep_out_for is not supported by this version"),
-    (
         "[objective]\nmaximise = 'torque'",
         "objective.maximise is 'torque', which is not supported by this version; "
         "allowed is transmission or compactness",
@@ -355,6 +354,33 @@ LATER = [
 @pytest.mark.parametrize(("text", "expected"), LATER)
 def test_keys_of_later_versions_are_refused_by_name(text: str, expected: str) -> None:
     assert message(HEAD + text) == expected
+
+
+KEEP_OUT = {
+    "[[[0, 0], [1, 0]]]": "[0] has 2 distinct corners; allowed are three or more",
+    "[[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 0], [2, 0]]]": (
+        "[1] has no area: its corners lie on a straight line"
+    ),
+    "[[[0, 0], [2, 2], [2, 0], [0, 2]]]": (
+        "[0] crosses or touches itself at (1, 1); allowed is a simple polygon"
+    ),
+    "[[[0, 0], [1, nan], [1, 1]]]": "[0][1] is [1.0, nan]; all numbers must be finite",
+    "[[[0, 0], [1, 'a'], [1, 1]]]": "[0][1][1] is 'a'; allowed is a number",
+    "[[0, 0], [1, 0], [1, 1]]": "[0][0] is 0; allowed is a corner [x, y] (and 5 more errors)",
+    "3": " is 3; allowed is a list of polygons, each a list of corners [x, y]",
+}
+
+
+@pytest.mark.parametrize("text", KEEP_OUT)
+def test_bad_areas_are_named(text: str) -> None:
+    assert message(HEAD + f"[requirements]\nkeep_out = {text}") == f"requirements.keep_out{KEEP_OUT[text]}"
+
+
+def test_what_keeps_out_is_one_of_a_few() -> None:
+    allowed = "allowed is a list of o2, o4, a, b, p and links"
+    for text, found in (("['o2', 'o3']", "[1] is 'o3'"), ("[]", " is []")):
+        said = message(HEAD + f"[requirements]\nkeep_out_for = {text}")
+        assert said == f"requirements.keep_out_for{found}; {allowed}"
 
 
 LINE = 'kind = "path"\n[path]\npoints = [[20, 20], [20, 25], [21, 30]]\n'

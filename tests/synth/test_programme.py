@@ -47,6 +47,8 @@ ALONE: dict[str, dict[str, Any]] = {
     "o4": {"o4": Box((-1, 6.5), (-4, 1))},
     "a": {"a": Box((-2, 7.0), (-4.5, 5))},
     "b": {"b": Box((-3, 7.5), (-6, 5))},
+    "keep_out": {"keep_out": [[[0, -9], [0, 0], [5, 0], [5, 4], [9, 4], [9, -9]]], "rotatability": "any"},
+    "keep_out for one": {"keep_out": [[[3, -5], [5, -5], [5, -3], [4, -1]]], "keep_out_for": ["o4"]},
     "everything": {
         "rotatability": "crank-rocker", "rotatability_margin": 5e-3, "transmission_min_deg": 9,
         "transmission_over": "cycle", "link_length": (1, 7), "r4": (1, 6), "link_ratio_max": 3,
@@ -230,6 +232,7 @@ RELAXED: dict[str, tuple[str, dict[str, Any]]] = {
     "a in a corner": ("a", {"a": Box((-1, 0.5), (-1, 0.5))}),
     "b in a corner": ("b", {"b": Box((-1, 0.5), (-1, 0.5))}),
     "equal links": ("link_ratio_max", {"link_ratio_max": 1.0}),
+    "pivots far out": ("keep_out", {"keep_out": [[[-15, -15], [15, -15], [15, 15], [-15, 15]]]}),
     "wide margin": ("rotatability", {"rotatability_margin": 0.2}),
     "ground angle": ("ground_angle_deg", {"ground_angle_deg": 0.0}),
     "start angle": ("theta2_start_deg", {"theta2_start_deg": 30.0}),

@@ -17,6 +17,7 @@ from grashof.synth.screen import near_misses, screen
 from grashof.synth.setup import Setup
 
 NEAR = 1e-6  # sizes, rad or ratio: so close to a limit either judgement will do
+STAR = [[2, 0], [0.5, 0.5], [0, 2], [-0.5, 0.5], [-2, 0], [0, -2]]
 SINGLE = {"r1", "r2", "r3", "r4"}
 KINDS = [
     (rotatability, order, same_branch, over)
@@ -51,6 +52,10 @@ def requirements(rng: np.random.Generator, size: float, kind: tuple[Any, ...]) -
     for name in ("ground_angle_deg", "theta2_start_deg"):
         if rng.random() < 0.3:
             wanted[name] = rng.uniform(-180, 180)
+    if rng.random() < 0.5:
+        corners = rng.normal(0, 2 * size, 2) + size * rng.uniform(0.5, 2) * np.array(STAR)
+        wanted["keep_out"] = (corners,)
+        wanted["keep_out_for"] = [("o2", "o4"), ("o2",), ("o4",)][rng.integers(3)]
     return Requirements(**wanted)
 
 
