@@ -1,6 +1,7 @@
 """How a given linkage moves and how good it is. NumPy only: the independent judge of the synthesis."""
 
 from grashof.analysis.extent import reach_box
+from grashof.analysis.kinematics import Kinematics, PointMotion, solve_kinematics
 from grashof.analysis.mobility import (
     GrashofClass,
     branch_index,
@@ -18,6 +19,8 @@ from grashof.analysis.verify import Defect, Verdict, verify
 __all__ = [
     "Defect",
     "GrashofClass",
+    "Kinematics",
+    "PointMotion",
     "Position",
     "Verdict",
     "branch_index",
@@ -27,6 +30,7 @@ __all__ = [
     "grashof_class",
     "reach_box",
     "rotatability",
+    "solve_kinematics",
     "solve_position",
     "transmission_angle",
     "triple_rocker_kind",
