@@ -1,6 +1,9 @@
 """How a given linkage moves and how good it is. NumPy only: the independent judge of the synthesis."""
 
+from grashof.analysis.differences import Deviation, central_differences, compare_differences
+from grashof.analysis.driver import DriverMotion, driver_motion
 from grashof.analysis.extent import reach_box
+from grashof.analysis.instant_centres import InstantCentres, instant_centres
 from grashof.analysis.kinematics import Kinematics, PointMotion, solve_kinematics
 from grashof.analysis.mobility import (
     GrashofClass,
@@ -12,22 +15,32 @@ from grashof.analysis.mobility import (
     rotatability,
     triple_rocker_kind,
 )
+from grashof.analysis.newton_raphson import NewtonPosition, newton_position
 from grashof.analysis.position import Position, solve_position
 from grashof.analysis.transmission import transmission_angle, worst_transmission, worst_transmission_cycle
 from grashof.analysis.verify import Defect, Verdict, verify
 
 __all__ = [
     "Defect",
+    "Deviation",
+    "DriverMotion",
     "GrashofClass",
+    "InstantCentres",
     "Kinematics",
+    "NewtonPosition",
     "PointMotion",
     "Position",
     "Verdict",
     "branch_index",
+    "central_differences",
     "circuit_index",
+    "compare_differences",
+    "driver_motion",
     "driver_ranges",
     "full_rotation",
     "grashof_class",
+    "instant_centres",
+    "newton_position",
     "reach_box",
     "rotatability",
     "solve_kinematics",
