@@ -3,6 +3,7 @@
 from grashof.analysis.differences import Deviation, central_differences, compare_differences
 from grashof.analysis.driver import DriverMotion, driver_motion
 from grashof.analysis.extent import reach_box
+from grashof.analysis.extremes import Dwell, Extremes, dwell, extremes, extremes_of
 from grashof.analysis.instant_centres import InstantCentres, instant_centres
 from grashof.analysis.kinematics import Kinematics, PointMotion, solve_kinematics
 from grashof.analysis.mobility import (
@@ -17,6 +18,7 @@ from grashof.analysis.mobility import (
 )
 from grashof.analysis.newton_raphson import NewtonPosition, newton_position
 from grashof.analysis.position import Position, solve_position
+from grashof.analysis.stroke import OutputStroke, output_stroke
 from grashof.analysis.transmission import transmission_angle, worst_transmission, worst_transmission_cycle
 from grashof.analysis.verify import Defect, Verdict, verify
 
@@ -24,10 +26,13 @@ __all__ = [
     "Defect",
     "Deviation",
     "DriverMotion",
+    "Dwell",
+    "Extremes",
     "GrashofClass",
     "InstantCentres",
     "Kinematics",
     "NewtonPosition",
+    "OutputStroke",
     "PointMotion",
     "Position",
     "Verdict",
@@ -37,10 +42,14 @@ __all__ = [
     "compare_differences",
     "driver_motion",
     "driver_ranges",
+    "dwell",
+    "extremes",
+    "extremes_of",
     "full_rotation",
     "grashof_class",
     "instant_centres",
     "newton_position",
+    "output_stroke",
     "reach_box",
     "rotatability",
     "solve_kinematics",
