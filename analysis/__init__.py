@@ -6,6 +6,15 @@ from grashof.analysis.extent import reach_box
 from grashof.analysis.extremes import Dwell, Extremes, dwell, extremes, extremes_of
 from grashof.analysis.instant_centres import InstantCentres, instant_centres
 from grashof.analysis.kinematics import Kinematics, PointMotion, solve_kinematics
+from grashof.analysis.mass import (
+    Body,
+    Masses,
+    given_masses,
+    system_centre,
+    triangular_plate,
+    uniform_bar,
+    uniform_bars,
+)
 from grashof.analysis.mobility import (
     GrashofClass,
     branch_index,
@@ -23,6 +32,7 @@ from grashof.analysis.transmission import transmission_angle, worst_transmission
 from grashof.analysis.verify import Defect, Verdict, verify
 
 __all__ = [
+    "Body",
     "Defect",
     "Deviation",
     "DriverMotion",
@@ -31,6 +41,7 @@ __all__ = [
     "GrashofClass",
     "InstantCentres",
     "Kinematics",
+    "Masses",
     "NewtonPosition",
     "OutputStroke",
     "PointMotion",
@@ -46,6 +57,7 @@ __all__ = [
     "extremes",
     "extremes_of",
     "full_rotation",
+    "given_masses",
     "grashof_class",
     "instant_centres",
     "newton_position",
@@ -54,8 +66,12 @@ __all__ = [
     "rotatability",
     "solve_kinematics",
     "solve_position",
+    "system_centre",
     "transmission_angle",
+    "triangular_plate",
     "triple_rocker_kind",
+    "uniform_bar",
+    "uniform_bars",
     "verify",
     "worst_transmission",
     "worst_transmission_cycle",
