@@ -2,10 +2,12 @@
 
 from grashof.analysis.differences import Deviation, central_differences, compare_differences
 from grashof.analysis.driver import DriverMotion, driver_motion
+from grashof.analysis.dynamics import Dynamics, inverse_dynamics, virtual_work_torque
 from grashof.analysis.extent import reach_box
 from grashof.analysis.extremes import Dwell, Extremes, dwell, extremes, extremes_of
 from grashof.analysis.instant_centres import InstantCentres, instant_centres
 from grashof.analysis.kinematics import Kinematics, PointMotion, solve_kinematics
+from grashof.analysis.loads import AppliedForce, AppliedMoment, Friction, Joint, Loads, Spring, TorsionSpring
 from grashof.analysis.mass import (
     Body,
     Masses,
@@ -32,20 +34,28 @@ from grashof.analysis.transmission import transmission_angle, worst_transmission
 from grashof.analysis.verify import Defect, Verdict, verify
 
 __all__ = [
+    "AppliedForce",
+    "AppliedMoment",
     "Body",
     "Defect",
     "Deviation",
     "DriverMotion",
     "Dwell",
+    "Dynamics",
     "Extremes",
+    "Friction",
     "GrashofClass",
     "InstantCentres",
+    "Joint",
     "Kinematics",
+    "Loads",
     "Masses",
     "NewtonPosition",
     "OutputStroke",
     "PointMotion",
     "Position",
+    "Spring",
+    "TorsionSpring",
     "Verdict",
     "branch_index",
     "central_differences",
@@ -60,6 +70,7 @@ __all__ = [
     "given_masses",
     "grashof_class",
     "instant_centres",
+    "inverse_dynamics",
     "newton_position",
     "output_stroke",
     "reach_box",
@@ -73,6 +84,7 @@ __all__ = [
     "uniform_bar",
     "uniform_bars",
     "verify",
+    "virtual_work_torque",
     "worst_transmission",
     "worst_transmission_cycle",
 ]
