@@ -1,10 +1,13 @@
 """How a given linkage moves and how good it is. NumPy only: the independent judge of the synthesis."""
 
+from grashof.analysis.balancing import ForceBalance, TorqueBalance, balance_force, balance_torque
 from grashof.analysis.differences import Deviation, central_differences, compare_differences
 from grashof.analysis.driver import DriverMotion, driver_motion
 from grashof.analysis.dynamics import Dynamics, inverse_dynamics, virtual_work_torque
 from grashof.analysis.extent import reach_box
 from grashof.analysis.extremes import Dwell, Extremes, dwell, extremes, extremes_of
+from grashof.analysis.flywheel import Flywheel, size_flywheel
+from grashof.analysis.free_response import Ending, FreeResponse, free_response, mechanical_energy
 from grashof.analysis.instant_centres import InstantCentres, instant_centres
 from grashof.analysis.kinematics import Kinematics, PointMotion, solve_kinematics
 from grashof.analysis.loads import AppliedForce, AppliedMoment, Friction, Joint, Loads, Spring, TorsionSpring
@@ -42,7 +45,11 @@ __all__ = [
     "DriverMotion",
     "Dwell",
     "Dynamics",
+    "Ending",
     "Extremes",
+    "Flywheel",
+    "ForceBalance",
+    "FreeResponse",
     "Friction",
     "GrashofClass",
     "InstantCentres",
@@ -55,8 +62,11 @@ __all__ = [
     "PointMotion",
     "Position",
     "Spring",
+    "TorqueBalance",
     "TorsionSpring",
     "Verdict",
+    "balance_force",
+    "balance_torque",
     "branch_index",
     "central_differences",
     "circuit_index",
@@ -66,15 +76,18 @@ __all__ = [
     "dwell",
     "extremes",
     "extremes_of",
+    "free_response",
     "full_rotation",
     "given_masses",
     "grashof_class",
     "instant_centres",
     "inverse_dynamics",
+    "mechanical_energy",
     "newton_position",
     "output_stroke",
     "reach_box",
     "rotatability",
+    "size_flywheel",
     "solve_kinematics",
     "solve_position",
     "system_centre",

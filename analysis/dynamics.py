@@ -145,7 +145,7 @@ def virtual_work_torque(
     For a unit of virtual driver rotation, the drive works against inertia, less what all forces
     and moments do (d'Alembert; Norton, *Design of Machinery*, sec. 11.10).
     """
-    per_turn = _velocity_influence(state)
+    per_turn = solve_kinematics(state.linkage, state.theta2)  # velocities for 1 rad/s
     outside, gravity = wrenches(state, loads), loads.gravity_vector()
     origins = {2: np.zeros(2), 3: per_turn.a.velocity, 4: np.zeros(2)}
     torque = np.zeros(state.shape)
@@ -159,11 +159,6 @@ def virtual_work_torque(
     for joint in Joint:
         torque = torque - joint_moments[joint] * joint_rotation(per_turn, joint)[1]
     return torque[()]
-
-
-def _velocity_influence(state: Kinematics) -> Kinematics:
-    """The same positions with the driver at 1 rad/s."""
-    return solve_kinematics(state.linkage, state.theta2)
 
 
 def _demand(state: Kinematics, masses: Masses, link: int, outside: Wrench, gravity: FloatArray) -> Wrench:

@@ -108,6 +108,11 @@ class TorsionSpring:
     stiffness: float
     free_angle: float = 0.0
 
+    def wound(self, angle: FloatArray) -> FloatArray:
+        """By how much it is wound at an angle between the links, in [-pi, pi), rad."""
+        wound: FloatArray = (angle - self.free_angle + np.pi) % (2 * np.pi) - np.pi
+        return wound
+
 
 @dataclass(frozen=True, slots=True)
 class Friction:
@@ -206,14 +211,19 @@ def wrenches(state: Kinematics, loads: Loads) -> dict[int, Wrench]:
         state.angular(moment.link)  # names a link that is none
         found[moment.link].moment = found[moment.link].moment + _value(moment.moment, state)
     for spring in loads.springs:
-        first, second = (
-            _carried(state, link, at)
-            for link, at in ((spring.first_link, spring.first_at), (spring.second_link, spring.second_at))
-        )
+        first, second = spring_ends(state, spring)
         pull = spring_pull(spring, first, second)
         _push(found, state, spring.first_link, first.position, pull)
         _push(found, state, spring.second_link, second.position, -pull)
     return found
+
+
+def spring_ends(state: Kinematics, spring: Spring) -> tuple[PointMotion, PointMotion]:
+    """How the two ends of a spring move."""
+    return (
+        _carried(state, spring.first_link, spring.first_at),
+        _carried(state, spring.second_link, spring.second_at),
+    )
 
 
 def spring_pull(spring: Spring, first: PointMotion, second: PointMotion) -> FloatArray:
@@ -254,8 +264,7 @@ def known_joint_moments(state: Kinematics, loads: Loads) -> FloatArray:
             moments[joint] -= viscous[joint] * rate + coulomb[joint] * np.sign(rate)
     for spring in loads.torsion_springs:
         angle, _ = joint_rotation(state, spring.joint)
-        wound = (angle - spring.free_angle + np.pi) % (2 * np.pi) - np.pi
-        moments[spring.joint] -= spring.stiffness * wound
+        moments[spring.joint] -= spring.stiffness * spring.wound(angle)
     return moments
 
 
