@@ -1,4 +1,4 @@
-"""How a given linkage moves and how good it is. NumPy only: the independent judge of the synthesis."""
+"""How a given linkage moves and how good it is. NumPy and SciPy only: the judge of the synthesis."""
 
 from grashof.analysis.balancing import ForceBalance, TorqueBalance, balance_force, balance_torque
 from grashof.analysis.differences import Deviation, central_differences, compare_differences

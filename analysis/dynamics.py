@@ -62,6 +62,7 @@ class Dynamics:
         return np.hypot(force[..., 0], force[..., 1])
 
 
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")
 def inverse_dynamics(state: Kinematics, masses: Masses, loads: Loads | None = None) -> Dynamics:
     """Drive torque and joint forces of a motion, by Newton and Euler.
 

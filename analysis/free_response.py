@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
@@ -15,7 +16,7 @@ from grashof.analysis.kinematics import Kinematics, solve_kinematics
 from grashof.analysis.loads import Joint, Loads, joint_rotation, known_joint_moments, spring_ends, wrenches
 from grashof.analysis.mass import Masses
 from grashof.analysis.position import solve_position
-from grashof.problems import AssemblyError, FourBar, ProblemError, SolverError
+from grashof.problems import AssemblyError, DeadPositionWarning, FourBar, ProblemError, SolverError
 from grashof.problems.checks import FloatArray
 
 Drive = float | Callable[[float, float, float], float]
@@ -122,10 +123,13 @@ def free_response(
         inertia, still = _equation_of_motion(unit, float(y[1]), masses, loads)
         return [float(y[1]), (drive(now, float(y[0]), float(y[1])) - still) / inertia]
 
-    done = solve_ivp(
-        rates, (at[0], at[-1]), [theta2, omega2], method="DOP853", t_eval=at, rtol=tolerance,
-        atol=tolerance * 1e-2, events=_endings(linkage, loads), max_step=_longest_step(at, omega2),
-    )  # fmt: skip
+    with warnings.catch_warnings():
+        # A step that is tried may meet a dead position, before an event ends the motion there.
+        warnings.simplefilter("ignore", DeadPositionWarning)
+        done = solve_ivp(
+            rates, (at[0], at[-1]), [theta2, omega2], method="DOP853", t_eval=at, rtol=tolerance,
+            atol=tolerance * 1e-2, events=_endings(linkage, loads), max_step=_longest_step(at, omega2),
+        )  # fmt: skip
     if done.status < 0:
         raise SolverError(f"the motion could not be integrated: {done.message}")
     alpha2 = np.array([rates(now, y)[1] for now, y in zip(done.t, done.y.T, strict=True)])

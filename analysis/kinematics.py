@@ -11,9 +11,8 @@ import numpy.typing as npt
 from grashof.analysis.blocks import in_blocks
 from grashof.analysis.mobility import driver_ranges
 from grashof.analysis.position import Sides, close_loop, sides
-from grashof.problems import AssemblyError, FourBar, ProblemError
+from grashof.problems import AssemblyError, DeadPositionWarning, FourBar, ProblemError
 from grashof.problems.checks import BoolArray, FloatArray
-from grashof.problems.errors import DeadPositionWarning
 
 # Below this sin(theta4 - theta3) its digits are rounding: one unit in the last place of the driver
 # angle or of a length changes the velocities by more than a tenth.

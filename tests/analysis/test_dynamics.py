@@ -21,6 +21,7 @@ from grashof.analysis import (
     Masses,
     Spring,
     TorsionSpring,
+    driver_ranges,
     extremes_of,
     given_masses,
     inverse_dynamics,
@@ -29,7 +30,7 @@ from grashof.analysis import (
     uniform_bars,
     virtual_work_torque,
 )
-from grashof.problems import FourBar, ProblemError
+from grashof.problems import DeadPositionWarning, FourBar, ProblemError
 
 CHECKED = settings(derandomize=True, deadline=None, max_examples=40)
 TURN = 2 * np.pi
@@ -277,6 +278,16 @@ def test_batches_give_what_single_linkages_give() -> None:
         )
         np.testing.assert_allclose(together.torque[index], alone.torque, rtol=1e-12)
         np.testing.assert_allclose(together.shaking_force[index], alone.shaking_force, rtol=1e-12)
+
+
+def test_dead_and_open_positions_have_no_finite_forces() -> None:
+    rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3)
+    end = driver_ranges(rocker)[0, 1]
+    with pytest.warns(DeadPositionWarning):
+        state = solve_kinematics(rocker, [0.0, end, 3.0])
+    found = inverse_dynamics(state, uniform_bars(rocker, 2.0), Loads(gravity=(0, -9.81)))
+    np.testing.assert_array_equal(np.isfinite(found.torque), [True, False, False])
+    np.testing.assert_array_equal(np.isfinite(found.f43).all(axis=-1), [True, False, False])
 
 
 def test_bad_input_is_said() -> None:

@@ -9,8 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grashof.analysis import Extremes, GrashofClass, dwell, extremes, extremes_of, solve_kinematics
-from grashof.problems import AssemblyError, FourBar, ProblemError
-from grashof.problems.errors import DeadPositionWarning
+from grashof.problems import AssemblyError, DeadPositionWarning, FourBar, ProblemError
 
 CHECKED = settings(derandomize=True, deadline=None, max_examples=10)
 TURN = 2 * np.pi

@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 from scipy.optimize import root
 
 from grashof.analysis import GrashofClass, driver_ranges, full_rotation, solve_kinematics, solve_position
-from grashof.problems import AssemblyError, FourBar, ProblemError
-from grashof.problems.errors import DeadPositionWarning
+from grashof.problems import AssemblyError, DeadPositionWarning, FourBar, ProblemError
 
 CHECKED = settings(derandomize=True, deadline=None, max_examples=25)
 TURN = 2 * np.pi
@@ -62,6 +61,21 @@ def test_every_state_of_the_reference_figures(
             if f"v{point}_mag" in expected:
                 assert_near(motion.speed, expected[f"v{point}_mag"])
                 assert_near(motion.acceleration_magnitude, expected[f"a{point}_mag"])
+        factor = "torque_factor_A*omega4/omega2_in"
+        if factor in expected:  # of the horsehead, 180 in from O4
+            assert_near(180 * found.omega4 / found.omega2, expected[factor])
+
+
+def test_driver_pin_of_the_reference_figures(
+    golden: dict[str, Any], golden_linkages: dict[str, FourBar]
+) -> None:
+    given_values = golden["pumpjack_report_geometry"]["extremes_sigma+1"]
+    where = golden["pumpjack_report_geometry"]
+    a = solve_kinematics(golden_linkages["pumpjack"], np.linspace(0, TURN, 9), TURN / 3).a
+    for name, values in (("vA_mag", a.speed), ("aA_mag", a.acceleration_magnitude)):
+        np.testing.assert_allclose(values, float({**where, **given_values}[name]), rtol=1e-12)
+    b = solve_kinematics(golden_linkages["pumpjack"], np.pi / 2).b
+    assert_near(b.position, where["mass_com"]["B@90deg"])
 
 
 @pytest.mark.parametrize(
