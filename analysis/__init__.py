@@ -3,9 +3,10 @@
 from grashof.analysis.balancing import ForceBalance, TorqueBalance, balance_force, balance_torque
 from grashof.analysis.differences import Deviation, central_differences, compare_differences
 from grashof.analysis.driver import DriverMotion, driver_motion
+from grashof.analysis.dwell import Dwell, dwell
 from grashof.analysis.dynamics import Dynamics, inverse_dynamics, virtual_work_torque
 from grashof.analysis.extent import reach_box
-from grashof.analysis.extremes import Dwell, Extremes, dwell, extremes, extremes_of
+from grashof.analysis.extremes import Extremes, extremes, extremes_of
 from grashof.analysis.flywheel import Flywheel, size_flywheel
 from grashof.analysis.free_response import Ending, FreeResponse, free_response, mechanical_energy
 from grashof.analysis.instant_centres import InstantCentres, instant_centres

@@ -1,4 +1,4 @@
-"""Extremes and dwells: published figures, fine sweeps, and curves with known answers."""
+"""Extremes: published figures, fine sweeps, and curves with known answers."""
 
 from collections.abc import Callable
 from typing import Any
@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from grashof.analysis import Extremes, GrashofClass, dwell, extremes, extremes_of, solve_kinematics
+from grashof.analysis import Extremes, GrashofClass, extremes, extremes_of, solve_kinematics
 from grashof.problems import AssemblyError, DeadPositionWarning, FourBar, ProblemError
 
 CHECKED = settings(derandomize=True, deadline=None, max_examples=10)
@@ -107,36 +107,12 @@ def test_extremes_of_a_rocking_driver_end_in_its_dead_positions() -> None:
     assert swing.high == pytest.approx(angles.max(), abs=1e-7)
 
 
-def test_dwells_are_the_longest_runs_of_a_sweep() -> None:
-    tolerance = np.radians(1)
-    for linkage in (CRANK_ROCKER, CRANK_ROCKER[None][0]):
-        found = dwell(linkage, QUANTITIES["theta4"], tolerance, period=TURN)
-        assert found.high - found.low == pytest.approx(tolerance)
-        inside = solve_kinematics(linkage, np.linspace(found.start, found.end, 5001)).theta4
-        assert np.ptp(inside) <= tolerance * (1 + 1e-9)
-        sweep = np.unwrap(solve_kinematics(linkage, np.radians(np.arange(0, 720, 0.05))).theta4)
-        longest = 0
-        for first in range(0, 7200, 2):
-            near = sweep[first : first + 2000]
-            spread = np.maximum.accumulate(near) - np.minimum.accumulate(near)
-            longest = max(longest, int(np.argmax(spread > tolerance)) - 1)
-        assert np.degrees(found.duration) == pytest.approx(longest * 0.05, abs=0.2)
-        assert np.degrees(found.duration) >= longest * 0.05 - 1e-9
-
-
-def test_what_never_leaves_the_band_dwells_all_the_time() -> None:
-    found = dwell(CRANK_ROCKER, lambda state: np.hypot(*state.a.position.T), 1e-6)
-    assert found.duration == pytest.approx(TURN)
-
-
 def test_bad_input_is_said() -> None:
     theta4 = QUANTITIES["theta4"]
     with pytest.raises(ProblemError, match="together"):
         extremes(CRANK_ROCKER, theta4, start=1.0)
     with pytest.raises(ProblemError, match="start < end"):
         extremes(CRANK_ROCKER, theta4, start=1.0, end=0.5)
-    with pytest.raises(ProblemError, match="tolerance"):
-        dwell(CRANK_ROCKER, theta4, 0.0)
     with pytest.raises(ProblemError, match="one value for each angle"):
         extremes(CRANK_ROCKER, lambda state: state.b.position)
     with pytest.raises(AssemblyError, match="at any driver angle"):
