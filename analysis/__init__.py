@@ -1,3 +1,4 @@
+<<<<<<< HEAD
 """How a given linkage moves and how good it is: the independent judge of the synthesis, without CasADi."""
 
 from grashof.analysis.curvature import curvature, cusps
@@ -14,6 +15,31 @@ from grashof.analysis.fit import (
 )
 from grashof.analysis.fourier import FourierSeries, coupler_fourier, fourier_series
 from grashof.analysis.interpolation import NewtonPolynomial, newton_interpolation, spline
+=======
+"""How a given linkage moves and how good it is. NumPy and SciPy only: the judge of the synthesis."""
+
+from grashof.analysis.balancing import ForceBalance, TorqueBalance, balance_force, balance_torque
+from grashof.analysis.differences import Deviation, central_differences, compare_differences
+from grashof.analysis.driver import DriverMotion, driver_motion
+from grashof.analysis.dwell import Dwell, dwell
+from grashof.analysis.dynamics import Dynamics, inverse_dynamics, virtual_work_torque
+from grashof.analysis.extent import reach_box
+from grashof.analysis.extremes import Extremes, extremes, extremes_of
+from grashof.analysis.flywheel import Flywheel, size_flywheel
+from grashof.analysis.free_response import Ending, FreeResponse, free_response, mechanical_energy
+from grashof.analysis.instant_centres import InstantCentres, instant_centres
+from grashof.analysis.kinematics import Kinematics, PointMotion, solve_kinematics
+from grashof.analysis.loads import AppliedForce, AppliedMoment, Friction, Joint, Loads, Spring, TorsionSpring
+from grashof.analysis.mass import (
+    Body,
+    Masses,
+    given_masses,
+    system_centre,
+    triangular_plate,
+    uniform_bar,
+    uniform_bars,
+)
+>>>>>>> kinematics
 from grashof.analysis.mobility import (
     GrashofClass,
     branch_index,
@@ -24,13 +50,19 @@ from grashof.analysis.mobility import (
     rotatability,
     triple_rocker_kind,
 )
+from grashof.analysis.newton_raphson import NewtonPosition, newton_position
 from grashof.analysis.position import Position, solve_position
+<<<<<<< HEAD
 from grashof.analysis.shape import BestCircle, BestLine, best_circle, best_line, circularity, straightness
 from grashof.analysis.tolerance import Robustness, robustness, sensitivity
+=======
+from grashof.analysis.stroke import OutputStroke, output_stroke
+>>>>>>> kinematics
 from grashof.analysis.transmission import transmission_angle, worst_transmission, worst_transmission_cycle
 from grashof.analysis.verify import Defect, Verdict, verify
 
 __all__ = [
+<<<<<<< HEAD
     "BestCircle",
     "BestLine",
     "Constraint",
@@ -48,8 +80,42 @@ __all__ = [
     "all_double_points",
     "best_circle",
     "best_line",
+=======
+    "AppliedForce",
+    "AppliedMoment",
+    "Body",
+    "Defect",
+    "Deviation",
+    "DriverMotion",
+    "Dwell",
+    "Dynamics",
+    "Ending",
+    "Extremes",
+    "Flywheel",
+    "ForceBalance",
+    "FreeResponse",
+    "Friction",
+    "GrashofClass",
+    "InstantCentres",
+    "Joint",
+    "Kinematics",
+    "Loads",
+    "Masses",
+    "NewtonPosition",
+    "OutputStroke",
+    "PointMotion",
+    "Position",
+    "Spring",
+    "TorqueBalance",
+    "TorsionSpring",
+    "Verdict",
+    "balance_force",
+    "balance_torque",
+>>>>>>> kinematics
     "branch_index",
+    "central_differences",
     "circuit_index",
+<<<<<<< HEAD
     "circularity",
     "coupler_fit_r2",
     "coupler_fourier",
@@ -59,21 +125,50 @@ __all__ = [
     "driver_ranges",
     "fit_polynomial",
     "fourier_series",
+=======
+    "compare_differences",
+    "driver_motion",
+    "driver_ranges",
+    "dwell",
+    "extremes",
+    "extremes_of",
+    "free_response",
+>>>>>>> kinematics
     "full_rotation",
+    "given_masses",
     "grashof_class",
+<<<<<<< HEAD
     "greatest_error",
     "newton_interpolation",
+=======
+    "instant_centres",
+    "inverse_dynamics",
+    "mechanical_energy",
+    "newton_position",
+    "output_stroke",
+>>>>>>> kinematics
     "reach_box",
     "regression",
     "robustness",
     "rotatability",
+<<<<<<< HEAD
     "sensitivity",
     "solve_position",
     "spline",
     "straightness",
+=======
+    "size_flywheel",
+    "solve_kinematics",
+    "solve_position",
+    "system_centre",
+>>>>>>> kinematics
     "transmission_angle",
+    "triangular_plate",
     "triple_rocker_kind",
+    "uniform_bar",
+    "uniform_bars",
     "verify",
+    "virtual_work_torque",
     "worst_transmission",
     "worst_transmission_cycle",
 ]
