@@ -1,10 +1,15 @@
-<<<<<<< HEAD
 """How a given linkage moves and how good it is: the independent judge of the synthesis, without CasADi."""
 
+from grashof.analysis.balancing import ForceBalance, TorqueBalance, balance_force, balance_torque
 from grashof.analysis.curvature import curvature, cusps
 from grashof.analysis.design import Constraint, Design
+from grashof.analysis.differences import Deviation, central_differences, compare_differences
 from grashof.analysis.double_points import DoublePoints, all_double_points, double_points
+from grashof.analysis.driver import DriverMotion, driver_motion
+from grashof.analysis.dwell import Dwell, dwell
+from grashof.analysis.dynamics import Dynamics, inverse_dynamics, virtual_work_torque
 from grashof.analysis.extent import reach_box
+from grashof.analysis.extremes import Extremes, extremes, extremes_of
 from grashof.analysis.fit import (
     NotAFunctionWarning,
     PolynomialFit,
@@ -13,21 +18,11 @@ from grashof.analysis.fit import (
     greatest_error,
     regression,
 )
-from grashof.analysis.fourier import FourierSeries, coupler_fourier, fourier_series
-from grashof.analysis.interpolation import NewtonPolynomial, newton_interpolation, spline
-=======
-"""How a given linkage moves and how good it is. NumPy and SciPy only: the judge of the synthesis."""
-
-from grashof.analysis.balancing import ForceBalance, TorqueBalance, balance_force, balance_torque
-from grashof.analysis.differences import Deviation, central_differences, compare_differences
-from grashof.analysis.driver import DriverMotion, driver_motion
-from grashof.analysis.dwell import Dwell, dwell
-from grashof.analysis.dynamics import Dynamics, inverse_dynamics, virtual_work_torque
-from grashof.analysis.extent import reach_box
-from grashof.analysis.extremes import Extremes, extremes, extremes_of
 from grashof.analysis.flywheel import Flywheel, size_flywheel
+from grashof.analysis.fourier import FourierSeries, coupler_fourier, fourier_series
 from grashof.analysis.free_response import Ending, FreeResponse, free_response, mechanical_energy
 from grashof.analysis.instant_centres import InstantCentres, instant_centres
+from grashof.analysis.interpolation import NewtonPolynomial, newton_interpolation, spline
 from grashof.analysis.kinematics import Kinematics, PointMotion, solve_kinematics
 from grashof.analysis.loads import AppliedForce, AppliedMoment, Friction, Joint, Loads, Spring, TorsionSpring
 from grashof.analysis.mass import (
@@ -39,7 +34,6 @@ from grashof.analysis.mass import (
     uniform_bar,
     uniform_bars,
 )
->>>>>>> kinematics
 from grashof.analysis.mobility import (
     GrashofClass,
     branch_index,
@@ -52,40 +46,23 @@ from grashof.analysis.mobility import (
 )
 from grashof.analysis.newton_raphson import NewtonPosition, newton_position
 from grashof.analysis.position import Position, solve_position
-<<<<<<< HEAD
 from grashof.analysis.shape import BestCircle, BestLine, best_circle, best_line, circularity, straightness
-from grashof.analysis.tolerance import Robustness, robustness, sensitivity
-=======
 from grashof.analysis.stroke import OutputStroke, output_stroke
->>>>>>> kinematics
+from grashof.analysis.tolerance import Robustness, robustness, sensitivity
 from grashof.analysis.transmission import transmission_angle, worst_transmission, worst_transmission_cycle
 from grashof.analysis.verify import Defect, Verdict, verify
 
 __all__ = [
-<<<<<<< HEAD
+    "AppliedForce",
+    "AppliedMoment",
     "BestCircle",
     "BestLine",
+    "Body",
     "Constraint",
     "Defect",
     "Design",
-    "DoublePoints",
-    "FourierSeries",
-    "GrashofClass",
-    "NewtonPolynomial",
-    "NotAFunctionWarning",
-    "PolynomialFit",
-    "Position",
-    "Robustness",
-    "Verdict",
-    "all_double_points",
-    "best_circle",
-    "best_line",
-=======
-    "AppliedForce",
-    "AppliedMoment",
-    "Body",
-    "Defect",
     "Deviation",
+    "DoublePoints",
     "DriverMotion",
     "Dwell",
     "Dynamics",
@@ -93,6 +70,7 @@ __all__ = [
     "Extremes",
     "Flywheel",
     "ForceBalance",
+    "FourierSeries",
     "FreeResponse",
     "Friction",
     "GrashofClass",
@@ -101,67 +79,62 @@ __all__ = [
     "Kinematics",
     "Loads",
     "Masses",
+    "NewtonPolynomial",
     "NewtonPosition",
+    "NotAFunctionWarning",
     "OutputStroke",
     "PointMotion",
+    "PolynomialFit",
     "Position",
+    "Robustness",
     "Spring",
     "TorqueBalance",
     "TorsionSpring",
     "Verdict",
+    "all_double_points",
     "balance_force",
     "balance_torque",
->>>>>>> kinematics
+    "best_circle",
+    "best_line",
     "branch_index",
     "central_differences",
     "circuit_index",
-<<<<<<< HEAD
     "circularity",
+    "compare_differences",
     "coupler_fit_r2",
     "coupler_fourier",
     "curvature",
     "cusps",
     "double_points",
-    "driver_ranges",
-    "fit_polynomial",
-    "fourier_series",
-=======
-    "compare_differences",
     "driver_motion",
     "driver_ranges",
     "dwell",
     "extremes",
     "extremes_of",
+    "fit_polynomial",
+    "fourier_series",
     "free_response",
->>>>>>> kinematics
     "full_rotation",
     "given_masses",
     "grashof_class",
-<<<<<<< HEAD
     "greatest_error",
-    "newton_interpolation",
-=======
     "instant_centres",
     "inverse_dynamics",
     "mechanical_energy",
+    "newton_interpolation",
     "newton_position",
     "output_stroke",
->>>>>>> kinematics
     "reach_box",
     "regression",
     "robustness",
     "rotatability",
-<<<<<<< HEAD
     "sensitivity",
-    "solve_position",
-    "spline",
-    "straightness",
-=======
     "size_flywheel",
     "solve_kinematics",
     "solve_position",
+    "spline",
+    "straightness",
     "system_centre",
->>>>>>> kinematics
     "transmission_angle",
     "triangular_plate",
     "triple_rocker_kind",
