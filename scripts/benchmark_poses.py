@@ -113,7 +113,7 @@ def random_three_pose_linkages(task: MotionTask, count: int, rng: np.random.Gene
 def _centre(first: FloatArray, second: FloatArray, third: FloatArray) -> FloatArray:
     p, q = second - first, third - first
     cross = 2 * (p.conj() * q).imag
-    return first + 1j * (p * np.abs(q) ** 2 - q * np.abs(p) ** 2) / -cross
+    return first + 1j * (p * np.abs(q) ** 2 - q * np.abs(p) ** 2) / cross
 
 
 def three_poses(count: int, samples: int) -> None:
