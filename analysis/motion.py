@@ -93,11 +93,19 @@ def nearest_to_poses(linkage: FourBar, task: MotionTask) -> Targets:
     angle = np.broadcast_to(_into_ranges(ends, guess), signs.shape)
     angle, miss = _descend(linkage, task, theta3, angle, signs)
     if not _met(miss, task):
-        more, more_signs = _scan(linkage, task, theta3)
+        more, more_signs, more_miss = valleys(linkage, task)
         angle, signs = np.concatenate([angle, more]), np.concatenate([signs, more_signs])
-        angle, miss = _descend(linkage, task, theta3, angle, signs)
+        miss = np.concatenate([miss, more_miss])
     chosen, target = np.argmin(miss, axis=0), np.arange(len(task))
     return at_poses(linkage, task, angle[chosen, target], signs[chosen, target])
+
+
+def valleys(linkage: FourBar, task: MotionTask) -> tuple[FloatArray, IntArray, FloatArray]:
+    """Driver angles, assemblies and misses in the lowest valleys of the miss of each pose, (K, N)."""
+    theta3 = task.angles - linkage.body_angle
+    angle, signs = _scan(linkage, task, theta3)
+    angle, miss = _descend(linkage, task, theta3, angle, signs)
+    return angle, signs, miss
 
 
 def at_poses(linkage: FourBar, task: MotionTask, theta2: FloatArray, assembly: IntArray) -> Targets:

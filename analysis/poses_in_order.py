@@ -6,17 +6,22 @@ from collections.abc import Callable
 
 import numpy as np
 
-from grashof.analysis.curve import coupler_rates
+from grashof.analysis.curve import ROUNDING, coupler_rates
 from grashof.analysis.descent import Model, lowest_in_order
 from grashof.analysis.mobility import driver_ranges, range_index, rotatability
-from grashof.analysis.motion import TURN, Targets, Way, at_poses, driver_way
+from grashof.analysis.motion import TURN, Targets, Way, at_poses, driver_way, valleys
 from grashof.analysis.position import solve_position
 from grashof.problems import FourBar, MotionTask
 from grashof.problems.checks import FloatArray, IntArray
 
+LITTLE = np.pi / 4  # rad: the driver may seem to go back so far, between poses that nearly agree
+
 
 def poses_in_order(linkage: FourBar, task: MotionTask, nearest: Targets, way: Way) -> tuple[Targets, Way]:
-    """Driver angles that do not go back, near the nearest ones, with the least weighted squares.
+    """Driver angles that do not go back, within one turn, with the least weighted squares.
+
+    A pose with a part left free, above all an angle alone, is met at more than one driver angle; the
+    nearest place of each pose by itself may then be out of order where others are not.
 
     Parameters
     ----------
@@ -31,11 +36,15 @@ def poses_in_order(linkage: FourBar, task: MotionTask, nearest: Targets, way: Wa
     Returns
     -------
     Targets, Way
-        Those given where no angles in order are near: on different assemblies or ranges.
+        On the linkage's own assembly and in one range of its driver; those given where there are none.
+
+    Notes
+    -----
+    Dynamic programming over the valleys of the misses; then Newton's method in all angles.
 
     Examples
     --------
-    >>> from grashof.analysis.motion import nearest_to_poses
+    >>> from grashof.analysis.motion import driver_way, nearest_to_poses
     >>> from grashof.analysis.planted import planted_motion
     >>> task, linkage = planted_motion(np.random.default_rng(0), poses=5)
     >>> swapped = MotionTask(task.positions[[0, 2, 1, 3, 4]], task.angles[[0, 2, 1, 3, 4]])
@@ -44,46 +53,69 @@ def poses_in_order(linkage: FourBar, task: MotionTask, nearest: Targets, way: Wa
     >>> way.in_order, bool(targets.position_error.max() > 0)
     (True, True)
     """
-    if np.ptp(nearest.assembly) > 0:
-        return nearest, way
-    ends = _ends(linkage, nearest.theta2)
-    if ends is None:
-        return nearest, way
-    theta2, low, high = ends
     best, least = None, np.inf
-    for sense in (1, -1):
-        guess = _guess(theta2, sense, turns=not np.isfinite(low))[::sense]
-        model = _missed(linkage, task, nearest.assembly, sense)
-        bounds = np.full((1, len(task)), -np.inf), np.full((1, len(task)), np.inf)
-        limits = np.full((1, len(task)), low), np.full((1, len(task)), high)
-        angle, value = lowest_in_order(model, guess[None], bounds, limits)
-        if value.sum() < least:
-            best, least = angle[0][::sense], float(value.sum())
+    own = np.full(len(task), int(linkage.assembly))
+    for sense in (1, -1):  # counted backwards, driver angles that fall grow
+        order = slice(None, None, sense)
+        model = _missed(linkage, task, own, sense)
+        for angle, miss, low, high in _by_range(linkage, task):
+            guess = _sequence(angle[:, order], miss[:, order], turns=not np.isfinite(low), step=task.size)
+            if guess is None:
+                continue
+            bounds = np.full((1, len(task)), -np.inf), np.full((1, len(task)), np.inf)
+            limits = np.full((1, len(task)), low), np.full((1, len(task)), high)
+            theta2, value = lowest_in_order(model, guess[None], bounds, limits)
+            if value.sum() < least * (1 - 1e-9) - (ROUNDING * task.size) ** 2:
+                best, least = theta2[0][order], float(value.sum())
     if best is None:
         return nearest, way
     ordered = driver_way(linkage, best, True)
-    return at_poses(linkage, task, best, nearest.assembly), ordered if ordered.in_order else way
+    return (at_poses(linkage, task, best, own), ordered) if ordered.in_order else (nearest, way)
 
 
-def _ends(linkage: FourBar, theta2: FloatArray) -> tuple[FloatArray, float, float] | None:
-    """Driver angles counted in their range, and its ends, infinite when it turns; None for two ranges."""
+def _by_range(linkage: FourBar, task: MotionTask) -> list[tuple[FloatArray, FloatArray, float, float]]:
+    """Valleys (K, N) and weighted misses on the own assembly, with the ends of each range of the driver."""
+    angle, signs, miss = valleys(linkage, task)
+    miss = np.where(signs == int(linkage.assembly), miss * task.weights, np.inf)
     if (rotatability(linkage) >= 0).all():
-        return theta2, -np.inf, np.inf
-    index, inside = range_index(linkage, theta2)
-    if np.ptp(index) > 0 or index[0] < 0:
+        return [(angle, miss, -np.inf, np.inf)]
+    index, inside = range_index(linkage, angle)
+    return [
+        (
+            np.where(index == number, inside, low),
+            np.where(index == number, miss, np.inf),
+            float(low),
+            float(high),
+        )
+        for number, (low, high) in enumerate(driver_ranges(linkage))
+        if high > low
+    ]
+
+
+def _sequence(angle: FloatArray, miss: FloatArray, *, turns: bool, step: float) -> FloatArray | None:
+    """Growing driver angles (N,) through the valleys (K, N), of the least sum of misses and steps back."""
+    count, poses = angle.shape
+    begin = angle[:, 0] if turns else np.zeros(1)
+    gone = angle - begin[:, None, None]
+    if turns:  # a little before the first is no turn after it
+        gone = (gone + LITTLE) % TURN - LITTLE
+    cost = np.where(np.eye(count) > 0, miss[:, 0], np.inf) if turns else miss[None, :, 0]
+    before = np.zeros((len(begin), count, poses), dtype=np.int64)
+    for k in range(1, poses):
+        back = np.maximum(gone[:, :, None, k - 1] - gone[:, None, :, k], 0.0)
+        way = cost[:, :, None] + (step * back) ** 2
+        before[:, :, k] = way.argmin(axis=1)
+        cost = way.min(axis=1) + miss[None, :, k]
+    ends = cost + (ROUNDING * step) ** 2 * gone[:, :, -1]  # of equal ones the shortest
+    first, last = np.unravel_index(np.argmin(ends), ends.shape)
+    if not np.isfinite(cost[first, last]):
         return None
-    low, high = driver_ranges(linkage)[index[0]]
-    return inside, float(low), float(high)
-
-
-def _guess(theta2: FloatArray, sense: int, *, turns: bool) -> FloatArray:
-    """Driver angles counted on in one sense; small steps back are taken as such, and flattened."""
-    step = sense * np.diff(theta2)
-    if turns:
-        step = (step + np.pi / 2) % TURN - np.pi / 2
-    gone = np.concatenate([[0.0], np.cumsum(step)])
-    flat = np.minimum((np.maximum.accumulate(gone) + np.minimum.accumulate(gone[::-1])[::-1]) / 2, TURN)
-    guess: FloatArray = theta2[0] + sense * np.maximum.accumulate(flat)
+    chosen = [int(last)]
+    for k in range(poses - 1, 0, -1):
+        chosen.append(int(before[first, chosen[-1], k]))
+    sequence = gone[first, chosen[::-1], np.arange(poses)]
+    flat = (np.maximum.accumulate(sequence) + np.minimum.accumulate(sequence[::-1])[::-1]) / 2
+    guess: FloatArray = begin[first] + np.maximum.accumulate(flat)
     return guess
 
 

@@ -211,7 +211,7 @@ def _met(linkage: FourBar, task: Task, wanted: Requirements) -> tuple[Targets, W
         )
     targets = nearest_to_poses(linkage, task)
     way = driver_way(linkage, targets.theta2, wanted.order)
-    if wanted.order and not way.in_order and not wanted.is_exact(task):
+    if wanted.order and not way.in_order and not (wanted.is_exact(task) and task.is_whole):
         return poses_in_order(linkage, task, targets, way)
     return targets, way
 
