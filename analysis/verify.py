@@ -211,8 +211,11 @@ def _met(linkage: FourBar, task: Task, wanted: Requirements) -> tuple[Targets, W
         )
     targets = nearest_to_poses(linkage, task)
     way = driver_way(linkage, targets.theta2, wanted.order)
-    if wanted.order and not way.in_order and not (wanted.is_exact(task) and task.is_whole):
-        return poses_in_order(linkage, task, targets, way)
+    if wanted.order and not (wanted.is_exact(task) and task.is_whole):
+        branch = branch_index(linkage, targets.theta2, targets.assembly)
+        joined = (branch == branch[0]).all() and targets.assembly[0] == int(linkage.assembly)
+        if not way.in_order or (wanted.same_branch and not joined):
+            return poses_in_order(linkage, task, targets, way)
     return targets, way
 
 
