@@ -111,7 +111,8 @@ def _guesses(places: FloatArray, miss: FloatArray, *, turns: bool) -> FloatArray
         chosen, costs = assigned(miss[:, :, None])
     turn, place = np.divmod(chosen, len(places))
     near = np.isfinite(costs) & (costs <= NEAR * costs.min(initial=np.inf))
-    return (places[place] + TURN * turn).T[near]
+    guesses: FloatArray = (places[place] + TURN * turn).T[near]
+    return guesses
 
 
 def _missed(

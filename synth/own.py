@@ -90,7 +90,8 @@ def _try_on_symbols(constraint: Constraint, targets: int) -> None:
     try:
         value = constraint(design)
         for one in value if isinstance(value, (list, tuple)) else [value]:
-            if any(part.is_constant() and not part.is_regular() for part in ca.SX(one).nonzeros()):
+            parts = ca.vec(ca.SX(one))
+            if any(parts[k].is_constant() and not parts[k].is_regular() for k in range(parts.numel())):
                 raise ValueError("its value is not a number")  # float() of a symbol
     except WRONG as error:
         raise ProblemError(
