@@ -1,6 +1,14 @@
 """What is asked: tasks, requirements, the linkage as a value, and the catalogue of problems."""
 
-from grashof.problems.errors import AssemblyError, GrashofError, NoSolutionError, ProblemError, SolverError
+from grashof.problems.errors import (
+    AssemblyError,
+    DeadPositionWarning,
+    GrashofError,
+    GrashofWarning,
+    NoSolutionError,
+    ProblemError,
+    SolverError,
+)
 from grashof.problems.files import catalogue, load, problem_text
 from grashof.problems.linkage import FourBar
 from grashof.problems.manufacturing import Manufacturing
@@ -13,8 +21,10 @@ from grashof.problems.task import Task
 __all__ = [
     "AssemblyError",
     "Box",
+    "DeadPositionWarning",
     "FourBar",
     "GrashofError",
+    "GrashofWarning",
     "Manufacturing",
     "MotionTask",
     "NoSolutionError",

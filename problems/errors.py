@@ -19,3 +19,11 @@ class NoSolutionError(GrashofError):
 
 class SolverError(GrashofError):
     """The surroundings of the search failed: a worker died, an executor was lost."""
+
+
+class GrashofWarning(UserWarning):
+    """Base of every warning that Grashof gives on purpose."""
+
+
+class DeadPositionWarning(GrashofWarning):
+    """A dead position of the driver: links 3 and 4 would move infinitely fast there."""

@@ -167,8 +167,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     for points in (9, 6):  # imports and the first build of the programmes
         synthesize(Problem(task=planted_path(np.random.default_rng(0), points)[0]), enough=1)
     published(options.seeds)
-    planted(9, options.nine, is_timed=False)
-    for points in (6, 12, 24):
+    if options.nine:
+        planted(9, options.nine, is_timed=False)
+    for points in (6, 12, 24) if options.timed else ():
         planted(points, options.timed, is_timed=True)
     interpolated(min(options.seeds, 2))
     closed_curves(options.closed, options.scipy)

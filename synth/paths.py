@@ -1,4 +1,8 @@
-"""Starts for path generation: rounds of a search over linkages that are feasible by construction."""
+"""Starts for paths, and for poses in least squares or with free parts: rounds of a search.
+
+It goes over linkages that are feasible by construction; exact paths through nine points have it
+followed by all linkages that there are.
+"""
 
 from __future__ import annotations
 
@@ -83,10 +87,10 @@ def _new_curves(setup: Setup, starts: list[Start], curves: list[ComplexArray]) -
         order = np.argsort(start.visit)
         p, turned = start.track[2][order], np.array(start.theta3)[order] + start.body_angle
         near = SAME_CURVE * setup.missed(p, turned)
-        if all(np.abs(p - other).max() > near for other in curves):
+        if len(new) < MOST_CURVES and all(np.abs(p - other).max() > near for other in curves):
             new.append(start)
             curves.append(p)
-    return new[:MOST_CURVES]
+    return new
 
 
 def _search_round(setup: Setup, enough: int, rng: np.random.Generator) -> Round:

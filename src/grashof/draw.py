@@ -20,8 +20,8 @@ from grashof.synth import Candidate
 DRIVER, COUPLER, OUTPUT = "#c0392b", "#1f618d", "#1e8449"
 BODY, PATH, SCENE, GROUND, TARGET = "#b9770e", "#7d3c98", "#5d6d7e", "#17202a", "#d35400"
 KEPT_OUT = "#909497"
-_CROWD = 6  # points of a path up to which the linkage is drawn at each
-_NUMBERED = 24  # points of a path up to which each carries its number
+_CROWD = 6  # targets up to which the linkage is drawn at each
+_NUMBERED = 24  # targets up to which each carries its number
 # Fixed names inside the SVG and no date: the same design gives the same bytes.
 _STYLE: Any = {
     "svg.hashsalt": "grashof",
@@ -82,9 +82,8 @@ def save(figure: Figure, paths: Iterable[Path]) -> None:
 def _shown(problem: Problem) -> list[int]:
     """Targets at which the linkage is drawn."""
     count = len(problem.task)
-    if isinstance(problem.task, MotionTask):
-        return list(range(count))
-    count -= _returns(problem.task)
+    if isinstance(problem.task, PathTask):
+        count -= _returns(problem.task)
     return list(range(count)) if count <= _CROWD else [0, count // 2, count - 1]
 
 
@@ -158,6 +157,14 @@ def _linkage_at(
 
 def _body_at(axes: Axes, task: MotionTask, pose: int) -> None:
     place, angle = task.positions[pose], task.angles[pose]
+    if not task.has_position[pose]:  # an angle has no place of its own
+        return
+    axes.plot(*place, "o", color=BODY, markersize=4, zorder=6)
+    numbered = pose % _numbered_every(len(task)) == 0
+    if numbered:
+        _number(axes, pose, place)
+    if not task.has_angle[pose] or not numbered:
+        return
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     if task.body is not None:
         corners = task.body @ turn.T + place
@@ -166,7 +173,6 @@ def _body_at(axes: Axes, task: MotionTask, pose: int) -> None:
         axes.fill(*corners.T, facecolor="none", edgecolor=BODY, linewidth=1.2, zorder=5, label=label)
     arrow = place + turn[:, 0] * 0.08 * task.size
     axes.annotate("", arrow, place, arrowprops={"arrowstyle": "->", "color": BODY}, zorder=6)
-    _number(axes, pose, place)
 
 
 def _points(axes: Axes, task: PathTask) -> None:
@@ -177,8 +183,12 @@ def _points(axes: Axes, task: PathTask) -> None:
         *task.points.T, linestyle="none", marker="o", markersize=size, markerfacecolor="none",
         markeredgecolor=TARGET, markeredgewidth=size / 6, label="target points", zorder=1.5,
     )  # fmt: skip
-    for index in range(0, count, 1 if count <= _NUMBERED else round(count / 12)):
+    for index in range(0, count, _numbered_every(count)):
         _number(axes, index, task.points[index])
+
+
+def _numbered_every(count: int) -> int:
+    return 1 if count <= _NUMBERED else round(count / 12)
 
 
 def _number(axes: Axes, index: int, place: FloatArray) -> None:

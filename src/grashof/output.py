@@ -13,6 +13,7 @@ import numpy as np
 
 from grashof.folder import RECORD, replacing_own_files
 from grashof.problems import FourBar
+from grashof.problems.checks import FloatArray
 from grashof.synth import Candidate, Result
 from grashof.synth.result import pareto_optimal
 from grashof.synth.table import MANUFACTURING, to_frame
@@ -106,16 +107,21 @@ def _designs(result: Result, frame: pd.DataFrame) -> dict[str, Any]:
     }
 
 
+def _given(errors: FloatArray) -> list[float | None]:
+    """Errors as JSON knows them: null where a pose leaves this part free."""
+    return [None if np.isnan(error) else float(error) for error in errors]
+
+
 def _design(candidate: Candidate) -> dict[str, Any]:
     verdict = candidate.verdict
-    angle_error = {} if verdict.angle_error is None else {"angle_error": verdict.angle_error.tolist()}
+    angle_error = {} if verdict.angle_error is None else {"angle_error": _given(verdict.angle_error)}
     return {
         "id": candidate.id,
         "family": "four-bar",
         "linkage": _linkage(candidate.linkage),
         "theta2": verdict.theta2.tolist(),
         "assembly": verdict.assembly.tolist(),
-        "position_error": verdict.position_error.tolist(),
+        "position_error": _given(verdict.position_error),
         **angle_error,
         "grashof_class": str(verdict.grashof_class),
         "direction": verdict.direction,

@@ -63,3 +63,10 @@ def test_an_analysis_module_beside_the_script_does_no_harm(tmp_path: Path) -> No
         [sys.executable, "mine.py"], cwd=tmp_path, check=True, capture_output=True, text=True
     )
     assert done.stdout == "verify\n"
+
+
+def test_benchmark_of_the_analysis_agrees_with_the_plain_form(tmp_path: Path) -> None:
+    said = run("benchmark_analysis.py", "--angles", "2000", "--linkages", "50", "--runs", "1", cwd=tmp_path)
+    difference = float(said.split("largest difference ")[1].split()[0])
+    assert difference < 1e-12
+    assert "50 linkages at 64 angles" in said

@@ -12,7 +12,7 @@ from grashof import load, synthesize
 from grashof.analysis import verify
 from grashof.problems import FourBar, MotionTask, Problem, Requirements
 from grashof.synth import Result
-from grashof.synth.four_poses import rounds
+from grashof.synth.exact_poses import rounds
 from grashof.synth.on_the_way import depth_on_the_way
 from grashof.synth.setup import Setup
 

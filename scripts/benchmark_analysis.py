@@ -1,0 +1,106 @@
+"""Measure kinematics and dynamics against a plain closed form written out in NumPy.
+
+Prints one line a case: the median over repetitions, on this machine. Run it on a quiet one.
+"""
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+from statistics import median
+from time import perf_counter
+
+import numpy as np
+import numpy.typing as npt
+
+from grashof.analysis import Loads, inverse_dynamics, solve_kinematics, uniform_bars
+from grashof.problems import FourBar
+
+NORTON = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80, coupler_point=(60, 20))
+Array = npt.NDArray[np.float64]
+
+
+def plain(theta2: Array, omega2: float) -> tuple[Array, ...]:
+    """Angles, velocities and accelerations of links 3 and 4: three angles, two 2x2 solves, no more."""
+    r1, r2, r3, r4 = map(float, NORTON.lengths)
+    cos2, sin2 = np.cos(theta2), np.sin(theta2)
+    x, y = r1 - r2 * cos2, -r2 * sin2
+    square = x * x + y * y
+    theta3 = np.arctan2(y, x) + np.arccos((square + r3 * r3 - r4 * r4) / (2 * r3 * np.sqrt(square)))
+    cos3, sin3 = np.cos(theta3), np.sin(theta3)
+    theta4 = np.arctan2(r3 * sin3 - y, r3 * cos3 - x)
+    cos4, sin4 = np.cos(theta4), np.sin(theta4)
+    determinant = r3 * r4 * (sin3 * cos4 - cos3 * sin4)
+    right_x, right_y = r2 * omega2 * sin2, -r2 * omega2 * cos2
+    omega3 = (-right_x * r4 * cos4 - right_y * r4 * sin4) / determinant
+    omega4 = (-right_y * r3 * sin3 - right_x * r3 * cos3) / determinant
+    right_x = r2 * omega2**2 * cos2 + r3 * omega3**2 * cos3 - r4 * omega4**2 * cos4
+    right_y = r2 * omega2**2 * sin2 + r3 * omega3**2 * sin3 - r4 * omega4**2 * sin4
+    alpha3 = (-right_x * r4 * cos4 - right_y * r4 * sin4) / determinant
+    alpha4 = (-right_y * r3 * sin3 - right_x * r3 * cos3) / determinant
+    return theta3, theta4, omega3, omega4, alpha3, alpha4
+
+
+def taking_turns(runs: int, *functions: Callable[[], object]) -> list[float]:
+    """Median seconds of each; run by turns, so that a busy machine slows all alike."""
+    seconds: list[list[float]] = [[] for _ in functions]
+    for _ in range(runs):
+        for spent, function in zip(seconds, functions, strict=True):
+            begun = perf_counter()
+            function()
+            spent.append(perf_counter() - begun)
+    return [median(spent) for spent in seconds]
+
+
+def many_angles(count: int, runs: int) -> None:
+    """One linkage at many driver angles."""
+    theta2 = np.linspace(0, 2 * np.pi, count)
+    state = solve_kinematics(NORTON, theta2, 2.0)
+    found = (state.theta3, state.theta4, state.omega3, state.omega4, state.alpha3, state.alpha4)
+    apart = max(float(np.abs(a - b).max()) for a, b in zip(plain(theta2, 2.0), found, strict=True))
+    masses, loads = uniform_bars(NORTON, 2.0, payload=3.0), Loads(gravity=(0, -9810))
+    closed, ours, points, forces = taking_turns(
+        runs,
+        lambda: plain(theta2, 2.0),
+        lambda: solve_kinematics(NORTON, theta2, 2.0),
+        lambda: (state.a, state.b, state.p),
+        lambda: inverse_dynamics(state, masses, loads),
+    )
+    print(f"{count} angles, plain closed form: {closed * 1e3:.1f} ms")
+    print(
+        f"{count} angles, kinematics with jerk: {ours * 1e3:.1f} ms, {ours / closed:.2f} times the plain "
+        f"form, largest difference {apart:.0e}"
+    )
+    print(f"{count} angles, motion of A, B and P: {points * 1e3:.1f} ms more")
+    print(
+        f"{count} angles, inverse dynamics: {forces * 1e3:.1f} ms, {forces / ours:.1f} times the kinematics"
+    )
+
+
+def many_linkages(count: int, angles: int, seed: int) -> None:
+    """Random linkages, all at the same angles."""
+    rng = np.random.default_rng(seed)
+    o4 = np.stack([rng.uniform(90, 110, count), rng.uniform(-5, 5, count)], axis=-1)
+    r2, r3, r4 = rng.uniform(30, 40, count), rng.uniform(110, 130, count), rng.uniform(75, 85, count)
+    linkages = FourBar(o2=np.zeros((count, 2)), o4=o4, r2=r2, r3=r3, r4=r4)[:, None]
+    begun = perf_counter()
+    state = solve_kinematics(linkages, np.linspace(0, 2 * np.pi, angles))
+    seconds = perf_counter() - begun
+    each = seconds / state.theta3.size * 1e9
+    print(f"{count} linkages at {angles} angles: {seconds:.2f} s, {each:.0f} ns each")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run all measurements."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--angles", type=int, default=100_000)
+    parser.add_argument("--linkages", type=int, default=100_000)
+    parser.add_argument("--runs", type=int, default=21)
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args(argv)
+    many_angles(options.angles, options.runs)
+    many_linkages(options.linkages, 64, options.seed)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

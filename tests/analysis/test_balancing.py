@@ -1,0 +1,96 @@
+"""Counterweights: no shaking force left, and the most even torque there is."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import minimize
+
+from grashof.analysis import (
+    AppliedForce,
+    Body,
+    GrashofClass,
+    Loads,
+    Masses,
+    balance_force,
+    balance_torque,
+    inverse_dynamics,
+    solve_kinematics,
+    uniform_bars,
+)
+from grashof.problems import FourBar, ProblemError
+
+CHECKED = settings(derandomize=True, deadline=None, max_examples=30)
+TURN = 2 * np.pi
+JACK = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
+Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
+
+
+@given(data=st.data())
+@CHECKED
+def test_no_shaking_force_is_left(four_bars: Drawer, data: st.DataObject) -> None:
+    linkage = data.draw(four_bars(GrashofClass.CRANK_ROCKER))
+    place = st.tuples(st.floats(-2, 2), st.floats(-2, 2))
+    masses = Masses(*(Body(data.draw(st.floats(0.1, 5)), 0.3, data.draw(place)) for _ in range(3)))
+    state = solve_kinematics(linkage, np.linspace(0, TURN, 60), 2.0, 0.5)
+    before = inverse_dynamics(state, masses).shaking_force
+    balanced = balance_force(linkage, masses, crank_radius=0.7)
+    after = inverse_dynamics(state, balanced.masses).shaking_force
+    assert np.abs(after).max() < 1e-9 * np.abs(before).max()
+    assert np.hypot(*balanced.crank_weight.centre) == pytest.approx(0.7)
+    assert np.hypot(*balanced.output_weight.centre) == pytest.approx(float(linkage.r4))
+
+
+def test_batches_are_balanced_at_once() -> None:
+    batch = FourBar(o2=(0, 0), o4=(4, 1), r2=[[1.0], [0.8]], r3=4, r4=3)
+    bars = uniform_bars(batch, 2.0)
+    state = solve_kinematics(batch, np.linspace(0, 6, 9))
+    before = inverse_dynamics(state, bars).shaking_force
+    after = inverse_dynamics(state, balance_force(batch, bars).masses).shaking_force
+    assert np.abs(after).max() < 1e-12 * np.abs(before).max()
+
+
+@pytest.mark.parametrize("measure", ["rms", "peak"])
+def test_no_other_counterweight_makes_the_torque_more_even(measure: str) -> None:
+    rods = AppliedForce(4, (-4.572, 0), lambda state: _rods(state.omega4), turning=True)
+    loads = Loads(gravity=(0, -9.81), forces=(rods,))
+    bars = uniform_bars(JACK, (312, 312, 314))
+    state = solve_kinematics(JACK, np.arange(0, TURN, TURN / 180), TURN / 3)
+    found = balance_torque(state, bars, loads, 1.0, measure)
+
+    def size(torque: np.ndarray) -> float:
+        return float(np.sqrt(np.mean(torque**2)) if measure == "rms" else np.abs(torque).max())
+
+    def tried(moment: np.ndarray) -> float:
+        mass = max(float(np.hypot(*moment)), 1e-9)
+        heavier = Masses(bars.crank + Body(mass, 0.0, moment / mass), bars.coupler, bars.output)
+        return size(inverse_dynamics(state, heavier, loads).torque)
+
+    chosen = found.crank_weight.mass * found.crank_weight.centre
+    assert tried(chosen) == pytest.approx(size(found.torque_after), rel=1e-9)
+    assert size(found.torque_after) < 0.6 * size(found.torque_before)
+    options = {"xatol": 1e-3, "fatol": 1e-6}
+    searched = minimize(tried, chosen * 1.2 + 10.0, method="Nelder-Mead", options=options)
+    assert size(found.torque_after) <= searched.fun * (1 + 1e-9)
+    assert np.hypot(*found.crank_weight.centre) == pytest.approx(1.0)
+
+
+def _rods(omega4: np.ndarray) -> np.ndarray:
+    """Polished rod load, larger on the upstroke, across the beam."""
+    load = np.where(omega4 > 0, 9000.0, 4000.0)
+    return np.stack([np.zeros_like(load), load], axis=-1)
+
+
+def test_bad_input_is_said() -> None:
+    bars, state = uniform_bars(JACK, 300.0), solve_kinematics(JACK, np.linspace(0, 6, 20))
+    gravity = Loads(gravity=(0, -9.81))
+    with pytest.raises(ProblemError, match="gravity is zero"):
+        balance_torque(state, bars, Loads(), 1.0)
+    with pytest.raises(ProblemError, match="steady speed"):
+        balance_torque(solve_kinematics(JACK, [0.0, 1.0], 1.0, 2.0), bars, gravity, 1.0)
+    with pytest.raises(ProblemError, match="measure is 'mean'"):
+        balance_torque(state, bars, gravity, 1.0, "mean")
+    with pytest.raises(ProblemError, match="radius"):
+        balance_force(JACK, bars, crank_radius=0.0)

@@ -1,0 +1,57 @@
+"""Dwells against the longest run of a fine sweep."""
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from grashof.analysis import Kinematics, dwell, output_stroke, solve_kinematics
+from grashof.problems import FourBar, ProblemError
+
+TURN = 2 * np.pi
+CRANK_ROCKER = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
+
+
+def output_angle(state: Kinematics) -> npt.NDArray[np.float64]:
+    return state.theta4
+
+
+def test_dwells_are_the_longest_runs_of_a_sweep() -> None:
+    tolerance = np.radians(1)
+    for linkage in (CRANK_ROCKER, CRANK_ROCKER[None][0]):
+        found = dwell(linkage, output_angle, tolerance, period=TURN)
+        assert found.high - found.low == pytest.approx(tolerance)
+        inside = solve_kinematics(linkage, np.linspace(found.start, found.end, 5001)).theta4
+        assert np.ptp(inside) <= tolerance * (1 + 1e-9)
+        sweep = np.unwrap(solve_kinematics(linkage, np.radians(np.arange(0, 720, 0.05))).theta4)
+        longest = 0
+        for first in range(0, 7200, 2):
+            near = sweep[first : first + 2000]
+            spread = np.maximum.accumulate(near) - np.minimum.accumulate(near)
+            longest = max(longest, int(np.argmax(spread > tolerance)) - 1)
+        assert np.degrees(found.duration) == pytest.approx(longest * 0.05, abs=0.2)
+        assert np.degrees(found.duration) >= longest * 0.05 - 1e-9
+
+
+def test_what_never_leaves_the_band_dwells_all_the_time() -> None:
+    found = dwell(CRANK_ROCKER, lambda state: np.hypot(*state.a.position.T), 1e-6)
+    assert found.duration == pytest.approx(TURN)
+
+
+def test_a_dwell_across_the_ends_of_the_turn_is_one() -> None:
+    # Turned so that the output turns back where the driver is at 0.
+    back = -float(output_stroke(CRANK_ROCKER).theta2[1])
+    o4 = 100 * np.array([np.cos(back), np.sin(back)])
+    turned = FourBar(o2=(0, 0), o4=o4, r2=40, r3=120, r4=80)
+    found, same = (dwell(linkage, output_angle, 0.01, period=TURN) for linkage in (turned, CRANK_ROCKER))
+    assert found.duration == pytest.approx(same.duration, rel=1e-7)
+    assert found.start < TURN < found.end or found.start < 0 < found.end
+
+
+def test_a_rocking_driver_may_dwell_at_its_end() -> None:
+    found = dwell(CRANK_ROCKER, lambda state: state.theta2, 0.25, start=1.0, end=2.0)
+    assert found.duration == pytest.approx(0.25, abs=1e-9)
+
+
+def test_bad_input_is_said() -> None:
+    with pytest.raises(ProblemError, match="tolerance"):
+        dwell(CRANK_ROCKER, output_angle, 0.0)

@@ -1,0 +1,122 @@
+"""Extremes: published figures, fine sweeps, and curves with known answers."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grashof.analysis import Extremes, GrashofClass, extremes, extremes_of, solve_kinematics
+from grashof.problems import AssemblyError, DeadPositionWarning, FourBar, ProblemError
+
+CHECKED = settings(derandomize=True, deadline=None, max_examples=10)
+TURN = 2 * np.pi
+SPEED = TURN / 3
+Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
+CRANK_ROCKER = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
+
+QUANTITIES: dict[str, Callable[[Any], Any]] = {
+    "theta3": lambda state: state.theta3,
+    "theta4": lambda state: state.theta4,
+    "omega3": lambda state: state.omega3,
+    "omega4": lambda state: state.omega4,
+    "alpha3": lambda state: state.alpha3,
+    "alpha4": lambda state: state.alpha4,
+    "vB_mag": lambda state: state.b.speed,
+    "aB_mag": lambda state: state.b.acceleration_magnitude,
+    "P_x": lambda state: state.p.position[..., 0],
+    "P_y": lambda state: state.p.position[..., 1],
+}
+
+
+@pytest.mark.parametrize("name", ["pumpjack", "lufkin"])
+def test_every_extreme_of_the_reference_figures(
+    golden: dict[str, Any], golden_linkages: dict[str, FourBar], name: str
+) -> None:
+    section, key = {
+        "pumpjack": ("pumpjack_report_geometry", "extremes_sigma+1"),
+        "lufkin": ("pumpjack_lufkin_C912D_427_144", "extremes_20rpm_SI"),
+    }[name]
+    checked = 0
+    for label, expected in golden[section][key].items():
+        if not isinstance(expected, dict):
+            continue
+        quantity, side = label.replace("_unwrapped", "").rsplit("_", 1)
+        period = TURN if quantity.startswith("theta") else None
+        found = extremes(golden_linkages[name], QUANTITIES[quantity], SPEED, period=period)
+        value, where = (found.high, found.at_high) if side == "max" else (found.low, found.at_low)
+        largest = max(abs(found.low), abs(found.high))
+        whole_turns = TURN * np.round((value - float(expected["value"])) / TURN) if period else 0.0
+        assert abs(value - whole_turns - float(expected["value"])) <= 1e-12 * largest, label
+        assert abs(np.degrees(where) % 360 - float(expected["theta2_deg"])) <= 1e-12 * 360, label
+        checked += 1
+    assert checked == {"pumpjack": 19, "lufkin": 8}[name]
+
+
+def test_strokes_of_the_reference_figures(
+    golden: dict[str, Any], golden_linkages: dict[str, FourBar]
+) -> None:
+    swing = extremes(golden_linkages["pumpjack"], QUANTITIES["theta4"], period=TURN).stroke
+    given_swing = golden["pumpjack_report_geometry"]["rocker_swing_deg"]
+    assert np.degrees(swing) == pytest.approx(float(given_swing), rel=1e-12)
+
+
+@pytest.mark.parametrize("kind", [GrashofClass.CRANK_ROCKER, GrashofClass.DOUBLE_CRANK])
+@pytest.mark.parametrize("quantity", ["omega4", "alpha3", "vB_mag", "P_y"])
+@given(data=st.data())
+@CHECKED
+def test_no_sample_of_a_fine_sweep_lies_outside(
+    four_bars: Drawer, kind: GrashofClass, quantity: str, data: st.DataObject
+) -> None:
+    linkage = data.draw(four_bars(kind))
+    found = extremes(linkage, QUANTITIES[quantity])
+    sweep = QUANTITIES[quantity](solve_kinematics(linkage, np.linspace(0, TURN, 20001)))
+    rounding = 1e-12 * np.abs(sweep).max()
+    assert found.low - rounding <= sweep.min() <= found.low + 1e-3 * np.ptp(sweep) + rounding
+    assert found.high + rounding >= sweep.max() >= found.high - 1e-3 * np.ptp(sweep) - rounding
+    for value, where in ((found.low, found.at_low), (found.high, found.at_high)):
+        assert QUANTITIES[quantity](solve_kinematics(linkage, where)) == pytest.approx(value, abs=rounding)
+
+
+def test_curves_with_known_extremes() -> None:
+    found = extremes_of(lambda x: x**3 - x, -2, 2)
+    assert found == Extremes(-6, 6, -2, 2)
+    found = extremes_of(lambda x: x**3 - x, -1, 1)
+    root = 1 / np.sqrt(3)
+    np.testing.assert_allclose([found.at_low, found.at_high], [root, -root], rtol=1e-12)
+    kinked = extremes_of(lambda x: np.abs(x - 0.123), -1, 1)
+    assert kinked.at_low == pytest.approx(0.123, abs=1e-7)
+    assert kinked.low == pytest.approx(0, abs=1e-7)
+    assert extremes_of(lambda x: 0 * x + 3, 0, 1).stroke == 0
+    # Across the ends of a closed curve.
+    across = extremes_of(lambda x: np.cos(x - 1e-5), 0, TURN, closed=True)
+    assert across.at_high % TURN == pytest.approx(1e-5, abs=1e-12)
+    assert across.high == 1
+
+
+def test_extremes_of_a_rocking_driver_end_in_its_dead_positions() -> None:
+    rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3)
+    with pytest.warns(DeadPositionWarning):
+        found = extremes(rocker, lambda state: state.omega4)
+    assert {abs(found.low), abs(found.high)} == {np.inf}
+    swing = extremes(rocker, lambda state: state.theta4, start=-1.0, end=1.0)
+    angles = solve_kinematics(rocker, np.linspace(-1, 1, 10001)).theta4
+    assert swing.low == pytest.approx(angles.min(), abs=1e-7)
+    assert swing.high == pytest.approx(angles.max(), abs=1e-7)
+
+
+def test_bad_input_is_said() -> None:
+    theta4 = QUANTITIES["theta4"]
+    with pytest.raises(ProblemError, match="together"):
+        extremes(CRANK_ROCKER, theta4, start=1.0)
+    with pytest.raises(ProblemError, match="start < end"):
+        extremes(CRANK_ROCKER, theta4, start=1.0, end=0.5)
+    with pytest.raises(ProblemError, match="one value for each angle"):
+        extremes(CRANK_ROCKER, lambda state: state.b.position)
+    with pytest.raises(AssemblyError, match="at any driver angle"):
+        extremes(FourBar((0, 0), (9, 0), 1, 1, 1), theta4)
+    rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3)
+    with pytest.raises(AssemblyError, match="no value at driver angle"):
+        extremes(rocker, theta4, start=0.0, end=3.0)
