@@ -330,7 +330,8 @@ def _geometry(linkage: FourBar, task: Task, wanted: Requirements) -> list[Defect
     arm = complex(*linkage.coupler_point)
     for name, value in (("A-P", abs(arm)), ("B-P", abs(arm - complex(linkage.r3)))):
         defects += _within("coupler_arms", name, value, wanted.coupler_arms, task.size)
-    ratio = float(linkage.lengths.max() / linkage.lengths.min())
+    shortest = float(linkage.lengths.min())
+    ratio = float(linkage.lengths.max()) / shortest if shortest > 0 else np.inf
     if ratio > wanted.link_ratio_max * (1 + SLACK):
         miss = ratio / wanted.link_ratio_max - 1
         allowed = f"up to {wanted.link_ratio_max:g}"

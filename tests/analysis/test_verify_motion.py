@@ -191,3 +191,10 @@ def test_a_design_is_seen_in_the_order_of_visit() -> None:
     ring = [*range(5), *range(5)]
     around = ring + ring[::-1]
     assert any(around[k : k + 5] == where for k in range(len(around) - 4))
+
+
+def test_ground_pivots_that_coincide_are_a_ratio_without_limit() -> None:
+    task, _ = planted(7, 3)
+    collapsed = FourBar(o2=(1, 2), o4=(1, 2), r2=1, r3=1.5, r4=1)
+    defects = verify(collapsed, task, EXACT).defects
+    assert [defect.found for defect in defects if defect.requirement == "link_ratio_max"] == [np.inf]
