@@ -16,6 +16,7 @@ STEADY = 1e-9  # rad: a driver step so small counts as none
 _EXACT = 1e-13  # errors below this share of the size are rounding
 _SAMPLES = 361
 _VALLEYS = 6
+_BESIDE = 41  # samples about each valley: beside a cusp may lie a deeper one
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +97,7 @@ def nearest_to_poses(linkage: FourBar, task: MotionTask) -> Targets:
         more, more_signs, more_miss = valleys(linkage, task)
         angle, signs = np.concatenate([angle, more]), np.concatenate([signs, more_signs])
         miss = np.concatenate([miss, more_miss])
+    miss = np.where(miss <= _rounding(task), 0.0, miss)  # of several that meet a pose the own assembly
     chosen, target = np.argmin(miss, axis=0), np.arange(len(task))
     return at_poses(linkage, task, angle[chosen, target], signs[chosen, target])
 
@@ -106,6 +108,11 @@ def valleys(linkage: FourBar, task: MotionTask) -> tuple[FloatArray, IntArray, F
     angle, signs = _scan(linkage, task, theta3)
     angle, miss = _descend(linkage, task, theta3, angle, signs)
     return angle, signs, miss
+
+
+def misses(linkage: FourBar, task: MotionTask, theta2: FloatArray, assembly: IntArray) -> FloatArray:
+    """|dp|^2 + (angle_length * dangle)^2 of what poses give, shape (..., N); inf where it cannot close."""
+    return _miss(linkage, task, task.angles - linkage.body_angle, theta2, assembly)
 
 
 def at_poses(linkage: FourBar, task: MotionTask, theta2: FloatArray, assembly: IntArray) -> Targets:
@@ -178,7 +185,11 @@ def _miss(
 
 
 def _met(miss: FloatArray, task: MotionTask) -> bool:
-    return bool((miss.min(axis=0) <= (_EXACT * task.angle_length) ** 2).all())
+    return bool((miss.min(axis=0) <= _rounding(task)).all())
+
+
+def _rounding(task: MotionTask) -> float:
+    return (_EXACT * task.angle_length) ** 2
 
 
 def _descend(
@@ -211,8 +222,8 @@ def _scan(linkage: FourBar, task: MotionTask, theta3: FloatArray) -> tuple[Float
     lowest = np.argsort(np.where(valley, miss, np.inf).reshape(-1, len(task)), axis=0)[:_VALLEYS]
     angle, signs = around[lowest % len(around)], np.where(lowest < len(around), 1, -1)
     width = TURN / _SAMPLES * np.pi / 2  # no two samples lie farther apart
-    for _ in range(12):
-        tried = _into_ranges(ends, angle + width * np.linspace(-1, 1, 9)[:, None, None])
+    for look in (_BESIDE, *[9] * 11):
+        tried = _into_ranges(ends, angle + width * np.linspace(-1, 1, look)[:, None, None])
         nearest = np.argmin(_miss(linkage, task, theta3, tried, signs), axis=0)
         angle = np.take_along_axis(tried, nearest[None], axis=0)[0]
         width /= 4

@@ -63,22 +63,13 @@ def ordered_guesses(track: Track, targets: ComplexArray, *, middles: bool = Fals
 
     Notes
     -----
-    Dynamic programming over target and piece. A turn is cut open first at every few pieces, all cuts
-    at once, and then at every piece about the best of them.
+    Dynamic programming over target and piece.
     """
     squared, share, side = _distances(track, targets, middles)
     if not track.cyclic:
-        chosen, costs = _assigned(squared[:, :, None])
+        chosen, costs = assigned(squared[:, :, None])
         return [_guess(track, chosen[:, 0], share, side, float(costs[0]))] if np.isfinite(costs[0]) else []
-    count = squared.shape[1]
-    # One piece more than the turn has: the last target may repeat the first.
-    around = np.concatenate([squared, squared], axis=1)
-    windows = sliding_window_view(around, count + 1, axis=1)[:, :count].swapaxes(1, 2)
-    cuts = np.arange(0, count, _STRIDE)
-    cuts = _best_cuts(cuts, _least_costs(windows[:, :, cuts]))
-    cuts = np.unique((cuts[:, None] + np.arange(1 - _STRIDE, _STRIDE)) % count)
-    cuts = _best_cuts(cuts, _least_costs(windows[:, :, cuts]))
-    chosen, costs = _assigned(windows[:, :, cuts])
+    chosen, costs, cuts = assigned_around(squared)
     guesses: list[Guess] = []
     for number, cut in enumerate(cuts):
         guess = _guess(track, chosen[:, number] + cut, share, side, float(costs[number]))
@@ -159,8 +150,20 @@ def _least_costs(windows: FloatArray) -> FloatArray:
     return least
 
 
-def _assigned(windows: FloatArray) -> tuple[IntArray, FloatArray]:
-    """The pieces of the least sums: shape (N, C); and the sums, shape (C,)."""
+def assigned(windows: FloatArray) -> tuple[IntArray, FloatArray]:
+    """The pieces of the least sums over pieces that never go back.
+
+    Parameters
+    ----------
+    windows : ndarray, shape (N, L, C)
+        What N targets cost on L pieces, C times.
+
+    Returns
+    -------
+    ndarray of int, shape (N, C)
+    ndarray, shape (C,)
+        The sums.
+    """
     totals = np.empty(windows.shape)
     totals[0] = windows[0]
     for index, squared in enumerate(windows[1:], start=1):
@@ -172,6 +175,40 @@ def _assigned(windows: FloatArray) -> tuple[IntArray, FloatArray]:
         last = np.argmin(np.where(place <= last, totals[index], np.inf), axis=0)
         chosen[index] = last
     return chosen, totals[-1].min(axis=0)
+
+
+def assigned_around(squared: FloatArray) -> tuple[IntArray, FloatArray, IntArray]:
+    """The best assignments of targets to pieces of a turn, counted from where it is cut open.
+
+    Parameters
+    ----------
+    squared : ndarray, shape (N, M)
+        What N targets cost on M pieces of a turn.
+
+    Returns
+    -------
+    ndarray of int, shape (N, C)
+        Pieces, counted from the cut on: up to M, which is the first one again.
+    ndarray, shape (C,)
+        The sums, the least first.
+    ndarray of int, shape (C,)
+        The pieces that begin at the cuts.
+
+    Notes
+    -----
+    A turn is cut open first at every few pieces, all cuts at once, and then at every piece about the
+    best of them.
+    """
+    count = squared.shape[1]
+    # One piece more than the turn has: the last target may repeat the first.
+    around = np.concatenate([squared, squared], axis=1)
+    windows = sliding_window_view(around, count + 1, axis=1)[:, :count].swapaxes(1, 2)
+    cuts = np.arange(0, count, _STRIDE)
+    cuts = _best_cuts(cuts, _least_costs(windows[:, :, cuts]))
+    cuts = np.unique((cuts[:, None] + np.arange(1 - _STRIDE, _STRIDE)) % count)
+    cuts = _best_cuts(cuts, _least_costs(windows[:, :, cuts]))
+    chosen, costs = assigned(windows[:, :, cuts])
+    return chosen, costs, cuts
 
 
 def _best_cuts(cuts: IntArray, costs: FloatArray) -> IntArray:

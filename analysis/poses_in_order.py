@@ -9,12 +9,15 @@ import numpy as np
 from grashof.analysis.curve import ROUNDING, coupler_rates
 from grashof.analysis.descent import Model, lowest_in_order
 from grashof.analysis.mobility import driver_ranges, range_index, rotatability
-from grashof.analysis.motion import TURN, Targets, Way, at_poses, driver_way, valleys
+from grashof.analysis.motion import TURN, Targets, Way, at_poses, driver_way, misses, valleys
+from grashof.analysis.ordering import assigned, assigned_around
 from grashof.analysis.position import solve_position
 from grashof.problems import FourBar, MotionTask
 from grashof.problems.checks import FloatArray, IntArray
 
-LITTLE = np.pi / 4  # rad: the driver may seem to go back so far, between poses that nearly agree
+SAMPLES = 120  # of a turn of the driver, or of a range
+NEAR = 2.0  # times the least sum on the samples: such guesses are followed
+FREE = np.array(np.inf)
 
 
 def poses_in_order(linkage: FourBar, task: MotionTask, nearest: Targets, way: Way) -> tuple[Targets, Way]:
@@ -40,7 +43,8 @@ def poses_in_order(linkage: FourBar, task: MotionTask, nearest: Targets, way: Wa
 
     Notes
     -----
-    Dynamic programming over the valleys of the misses; then Newton's method in all angles.
+    Dynamic programming over driver angles, among them the bottoms of the valleys of the misses; then
+    Newton's method in all angles.
 
     Examples
     --------
@@ -53,70 +57,62 @@ def poses_in_order(linkage: FourBar, task: MotionTask, nearest: Targets, way: Wa
     >>> way.in_order, bool(targets.position_error.max() > 0)
     (True, True)
     """
-    best, least = None, np.inf
     own = np.full(len(task), int(linkage.assembly))
-    for sense in (1, -1):  # counted backwards, driver angles that fall grow
-        order = slice(None, None, sense)
-        model = _missed(linkage, task, own, sense)
-        for angle, miss, low, high in _by_range(linkage, task):
-            guess = _sequence(angle[:, order], miss[:, order], turns=not np.isfinite(low), step=task.size)
-            if guess is None:
-                continue
-            bounds = np.full((1, len(task)), -np.inf), np.full((1, len(task)), np.inf)
-            limits = np.full((1, len(task)), low), np.full((1, len(task)), high)
-            theta2, value = lowest_in_order(model, guess[None], bounds, limits)
-            if value.sum() < least * (1 - 1e-9) - (ROUNDING * task.size) ** 2:
-                best, least = theta2[0][order], float(value.sum())
-    if best is None:
+    found = list[tuple[FloatArray, float]]()
+    for places, miss, low, high in _by_range(linkage, task):
+        limits = np.full((1, len(task)), low), np.full((1, len(task)), high)
+        for sense in (1, -1):  # counted backwards, driver angles that fall grow
+            order = slice(None, None, sense)
+            guesses = _guesses(places, miss[order], turns=not np.isfinite(low))
+            theta2, value = lowest_in_order(
+                _missed(linkage, task, own, sense), guesses, (-FREE, FREE), limits
+            )
+            found += zip(theta2[:, order], value.sum(axis=1).tolist(), strict=True)
+    least = min((value for _, value in found), default=np.inf)
+    level = least * (1 + 1e-9) + len(task) * (ROUNDING * task.size) ** 2
+    best = [theta2 for theta2, value in found if value <= level < np.inf]
+    if not best:
         return nearest, way
-    ordered = driver_way(linkage, best, True)
-    return (at_poses(linkage, task, best, own), ordered) if ordered.in_order else (nearest, way)
+    shortest = min(best, key=lambda theta2: float(np.ptp(theta2)))
+    ordered = driver_way(linkage, shortest, True)
+    return (at_poses(linkage, task, shortest, own), ordered) if ordered.in_order else (nearest, way)
 
 
 def _by_range(linkage: FourBar, task: MotionTask) -> list[tuple[FloatArray, FloatArray, float, float]]:
-    """Valleys (K, N) and weighted misses on the own assembly, with the ends of each range of the driver."""
-    angle, signs, miss = valleys(linkage, task)
-    miss = np.where(signs == int(linkage.assembly), miss * task.weights, np.inf)
+    """Driver angles (M,) and weighted misses there (N, M), with the ends of each range of the driver."""
+    angle, signs, _ = valleys(linkage, task)
+    bottoms = angle[signs == int(linkage.assembly)]
+    ways = list[tuple[FloatArray, float, float]]()
     if (rotatability(linkage) >= 0).all():
-        return [(angle, miss, -np.inf, np.inf)]
-    index, inside = range_index(linkage, angle)
-    return [
-        (
-            np.where(index == number, inside, low),
-            np.where(index == number, miss, np.inf),
-            float(low),
-            float(high),
-        )
-        for number, (low, high) in enumerate(driver_ranges(linkage))
-        if high > low
-    ]
+        around = linkage.theta1 + np.linspace(0, TURN, SAMPLES, endpoint=False)
+        ways.append((np.concatenate([around, bottoms]) % TURN, -np.inf, np.inf))
+    else:
+        index, inside = range_index(linkage, bottoms)
+        share = (1 - np.cos(np.linspace(0, np.pi, SAMPLES))) / 2  # closer towards dead positions
+        ways += [
+            (np.concatenate([low + (high - low) * share, inside[index == number]]), float(low), float(high))
+            for number, (low, high) in enumerate(driver_ranges(linkage))
+            if high > low
+        ]
+    judged = []
+    for places, low, high in ways:
+        places = np.unique(places)
+        miss = misses(linkage, task, places[:, None], np.asarray(int(linkage.assembly)))
+        judged.append((places, (miss * task.weights).T, low, high))
+    return judged
 
 
-def _sequence(angle: FloatArray, miss: FloatArray, *, turns: bool, step: float) -> FloatArray | None:
-    """Growing driver angles (N,) through the valleys (K, N), of the least sum of misses and steps back."""
-    count, poses = angle.shape
-    begin = angle[:, 0] if turns else np.zeros(1)
-    gone = angle - begin[:, None, None]
-    if turns:  # a little before the first is no turn after it
-        gone = (gone + LITTLE) % TURN - LITTLE
-    cost = np.where(np.eye(count) > 0, miss[:, 0], np.inf) if turns else miss[None, :, 0]
-    before = np.zeros((len(begin), count, poses), dtype=np.int64)
-    for k in range(1, poses):
-        back = np.maximum(gone[:, :, None, k - 1] - gone[:, None, :, k], 0.0)
-        way = cost[:, :, None] + (step * back) ** 2
-        before[:, :, k] = way.argmin(axis=1)
-        cost = way.min(axis=1) + miss[None, :, k]
-    ends = cost + (ROUNDING * step) ** 2 * gone[:, :, -1]  # of equal ones the shortest
-    first, last = np.unravel_index(np.argmin(ends), ends.shape)
-    if not np.isfinite(cost[first, last]):
-        return None
-    chosen = [int(last)]
-    for k in range(poses - 1, 0, -1):
-        chosen.append(int(before[first, chosen[-1], k]))
-    sequence = gone[first, chosen[::-1], np.arange(poses)]
-    flat = (np.maximum.accumulate(sequence) + np.minimum.accumulate(sequence[::-1])[::-1]) / 2
-    guess: FloatArray = begin[first] + np.maximum.accumulate(flat)
-    return guess
+def _guesses(places: FloatArray, miss: FloatArray, *, turns: bool) -> FloatArray:
+    """Driver angles (K, N) among given ones (M,) that do not go back, of the least sums of misses (N, M)."""
+    if turns:
+        chosen, costs, cuts = assigned_around(miss)
+        chosen = chosen + cuts
+    else:
+        chosen, costs = assigned(miss[:, :, None])
+    turn, place = np.divmod(chosen, len(places))
+    near = np.isfinite(costs) & (costs <= NEAR * costs.min(initial=np.inf))
+    guesses: FloatArray = (places[place] + TURN * turn).T[near]
+    return guesses
 
 
 def _missed(

@@ -211,8 +211,11 @@ def _met(linkage: FourBar, task: Task, wanted: Requirements) -> tuple[Targets, W
         )
     targets = nearest_to_poses(linkage, task)
     way = driver_way(linkage, targets.theta2, wanted.order)
-    if wanted.order and not way.in_order and not (wanted.is_exact(task) and task.is_whole):
-        return poses_in_order(linkage, task, targets, way)
+    if wanted.order and not (wanted.is_exact(task) and task.is_whole):
+        branch = branch_index(linkage, targets.theta2, targets.assembly)
+        joined = (branch == branch[0]).all() and targets.assembly[0] == int(linkage.assembly)
+        if not way.in_order or (wanted.same_branch and not joined):
+            return poses_in_order(linkage, task, targets, way)
     return targets, way
 
 
@@ -327,7 +330,8 @@ def _geometry(linkage: FourBar, task: Task, wanted: Requirements) -> list[Defect
     arm = complex(*linkage.coupler_point)
     for name, value in (("A-P", abs(arm)), ("B-P", abs(arm - complex(linkage.r3)))):
         defects += _within("coupler_arms", name, value, wanted.coupler_arms, task.size)
-    ratio = float(linkage.lengths.max() / linkage.lengths.min())
+    shortest = float(linkage.lengths.min())
+    ratio = float(linkage.lengths.max()) / shortest if shortest > 0 else np.inf
     if ratio > wanted.link_ratio_max * (1 + SLACK):
         miss = ratio / wanted.link_ratio_max - 1
         allowed = f"up to {wanted.link_ratio_max:g}"

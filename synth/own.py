@@ -13,6 +13,7 @@ from grashof.problems import ProblemError
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
 
+NEAREST = 8  # starts that are tried for the closest miss
 WRONG = (TypeError, ValueError, AttributeError, IndexError, KeyError, RuntimeError, NotImplementedError)
 
 
@@ -39,6 +40,16 @@ def mended(setup: Setup, starts: list[Start]) -> list[Start]:
     return [
         start if _met(setup, start) else replace(start, radius=np.inf, stay=setup.exact, settled=False)
         for start in starts
+    ]
+
+
+def relaxed(setup: Setup, starts: list[Start]) -> list[Start]:
+    """The first few starts, free to come as near to the user's constraints as they can."""
+    if not setup.constraints:
+        return []
+    return [
+        replace(start, radius=np.inf, stay=False, settled=False, relaxed=("constraints",))
+        for start in starts[:NEAREST]
     ]
 
 
@@ -79,7 +90,9 @@ def _try_on_symbols(constraint: Constraint, targets: int) -> None:
     try:
         value = constraint(design)
         for one in value if isinstance(value, (list, tuple)) else [value]:
-            ca.SX(one)
+            parts = ca.vec(ca.SX(one))
+            if any(parts[k].is_constant() and not parts[k].is_regular() for k in range(parts.numel())):
+                raise ValueError("its value is not a number")  # float() of a symbol
     except WRONG as error:
         raise ProblemError(
             f"constraint {name_of(constraint)} fails on symbols: {error}; {allowed}"

@@ -82,7 +82,7 @@ def _new_curves(setup: Setup, starts: list[Start], curves: list[ComplexArray]) -
 
     Cognates pass them by the same way; they are added to every design afterwards.
     """
-    new = []
+    new = list[Start]()
     for start in starts:
         order = np.argsort(start.visit)
         p, turned = start.track[2][order], np.array(start.theta3)[order] + start.body_angle

@@ -20,6 +20,7 @@ from grashof.problems.checks import whole_number
 from grashof.synth import exact_poses, paths
 from grashof.synth.attempt import Attempt, attempt
 from grashof.synth.own import mended, refuse_unusable
+from grashof.synth.own import relaxed as relaxed_own
 from grashof.synth.result import Candidate, Result, ranked
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
@@ -161,7 +162,8 @@ def _search(
                 break
         nearest: tuple[Candidate, ...] = ()
         if not found.best and complete:
-            nearest = _nearest(solve(setup, finder.relaxed_starts(setup, rng), found.solved))
+            relaxed = finder.relaxed_starts(setup, rng) + relaxed_own(setup, made.starts)
+            nearest = _nearest(solve(setup, relaxed, found.solved))
             nearest = nearest or _nearest(found.rejected)
             nearest += _approximate(setup, search, ended)
             if setup.motion is not None:

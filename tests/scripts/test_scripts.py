@@ -35,6 +35,27 @@ def test_benchmark_measures(tmp_path: Path) -> None:
     assert "five poses, 100 random sets" in said
 
 
+def test_own_task_holds_its_own_constraints(tmp_path: Path) -> None:
+    said = run("own_task.py", "mine.csv", cwd=tmp_path)
+    table = pd.read_csv(tmp_path / "mine.csv")
+    assert len(table) >= 10
+    assert (np.abs(table["o2_y"] - table["o4_y"]) <= 0.1 + 1e-8).all()
+    assert (table["r2"] <= table["r3"] / 3 + 1e-8).all()
+    assert (table["transmission_min_task_deg"] >= 30 - 1e-6).all()
+    assert table[["r1", "r2", "r3", "r4"]].min(axis=None) >= 0.2 - 1e-8
+    assert table[["r1", "r2", "r3", "r4"]].max(axis=None) <= 10 + 1e-8
+    assert (table["error_max"] < 1e-9).all()
+    assert len(said.splitlines()) == 11  # a heading and the ten best
+    # The poses again, from the numbers of the table alone: A and B stay on their circles.
+    turn = np.radians([0, 20, 50])[:, None] - np.radians(table["body_angle_deg"].to_numpy())
+    coupler, p = np.exp(1j * turn), np.array([0, 2 + 1j, 3 + 3j])[:, None]
+    a = p - (table["p_u"] + 1j * table["p_v"]).to_numpy() * coupler
+    b = a + table["r3"].to_numpy() * coupler
+    for places, side, length in ((a, "o2", "r2"), (b, "o4", "r4")):
+        pivot = (table[f"{side}_x"] + 1j * table[f"{side}_y"]).to_numpy()
+        np.testing.assert_allclose(np.abs(places - pivot), np.tile(table[length], (3, 1)), atol=1e-9)
+
+
 def test_an_analysis_module_beside_the_script_does_no_harm(tmp_path: Path) -> None:
     (tmp_path / "analysis.py").write_text("raise RuntimeError('not this one')\n")
     (tmp_path / "mine.py").write_text("import grashof.analysis\nprint(grashof.analysis.verify.__name__)\n")

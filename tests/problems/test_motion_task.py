@@ -1,0 +1,213 @@
+"""Poses with free parts, weights, and how much of them linkages can be expected to meet."""
+
+import pickle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grashof.problems import MotionTask, ProblemError, Requirements, load
+
+WHOLE, PLACE, TURNED = "whole", "place", "turned"
+MIXED: list[Any] = [[5, 4, 0], {"x": 3, "y": 4}, {"angle": -5}, {"x": 1, "y": 0, "angle": 365}]
+
+
+def mixed_task(kinds: list[str]) -> MotionTask:
+    """Poses that all differ, with what their kind says."""
+    rows: list[dict[str, float]] = []
+    for k, kind in enumerate(kinds):
+        row: dict[str, float] = {} if kind == TURNED else {"x": k, "y": k * k}
+        rows.append(row | ({} if kind == PLACE else {"angle": 7.0 * k}))
+    return MotionTask.from_degrees(rows, angle_length=1.0)
+
+
+def test_a_table_leaves_parts_free() -> None:
+    task = MotionTask.from_degrees(MIXED)
+    assert task.has_position.tolist() == [True, True, False, True]
+    assert task.has_angle.tolist() == [True, False, True, True]
+    assert not task.is_whole
+    np.testing.assert_array_equal(task.positions, [[5, 4], [3, 4], [np.nan, np.nan], [1, 0]])
+    np.testing.assert_allclose(task.angles, np.radians([0, np.nan, -5, 365]), rtol=1e-15)
+    assert MotionTask.from_degrees([MIXED[0], MIXED[3]]).is_whole
+
+
+def test_the_size_is_that_of_the_positions_given() -> None:
+    task = MotionTask.from_degrees(MIXED)
+    assert task.size == task.angle_length == pytest.approx(np.sqrt(32), rel=1e-15)
+    lone = MotionTask.from_degrees([{"x": 1, "y": 1}, {"angle": 3}], angle_length=4)
+    assert lone.size == 4
+    with pytest.raises(ProblemError, match=r"^motion.angle_length is missing"):
+        MotionTask.from_degrees([{"x": 1, "y": 1}, {"angle": 3}])
+
+
+def test_weights_are_kept_and_are_one_by_default() -> None:
+    assert MotionTask.from_degrees(MIXED).weights.tolist() == [1, 1, 1, 1]
+    task = MotionTask.from_degrees(MIXED, weights=[1, 2, 0.5, 3])
+    assert task.weights.tolist() == [1, 2, 0.5, 3]
+    with pytest.raises(ValueError, match="read-only"):
+        task.weights[0] = 9
+
+
+def test_a_task_with_free_parts_pickles() -> None:
+    task = MotionTask.from_degrees(MIXED, weights=[1, 2, 3, 4], angle_length=2)
+    twin = pickle.loads(pickle.dumps(task))
+    for name in ("positions", "angles", "weights"):
+        np.testing.assert_array_equal(getattr(twin, name), getattr(task, name))
+    assert (twin.angle_length, twin.body) == (2, None)
+
+
+# Unknowns: ten of the linkage and its body, nine without a body angle, and a driver angle for every
+# pose. Equations: two for a position, one for an angle (Brake et al. 2016, Alt-Burmester problems).
+@pytest.mark.parametrize(
+    ("kinds", "exact"),
+    [
+        ([WHOLE] * 2, True),
+        ([WHOLE] * 5, True),
+        ([WHOLE] * 6, False),
+        ([PLACE] * 9, True),
+        ([PLACE] * 10, False),
+        ([TURNED] * 14 + [PLACE], True),  # angles take no more than the driver angles give
+        ([WHOLE] * 4 + [PLACE] * 2, True),
+        ([WHOLE] * 4 + [PLACE] * 3, False),
+        ([WHOLE] * 3 + [PLACE] * 4, True),
+        ([WHOLE] * 3 + [PLACE] * 5, False),
+        ([WHOLE] + [PLACE] * 8, True),
+        ([WHOLE] + [PLACE] * 9, False),
+        ([WHOLE] * 5 + [TURNED], True),
+        ([WHOLE] * 5 + [PLACE], False),
+    ],
+)
+def test_exact_as_long_as_unknowns_are_enough(kinds: list[str], exact: bool) -> None:
+    task = mixed_task(kinds)
+    assert task.exact_by_default is exact
+    assert Requirements().is_exact(task) is exact
+    assert Requirements(exact=not exact).is_exact(task) is not exact
+
+
+@given(st.lists(st.sampled_from([WHOLE, PLACE, TURNED]), min_size=2, max_size=12))
+@settings(derandomize=True, deadline=None)
+def test_exact_is_the_count_of_unknowns_and_equations(kinds: list[str]) -> None:
+    if set(kinds) == {TURNED}:
+        return
+    unknowns = 2 + 2 + 3 + 2 + len(kinds) + (set(kinds) != {PLACE})  # pivots, links, P, driver, body
+    equations = sum({WHOLE: 3, PLACE: 2, TURNED: 1}[kind] for kind in kinds)
+    assert mixed_task(kinds).exact_by_default is (equations <= unknowns)
+
+
+BAD_POSES: list[tuple[Any, str]] = [
+    ("poses", r"motion.poses is 'poses'; allowed is a list of poses"),
+    ({"x": 1}, r"motion.poses is \{'x': 1\}; allowed is a list of poses"),
+    (5, r"motion.poses is 5; allowed is a list of poses"),
+    ([[0, 0, 0], "abc"], r"motion.poses\[1\] is 'abc'; allowed is a pose \[x, y, angle in degrees\]"),
+    ([[0, 0, 0], 3], r"motion.poses\[1\] is 3; allowed is a pose \[x, y, angle in degrees\]"),
+    ([[0, 0, 0], [1, 2, "3"]], r"motion.poses\[1\]\[2\] is '3'; allowed is a finite number"),
+    ([[0, 0, 0], [1, 2, True]], r"motion.poses\[1\]\[2\] is True; allowed is a finite number"),
+    ([[0, 0, 0], {"x": 1, "y": 2, "angel": 3}], r"motion.poses\[1\].angel is unknown; did you mean angle\?"),
+    ([[0, 0, 0], {"q": 3}], r"motion.poses\[1\].q is unknown; allowed are x, y, angle"),
+    ([[0, 0, 0], {"x": 1, "angle": 3}], r"motion.poses\[1\] has one of x and y; allowed are both or neither"),
+    ([[0, 0, 0], {"y": 1}], r"motion.poses\[1\] has one of x and y; allowed are both or neither"),
+    ([[0, 0, 0], {}], r"motion.poses\[1\] has neither position nor angle"),
+    ([[0, 0, 0], {"angle": np.nan}], r"motion.poses\[1\].angle is nan; .*"),
+    ([[0, 0, 0], {"x": np.inf, "y": 0}], r"motion.poses\[1\].x is inf; .*"),
+    (
+        [{"angle": 3}, {"angle": 4}],
+        "motion.poses has no position; allowed are poses of which one has x and y",
+    ),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("poses", "message"), BAD_POSES)
+def test_bad_tables(poses: Any, message: str) -> None:
+    with pytest.raises(ProblemError, match=rf"^{message}$"):
+        MotionTask.from_degrees(poses, angle_length=1.0)
+
+
+BAD_ARRAYS: list[tuple[Any, Any, str]] = [
+    ([1, 2], [0, 1], r"motion.poses has positions of shape \(2,\); allowed is \(N, 2\)"),
+    ([[1, 2, 3]] * 2, [0, 1], r"motion.poses has positions of shape \(2, 3\); allowed is \(N, 2\)"),
+    ([[1, 2], [1]], [0, 1], r"motion.poses has positions .*; allowed are numbers"),
+    ([[1, 2], [1, np.inf]], [0, 1], r"motion.poses has positions that are infinite; .*"),
+    ([[1, 2], [3, 4]], [[0], [1]], r"motion.poses has 2 positions and angles of shape \(2, 1\)"),
+    ([[1, 2], [3, np.nan]], [0, 1], r"motion.poses\[1\] has one of x and y; allowed are both or neither"),
+]
+
+
+@pytest.mark.parametrize(("positions", "angles", "message"), BAD_ARRAYS)
+def test_bad_arrays(positions: Any, angles: Any, message: str) -> None:
+    with pytest.raises(ProblemError, match=rf"^{message}$"):
+        MotionTask(positions, angles)
+
+
+BAD_WEIGHTS: list[tuple[Any, str]] = [
+    ([1, 2, 3], "motion.weights has 3 numbers for 4 poses"),
+    ([1, 1, 0, 1], r"motion.weights\[2\] is 0; allowed is a number greater than zero"),
+    ([1, -1, 1, 1], r"motion.weights\[1\] is -1; allowed is a number greater than zero"),
+    ([1, 1, 1, np.nan], r"motion.weights\[3\] is nan; allowed is a number greater than zero"),
+    ([np.inf, 1, 1, 1], r"motion.weights\[0\] is inf; allowed is a number greater than zero"),
+    ("1111", r"motion.weights is '1111'; allowed is a list of numbers"),
+    ([[1], [1, 2]], r"motion.weights is .*; allowed is a list of numbers"),
+    ([[1, 1, 1, 1]], r"motion.weights is .*; allowed is a list of numbers"),
+    ([True, True, True, True], r"motion.weights is .*; allowed is a list of numbers"),
+]
+
+
+@pytest.mark.parametrize(("weights", "message"), BAD_WEIGHTS)
+def test_bad_weights(weights: Any, message: str) -> None:
+    with pytest.raises(ProblemError, match=rf"^{message}$"):
+        MotionTask.from_degrees(MIXED, weights=weights)
+
+
+def test_what_is_free_on_either_side_is_no_standing_still() -> None:
+    rows: list[Any] = [{"x": 1, "y": 1}, {"angle": 5}, {"x": 1, "y": 1}, {"x": 1, "y": 1, "angle": 5}]
+    task = MotionTask.from_degrees(rows, angle_length=1.0)
+    assert len(task) == 4
+    # The body may come back to an angle, somewhere else.
+    assert len(MotionTask.from_degrees([[0, 0, 0], {"angle": 3}, {"angle": 363}], angle_length=1.0)) == 3
+
+
+FILE = """\
+kind = "motion"
+
+[motion]
+poses = [[5, 4, 0], { x = 3.5, y = 4 }, { angle = -5 }, { x = 1, y = 0, angle = 20 }]
+weights = [1, 2, 0.5, 4]
+angle_length = 2.5
+"""
+
+
+def test_a_file_states_free_parts_and_weights(tmp_path: Path) -> None:
+    path = tmp_path / "mixed.toml"
+    path.write_text(FILE)
+    found, stated = (
+        load(path).task,
+        MotionTask.from_degrees(
+            [[5, 4, 0], {"x": 3.5, "y": 4}, {"angle": -5}, [1, 0, 20]],
+            weights=[1, 2, 0.5, 4],
+            angle_length=2.5,
+        ),
+    )
+    assert isinstance(found, MotionTask)
+    for name in ("positions", "angles", "weights", "angle_length"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(stated, name))
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        (("{ angle = -5 }", "{ angel = -5 }"), "motion.poses[2].angel is unknown; did you mean angle?"),
+        (("{ angle = -5 }", "{}"), "motion.poses[2] has neither position nor angle"),
+        (("{ angle = -5 }", "{ x = 5 }"), "motion.poses[2] has one of x and y; allowed are both or neither"),
+        (("[1, 2, 0.5, 4]", "[1, 2]"), "motion.weights has 2 numbers for 4 poses"),
+        (("0.5", "0"), "motion.weights[2] is 0.0; allowed is a number greater than zero"),
+        (("0.5", '"heavy"'), "motion.weights[2] is 'heavy'; allowed is a number"),
+    ],
+)  # fmt: skip
+def test_a_wrong_file_is_told_by_its_key(tmp_path: Path, wrong: tuple[str, str], message: str) -> None:
+    path = tmp_path / "mixed.toml"
+    path.write_text(FILE.replace(*wrong))
+    with pytest.raises(ProblemError) as refused:
+        load(path)
+    assert str(refused.value).endswith(message)
