@@ -96,7 +96,7 @@ def over_task(linkage: FourBar, problem: Problem, verdict: Verdict) -> OverTask:
     >>> problem = Problem(task=task, length_unit="m", dynamics=DynamicsSpec(mass_per_length=2.0))
     >>> found = over_task(linkage, problem, verify(linkage, task, problem.requirements))
     >>> round(found.omega4_max, 6), round(found.coupler_fit_r2, 6), round(found.torque_peak, 3)
-    (0.0, 0.0, 0.0)
+    (1.260659, 0.999996, 2.757)
     """
     if not verdict.branch_ok:
         return _NONE

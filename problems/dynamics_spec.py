@@ -40,8 +40,8 @@ class DynamicsSpec:
 
     Examples
     --------
-    >>> DynamicsSpec(mass_per_length=2.0, speed_rpm=30).omega2.round(6)
-    np.float64(3.141593)
+    >>> round(DynamicsSpec(mass_per_length=2.0, speed_rpm=30).omega2, 6)
+    3.141593
     """
 
     mass_per_length: float | None

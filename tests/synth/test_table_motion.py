@@ -31,8 +31,8 @@ def test_figures_make_sense(frame: pd.DataFrame, luggage_result: Result) -> None
     seconds = np.radians(frame["theta2_end_deg"] - frame["theta2_start_deg"]).abs()
     assert (frame["point_speed_max"] >= way / seconds).all()
     assert (frame["torque_peak"] >= frame["torque_rms"]).all()
-    # The links sink by 9.81 times their mass at most so fast.
-    assert (frame["joint_force_peak"] > 0.5 * 9.81 * 0.4308 / 2).all()
+    # O2 and O4 carry all links, and the system's centre is not in free fall all the way.
+    assert (frame["joint_force_peak"] > 1.0).all()
     assert frame["coupler_fit_r2"].between(0.99, 1).all()
 
 
