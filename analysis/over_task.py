@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.polynomial import legendre
 
-from grashof.analysis.dynamics import inverse_dynamics
+from grashof.analysis.dynamics import Dynamics, inverse_dynamics
 from grashof.analysis.fit import coupler_fit_r2
 from grashof.analysis.kinematics import Kinematics, solve_kinematics
 from grashof.analysis.loads import Joint, Loads
-from grashof.analysis.mass import Masses, stated_masses
+from grashof.analysis.mass import stated_masses
 from grashof.analysis.position import solve_position
 from grashof.analysis.verify import Verdict
 from grashof.problems import DeadPositionWarning, DynamicsSpec, FourBar, PathTask, Problem, Task
@@ -98,11 +98,10 @@ def over_task(linkage: FourBar, problem: Problem, verdict: Verdict) -> OverTask:
     >>> round(found.omega4_max, 6), round(found.coupler_fit_r2, 6), round(found.torque_peak, 3)
     (1.260659, 0.999996, 2.757)
     """
-    if not verdict.branch_ok:
-        return _NONE
+    linkage = _as_used(linkage, verdict)
     start, end = motion_ends(problem.task, verdict)
     theta2 = _sampled(linkage, start, end)
-    if np.isnan(solve_position(linkage, theta2[1:-1]).theta3).any():
+    if not _joined(linkage, verdict, theta2):
         return _NONE
     spec = problem.dynamics
     with warnings.catch_warnings():
@@ -112,13 +111,10 @@ def over_task(linkage: FourBar, problem: Problem, verdict: Verdict) -> OverTask:
             forces: dict[str, float] = {}
         else:
             metre = metres(problem.length_unit)
-            driven = _driven(linkage, spec, metre)
-            peaks = _peaks(driven, theta2)
-            square = (
-                mean_over(lambda angle: driven(angle)[3] ** 2, start, end)
-                if np.isfinite(peaks[3])
-                else np.inf
-            )
+            peaks, square = _peaks(_driven(linkage, spec, metre), theta2), np.inf
+            if np.isfinite(peaks[3]):
+                torque = _torque(linkage, spec, metre)
+                square = mean_over(lambda angle: torque(angle) ** 2, start, end)
             forces = {
                 "torque_peak": float(peaks[3]),
                 "torque_rms": float(np.sqrt(square)),
@@ -136,15 +132,27 @@ def over_task(linkage: FourBar, problem: Problem, verdict: Verdict) -> OverTask:
 def torque_peak(linkage: FourBar, problem: Problem, verdict: Verdict) -> float:
     """The drive torque's greatest magnitude as `over_task` has it, N m; NaN without dynamics."""
     spec = problem.dynamics
-    if spec is None or not verdict.branch_ok:
+    if spec is None:
         return np.nan
+    linkage = _as_used(linkage, verdict)
     theta2 = _sampled(linkage, *motion_ends(problem.task, verdict))
-    if np.isnan(solve_position(linkage, theta2[1:-1]).theta3).any():
+    if not _joined(linkage, verdict, theta2):
         return np.nan
-    driven = _driven(linkage, spec, metres(problem.length_unit))
+    torque = _torque(linkage, spec, metres(problem.length_unit))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeadPositionWarning)
-        return float(_peaks(lambda angle: driven(angle)[3:4], theta2)[0])
+        return float(_peaks(lambda angle: torque(angle)[None], theta2)[0])
+
+
+def _as_used(linkage: FourBar, verdict: Verdict) -> FourBar:
+    """The linkage on the assembly on which it meets the first target."""
+    used = np.asarray(verdict.assembly[0], dtype=np.float64)
+    return linkage if used == linkage.assembly else replace(linkage, assembly=used)
+
+
+def _joined(linkage: FourBar, verdict: Verdict, theta2: FloatArray) -> bool:
+    """Whether a motion joins the targets; at its very ends rounding may open the loop."""
+    return verdict.branch_ok and not np.isnan(solve_position(linkage, theta2[1:-1]).theta3).any()
 
 
 def motion_ends(task: Task, verdict: Verdict) -> tuple[float, float]:
@@ -201,16 +209,37 @@ def _speeds(state: Kinematics) -> list[FloatArray]:
 
 def _driven(linkage: FourBar, spec: DynamicsSpec, metre: float) -> Curves:
     """Speeds, |torque| in N m, and the greatest joint force in N, each a row."""
-    masses: Masses = stated_masses(linkage, spec)
-    loads = Loads(gravity=np.array(spec.gravity) / metre)
+    run = _run(linkage, spec, metre)
 
     def curves(theta2: FloatArray) -> FloatArray:
-        state = solve_kinematics(linkage, theta2, spec.omega2)
-        found = inverse_dynamics(state, masses, loads)
+        state, found = run(theta2)
         force = np.max([found.joint_force(joint) for joint in Joint], axis=0)
         return np.stack([*_speeds(state), metre**2 * np.abs(found.torque), metre * force])
 
     return curves
+
+
+def _torque(linkage: FourBar, spec: DynamicsSpec, metre: float) -> Curves:
+    """|torque| in N m."""
+    run = _run(linkage, spec, metre)
+
+    def curve(theta2: FloatArray) -> FloatArray:
+        torque: FloatArray = metre**2 * np.abs(run(theta2)[1].torque)
+        return torque
+
+    return curve
+
+
+def _run(
+    linkage: FourBar, spec: DynamicsSpec, metre: float
+) -> Callable[[FloatArray], tuple[Kinematics, Dynamics]]:
+    masses, loads = stated_masses(linkage, spec), Loads(gravity=np.array(spec.gravity) / metre)
+
+    def run(theta2: FloatArray) -> tuple[Kinematics, Dynamics]:
+        state = solve_kinematics(linkage, theta2, spec.omega2)
+        return state, inverse_dynamics(state, masses, loads)
+
+    return run
 
 
 def _sampled(linkage: FourBar, start: float, end: float) -> FloatArray:

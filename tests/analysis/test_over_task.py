@@ -181,6 +181,20 @@ def test_a_closed_path_takes_a_whole_turn() -> None:
         assert getattr(found, name) == pytest.approx(value, rel=1e-6), name
 
 
+def test_the_motion_is_on_the_assembly_that_meets_the_targets() -> None:
+    """Asked for on either branch, the task is met by the linkage assembled the other way."""
+    mirrored = replace(CRANK_ROCKER, assembly=-1)
+    problem, verdict = judged(mirrored, [0.3, 1.0, 2.5])
+    free = replace(ANY, same_branch=False)
+    other = verify(CRANK_ROCKER, problem.task, free)
+    assert other.assembly.tolist() == [-1, -1, -1]
+    assert other.ok
+    found, expected = over_task(CRANK_ROCKER, problem, other), over_task(mirrored, problem, verdict)
+    for name in (*KINEMATICS, *DYNAMICS):
+        assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-9), name
+    assert torque_peak(CRANK_ROCKER, problem, other) == pytest.approx(expected.torque_peak, rel=1e-9)
+
+
 def test_no_motion_no_figures() -> None:
     """A dead position lies between the targets."""
     problem, verdict = judged(CRANK_ROCKER, [0.3, 1.0, 2.5])
