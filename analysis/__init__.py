@@ -29,6 +29,7 @@ from grashof.analysis.mass import (
     Body,
     Masses,
     given_masses,
+    stated_masses,
     system_centre,
     triangular_plate,
     uniform_bar,
@@ -45,6 +46,7 @@ from grashof.analysis.mobility import (
     triple_rocker_kind,
 )
 from grashof.analysis.newton_raphson import NewtonPosition, newton_position
+from grashof.analysis.over_task import OverTask, over_task
 from grashof.analysis.position import Position, solve_position
 from grashof.analysis.shape import BestCircle, BestLine, best_circle, best_line, circularity, straightness
 from grashof.analysis.stroke import OutputStroke, output_stroke
@@ -83,6 +85,7 @@ __all__ = [
     "NewtonPosition",
     "NotAFunctionWarning",
     "OutputStroke",
+    "OverTask",
     "PointMotion",
     "PolynomialFit",
     "Position",
@@ -124,6 +127,7 @@ __all__ = [
     "newton_interpolation",
     "newton_position",
     "output_stroke",
+    "over_task",
     "reach_box",
     "regression",
     "robustness",
@@ -133,6 +137,7 @@ __all__ = [
     "solve_kinematics",
     "solve_position",
     "spline",
+    "stated_masses",
     "straightness",
     "system_centre",
     "transmission_angle",

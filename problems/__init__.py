@@ -1,5 +1,6 @@
 """What is asked: tasks, requirements, the linkage as a value, and the catalogue of problems."""
 
+from grashof.problems.dynamics_spec import DynamicsSpec
 from grashof.problems.errors import (
     AssemblyError,
     DeadPositionWarning,
@@ -22,6 +23,7 @@ __all__ = [
     "AssemblyError",
     "Box",
     "DeadPositionWarning",
+    "DynamicsSpec",
     "FourBar",
     "GrashofError",
     "GrashofWarning",

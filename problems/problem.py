@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from grashof.problems.checks import FloatArray, finite_number, outline, whole_number
+from grashof.problems.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.errors import ProblemError
 from grashof.problems.manufacturing import Manufacturing
 from grashof.problems.requirements import Requirements
@@ -75,6 +76,8 @@ class Problem:
         The scene: drawn, no constraint.
     manufacturing : Manufacturing, optional
         How exactly linkages are made; without it nothing is said about made ones.
+    dynamics : DynamicsSpec, optional
+        Masses, speed and gravity; without it nothing is said about torque and forces.
     """
 
     task: Task
@@ -87,8 +90,11 @@ class Problem:
     length_unit: str = ""
     outlines: tuple[FloatArray, ...] = ()
     manufacturing: Manufacturing | None = None
+    dynamics: DynamicsSpec | None = None
 
     def __post_init__(self) -> None:
+        if self.dynamics is not None:
+            metres(self.length_unit)  # refuses one that is not known
         checked = tuple(
             outline(corners, f"scene.outlines[{index}]") for index, corners in enumerate(self.outlines)
         )

@@ -24,6 +24,7 @@ from pydantic import (
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from grashof.problems.checks import FloatArray, counted, near_miss, outline
+from grashof.problems.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.errors import ProblemError
 from grashof.problems.manufacturing import Manufacturing
 from grashof.problems.motion_task import MotionTask
@@ -248,6 +249,19 @@ class ManufacturingTable(_Table):
         return Manufacturing(self.length_tolerance, self.band)
 
 
+class DynamicsTable(_Table):
+    speed_rpm: float | None = None
+    gravity: Annotated[list[float], _listed("[x, y] in m/s2")] | None = None
+    mass_per_length: float | None = None
+    masses: Annotated[list[float], _listed("[m2, m3, m4]")] | None = None
+    inertias: Annotated[list[float], _listed("[I2, I3, I4]")] | None = None
+    payload: float | None = None
+
+    def value(self) -> DynamicsSpec:
+        given: dict[str, Any] = {key: getattr(self, key) for key in self.model_fields_set}
+        return DynamicsSpec(**given)
+
+
 class SearchTable(_Table):
     starts: int | None = None
     enough: int | None = None
@@ -268,6 +282,7 @@ class ProblemFile(_Table):
     scene: SceneTable = SceneTable()
     requirements: RequirementsTable = RequirementsTable()
     objective: ObjectiveTable = ObjectiveTable()
+    dynamics: DynamicsTable | None = None
     manufacturing: ManufacturingTable | None = None
     search: SearchTable = SearchTable()
 
@@ -279,6 +294,8 @@ class ProblemFile(_Table):
                 raise ProblemError(f'{other} does not belong to kind = "{self.kind}"')
         if mine is None:
             raise ProblemError(f"{self.kind} is missing")
+        if self.dynamics is not None:
+            metres(self.length_unit)
         return mine.value()
 
     def problem(self, name: str) -> Problem:
@@ -291,6 +308,7 @@ class ProblemFile(_Table):
             outlines=self.scene.value(),
             requirements=self.requirements.value(),
             objective=self.objective.value(),
+            dynamics=None if self.dynamics is None else self.dynamics.value(),
             manufacturing=None if self.manufacturing is None else self.manufacturing.value(),
             search=self.search.value(),
         )
@@ -308,6 +326,7 @@ _TABLES: dict[str, type[_Table]] = {
     "requirements.b": BoxTable,
     "objective": ObjectiveTable,
     "objective.maximise": WeightsTable,
+    "dynamics": DynamicsTable,
     "manufacturing": ManufacturingTable,
     "search": SearchTable,
 }
@@ -315,7 +334,6 @@ _TABLES: dict[str, type[_Table]] = {
 # Keys of the contract that are not built yet. They are no fields of the tables above, so that a table
 # holds only what does something.
 _LATER = {
-    "dynamics",
     "objective.maximise.torque",
 }
 

@@ -12,11 +12,18 @@ import numpy as np
 
 from grashof import synthesize
 from grashof.draw import draw_design, save
-from grashof.problems import MotionTask, Problem, Requirements, Rotatability, TransmissionOver
+from grashof.problems import (
+    DynamicsSpec,
+    MotionTask,
+    Problem,
+    Requirements,
+    Rotatability,
+    TransmissionOver,
+)
 
 
 def luggage() -> Problem:
-    """The problem: poses [x, y, angle in degrees], what is carried, and what a design must satisfy."""
+    """The problem: poses [x, y, angle in degrees], what is carried, what a design must satisfy, masses."""
     task = MotionTask.from_degrees(
         [[5, 4, 0], [3.5, 4, -5], [2, 3, -5], [1, 0, 0]],
         body=[[0, 0], [1, 0], [1, 1], [0, 1]],
@@ -28,12 +35,18 @@ def luggage() -> Problem:
         link_length=(0.3, 8),
         coupler_arms=(0.3, 8),
     )
+    dynamics = DynamicsSpec(
+        masses=[0.3764, 0.4762, 0.4308],  # kg: links 2, 3 and 4
+        inertias=[0.3282, 0.6646, 0.4920],  # kg m2, about their centres
+        gravity=[0, -9.81],
+    )
     return Problem(
         name="luggage",
         title="Luggage over a staircase",
         length_unit="m",
         task=task,
         requirements=requirements,
+        dynamics=dynamics,
         outlines=(np.array([[0, 0], [5, 0], [5, 4], [8, 4]]),),
     )
 

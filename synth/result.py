@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from typing import TYPE_CHECKING
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from grashof.analysis import Verdict
+from grashof.analysis.over_task import torque_peak
 from grashof.problems import FourBar, NoSolutionError, Objective, Problem, TransmissionOver
 from grashof.problems.checks import BoolArray, FloatArray
 from grashof.synth.distinct import DISTINCT, pick_apart, signature
@@ -133,20 +134,35 @@ def ranked(problem: Problem, candidates: list[Candidate]) -> tuple[Candidate, ..
     return tuple(candidates[i] for i in pick_apart(signatures, score, DISTINCT, len(candidates)))
 
 
-def pareto_optimal(problem: Problem, candidates: tuple[Candidate, ...]) -> BoolArray:
-    """Which candidates no other one beats in error, worst transmission and size; shape (n,).
+def pareto_optimal(
+    problem: Problem, candidates: tuple[Candidate, ...], torque: Sequence[float] | None = None
+) -> BoolArray:
+    """Which candidates no other one beats in error, worst transmission, size and torque; shape (n,).
 
-    Errors up to 1e-9 sizes are exact and count as equal.
+    Errors up to 1e-9 sizes are exact and count as equal. The torque is the greatest on the task
+    when the problem has dynamics; where it is not known it counts as infinite.
+
+    Parameters
+    ----------
+    problem : Problem
+    candidates : tuple of Candidate
+    torque : sequence of float, N m, optional
+        Their `torque_peak`, where it is known already.
     """
     over = problem.requirements.transmission_over
+    if problem.dynamics is None:
+        torque = [0.0] * len(candidates)
+    elif torque is None:
+        torque = [torque_peak(candidate.linkage, problem, candidate.verdict) for candidate in candidates]
     costs = np.array([
         (
             max(candidate.verdict.error_rms / problem.task.size, 1e-9),
             -candidate.transmission(over),
             candidate.verdict.size,
+            np.inf if np.isnan(peak) else peak,
         )
-        for candidate in candidates
-    ]).reshape(-1, 3)  # fmt: skip
+        for candidate, peak in zip(candidates, torque, strict=True)
+    ]).reshape(-1, 4)  # fmt: skip
     no_worse = (costs[:, None] <= costs[None]).all(axis=2)
     better = (costs[:, None] < costs[None]).any(axis=2)
     beaten: BoolArray = np.any(no_worse & better, axis=0)

@@ -7,16 +7,20 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from grashof.analysis import robustness
+from grashof.analysis import over_task, robustness
 from grashof.analysis.tolerance import DIMENSIONS
 from grashof.problems import Problem
 from grashof.synth.result import Candidate, pareto_optimal
 
+# Of the motion from the first target to the last.
+MOTION = ("omega4_max", "point_speed_max", "point_acceleration_max", "coupler_fit_r2")
+# The same, filled when the problem has dynamics.
+DYNAMICS = ("torque_peak", "torque_rms", "joint_force_peak")
 # Filled when the problem says how exactly linkages are made.
 MANUFACTURING = (
     *(f"move_{name}" for name in DIMENSIONS), "worst_move", "share_within_linear", "share_within_made",
 )  # fmt: skip
-# Columns without a meaning for a task, or whose analysis is not built yet, stay empty.
+# Columns without a meaning for a task stay empty.
 COLUMNS = (
     "rank", "id", "family", "grashof_class", "direction", "assembly", "o2_x", "o2_y", "o4_x", "o4_y",
     "r1", "r2", "r3", "r4", "p_u", "p_v", "body_angle_deg", "theta2_start_deg", "theta2_end_deg",
@@ -30,10 +34,19 @@ COLUMNS = (
 
 def to_frame(problem: Problem, candidates: tuple[Candidate, ...]) -> pd.DataFrame:
     """Candidates as rows, in the order given, with the columns `COLUMNS`."""
-    best = pareto_optimal(problem, candidates)
+    motions = [over_task(candidate.linkage, problem, candidate.verdict) for candidate in candidates]
+    best = pareto_optimal(problem, candidates, [motion.torque_peak for motion in motions])
     rows = [
-        {"rank": rank, "pareto": bool(front), **_row(candidate), **_made(problem, candidate)}
-        for rank, (candidate, front) in enumerate(zip(candidates, best, strict=True), start=1)
+        {
+            "rank": rank,
+            "pareto": bool(front),
+            **_row(candidate),
+            **{name: getattr(motion, name) for name in (*MOTION, *DYNAMICS)},
+            **_made(problem, candidate),
+        }
+        for rank, (candidate, front, motion) in enumerate(
+            zip(candidates, best, motions, strict=True), start=1
+        )
     ]
     return pd.DataFrame(rows, columns=list(COLUMNS))
 

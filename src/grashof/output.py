@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from grashof.folder import RECORD, replacing_own_files
-from grashof.problems import FourBar
+from grashof.problems import FourBar, Problem
 from grashof.problems.checks import FloatArray
 from grashof.synth import Candidate, Result
-from grashof.synth.result import pareto_optimal
-from grashof.synth.table import MANUFACTURING, to_frame
+from grashof.synth.table import DYNAMICS, MANUFACTURING, MOTION, to_frame
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -92,16 +91,15 @@ def _write_record(
 
 def _designs(result: Result, frame: pd.DataFrame) -> dict[str, Any]:
     problem = result.problem
-    front = pareto_optimal(problem, result.candidates)
     return {
         "problem": problem.name,
         "title": problem.title,
         "length_unit": problem.length_unit,
         "angle_unit": "rad",
         "designs": [
-            {"rank": rank, **_design(candidate), "pareto": bool(best), **made}
-            for rank, (candidate, best, made) in enumerate(
-                zip(result.candidates, front, _made(result, frame), strict=True), start=1
+            {"rank": rank, **_design(candidate), "pareto": bool(best), **figures}
+            for rank, (candidate, best, figures) in enumerate(
+                zip(result.candidates, frame["pareto"], _figures(problem, frame), strict=True), start=1
             )
         ],
     }
@@ -137,9 +135,10 @@ def _design(candidate: Candidate) -> dict[str, Any]:
     }
 
 
-def _made(result: Result, frame: pd.DataFrame) -> list[dict[str, Any]]:
-    """The columns of each design about made linkages, null where they are not finite."""
-    columns = [] if result.problem.manufacturing is None else list(MANUFACTURING)
+def _figures(problem: Problem, frame: pd.DataFrame) -> list[dict[str, Any]]:
+    """The columns of each design that its problem gives a meaning, null where they are not finite."""
+    dynamics = () if problem.dynamics is None else DYNAMICS
+    columns = [*MOTION, *dynamics, *(() if problem.manufacturing is None else MANUFACTURING)]
     rows = frame[columns].to_numpy(dtype=np.float64).tolist()
     return [
         {name: x if np.isfinite(x) else None for name, x in zip(columns, row, strict=True)} for row in rows

@@ -14,7 +14,7 @@ from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
 from rich.progress import Progress as Bar
 from rich.table import Table
 
-from grashof.problems import PathTask, Problem, Task
+from grashof.problems import DynamicsSpec, PathTask, Problem, Task
 from grashof.problems.checks import counted
 from grashof.streams import say
 from grashof.synth import Candidate, Progress, Result
@@ -123,9 +123,11 @@ def _heading(result: Result, verified: int) -> str:
     unit = result.problem.length_unit
     lengths = f" Lengths in {unit}." if unit else ""
     shown = f" The best {_ROWS}:" if len(result) > _ROWS else ""
+    goals = [*([] if exact else ["error"]), "mu"]
+    goals, last = (goals, "size") if result.problem.dynamics is None else ([*goals, "size"], "torque")
     return (
         f"{found}, {error}.{lengths}\n"
-        f"mu: worst transmission angle; *: Pareto-optimal in {'' if exact else 'error, '}mu and size.{shown}"
+        f"mu: worst transmission angle; *: Pareto-optimal in {', '.join(goals)} and {last}.{shown}"
     )
 
 
@@ -176,6 +178,8 @@ def summary(problem: Problem) -> list[str]:
     if problem.manufacturing is not None:
         made = problem.manufacturing
         lines.append(f"  made to within {made.length_tolerance:g}{unit}, band {made.band:g}{unit}")
+    if problem.dynamics is not None:
+        lines.append(f"  {_driven(problem.dynamics)}")
     weights = problem.objective
     search = problem.search
     return [
@@ -183,6 +187,16 @@ def summary(problem: Problem) -> list[str]:
         f"  objective: transmission {weights.transmission:g}, compactness {weights.compactness:g}",
         f"  search: up to {search.starts} starts, {search.enough} designs, seed {search.seed}",
     ]
+
+
+def _driven(spec: DynamicsSpec) -> str:
+    links = (
+        "uniform links" if spec.masses is None else f"links of {', '.join(f'{m:g}' for m in spec.masses)} kg"
+    )
+    each = "" if spec.mass_per_length is None else f" of {spec.mass_per_length:g} kg a length unit"
+    x, y = spec.gravity
+    payload = f", payload {spec.payload:g} kg" if spec.payload else ""
+    return f"dynamics: {links}{each}{payload}; driver at {spec.speed_rpm:g} rpm; gravity {x:g}, {y:g} m/s2"
 
 
 def _task(task: Task, unit: str) -> str:

@@ -104,7 +104,7 @@ BAD = {
     "misspelt": ("coupler_arms", "coupler_arm", "did you mean coupler_arms?"),
     "not built yet": (
         "[requirements]",
-        "[dynamics]\nspeed_rpm = 10\n[requirements]",
+        "[objective]\nmaximise = 'torque'\n[requirements]",
         "not supported by this version",
     ),
     "area that crosses itself": (

@@ -84,7 +84,7 @@ def test_areas_kept_out_are_hatched_where_they_are(few: Result) -> None:
 
 
 def test_dollars_and_backslashes_are_plain_text(few: Result, tmp_path: Path) -> None:
-    problem = replace(few.problem, title=r"$\nonsense{ for 5$", length_unit="$^$")
+    problem = replace(few.problem, title=r"$\nonsense{ for 5$", length_unit="$^$", dynamics=None)
     figure = draw_design(problem, few.candidates[0], 1)
     save(figure, [tmp_path / "d.png", tmp_path / "d.svg"])
     assert figure.axes[0].get_title().startswith(r"$\nonsense{ for 5$: design 1")

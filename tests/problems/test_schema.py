@@ -341,7 +341,6 @@ def test_unknown_keys(text: str, expected: str) -> None:
 
 
 LATER = [
-    ("[dynamics]\nspeed_rpm = 10", "dynamics is not supported by this version"),
     (
         "[objective]\nmaximise = 'torque'",
         "objective.maximise is 'torque', which is not supported by this version; "

@@ -24,6 +24,7 @@ def test_luggage_states_the_shipped_problem(tmp_path: Path) -> None:
     table = pd.read_csv(tmp_path / "results" / "luggage.csv")
     shipped = synthesize(load("luggage")).to_frame()
     np.testing.assert_array_equal(table[["r1", "r2", "r3", "r4"]], shipped[["r1", "r2", "r3", "r4"]])
+    np.testing.assert_allclose(table["torque_peak"], shipped["torque_peak"], rtol=1e-12)
     assert f"{len(table)} designs" in said
     assert (tmp_path / "results" / "luggage-3.svg").exists()
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from grashof.analysis import verify
+from grashof.analysis import over_task, verify
 from grashof.problems import FourBar, NoSolutionError, Objective, Problem, TransmissionOver
 from grashof.synth import Candidate, Result
 from grashof.synth.result import pareto_optimal, ranked, weigh
@@ -86,7 +86,7 @@ figures_of_designs = st.lists(
 def test_pareto_marks_are_those_of_brute_force(
     luggage_designs: Designs, luggage: Problem, figures: list[tuple[float, float, float]]
 ) -> None:
-    size = luggage.task.size
+    luggage, size = replace(luggage, dynamics=None), luggage.task.size
     designs = tuple(with_figures(luggage_designs[0], e * size, t, s) for e, t, s in figures)
     for over in TransmissionOver:
         problem = replace(luggage, requirements=replace(luggage.requirements, transmission_over=over))
@@ -100,7 +100,7 @@ def test_pareto_marks_are_those_of_brute_force(
 
 
 def test_real_pareto_marks(luggage_designs: Designs, luggage: Problem) -> None:
-    marks = pareto_optimal(luggage, luggage_designs)
+    marks = pareto_optimal(replace(luggage, dynamics=None), luggage_designs)
     figures = [(c.verdict.transmission_min_task, c.verdict.size) for c in luggage_designs]
     for mark, (angle, size) in zip(marks, figures, strict=True):
         beaten = any(a >= angle and s <= size and (a, s) != (angle, size) for a, s in figures)
@@ -108,6 +108,33 @@ def test_real_pareto_marks(luggage_designs: Designs, luggage: Problem) -> None:
     assert marks[0]  # the best transmission
     assert marks[int(np.argmin([size for _, size in figures]))]
     assert 2 <= marks.sum() < len(marks)
+
+
+def test_pareto_marks_with_the_torque(luggage_designs: Designs, luggage: Problem) -> None:
+    marks, without = (
+        pareto_optimal(problem, luggage_designs) for problem in (luggage, replace(luggage, dynamics=None))
+    )
+    peaks = [over_task(c.linkage, luggage, c.verdict).torque_peak for c in luggage_designs]
+    figures = [
+        (-c.verdict.transmission_min_task, c.verdict.size, peak)
+        for c, peak in zip(luggage_designs, peaks, strict=True)
+    ]
+    for mark, mine in zip(marks, figures, strict=True):
+        beaten = any(all(x <= y for x, y in zip(b, mine, strict=True)) and b != mine for b in figures)
+        assert mark != beaten
+    assert marks[without].all()  # one more goal takes no mark away
+    assert marks[int(np.argmin(peaks))]
+    assert without.sum() < marks.sum() < len(marks)
+    assert pareto_optimal(luggage, luggage_designs, peaks).tolist() == marks.tolist()
+
+
+def test_an_unknown_torque_counts_as_infinite(luggage_designs: Designs, luggage: Problem) -> None:
+    """The same design twice: once with a torque, and once without a motion that joins the targets."""
+    pair = (luggage_designs[0], luggage_designs[0])
+    assert pareto_optimal(luggage, pair, [1.0, np.nan]).tolist() == [True, False]
+    assert pareto_optimal(luggage, pair, [np.inf, np.nan]).tolist() == [True, True]
+    torn = replace(pair[1], verdict=replace(pair[1].verdict, branch_ok=False))
+    assert pareto_optimal(luggage, (pair[0], torn)).tolist() == [True, False]
 
 
 def test_ids_name_designs(luggage_designs: Designs) -> None:

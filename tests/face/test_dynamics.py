@@ -1,0 +1,73 @@
+"""A problem with [dynamics] from the command line."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grashof.output import write_run
+from grashof.problems import problem_text
+from grashof.synth import Result
+from grashof.synth.table import DYNAMICS, MOTION
+
+Grashof = Callable[..., Any]
+
+
+def test_check_says_it(grashof: Grashof, tmp_path: Path) -> None:
+    text = grashof("check", "luggage").stdout
+    assert "dynamics: links of 0.3764, 0.4762, 0.4308 kg; driver at 9.5493 rpm; gravity 0, -9.81 m/s2" in text
+    mine = tmp_path / "mine.toml"
+    table = "[dynamics]\nmass_per_length = 2\npayload = 5\nspeed_rpm = 10\n"
+    mine.write_text(problem_text("luggage").split("[dynamics]")[0] + table, encoding="utf-8")
+    text = grashof("check", mine).stdout
+    assert "uniform links of 2 kg a length unit, payload 5 kg; driver at 10 rpm; gravity 0, 0 m/s2" in text
+    assert "dynamics" not in grashof("check", "dwell").stdout
+
+
+def test_csv_and_json_hold_the_same_figures(few: Result, tmp_path: Path) -> None:
+    write_run(tmp_path / "out", few, {}, 0)
+    text = (tmp_path / "out" / "candidates.csv").read_text(encoding="utf-8")
+    designs = json.loads((tmp_path / "out" / "candidates.json").read_text())["designs"]
+    for design, row in zip(designs, csv.DictReader(text.splitlines()), strict=True):
+        for name in (*MOTION, *DYNAMICS):
+            assert design[name] == float(row[name]) > 0
+        assert str(design["pareto"]) == row["pareto"]
+
+
+def test_without_the_table_there_is_no_torque(few: Result, tmp_path: Path) -> None:
+    bare = replace(few, problem=replace(few.problem, dynamics=None))
+    write_run(tmp_path / "out", bare, {}, 0)
+    designs = json.loads((tmp_path / "out" / "candidates.json").read_text())["designs"]
+    assert all(design[name] > 0 for design in designs for name in MOTION)
+    assert not any(name in design for design in designs for name in DYNAMICS)
+
+
+def test_json_knows_no_infinity(few: Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    frame = few.to_frame().assign(torque_peak=math.inf)
+    monkeypatch.setattr(Result, "to_frame", lambda self: frame)
+    write_run(tmp_path / "out", few, {}, 0)
+    designs = json.loads((tmp_path / "out" / "candidates.json").read_text())["designs"]
+    assert {design["torque_peak"] for design in designs} == {None}
+
+
+def test_an_unknown_length_unit_is_one_line(grashof: Grashof, tmp_path: Path) -> None:
+    mine = tmp_path / "mine.toml"
+    mine.write_text(problem_text("luggage").replace('length_unit = "m"', 'length_unit = "ell"'))
+    done = grashof("solve", mine)
+    assert done.exit_code == 2
+    assert done.stderr.strip().endswith("length_unit is 'ell'; with dynamics allowed are mm, cm, m, in, ft")
+    assert done.stderr.count("\n") == 1
+
+
+def test_the_table_names_the_torque_among_the_goals(grashof: Grashof, tmp_path: Path) -> None:
+    out = str(tmp_path / "out")
+    done = grashof("solve", "luggage", "--starts", "8", "--drawings", "0", "--out", out)
+    assert done.exit_code == 0, done.output
+    assert "*: Pareto-optimal in mu, size and torque." in done.output
