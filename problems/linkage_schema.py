@@ -54,7 +54,7 @@ def linkage_from(document: dict[str, Any], name: str) -> LinkageSpec:
 def _of_length(count: int, allowed: str) -> AfterValidator:
     def refuse(values: list[float]) -> list[float]:
         if len(values) != count:
-            raise PydanticCustomError("wrong", allowed)  # type: ignore[arg-type]
+            raise PydanticCustomError("wrong", allowed)
         return values
 
     return AfterValidator(refuse)
