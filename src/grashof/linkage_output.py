@@ -52,10 +52,9 @@ def write_report(folder: Path, report: LinkageReport) -> list[str]:
 def print_report(report: LinkageReport) -> None:
     """Print the summary and the extremes, no wider than the terminal where that can be."""
     spec = report.spec
-    say(
-        f"{spec.title or spec.name}: r1 to r4 {', '.join(f'{r:.6g}' for r in spec.linkage.lengths)} {spec.length_unit}"
-    )
-    for line in _fitting(_facts_table(report), _facts_table(report)):
+    lengths = ", ".join(f"{length:.6g}" for length in spec.linkage.lengths)
+    say(f"{spec.title or spec.name}: r1 to r4 {lengths} {spec.length_unit}".rstrip())
+    for line in _fitting(_facts_table(report)):
         say(line)
     for line in _fitting(_extremes_table(report, 6), _extremes_table(report, 4)):
         say(line)

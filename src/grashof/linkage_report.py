@@ -241,9 +241,8 @@ def _kinematic(spec: LinkageSpec) -> list[Quantity]:
         Quantity("alpha3", "angular acceleration of 3", "rad/s2", lambda s: s.alpha3),
         Quantity("alpha4", "angular acceleration of 4", "rad/s2", lambda s: s.alpha4),
     ]
-    points: tuple[tuple[str, Curve], ...]
     for name in ("a", "b", "p"):
-        points = (
+        points: tuple[tuple[str, Curve], ...] = (
             ("x", lambda s, n=name: getattr(s, n).position[..., 0]),  # type: ignore[misc]
             ("y", lambda s, n=name: getattr(s, n).position[..., 1]),  # type: ignore[misc]
         )
@@ -328,7 +327,10 @@ def _table(
     """A row for each driver angle; empty where a quantity has no finite value."""
     parts = []
     for number, state in enumerate(states, start=1):
-        columns = {"theta2_deg": np.degrees(state.theta2), "omega2": state.omega2 + np.zeros(state.shape)}
+        columns = {
+            "theta2_deg": np.round(np.degrees(state.theta2), 12),
+            "omega2": state.omega2 + np.zeros(state.shape),
+        }
         if len(ranges) > 1:
             columns = {"range": np.full(state.shape, number), **columns}
         for quantity in quantities:
@@ -404,7 +406,7 @@ def _extreme(
         least, largest = least - turned, largest - turned
     if quantity.never_negative and least < 1e-8 * largest:  # a size that goes through 0
         least = 0.0
-    told = {}
+    told: dict[str, float] = {}
     for name, value, at in (("min", least, found.at_low), ("max", largest, found.at_high)):
         for near, limit, sense, through in ((start, low, 1, passes[0]), (end, high, -1, passes[1])):
             if not still and abs(at - near) < 1e-9:
@@ -452,7 +454,7 @@ def _facts(
         yield Fact("transmission_min_deg", "worst transmission angle", worst, "deg")
     else:
         yield Fact("transmission_min_deg", "worst transmission angle (dead positions)", 0.0, "deg")
-    yield from _stroke_facts(spec)
+    yield from _stroke_facts(spec, turns, tables["extremes"])
     box = np.array([reach_box(linkage, low, high) for low, high in ranges])
     extent = np.max(box[:, 1], axis=0) - np.min(box[:, 0], axis=0)
     yield Fact("size", "size (diagonal of the box it needs)", float(np.hypot(*extent)), unit)
@@ -461,10 +463,18 @@ def _facts(
         yield from _mass_facts(spec, masses, tables["dynamics"], turns)
 
 
-def _stroke_facts(spec: LinkageSpec) -> Iterator[Fact]:
+def _stroke_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame) -> Iterator[Fact]:
     linkage, unit = spec.linkage, spec.length_unit or "length"
     stroke = output_stroke(linkage)
-    if np.isfinite(stroke.swing):
+    if not turns:  # the two toggle positions may lie on different circuits
+        swings = extremes[extremes["quantity"] == "theta4_deg"]
+        for number, (low, high) in enumerate(zip(swings["min"], swings["max"], strict=True), start=1):
+            mark, where = (f"_{number}", f", range {number}") if len(swings) > 1 else ("", "")
+            yield Fact(f"output_swing{mark}_deg", f"swing of the output{where}", float(high - low), "deg")
+            if spec.output_arm is not None:
+                way = float(spec.output_arm * np.radians(high - low))
+                yield Fact(f"output_stroke{mark}", f"stroke of the output arm{where}", way, unit)
+    elif np.isfinite(stroke.swing):
         yield Fact("output_swing_deg", "swing of the output", float(np.degrees(stroke.swing)), "deg")
         yield Fact("stroke_chord", "stroke of B, chord", float(stroke.chord), unit)
         if spec.output_arm is not None:
@@ -489,10 +499,13 @@ def _stroke_facts(spec: LinkageSpec) -> Iterator[Fact]:
 def _path_facts(spec: LinkageSpec, ranges: tuple[tuple[float, float], ...], turns: bool) -> Iterator[Fact]:
     linkage, unit = spec.linkage, spec.length_unit or "length"
     low, high = ranges[0]
+    where = ", range 1" if len(ranges) > 1 else ""
     for degree in (4, 8):
         r2 = float(coupler_fit_r2(linkage, low, high, degree))
         if np.isfinite(r2):
-            yield Fact(f"coupler_fit_r2_degree_{degree}", f"R2 of degree {degree} through the path of P", r2)
+            yield Fact(
+                f"coupler_fit_r2_degree_{degree}", f"R2 of degree {degree} through the path of P{where}", r2
+            )
     if turns:
         series = coupler_fourier(linkage)
         for harmonic in range(1, _HARMONICS + 1):
@@ -512,8 +525,8 @@ def _path_facts(spec: LinkageSpec, ranges: tuple[tuple[float, float], ...], turn
             yield Fact(f"double_point_{number}_{axis}", f"double point {number}, {axis}", float(value), unit)
         for passage, angle in enumerate(np.degrees(angles), start=1):
             yield Fact(
-                f"double_point_{number}_theta2_{passage}_deg", f"double point {number}, passage {passage}: theta2",
-                float(angle), "deg",
+                f"double_point_{number}_theta2_{passage}_deg",
+                f"double point {number}, passage {passage}: theta2", float(angle), "deg",
             )  # fmt: skip
     still = np.degrees(cusps(linkage))
     yield Fact("cusps", "cusps of the path of P", len(still))
@@ -531,7 +544,7 @@ def _straight_facts(spec: LinkageSpec, low: float, high: float, turns: bool) -> 
     except ProblemError:  # P does not move, or rounding opens the loop in a dead position
         return
     line, start = min(lines, key=lambda each: each[0].width / each[0].length)
-    unit, what = spec.length_unit or "length", "straightest half turn of P" if turns else "path of P"
+    unit, what = spec.length_unit or "length", "straightest half turn of P" if turns else "path of P, range 1"
     yield Fact("straight_from_deg", f"{what}: from theta2", float(np.degrees(start)), "deg")
     yield Fact("straight_to_deg", f"{what}: to theta2", float(np.degrees(start + span)), "deg")
     yield Fact("straight_length", f"{what}: length along its best line", line.length, unit)
@@ -566,7 +579,8 @@ def mass_tracks(report: LinkageReport) -> dict[str, FloatArray]:
 
     Without masses: of the points halfway between the joints.
     """
-    linkage, masses, tracks = report.spec.linkage, report.masses, {}
+    linkage, masses = report.spec.linkage, report.masses
+    tracks: dict[str, FloatArray] = {}
     with _quiet():
         angles = _angles(report.ranges, report.turns)
         states = [_state(report.spec, each, report.speed_rpm) for each in angles]
