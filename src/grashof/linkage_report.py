@@ -404,8 +404,9 @@ def _extreme(
     if quantity.period is not None:
         turned = quantity.period * np.floor((least + quantity.period / 2) / quantity.period)
         least, largest = least - turned, largest - turned
-    if quantity.never_negative and least < 1e-8 * largest:  # a size that goes through 0
-        least = 0.0
+    if quantity.never_negative:
+        usual = np.median(curve(np.linspace(start, end, 101)))
+        least = 0.0 if least < 1e-7 * usual else least  # a size that goes through 0
     told: dict[str, float] = {}
     for name, value, at in (("min", least, found.at_low), ("max", largest, found.at_high)):
         for near, limit, sense, through in ((start, low, 1, passes[0]), (end, high, -1, passes[1])):
@@ -416,7 +417,7 @@ def _extreme(
                     value = np.copysign(np.inf, value)
         if turns:
             at = at % TURN if TURN - at % TURN > 1e-9 else 0.0
-        told |= {name: float(value), f"theta2_{name}_deg": float(np.degrees(at))}
+        told |= {name: float(value), f"theta2_{name}_deg": float(np.round(np.degrees(at), 9) + 0.0)}
     return told
 
 

@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+import grashof.draw
 from grashof.analysis import (
     Loads,
     driver_ranges,
@@ -148,6 +149,10 @@ def test_a_limited_range_says_so() -> None:
     assert table.loc["alpha3", "max"] == pytest.approx(
         solve_kinematics(ONE_RANGE, inner).alpha3.max(), rel=1e-6
     )
+    # B stands still where the output turns back, its acceleration does not vanish there or elsewhere.
+    assert table.loc["b_speed", "min"] == 0
+    least = solve_kinematics(ONE_RANGE, inner).b.acceleration_magnitude.min()
+    assert table.loc["b_acceleration", "min"] == pytest.approx(least, rel=1e-6)
     assert "dead positions bound" in report.notes[0]
     assert "assembly +1" in report.notes[0]
     rows = report.tables["kinematics"]
@@ -201,6 +206,12 @@ def test_a_linkage_that_never_closes_is_bad_input(grashof: Grashof, tmp_path: Pa
     assert not (tmp_path / "far-analysis").exists()
 
 
+@pytest.fixture
+def unsaved(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pictures as empty files: saving them takes most of the time."""
+    monkeypatch.setattr(grashof.draw, "save", lambda _, paths: [path.touch() for path in paths])
+
+
 TABLES = {"kinematics.csv", "extremes.csv", "summary.csv", "summary.json", "analysis.json"}
 
 
@@ -229,6 +240,7 @@ def test_files_and_terminal(grashof: Grashof, tmp_path: Path) -> None:
     assert {path.name for path in folder.iterdir()} == TABLES | kinematic | {"notes.txt"}
 
 
+@pytest.mark.usefixtures("unsaved")
 def test_designs_of_a_list_beside_the_list(grashof: Grashof, tmp_path: Path) -> None:
     assert grashof("solve", "luggage", "--starts", "16", "--top", "2", "--drawings", "0").exit_code == 0
     folder = tmp_path / "luggage-designs"
@@ -252,6 +264,7 @@ def test_a_file_that_is_not_ours_is_not_replaced(grashof: Grashof, tmp_path: Pat
     assert (out / "summary.csv").read_text() == "mine"
 
 
+@pytest.mark.usefixtures("unsaved")
 def test_a_limited_range_on_the_terminal(grashof: Grashof, tmp_path: Path) -> None:
     text = "o4 = [4, 0]\nr2 = 3\nr3 = 1\nr4 = 3\nlength_unit = 'mm'\n[dynamics]\nmass_per_length = 0.01\n"
     (tmp_path / "rocker.toml").write_text(text)
@@ -281,3 +294,27 @@ def test_given_masses_and_payload() -> None:
     np.testing.assert_allclose(report.tables["dynamics"]["torque"], expected, rtol=1e-9, atol=1e-12)
     assert facts(report)["mass"] == 11
     assert facts(report)["torque_rms"] == pytest.approx(np.sqrt(np.mean(expected[:-1] ** 2)))
+
+
+def test_plots_of_a_limited_range_are_made() -> None:
+    """Rates without bound are cut off, and no warning is given."""
+    from grashof.linkage_plots import plots
+
+    made = dict(plots(report_on(LinkageSpec(DOUBLE_ROCKER, "rocker", length_unit="mm"))))
+    assert list(made) == ["path", "angles", "velocities", "accelerations"]
+    rates, speeds = made["velocities"].axes
+    assert rates.get_ylabel() == "angular velocity (rad/s)"
+    assert speeds.get_ylabel() == "speed (mm/s)"
+    assert np.abs(rates.get_ylim()).max() < 100
+    assert {line.get_label() for line in speeds.lines} >= {"A", "B", "P"}
+    assert made["path"].axes[0].get_xlabel() == "x (mm)"
+
+
+@pytest.mark.parametrize("speed", [0.0, -30.0])
+def test_a_driver_at_rest_and_backwards(speed: float) -> None:
+    report = report_on(load_linkage_spec("pumpjack"), speed)
+    table = extremes(report)
+    assert table.loc["a_speed", "max"] == pytest.approx(abs(speed) * np.pi / 30 * 1.1938)
+    # At rest the torque holds the weight.
+    assert table.loc["torque", "max"] > 1000
+    assert table.loc["f12", "min"] > 0
