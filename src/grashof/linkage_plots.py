@@ -45,15 +45,16 @@ def plots(report: LinkageReport) -> Iterator[tuple[str, Figure]]:
 
 
 def _curves(report: LinkageReport, table: pd.DataFrame, panels: list[tuple[str, dict[str, str]]]) -> Figure:
-    colours = (COUPLER, OUTPUT, PATH, TARGET)
+    dashes = (0, (5, 2))  # of every second one, so that equal curves both show
+    pens = ((COUPLER, "-"), (OUTPUT, dashes), (PATH, "-"), (TARGET, dashes))
     with rc_context(save_style()):
         figure = Figure(figsize=(8.5, 3.2 + 2.4 * (len(panels) - 1) + 0.8), layout="constrained")
         rows = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
         theta2 = _by_range(table, "theta2_deg")
         for axes, (label, names) in zip(rows, panels, strict=True):
             drawn = {name: _by_range(table, name) for name in names}
-            for colour, (name, values) in zip(colours, drawn.items(), strict=False):
-                axes.plot(theta2, values, color=colour, linewidth=1.5, label=names[name])
+            for (colour, dash), (name, values) in zip(pens, drawn.items(), strict=False):
+                axes.plot(theta2, values, color=colour, linestyle=dash, linewidth=1.5, label=names[name])
             if not report.turns and not label.startswith("angle"):
                 _bounded(axes, np.concatenate(list(drawn.values())))
             axes.axhline(0, color=GROUND, linewidth=0.6, zorder=0)
