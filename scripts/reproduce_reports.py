@@ -156,7 +156,7 @@ def _newton_error(link: int) -> float:
         order = np.argsort(x[between])
         true = np.interp(halfway, x[between][order], y[between][order])
         errors.append(greatest_error(newton_interpolation(*track[first : first + 5].T), [halfway], [true]))
-    return max(errors)
+    return float(max(errors))
 
 
 def _too_low(theta2: FloatArray, derivative: int) -> float:

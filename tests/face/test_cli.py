@@ -213,7 +213,7 @@ def test_full_disk_is_told_and_keeps_the_old_run(
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("grashof.output._write_json", full)
+    monkeypatch.setattr("grashof.output.write_json", full)
     done = grashof("solve", "luggage", *QUICK, "--seed", "5")
     assert done.exit_code == 3
     assert "No space left" in done.stderr
