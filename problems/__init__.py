@@ -12,6 +12,13 @@ from grashof.problems.errors import (
 )
 from grashof.problems.files import catalogue, load, problem_text
 from grashof.problems.linkage import FourBar
+from grashof.problems.linkage_file import (
+    LinkageDynamics,
+    LinkageSpec,
+    linkage_catalogue,
+    load_linkage,
+    load_linkage_spec,
+)
 from grashof.problems.manufacturing import Manufacturing
 from grashof.problems.motion_task import MotionTask
 from grashof.problems.path_task import PathTask
@@ -27,6 +34,8 @@ __all__ = [
     "FourBar",
     "GrashofError",
     "GrashofWarning",
+    "LinkageDynamics",
+    "LinkageSpec",
     "Manufacturing",
     "MotionTask",
     "NoSolutionError",
@@ -41,6 +50,9 @@ __all__ = [
     "Task",
     "TransmissionOver",
     "catalogue",
+    "linkage_catalogue",
     "load",
+    "load_linkage",
+    "load_linkage_spec",
     "problem_text",
 ]

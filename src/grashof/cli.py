@@ -1,4 +1,4 @@
-"""The command line: solve, check, problems."""
+"""The command line: solve, check, problems, analyse."""
 
 from __future__ import annotations
 
@@ -16,7 +16,15 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from grashof.problems import Problem, ProblemError, SolverError, catalogue, load, problem_text
+from grashof.problems import (
+    Problem,
+    ProblemError,
+    SolverError,
+    catalogue,
+    load,
+    load_linkage_spec,
+    problem_text,
+)
 from grashof.problems.checks import counted
 from grashof.streams import say
 
@@ -33,7 +41,7 @@ class Exit(IntEnum):
 
 TOP = 50
 # Names of the contract that later versions bring.
-_LATER_COMMANDS = ("analyse", "export")
+_LATER_COMMANDS = ("export",)
 _LATER_OPTIONS = ("--resume", "--scheduler")
 # Typer makes the base of its usage errors public only through this one.
 _UsageError: type[Exception] = typer.BadParameter.__bases__[0]
@@ -125,6 +133,32 @@ def problems(
             say(f"{each:20} {load(each).title}")
 
 
+@app.command()
+def analyse(
+    linkage: Annotated[
+        str,
+        typer.Argument(
+            metavar="LINKAGE",
+            help="Name in the catalogue of linkages, a linkage file, or DIR/candidates.json#3.",
+        ),
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder for the results; NAME-analysis by default.", show_default=False),
+    ] = None,
+    speed_rpm: Annotated[
+        float | None,
+        typer.Option(help="Of the driver; by default the file's, or 1 rad/s.", show_default=False),
+    ] = None,
+) -> None:
+    """Say how LINKAGE moves and what it takes; write tables, a summary and plots.
+
+    Exit code 0: done; 2: bad input; 3: the surroundings failed.
+    """
+    with _errors_told():
+        _analyse(linkage, out, speed_rpm)
+
+
 def main() -> None:
     """Entry point of the `grashof` command."""
     app(prog_name="grashof")
@@ -180,6 +214,22 @@ def _solve(
     if interrupted():
         return Exit.INTERRUPTED
     return Exit.OK if result.candidates else Exit.NO_DESIGN
+
+
+def _analyse(linkage: str, out: Path | None, speed_rpm: float | None) -> None:
+    from grashof.folder import ANALYSIS_RECORD, check_writable
+    from grashof.linkage_output import print_report, write_report
+    from grashof.linkage_report import report_on
+
+    spec = load_linkage_spec(linkage)
+    folder = out if out is not None else Path(f"{spec.name}-analysis")
+    check_writable(folder, record=ANALYSIS_RECORD)
+    report = report_on(spec, speed_rpm)
+    files = write_report(folder, report)
+    for note in report.notes:
+        say(note, err=True)
+    _report("", files, folder)
+    print_report(report)
 
 
 def _report(note: str, files: list[str], folder: Path) -> None:

@@ -71,6 +71,11 @@ def draw_design(problem: Problem, candidate: Candidate, rank: int) -> Figure:
     return figure
 
 
+def save_style() -> Any:
+    """Settings of matplotlib that every figure is made with."""
+    return _STYLE
+
+
 def save(figure: Figure, paths: Iterable[Path]) -> None:
     """Write a figure to each path, in the format of its ending; the same figure gives the same bytes."""
     with rc_context(_STYLE):

@@ -12,11 +12,20 @@ from pathlib import Path
 from grashof.problems import ProblemError
 
 RECORD = "run.json"
-# Every name that a run writes; a drawing's carries its rank.
-_NAMES = re.compile(r"candidates\.(csv|json)|nearest\.csv|run\.json|design-(?P<rank>[0-9]{2,})\.(png|svg)")
+ANALYSIS_RECORD = "analysis.json"
+# Every name that a run writes, by its record; a drawing's carries its rank.
+_NAMES = {
+    RECORD: re.compile(
+        r"candidates\.(csv|json)|nearest\.csv|run\.json|design-(?P<rank>[0-9]{2,})\.(png|svg)"
+    ),
+    ANALYSIS_RECORD: re.compile(
+        r"(kinematics|dynamics|extremes|summary)\.csv|(summary|analysis)\.json"
+        r"|(path|angles|velocities|accelerations|torque|forces)\.(png|svg)(?P<rank>)"
+    ),
+}
 
 
-def check_writable(folder: Path, drawings: int = 0) -> None:
+def check_writable(folder: Path, drawings: int = 0, record: str = RECORD) -> None:
     """Refuse, before any work is done, a folder that a run cannot write into; leave no trace.
 
     Parameters
@@ -24,6 +33,8 @@ def check_writable(folder: Path, drawings: int = 0) -> None:
     folder : Path
     drawings : int
         How many designs may be drawn.
+    record : str
+        `RECORD` of a search, `ANALYSIS_RECORD` of an analysis; their files do not mix.
 
     Raises
     ------
@@ -33,7 +44,7 @@ def check_writable(folder: Path, drawings: int = 0) -> None:
     try:
         with _made(folder), tempfile.TemporaryDirectory(dir=folder, prefix=".writing-") as name:
             (Path(name) / "candidates.json").touch()
-        taken = _taken(folder, drawings) if folder.exists() else []
+        taken = _taken(folder, drawings, record) if folder.exists() else []
     except OSError as error:
         reason = error.strerror or "it cannot be written"
         raise ProblemError(f"--out {folder}: {reason}; allowed is a folder that can be written") from None
@@ -44,7 +55,7 @@ def check_writable(folder: Path, drawings: int = 0) -> None:
 
 
 @contextmanager
-def replacing_own_files(folder: Path, keep: Collection[str] = ()) -> Iterator[Path]:
+def replacing_own_files(folder: Path, keep: Collection[str] = (), record: str = RECORD) -> Iterator[Path]:
     """A folder to write files into, which at the end take the place of those of the last run.
 
     What the last run wrote and this one does not is removed; other files are left alone. If
@@ -53,9 +64,11 @@ def replacing_own_files(folder: Path, keep: Collection[str] = ()) -> Iterator[Pa
     Parameters
     ----------
     folder : Path
-        Its `RECORD` lists the files of the last run under "files".
+        Its record lists the files of the last run under "files".
     keep : collection of str
         Names of the last run's files that stay.
+    record : str
+        Name of the record.
 
     Yields
     ------
@@ -63,37 +76,37 @@ def replacing_own_files(folder: Path, keep: Collection[str] = ()) -> Iterator[Pa
         Empty folder beside the files, on the same disk.
     """
     with _made(folder):
-        before = own_files(folder)
+        before = own_files(folder, record)
         with tempfile.TemporaryDirectory(dir=folder, prefix=".writing-") as name:
             fresh = Path(name)
             yield fresh
             written = sorted(path.name for path in fresh.iterdir())
             # The record goes last: until then the old one still knows every old file.
-            for file in sorted(written, key=lambda file: file == RECORD):
+            for file in sorted(written, key=lambda file: file == record):
                 (fresh / file).replace(folder / file)
         for file in before - {*written, *keep}:
             (folder / file).unlink(missing_ok=True)
 
 
-def own_files(folder: Path) -> set[str]:
+def own_files(folder: Path, record: str = RECORD) -> set[str]:
     """Names of the files that the last run wrote into a folder; empty where there was none."""
     try:
-        record = json.loads((folder / RECORD).read_text(encoding="utf-8"))
-        names, versions = record["files"], record["versions"]
+        content = json.loads((folder / record).read_text(encoding="utf-8"))
+        names, versions = content["files"], content["versions"]
     # No run, or a record that is not ours; the last of the errors for lists nested a thousand deep.
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return set()
     if not (isinstance(names, list) and isinstance(versions, dict) and "grashof" in versions):
         return set()
     # Our names only: a record that was tampered with must not reach any other file.
-    ours = {name for name in names if isinstance(name, str) and _NAMES.fullmatch(name)}
+    ours = {name for name in names if isinstance(name, str) and _NAMES[record].fullmatch(name)}
     return {name for name in ours if (folder / name).is_file()}
 
 
-def _taken(folder: Path, drawings: int) -> list[str]:
+def _taken(folder: Path, drawings: int, record: str) -> list[str]:
     """Names that a run may write and that something else has."""
-    own = own_files(folder)
-    found = [(path.name, _NAMES.fullmatch(path.name)) for path in folder.iterdir()]
+    own = own_files(folder, record)
+    found = [(path.name, _NAMES[record].fullmatch(path.name)) for path in folder.iterdir()]
     return sorted(
         name for name, ours in found if ours and name not in own and int(ours["rank"] or 0) <= drawings
     )

@@ -56,11 +56,11 @@ def write_run(
     with replacing_own_files(folder) as fresh:
         if result.candidates:
             frame = result.to_frame()
-            _write_csv(fresh / "candidates.csv", frame)
-            _write_json(fresh / "candidates.json", _designs(result, frame))
+            write_csv(fresh / "candidates.csv", frame)
+            write_json(fresh / "candidates.json", _designs(result, frame))
         if result.nearest:
             misses = ["; ".join(str(d) for d in candidate.verdict.defects) for candidate in result.nearest]
-            _write_csv(fresh / "nearest.csv", to_frame(result.problem, result.nearest).assign(misses=misses))
+            write_csv(fresh / "nearest.csv", to_frame(result.problem, result.nearest).assign(misses=misses))
         files = _write_record(fresh, result, settings)
     if drawings and result.candidates and not stop():
         with replacing_own_files(folder, keep=files) as fresh:
@@ -85,7 +85,7 @@ def _write_record(
 ) -> list[str]:
     """Write the record of the files in a folder and of others, and return their names, sorted."""
     files = sorted({*(path.name for path in folder.iterdir()), *others, RECORD})
-    _write_json(folder / RECORD, _record(result, settings, files))
+    write_json(folder / RECORD, _record(result, settings, files))
     return files
 
 
@@ -116,7 +116,7 @@ def _design(candidate: Candidate) -> dict[str, Any]:
     return {
         "id": candidate.id,
         "family": "four-bar",
-        "linkage": _linkage(candidate.linkage),
+        "linkage": linkage_json(candidate.linkage),
         "theta2": verdict.theta2.tolist(),
         "assembly": verdict.assembly.tolist(),
         "position_error": _given(verdict.position_error),
@@ -145,7 +145,8 @@ def _figures(problem: Problem, frame: pd.DataFrame) -> list[dict[str, Any]]:
     ]
 
 
-def _linkage(linkage: FourBar) -> dict[str, Any]:
+def linkage_json(linkage: FourBar) -> dict[str, Any]:
+    """A linkage as JSON, lossless: the arguments of `FourBar`."""
     return {
         "o2": linkage.o2.tolist(),
         "o4": linkage.o4.tolist(),
@@ -178,10 +179,12 @@ def _record(result: Result, settings: dict[str, Any], files: list[str]) -> dict[
 _GUARDS = ("Maximum_Iterations_Exceeded", "Maximum_WallTime_Exceeded")
 
 
-def _write_csv(path: Path, frame: pd.DataFrame) -> None:
+def write_csv(path: Path, frame: pd.DataFrame) -> None:
+    """A table with floats in full precision."""
     with path.open("w", encoding="utf-8", newline="") as file:  # pandas would read ~ as a home
         frame.to_csv(file, index=False, lineterminator="\n")
 
 
-def _write_json(path: Path, content: dict[str, Any]) -> None:
+def write_json(path: Path, content: dict[str, Any]) -> None:
+    """JSON that every reader knows: no NaN."""
     path.write_text(json.dumps(content, indent=1, allow_nan=False) + "\n", encoding="utf-8")

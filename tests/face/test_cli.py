@@ -161,7 +161,6 @@ def test_output_folder_that_cannot_be_written(grashof: Grashof, tmp_path: Path) 
         ("solv luggage", "solve"),
         ("solve luggage --resume", "--resume is not in this version"),
         ("solve luggage --scheduler=here", "--scheduler is not in this version"),
-        ("analyse crank.toml", "analyse is not in this version"),
         ("export crank.toml", "export is not in this version"),
         (f"solve luggage --out {'x' * 300}", "File name too long"),
     ],
@@ -214,7 +213,7 @@ def test_full_disk_is_told_and_keeps_the_old_run(
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("grashof.output._write_json", full)
+    monkeypatch.setattr("grashof.output.write_json", full)
     done = grashof("solve", "luggage", *QUICK, "--seed", "5")
     assert done.exit_code == 3
     assert "No space left" in done.stderr

@@ -1,0 +1,219 @@
+"""Linkage files: one four-bar as TOML, the catalogue of real ones, and designs out of a candidates list.
+
+The table `[dynamics]` is read here by itself; it is to share its reader with that of problem files.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import tomllib
+from dataclasses import dataclass
+from importlib import resources
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import Any
+
+from grashof.problems.checks import near_miss
+from grashof.problems.errors import ProblemError
+from grashof.problems.linkage import FourBar
+
+# Metres in each unit that [dynamics] knows.
+METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048}
+Triple = tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class LinkageDynamics:
+    """What a linkage file says about speed and masses; in the file's length unit, kg and s.
+
+    Parameters
+    ----------
+    speed_rpm : float
+        Of the driver, counter-clockwise.
+    gravity : pair of float, m/s2
+        Whatever the length unit.
+    mass_per_length : float, kg/length, optional
+        Of all links, as uniform bars.
+    masses, inertias : triple of float, kg and kg length^2, optional
+        Of links 2, 3 and 4, about centres halfway between the joints.
+    payload : float, kg
+        Carried at P.
+    """
+
+    speed_rpm: float | None = None
+    gravity: tuple[float, float] = (0.0, 0.0)
+    mass_per_length: float | None = None
+    masses: Triple | None = None
+    inertias: Triple | None = None
+    payload: float = 0.0
+
+    @property
+    def has_masses(self) -> bool:
+        """Whether any link or payload has a mass."""
+        return self.mass_per_length is not None or self.masses is not None or self.payload > 0
+
+
+@dataclass(frozen=True, slots=True)
+class LinkageSpec:
+    """A linkage with what its file says besides.
+
+    Parameters
+    ----------
+    linkage : FourBar
+    name, title, source, length_unit : str
+    output_arm : float, length, optional
+        Radius about O4 of what the output link drives, such as a horsehead: its stroke and torque
+        factor are told.
+    dynamics : LinkageDynamics, optional
+    """
+
+    linkage: FourBar
+    name: str
+    title: str = ""
+    source: str = ""
+    length_unit: str = ""
+    output_arm: float | None = None
+    dynamics: LinkageDynamics | None = None
+
+
+def load_linkage(linkage: str | os.PathLike[str]) -> FourBar:
+    """Linkage of the catalogue, of a TOML file, or of a candidates list.
+
+    Parameters
+    ----------
+    linkage : str or path-like
+        A name of `linkage_catalogue`, a linkage file, or ``DIR/candidates.json#3`` for the design of
+        rank 3 of a list.
+
+    Raises
+    ------
+    ProblemError
+        No such linkage, a file that cannot be read, or one that states no valid linkage; the
+        message begins with the name of the file.
+
+    Examples
+    --------
+    >>> pumpjack = load_linkage("pumpjack")
+    >>> float(pumpjack.r1), float(pumpjack.r2)
+    (5.0, 1.1938)
+    """
+    return load_linkage_spec(linkage).linkage
+
+
+def load_linkage_spec(linkage: str | os.PathLike[str]) -> LinkageSpec:
+    """The same as `load_linkage`, with title, source, unit, output arm and masses.
+
+    Examples
+    --------
+    >>> unit = load_linkage_spec("lufkin-c912d")
+    >>> unit.length_unit, unit.output_arm
+    ('in', 180.0)
+    """
+    text = os.fspath(linkage)
+    file, mark, rank = text.rpartition("#")
+    if mark and file.endswith(".json"):
+        return _candidate(Path(file), rank)
+    if text.endswith(".json"):
+        raise ProblemError(f"{text}: is a list of designs; allowed is {text}#1 for the first of them")
+    if isinstance(linkage, str) and not _looks_like_path(text):
+        files = _catalogue_files()
+        if text in files:
+            return _parsed(files[text].read_text(encoding="utf-8"), f"{text}.toml", text)
+        # Path.exists raises for names that no file can have; this says False.
+        if not text or not os.path.exists(text):  # noqa: PTH110
+            raise ProblemError(f"{text!r} is no linkage of the catalogue and no file; {_hint(text)}")
+    path = Path(linkage)
+    return _parsed(_text(path, "a linkage file"), str(path), path.stem)
+
+
+def linkage_catalogue() -> tuple[str, ...]:
+    """Names of the linkages shipped with the package, sorted.
+
+    Examples
+    --------
+    >>> linkage_catalogue()
+    ('lufkin-c912d', 'pumpjack')
+    """
+    return tuple(sorted(_catalogue_files()))
+
+
+def _catalogue_files() -> dict[str, Traversable]:
+    folder = resources.files("grashof.problems") / "data" / "linkages"
+    return {Path(file.name).stem: file for file in folder.iterdir() if file.name.endswith(".toml")}
+
+
+def _hint(name: str) -> str:
+    names = linkage_catalogue()
+    meant = near_miss(name, names)
+    return f"did you mean {meant}?" if meant else f"the catalogue has {', '.join(names)}"
+
+
+def _looks_like_path(text: str) -> bool:
+    separators = {"/", os.sep, os.altsep}
+    return text.endswith(".toml") or any(sep in text for sep in separators if sep)
+
+
+def _text(path: Path, allowed: str) -> str:
+    if os.path.isdir(path):  # noqa: PTH112
+        raise ProblemError(f"{path}: is a folder; allowed is {allowed}")
+    try:
+        return path.read_bytes().decode("utf-8-sig")
+    except FileNotFoundError:
+        raise ProblemError(f"{path}: there is no such file") from None
+    except OSError as error:
+        raise ProblemError(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError as error:
+        raise ProblemError(f"{path}: is not UTF-8 text, at byte {error.start}") from None
+    except ValueError as error:  # no name of a file, such as one with a null character
+        raise ProblemError(f"{str(path)!r}: cannot be read: {error}") from None
+
+
+def _parsed(text: str, file_name: str, name: str) -> LinkageSpec:
+    # Here, not above: worker processes import this package, and need not pay for pydantic.
+    from grashof.problems.linkage_schema import linkage_from
+
+    try:
+        document = tomllib.loads(text)
+    # Besides its own error: an integer of thousands of digits, lists nested a thousand deep.
+    except (ValueError, RecursionError) as error:
+        raise ProblemError(f"{file_name}: is not TOML: {error}") from None
+    try:
+        return linkage_from(document, name)
+    except ProblemError as error:
+        raise ProblemError(f"{file_name}: {error}") from None
+
+
+_LINKAGE_KEYS = ("o2", "o4", "r2", "r3", "r4", "coupler_point", "assembly", "body_angle")
+
+
+def _candidate(path: Path, rank: str) -> LinkageSpec:
+    """Design of a list that `grashof solve` wrote."""
+    where = f"{path}#{rank}"
+    try:
+        content = json.loads(_text(path, "a list of designs"))
+        designs = {int(design["rank"]): design for design in content["designs"]}
+        title, unit = str(content["title"] or content["problem"]), str(content["length_unit"])
+    except ProblemError:
+        raise
+    except (ValueError, KeyError, TypeError, RecursionError):
+        raise ProblemError(
+            f"{path}: is no list of designs; allowed is a candidates.json of grashof solve"
+        ) from None
+    if not (rank.isascii() and rank.isdigit()) or int(rank) not in designs:
+        ranks = f"1 to {max(designs)}" if designs else "none"
+        raise ProblemError(f"{where}: has no design {rank or '(none named)'}; its ranks are {ranks}")
+    design = designs[int(rank)]
+    try:
+        given: dict[str, Any] = {key: design["linkage"][key] for key in _LINKAGE_KEYS}
+        linkage = FourBar(**given)
+    except ProblemError as error:
+        raise ProblemError(f"{where}: {error}") from None
+    except (KeyError, TypeError):
+        raise ProblemError(
+            f"{where}: states no linkage; allowed are the keys {', '.join(_LINKAGE_KEYS)}"
+        ) from None
+    if linkage.shape:
+        raise ProblemError(f"{where}: states a batch; allowed is one linkage")
+    stem = f"{path.parent.name or path.stem}-{int(rank)}"
+    return LinkageSpec(linkage, stem, f"{title}: design {int(rank)}", str(path), unit)

@@ -1,0 +1,190 @@
+"""The linkage file's structure: which keys there are, of what type, and what they may hold."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import AfterValidator, BaseModel, Field, ValidationError
+from pydantic_core import ErrorDetails, PydanticCustomError
+
+from grashof.problems.checks import counted, finite_number, near_miss
+from grashof.problems.errors import ProblemError
+from grashof.problems.linkage import FourBar
+from grashof.problems.linkage_file import METRES, LinkageDynamics, LinkageSpec
+from grashof.problems.schema import _described, _listed, _path, _Table
+
+
+def linkage_from(document: dict[str, Any], name: str) -> LinkageSpec:
+    """Linkage stated by a parsed linkage file.
+
+    Parameters
+    ----------
+    document : dict
+        The file as `tomllib` gives it.
+    name : str
+
+    Raises
+    ------
+    ProblemError
+        The first error found, with its key path, and how many more there are.
+
+    Examples
+    --------
+    >>> given = {"o4": [4, 0], "r2": 1, "r3": 4, "r4": 3}
+    >>> float(linkage_from(given, "mine").linkage.r1)
+    4.0
+    >>> linkage_from(given | {"coupler": [1, 1]}, "mine")
+    Traceback (most recent call last):
+        ...
+    grashof.problems.errors.ProblemError: coupler is unknown; did you mean coupler_point?
+    """
+    try:
+        file = LinkageTable.model_validate(document)
+    except ValidationError as refused:
+        errors = refused.errors(include_url=False)
+    else:
+        return file.spec(name)
+    # A missing key comes last: most often it stands in the file, misspelt, and that error says more.
+    first = min(errors, key=lambda error: error["type"] == "missing")
+    more = f" (and {counted(len(errors) - 1, 'more error')})" if len(errors) > 1 else ""
+    raise ProblemError(f"{_said(first)}{more}")
+
+
+def _of_length(count: int, allowed: str) -> AfterValidator:
+    def refuse(values: list[float]) -> list[float]:
+        if len(values) != count:
+            raise PydanticCustomError("wrong", allowed)
+        return values
+
+    return AfterValidator(refuse)
+
+
+Point = Annotated[list[float], _listed("[x, y]"), _of_length(2, "[x, y]")]
+Three = Annotated[
+    list[float],
+    _listed("three numbers, for links 2, 3 and 4"),
+    _of_length(3, "three numbers, for links 2, 3 and 4"),
+]
+
+
+class DynamicsTable(_Table):
+    """The table `[dynamics]`."""
+
+    speed_rpm: float | None = None
+    gravity: Point = Field(default=[0.0, 0.0])
+    mass_per_length: float | None = None
+    masses: Three | None = None
+    inertias: Three | None = None
+    payload: float = 0.0
+
+    def value(self) -> LinkageDynamics:
+        """What the table states."""
+        if (self.masses is None) != (self.inertias is None):
+            absent = "masses" if self.masses is None else "inertias"
+            raise ProblemError(f"dynamics.{absent} is missing; masses and inertias go together")
+        if self.masses is not None and self.mass_per_length is not None:
+            raise ProblemError("dynamics.mass_per_length is given besides masses; allowed is one of them")
+        for key in ("mass_per_length", "payload", "masses", "inertias"):
+            given = getattr(self, key)
+            for number in given if isinstance(given, list) else [] if given is None else [given]:
+                if finite_number(number, f"dynamics.{key}") < 0:
+                    raise ProblemError(f"dynamics.{key} is {given}; allowed are numbers from zero")
+        if self.speed_rpm is not None:
+            finite_number(self.speed_rpm, "dynamics.speed_rpm")
+        x, y = (finite_number(part, "dynamics.gravity") for part in self.gravity)
+        return LinkageDynamics(
+            speed_rpm=self.speed_rpm,
+            gravity=(x, y),
+            mass_per_length=self.mass_per_length,
+            masses=_triple(self.masses),
+            inertias=_triple(self.inertias),
+            payload=self.payload,
+        )
+
+
+class LinkageTable(_Table):
+    """The whole linkage file."""
+
+    title: str = ""
+    source: str = ""
+    length_unit: str = ""
+    o2: Point = Field(default=[0.0, 0.0])
+    o4: Point | None = None
+    r1: float | None = None
+    ground_angle_deg: float | None = None
+    r2: float
+    r3: float
+    r4: float
+    coupler_point: Point = Field(default=[0.0, 0.0])
+    assembly: int = 1
+    body_angle_deg: float = 0.0
+    output_arm: float | None = None
+    dynamics: DynamicsTable | None = None
+
+    def value(self) -> FourBar:
+        """The linkage itself, checked with what belongs to it."""
+        if self.output_arm is not None and finite_number(self.output_arm, "output_arm") <= 0:
+            raise ProblemError(f"output_arm is {self.output_arm:g}; allowed are lengths greater than zero")
+        if self.dynamics is not None and self.dynamics.value().has_masses and self.length_unit not in METRES:
+            raise ProblemError(
+                f"length_unit is {self.length_unit!r}; allowed with masses is one of {', '.join(METRES)}"
+            )
+        linkage = FourBar(
+            o2=self.o2,
+            o4=self._o4(),
+            r2=self.r2,
+            r3=self.r3,
+            r4=self.r4,
+            coupler_point=self.coupler_point,
+            assembly=self.assembly,
+            body_angle=np.radians(finite_number(self.body_angle_deg, "body_angle_deg")),
+        )
+        if not linkage.r1 > 0:
+            raise ProblemError("o4 is where o2 is; allowed are two different ground pivots")
+        return linkage
+
+    def _o4(self) -> list[float]:
+        if self.o4 is not None:
+            for key in ("r1", "ground_angle_deg"):
+                if getattr(self, key) is not None:
+                    raise ProblemError(f"{key} is given besides o4; allowed is one of them")
+            return self.o4
+        if self.r1 is None:
+            raise ProblemError("o4 is missing; allowed is also r1 with ground_angle_deg")
+        if finite_number(self.r1, "r1") <= 0:
+            raise ProblemError(f"r1 is {self.r1:g}; allowed are lengths greater than zero")
+        angle = np.radians(finite_number(self.ground_angle_deg or 0.0, "ground_angle_deg"))
+        return [float(self.o2[0] + self.r1 * np.cos(angle)), float(self.o2[1] + self.r1 * np.sin(angle))]
+
+    def spec(self, name: str) -> LinkageSpec:
+        """What the file states."""
+        return LinkageSpec(
+            linkage=self.value(),
+            name=name,
+            title=self.title,
+            source=self.source,
+            length_unit=self.length_unit,
+            output_arm=self.output_arm,
+            dynamics=None if self.dynamics is None else self.dynamics.value(),
+        )
+
+
+_TABLES: dict[str, type[BaseModel]] = {"": LinkageTable, "dynamics": DynamicsTable}
+
+
+def _said(error: ErrorDetails) -> str:
+    if error["type"] != "extra_forbidden":
+        return _described(error)
+    path, table, key = _path(error["loc"]), _path(error["loc"][:-1]), str(error["loc"][-1])
+    keys = list(_TABLES[table].model_fields)
+    homes = (name for name, other in _TABLES.items() if key in other.model_fields)
+    meant = near_miss(key, keys) or next((f"{home}.{key}".lstrip(".") for home in homes), None)
+    return f"{path} is unknown; " + (f"did you mean {meant}?" if meant else f"allowed are {', '.join(keys)}")
+
+
+def _triple(values: list[float] | None) -> tuple[float, float, float] | None:
+    if values is None:
+        return None
+    second, third, fourth = values
+    return second, third, fourth

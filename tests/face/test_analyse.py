@@ -1,0 +1,320 @@
+"""`grashof analyse`: the figures of two real machines, limited ranges, files, exit codes."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import grashof.draw
+from grashof.analysis import (
+    Loads,
+    driver_ranges,
+    given_masses,
+    inverse_dynamics,
+    output_stroke,
+    solve_kinematics,
+    uniform_bars,
+)
+from grashof.linkage_report import LinkageReport, report_on
+from grashof.problems import FourBar, LinkageDynamics, LinkageSpec, ProblemError, load_linkage_spec
+
+Grashof = Callable[..., Any]
+GOLDEN = json.loads((Path(__file__).parents[1] / "data" / "golden.json").read_text(encoding="utf-8"))
+DOUBLE_ROCKER = FourBar((0, 0), (4, 0), 3, 1, 3, (0.5, 1))
+ONE_RANGE = FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1))
+
+
+def facts(report: LinkageReport) -> dict[str, Any]:
+    return {fact.key: fact.value for fact in report.facts}
+
+
+def extremes(report: LinkageReport) -> pd.DataFrame:
+    return report.tables["extremes"].set_index("quantity")
+
+
+@pytest.fixture(scope="module")
+def jack() -> LinkageReport:
+    return report_on(load_linkage_spec("pumpjack"))
+
+
+def test_the_real_unit_has_the_stroke_and_torque_factor_of_its_maker() -> None:
+    found = facts(report_on(load_linkage_spec("lufkin-c912d")))
+    unit = GOLDEN["pumpjack_lufkin_C912D_427_144"]
+    assert found["output_stroke"] == pytest.approx(float(unit["strokes"]["47"]["stroke_in"]), rel=1e-12)
+    assert found["output_stroke"] == pytest.approx(145.556, abs=5e-4)
+    assert found["torque_factor_at_0_deg"] == pytest.approx(68.825, abs=5e-4)  # API crank angle 90 deg
+    assert found["transmission_min_deg"] == pytest.approx(180 - float(unit["mu_max_deg"]), abs=1e-9)
+    assert found["grashof_class"] == "crank-rocker"
+
+
+def test_extremes_of_the_pumpjack_are_the_reference_figures(jack: LinkageReport) -> None:
+    table, checked = extremes(jack), 0
+    names = {"vB_mag": "b_speed", "aB_mag": "b_acceleration", "P_x": "p_x", "P_y": "p_y"}
+    for key, expected in GOLDEN["pumpjack_report_geometry"]["extremes_sigma+1"].items():
+        name, side = key.replace("_unwrapped", "").rsplit("_", 1)
+        scale = 180 / np.pi if name.startswith("theta") else 1.0
+        row = table.loc[names.get(name, f"{name}_deg" if name.startswith("theta") else name)]
+        assert row[side] == pytest.approx(scale * float(expected["value"]), rel=1e-9), key
+        assert row[f"theta2_{side}_deg"] == pytest.approx(float(expected["theta2_deg"]), abs=1e-4), key
+        checked += 1
+    assert checked == 19
+
+
+def test_torque_and_forces_of_the_pumpjack_are_the_reference_figures() -> None:
+    spec = load_linkage_spec("pumpjack")
+    assert spec.dynamics is not None
+    still = LinkageDynamics(20, (0, -9.81), None, spec.dynamics.masses, spec.dynamics.inertias)
+    heavy = report_on(LinkageSpec(spec.linkage, "jack", length_unit="m", dynamics=still))
+    rows = heavy.tables["dynamics"].set_index("theta2_deg")
+    checked = 0
+    for case in GOLDEN["pumpjack_report_geometry"]["inverse_dynamics"]["cases"]:
+        if float(case["g"]) == 9.81:
+            row = rows.loc[float(case["theta2_deg"])]
+            assert row["torque"] == pytest.approx(float(case["T"]), rel=1e-9)
+            for name in ("f12", "f32", "f43", "f14"):
+                force = [float(part) for part in case[name.upper()]]
+                assert [row[f"{name}_x"], row[f"{name}_y"]] == pytest.approx(force, rel=1e-9, abs=1e-6)
+                assert row[name] == pytest.approx(np.hypot(*force), rel=1e-9)
+            checked += 1
+    assert checked >= 1
+
+
+def test_forces_are_newtons_in_every_length_unit() -> None:
+    def heavy(density: float) -> LinkageDynamics:
+        return LinkageDynamics(12, (0, -9.8), density, payload=50)
+
+    linkage, inch = load_linkage_spec("pumpjack").linkage, 0.0254
+    small = FourBar(
+        linkage.o2 / inch, linkage.o4 / inch, linkage.r2 / inch, linkage.r3 / inch, linkage.r4 / inch,
+        linkage.coupler_point / inch,
+    )  # fmt: skip
+    metres, inches = (
+        report_on(LinkageSpec(bar, "bar", length_unit=unit, dynamics=heavy(density)))
+        for bar, unit, density in ((linkage, "m", 300.0), (small, "in", 300.0 * inch))
+    )
+    for name in ("torque", "f12", "f43", "shaking_force", "shaking_moment", "power"):
+        np.testing.assert_allclose(
+            inches.tables["dynamics"][name], metres.tables["dynamics"][name], rtol=1e-9, atol=1e-6
+        )
+    masses = uniform_bars(linkage, 300.0, 50.0)
+    state = solve_kinematics(linkage, np.radians(metres.tables["dynamics"]["theta2_deg"]), 12 * np.pi / 30)
+    torque = inverse_dynamics(state, masses, Loads(gravity=(0, -9.8))).torque
+    np.testing.assert_allclose(metres.tables["dynamics"]["torque"], torque, rtol=1e-12, atol=1e-9)
+
+
+def test_the_table_is_the_motion(jack: LinkageReport) -> None:
+    table, linkage = jack.tables["kinematics"], jack.spec.linkage
+    assert table["theta2_deg"].tolist() == pytest.approx(list(range(361)))
+    state = solve_kinematics(linkage, np.radians(table["theta2_deg"]), 20 * np.pi / 30)
+    for name, values in {
+        "omega3": state.omega3, "alpha4": state.alpha4, "p_velocity_x": state.p.velocity[:, 0],
+        "b_acceleration_y": state.b.acceleration[:, 1], "a_y": state.a.position[:, 1],
+    }.items():  # fmt: skip
+        np.testing.assert_allclose(table[name], values, rtol=1e-12, atol=1e-12)
+    assert np.abs(np.diff(table["theta4_deg"])).max() < 2
+    stroke = output_stroke(linkage)
+    assert facts(jack)["output_swing_deg"] == pytest.approx(float(np.degrees(stroke.swing)))
+    assert table["theta4_deg"].max() - table["theta4_deg"].min() == pytest.approx(46.65, abs=0.01)
+
+
+def test_speed_scales_rates() -> None:
+    spec = load_linkage_spec("lufkin-c912d")
+    slow, fast = (report_on(spec, speed).tables["kinematics"] for speed in (None, -60 / np.pi))
+    np.testing.assert_allclose(fast["omega4"], -2 * slow["omega4"], rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(fast["alpha4"], 4 * slow["alpha4"], rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(fast["torque_factor"], slow["torque_factor"])
+    with pytest.raises(ProblemError, match="speed_rpm is nan"):
+        report_on(spec, np.nan)
+
+
+def test_a_limited_range_says_so() -> None:
+    report = report_on(LinkageSpec(ONE_RANGE, "rocker"))
+    low, high = np.degrees(driver_ranges(ONE_RANGE)[0])
+    found, table = facts(report), extremes(report)
+    assert (found["driver_low_deg"], found["driver_high_deg"]) == pytest.approx((low, high))
+    assert found["transmission_min_deg"] == 0
+    assert "time_ratio" not in found
+    assert "fourier_share_1" not in found
+    assert found["full_rotation"] is False
+    assert table.loc["omega3", ["min", "max"]].tolist() == [-np.inf, np.inf]
+    assert table.loc["omega4", ["theta2_min_deg", "theta2_max_deg"]].tolist() == pytest.approx([low, high])
+    # One end pulls alpha3 down without limit; what it reaches between is found all the same.
+    inner = np.linspace(np.radians(low) + 0.1, np.radians(high) - 0.1, 20001)
+    assert table.loc["alpha3", "max"] == pytest.approx(
+        solve_kinematics(ONE_RANGE, inner).alpha3.max(), rel=1e-6
+    )
+    # B stands still where the output turns back, its acceleration does not vanish there or elsewhere.
+    assert table.loc["b_speed", "min"] == 0
+    least = solve_kinematics(ONE_RANGE, inner).b.acceleration_magnitude.min()
+    assert table.loc["b_acceleration", "min"] == pytest.approx(least, rel=1e-6)
+    assert "dead positions bound" in report.notes[0]
+    assert "assembly +1" in report.notes[0]
+    rows = report.tables["kinematics"]
+    assert rows["theta2_deg"].iloc[[0, -1]].tolist() == pytest.approx([low, high])
+    assert not np.isinf(rows.to_numpy(dtype=float)).any()
+    assert rows["p_x"].notna().all()
+    assert rows["omega3"].isna().sum() == 2
+
+
+def test_two_ranges_are_kept_apart() -> None:
+    report = report_on(LinkageSpec(DOUBLE_ROCKER, "rocker"))
+    rows, found = report.tables["kinematics"], facts(report)
+    assert rows["range"].value_counts().to_dict() == {1: 361, 2: 361}
+    # The toggle positions lie on two circuits: what is between them is no swing.
+    for number in (1, 2):
+        angles = rows.loc[rows["range"] == number, "theta4_deg"]
+        assert found[f"output_swing_{number}_deg"] == pytest.approx(np.ptp(angles), abs=0.01)
+    assert "output_swing_deg" not in found
+    assert "stroke_chord" not in found
+
+
+@pytest.mark.parametrize(
+    "linkage",
+    [
+        FourBar((0, 0), (4, 0), 1, 4, 1, (1, 1)),
+        FourBar((0, 0), (4, 0), 4, 2, 2, (1, 1)),
+        FourBar((0, 0), (4, 0), 2, 4, 2, (1, 1), -1),
+        FourBar((0, 0), (4, 0), 1, 3, 2, (1, 1)),
+    ],
+    ids=["parallelogram", "kite", "antiparallelogram", "change point"],
+)
+def test_change_points_give_figures_and_no_warnings(linkage: FourBar) -> None:
+    report = report_on(LinkageSpec(linkage, "edge"))
+    assert facts(report)["grashof_class"] == "change-point"
+    assert "either way" in report.notes[0]
+    assert len(report.tables["extremes"]) > 0
+
+
+def test_a_parallelogram_keeps_its_speed() -> None:
+    report = report_on(LinkageSpec(FourBar((0, 0), (4, 0), 1, 4, 1), "parallelogram"))
+    rows = report.tables["extremes"]
+    turning = rows[(rows["quantity"] == "omega4") & (rows["range"] == 2)]
+    assert turning[["min", "max"]].to_numpy().ravel().tolist() == pytest.approx([1, 1], abs=1e-6)
+
+
+def test_a_linkage_that_never_closes_is_bad_input(grashof: Grashof, tmp_path: Path) -> None:
+    (tmp_path / "far.toml").write_text("o4 = [9, 0]\nr2 = 1\nr3 = 1\nr4 = 1\n")
+    done = grashof("analyse", "far.toml")
+    assert done.exit_code == 2
+    assert "closes at no driver angle" in done.stderr
+    assert not (tmp_path / "far-analysis").exists()
+
+
+@pytest.fixture
+def unsaved(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pictures as empty files: saving them takes most of the time."""
+    monkeypatch.setattr(grashof.draw, "save", lambda _, paths: [path.touch() for path in paths])
+
+
+TABLES = {"kinematics.csv", "extremes.csv", "summary.csv", "summary.json", "analysis.json"}
+
+
+def pictures(*names: str) -> set[str]:
+    return {f"{name}.{kind}" for name in names for kind in ("png", "svg")}
+
+
+def test_files_and_terminal(grashof: Grashof, tmp_path: Path) -> None:
+    done = grashof("analyse", "pumpjack")
+    assert done.exit_code == 0, done.output
+    folder = tmp_path / "pumpjack-analysis"
+    kinematic = pictures("path", "angles", "velocities", "accelerations")
+    expected = TABLES | {"dynamics.csv"} | kinematic | pictures("torque", "forces")
+    assert {path.name for path in folder.iterdir()} == expected
+    assert "46.65" in done.stdout
+    assert "no limit" not in done.stdout
+    assert max(map(len, done.stdout.splitlines())) <= 100
+    summary = json.loads((folder / "summary.json").read_text())
+    assert FourBar(**summary["linkage"]) == load_linkage_spec("pumpjack").linkage
+    swing = pd.read_csv(folder / "summary.csv").set_index("quantity").loc["output_swing_deg", "value"]
+    assert float(swing) == summary["facts"]["output_swing_deg"]["value"]
+    # Without masses the files about them go; what is not Grashof's own stays.
+    (folder / "notes.txt").write_text("mine")
+    again = grashof("analyse", "lufkin-c912d", "--out", folder, "--speed-rpm", "6.5")
+    assert again.exit_code == 0
+    assert {path.name for path in folder.iterdir()} == TABLES | kinematic | {"notes.txt"}
+
+
+@pytest.mark.usefixtures("unsaved")
+def test_designs_of_a_list_beside_the_list(grashof: Grashof, tmp_path: Path) -> None:
+    assert grashof("solve", "luggage", "--starts", "16", "--top", "2", "--drawings", "0").exit_code == 0
+    folder = tmp_path / "luggage-designs"
+    lists = {path.name for path in folder.iterdir()}
+    done = grashof("analyse", "luggage-designs/candidates.json#2", "--out", folder)
+    assert done.exit_code == 0, done.output
+    assert lists < {path.name for path in folder.iterdir()}
+    row = pd.read_csv(folder / "candidates.csv").iloc[1]
+    summary = json.loads((folder / "summary.json").read_text())["facts"]
+    expected = pytest.approx(row["transmission_min_cycle_deg"])
+    assert summary["transmission_min_deg"]["value"] == expected
+
+
+def test_a_file_that_is_not_ours_is_not_replaced(grashof: Grashof, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "summary.csv").write_text("mine")
+    done = grashof("analyse", "pumpjack", "--out", out)
+    assert done.exit_code == 2
+    assert "summary.csv in it is not Grashof's own" in done.stderr
+    assert (out / "summary.csv").read_text() == "mine"
+
+
+@pytest.mark.usefixtures("unsaved")
+def test_a_limited_range_on_the_terminal(grashof: Grashof, tmp_path: Path) -> None:
+    text = "o4 = [4, 0]\nr2 = 3\nr3 = 1\nr4 = 3\nlength_unit = 'mm'\n[dynamics]\nmass_per_length = 0.01\n"
+    (tmp_path / "rocker.toml").write_text(text)
+    done = grashof("analyse", "rocker.toml")
+    assert done.exit_code == 0, done.output
+    assert done.stderr.count("\n") == 2
+    assert "dead positions bound the driver's motion" in done.stderr
+    assert "no limit" in done.stdout
+    assert "infinite" in (tmp_path / "rocker-analysis" / "summary.json").read_text()
+
+
+@pytest.mark.parametrize("given", ["pumpjak", "no/such.toml", "x.json#1", "x.json"])
+def test_bad_input_is_one_line(grashof: Grashof, given: str) -> None:
+    done = grashof("analyse", given)
+    assert done.exit_code == 2
+    assert done.stderr.count("\n") == 1
+
+
+def test_given_masses_and_payload() -> None:
+    spec = load_linkage_spec("pumpjack")
+    dynamics = LinkageDynamics(10, (0, 0), None, (1.0, 2.0, 3.0), (0.1, 0.2, 0.3), 5.0)
+    report = report_on(LinkageSpec(spec.linkage, "jack", length_unit="m", dynamics=dynamics))
+    masses = given_masses(spec.linkage, (1, 2, 3), (0.1, 0.2, 0.3))
+    masses = masses.with_payload(5, spec.linkage.coupler_point)
+    state = solve_kinematics(spec.linkage, np.arange(0, 361) * np.pi / 180, np.pi / 3)
+    expected = inverse_dynamics(state, masses).torque
+    np.testing.assert_allclose(report.tables["dynamics"]["torque"], expected, rtol=1e-9, atol=1e-12)
+    assert facts(report)["mass"] == 11
+    assert facts(report)["torque_rms"] == pytest.approx(np.sqrt(np.mean(expected[:-1] ** 2)))
+
+
+def test_plots_of_a_limited_range_are_made() -> None:
+    """Rates without bound are cut off, and no warning is given."""
+    from grashof.linkage_plots import plots
+
+    made = dict(plots(report_on(LinkageSpec(DOUBLE_ROCKER, "rocker", length_unit="mm"))))
+    assert list(made) == ["path", "angles", "velocities", "accelerations"]
+    rates, speeds = made["velocities"].axes
+    assert rates.get_ylabel() == "angular velocity (rad/s)"
+    assert speeds.get_ylabel() == "speed (mm/s)"
+    assert np.abs(rates.get_ylim()).max() < 100
+    assert {line.get_label() for line in speeds.lines} >= {"A", "B", "P"}
+    assert made["path"].axes[0].get_xlabel() == "x (mm)"
+
+
+@pytest.mark.parametrize("speed", [0.0, -30.0])
+def test_a_driver_at_rest_and_backwards(speed: float) -> None:
+    report = report_on(load_linkage_spec("pumpjack"), speed)
+    table = extremes(report)
+    assert table.loc["a_speed", "max"] == pytest.approx(abs(speed) * np.pi / 30 * 1.1938)
+    # At rest the torque holds the weight.
+    assert table.loc["torque", "max"] > 1000
+    assert table.loc["f12", "min"] > 0

@@ -1,0 +1,152 @@
+"""Linkage files: the catalogue, what a file may say, and what is refused by name."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from grashof.problems import FourBar, ProblemError, linkage_catalogue, load_linkage, load_linkage_spec
+
+ROOT = Path(__file__).parents[2]
+PLAIN = "o4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n"
+
+
+def written(folder: Path, text: str) -> Path:
+    path = folder / "mine.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_catalogue_is_what_is_shipped() -> None:
+    shipped = {path.stem for path in (ROOT / "problems" / "data" / "linkages").glob("*.toml")}
+    assert set(linkage_catalogue()) == shipped == {"pumpjack", "lufkin-c912d"}
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]
+    assert "data/linkages/*.toml" in settings["package-data"]["*"]
+
+
+def test_pumpjack_is_that_of_the_report() -> None:
+    golden = json.loads((ROOT / "tests" / "data" / "golden.json").read_text())["pumpjack_report_geometry"]
+    spec = load_linkage_spec("pumpjack")
+    r3 = float(golden["inputs"]["r3"])
+    assert spec.linkage.lengths.tolist() == [5.0, 1.1938, r3, 3.048762]
+    assert complex(*spec.linkage.coupler_point) == pytest.approx(r3 / 2 * np.exp(0.4j), rel=1e-15)
+    assert spec.dynamics is not None
+    given = golden["inverse_dynamics"]
+    np.testing.assert_allclose(spec.dynamics.masses, np.array(given["masses"], dtype=float), rtol=1e-14)
+    np.testing.assert_allclose(spec.dynamics.inertias, np.array(given["inertias"], dtype=float), rtol=1e-14)
+
+
+def test_real_unit_is_that_of_its_maker() -> None:
+    golden = json.loads((ROOT / "tests" / "data" / "golden.json").read_text())[
+        "pumpjack_lufkin_C912D_427_144"
+    ]
+    spec, given = load_linkage_spec("lufkin-c912d"), golden["inputs_in"]
+    assert float(spec.linkage.r1) == pytest.approx(float(golden["K_in"]), rel=1e-14)
+    assert [float(given[key]) for key in "RPC"] == spec.linkage.lengths[1:].tolist()
+    assert spec.output_arm == float(given["A"])
+
+
+def test_the_ground_by_length_and_angle(tmp_path: Path) -> None:
+    text = "o2 = [1, 2]\nr1 = 4\nground_angle_deg = 90\nr2 = 1\nr3 = 4\nr4 = 3\n"
+    text += "body_angle_deg = 180\nassembly = -1\n"
+    linkage = load_linkage(written(tmp_path, text))
+    np.testing.assert_allclose(linkage.o4, [1, 6], rtol=1e-15)
+    assert linkage.body_angle == np.pi
+    assert linkage.assembly == -1
+    without = load_linkage(written(tmp_path, text.replace("ground_angle_deg = 90\n", "")))
+    assert without.o4.tolist() == [5, 2]
+
+
+def test_a_plain_file_and_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = written(tmp_path, "\ufeff" + PLAIN)
+    monkeypatch.chdir(tmp_path)
+    for given in (path, str(path), "mine.toml"):
+        spec = load_linkage_spec(given)
+        assert spec.linkage == FourBar((0, 0), (4, 0), 1, 4, 3)
+        assert (spec.name, spec.dynamics, spec.output_arm) == ("mine", None, None)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (PLAIN + "coupler = [1, 1]", "coupler is unknown; did you mean coupler_point?"),
+        (PLAIN + "speed_rpm = 3", "speed_rpm is unknown; did you mean dynamics.speed_rpm?"),
+        (PLAIN + "[dynamics]\nspeed = 3", "dynamics.speed is unknown; did you mean speed_rpm?"),
+        (PLAIN + "[dynamics]\npayload = 3", "length_unit is ''; allowed with masses"),
+        (PLAIN + "[dynamics]\nmasses = [1, 2, 3]", "dynamics.inertias is missing"),
+        (PLAIN + "[dynamics]\nmasses = [1, 2]\ninertias = [1, 2, 3]", "masses is [1, 2]; allowed is three"),
+        (PLAIN + "[dynamics]\npayload = -1", "dynamics.payload is -1.0; allowed are numbers from zero"),
+        (PLAIN + "[dynamics]\ngravity = [0, nan]", "dynamics.gravity is nan"),
+        (PLAIN + "[dynamics]\nspeed_rpm = inf", "dynamics.speed_rpm is inf"),
+        (PLAIN + "dynamics = 3", "dynamics is 3; allowed is a table"),
+        (PLAIN + "r1 = 4", "r1 is given besides o4"),
+        (PLAIN + "assembly = 2", "assembly is 2; allowed is +1 or -1"),
+        (PLAIN + "output_arm = 0", "output_arm is 0"),
+        (PLAIN + "body_angle_deg = nan", "body_angle_deg is nan"),
+        (PLAIN.replace("r2 = 1", "r2 = -1"), "r2 is -1.0; allowed are lengths greater than zero"),
+        (PLAIN.replace("r2 = 1", "r2 = 'x'"), "r2 is 'x'; allowed is a number"),
+        (PLAIN.replace("r2 = 1\n", ""), "r2 is missing"),
+        (PLAIN.replace("o4 = [4, 0]\n", ""), "o4 is missing; allowed is also r1"),
+        (PLAIN.replace("o4 = [4, 0]", "r1 = 0"), "r1 is 0; allowed are lengths"),
+        (PLAIN.replace("[4, 0]", "[0, 0]"), "o4 is where o2 is"),
+        (PLAIN.replace("[4, 0]", "[4, 0, 0]"), "allowed is [x, y]"),
+        (PLAIN.replace("[4, 0]", "[inf, 0]"), "all numbers must be finite"),
+        ("r2 = ", "is not TOML"),
+    ],
+)  # fmt: skip
+def test_what_a_file_may_not_say(tmp_path: Path, text: str, message: str) -> None:
+    with pytest.raises(ProblemError) as refused:
+        load_linkage(written(tmp_path, text))
+    assert message in str(refused.value)
+    assert str(refused.value).startswith(str(tmp_path))
+    assert "\n" not in str(refused.value) or "TOML" in message
+
+
+def test_a_name_that_is_none() -> None:
+    for name, message in [
+        ("pumpjak", "did you mean pumpjack?"),
+        ("luggage", "the catalogue has lufkin-c912d, pumpjack"),
+        ("", "no linkage of the catalogue"),
+        ("no/such.toml", "there is no such file"),
+        ("./", "is a folder"),
+        ("candidates.json", "allowed is candidates.json#1"),
+        ("a\0/b.toml", "cannot be read"),
+    ]:
+        with pytest.raises(ProblemError, match=message.replace("?", r"\?")):
+            load_linkage(name)
+
+
+def listed(**changes: Any) -> str:
+    linkage = {
+        "o2": [0, 0], "o4": [4, 0], "r2": 1.0, "r3": 4.0, "r4": 3.0, "coupler_point": [0.1, 0.3],
+        "assembly": -1, "body_angle": 0.25,
+    }  # fmt: skip
+    design = {"rank": 3, "linkage": linkage | changes}
+    return json.dumps({"problem": "p", "title": "P", "length_unit": "m", "designs": [design]})
+
+
+def test_a_design_of_a_list(tmp_path: Path) -> None:
+    folder = tmp_path / "p#designs"
+    folder.mkdir()
+    path = folder / "candidates.json"
+    path.write_text(listed())
+    spec = load_linkage_spec(f"{path}#3")
+    assert spec.linkage == FourBar((0, 0), (4, 0), 1, 4, 3, (0.1, 0.3), -1, 0.25)
+    assert (spec.name, spec.title, spec.length_unit) == ("p#designs-3", "P: design 3", "m")
+    for text, rank, message in [
+        (listed(), "4", "has no design 4; its ranks are 1 to 3"),
+        (listed(), "x", "has no design x"),
+        (listed(), "", "has no design"),
+        (listed(r2=0), "3", "#3: r2 is 0"),
+        (listed(r2=[1, 2]), "3", "states a batch"),
+        ("[]", "3", "is no list of designs"),
+        ("{", "3", "is no list of designs"),
+    ]:
+        path.write_text(text)
+        with pytest.raises(ProblemError, match=message):
+            load_linkage(f"{path}#{rank}")
