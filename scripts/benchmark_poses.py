@@ -14,7 +14,7 @@ from grashof import synthesize
 from grashof.analysis import verify, worst_transmission_cycle
 from grashof.analysis.planted import planted_motion
 from grashof.problems import FourBar, MotionTask, Problem, Requirements, TransmissionOver
-from grashof.problems.checks import FloatArray
+from grashof.problems.checks import ComplexArray, FloatArray
 from grashof.synth.attempt import attempt
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
@@ -110,10 +110,11 @@ def random_three_pose_linkages(task: MotionTask, count: int, rng: np.random.Gene
     return worst
 
 
-def _centre(first: FloatArray, second: FloatArray, third: FloatArray) -> FloatArray:
+def _centre(first: ComplexArray, second: ComplexArray, third: ComplexArray) -> ComplexArray:
     p, q = second - first, third - first
     cross = 2 * (p.conj() * q).imag
-    return first + 1j * (p * np.abs(q) ** 2 - q * np.abs(p) ** 2) / cross
+    centre: ComplexArray = first + 1j * (p * np.abs(q) ** 2 - q * np.abs(p) ** 2) / cross
+    return centre
 
 
 def three_poses(count: int, samples: int) -> None:
