@@ -13,6 +13,7 @@ import numpy as np
 
 from grashof.folder import RECORD, replacing_own_files
 from grashof.problems import FourBar
+from grashof.problems.checks import FloatArray
 from grashof.synth import Candidate, Result
 from grashof.synth.result import pareto_optimal
 from grashof.synth.table import MANUFACTURING, to_frame
@@ -108,14 +109,14 @@ def _designs(result: Result, frame: pd.DataFrame) -> dict[str, Any]:
 
 def _design(candidate: Candidate) -> dict[str, Any]:
     verdict = candidate.verdict
-    angle_error = {} if verdict.angle_error is None else {"angle_error": verdict.angle_error.tolist()}
+    angle_error = {} if verdict.angle_error is None else {"angle_error": _listed(verdict.angle_error)}
     return {
         "id": candidate.id,
         "family": "four-bar",
         "linkage": _linkage(candidate.linkage),
         "theta2": verdict.theta2.tolist(),
         "assembly": verdict.assembly.tolist(),
-        "position_error": verdict.position_error.tolist(),
+        "position_error": _listed(verdict.position_error),
         **angle_error,
         "grashof_class": str(verdict.grashof_class),
         "direction": verdict.direction,
@@ -135,9 +136,17 @@ def _made(result: Result, frame: pd.DataFrame) -> list[dict[str, Any]]:
     """The columns of each design about made linkages, null where they are not finite."""
     columns = [] if result.problem.manufacturing is None else list(MANUFACTURING)
     rows = frame[columns].to_numpy(dtype=np.float64).tolist()
-    return [
-        {name: x if np.isfinite(x) else None for name, x in zip(columns, row, strict=True)} for row in rows
-    ]
+    return [dict(zip(columns, map(_number, row), strict=True)) for row in rows]
+
+
+def _listed(values: FloatArray) -> list[float | None]:
+    """Errors of the targets, null where a pose is free."""
+    return [_number(value) for value in values.tolist()]
+
+
+def _number(value: float) -> float | None:
+    """`value`, or what JSON has for a number that is not finite."""
+    return value if np.isfinite(value) else None
 
 
 def _linkage(linkage: FourBar) -> dict[str, Any]:
