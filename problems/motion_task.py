@@ -23,6 +23,7 @@ from grashof.problems.errors import ProblemError
 
 _POSE = "a pose [x, y, angle in degrees]"
 _SAME = 1e-12  # rad
+_WEIGHTS = (1e-9, 1e9)
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
@@ -36,7 +37,7 @@ class MotionTask:
     angles : array_like, shape (N,), rad
         Orientations of the body, counter-clockwise from +x; NaN where they are free.
     weights : array_like, shape (N,), optional
-        Of the squared errors; 1 by default.
+        Of the squared errors, 1e-9 to 1e9; 1 by default.
     angle_length : float, length, optional
         Length that one radian of orientation error counts as; the size of the task by default.
     body : array_like, shape (M, 2), length, optional
@@ -46,7 +47,7 @@ class MotionTask:
     ------
     ProblemError
         Fewer than two poses, numbers that are infinite, a pose with nothing given, no position at
-        all, two consecutive equal poses, or weights that are not positive.
+        all, two consecutive equal poses, or weights out of range.
 
     Examples
     --------
@@ -90,7 +91,9 @@ class MotionTask:
                 f"motion.angle_length is {angle_length:g}; allowed is a length greater than zero"
             )
         if size == 0 and angle_length is None:
-            raise ProblemError("motion.angle_length is missing: a pure rotation has no size to take it from")
+            raise ProblemError(
+                "motion.angle_length is missing: poses at a single place have no size to take it from"
+            )
         object.__setattr__(self, "positions", frozen_array(places))
         object.__setattr__(self, "angles", frozen_array(turned))
         object.__setattr__(self, "weights", _weights(weights, len(places)))
@@ -197,9 +200,10 @@ def _weights(values: npt.ArrayLike | None, count: int) -> FloatArray:
         raise ProblemError(f"motion.weights is {values!r}; allowed is a list of numbers")
     if len(weights) != count:
         raise ProblemError(f"motion.weights has {counted(len(weights), 'number')} for {count} poses")
-    for index in np.flatnonzero(~(np.isfinite(weights) & (weights > 0))):
+    least, most = _WEIGHTS
+    for index in np.flatnonzero(~((weights >= least) & (weights <= most))):
         raise ProblemError(
-            f"motion.weights[{index}] is {weights[index]}; allowed is a number greater than zero"
+            f"motion.weights[{index}] is {weights[index]}; allowed is a number from {least:g} to {most:g}"
         )
     return frozen_array(weights)
 

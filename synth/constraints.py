@@ -204,8 +204,8 @@ def _transmission(rows: Rows, form: Form, unknown: Unknowns, places: Places) -> 
 
 def _keep_out(rows: Rows, form: Form, given: Given, unknown: Unknowns, places: Places) -> None:
     """Every half-plane of its free region holds each point that keeps out."""
-    moving = {"a": places.a, "b": places.b, "p": places.p}
-    held = [place for name in form.keep_out for place in moving.get(name, [unknown[name]])]
+    where = {"o2": [unknown["o2"]], "o4": [unknown["o4"]], "a": places.a, "b": places.b, "p": places.p}
+    held = [place for name in form.keep_out for place in where[name]]
     planes = ca.reshape(given.planes, 3, PLANES * len(held))
     for k, place in enumerate(held):
         for plane in ca.horzsplit(planes[:, PLANES * k : PLANES * (k + 1)]):

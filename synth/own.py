@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 from dataclasses import replace
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -14,13 +15,15 @@ from grashof.synth.setup import Setup
 from grashof.synth.start import Start
 
 NEAREST = 8  # starts that are tried for the closest miss
+# What makes an expression true or false; as a number, 1 where a condition holds.
+_TRUTHS = (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_NOT, ca.OP_AND, ca.OP_OR)
 WRONG = (TypeError, ValueError, AttributeError, IndexError, KeyError, RuntimeError, NotImplementedError)
 
 
 def refuse_unusable(setup: Setup, *, in_processes: bool) -> None:
     """Raise `ProblemError` for a constraint that cannot be used on symbols, or not in other processes."""
     for constraint in setup.constraints:
-        if not callable(constraint):
+        if not callable(constraint) or isinstance(constraint, type):
             raise ProblemError(f"constraints has {constraint!r}; allowed are functions of a design")
         _try_on_symbols(constraint, len(setup.targets))
         if in_processes:
@@ -86,14 +89,38 @@ def _try_on_symbols(constraint: Constraint, targets: int) -> None:
     a, b, p = ([point() for _ in range(targets)] for _ in range(3))
     theta2 = ca.SX.sym("theta2", targets)
     design = Design(point(), point(), r1, r2, r3, r4, theta1, point(), theta2, a, b, p)
-    allowed = "allowed are functions of a design made of arithmetic that works on CasADi symbols"
     try:
         value = constraint(design)
-        for one in value if isinstance(value, (list, tuple)) else [value]:
-            parts = ca.vec(ca.SX(one))
-            if any(parts[k].is_constant() and not parts[k].is_regular() for k in range(parts.numel())):
-                raise ValueError("its value is not a number")  # float() of a symbol
     except WRONG as error:
+        reason = " ".join(str(error).split())
         raise ProblemError(
-            f"constraint {name_of(constraint)} fails on symbols: {error}; {allowed}"
+            f"constraint {name_of(constraint)} fails on symbols: {reason}; allowed are functions of a design "
+            "made of arithmetic that works on CasADi symbols"
         ) from error
+    _refuse_no_amounts(constraint, value)
+
+
+def _refuse_no_amounts(constraint: Constraint, value: Any) -> None:
+    """Raise `ProblemError` for what a constraint gives on symbols, if it is no scalar and not several."""
+    name = name_of(constraint)
+    several = list(value) if isinstance(value, (list, tuple)) else [value]
+    for one in several:
+        try:
+            symbols = ca.SX(one)
+        except WRONG:
+            raise ProblemError(
+                f"constraint {name} gives {one!r}; allowed is a scalar, zero or negative where it is met, or "
+                "a list of them"
+            ) from None
+        if any(element.is_constant() and not element.is_regular() for element in symbols.nz):
+            raise ProblemError(  # such as float() of a symbol
+                f"constraint {name} fails on symbols: its value is not a number; allowed are functions of a "
+                "design made of arithmetic that works on CasADi symbols"
+            )
+        if isinstance(one, (bool, np.bool_)) or any(element.op() in _TRUTHS for element in symbols.nz):
+            raise ProblemError(
+                f"constraint {name} gives a truth value; allowed is a scalar, zero or negative where it is "
+                "met: a - b instead of a < b"
+            )
+    if not any(ca.SX(one).numel() > 0 for one in several):
+        raise ProblemError(f"constraint {name} gives nothing; allowed is a scalar or a list of them")

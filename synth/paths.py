@@ -48,6 +48,15 @@ SAME_CURVE = 0.1  # of the rms error: two least-squares finds closer at every ta
 FOUND = 1e-5  # sizes: rms error of a start for an exact task
 
 
+def degenerate(setup: Setup) -> str:
+    """Why poses with parts left free, or of least squares, need no linkage; empty when they need one."""
+    placed = setup.targets[setup.weights > 0]
+    if np.abs(placed - placed[0]).max() > 0:
+        return ""
+    x, y = setup.frame.outward(placed[0])
+    return f"all positions are at ({x:.6g}, {y:.6g}): a single pivot there does the job"
+
+
 def rounds(setup: Setup, enough: int, rng: np.random.Generator) -> Iterator[Round]:
     """Rounds of starts; later ones only when more are needed.
 

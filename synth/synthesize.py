@@ -16,7 +16,7 @@ import numpy as np
 from grashof.analysis import verify
 from grashof.analysis.design import Constraint
 from grashof.problems import MotionTask, Problem, ProblemError, Search, SolverError
-from grashof.problems.checks import whole_number
+from grashof.problems.checks import counted, finite_number, whole_number
 from grashof.synth import exact_poses, paths
 from grashof.synth.attempt import Attempt, attempt
 from grashof.synth.own import mended, refuse_unusable
@@ -103,16 +103,20 @@ def synthesize(
     >>> result.best.verdict.ok, bool(result.best.verdict.error_max < 1e-9)
     (True, True)
     """
+    if not isinstance(problem, Problem):
+        raise ProblemError(f"problem is a {type(problem).__name__}; allowed is a Problem, such as load gives")
+    if isinstance(constraints, str) or not isinstance(constraints, Sequence):
+        raise ProblemError(f"constraints is {constraints!r}; allowed is a list of functions of a design")
     given = {"starts": starts, "enough": enough, "seed": seed}
     search = replace(problem.search, **{name: n for name, n in given.items() if n is not None})
     whole_number(workers, 1, "workers")
-    if time_limit is not None and not 0 < time_limit < np.inf:
+    if time_limit is not None and finite_number(time_limit, "time_limit") <= 0:
         raise ProblemError(f"time_limit is {time_limit!r}; allowed is a time in s greater than zero")
     refuse_unsupported(problem)
     begun = perf_counter()
     setup = Setup.of(problem, constraints)
     refuse_unusable(setup, in_processes=workers > 1 or executor is not None)
-    reason = "" if setup.motion is None else exact_poses.degenerate(setup)
+    reason = paths.degenerate(setup) if setup.motion is None else exact_poses.degenerate(setup)
     if reason:
         return Result(problem, (), (), {}, {"total": perf_counter() - begun}, note=f"no design: {reason}")
 
@@ -126,8 +130,15 @@ def synthesize(
 def refuse_unsupported(problem: Problem) -> None:
     """Raise `ProblemError` for a problem that this version cannot search for."""
     task = problem.task
-    if isinstance(task, MotionTask) and problem.requirements.is_exact(task) and task.is_whole:
+    if not isinstance(task, MotionTask):
+        return
+    if problem.requirements.is_exact(task) and task.is_whole:
         exact_poses.refuse_equal_poses(task)
+    elif (count := len(paths.path_target(Setup.of(problem)).points)) < 3:
+        raise ProblemError(
+            f"motion.poses has {counted(count, 'distinct pose')}; allowed are three or more where parts are "
+            "left free or requirements.exact is false"
+        )
 
 
 def _search(

@@ -20,8 +20,9 @@ from grashof.synth import Candidate
 DRIVER, COUPLER, OUTPUT = "#c0392b", "#1f618d", "#1e8449"
 BODY, PATH, SCENE, GROUND, TARGET = "#b9770e", "#7d3c98", "#5d6d7e", "#17202a", "#d35400"
 KEPT_OUT = "#909497"
-_CROWD = 6  # targets up to which the linkage is drawn at each
-_NUMBERED = 24  # targets up to which each carries its number
+# Targets up to which the linkage is drawn at each, and up to which each carries its number.
+_CROWD = {"path": 6, "motion": 8}
+_NUMBERED = 24
 # Fixed names inside the SVG and no date: the same design gives the same bytes.
 _STYLE: Any = {
     "svg.hashsalt": "grashof",
@@ -34,8 +35,9 @@ _STYLE: Any = {
 def draw_design(problem: Problem, candidate: Candidate, rank: int) -> Figure:
     """Drawing of a design at its targets, with the coupler path and the scene.
 
-    Of a motion with the body in every pose; of a path with its points, numbered, and the linkage
-    at all of them or, when there are many, at the first, the middle and the last.
+    Of a motion with the body in every pose, or in about a dozen of many; of a path with its points,
+    numbered. The linkage is drawn at all of them or, when there are many, at the first, the middle
+    and the last.
 
     Parameters
     ----------
@@ -61,8 +63,8 @@ def draw_design(problem: Problem, candidate: Candidate, rank: int) -> Figure:
             shade = _shade(target, len(problem.task))
             _linkage_at(axes, candidate, state, target, shade, last=target == shown[-1])
         if isinstance(problem.task, MotionTask):
-            for pose in range(len(problem.task)):
-                _body_at(axes, problem.task, pose)
+            for pose in _dozen(len(problem.task)):
+                _body_at(axes, problem.task, candidate, state, pose)
         else:
             _points(axes, problem.task)
         _ground(axes, candidate)
@@ -86,10 +88,14 @@ def save(figure: Figure, paths: Iterable[Path]) -> None:
 
 def _shown(problem: Problem) -> list[int]:
     """Targets at which the linkage is drawn."""
-    count = len(problem.task)
-    if isinstance(problem.task, PathTask):
-        count -= _returns(problem.task)
-    return list(range(count)) if count <= _CROWD else [0, count // 2, count - 1]
+    task = problem.task
+    count = len(task) - (isinstance(task, PathTask) and _returns(task))
+    return list(range(count)) if count <= _CROWD[task.kind] else [0, count // 2, count - 1]
+
+
+def _dozen(count: int) -> range:
+    """All of the targets, or about a dozen of many."""
+    return range(0, count, 1 if count <= _NUMBERED else round(count / 12))
 
 
 def _closed(problem: Problem) -> bool:
@@ -160,24 +166,29 @@ def _linkage_at(
             _name(axes, name, point)
 
 
-def _body_at(axes: Axes, task: MotionTask, pose: int) -> None:
-    place, angle = task.positions[pose], task.angles[pose]
-    if not task.has_position[pose]:  # an angle has no place of its own
-        return
-    axes.plot(*place, "o", color=BODY, markersize=4, zorder=6)
-    numbered = pose % _numbered_every(len(task)) == 0
-    if numbered:
-        _number(axes, pose, place)
-    if not task.has_angle[pose] or not numbered:
-        return
+def _body_at(axes: Axes, task: MotionTask, candidate: Candidate, state: Position, pose: int) -> None:
+    """The body in a pose; what the pose leaves free is as the design has it, and the body then dashed."""
+    placed, oriented = task.has_position[pose], task.has_angle[pose]
+    place = task.positions[pose] if placed else state.p[pose]
+    angle = task.angles[pose] if oriented else state.theta3[pose] + candidate.linkage.body_angle
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    if task.body is not None:
-        corners = task.body @ turn.T + place
+    if task.body is not None and task.has_angle.any():  # else it has no orientation
+        corners, style = task.body @ turn.T + place, "solid" if placed and oriented else "dashed"
         label = "body" if pose == 0 else None
         axes.fill(*corners.T, facecolor=BODY, alpha=0.15, zorder=2)
-        axes.fill(*corners.T, facecolor="none", edgecolor=BODY, linewidth=1.2, zorder=5, label=label)
-    arrow = place + turn[:, 0] * 0.08 * task.size
-    axes.annotate("", arrow, place, arrowprops={"arrowstyle": "->", "color": BODY}, zorder=6)
+        axes.fill(
+            *corners.T,
+            facecolor="none",
+            edgecolor=BODY,
+            linewidth=1.2,
+            linestyle=style,
+            zorder=5,
+            label=label,
+        )
+    if oriented:
+        arrow = place + turn[:, 0] * 0.08 * task.size
+        axes.annotate("", arrow, place, arrowprops={"arrowstyle": "->", "color": BODY}, zorder=6)
+    _number(axes, pose, place)
 
 
 def _points(axes: Axes, task: PathTask) -> None:
@@ -188,12 +199,8 @@ def _points(axes: Axes, task: PathTask) -> None:
         *task.points.T, linestyle="none", marker="o", markersize=size, markerfacecolor="none",
         markeredgecolor=TARGET, markeredgewidth=size / 6, label="target points", zorder=1.5,
     )  # fmt: skip
-    for index in range(0, count, _numbered_every(count)):
+    for index in _dozen(count):
         _number(axes, index, task.points[index])
-
-
-def _numbered_every(count: int) -> int:
-    return 1 if count <= _NUMBERED else round(count / 12)
 
 
 def _number(axes: Axes, index: int, place: FloatArray) -> None:

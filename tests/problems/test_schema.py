@@ -254,7 +254,10 @@ POSES_TEXT = [
         "[[1, 2, 3], [1, 2, 363]]",
         "motion.poses[0] and motion.poses[1] are equal; consecutive poses must differ",
     ),
-    ("[[1, 2, 3], [1, 2, 9]]", "motion.angle_length is missing: a pure rotation has no size to take it from"),
+    (
+        "[[1, 2, 3], [1, 2, 9]]",
+        "motion.angle_length is missing: poses at a single place have no size to take it from",
+    ),
     (
         "[[1, 2, 3], { x = 2, z = 3 }]",
         "motion.poses[1].z is unknown; allowed are x, y, angle",
@@ -306,6 +309,10 @@ SENSE = [
     ),
     ("[scene]\noutlines = [[]]", "scene.outlines[0] has 0 corners; allowed are two or more"),
     ("angle_length = 0", "motion.angle_length is 0; allowed is a length greater than zero"),
+    (
+        "weights = [1, 1, 1, 1e308]",
+        "motion.weights[3] is 1e+308; allowed is a number from 1e-09 to 1e+09",
+    ),
     ("body = [[0, 0], [1, inf]]", "motion.body[1] is [1.0, inf]; all numbers must be finite"),
 ]
 

@@ -29,7 +29,7 @@ def test_angle_length_is_the_size_of_a_pure_rotation() -> None:
     task = MotionTask.from_degrees([[1, 1, 0], [1, 1, 40]], angle_length=2.5)
     assert task.size == 2.5
     assert MotionTask.from_degrees(LUGGAGE, angle_length=2.5).size == pytest.approx(np.sqrt(32))
-    with pytest.raises(ProblemError, match=r"^motion.angle_length is missing: a pure rotation"):
+    with pytest.raises(ProblemError, match=r"^motion.angle_length is missing: poses at a single place"):
         MotionTask.from_degrees([[1, 1, 0], [1, 1, 40]])
 
 

@@ -1,0 +1,44 @@
+"""Poses that are too few, or at a single place, where parts are free or squares are made least."""
+
+from typing import Any
+
+import pytest
+
+from grashof import synthesize
+from grashof.problems import MotionTask, Problem, ProblemError, Requirements
+
+A, B = [0, 0, 0], [3, 1, 60]
+
+
+@pytest.mark.parametrize(
+    ("poses", "exact"), [([A, B], False), ([A, B, A], False), ([A, {"x": 3, "y": 1}], True)]
+)
+def test_two_distinct_poses_are_met_whole_and_exactly(poses: Any, exact: bool) -> None:
+    problem = Problem(task=MotionTask.from_degrees(poses), requirements=Requirements(exact=exact))
+    with pytest.raises(ProblemError, match=r"motion.poses has 2 distinct poses; allowed are three or more"):
+        synthesize(problem)
+
+
+@pytest.mark.parametrize(
+    ("poses", "exact"),
+    [
+        ([[1, 2, 0], [1, 2, 40], [1, 2, 60], [1, 2, 80]], False),
+        ([[1, 2, 0], {"angle": 40}, {"angle": 60}], False),
+        ([[1, 2, 0], {"angle": 40}, {"angle": 60}, {"angle": 80}], True),
+    ],
+)
+def test_a_single_place_needs_a_single_pivot(poses: Any, exact: bool) -> None:
+    task = MotionTask.from_degrees(poses, angle_length=1)
+    result = synthesize(Problem(task=task, requirements=Requirements(exact=exact)))
+    assert result.note == "no design: all positions are at (1, 2): a single pivot there does the job"
+
+
+@pytest.mark.parametrize("part", ["p", "links"])
+def test_p_keeps_out_where_squares_are_made_least(part: str) -> None:
+    task = MotionTask.from_degrees(
+        [[0, 0, 0], [2, 1, 20], [3, 3, 50], [3, 4, 70], [2, 5, 80], [0, 5, 95], [-1, 4, 100]]
+    )
+    area = [[0, -3], [3, -3], [3, -2], [0, -2]]
+    wanted = Requirements(exact=False, keep_out=(area,), keep_out_for=(part,))  # type: ignore[arg-type]
+    result = synthesize(Problem(task=task, requirements=wanted), enough=1, starts=16)
+    assert result.best.verdict.ok
