@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import reprlib
+from collections.abc import Iterable
 from dataclasses import dataclass, field
+from typing import Any
 
 from grashof.problems.checks import FloatArray, finite_number, outline, whole_number
 from grashof.problems.errors import ProblemError
@@ -59,6 +62,23 @@ class Search:
         whole_number(self.seed, 0, "search.seed")
 
 
+_KINDS: dict[str, Any] = {
+    "task": Task,
+    "requirements": Requirements,
+    "objective": Objective,
+    "search": Search,
+    "name": str,
+    "title": str,
+    "source": str,
+    "length_unit": str,
+    "manufacturing": Manufacturing | None,
+}
+
+
+def _named(kind: Any) -> str:
+    return " or ".join(each.__name__ for each in getattr(kind, "__args__", (kind,))).replace("Type", "")
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Problem:
     """All that is asked, as a problem file states it.
@@ -89,6 +109,11 @@ class Problem:
     manufacturing: Manufacturing | None = None
 
     def __post_init__(self) -> None:
+        for name, kind in _KINDS.items():
+            if not isinstance(value := getattr(self, name), kind):
+                raise ProblemError(f"problem.{name} is {reprlib.repr(value)}; allowed is {_named(kind)}")
+        if isinstance(self.outlines, str) or not isinstance(self.outlines, Iterable):
+            raise ProblemError(f"scene.outlines is {self.outlines!r}; allowed is a list of outlines")
         checked = tuple(
             outline(corners, f"scene.outlines[{index}]") for index, corners in enumerate(self.outlines)
         )
