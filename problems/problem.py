@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import reprlib
+from collections.abc import Iterable
 from dataclasses import dataclass, field
+from typing import Any
 
 from grashof.problems.checks import FloatArray, finite_number, outline, whole_number
 from grashof.problems.dynamics_spec import DynamicsSpec, metres
@@ -60,6 +63,23 @@ class Search:
         whole_number(self.seed, 0, "search.seed")
 
 
+_KINDS: dict[str, Any] = {
+    "task": Task,
+    "requirements": Requirements,
+    "objective": Objective,
+    "search": Search,
+    "name": str,
+    "title": str,
+    "source": str,
+    "length_unit": str,
+    "manufacturing": Manufacturing | None,
+}
+
+
+def _named(kind: Any) -> str:
+    return " or ".join(each.__name__ for each in getattr(kind, "__args__", (kind,))).replace("Type", "")
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Problem:
     """All that is asked, as a problem file states it.
@@ -93,6 +113,11 @@ class Problem:
     dynamics: DynamicsSpec | None = None
 
     def __post_init__(self) -> None:
+        for name, kind in _KINDS.items():
+            if not isinstance(value := getattr(self, name), kind):
+                raise ProblemError(f"problem.{name} is {reprlib.repr(value)}; allowed is {_named(kind)}")
+        if isinstance(self.outlines, str) or not isinstance(self.outlines, Iterable):
+            raise ProblemError(f"scene.outlines is {self.outlines!r}; allowed is a list of outlines")
         if self.dynamics is not None:
             metres(self.length_unit)  # refuses one that is not known
         checked = tuple(

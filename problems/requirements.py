@@ -114,6 +114,11 @@ class Requirements:
     def __post_init__(self) -> None:
         if not isinstance(self.exact, bool | None):
             raise ProblemError(f"requirements.exact is {self.exact!r}; allowed is true or false")
+        for name in ("order", "same_branch"):
+            if not isinstance(getattr(self, name), bool):
+                raise ProblemError(
+                    f"requirements.{name} is {getattr(self, name)!r}; allowed is true or false"
+                )
         for name, kind in (("rotatability", Rotatability), ("transmission_over", TransmissionOver)):
             object.__setattr__(self, name, _member(kind, getattr(self, name), f"requirements.{name}"))
         for name, (low, high) in _RANGES.items():

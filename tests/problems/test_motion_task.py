@@ -143,10 +143,10 @@ def test_bad_arrays(positions: Any, angles: Any, message: str) -> None:
 
 BAD_WEIGHTS: list[tuple[Any, str]] = [
     ([1, 2, 3], "motion.weights has 3 numbers for 4 poses"),
-    ([1, 1, 0, 1], r"motion.weights\[2\] is 0; allowed is a number greater than zero"),
-    ([1, -1, 1, 1], r"motion.weights\[1\] is -1; allowed is a number greater than zero"),
-    ([1, 1, 1, np.nan], r"motion.weights\[3\] is nan; allowed is a number greater than zero"),
-    ([np.inf, 1, 1, 1], r"motion.weights\[0\] is inf; allowed is a number greater than zero"),
+    ([1, 1, 0, 1], r"motion.weights\[2\] is 0; allowed is a number from 1e-09 to 1e\+09"),
+    ([1, -1, 1, 1], r"motion.weights\[1\] is -1; allowed is a number from 1e-09 to 1e\+09"),
+    ([1, 1, 1, np.nan], r"motion.weights\[3\] is nan; allowed is a number from 1e-09 to 1e\+09"),
+    ([np.inf, 1, 1, 1], r"motion.weights\[0\] is inf; allowed is a number from 1e-09 to 1e\+09"),
     ("1111", r"motion.weights is '1111'; allowed is a list of numbers"),
     ([[1], [1, 2]], r"motion.weights is .*; allowed is a list of numbers"),
     ([[1, 1, 1, 1]], r"motion.weights is .*; allowed is a list of numbers"),
@@ -201,7 +201,7 @@ def test_a_file_states_free_parts_and_weights(tmp_path: Path) -> None:
         (("{ angle = -5 }", "{}"), "motion.poses[2] has neither position nor angle"),
         (("{ angle = -5 }", "{ x = 5 }"), "motion.poses[2] has one of x and y; allowed are both or neither"),
         (("[1, 2, 0.5, 4]", "[1, 2]"), "motion.weights has 2 numbers for 4 poses"),
-        (("0.5", "0"), "motion.weights[2] is 0.0; allowed is a number greater than zero"),
+        (("0.5", "0"), "motion.weights[2] is 0.0; allowed is a number from 1e-09 to 1e+09"),
         (("0.5", '"heavy"'), "motion.weights[2] is 'heavy'; allowed is a number"),
     ],
 )  # fmt: skip

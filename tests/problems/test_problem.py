@@ -2,6 +2,7 @@
 
 import math
 import pickle
+from typing import Any
 
 import pytest
 
@@ -76,3 +77,24 @@ def test_a_problem_pickles() -> None:
     assert twin.search == Search(seed=7)
     assert twin.task.positions.tolist() == TASK.positions.tolist()
     assert twin.outlines[0].tolist() == [[0, 0], [1, 0]]
+
+
+@pytest.mark.parametrize(
+    ("parts", "message"),
+    [
+        ({"task": 5}, r"problem.task is 5; allowed is MotionTask or PathTask"),
+        ({"requirements": None}, r"problem.requirements is None; allowed is Requirements"),
+        ({"manufacturing": 0.1}, r"problem.manufacturing is 0.1; allowed is Manufacturing or None"),
+        ({"name": 3}, r"problem.name is 3; allowed is str"),
+        ({"outlines": None}, r"scene.outlines is None; allowed is a list of outlines"),
+    ],
+)
+def test_parts_of_another_kind_are_refused(parts: dict[str, Any], message: str) -> None:
+    with pytest.raises(ProblemError, match=f"^{message}$"):
+        Problem(**{"task": TASK, **parts})
+
+
+@pytest.mark.parametrize("key", ["order", "same_branch", "exact"])
+def test_words_are_no_truths(key: str) -> None:
+    with pytest.raises(ProblemError, match=f"^requirements.{key} is 'no'; allowed is true or false$"):
+        Requirements(**{key: "no"})  # type: ignore[arg-type]

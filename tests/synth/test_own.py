@@ -161,13 +161,10 @@ def test_a_function_that_only_works_on_numbers_is_refused() -> None:
     def takes_nothing() -> Any:
         return 0.0
 
-    def says_nothing(design: Design) -> Any:
-        return None
-
     def greatest(design: Design) -> Any:
         return float(design.r2) - 3
 
-    for wrong in (branches, misspelt, takes_nothing, says_nothing, greatest):
+    for wrong in (branches, misspelt, takes_nothing, greatest):
         with pytest.raises(ProblemError) as refused:
             synthesize(THREE, constraints=[wrong])
         said = str(refused.value)
