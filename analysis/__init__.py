@@ -2,6 +2,7 @@
 
 from grashof.analysis.balancing import ForceBalance, TorqueBalance, balance_force, balance_torque
 from grashof.analysis.curvature import curvature, cusps
+from grashof.analysis.curve_distance import curve_distances
 from grashof.analysis.design import Constraint, Design
 from grashof.analysis.differences import Deviation, central_differences, compare_differences
 from grashof.analysis.double_points import DoublePoints, all_double_points, double_points
@@ -107,6 +108,7 @@ __all__ = [
     "coupler_fit_r2",
     "coupler_fourier",
     "curvature",
+    "curve_distances",
     "cusps",
     "double_points",
     "driver_motion",

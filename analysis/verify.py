@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.analysis.curve_distance import curve_distances
 from grashof.analysis.design import Constraint, Design, greatest, name_of
 from grashof.analysis.extent import diagonal, reach_box
 from grashof.analysis.mobility import (
@@ -83,8 +82,6 @@ class Verdict:
         Diagonal of the box around O2, O4 and all that A, B and P reach in the motion used.
     defects : tuple of Defect
         Empty for a design that does what is required.
-    hausdorff, frechet : float, length, or None
-        Distances between the target polygon and the coupler curve, of a closed path.
     """
 
     theta2: FloatArray
@@ -102,8 +99,6 @@ class Verdict:
     transmission_min_cycle: float
     size: float
     defects: tuple[Defect, ...]
-    hausdorff: float | None = None
-    frechet: float | None = None
 
     @property
     def ok(self) -> bool:
@@ -166,7 +161,6 @@ def verify(
     # Without a motion that joins the targets nothing is transmitted.
     task_worst = float(worst_transmission(linkage, way.start, way.end)) if branch_ok else 0.0
     cycle_worst = float(worst_transmission_cycle(linkage))
-    hausdorff, frechet = _curve_distances(linkage, task, way)
     over_task = wanted.transmission_over is TransmissionOver.TASK
     worst = task_worst if over_task else cycle_worst
     defects = [
@@ -198,8 +192,6 @@ def verify(
         transmission_min_cycle=cycle_worst,
         size=diagonal(reach_box(linkage, way.start, way.end)),
         defects=tuple(defects),
-        hausdorff=hausdorff,
-        frechet=frechet,
     )
 
 
@@ -228,12 +220,6 @@ def _square(targets: Targets, task: Task) -> float:
 
 def _closed(task: Task) -> bool:
     return isinstance(task, PathTask) and task.closed
-
-
-def _curve_distances(linkage: FourBar, task: Task, way: Way) -> tuple[float | None, float | None]:
-    if not _closed(task) or not full_rotation(linkage):
-        return None, None
-    return curve_distances(linkage, task.positions, way.direction)
 
 
 def _exactness(targets: Targets, task: Task, wanted: Requirements) -> list[Defect]:

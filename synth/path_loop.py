@@ -112,7 +112,7 @@ class Loop:
         if target.wanted.rotatability is Rotatability.ANY:
             lengths, by_lengths = _any_lengths(batch)
         else:
-            lengths, by_lengths = _full_crank_lengths(batch)
+            lengths, by_lengths = _full_crank_lengths(batch, target.wanted.rotatability_margin)
         r2, r3, r4 = lengths
         theta2 = _driver_angles(target, batch)
         e2 = np.exp(1j * theta2)
@@ -127,24 +127,31 @@ class Loop:
         return cls(r2, r3, r4, by_lengths, theta2, e2, coupler / r3[:, None], output / r4[:, None], closes)
 
 
-def _full_crank_lengths(batch: Batch) -> tuple[tuple[FloatArray, FloatArray, FloatArray], FloatArray]:
-    """r2, r3, r4 with r1 = 1: all full cranks and nothing else, from three free numbers each.
+def _full_crank_lengths(
+    batch: Batch, margin: float
+) -> tuple[tuple[FloatArray, FloatArray, FloatArray], FloatArray]:
+    """r2, r3, r4 with r1 = 1: all full cranks with the margin, from three free numbers each.
 
-    r2 = sigmoid(a) or its inverse, r3 + r4 = 1 + r2 + exp(b), r3 - r4 = |1 - r2| tanh(c).
+    r2 = sigmoid(a) or its inverse; with k = (1 + margin) / (1 - margin) and S the sum of the lengths
+    r3 + r4 = k (1 + r2) + exp(b) and r3 - r4 = (|1 - r2| - margin S) tanh(c). Where r2 is so near to 1
+    that the margin cannot be had, r3 = r4.
     """
     a, b, c = batch.unknowns[:, :3].T
     sigmoid = 1 / (1 + np.exp(-a))
     r2 = np.where(batch.longer_driver, 1 / sigmoid, sigmoid)
     dr2 = np.where(batch.longer_driver, -(1 - sigmoid) / sigmoid, sigmoid * (1 - sigmoid))
-    excess, tanh, off = np.exp(b), np.tanh(c), np.abs(1 - r2)
-    total, difference = 1 + r2 + excess, off * tanh
-    by_a, by_c = -np.sign(1 - r2) * dr2 * tanh, off * (1 - tanh**2)
-    zero = np.zeros_like(a)
-    derivative = np.stack([
-        np.stack([dr2, zero, zero], axis=-1),
-        np.stack([dr2 + by_a, excess, by_c], axis=-1) / 2,
-        np.stack([dr2 - by_a, excess, -by_c], axis=-1) / 2,
-    ], axis=1)  # fmt: skip
+    k, excess, tanh = (1 + margin) / (1 - margin), np.exp(b), np.tanh(c)
+    total = k * (1 + r2) + excess
+    room = np.abs(1 - r2) - margin * (1 + r2 + total)
+    has_room = room > 0
+    room = np.where(has_room, room, 0.0)
+    total_by = np.stack([k * dr2, excess, np.zeros_like(a)], axis=-1)
+    room_by = np.stack([-np.sign(1 - r2) * dr2, *np.zeros((2, len(a)))], axis=-1)
+    room_by -= margin * (total_by + np.stack([dr2, *np.zeros((2, len(a)))], axis=-1))
+    difference, difference_by = room * tanh, room_by * (has_room * tanh)[:, None]
+    difference_by[:, 2] = room * (1 - tanh**2)
+    r2_by = np.stack([dr2, *np.zeros((2, len(a)))], axis=-1)
+    derivative = np.stack([r2_by, (total_by + difference_by) / 2, (total_by - difference_by) / 2], axis=1)
     return (r2, (total + difference) / 2, (total - difference) / 2), derivative
 
 

@@ -9,7 +9,7 @@ improves the proportions and angles of a whole batch.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -25,6 +25,10 @@ from grashof.synth.path_loop import (
     by_unknowns,
 )
 from grashof.synth.path_pulls import pulls
+
+# So many steps on end that take less than this share of its error away end the work on a linkage.
+LOOK, STALL = 5, 1e-3
+HEAVY = 1e4  # damping under which no step is worth trying
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,31 +123,44 @@ def improve(
     batch : Batch
     error : ndarray, shape (n,), sizes squared
     """
-    damping = np.full(len(batch), 1e-2)
+    result = replace(batch, unknowns=batch.unknowns.copy())
     error, residual, jacobian = _linearised(target, batch)
-    unknowns = batch.unknowns
-    for _ in range(steps):
-        normal = np.swapaxes(jacobian, 1, 2) @ jacobian
-        slope = (np.swapaxes(jacobian, 1, 2) @ residual[..., None])[..., 0]
-        diagonal = np.einsum("sii->si", normal)
-        ridge = damping[:, None] * (diagonal + 1e-12 * diagonal.max(axis=1, keepdims=True) + 1e-300)
-        normal = normal + ridge[..., None] * np.eye(unknowns.shape[1])
-        sound = np.isfinite(normal).all(axis=(1, 2)) & np.isfinite(slope).all(axis=1)
-        normal[~sound], slope[~sound] = np.eye(unknowns.shape[1]), 0.0
-        step = -np.linalg.solve(normal, slope[..., None])[..., 0]
-        tried = Batch(
-            unknowns + np.clip(step, -1.5, 1.5), batch.longer_driver, batch.assembly, batch.direction
-        )
+    damping, marked, least = np.full(len(batch), 1e-2), error, error.copy()
+    rows = np.arange(len(batch))
+    for number in range(1, steps + 1):
+        tried = replace(batch, unknowns=batch.unknowns + _step(residual, jacobian, damping))
         new_error, new_residual, new_jacobian = _linearised(target, tried)
         better = new_error < error
-        unknowns = np.where(better[:, None], tried.unknowns, unknowns)
+        batch = replace(batch, unknowns=np.where(better[:, None], tried.unknowns, batch.unknowns))
         error = np.where(better, new_error, error)
         residual = np.where(better[:, None], new_residual, residual)
         jacobian = np.where(better[:, None, None], new_jacobian, jacobian)
         damping = np.clip(np.where(better, damping * 0.3, damping * 5), 1e-14, 1e6)
-        if np.count_nonzero(error <= tolerance) >= until:
+        result.unknowns[rows], least[rows] = batch.unknowns, error
+        if np.count_nonzero(least <= tolerance) >= until:
             break
-    return Batch(unknowns, batch.longer_driver, batch.assembly, batch.direction), error
+        if number % LOOK == 0:
+            untried = (error == marked) & (damping < HEAVY)  # all too far: shorter steps may do
+            going = (error < (1 - STALL) * marked) | untried
+            if not going.any():
+                break
+            rows, batch, damping, marked = rows[going], batch[going], damping[going], error[going]
+            error, residual, jacobian = error[going], residual[going], jacobian[going]
+    return result, least
+
+
+def _step(residual: FloatArray, jacobian: FloatArray, damping: FloatArray) -> FloatArray:
+    """Damped Gauss-Newton step of every linkage, (n, M); none where the numbers are not finite."""
+    transposed = np.swapaxes(jacobian, 1, 2)
+    normal, slope = transposed @ jacobian, (transposed @ residual[..., None])[..., 0]
+    one = np.eye(normal.shape[1])
+    diagonal = np.einsum("sii->si", normal)
+    ridge = damping[:, None] * (diagonal + 1e-12 * diagonal.max(axis=1, keepdims=True) + 1e-300)
+    normal = normal + ridge[..., None] * one
+    sound = np.isfinite(normal).all(axis=(1, 2)) & np.isfinite(slope).all(axis=1)
+    normal[~sound], slope[~sound] = one, 0.0
+    step: FloatArray = np.clip(-np.linalg.solve(normal, slope[..., None])[..., 0], -1.5, 1.5)
+    return step
 
 
 def _project(target: PathTarget, loop: Loop) -> tuple[ComplexArray, ComplexArray, ComplexArray, FloatArray]:

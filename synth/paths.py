@@ -34,8 +34,9 @@ from grashof.synth.setup import Setup
 from grashof.synth.start import Round, Start
 
 TURN = 2 * np.pi
-# Draws, and how many of the best go on for how many steps: few solutions, or a whole family of them.
+# Draws, and how many of the best go on for how many steps: few solutions, least squares, or a whole family.
 ISOLATED = (4000, ((300, 8), (80, 12), (20, 50)))
+LEAST_SQUARES = (2000, ((200, 6), (60, 10), (20, 50)))
 FAMILY = (6000, ((1500, 10), (800, 10)))
 TIMED = (600, ((60, 6), (20, 60)))
 FEW_POINTS = 48  # of a longer path decide which finds are worth the rest
@@ -217,7 +218,9 @@ def _repeats(setup: Setup) -> bool:
 def _effort(setup: Setup, target: PathTarget) -> tuple[int, tuple[tuple[int, int], ...]]:
     if _family(setup, target):
         return FAMILY
-    return ISOLATED if target.timing is None else TIMED
+    if target.timing is not None:
+        return TIMED
+    return ISOLATED if setup.exact else LEAST_SQUARES
 
 
 def _family(setup: Setup, target: PathTarget) -> bool:

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from grashof.analysis import over_task, robustness
+from grashof.analysis import curve_distances, over_task, robustness
 from grashof.analysis.tolerance import DIMENSIONS
-from grashof.problems import Problem
+from grashof.problems import PathTask, Problem
 from grashof.synth.result import Candidate, pareto_optimal
 
 # Of the motion from the first target to the last.
@@ -42,6 +42,7 @@ def to_frame(problem: Problem, candidates: tuple[Candidate, ...]) -> pd.DataFram
             "pareto": bool(front),
             **_row(candidate),
             **{name: getattr(motion, name) for name in (*MOTION, *DYNAMICS)},
+            **_distances(problem, candidate),
             **_made(problem, candidate),
         }
         for rank, (candidate, front, motion) in enumerate(
@@ -49,6 +50,15 @@ def to_frame(problem: Problem, candidates: tuple[Candidate, ...]) -> pd.DataFram
         )
     ]
     return pd.DataFrame(rows, columns=list(COLUMNS))
+
+
+def _distances(problem: Problem, candidate: Candidate) -> dict[str, float]:
+    """Between the coupler curve and the polygon through the points of a closed path."""
+    task, verdict = problem.task, candidate.verdict
+    if not isinstance(task, PathTask) or not task.closed or not verdict.full_rotation:
+        return {}
+    distances = curve_distances(candidate.linkage, task.points, verdict.direction)
+    return dict(zip(("hausdorff", "frechet"), distances, strict=True))
 
 
 def _made(problem: Problem, candidate: Candidate) -> dict[str, float]:
@@ -100,8 +110,6 @@ def _row(candidate: Candidate) -> dict[str, Any]:
         "full_rotation": verdict.full_rotation,
         "size": verdict.size,
         "cognate_of": candidate.cognate_of or None,
-        "hausdorff": verdict.hausdorff,
-        "frechet": verdict.frechet,
         "start": candidate.start,
         "iterations": candidate.iterations,
     }

@@ -140,10 +140,9 @@ def test_closed_curves_are_gone_round(path_judge: Any) -> None:
     task = PathTask(np.stack([curve.real, curve.imag], axis=1), closed=True)
     result = synthesize(Problem(task=task), enough=3)
     check_designs(result, path_judge)
-    for candidate in result.candidates:
-        assert candidate.verdict.hausdorff is not None
-        assert candidate.verdict.frechet is not None
-        assert 0 < candidate.verdict.hausdorff <= candidate.verdict.frechet
+    frame = result.to_frame()
+    assert (frame["hausdorff"] > 0).all()
+    assert (frame["hausdorff"] <= frame["frechet"]).all()
 
 
 def test_a_driver_that_rocks_does_it_too(path_judge: Any) -> None:
