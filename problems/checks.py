@@ -32,7 +32,7 @@ def frozen_array(values: npt.ArrayLike) -> FloatArray:
 def finite_rows(values: npt.ArrayLike, columns: int, where: str, row_means: str) -> FloatArray:
     """Array of shape (N, `columns`), each row checked by itself so that the message can name it."""
     if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
-        raise ProblemError(f"{where} is {values!r}; allowed is a list of {row_means}")
+        raise ProblemError(f"{where} is {values!r}; allowed is a list, each entry {row_means}")
     rows = []
     for index, row in enumerate(values):
         name = f"{where}[{index}]"

@@ -24,6 +24,7 @@ from grashof.problems.errors import ProblemError
 _POSE = "a pose [x, y, angle in degrees]"
 _SAME = 1e-12  # rad
 _WEIGHTS = (1e-9, 1e9)
+_MOST_TURNED = 2e4 * np.pi  # rad: ten thousand turns
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
@@ -79,6 +80,12 @@ class MotionTask:
         turned = _numbers(angles, "angles")
         if turned.shape != (len(places),):
             raise ProblemError(f"motion.poses has {len(places)} positions and angles of shape {turned.shape}")
+        if (np.abs(turned) > _MOST_TURNED).any():
+            pose = int(np.nanargmax(np.abs(turned)))
+            raise ProblemError(
+                f"motion.poses[{pose}] is turned by {np.degrees(turned[pose]):.6g} deg; "
+                f"allowed is up to {np.degrees(_MOST_TURNED):.0f} deg, beyond which digits are lost"
+            )
         if len(places) < 2:
             raise ProblemError(f"motion.poses has {counted(len(places), 'pose')}; allowed are two or more")
         _refuse_halves(places, turned)

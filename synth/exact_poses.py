@@ -50,7 +50,7 @@ def refuse_equal_poses(task: MotionTask) -> None:
         if moved + abs(turned[i] - turned[j]) < 1e-12:
             raise ProblemError(
                 f"motion.poses[{i}] and motion.poses[{j}] are equal; "
-                "allowed are distinct poses where all are met exactly"
+                "allowed are distinct poses, or requirements.exact = false"
             )
 
 

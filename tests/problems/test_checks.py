@@ -45,8 +45,8 @@ def test_finite_rows_keeps_the_rows() -> None:
 @pytest.mark.parametrize(
     ("rows", "message"),
     [
-        (5, "here is 5; allowed is a list of a point"),
-        ("ab", "here is 'ab'; allowed is a list of a point"),
+        (5, "here is 5; allowed is a list, each entry a point"),
+        ("ab", "here is 'ab'; allowed is a list, each entry a point"),
         ([[1, 2], [3]], r"here\[1\] is \[3\], 1 number; allowed is a point"),
         ([[1, 2, 3]], r"here\[0\] is \[1, 2, 3\], 3 numbers; allowed is a point"),
         ([[1, 2], 3], r"here\[1\] is 3, no plain list of numbers; allowed is a point"),
