@@ -1,0 +1,181 @@
+"""The summary of a linkage's analysis: class, limits, strokes, the path of P, masses."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from grashof.analysis import (
+    Masses,
+    coupler_fit_r2,
+    coupler_fourier,
+    cusps,
+    double_points,
+    grashof_class,
+    output_stroke,
+    reach_box,
+    rotatability,
+    solve_kinematics,
+    straightness,
+    triple_rocker_kind,
+    worst_transmission,
+)
+from grashof.linkage_sweep import Sweep
+from grashof.problems import AssemblyError, LinkageSpec, ProblemError
+
+_HARMONICS = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Fact:
+    """One line of the summary.
+
+    Parameters
+    ----------
+    key : str
+        Its name in files.
+    label : str
+        What people read.
+    value : float, int, str or bool
+    unit : str
+    """
+
+    key: str
+    label: str
+    value: float | int | str | bool
+    unit: str = ""
+
+
+def facts_of(sweep: Sweep, masses: Masses | None, tables: Mapping[str, pd.DataFrame]) -> Iterator[Fact]:
+    """The lines of the summary, in the order told."""
+    spec, ranges, turns = sweep.spec, sweep.ranges, sweep.turns
+    linkage, unit = spec.linkage, spec.length_unit or "length"
+    kind = grashof_class(linkage)
+    triple = triple_rocker_kind(linkage)
+    yield Fact("grashof_class", "Grashof class", f"{kind} {triple}".strip())
+    stretched, folded = rotatability(linkage)
+    yield Fact("rotatability_stretched", "(r3 + r4 - r1 - r2) / sum", float(stretched))
+    yield Fact("rotatability_folded", "(|r1 - r2| - |r3 - r4|) / sum", float(folded))
+    yield Fact("full_rotation", "driver turns fully", turns)
+    yield Fact("speed_rpm", "driver speed", sweep.speed_rpm, "rpm")
+    for number, (low, high) in enumerate([] if turns else ranges, start=1):
+        mark = f"_{number}" if len(ranges) > 1 else ""
+        for name, end in (("low", low), ("high", high)):
+            label = f"dead position, {name} end of range {number}"
+            yield Fact(f"driver_{name}{mark}_deg", label, float(np.degrees(end)), "deg")
+    if turns:
+        worst = float(np.degrees(worst_transmission(linkage, *ranges[0])))
+        yield Fact("transmission_min_deg", "worst transmission angle", worst, "deg")
+    else:
+        yield Fact("transmission_min_deg", "worst transmission angle (dead positions)", 0.0, "deg")
+    yield from _stroke_facts(spec, turns, tables["extremes"])
+    box = np.array([reach_box(linkage, low, high) for low, high in ranges])
+    extent = np.max(box[:, 1], axis=0) - np.min(box[:, 0], axis=0)
+    yield Fact("size", "size (diagonal of the box it needs)", float(np.hypot(*extent)), unit)
+    yield from _path_facts(spec, ranges, turns)
+    if masses is not None:
+        yield from _mass_facts(spec, masses, tables["dynamics"], turns)
+
+
+def _stroke_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame) -> Iterator[Fact]:
+    linkage, unit = spec.linkage, spec.length_unit or "length"
+    stroke = output_stroke(linkage)
+    if not turns:  # the two toggle positions may lie on different circuits
+        swings = extremes[extremes["quantity"] == "theta4_deg"]
+        for number, (low, high) in enumerate(zip(swings["min"], swings["max"], strict=True), start=1):
+            mark, where = (f"_{number}", f", range {number}") if len(swings) > 1 else ("", "")
+            yield Fact(f"output_swing{mark}_deg", f"swing of the output{where}", float(high - low), "deg")
+            if spec.output_arm is not None:
+                way = float(spec.output_arm * np.radians(high - low))
+                yield Fact(f"output_stroke{mark}", f"stroke of the output arm{where}", way, unit)
+    elif np.isfinite(stroke.swing):
+        yield Fact("output_swing_deg", "swing of the output", float(np.degrees(stroke.swing)), "deg")
+        yield Fact("stroke_chord", "stroke of B, chord", float(stroke.chord), unit)
+        if spec.output_arm is not None:
+            yield Fact(
+                "output_stroke", "stroke of the output arm", float(spec.output_arm * stroke.swing), unit
+            )
+    if np.isfinite(stroke.time_ratio):
+        yield Fact("time_ratio", "time ratio of the strokes", float(stroke.time_ratio))
+    for index, name in enumerate(("stretched", "folded")):
+        if np.isfinite(stroke.theta4[index]):
+            for link, angle in ((2, stroke.theta2[index]), (4, stroke.theta4[index])):
+                label = f"output turns back, 2 and 3 {name}: theta{link}"
+                yield Fact(f"toggle_{name}_theta{link}_deg", label, float(np.degrees(angle)), "deg")
+    if spec.output_arm is not None:
+        try:
+            factor = spec.output_arm * float(np.abs(solve_kinematics(linkage, 0.0).omega4))
+        except AssemblyError:
+            return
+        yield Fact("torque_factor_at_0_deg", "torque factor of the output arm at theta2 = 0", factor, unit)
+
+
+def _path_facts(spec: LinkageSpec, ranges: tuple[tuple[float, float], ...], turns: bool) -> Iterator[Fact]:
+    linkage, unit = spec.linkage, spec.length_unit or "length"
+    low, high = ranges[0]
+    where = ", range 1" if len(ranges) > 1 else ""
+    for degree in (4, 8):
+        r2 = float(coupler_fit_r2(linkage, low, high, degree))
+        if np.isfinite(r2):
+            yield Fact(
+                f"coupler_fit_r2_degree_{degree}", f"R2 of degree {degree} through the path of P{where}", r2
+            )
+    if turns:
+        series = coupler_fourier(linkage)
+        for harmonic in range(1, _HARMONICS + 1):
+            share = float(series.content[harmonic - 1])
+            if np.isfinite(share):
+                yield Fact(
+                    f"fourier_share_{harmonic}", f"share of harmonic {harmonic} in the path of P", share
+                )
+        yield Fact(
+            f"fourier_error_{_HARMONICS}", f"path of P from {_HARMONICS} harmonics errs by",
+            float(series.error_max[_HARMONICS]), unit,
+        )  # fmt: skip
+    crossings = double_points(linkage)
+    yield Fact("double_points", "double points of the path of P", len(crossings))
+    for number, (point, angles) in enumerate(zip(crossings.points, crossings.theta2, strict=True), start=1):
+        for axis, value in zip("xy", point, strict=True):
+            yield Fact(f"double_point_{number}_{axis}", f"double point {number}, {axis}", float(value), unit)
+        for passage, angle in enumerate(np.degrees(angles), start=1):
+            yield Fact(
+                f"double_point_{number}_theta2_{passage}_deg",
+                f"double point {number}, passage {passage}: theta2", float(angle), "deg",
+            )  # fmt: skip
+    still = np.degrees(cusps(linkage))
+    yield Fact("cusps", "cusps of the path of P", len(still))
+    for number, angle in enumerate(still, start=1):
+        yield Fact(f"cusp_{number}_theta2_deg", f"cusp {number}: theta2", float(angle), "deg")
+    yield from _straight_facts(spec, low, high, turns)
+
+
+def _straight_facts(spec: LinkageSpec, low: float, high: float, turns: bool) -> Iterator[Fact]:
+    """The straightest half turn, to 5 deg; of a driver that swings the whole of its first range."""
+    starts = np.radians(np.arange(0, 360, 5.0)) if turns else np.array([low])
+    span = np.pi if turns else high - low
+    try:
+        lines = [(straightness(spec.linkage, start, start + span, 61), start) for start in starts]
+    except ProblemError:  # P does not move, or rounding opens the loop in a dead position
+        return
+    line, start = min(lines, key=lambda each: each[0].width / each[0].length)
+    unit, what = spec.length_unit or "length", "straightest half turn of P" if turns else "path of P, range 1"
+    yield Fact("straight_from_deg", f"{what}: from theta2", float(np.degrees(start)), "deg")
+    yield Fact("straight_to_deg", f"{what}: to theta2", float(np.degrees(start + span)), "deg")
+    yield Fact("straight_length", f"{what}: length along its best line", line.length, unit)
+    yield Fact("straight_deviation", f"{what}: largest distance from it", line.deviation_max, unit)
+
+
+def _mass_facts(spec: LinkageSpec, masses: Masses, table: pd.DataFrame, turns: bool) -> Iterator[Fact]:
+    yield Fact("mass", "moving mass", float(masses.total), "kg")
+    if spec.dynamics is not None:
+        x, y = spec.dynamics.gravity
+        yield Fact("gravity", "gravity", f"{x:g}, {y:g}", "m/s2")
+    if turns:  # equal steps, the last of which is the first again
+        torque = table["torque"].to_numpy()[:-1]
+        mean, rms = float(np.mean(torque)), float(np.sqrt(np.mean(torque**2)))
+        mean = mean if abs(mean) > 1e-12 * rms else 0.0  # less is rounding
+        yield Fact("torque_mean", "drive torque, mean over the turn", mean, "N m")
+        yield Fact("torque_rms", "drive torque, rms over the turn", rms, "N m")

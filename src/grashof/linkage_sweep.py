@@ -1,0 +1,124 @@
+"""The driver of one linkage swept over all that it can do on one assembly."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from grashof.analysis import (
+    Kinematics,
+    Loads,
+    Masses,
+    driver_ranges,
+    full_rotation,
+    given_masses,
+    solve_kinematics,
+    transmission_angle,
+    uniform_bars,
+)
+from grashof.problems import DeadPositionWarning, FourBar, LinkageSpec, ProblemError
+from grashof.problems.checks import FloatArray
+from grashof.problems.linkage_file import METRES
+
+TURN = 2 * np.pi
+INSET = 1e-6  # rad: extremes of rates are sought so far from a dead position
+_DEAD = 1e-7  # sin(theta4 - theta3), as `solve_kinematics` counts it
+_STEPS = 360
+
+
+@dataclass(frozen=True, slots=True)
+class Sweep:
+    """The driver's motion that is analysed.
+
+    Parameters
+    ----------
+    spec : LinkageSpec
+    speed_rpm : float
+        Of the driver.
+    ranges : tuple of pairs of float, rad
+        Of the driver: one whole turn, or those between dead positions.
+    turns : bool
+        Whether the driver turns fully without a dead position.
+    """
+
+    spec: LinkageSpec
+    speed_rpm: float
+    ranges: tuple[tuple[float, float], ...]
+    turns: bool
+
+    @classmethod
+    def of(cls, spec: LinkageSpec, speed_rpm: float) -> Sweep:
+        """All that the driver can do.
+
+        Raises
+        ------
+        ProblemError
+            The linkage closes at no driver angle.
+        """
+        if full_rotation(spec.linkage):
+            return cls(spec, speed_rpm, ((0.0, TURN),), True)
+        ranges = tuple(_between_dead_positions(spec.linkage))
+        if not ranges:
+            raise ProblemError(f"{spec.name}: the linkage closes at no driver angle, so it has no motion")
+        return cls(spec, speed_rpm, ranges, False)
+
+    def state(self, theta2: FloatArray) -> Kinematics:
+        """Kinematics at driver angles, rad."""
+        return solve_kinematics(self.spec.linkage, theta2, self.speed_rpm * TURN / 60)
+
+    def states(self) -> list[Kinematics]:
+        """Kinematics of each range at every degree, or as many angles between dead positions."""
+        return [self.state(angles) for angles in self._angles()]
+
+    def _angles(self) -> Iterator[FloatArray]:
+        for low, high in self.ranges:
+            share = np.linspace(0, 1, _STEPS + 1)
+            if not self.turns:  # closer towards dead positions, where the linkage runs away from its driver
+                share = (1 - np.cos(np.pi * share)) / 2
+            angles = low + (high - low) * share
+            angles[-1] = high
+            yield angles
+
+
+def _between_dead_positions(linkage: FourBar) -> Iterator[tuple[float, float]]:
+    for low, high in driver_ranges(linkage):
+        if np.isnan(low):
+            continue
+        # At a change point dead positions lie inside a range too, on the ground line.
+        inside = float(linkage.theta1) + np.pi * np.arange(-1, 4)
+        sine = np.sin(transmission_angle(linkage, inside))
+        dead = (inside > low + 1e-9) & (inside < high - 1e-9) & ~(np.abs(sine) > _DEAD)
+        ends = [float(low), *(float(angle) for angle in inside[dead]), float(high)]
+        yield from ((start, end) for start, end in pairwise(ends) if end - start > 4 * INSET)
+
+
+@contextmanager
+def dead_positions_unwarned() -> Iterator[None]:
+    """Dead positions are told in a note, not as warnings."""
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore", DeadPositionWarning)
+        yield
+
+
+def masses_of(spec: LinkageSpec) -> Masses | None:
+    """Masses that the file states, if any."""
+    given = spec.dynamics
+    if given is None or not given.has_masses:
+        return None
+    if given.masses is not None and given.inertias is not None:
+        masses = given_masses(spec.linkage, given.masses, given.inertias)
+        return masses.with_payload(given.payload, spec.linkage.coupler_point) if given.payload else masses
+    return uniform_bars(spec.linkage, given.mass_per_length or 0.0, given.payload)
+
+
+def loads_of(spec: LinkageSpec) -> Loads:
+    """Gravity in the file's length unit."""
+    given = spec.dynamics
+    if given is None or spec.length_unit not in METRES:
+        return Loads()
+    return Loads(gravity=np.array(given.gravity) / METRES[spec.length_unit])
