@@ -25,6 +25,7 @@ from grashof.synth.burmester import (
 from grashof.synth.choose import feasible_starts, mended_starts
 from grashof.synth.choose import relaxed_starts as relaxed
 from grashof.synth.five_poses import five_pose_dyads, five_pose_guides
+from grashof.synth.own import screened
 from grashof.synth.screen import near_misses, screen
 from grashof.synth.setup import Setup
 from grashof.synth.start import Round, Start
@@ -89,14 +90,17 @@ def rounds(setup: Setup, enough: int, rng: np.random.Generator) -> Iterator[Roun
     """
     motion, body, dyads = _motion(setup), setup.targets[0], _dyads(setup, rng)
     settled = len(setup.targets) > 4
-    feasible = screen(motion, body, dyads, setup.wanted, SAMPLED_PAIRS if len(setup.targets) < 4 else PAIRS)
+    most = SAMPLED_PAIRS if len(setup.targets) < 4 else PAIRS
+    pairs = screened(setup, screen(motion, body, dyads, setup.wanted, most))
+    feasible = pairs[pairs.feasible]
     if settled:
-        chosen = np.argsort(-feasible.transmission, kind="stable")
-        starts = [Start.of_find(feasible, int(index), setup.problem.objective) for index in chosen]
+        chosen = np.argsort(-pairs.transmission, kind="stable")
+        starts = [Start.of_find(pairs, int(index), setup.problem.objective) for index in chosen]
     else:
         starts = feasible_starts(setup, feasible, enough)
         if len(starts) < enough:
-            near = near_misses(motion, body, dyads, setup.wanted, NEAR_PAIRS)
+            miss_own = len(pairs) > len(feasible)
+            near = pairs if miss_own else near_misses(motion, body, dyads, setup.wanted, NEAR_PAIRS)
             starts += mended_starts(setup, near, enough)
     counts = {"feasible finds": len(feasible), "exact dyads": len(dyads) if settled else 0}
     yield Round([replace(start, settled=settled) for start in starts], counts)

@@ -1,4 +1,4 @@
-"""The user's own constraints: are they usable, and which starts have to be mended for them."""
+"""The user's own constraints: are they usable, which finds miss them, which starts have to be mended."""
 
 from __future__ import annotations
 
@@ -11,9 +11,12 @@ import numpy as np
 
 from grashof.analysis.design import Constraint, Design, greatest, name_of
 from grashof.problems import ProblemError
+from grashof.problems.checks import FloatArray
+from grashof.synth.finds import GROUPS, Finds
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
 
+FAR = 1e3  # stands for an amount without bound
 NEAREST = 8  # starts that are tried for the closest miss
 # What makes an expression true or false; as a number, 1 where a condition holds.
 _TRUTHS = (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_NOT, ca.OP_AND, ca.OP_OR)
@@ -34,6 +37,38 @@ def refuse_unusable(setup: Setup, *, in_processes: bool) -> None:
                     f"constraint {name_of(constraint)} cannot be sent to other processes ({error}); allowed "
                     "with workers are functions of a module"
                 ) from None
+
+
+def screened(setup: Setup, finds: Finds) -> Finds:
+    """Finds with what they lack of the user's constraints, all evaluated at once."""
+    if not setup.constraints or not len(finds):
+        return finds
+    design, symbols = _symbols(len(setup.targets))
+    values = ca.vertcat(*(ca.vec(ca.SX(one)) for own in setup.constraints for one in _several(own(design))))
+    amounts = np.asarray(ca.Function("own", [symbols], [values])(_numbers(setup, finds).T))
+    missed = np.nan_to_num(np.maximum(amounts, 0.0), nan=1.0, posinf=FAR).sum(axis=0)
+    lacks = finds.lacks.copy()
+    lacks[:, GROUPS.index("constraints")] += missed
+    return replace(finds, lacks=lacks)
+
+
+def _numbers(setup: Setup, finds: Finds) -> FloatArray:
+    """The numbers of finds in the order of `_symbols`, shape (n, M)."""
+    o2, o4, a, b, p = finds.points.T
+    r3 = np.abs(b - a)
+    turned = np.take_along_axis(finds.coupler, finds.visit, axis=1) / r3[:, None]
+    arm = (p - a) * r3 / (b - a)
+    at_a = o2[:, None] + np.abs(a - o2)[:, None] * np.exp(1j * finds.theta2)
+    places = np.stack([at_a, at_a + r3[:, None] * turned, at_a + arm[:, None] * turned])
+    columns = [
+        *setup.frame.outward(np.stack([o2, o4])).transpose(0, 2, 1).reshape(4, -1),
+        *(setup.frame.scale * np.abs([o4 - o2, a - o2, b - a, b - o4])),
+        np.angle(o4 - o2),
+        *(setup.frame.scale * np.stack([arm.real, arm.imag])),
+        *finds.theta2.T,
+        *setup.frame.outward(places).transpose(0, 2, 3, 1).reshape(-1, len(finds)),
+    ]
+    return np.stack(columns, axis=1)
 
 
 def mended(setup: Setup, starts: list[Start]) -> list[Start]:
@@ -81,14 +116,22 @@ def _design(setup: Setup, start: Start) -> Design:
     )
 
 
-def _try_on_symbols(constraint: Constraint, targets: int) -> None:
-    def point() -> ca.SX:
-        return ca.SX.sym("point", 2)
-
+def _symbols(targets: int) -> tuple[Design, ca.SX]:
+    """A design of symbols, and all of these in one column."""
+    o2, o4, arm = (ca.SX.sym(name, 2) for name in ("o2", "o4", "coupler_point"))
     r1, r2, r3, r4, theta1 = (ca.SX.sym(name) for name in ("r1", "r2", "r3", "r4", "theta1"))
-    a, b, p = ([point() for _ in range(targets)] for _ in range(3))
     theta2 = ca.SX.sym("theta2", targets)
-    design = Design(point(), point(), r1, r2, r3, r4, theta1, point(), theta2, a, b, p)
+    a, b, p = ([ca.SX.sym(name, 2) for _ in range(targets)] for name in "abp")
+    design = Design(o2, o4, r1, r2, r3, r4, theta1, arm, theta2, a, b, p)
+    return design, ca.vertcat(o2, o4, r1, r2, r3, r4, theta1, arm, theta2, *a, *b, *p)
+
+
+def _several(value: Any) -> list[Any]:
+    return list(value) if isinstance(value, (list, tuple)) else [value]
+
+
+def _try_on_symbols(constraint: Constraint, targets: int) -> None:
+    design, _ = _symbols(targets)
     try:
         value = constraint(design)
     except WRONG as error:
@@ -103,7 +146,7 @@ def _try_on_symbols(constraint: Constraint, targets: int) -> None:
 def _refuse_no_amounts(constraint: Constraint, value: Any) -> None:
     """Raise `ProblemError` for what a constraint gives on symbols, if it is no scalar and not several."""
     name = name_of(constraint)
-    several = list(value) if isinstance(value, (list, tuple)) else [value]
+    several = _several(value)
     for one in several:
         try:
             symbols = ca.SX(one)

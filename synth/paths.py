@@ -27,6 +27,7 @@ from grashof.synth.finds import (
     keep_out_lack,
 )
 from grashof.synth.nine_points import coupler_turns, linkages_through
+from grashof.synth.own import screened
 from grashof.synth.path_loop import PathTarget
 from grashof.synth.path_search import Placed, draw, improve, place
 from grashof.synth.path_thinning import refined, thinned
@@ -265,4 +266,4 @@ def _judged(setup: Setup, target: PathTarget, placed: Placed, direction: FloatAr
     lacks[:, GROUPS.index("keep_out")] += keep_out_lack("p", placed.p, setup.wanted)
     found = Configurations(placed.o2, placed.o4, a, b, visit, theta2, direction)
     error = np.sqrt(placed.error / len(setup.targets))
-    return judge(found, p, error, lacks, setup.wanted, placed.body_angle)
+    return screened(setup, judge(found, p, error, lacks, setup.wanted, placed.body_angle))

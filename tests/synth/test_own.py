@@ -7,11 +7,14 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from grashof import synthesize
+from grashof import load, synthesize
 from grashof.analysis import Design
 from grashof.analysis.planted import planted_motion, planted_path
 from grashof.problems import MotionTask, PathTask, Problem, ProblemError, Requirements
 from grashof.synth import Result
+from grashof.synth.finds import GROUPS
+from grashof.synth.paths import search
+from grashof.synth.setup import Setup
 
 LIMITS: dict[str, Any] = {"link_length": (0.2, 10), "transmission_min_deg": 20}
 THREE = Problem(
@@ -104,6 +107,39 @@ def test_what_all_designs_hold_changes_nothing(without: Result) -> None:
     result = synthesize(THREE, constraints=[lambda design: design.r2 - 1e3], enough=10)
     ours, plain = result.best.verdict, without.best.verdict
     assert ours.transmission_min_task == pytest.approx(plain.transmission_min_task, rel=1e-4)
+
+
+def mixed(design: Design) -> Any:
+    """Something of every part of a design."""
+    far = [(b[0] - a[0]) * p[1] - theta2 for a, b, p, theta2 in zip(*every(design), strict=True)]
+    u, v = design.coupler_point[0], design.coupler_point[1]
+    return [u - v + design.r1 * design.r4, design.theta1 + design.o4[0] - design.r3, *far]
+
+
+def every(design: Design) -> tuple[Any, Any, Any, list[Any]]:
+    return design.a, design.b, design.p, [design.theta2[i] for i in range(len(design.a))]
+
+
+def test_finds_lack_what_the_judge_finds() -> None:
+    task, _ = planted_path(np.random.default_rng([82, 3]), 5)
+    setup = Setup.of(Problem(task=task), [mixed])
+    finds = search(setup, 20, np.random.default_rng(0))[:50]
+    lacks = finds.lacks[:, GROUPS.index("constraints")]
+    for index in range(len(finds)):
+        linkage = setup.linkages(finds.points[index], finds.assembly[index])
+        assembly = np.full(len(task), int(finds.assembly[index]))
+        design = Design.of(linkage, finds.theta2[index], assembly)
+        amounts = np.array([float(amount) for amount in mixed(design)])
+        expected = np.maximum(amounts, 0).sum()
+        np.testing.assert_allclose(lacks[index], expected, rtol=1e-7, atol=1e-7)
+    assert (lacks > 0).any()
+
+
+def test_the_search_looks_for_designs_that_hold_it() -> None:
+    """Two metres between the pivots, sideways: a few of the feasible pairs, most of which are wider."""
+    result = synthesize(load("luggage"), constraints=[lambda d: (d.o2[0] - d.o4[0]) ** 2 - 4.0])
+    assert len(result) >= 50
+    assert all(abs(c.linkage.o2[0] - c.linkage.o4[0]) <= 2 + HELD for c in result.candidates)
 
 
 def test_an_impossible_constraint_is_named() -> None:
