@@ -11,7 +11,8 @@ from matplotlib.colors import to_hex
 
 from grashof.analysis import solve_position, verify
 from grashof.analysis.planted import planted_path, random_full_crank
-from grashof.draw import DRIVER, PATH, TARGET, draw_design, save
+from grashof.draw import draw_design, save
+from grashof.figure_parts import DRIVER, PATH, TARGET
 from grashof.problems import FourBar, PathTask, Problem, load
 from grashof.problems.published import published
 from grashof.synth import Candidate

@@ -1,0 +1,187 @@
+"""Moving pictures: a linkage over all that its driver can do, as GIF or MP4."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+
+from grashof.analysis import Position, solve_position
+from grashof.analysis.curve import range_around
+from grashof.figure_parts import (
+    BODY,
+    PATH,
+    Links,
+    body_outline,
+    draw_ground,
+    draw_scene,
+    draw_task,
+)
+from grashof.figures import new_axes, plane
+from grashof.problems import MotionTask, Problem, ProblemError
+from grashof.problems.checks import FloatArray
+from grashof.subject import TURN, Linkage, Subject
+
+_WRITERS = {".gif": PillowWriter, ".mp4": FFMpegWriter}
+
+
+def animate(
+    linkage: Linkage,
+    problem: Problem | None = None,
+    *,
+    seconds: float = 4.0,
+    fps: float = 25.0,
+    ax: Axes | None = None,
+) -> FuncAnimation:
+    """Move a linkage through one turn of its driver, or from limit to limit and back.
+
+    P draws its path. For a problem the motion begins at the first target, in the sense of the task;
+    scene and targets stand still and a body is carried.
+
+    Parameters
+    ----------
+    linkage : FourBar, LinkageSpec or Candidate
+    problem : Problem, optional
+    seconds : float
+        Length of the motion; it begins again where it ends.
+    fps : float
+        Frames a second.
+    ax : Axes, optional
+
+    Returns
+    -------
+    FuncAnimation
+        Keep it as long as it is to move; `save_animation` writes it.
+
+    Raises
+    ------
+    ProblemError
+        No single linkage, one that closes nowhere, or fewer than two frames.
+
+    Examples
+    --------
+    >>> from grashof.problems import load_linkage
+    >>> from matplotlib.figure import Figure
+    >>> moving = animate(load_linkage("pumpjack"), seconds=1, fps=10, ax=Figure().subplots())
+    >>> len(list(moving.new_frame_seq()))
+    10
+    """
+    subject = Subject.of(linkage, problem)
+    frames = round(seconds * fps) if np.isfinite(seconds * fps) else 0
+    if frames < 2:
+        raise ProblemError(f"seconds * fps is {seconds * fps:g}; allowed are two frames and more")
+    state = solve_position(subject.linkage, _driver(subject, frames))
+    ax = new_axes(ax)
+    moving = _Moving(ax, subject, state)
+    return FuncAnimation(ax.get_figure(root=True), moving.show, frames, interval=1000 / fps, blit=False)
+
+
+def save_animation(animation: FuncAnimation, path: str | os.PathLike[str]) -> None:
+    """Write an animation as GIF or MP4, whole or not at all.
+
+    Parameters
+    ----------
+    animation : FuncAnimation
+    path : path-like
+        Ends in .gif or .mp4; a file of this name is replaced. A GIF keeps time in hundredths of a
+        second: give `animate` an `fps` that divides 100.
+
+    Raises
+    ------
+    ProblemError
+        As `check_animation`.
+    OSError
+        The disk is full or the folder is lost.
+    """
+    path = Path(path)
+    check_animation(path)
+    with tempfile.TemporaryDirectory(dir=path.parent, prefix=".writing-") as folder:
+        fresh = Path(folder) / path.name
+        animation.save(fresh, writer=_WRITERS[path.suffix.lower()](fps=1000 / animation._interval), dpi=100)
+        fresh.replace(path)
+
+
+def check_animation(path: Path) -> None:
+    """Refuse, before any work is done, a file that `save_animation` cannot write.
+
+    Raises
+    ------
+    ProblemError
+        Another ending than .gif or .mp4, .mp4 without ffmpeg, or a folder that cannot be written.
+    """
+    kind = path.suffix.lower()
+    if kind not in _WRITERS:
+        raise ProblemError(f"{path}: ends in {kind or 'nothing'}; allowed are {' and '.join(_WRITERS)}")
+    if not _WRITERS[kind].isAvailable():
+        raise ProblemError(f"{path}: writing {kind} needs ffmpeg, which was not found; .gif works without it")
+    if path.is_dir():
+        raise ProblemError(f"{path}: is a folder; allowed is the name of a file")
+    try:
+        with tempfile.TemporaryDirectory(dir=path.parent, prefix=".writing-"):
+            pass
+    except OSError as error:
+        reason = error.strerror or "it cannot be written"
+        raise ProblemError(f"{path}: {reason}; allowed is a file in a folder that can be written") from None
+
+
+def _driver(subject: Subject, frames: int) -> FloatArray:
+    """Driver angle of every frame, shape (frames,), rad: evenly round, or swinging between limits."""
+    phase = TURN * np.arange(frames) / frames
+    verdict = subject.verdict
+    if subject.turns:
+        return phase if verdict is None else verdict.theta2[0] + verdict.direction * phase
+    low, high = subject.ranges[0]
+    if verdict is not None:
+        start = float(verdict.theta2[0])
+        low, high = range_around(subject.linkage, start)
+        phase += verdict.direction * np.arccos(np.clip((low + high - 2 * start) / (high - low), -1, 1))
+    angles: FloatArray = (low + high) / 2 - (high - low) / 2 * np.cos(phase)
+    return angles
+
+
+class _Moving:
+    """The artists of an animation, and the motion that they show."""
+
+    def __init__(self, axes: Axes, subject: Subject, state: Position) -> None:
+        linkage, problem = subject.linkage, subject.problem
+        self._state = state
+        self._links = Links(axes, linkage, state.a[0], state.b[0], state.p[0], named=False)
+        path = np.vstack([state.p, state.p[:1]])
+        axes.plot(*path.T, color=PATH, linewidth=0.8, linestyle=":", zorder=2)
+        (self._trace,) = axes.plot([], [], color=PATH, linewidth=1.8, zorder=3)
+        self._corners = _carried(subject, state)
+        if problem is not None:
+            draw_scene(axes, problem)
+            draw_task(axes, subject)
+        self._bodies = [
+            axes.fill(*corners.T, facecolor=BODY, edgecolor=BODY, alpha=0.7, zorder=3.5)[0]
+            for corners in self._corners[:1]
+        ]
+        draw_ground(axes, linkage)
+        plane(axes, subject)
+        axes.update_datalim(np.concatenate([state.a, state.b, state.p, *self._corners]))
+        axes.autoscale_view()
+
+    def show(self, frame: int) -> list[Artist]:
+        """Put everything where it is in a frame; what has moved."""
+        state = self._state
+        self._links.move(state.a[frame], state.b[frame], state.p[frame])
+        self._trace.set_data(*state.p[: frame + 1].T)
+        for body in self._bodies:
+            body.set_xy(self._corners[frame])
+        return [*self._links.lines, self._links.plate, self._trace, *self._bodies]
+
+
+def _carried(subject: Subject, state: Position) -> list[FloatArray]:
+    """Corners of the body that the task has P carry, in every frame; none where it has none."""
+    task = None if subject.problem is None else subject.problem.task
+    if not isinstance(task, MotionTask):
+        return []
+    angles = state.theta3 + subject.linkage.body_angle
+    found = (body_outline(task, place, float(angle)) for place, angle in zip(state.p, angles, strict=True))
+    return [corners for corners in found if corners is not None]

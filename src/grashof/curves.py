@@ -1,0 +1,193 @@
+"""Plots of an analysis over the driver angle: angles, velocities, accelerations, torque and forces."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+from matplotlib.axes import Axes
+
+from grashof.figure_parts import COUPLER, GROUND, OUTPUT, PATH, TARGET
+from grashof.linkage_report import LinkageReport, report_on
+from grashof.problems import Problem, ProblemError
+from grashof.problems.checks import FloatArray
+from grashof.subject import Linkage, Subject
+
+AxesArray = npt.NDArray[np.object_]
+# What each panel shows: the label of its axis, and the columns of the analysis with their names.
+Panel = tuple[str, Mapping[str, str]]
+KINEMATICS: Mapping[str, Panel] = {
+    "angle": (
+        "angle (deg)",
+        {"theta3_deg": "theta3", "theta4_deg": "theta4", "mu_deg": "transmission angle mu"},
+    ),
+    "angular velocity": ("angular velocity (rad/s)", {"omega3": "omega3", "omega4": "omega4"}),
+    "speed": ("speed ({unit}/s)", {"a_speed": "A", "b_speed": "B", "p_speed": "P"}),
+    "angular acceleration": ("angular acceleration (rad/s²)", {"alpha3": "alpha3", "alpha4": "alpha4"}),
+    "acceleration": (
+        "acceleration ({unit}/s²)",
+        {"a_acceleration": "A", "b_acceleration": "B", "p_acceleration": "P"},
+    ),
+}
+DYNAMICS: Mapping[str, Panel] = {
+    "torque": ("drive torque (N m)", {"torque": "torque"}),
+    "joint force": ("joint force (N)", {"f12": "O2", "f32": "A", "f43": "B", "f14": "O4"}),
+    "shaking force": (
+        "shaking force (N)",
+        {"shaking_force_x": "x", "shaking_force_y": "y", "shaking_force": "size"},
+    ),
+}
+_DASHES = (0, (5, 2))  # of every second curve, so that equal ones both show
+_PENS = ((COUPLER, "-"), (OUTPUT, _DASHES), (PATH, "-"), (TARGET, _DASHES))
+_PEAK = 12.0  # a rate is drawn up to so many times its typical size, where it grows without bound
+
+
+def plot_kinematics(
+    linkage: Linkage | LinkageReport,
+    problem: Problem | None = None,
+    quantities: Sequence[str] = tuple(KINEMATICS),
+    *,
+    speed_rpm: float | None = None,
+    ax: Axes | Iterable[Axes] | None = None,
+) -> AxesArray:
+    """Plot angles, velocities and accelerations over the driver angle, a panel for each quantity.
+
+    Parameters
+    ----------
+    linkage : FourBar, LinkageSpec, Candidate, or the LinkageReport of one
+    problem : Problem, optional
+    quantities : sequence of str
+        Of "angle", "angular velocity", "speed", "angular acceleration", "acceleration"; all by default.
+    speed_rpm : float, optional
+        Of the driver; by default the file's or problem's, or 1 rad/s. A report has its own.
+    ax : Axes or iterable of Axes, optional
+        One for each quantity.
+
+    Returns
+    -------
+    ndarray of Axes, shape (Q,)
+
+    Raises
+    ------
+    ProblemError
+        No single linkage, one that closes nowhere, an unknown quantity, or another number of axes.
+
+    Examples
+    --------
+    >>> from grashof.problems import load_linkage_spec
+    >>> from matplotlib.figure import Figure
+    >>> jack, axes = load_linkage_spec("pumpjack"), Figure().subplots(2)
+    >>> [panel.get_ylabel() for panel in plot_kinematics(jack, quantities=("angle", "speed"), ax=axes)]
+    ['angle (deg)', 'speed (m/s)']
+    """
+    panels = _panels(quantities, KINEMATICS)
+    report = _report(linkage, problem, speed_rpm)
+    return _curves(report, report.tables["kinematics"], panels, ax)
+
+
+def plot_dynamics(
+    linkage: Linkage | LinkageReport,
+    problem: Problem | None = None,
+    quantities: Sequence[str] = tuple(DYNAMICS),
+    *,
+    speed_rpm: float | None = None,
+    ax: Axes | Iterable[Axes] | None = None,
+) -> AxesArray:
+    """Plot drive torque, joint forces and shaking force over the driver angle; see `plot_kinematics`.
+
+    Parameters
+    ----------
+    linkage : FourBar, LinkageSpec, Candidate, or the LinkageReport of one
+    problem : Problem, optional
+    quantities : sequence of str
+        Of "torque", "joint force", "shaking force"; all by default.
+    speed_rpm : float, optional
+    ax : Axes or iterable of Axes, optional
+        One for each quantity.
+
+    Returns
+    -------
+    ndarray of Axes, shape (Q,)
+
+    Raises
+    ------
+    ProblemError
+        As `plot_kinematics`; or neither the linkage's file nor the problem states masses.
+    """
+    panels = _panels(quantities, DYNAMICS)
+    report = _report(linkage, problem, speed_rpm)
+    if "dynamics" not in report.tables:
+        raise ProblemError(f"{report.spec.name} has no masses; a table [dynamics] or a problem states them")
+    return _curves(report, report.tables["dynamics"], panels, ax)
+
+
+def _report(
+    linkage: Linkage | LinkageReport, problem: Problem | None, speed_rpm: float | None
+) -> LinkageReport:
+    if isinstance(linkage, LinkageReport):
+        return linkage
+    return report_on(Subject.of(linkage, problem).spec, speed_rpm)
+
+
+def _panels(quantities: Sequence[str], known: Mapping[str, Panel]) -> list[Panel]:
+    for name in quantities:
+        if name not in known:
+            raise ProblemError(f"quantity {name!r} is not known; allowed are {', '.join(known)}")
+    return [known[name] for name in quantities]
+
+
+def _curves(
+    report: LinkageReport, table: pd.DataFrame, panels: list[Panel], ax: Axes | Iterable[Axes] | None
+) -> AxesArray:
+    rows = _rows(len(panels), ax)
+    theta2 = by_range(table, "theta2_deg")
+    for axes, (label, names) in zip(rows, panels, strict=True):
+        drawn = {name: by_range(table, name) for name in names}
+        for (colour, dash), (name, values) in zip(_PENS, drawn.items(), strict=False):
+            axes.plot(theta2, values, color=colour, linestyle=dash, linewidth=1.5, label=names[name])
+        if not report.turns and not label.startswith("angle"):
+            _bound(axes, np.concatenate(list(drawn.values())))
+        axes.axhline(0, color=GROUND, linewidth=0.6, zorder=0)
+        axes.set_ylabel(label.format(unit=report.unit), parse_math=False)
+        if report.turns:
+            axes.set_xlim(0, 360)
+            axes.set_xticks(np.arange(0, 361, 45))
+        for angle in [] if report.turns else {end for each in report.ranges for end in each}:
+            axes.axvline(np.degrees(angle), color=GROUND, linestyle=":", linewidth=0.9)
+        if len(names) > 1:
+            axes.legend(loc="best", fontsize="small")
+    dead = "" if report.turns else "; dotted: dead positions"
+    rows[-1].set_xlabel(f"driver angle theta2 (deg), driver at {report.speed_rpm:.4g} rpm{dead}")
+    return rows
+
+
+def _rows(count: int, ax: Axes | Iterable[Axes] | None) -> AxesArray:
+    """As many axes as there are panels: those given, or of a new figure."""
+    if ax is None:
+        import matplotlib.pyplot as plt  # a user's own axes must not depend on it
+
+        size = (7.0, 1.2 + 2.2 * count)
+        return plt.subplots(count, 1, sharex=True, squeeze=False, figsize=size, layout="constrained")[1][:, 0]
+    rows = np.atleast_1d(np.array(ax if isinstance(ax, Axes) else list(ax), dtype=object)).ravel()
+    if len(rows) != count:
+        raise ProblemError(f"ax has {len(rows)} axes; allowed are {count}, one for each quantity")
+    return rows
+
+
+def by_range(table: pd.DataFrame, name: str) -> FloatArray:
+    """A column of an analysis, with a gap between the ranges of the driver."""
+    values = table[name].to_numpy(dtype=np.float64)
+    if "range" not in table:
+        return values
+    return np.insert(values, np.flatnonzero(np.diff(table["range"])) + 1, np.nan)
+
+
+def _bound(ax: Axes, values: FloatArray) -> None:
+    """Cut off what grows without bound towards a dead position."""
+    known = values[np.isfinite(values)]
+    limit = _PEAK * float(np.median(np.abs(known))) if known.size else 0.0
+    if limit > 0 and np.abs(known).max() > limit:
+        low = max(float(known.min()) * 1.05, -limit)
+        ax.set_ylim(min(low, -0.02 * limit), min(float(known.max()) * 1.05, limit))

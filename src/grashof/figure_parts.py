@@ -1,0 +1,237 @@
+"""What pictures of linkages are put together from: links, ground, the path of P, the task and its scene."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Polygon
+
+from grashof.analysis import Position, solve_position
+from grashof.problems import FourBar, MotionTask, PathTask, Problem, Task
+from grashof.problems.checks import FloatArray
+from grashof.subject import TURN, Subject
+
+# Told apart by the colour-blind, too (after Okabe & Ito, *Color Universal Design*, 2008).
+DRIVER, COUPLER, OUTPUT, PATH = "#d55e00", "#0072b2", "#009e73", "#8c3f78"
+BODY = TARGET = "#e69f00"  # both are what is asked
+SCENE, GROUND, KEPT_OUT = "#5d6d7e", "#17202a", "#909497"
+# Targets up to which the linkage is drawn at each, and up to which each carries its number.
+_CROWD = {"path": 6, "motion": 8}
+_NUMBERED = 24
+
+
+class Links:
+    """The moving links as drawn in one position, to be moved to others.
+
+    Parameters
+    ----------
+    axes : Axes
+    linkage : FourBar
+    a, b, p : ndarray, shape (2,), length
+        Moving pivots and coupler point.
+    shade : float
+        From 0, invisible, to 1.
+    named : bool
+        Whether the legend tells the links; several positions need it once.
+    """
+
+    def __init__(
+        self,
+        axes: Axes,
+        linkage: FourBar,
+        a: FloatArray,
+        b: FloatArray,
+        p: FloatArray,
+        shade: float = 1.0,
+        *,
+        named: bool = True,
+    ) -> None:
+        self._linkage = linkage
+        corners = self._corners(a, b, p)
+        looks = (
+            {"color": DRIVER, "linewidth": 2.4, "label": "driver O2-A", "zorder": 4},
+            {"color": OUTPUT, "linewidth": 2.4, "label": "output O4-B", "zorder": 4},
+            {"color": COUPLER, "linewidth": 1.6, "label": "coupler A-B-P", "zorder": 4},
+            {"color": "white", "marker": "o", "markeredgecolor": COUPLER, "markersize": 5, "zorder": 5},
+            {"color": PATH, "marker": "o", "markersize": 4, "zorder": 6},
+        )
+        self.lines = []
+        for points, look in zip(corners, looks, strict=True):
+            label = look.pop("label", None)
+            style = "none" if "marker" in look else "-"
+            (line,) = axes.plot(
+                *points.T, alpha=shade, linestyle=style, label=label if named else None, **look
+            )
+            self.lines.append(line)
+        self.plate = Polygon(corners[2], color=COUPLER, alpha=0.1 * shade, linewidth=0, zorder=3)
+        axes.add_patch(self.plate)
+
+    def move(self, a: FloatArray, b: FloatArray, p: FloatArray) -> None:
+        """Put the links where A, B and P now are, each of shape (2,)."""
+        corners = self._corners(a, b, p)
+        for line, points in zip(self.lines, corners, strict=True):
+            line.set_data(*points.T)
+        self.plate.set_xy(corners[2])
+
+    def _corners(self, a: FloatArray, b: FloatArray, p: FloatArray) -> list[FloatArray]:
+        """Of driver, output, coupler, the joints A and B, and P; each of shape (n, 2)."""
+        each = ((self._linkage.o2, a), (self._linkage.o4, b), (a, b, p, a), (a, b), (p,))
+        return [np.array(points) for points in each]
+
+
+def name_point(axes: Axes, name: str, point: FloatArray) -> None:
+    """Write a name below a point of shape (2,)."""
+    axes.annotate(name, tuple(point), (7, -12), textcoords="offset points", color=GROUND, zorder=8)
+
+
+def draw_ground(axes: Axes, linkage: FourBar) -> None:
+    """The ground pivots with their names."""
+    for name, pivot in (("O2", linkage.o2), ("O4", linkage.o4)):
+        axes.plot(*pivot[:, None], marker="^", color=GROUND, markersize=11, zorder=6)
+        axes.plot(*pivot[:, None], marker="o", color="white", markersize=3, zorder=7)
+        name_point(axes, name, pivot)
+
+
+def draw_sense(axes: Axes, subject: Subject) -> None:
+    """A quarter of a turn about O2 from the first target, in the sense of the driver."""
+    linkage, verdict = subject.linkage, subject.verdict
+    if verdict is None:
+        return
+    radius = max(0.4 * float(linkage.r2), 0.05 * verdict.size)
+    angles = verdict.theta2[0] + verdict.direction * np.array([0, np.pi / 2])
+    tail, head = linkage.o2 + radius * np.column_stack([np.cos(angles), np.sin(angles)])
+    style = {
+        "arrowstyle": "-|>", "color": DRIVER, "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0,
+        "connectionstyle": f"arc3,rad={0.5 * verdict.direction}",
+    }  # fmt: skip
+    axes.annotate("", tuple(head), tuple(tail), arrowprops=style, zorder=7)
+
+
+def draw_path(axes: Axes, subject: Subject) -> None:
+    """The path of P over all that the driver can do; with a task the part used is drawn out."""
+    linkage, problem, verdict = subject.linkage, subject.problem, subject.verdict
+    if problem is None or verdict is None or closes(problem.task):
+        for index, (low, high) in enumerate(subject.ranges):
+            p = solve_position(linkage, driver_angles(low, high, turns=subject.turns)).p
+            label = "path of P" if index == 0 else None
+            axes.plot(*p.T, color=PATH, linewidth=1.6, label=label, zorder=2)
+        return
+    start, end = verdict.theta2.min(), verdict.theta2.max()
+    if verdict.full_rotation:
+        for index, assembly in enumerate(sorted(set(verdict.assembly))):
+            turn = solve_position(linkage, np.linspace(start, start + TURN, 361), assembly)
+            label = "path of P, whole turn" if index == 0 else None
+            axes.plot(*turn.p.T, color=PATH, linewidth=0.8, linestyle=":", label=label, zorder=2)
+    if verdict.branch_ok:  # else no motion joins the targets
+        way = solve_position(linkage, np.linspace(start, end, 181), verdict.assembly[0])
+        axes.plot(*way.p.T, color=PATH, linewidth=1.6, label="path of P, first to last target", zorder=2)
+
+
+def driver_angles(low: float, high: float, *, turns: bool) -> FloatArray:
+    """Driver angles from one end of a range to the other, shape (361,), rad."""
+    share = np.linspace(0, 1, 361)
+    if not turns:  # closer towards dead positions, where the linkage runs away from its driver
+        share = (1 - np.cos(np.pi * share)) / 2
+    angles: FloatArray = low + (high - low) * share
+    angles[-1] = high
+    return angles
+
+
+def draw_scene(axes: Axes, problem: Problem) -> None:
+    """Outlines of the scene, and hatched what is kept out; the legend says for what."""
+    for index, outline in enumerate(problem.outlines):
+        label = "scene" if index == 0 else None
+        axes.plot(*outline.T, color=SCENE, linewidth=3, solid_joinstyle="miter", label=label, zorder=1)
+    wanted = problem.requirements
+    names = ", ".join(name if name == "links" else name.upper() for name in wanted.keep_out_for)
+    for index, corners in enumerate(wanted.keep_out):
+        label = f"kept out: {names}" if index == 0 else None
+        axes.fill(
+            *corners.T, facecolor="#d5d8dc", edgecolor=KEPT_OUT, hatch="///", linewidth=0.8, alpha=0.6,
+            label=label, zorder=0.5,
+        )  # fmt: skip
+
+
+def draw_task(axes: Axes, subject: Subject) -> None:
+    """The points of a path, or the body in every pose of a motion; about a dozen of many."""
+    if subject.problem is None or subject.verdict is None:
+        return
+    task = subject.problem.task
+    if isinstance(task, PathTask):
+        _draw_points(axes, task)
+        return
+    state = solve_position(subject.linkage, subject.verdict.theta2, subject.verdict.assembly)
+    for pose in _dozen(len(task)):
+        _draw_pose(axes, task, subject.linkage, state, pose)
+
+
+def targets_shown(task: Task) -> list[int]:
+    """Targets at which the linkage is drawn: all, or of many the first, the middle and the last."""
+    count = len(task) - (isinstance(task, PathTask) and _returns(task))
+    return list(range(count)) if count <= _CROWD[task.kind] else [0, count // 2, count - 1]
+
+
+def closes(task: Task) -> bool:
+    """Whether the task is a path that one turn of the driver closes."""
+    return isinstance(task, PathTask) and task.closed
+
+
+def body_outline(task: MotionTask, place: FloatArray, angle: float) -> FloatArray | None:
+    """The body's corners, shape (M, 2), where it stands at a place and an angle (rad); None without one."""
+    if task.body is None or not task.has_angle.any():  # without angles it has no orientation
+        return None
+    corners: FloatArray = task.body @ _turned(angle).T + place
+    return corners
+
+
+def _draw_pose(axes: Axes, task: MotionTask, linkage: FourBar, state: Position, pose: int) -> None:
+    """The body in a pose; what the pose leaves free is as the design has it, and the body then dashed."""
+    placed, oriented = bool(task.has_position[pose]), bool(task.has_angle[pose])
+    place = task.positions[pose] if placed else state.p[pose]
+    angle = float(task.angles[pose] if oriented else state.theta3[pose] + linkage.body_angle)
+    corners = body_outline(task, place, angle)
+    if corners is not None:
+        style = "solid" if placed and oriented else "dashed"
+        label = "body" if pose == 0 else None
+        axes.fill(*corners.T, facecolor=BODY, alpha=0.15, zorder=2)
+        axes.fill(
+            *corners.T, facecolor="none", edgecolor=BODY, linewidth=1.2, linestyle=style, label=label,
+            zorder=5,
+        )  # fmt: skip
+    if oriented:
+        arrow = place + _turned(angle)[:, 0] * 0.08 * task.size
+        axes.annotate("", arrow, place, arrowprops={"arrowstyle": "->", "color": BODY}, zorder=6)
+    _number(axes, pose, place)
+
+
+def _draw_points(axes: Axes, task: PathTask) -> None:
+    """Target points as open circles under the path; about a dozen of many are numbered."""
+    count = len(task) - _returns(task)
+    size = float(np.clip(200 / count, 3, 8))
+    axes.plot(
+        *task.points.T, linestyle="none", marker="o", markersize=size, markerfacecolor="none",
+        markeredgecolor=TARGET, markeredgewidth=size / 6, label="target points", zorder=1.5,
+    )  # fmt: skip
+    for index in _dozen(count):
+        _number(axes, index, task.points[index])
+
+
+def _number(axes: Axes, index: int, place: FloatArray) -> None:
+    axes.annotate(
+        f"{index + 1}", tuple(place), (-5, 5), textcoords="offset points", ha="right", color=PATH,
+        weight="bold", zorder=8,
+    )  # fmt: skip
+
+
+def _dozen(count: int) -> range:
+    """All of the targets, or about a dozen of many."""
+    return range(0, count, 1 if count <= _NUMBERED else round(count / 12))
+
+
+def _returns(task: PathTask) -> bool:
+    """Whether the last point is the first again."""
+    return bool((task.points[0] == task.points[-1]).all())
+
+
+def _turned(angle: float) -> FloatArray:
+    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])

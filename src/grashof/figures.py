@@ -1,0 +1,245 @@
+"""Figures of linkages and designs for papers and notebooks, with matplotlib.
+
+Every function draws into the axes given as ``ax``, or else into a new figure of pyplot, and returns
+the axes; none of them shows or saves anything. A linkage is a `FourBar`, a `LinkageSpec` as
+`load_linkage_spec` reads it, or a `Candidate` of a result; with a `Problem` its task is drawn, and
+unit, speed and masses are the problem's. Text is written as text and fonts are those of matplotlib's
+settings; `save` of `grashof.draw` writes the same bytes each time.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+
+from grashof.analysis import solve_position
+from grashof.analysis.over_task import torque_peak
+from grashof.curves import plot_dynamics, plot_kinematics
+from grashof.figure_parts import (
+    COUPLER,
+    GROUND,
+    PATH,
+    Links,
+    draw_ground,
+    draw_path,
+    draw_scene,
+    draw_sense,
+    draw_task,
+    name_point,
+    targets_shown,
+)
+from grashof.problems import AssemblyError, Problem
+from grashof.problems.checks import FloatArray
+from grashof.subject import Linkage, Subject
+from grashof.synth import Result
+from grashof.synth.result import pareto_optimal
+
+__all__ = [
+    "plot_coupler_curve",
+    "plot_design_space",
+    "plot_dynamics",
+    "plot_kinematics",
+    "plot_linkage",
+]
+
+_NUMBERED = 10  # designs that carry their rank
+
+
+def plot_linkage(
+    linkage: Linkage,
+    problem: Problem | None = None,
+    *,
+    theta2: npt.ArrayLike | None = None,
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw a linkage with the path of P and, for a problem, with its task and scene.
+
+    Parameters
+    ----------
+    linkage : FourBar, LinkageSpec or Candidate
+    problem : Problem, optional
+    theta2 : array_like, shape (N,) or (), rad, optional
+        Driver angles to draw it at, light to dark. By default at the targets, of many at the first, the
+        middle and the last; without a problem at 60 deg, or half way between the driver's limits.
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+        Equal scales, in the linkage's unit.
+
+    Raises
+    ------
+    AssemblyError
+        The linkage cannot close at an angle of `theta2`.
+    ProblemError
+        No single linkage, or one that closes nowhere.
+
+    Examples
+    --------
+    >>> from grashof.problems import load_linkage_spec
+    >>> from matplotlib.figure import Figure
+    >>> plot_linkage(load_linkage_spec("pumpjack"), ax=Figure().subplots()).get_xlabel()
+    'x (m)'
+    """
+    subject = Subject.of(linkage, problem)
+    positions = _positions(subject, theta2)
+    ax = new_axes(ax)
+    if problem is not None:
+        draw_scene(ax, problem)
+    draw_path(ax, subject)
+    shades = np.linspace(0.3, 1, len(positions)) if len(positions) > 1 else [1.0]
+    for index, ((a, b, p), shade) in enumerate(zip(positions, shades, strict=True), start=1):
+        Links(ax, subject.linkage, a, b, p, shade, named=index == len(positions))
+    name_point(ax, "A", a)
+    name_point(ax, "B", b)
+    if min(np.hypot(*(p - a)), np.hypot(*(p - b))) > 0:
+        name_point(ax, "P", p)
+    draw_task(ax, subject)
+    draw_ground(ax, subject.linkage)
+    draw_sense(ax, subject)
+    plane(ax, subject)
+    last = "target" if problem is not None and theta2 is None else "position"
+    heading = f"light to dark: first to last {last}" if len(positions) > 1 else None
+    ax.legend(loc="best", title=heading, title_fontsize="small", fontsize="small")
+    return ax
+
+
+def plot_coupler_curve(linkage: Linkage, problem: Problem | None = None, *, ax: Axes | None = None) -> Axes:
+    """Draw the path of P with a dot at every tenth degree of the driver, and the targets of a problem.
+
+    Parameters
+    ----------
+    linkage : FourBar, LinkageSpec or Candidate
+    problem : Problem, optional
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+        Equal scales, in the linkage's unit.
+
+    Raises
+    ------
+    ProblemError
+        No single linkage, or one that closes nowhere.
+
+    Notes
+    -----
+    Where the dots lie close P is slow (after Hrones & Nelson, *Analysis of the Four-Bar Linkage*, 1951,
+    whose dashes are 10 deg of the crank).
+
+    Examples
+    --------
+    >>> from grashof.problems import load_linkage
+    >>> from matplotlib.figure import Figure
+    >>> axes = plot_coupler_curve(load_linkage("pumpjack"), ax=Figure().subplots())
+    >>> [line.get_label() for line in axes.lines]
+    ['path of P', 'every 10 deg of the driver']
+    """
+    subject = Subject.of(linkage, problem)
+    step = np.radians(10)
+    tens = [step * np.arange(np.ceil(low / step), np.ceil(high / step)) for low, high in subject.ranges]
+    dots = solve_position(subject.linkage, np.concatenate(tens)).p
+    ax = new_axes(ax)
+    draw_path(ax, subject)
+    ax.plot(
+        *dots.T, linestyle="none", marker="o", markersize=3.5, color=PATH, label="every 10 deg of the driver",
+        zorder=3,
+    )  # fmt: skip
+    draw_task(ax, subject)
+    plane(ax, subject)
+    ax.legend(loc="best", fontsize="small")
+    return ax
+
+
+def plot_design_space(result: Result, *, ax: Axes | None = None) -> Axes:
+    """Plot the worst transmission angle of all designs against their size, the Pareto-optimal ones ringed.
+
+    The colour is the peak torque where the problem has dynamics, or else the position error where the
+    targets are not met exactly. The best ten carry their rank.
+
+    Parameters
+    ----------
+    result : Result
+    ax : Axes, optional
+        A scale of colours is added to its figure.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    NoSolutionError
+        There are no designs; it says why.
+    """
+    _ = result.best
+    problem, candidates = result.problem, result.candidates
+    over = problem.requirements.transmission_over
+    size = np.array([candidate.verdict.size for candidate in candidates])
+    mu = np.degrees([candidate.transmission(over) for candidate in candidates])
+    torque = [torque_peak(each.linkage, problem, each.verdict) for each in candidates]
+    front = pareto_optimal(problem, candidates, torque)
+    unit = problem.length_unit or "length"
+    ax = new_axes(ax)
+    label, third = None, np.zeros(len(candidates))
+    if problem.dynamics is not None:
+        label, third = "peak torque (N m)", np.array(torque)
+    elif not problem.requirements.is_exact(problem.task):
+        label, third = f"rms error ({unit})", np.array([each.verdict.error_rms for each in candidates])
+    if label is None:
+        ax.scatter(size, mu, color=COUPLER, label="design", zorder=3)
+    else:
+        known = np.where(np.isfinite(third), third, np.nan)
+        dots = ax.scatter(size, mu, c=known, cmap="viridis", plotnonfinite=True, label="design", zorder=3)
+        bar = ax.get_figure(root=True).colorbar(dots, ax=ax)  # type: ignore[union-attr]
+        bar.set_label(label, parse_math=False)
+    ax.scatter(
+        size[front], mu[front], s=110, facecolors="none", edgecolors=GROUND, linewidths=1.2,
+        label="Pareto-optimal", zorder=4,
+    )  # fmt: skip
+    for rank, place in enumerate(zip(size[:_NUMBERED], mu[:_NUMBERED], strict=True), start=1):
+        ax.annotate(f"{rank}", place, (6, 5), textcoords="offset points", fontsize="small", zorder=5)
+    ax.set_xlabel(f"size of the design ({unit})", parse_math=False)
+    ax.set_ylabel(f"worst transmission angle over the {over} (deg)")
+    ax.legend(loc="best", fontsize="small")
+    return ax
+
+
+def new_axes(ax: Axes | None) -> Axes:
+    """The axes given, or those of a new figure."""
+    if ax is not None:
+        return ax
+    import matplotlib.pyplot as plt  # a user's own axes must not depend on it
+
+    return plt.subplots(figsize=(7.0, 5.8), layout="constrained")[1]
+
+
+def _positions(
+    subject: Subject, theta2: npt.ArrayLike | None
+) -> list[tuple[FloatArray, FloatArray, FloatArray]]:
+    """A, B and P wherever the linkage is drawn, each of shape (2,)."""
+    assembly: npt.ArrayLike = subject.linkage.assembly
+    if theta2 is not None:
+        angles = np.atleast_1d(np.asarray(theta2, dtype=np.float64))
+    elif subject.problem is not None and subject.verdict is not None:
+        shown = targets_shown(subject.problem.task)
+        angles, assembly = subject.verdict.theta2[shown], subject.verdict.assembly[shown]
+    else:
+        angles = np.array([np.radians(60) if subject.turns else np.mean(subject.ranges[0])])
+    state = solve_position(subject.linkage, angles, assembly)
+    if theta2 is not None and np.isnan(state.theta3).any():
+        open_at = np.degrees(angles[np.isnan(state.theta3)][0])
+        raise AssemblyError(f"{subject.spec.name} cannot close at theta2 = {open_at:.6g} deg")
+    return list(zip(state.a, state.b, state.p, strict=True))
+
+
+def plane(ax: Axes, subject: Subject) -> None:
+    """Equal scales, and the unit on both axes."""
+    unit = f" ({subject.spec.length_unit})" if subject.spec.length_unit else ""
+    ax.set_xlabel(f"x{unit}", parse_math=False)
+    ax.set_ylabel(f"y{unit}", parse_math=False)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.margins(0.08)

@@ -1,0 +1,105 @@
+"""What a picture is about: a linkage alone, one with its file, or a design with its problem."""
+
+from __future__ import annotations
+
+import reprlib
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from grashof.analysis import Verdict, driver_ranges, full_rotation, verify
+from grashof.problems import FourBar, LinkageDynamics, LinkageSpec, Problem, ProblemError
+from grashof.synth import Candidate
+
+TURN = 2 * np.pi
+Linkage = FourBar | LinkageSpec | Candidate
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Subject:
+    """A linkage with its unit and masses and, where there is a problem, how it does the task.
+
+    Parameters
+    ----------
+    spec : LinkageSpec
+        With a problem: on the assembly that meets the first target, with the problem's unit and masses.
+    problem : Problem, optional
+    verdict : Verdict, optional
+        There is one where there is a problem.
+    """
+
+    spec: LinkageSpec
+    problem: Problem | None = None
+    verdict: Verdict | None = None
+
+    @classmethod
+    def of(cls, linkage: Linkage, problem: Problem | None = None) -> Subject:
+        """A linkage, judged by its problem if one is given.
+
+        Raises
+        ------
+        ProblemError
+            Anything but a single linkage.
+        """
+        if isinstance(linkage, LinkageSpec):
+            spec = linkage
+        elif isinstance(linkage, FourBar):
+            spec = LinkageSpec(linkage, "linkage")
+        elif isinstance(linkage, Candidate):
+            spec = LinkageSpec(linkage.linkage, linkage.id)
+        else:
+            raise ProblemError(
+                f"linkage is {reprlib.repr(linkage)}; allowed are a FourBar, a LinkageSpec and a Candidate"
+            )
+        if spec.linkage.shape:
+            raise ProblemError(f"linkage is a batch of shape {spec.linkage.shape}; allowed is a single one")
+        if problem is None:
+            return cls(spec)
+        if isinstance(linkage, Candidate):
+            verdict = linkage.verdict
+        else:
+            verdict = verify(spec.linkage, problem.task, problem.requirements)
+        return cls(_posed(spec, problem, verdict), problem, verdict)
+
+    @property
+    def linkage(self) -> FourBar:
+        """The linkage itself."""
+        return self.spec.linkage
+
+    @property
+    def turns(self) -> bool:
+        """Whether the driver turns fully."""
+        return bool(full_rotation(self.linkage))
+
+    @property
+    def ranges(self) -> tuple[tuple[float, float], ...]:
+        """Of the driver, rad: one whole turn, or those between its limits.
+
+        Raises
+        ------
+        ProblemError
+            The linkage closes at no driver angle.
+        """
+        if self.turns:
+            return ((0.0, TURN),)
+        ranges = [(float(low), float(high)) for low, high in driver_ranges(self.linkage) if high > low]
+        if not ranges:
+            raise ProblemError(
+                f"{self.spec.name}: the linkage closes at no driver angle, so it has no motion"
+            )
+        return tuple(ranges)
+
+
+def _posed(spec: LinkageSpec, problem: Problem, verdict: Verdict) -> LinkageSpec:
+    """The linkage with what its problem says of unit and masses."""
+    linkage = replace(spec.linkage, assembly=np.float64(verdict.assembly[0]))
+    given = problem.dynamics
+    if given is None:
+        dynamics = LinkageDynamics(verdict.direction * 60 / TURN)
+    else:
+        dynamics = LinkageDynamics(
+            verdict.direction * given.speed_rpm, given.gravity, given.mass_per_length, given.masses,
+            given.inertias, given.payload,
+        )  # fmt: skip
+    title = problem.title or problem.name
+    return LinkageSpec(linkage, spec.name, title, length_unit=problem.length_unit, dynamics=dynamics)
