@@ -9,11 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.checks import FloatArray, frozen_array
+from grashof.problems.display import Displayed
 from grashof.problems.errors import ProblemError
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
-class FourBar:
+class FourBar(Displayed):
     """A planar four-bar linkage, or a batch of them.
 
     Link 2 (O2-A) is the driver, link 3 (A-B) the coupler, link 4 (O4-B) the output, link 1

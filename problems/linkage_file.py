@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from grashof.problems.checks import near_miss
+from grashof.problems.display import Displayed
 from grashof.problems.errors import ProblemError
 from grashof.problems.linkage import FourBar
 
@@ -55,7 +56,7 @@ class LinkageDynamics:
 
 
 @dataclass(frozen=True, slots=True)
-class LinkageSpec:
+class LinkageSpec(Displayed):
     """A linkage with what its file says besides.
 
     Parameters

@@ -14,6 +14,7 @@ from grashof.analysis import Verdict
 from grashof.analysis.over_task import torque_peak
 from grashof.problems import FourBar, NoSolutionError, Objective, Problem, TransmissionOver
 from grashof.problems.checks import BoolArray, FloatArray
+from grashof.problems.display import Displayed
 from grashof.synth.distinct import DISTINCT, pick_apart, signature
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Candidate:
+class Candidate(Displayed):
     """A design with the judge's verdict on it.
 
     Parameters
@@ -76,7 +77,7 @@ def weigh(objective: Objective, transmission: FloatArray, size: FloatArray) -> F
 
 
 @dataclass(frozen=True, slots=True)
-class Result:
+class Result(Displayed):
     """A ranked list of verified, distinct designs, best first; `nearest` when there is none.
 
     Parameters

@@ -65,7 +65,10 @@ def test_a_worker_process_loads_only_what_it_solves_with() -> None:
 def test_the_public_verbs() -> None:
     import grashof
 
-    assert set(grashof.__all__) == {"GrashofError", "load", "synthesize"}
+    figures = {
+        f"plot_{name}" for name in ("linkage", "kinematics", "dynamics", "coupler_curve", "design_space")
+    }
+    assert set(grashof.__all__) == {"GrashofError", "load", "synthesize", "animate"} | figures
     assert all(callable(getattr(grashof, name)) for name in grashof.__all__)
     with pytest.raises(AttributeError, match="no attribute 'solve'"):
         _ = grashof.solve

@@ -3,17 +3,52 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from grashof.problems.display import Displayed
+
 if TYPE_CHECKING:
+    from grashof.animation import animate
+    from grashof.figures import (
+        plot_coupler_curve,
+        plot_design_space,
+        plot_dynamics,
+        plot_kinematics,
+        plot_linkage,
+    )
     from grashof.problems import GrashofError, load
     from grashof.synth import synthesize
 
-__all__ = ["GrashofError", "load", "synthesize"]
+__all__ = [
+    "GrashofError",
+    "animate",
+    "load",
+    "plot_coupler_curve",
+    "plot_design_space",
+    "plot_dynamics",
+    "plot_kinematics",
+    "plot_linkage",
+    "synthesize",
+]
 
 # Loaded on first use: `import grashof.analysis` must not pay for, or depend on, CasADi.
-_HOMES = {"GrashofError": "problems", "load": "problems", "synthesize": "synth"}
+_HOMES = {
+    "GrashofError": "problems",
+    "load": "problems",
+    "synthesize": "synth",
+    "animate": "animation",
+    **dict.fromkeys((name for name in __all__ if name.startswith("plot_")), "figures"),
+}
 
 
 def __getattr__(name: str) -> Any:
     if name in _HOMES:
         return getattr(import_module(f"grashof.{_HOMES[name]}"), name)
     raise AttributeError(f"module 'grashof' has no attribute {name!r}")
+
+
+def _html(value: Any) -> str:
+    """What a notebook shows of a value; loaded on first use, too."""
+    html: str = import_module("grashof.notebook").html(value)
+    return html
+
+
+Displayed.register(_html)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
+import subprocess
 import tempfile
 from pathlib import Path
 
 import numpy as np
-from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
+from matplotlib.animation import FuncAnimation, writers
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
@@ -27,7 +28,7 @@ from grashof.problems import MotionTask, Problem, ProblemError
 from grashof.problems.checks import FloatArray
 from grashof.subject import TURN, Linkage, Subject
 
-_WRITERS = {".gif": PillowWriter, ".mp4": FFMpegWriter}
+_WRITERS = {".gif": "pillow", ".mp4": "ffmpeg"}
 
 
 def animate(
@@ -76,9 +77,12 @@ def animate(
     if frames < 2:
         raise ProblemError(f"seconds * fps is {seconds * fps:g}; allowed are two frames and more")
     state = solve_position(subject.linkage, _driver(subject, frames))
-    ax = new_axes(ax)
-    moving = _Moving(ax, subject, state)
-    return FuncAnimation(ax.get_figure(root=True), moving.show, frames, interval=1000 / fps, blit=False)
+    axes = new_axes(ax)
+    moving, figure = _Moving(axes, subject, state), axes.get_figure(root=True)
+    if ax is None:  # laid out once: a new layout for every frame would take most of the time
+        figure.draw_without_rendering()
+        figure.set_layout_engine("none")
+    return FuncAnimation(figure, moving.show, frames, interval=1000 / fps)
 
 
 def save_animation(animation: FuncAnimation, path: str | os.PathLike[str]) -> None:
@@ -96,13 +100,16 @@ def save_animation(animation: FuncAnimation, path: str | os.PathLike[str]) -> No
     ProblemError
         As `check_animation`.
     OSError
-        The disk is full or the folder is lost.
+        The disk is full, the folder is lost, or ffmpeg failed.
     """
     path = Path(path)
     check_animation(path)
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=".writing-") as folder:
         fresh = Path(folder) / path.name
-        animation.save(fresh, writer=_WRITERS[path.suffix.lower()](fps=1000 / animation._interval), dpi=100)
+        try:
+            animation.save(fresh, writer=_WRITERS[path.suffix.lower()], dpi=100)
+        except subprocess.CalledProcessError as error:
+            raise OSError(f"{path}: ffmpeg ended with code {error.returncode}") from None
         fresh.replace(path)
 
 
@@ -117,7 +124,7 @@ def check_animation(path: Path) -> None:
     kind = path.suffix.lower()
     if kind not in _WRITERS:
         raise ProblemError(f"{path}: ends in {kind or 'nothing'}; allowed are {' and '.join(_WRITERS)}")
-    if not _WRITERS[kind].isAvailable():
+    if not writers.is_available(_WRITERS[kind]):
         raise ProblemError(f"{path}: writing {kind} needs ffmpeg, which was not found; .gif works without it")
     if path.is_dir():
         raise ProblemError(f"{path}: is a folder; allowed is the name of a file")

@@ -1,4 +1,4 @@
-"""The command line: solve, check, problems, analyse."""
+"""The command line: solve, check, problems, analyse, animate."""
 
 from __future__ import annotations
 
@@ -75,6 +75,13 @@ ProblemArgument = Annotated[
     str, typer.Argument(metavar="PROBLEM", help="Name in the catalogue, or a TOML file.")
 ]
 
+LinkageArgument = Annotated[
+    str,
+    typer.Argument(
+        metavar="LINKAGE", help="Name in the catalogue of linkages, a linkage file, or DIR/candidates.json#3."
+    ),
+]
+
 
 @app.command()
 def solve(
@@ -135,13 +142,7 @@ def problems(
 
 @app.command()
 def analyse(
-    linkage: Annotated[
-        str,
-        typer.Argument(
-            metavar="LINKAGE",
-            help="Name in the catalogue of linkages, a linkage file, or DIR/candidates.json#3.",
-        ),
-    ],
+    linkage: LinkageArgument,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder for the results; NAME-analysis by default.", show_default=False),
@@ -157,6 +158,23 @@ def analyse(
     """
     with _errors_told():
         _analyse(linkage, out, speed_rpm)
+
+
+@app.command()
+def animate(
+    linkage: LinkageArgument,
+    out: Annotated[
+        Path | None, typer.Option(help="File, .gif or .mp4; NAME.gif by default.", show_default=False)
+    ] = None,
+    seconds: Annotated[float, typer.Option(min=0.1, max=60, help="Length of the motion.")] = 4.0,
+    fps: Annotated[float, typer.Option(min=1, max=50, help="Frames a second.")] = 25.0,
+) -> None:
+    """Write LINKAGE in motion: a turn of its driver, or from limit to limit and back.
+
+    Exit code 0: done; 2: bad input; 3: the surroundings failed.
+    """
+    with _errors_told():
+        _animate(linkage, out, seconds, fps)
 
 
 def main() -> None:
@@ -230,6 +248,17 @@ def _analyse(linkage: str, out: Path | None, speed_rpm: float | None) -> None:
         say(note, err=True)
     _report("", files, folder)
     print_report(report)
+
+
+def _animate(linkage: str, out: Path | None, seconds: float, fps: float) -> None:
+    from grashof.animation import check_animation, save_animation
+    from grashof.draw import draw_motion
+
+    spec = load_linkage_spec(linkage)
+    path = out if out is not None else Path(f"{spec.name}.gif")
+    check_animation(path)
+    save_animation(draw_motion(spec, seconds=seconds, fps=fps), path)
+    say(str(path), err=True)
 
 
 def _report(note: str, files: list[str], folder: Path) -> None:

@@ -1,4 +1,4 @@
-"""The figures that files hold: how they are styled and saved, and the drawing of a design."""
+"""The figures that files hold: how they are styled and saved, and the pictures of a design."""
 
 from __future__ import annotations
 
@@ -8,11 +8,14 @@ from typing import Any
 
 import numpy as np
 from matplotlib import rc_context
+from matplotlib.animation import FuncAnimation
 from matplotlib.figure import Figure
 
+from grashof.animation import animate
 from grashof.figure_parts import closes
 from grashof.figures import plot_linkage
 from grashof.problems import Problem
+from grashof.subject import Linkage, Subject
 from grashof.synth import Candidate
 
 # Settings of matplotlib. Fixed names inside the SVG and no date: the same design gives the same bytes.
@@ -54,6 +57,16 @@ def draw_design(problem: Problem, candidate: Candidate, rank: int) -> Figure:
         axes = plot_linkage(candidate, problem, ax=figure.add_axes((0.08, 0.08, 0.89, 0.83)))
         axes.set_title(_heading(problem, candidate, rank), parse_math=False)
     return figure
+
+
+def draw_motion(
+    linkage: Linkage, problem: Problem | None = None, *, seconds: float = 4.0, fps: float = 25.0
+) -> FuncAnimation:
+    """Moving picture of a linkage, 600 by 500 pixels; see `animate`."""
+    with rc_context(STYLE):
+        axes = Figure(figsize=(6.0, 5.0)).add_axes((0.1, 0.1, 0.87, 0.81))
+        axes.set_title(Subject.of(linkage, problem).spec.title, parse_math=False, wrap=True)
+        return animate(linkage, problem, seconds=seconds, fps=fps, ax=axes)
 
 
 def save(figure: Figure, paths: Iterable[Path]) -> None:

@@ -84,9 +84,7 @@ class Subject:
             return ((0.0, TURN),)
         ranges = [(float(low), float(high)) for low, high in driver_ranges(self.linkage) if high > low]
         if not ranges:
-            raise ProblemError(
-                f"{self.spec.name}: the linkage closes at no driver angle, so it has no motion"
-            )
+            raise ProblemError(f"{self.spec.name} closes at no driver angle, so it has no motion")
         return tuple(ranges)
 
 

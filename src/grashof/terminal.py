@@ -69,7 +69,7 @@ def print_table(result: Result, verified: int | None = None) -> None:
         How many designs were found, where `result` lists only the best of them.
     """
     width = console().width
-    say(_heading(result, verified or len(result)))
+    say(heading(result, verified or len(result)))
     for line in _fitting(result, width):
         say(line)
 
@@ -88,29 +88,38 @@ def _fitting(result: Result, width: int) -> list[str]:
     return lines
 
 
-def _table(result: Result, digits: int, left_out: Sequence[str]) -> Table:
+def best_rows(result: Result, digits: int = 4) -> list[dict[str, str]]:
+    """The best designs in cells, with what an engineer decides by; angles in deg.
+
+    Columns that are alike for all of them are left out.
+    """
     front = pareto_optimal(result.problem, result.candidates)
+    left_out = [
+        *(["error rms"] if result.problem.requirements.is_exact(result.problem.task) else []),
+        *(["class"] if len(_classes(result)) == 1 else []),
+    ]
     rows = [
         {"#": f"{rank}{'*' if front[rank - 1] else ' '}", **_cells(candidate, digits)}
         for rank, candidate in enumerate(result.candidates[:_ROWS], start=1)
     ]
-    left_out = [
-        *left_out,
-        *(["error rms"] if result.problem.requirements.is_exact(result.problem.task) else []),
-        *(["class"] if len(_classes(result)) == 1 else []),
-    ]
+    return [{name: cell for name, cell in row.items() if name not in left_out} for row in rows]
+
+
+def _table(result: Result, digits: int, left_out: Sequence[str]) -> Table:
+    rows = best_rows(result, digits)
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
     names = [name for name in rows[0] if name not in left_out]
     for name in names:
-        heading = name.replace(" ", "\n") if name == "error rms" or "size" in left_out else name
+        title = name.replace(" ", "\n") if name == "error rms" or "size" in left_out else name
         unit = "\ndeg" if name.startswith("mu") else ""
-        table.add_column(f"{heading}{unit}", justify=_JUSTIFY.get(name, "right"), no_wrap=True)
+        table.add_column(f"{title}{unit}", justify=_JUSTIFY.get(name, "right"), no_wrap=True)
     for row in rows:
         table.add_row(*(row[name] for name in names))
     return table
 
 
-def _heading(result: Result, verified: int) -> str:
+def heading(result: Result, verified: int) -> str:
+    """How many designs there are, how exact, and what the columns of `best_rows` mean."""
     exact = result.problem.requirements.is_exact(result.problem.task)
     errors = [candidate.verdict.error_max for candidate in result.candidates]
     error = f"largest position error {max(errors):.1e}" if exact else f"smallest error {min(errors):.3g}"

@@ -1,0 +1,128 @@
+"""What notebooks show of linkages, designs and results: a table and a small drawing, as HTML."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from html import escape
+from io import StringIO
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+
+from grashof.analysis import grashof_class
+from grashof.draw import STYLE
+from grashof.figures import plot_linkage
+from grashof.problems import FourBar, LinkageSpec, Problem, ProblemError
+from grashof.problems.checks import FloatArray, counted
+from grashof.subject import Linkage
+from grashof.synth import Candidate, Result
+from grashof.terminal import best_rows, heading
+
+_ROWS = 12  # of a batch
+_SMALL = {**STYLE, "font.size": 7, "axes.grid": False}
+
+
+def html(value: FourBar | LinkageSpec | Candidate | Result) -> str:
+    """Table and drawing of a value as HTML; all text in it is escaped.
+
+    Examples
+    --------
+    >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
+    >>> "<td>crank-rocker</td>" in html(crank_rocker)
+    True
+    """
+    if isinstance(value, Result):
+        return _result(value)
+    if isinstance(value, Candidate):
+        return _side_by_side(_facts(_judged(value)), _drawing(value))
+    if isinstance(value, LinkageSpec):
+        unit = value.length_unit or "none stated"
+        told = {"name": value.name, "title": value.title, "source": value.source, "length unit": unit}
+        facts = {**told, **_linkage(value.linkage)}
+        return _side_by_side(_facts({name: text for name, text in facts.items() if text}), _drawing(value))
+    if value.shape:
+        return _batch(value)
+    return _side_by_side(_facts(_linkage(value)), _drawing(value))
+
+
+def _result(result: Result) -> str:
+    if not result.candidates:
+        return f"<p>No design. {escape(result.note)}</p>"
+    rows = best_rows(result)
+    note = f"<p>{escape(result.note)}</p>" if result.note else ""
+    told = "<br>".join(escape(line) for line in heading(result, len(result)).splitlines())
+    table = _table(rows[0], (row.values() for row in rows))
+    return f"<p>{told}</p>{note}{_side_by_side(table, _drawing(result.best, result.problem))}"
+
+
+def _linkage(linkage: FourBar) -> dict[str, str]:
+    return {
+        **{f"r{i}": f"{length:.6g}" for i, length in enumerate(linkage.lengths, start=1)},
+        "O2": _pair(linkage.o2),
+        "O4": _pair(linkage.o4),
+        "P (u, v)": _pair(linkage.coupler_point),
+        "assembly": f"{int(linkage.assembly):+d}",
+        "Grashof class": str(grashof_class(linkage)),
+    }
+
+
+def _judged(candidate: Candidate) -> dict[str, str]:
+    verdict = candidate.verdict
+    task, turn = np.degrees([verdict.transmission_min_task, verdict.transmission_min_cycle])
+    return {
+        "design": candidate.id,
+        **_linkage(candidate.linkage),
+        "largest position error": f"{verdict.error_max:.2g}",
+        "worst transmission angle": f"{task:.1f} deg over the task"
+        + (f", {turn:.1f} deg over the turn" if verdict.full_rotation else ""),
+        "size": f"{verdict.size:.4g}",
+        "defects": "; ".join(str(defect) for defect in verdict.defects) or "none",
+    }
+
+
+def _batch(linkages: FourBar) -> str:
+    lengths = linkages.lengths.reshape(-1, 4)
+    rows = [[f"{length:.6g}" for length in each] for each in lengths[:_ROWS]]
+    first = f", the first {_ROWS}" if len(lengths) > _ROWS else ""
+    told = f"batch of {counted(len(lengths), 'linkage')}, shape {linkages.shape}{first}"
+    return f"<p>{told}</p>{_table(('r1', 'r2', 'r3', 'r4'), rows)}"
+
+
+def _pair(point: FloatArray) -> str:
+    return f"{point[0]:.6g}, {point[1]:.6g}"
+
+
+def _facts(facts: Mapping[str, str]) -> str:
+    rows = (
+        f"<tr><th style='text-align:left'>{escape(name)}</th><td>{escape(text)}</td></tr>"
+        for name, text in facts.items()
+    )
+    return f"<table>{''.join(rows)}</table>"
+
+
+def _table(names: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    head = "".join(f"<th>{escape(name)}</th>" for name in names)
+    body = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows)
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def _side_by_side(table: str, drawing: str) -> str:
+    style = "display:flex;flex-wrap:wrap;gap:1em;align-items:flex-start"
+    return f"<div style='{style}'><div>{table}</div><div>{drawing}</div></div>"
+
+
+def _drawing(linkage: Linkage, problem: Problem | None = None) -> str:
+    """The linkage as inline SVG, or why it cannot be drawn."""
+    with rc_context(_SMALL):
+        figure, page = Figure(figsize=(3.8, 3.2), layout="constrained"), StringIO()
+        try:
+            axes = plot_linkage(linkage, problem, ax=figure.subplots())
+        except ProblemError as error:
+            return f"<p>{escape(str(error))}</p>"
+        legend = axes.get_legend()
+        if legend is not None:
+            legend.remove()
+        figure.savefig(page, format="svg", metadata={"Date": None})
+    text = page.getvalue()
+    return text[text.index("<svg") :]
