@@ -65,10 +65,8 @@ def test_a_worker_process_loads_only_what_it_solves_with() -> None:
 def test_the_public_verbs() -> None:
     import grashof
 
-    figures = {
-        f"plot_{name}" for name in ("linkage", "kinematics", "dynamics", "coupler_curve", "design_space")
-    }
-    assert set(grashof.__all__) == {"GrashofError", "load", "synthesize", "animate"} | figures
+    plots = {"plot_linkage", "plot_coupler_curve", "plot_kinematics", "plot_dynamics", "plot_design_space"}
+    assert set(grashof.__all__) == {"GrashofError", "load", "synthesize", "animate"} | plots
     assert all(callable(getattr(grashof, name)) for name in grashof.__all__)
     with pytest.raises(AttributeError, match="no attribute 'solve'"):
         _ = grashof.solve

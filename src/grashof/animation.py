@@ -23,7 +23,7 @@ from grashof.figure_parts import (
     draw_scene,
     draw_task,
 )
-from grashof.figures import new_axes, plane
+from grashof.figures import figure_of, new_axes, plane
 from grashof.problems import MotionTask, Problem, ProblemError
 from grashof.problems.checks import FloatArray
 from grashof.subject import TURN, Linkage, Subject
@@ -63,14 +63,6 @@ def animate(
     ------
     ProblemError
         No single linkage, one that closes nowhere, or fewer than two frames.
-
-    Examples
-    --------
-    >>> from grashof.problems import load_linkage
-    >>> from matplotlib.figure import Figure
-    >>> moving = animate(load_linkage("pumpjack"), seconds=1, fps=10, ax=Figure().subplots())
-    >>> len(list(moving.new_frame_seq()))
-    10
     """
     subject = Subject.of(linkage, problem)
     frames = round(seconds * fps) if np.isfinite(seconds * fps) else 0
@@ -78,7 +70,7 @@ def animate(
         raise ProblemError(f"seconds * fps is {seconds * fps:g}; allowed are two frames and more")
     state = solve_position(subject.linkage, _driver(subject, frames))
     axes = new_axes(ax)
-    moving, figure = _Moving(axes, subject, state), axes.get_figure(root=True)
+    moving, figure = _Moving(axes, subject, state), figure_of(axes)
     if ax is None:  # laid out once: a new layout for every frame would take most of the time
         figure.draw_without_rendering()
         figure.set_layout_engine("none")

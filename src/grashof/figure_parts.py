@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Polygon
@@ -48,7 +50,7 @@ class Links:
     ) -> None:
         self._linkage = linkage
         corners = self._corners(a, b, p)
-        looks = (
+        looks: tuple[dict[str, Any], ...] = (
             {"color": DRIVER, "linewidth": 2.4, "label": "driver O2-A", "zorder": 4},
             {"color": OUTPUT, "linewidth": 2.4, "label": "output O4-B", "zorder": 4},
             {"color": COUPLER, "linewidth": 1.6, "label": "coupler A-B-P", "zorder": 4},

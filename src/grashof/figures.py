@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from grashof.analysis import solve_position
 from grashof.analysis.over_task import torque_peak
@@ -29,7 +30,7 @@ from grashof.figure_parts import (
     name_point,
     targets_shown,
 )
-from grashof.problems import AssemblyError, Problem
+from grashof.problems import AssemblyError, Problem, ProblemError
 from grashof.problems.checks import FloatArray
 from grashof.subject import Linkage, Subject
 from grashof.synth import Result
@@ -194,7 +195,7 @@ def plot_design_space(result: Result, *, ax: Axes | None = None) -> Axes:
     else:
         known = np.where(np.isfinite(third), third, np.nan)
         dots = ax.scatter(size, mu, c=known, cmap="viridis", plotnonfinite=True, label="design", zorder=3)
-        bar = ax.get_figure(root=True).colorbar(dots, ax=ax)  # type: ignore[union-attr]
+        bar = figure_of(ax).colorbar(dots, ax=ax)
         bar.set_label(label, parse_math=False)
     ax.scatter(
         size[front], mu[front], s=110, facecolors="none", edgecolors=GROUND, linewidths=1.2,
@@ -215,6 +216,14 @@ def new_axes(ax: Axes | None) -> Axes:
     import matplotlib.pyplot as plt  # a user's own axes must not depend on it
 
     return plt.subplots(figsize=(7.0, 5.8), layout="constrained")[1]
+
+
+def figure_of(ax: Axes) -> Figure:
+    """The figure that the axes are in."""
+    figure = ax.get_figure(root=True)
+    if figure is None:
+        raise ProblemError("ax is in no figure; allowed are axes of a figure")
+    return figure
 
 
 def _positions(

@@ -52,7 +52,8 @@ def _result(result: Result) -> str:
     rows = best_rows(result)
     note = f"<p>{escape(result.note)}</p>" if result.note else ""
     told = "<br>".join(escape(line) for line in heading(result, len(result)).splitlines())
-    table = _table(rows[0], (row.values() for row in rows))
+    names = (f"{name} (deg)" if name.startswith("mu") else name for name in rows[0])
+    table = _table(names, (row.values() for row in rows))
     return f"<p>{told}</p>{note}{_side_by_side(table, _drawing(result.best, result.problem))}"
 
 

@@ -90,7 +90,7 @@ class Subject:
 
 def _posed(spec: LinkageSpec, problem: Problem, verdict: Verdict) -> LinkageSpec:
     """The linkage with what its problem says of unit and masses."""
-    linkage = replace(spec.linkage, assembly=np.float64(verdict.assembly[0]))
+    linkage = replace(spec.linkage, assembly=np.asarray(verdict.assembly[0], dtype=np.float64))
     given = problem.dynamics
     if given is None:
         dynamics = LinkageDynamics(verdict.direction * 60 / TURN)

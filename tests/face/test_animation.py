@@ -1,0 +1,170 @@
+"""Animations: the linkage moves as it does, and the files hold what was asked for, or nothing."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import matplotlib.animation
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from matplotlib.animation import FuncAnimation
+from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from PIL import Image, ImageSequence
+
+import grashof.animation as grashof_animation
+from grashof import animate
+from grashof.analysis import driver_ranges
+from grashof.animation import save_animation
+from grashof.figure_parts import COUPLER, DRIVER, OUTPUT, PATH
+from grashof.problems import FourBar, MotionTask, ProblemError, load_linkage
+from grashof.synth import Result
+
+Grashof = Callable[..., Any]
+ROCKER = FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1))
+
+
+def frames_of(moving: FuncAnimation, axes: Axes) -> dict[str, Any]:
+    """Ends of the links, the trace and the body in every frame."""
+    told: dict[str, list[Any]] = {"driver": [], "output": [], "coupler": [], "trace": [], "body": []}
+    names = {DRIVER: "driver", OUTPUT: "output", COUPLER: "coupler"}
+    for frame in moving.new_frame_seq():
+        moving._draw_frame(frame)
+        for line in axes.lines:
+            name = names.get(to_hex(line.get_color()))
+            if name:
+                told[name].append(line.get_xydata().copy())
+            elif to_hex(line.get_color()) == PATH and line.get_linewidth() == 1.8:
+                told["trace"].append(line.get_xydata().copy())
+        told["body"] += [patch.get_xy()[:-1].copy() for patch in axes.patches if patch.get_alpha() == 0.7]
+    moving._draw_was_started = True  # else matplotlib warns that it was never seen
+    return told
+
+
+def test_links_keep_their_lengths_and_p_draws_its_path() -> None:
+    linkage, axes = load_linkage("pumpjack"), Figure().subplots()
+    told = frames_of(animate(linkage, seconds=1, fps=12, ax=axes), axes)
+    driver, coupler, output = (np.array(told[name]) for name in ("driver", "coupler", "output"))
+    lengths = [np.hypot(*np.moveaxis(ends[:, 1] - ends[:, 0], -1, 0)) for ends in (driver, coupler, output)]
+    expected = np.array([linkage.r2, linkage.r3, linkage.r4])[:, None]
+    np.testing.assert_allclose(lengths, np.tile(expected, 12), rtol=1e-12)
+    np.testing.assert_allclose(coupler[:, 1], output[:, 1], atol=1e-12)
+    turn = np.degrees(np.arctan2(*(driver[:, 1] - linkage.o2).T[::-1])) % 360
+    np.testing.assert_allclose(turn, np.arange(12) * 30, atol=1e-9)
+    for frame, trace in enumerate(told["trace"]):
+        np.testing.assert_allclose(trace, coupler[: frame + 1, 2])
+
+
+def test_a_driver_with_limits_swings_between_them_and_back() -> None:
+    axes = Figure().subplots()
+    driver = np.array(frames_of(animate(ROCKER, seconds=2, fps=20, ax=axes), axes)["driver"])
+    angle = np.unwrap(np.arctan2(*driver[:, 1].T[::-1]))
+    low, high = driver_ranges(ROCKER)[0]
+    turned = angle - angle[0] + low
+    np.testing.assert_allclose([turned.min(), turned.max()], [low, high], atol=1e-9)
+    assert np.argmax(turned) == 20
+    np.testing.assert_allclose(turned[1:20], turned[:20:-1], atol=1e-9)
+    assert np.isfinite(driver).all()
+
+
+def test_a_design_starts_at_its_first_target_in_its_sense_and_carries_the_body(few: Result) -> None:
+    task, verdict, axes = few.problem.task, few.best.verdict, Figure().subplots()
+    assert isinstance(task, MotionTask)
+    told = frames_of(animate(few.best, few.problem, seconds=3, fps=12, ax=axes), axes)
+    a = np.array(told["driver"])[:, 1] - few.best.linkage.o2
+    step = np.angle((a[1:] @ [1, 1j]) / (a[:-1] @ [1, 1j]))
+    np.testing.assert_allclose(step, verdict.direction * np.radians(10))
+    body = np.array(told["body"])
+    np.testing.assert_allclose(body[:, 0], np.array(told["coupler"])[:, 2])
+    first = task.body + task.positions[0]  # the first pose is not turned
+    np.testing.assert_allclose(body[0], first, atol=1e-6)
+    sides = np.hypot(*np.moveaxis(np.diff(body, axis=1), -1, 0))
+    np.testing.assert_allclose(sides, 1, atol=1e-9)
+    still = [patch.get_xy()[0] for patch in axes.patches if patch.get_alpha() == 0.15]
+    np.testing.assert_allclose(still, task.positions)
+
+
+def test_a_new_figure_only_where_no_axes_are_given() -> None:
+    try:
+        moving = animate(ROCKER, seconds=0.2, fps=20)
+        assert len(plt.get_fignums()) == 1
+        moving._draw_was_started = True  # else matplotlib warns that it was never seen
+    finally:
+        plt.close("all")
+
+
+@pytest.mark.parametrize(("seconds", "fps"), [(0.01, 10), (np.nan, 10), (1, np.inf), (-1, 25)])
+def test_fewer_than_two_frames_are_refused(seconds: float, fps: float) -> None:
+    with pytest.raises(ProblemError, match="allowed are two frames"):
+        animate(ROCKER, seconds=seconds, fps=fps)
+
+
+def test_a_gif_has_the_frames_and_the_time_asked_for(tmp_path: Path) -> None:
+    jack = animate(load_linkage("pumpjack"), seconds=0.5, fps=20, ax=Figure(figsize=(1, 1)).subplots())
+    path = tmp_path / "jack.gif"
+    path.write_text("an older one")
+    save_animation(jack, path)
+    with Image.open(path) as picture:
+        assert picture.format == "GIF"
+        durations = [each.info["duration"] for each in ImageSequence.Iterator(picture)]
+    assert durations == [50] * 10
+    assert [file.name for file in tmp_path.iterdir()] == ["jack.gif"]
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("a.webm", r"ends in \.webm; allowed are \.gif and \.mp4"),
+        ("a", "ends in nothing"),
+        ("no/a.gif", "No such file or directory"),
+        ("taken.gif", "is a folder"),
+        ("a.mp4", r"writing \.mp4 needs ffmpeg, which was not found; \.gif works without it"),
+    ],
+)
+def test_what_cannot_be_written_is_said_before_any_work(
+    grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, message: str
+) -> None:
+    monkeypatch.setattr(matplotlib.animation.shutil, "which", lambda _: None)
+    monkeypatch.setattr(grashof_animation, "FuncAnimation", None)
+    (tmp_path / "taken.gif").mkdir()
+    done = grashof("animate", "pumpjack", "--out", name)
+    assert done.exit_code == 2
+    assert done.stderr.count("\n") == 1
+    with pytest.raises(ProblemError, match=message):
+        grashof_animation.check_animation(Path(name))
+    assert [path.name for path in tmp_path.iterdir()] == ["taken.gif"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a shell script stands for ffmpeg")
+@pytest.mark.parametrize(("code", "exit_code"), [(0, 0), (1, 3)])
+def test_mp4_goes_through_ffmpeg_whole_or_not_at_all(
+    grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, code: int, exit_code: int
+) -> None:
+    tool = tmp_path / "bin" / "ffmpeg"
+    tool.parent.mkdir()
+    tool.write_text(f'#!/bin/sh\nfor last; do :; done\nwc -c > "$last"\nexit {code}\n')
+    tool.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tool.parent), prepend=":")
+    assert shutil.which("ffmpeg") == str(tool)
+    (tmp_path / "jack.mp4").write_text("old")
+    done = grashof("animate", "pumpjack", "--out", "jack.mp4", "--seconds", "0.2", "--fps", "20")
+    assert done.exit_code == exit_code, done.output
+    written = (tmp_path / "jack.mp4").read_text().strip()
+    assert written == (str(4 * 600 * 500 * 4) if code == 0 else "old")
+    assert "ffmpeg ended with code 1" in done.stderr or code == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["bin", "jack.mp4"]
+
+
+def test_the_command_names_the_file_after_the_linkage(grashof: Grashof, tmp_path: Path) -> None:
+    done = grashof("animate", "pumpjack", "--seconds", "0.2", "--fps", "10")
+    assert (done.exit_code, done.stderr) == (0, "pumpjack.gif\n")
+    with Image.open(tmp_path / "pumpjack.gif") as picture:
+        assert picture.size == (600, 500)
+    assert grashof("animate", "pumpjak").exit_code == 2
+    assert grashof("animate", "pumpjack", "--fps", "99").exit_code == 2
