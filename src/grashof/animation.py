@@ -13,7 +13,6 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
 from grashof.analysis import Position, solve_position
-from grashof.analysis.curve import range_around
 from grashof.figure_parts import (
     BODY,
     PATH,
@@ -24,9 +23,10 @@ from grashof.figure_parts import (
     draw_task,
 )
 from grashof.figures import figure_of, new_axes, plane
+from grashof.linkage_sweep import TURN
 from grashof.problems import MotionTask, Problem, ProblemError
 from grashof.problems.checks import FloatArray
-from grashof.subject import TURN, Linkage, Subject
+from grashof.subject import Linkage, Subject
 
 _WRITERS = {".gif": "pillow", ".mp4": "ffmpeg"}
 
@@ -130,16 +130,18 @@ def check_animation(path: Path) -> None:
 
 def _driver(subject: Subject, frames: int) -> FloatArray:
     """Driver angle of every frame, shape (frames,), rad: evenly round, or swinging between limits."""
-    phase = TURN * np.arange(frames) / frames
-    verdict = subject.verdict
-    if subject.turns:
-        return phase if verdict is None else verdict.theta2[0] + verdict.direction * phase
-    low, high = subject.ranges[0]
-    if verdict is not None:
-        start = float(verdict.theta2[0])
-        low, high = range_around(subject.linkage, start)
-        phase += verdict.direction * np.arccos(np.clip((low + high - 2 * start) / (high - low), -1, 1))
-    angles: FloatArray = (low + high) / 2 - (high - low) / 2 * np.cos(phase)
+    phase, sweep = TURN * np.arange(frames) / frames, subject.sweep
+    start, sense = sweep.ranges[0][0], 1
+    if subject.verdict is not None:
+        start, sense = float(subject.verdict.theta2[0]), subject.verdict.direction
+    if sweep.turns:
+        return start + sense * phase
+    low, high = np.transpose(sweep.ranges)
+    middle, half = (low + high) / 2, (high - low) / 2
+    beside = (start - middle + np.pi) % TURN - np.pi
+    chosen = np.argmin(np.abs(beside) - half)  # the range that holds the start
+    phase += sense * np.arccos(np.clip(-beside / half, -1, 1))[chosen]
+    angles: FloatArray = middle[chosen] - half[chosen] * np.cos(phase)
     return angles
 
 

@@ -10,7 +10,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 
 from grashof.figure_parts import COUPLER, GROUND, OUTPUT, PATH, TARGET
-from grashof.linkage_report import LinkageReport, report_on
+from grashof.linkage_quantities import dynamic_quantities, kinematic_quantities, table_of
+from grashof.linkage_sweep import Sweep, dead_positions_unwarned, loads_of, masses_of
 from grashof.problems import Problem, ProblemError
 from grashof.problems.checks import FloatArray
 from grashof.subject import Linkage, Subject
@@ -45,9 +46,9 @@ _PEAK = 12.0  # a rate is drawn up to so many times its typical size, where it g
 
 
 def plot_kinematics(
-    linkage: Linkage | LinkageReport,
+    linkage: Linkage,
     problem: Problem | None = None,
-    quantities: Sequence[str] = tuple(KINEMATICS),
+    quantities: str | Sequence[str] = tuple(KINEMATICS),
     *,
     speed_rpm: float | None = None,
     ax: Axes | Iterable[Axes] | None = None,
@@ -56,12 +57,12 @@ def plot_kinematics(
 
     Parameters
     ----------
-    linkage : FourBar, LinkageSpec, Candidate, or the LinkageReport of one
+    linkage : FourBar, LinkageSpec or Candidate
     problem : Problem, optional
-    quantities : sequence of str
+    quantities : str or sequence of str
         Of "angle", "angular velocity", "speed", "angular acceleration", "acceleration"; all by default.
     speed_rpm : float, optional
-        Of the driver; by default the file's or problem's, or 1 rad/s. A report has its own.
+        Of the driver; by default the file's or problem's, or 1 rad/s.
     ax : Axes or iterable of Axes, optional
         One for each quantity.
 
@@ -83,14 +84,16 @@ def plot_kinematics(
     ['angle (deg)', 'speed (m/s)']
     """
     panels = _panels(quantities, KINEMATICS)
-    report = _report(linkage, problem, speed_rpm)
-    return _curves(report, report.tables["kinematics"], panels, ax)
+    sweep = Sweep.of(Subject.of(linkage, problem).spec, speed_rpm)
+    with dead_positions_unwarned():
+        table = table_of(kinematic_quantities(sweep.spec), sweep.states())
+    return draw_curves(sweep, table, panels, ax)
 
 
 def plot_dynamics(
-    linkage: Linkage | LinkageReport,
+    linkage: Linkage,
     problem: Problem | None = None,
-    quantities: Sequence[str] = tuple(DYNAMICS),
+    quantities: str | Sequence[str] = tuple(DYNAMICS),
     *,
     speed_rpm: float | None = None,
     ax: Axes | Iterable[Axes] | None = None,
@@ -99,9 +102,9 @@ def plot_dynamics(
 
     Parameters
     ----------
-    linkage : FourBar, LinkageSpec, Candidate, or the LinkageReport of one
+    linkage : FourBar, LinkageSpec or Candidate
     problem : Problem, optional
-    quantities : sequence of str
+    quantities : str or sequence of str
         Of "torque", "joint force", "shaking force"; all by default.
     speed_rpm : float, optional
     ax : Axes or iterable of Axes, optional
@@ -117,49 +120,48 @@ def plot_dynamics(
         As `plot_kinematics`; or neither the linkage's file nor the problem states masses.
     """
     panels = _panels(quantities, DYNAMICS)
-    report = _report(linkage, problem, speed_rpm)
-    if "dynamics" not in report.tables:
-        raise ProblemError(f"{report.spec.name} has no masses; a table [dynamics] or a problem states them")
-    return _curves(report, report.tables["dynamics"], panels, ax)
+    sweep = Sweep.of(Subject.of(linkage, problem).spec, speed_rpm)
+    masses = masses_of(sweep.spec)
+    if masses is None:
+        raise ProblemError(f"{sweep.spec.name} has no masses; a table [dynamics] or a problem states them")
+    with dead_positions_unwarned():
+        table = table_of(dynamic_quantities(sweep.spec, masses, loads_of(sweep.spec)), sweep.states())
+    return draw_curves(sweep, table, panels, ax)
 
 
-def _report(
-    linkage: Linkage | LinkageReport, problem: Problem | None, speed_rpm: float | None
-) -> LinkageReport:
-    if isinstance(linkage, LinkageReport):
-        return linkage
-    return report_on(Subject.of(linkage, problem).spec, speed_rpm)
-
-
-def _panels(quantities: Sequence[str], known: Mapping[str, Panel]) -> list[Panel]:
-    for name in quantities:
+def _panels(quantities: str | Sequence[str], known: Mapping[str, Panel]) -> list[Panel]:
+    names = [quantities] if isinstance(quantities, str) else list(quantities)
+    if not names:
+        raise ProblemError(f"quantities names none; allowed are {', '.join(known)}")
+    for name in names:
         if name not in known:
             raise ProblemError(f"quantity {name!r} is not known; allowed are {', '.join(known)}")
-    return [known[name] for name in quantities]
+    return [known[name] for name in names]
 
 
-def _curves(
-    report: LinkageReport, table: pd.DataFrame, panels: list[Panel], ax: Axes | Iterable[Axes] | None
+def draw_curves(
+    sweep: Sweep, table: pd.DataFrame, panels: Sequence[Panel], ax: Axes | Iterable[Axes] | None
 ) -> AxesArray:
+    """Draw columns of an analysis over the driver angle, each panel into one of the axes."""
     rows = _rows(len(panels), ax)
-    theta2 = by_range(table, "theta2_deg")
+    theta2 = _by_range(table, "theta2_deg")
     for axes, (label, names) in zip(rows, panels, strict=True):
-        drawn = {name: by_range(table, name) for name in names}
+        drawn = {name: _by_range(table, name) for name in names}
         for (colour, dash), (name, values) in zip(_PENS, drawn.items(), strict=False):
             axes.plot(theta2, values, color=colour, linestyle=dash, linewidth=1.5, label=names[name])
-        if not report.turns and not label.startswith("angle"):
+        if not sweep.turns and not label.startswith("angle"):
             _bound(axes, np.concatenate(list(drawn.values())))
         axes.axhline(0, color=GROUND, linewidth=0.6, zorder=0)
-        axes.set_ylabel(label.format(unit=report.unit), parse_math=False)
-        if report.turns:
+        axes.set_ylabel(label.format(unit=sweep.spec.length_unit or "length"), parse_math=False)
+        if sweep.turns:
             axes.set_xlim(0, 360)
             axes.set_xticks(np.arange(0, 361, 45))
-        for angle in [] if report.turns else {end for each in report.ranges for end in each}:
+        for angle in [] if sweep.turns else {end for each in sweep.ranges for end in each}:
             axes.axvline(np.degrees(angle), color=GROUND, linestyle=":", linewidth=0.9)
         if len(names) > 1:
             axes.legend(loc="best", fontsize="small")
-    dead = "" if report.turns else "; dotted: dead positions"
-    rows[-1].set_xlabel(f"driver angle theta2 (deg), driver at {report.speed_rpm:.4g} rpm{dead}")
+    dead = "" if sweep.turns else "; dotted: dead positions"
+    rows[-1].set_xlabel(f"driver angle theta2 (deg), driver at {sweep.speed_rpm:.4g} rpm{dead}")
     return rows
 
 
@@ -176,7 +178,7 @@ def _rows(count: int, ax: Axes | Iterable[Axes] | None) -> AxesArray:
     return rows
 
 
-def by_range(table: pd.DataFrame, name: str) -> FloatArray:
+def _by_range(table: pd.DataFrame, name: str) -> FloatArray:
     """A column of an analysis, with a gap between the ranges of the driver."""
     values = table[name].to_numpy(dtype=np.float64)
     if "range" not in table:

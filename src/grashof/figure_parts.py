@@ -9,9 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Polygon
 
 from grashof.analysis import Position, solve_position
+from grashof.linkage_sweep import TURN
 from grashof.problems import FourBar, MotionTask, PathTask, Problem, Task
 from grashof.problems.checks import FloatArray
-from grashof.subject import TURN, Subject
+from grashof.subject import Subject
 
 # Told apart by the colour-blind, too (after Okabe & Ito, *Color Universal Design*, 2008).
 DRIVER, COUPLER, OUTPUT, PATH = "#d55e00", "#0072b2", "#009e73", "#8c3f78"
@@ -113,8 +114,8 @@ def draw_path(axes: Axes, subject: Subject) -> None:
     """The path of P over all that the driver can do; with a task the part used is drawn out."""
     linkage, problem, verdict = subject.linkage, subject.problem, subject.verdict
     if problem is None or verdict is None or closes(problem.task):
-        for index, (low, high) in enumerate(subject.ranges):
-            p = solve_position(linkage, driver_angles(low, high, turns=subject.turns)).p
+        for index, angles in enumerate(subject.sweep.angles()):
+            p = solve_position(linkage, angles).p
             label = "path of P" if index == 0 else None
             axes.plot(*p.T, color=PATH, linewidth=1.6, label=label, zorder=2)
         return
@@ -127,16 +128,6 @@ def draw_path(axes: Axes, subject: Subject) -> None:
     if verdict.branch_ok:  # else no motion joins the targets
         way = solve_position(linkage, np.linspace(start, end, 181), verdict.assembly[0])
         axes.plot(*way.p.T, color=PATH, linewidth=1.6, label="path of P, first to last target", zorder=2)
-
-
-def driver_angles(low: float, high: float, *, turns: bool) -> FloatArray:
-    """Driver angles from one end of a range to the other, shape (361,), rad."""
-    share = np.linspace(0, 1, 361)
-    if not turns:  # closer towards dead positions, where the linkage runs away from its driver
-        share = (1 - np.cos(np.pi * share)) / 2
-    angles: FloatArray = low + (high - low) * share
-    angles[-1] = high
-    return angles
 
 
 def draw_scene(axes: Axes, problem: Problem) -> None:

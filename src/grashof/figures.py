@@ -141,7 +141,7 @@ def plot_coupler_curve(linkage: Linkage, problem: Problem | None = None, *, ax: 
     """
     subject = Subject.of(linkage, problem)
     step = np.radians(10)
-    tens = [step * np.arange(np.ceil(low / step), np.ceil(high / step)) for low, high in subject.ranges]
+    tens = [step * np.arange(np.ceil(low / step), np.ceil(high / step)) for low, high in subject.sweep.ranges]
     dots = solve_position(subject.linkage, np.concatenate(tens)).p
     ax = new_axes(ax)
     draw_path(ax, subject)
@@ -237,7 +237,8 @@ def _positions(
         shown = targets_shown(subject.problem.task)
         angles, assembly = subject.verdict.theta2[shown], subject.verdict.assembly[shown]
     else:
-        angles = np.array([np.radians(60) if subject.turns else np.mean(subject.ranges[0])])
+        sweep = subject.sweep
+        angles = np.array([np.radians(60) if sweep.turns else np.mean(sweep.ranges[0])])
     state = solve_position(subject.linkage, angles, assembly)
     if theta2 is not None and np.isnan(state.theta3).any():
         open_at = np.degrees(angles[np.isnan(state.theta3)][0])

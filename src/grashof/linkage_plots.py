@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from grashof.curves import AxesArray, plot_dynamics, plot_kinematics
+from grashof.curves import DYNAMICS, KINEMATICS, Panel, draw_curves
 from grashof.draw import STYLE
 from grashof.figure_parts import COUPLER, DRIVER, GROUND, OUTPUT
 from grashof.figures import plot_linkage
@@ -25,17 +25,16 @@ _DYNAMIC = {"torque": ("torque",), "forces": ("joint force", "shaking force")}
 def plots(report: LinkageReport) -> Iterator[tuple[str, Figure]]:
     """Name and figure of each plot, with units; torque and forces only with masses."""
     yield "path", _path(report)
-    for name, quantities in _KINEMATIC.items():
-        yield name, _curves(plot_kinematics, report, quantities)
-    for name, quantities in _DYNAMIC.items() if "dynamics" in report.tables else ():
-        yield name, _curves(plot_dynamics, report, quantities)
+    for table, known, files in (("kinematics", KINEMATICS, _KINEMATIC), ("dynamics", DYNAMICS, _DYNAMIC)):
+        for name, quantities in files.items() if table in report.tables else ():
+            yield name, _curves(report, table, [known[quantity] for quantity in quantities])
 
 
-def _curves(plot: Callable[..., AxesArray], report: LinkageReport, quantities: tuple[str, ...]) -> Figure:
+def _curves(report: LinkageReport, table: str, panels: list[Panel]) -> Figure:
     with rc_context(STYLE):
-        figure = Figure(figsize=(8.5, 1.6 + 2.4 * len(quantities)), layout="constrained")
-        rows = figure.subplots(len(quantities), 1, sharex=True, squeeze=False)[:, 0]
-        plot(report, quantities=quantities, ax=rows)
+        figure = Figure(figsize=(8.5, 1.6 + 2.4 * len(panels)), layout="constrained")
+        rows = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
+        draw_curves(report.sweep, report.tables[table], panels, rows)
         rows[0].set_title(_title(report), parse_math=False)
     return figure
 

@@ -12,8 +12,8 @@ from grashof.analysis import GrashofClass, Masses, grashof_class, system_centre
 from grashof.linkage_extremes import extremes_table
 from grashof.linkage_facts import Fact, facts_of
 from grashof.linkage_quantities import Quantity, dynamic_quantities, kinematic_quantities, table_of
-from grashof.linkage_sweep import TURN, Sweep, dead_positions_unwarned, loads_of, masses_of
-from grashof.problems import LinkageSpec, ProblemError
+from grashof.linkage_sweep import Sweep, dead_positions_unwarned, loads_of, masses_of
+from grashof.problems import LinkageSpec
 from grashof.problems.checks import FloatArray
 
 __all__ = ["Fact", "LinkageReport", "Quantity", "mass_tracks", "report_on"]
@@ -85,11 +85,6 @@ def report_on(spec: LinkageSpec, speed_rpm: float | None = None) -> LinkageRepor
     ProblemError
         The linkage closes at no driver angle, or a speed that is not finite.
     """
-    given = spec.dynamics
-    if speed_rpm is None:
-        speed_rpm = given.speed_rpm if given is not None and given.speed_rpm is not None else 60 / TURN
-    if not np.isfinite(speed_rpm):
-        raise ProblemError(f"speed_rpm is {speed_rpm}; allowed are finite numbers")
     sweep, masses = Sweep.of(spec, speed_rpm), masses_of(spec)
     with dead_positions_unwarned():
         states, quantities = sweep.states(), kinematic_quantities(spec)

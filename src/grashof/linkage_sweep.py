@@ -52,14 +52,19 @@ class Sweep:
     turns: bool
 
     @classmethod
-    def of(cls, spec: LinkageSpec, speed_rpm: float) -> Sweep:
-        """All that the driver can do.
+    def of(cls, spec: LinkageSpec, speed_rpm: float | None = None) -> Sweep:
+        """All that the driver can do, by default at the speed of the file, or else 1 rad/s.
 
         Raises
         ------
         ProblemError
-            The linkage closes at no driver angle.
+            The linkage closes at no driver angle, or a speed that is not finite.
         """
+        given = spec.dynamics
+        if speed_rpm is None:
+            speed_rpm = given.speed_rpm if given is not None and given.speed_rpm is not None else 60 / TURN
+        if not np.isfinite(speed_rpm):
+            raise ProblemError(f"speed_rpm is {speed_rpm}; allowed are finite numbers")
         if full_rotation(spec.linkage):
             return cls(spec, speed_rpm, ((0.0, TURN),), True)
         ranges = tuple(_between_dead_positions(spec.linkage))
@@ -73,9 +78,10 @@ class Sweep:
 
     def states(self) -> list[Kinematics]:
         """Kinematics of each range at every degree, or as many angles between dead positions."""
-        return [self.state(angles) for angles in self._angles()]
+        return [self.state(angles) for angles in self.angles()]
 
-    def _angles(self) -> Iterator[FloatArray]:
+    def angles(self) -> Iterator[FloatArray]:
+        """Driver angles of each range, rad."""
         for low, high in self.ranges:
             share = np.linspace(0, 1, _STEPS + 1)
             if not self.turns:  # closer towards dead positions, where the linkage runs away from its driver

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from grashof.analysis import Verdict, driver_ranges, full_rotation, verify
+from grashof.analysis import Verdict, verify
+from grashof.linkage_sweep import TURN, Sweep
 from grashof.problems import FourBar, LinkageDynamics, LinkageSpec, Problem, ProblemError
 from grashof.synth import Candidate
 
-TURN = 2 * np.pi
 Linkage = FourBar | LinkageSpec | Candidate
 
 
@@ -67,25 +67,9 @@ class Subject:
         return self.spec.linkage
 
     @property
-    def turns(self) -> bool:
-        """Whether the driver turns fully."""
-        return bool(full_rotation(self.linkage))
-
-    @property
-    def ranges(self) -> tuple[tuple[float, float], ...]:
-        """Of the driver, rad: one whole turn, or those between its limits.
-
-        Raises
-        ------
-        ProblemError
-            The linkage closes at no driver angle.
-        """
-        if self.turns:
-            return ((0.0, TURN),)
-        ranges = [(float(low), float(high)) for low, high in driver_ranges(self.linkage) if high > low]
-        if not ranges:
-            raise ProblemError(f"{self.spec.name} closes at no driver angle, so it has no motion")
-        return tuple(ranges)
+    def sweep(self) -> Sweep:
+        """All that its driver can do; `ProblemError` where it closes at no driver angle."""
+        return Sweep.of(self.spec)
 
 
 def _posed(spec: LinkageSpec, problem: Problem, verdict: Verdict) -> LinkageSpec:

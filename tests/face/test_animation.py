@@ -20,10 +20,18 @@ from PIL import Image, ImageSequence
 
 import grashof.animation as grashof_animation
 from grashof import animate
-from grashof.analysis import driver_ranges
+from grashof.analysis import driver_ranges, solve_position
 from grashof.animation import save_animation
 from grashof.figure_parts import COUPLER, DRIVER, OUTPUT, PATH
-from grashof.problems import FourBar, MotionTask, ProblemError, load_linkage
+from grashof.problems import (
+    FourBar,
+    MotionTask,
+    Problem,
+    ProblemError,
+    Requirements,
+    Rotatability,
+    load_linkage,
+)
 from grashof.synth import Result
 
 Grashof = Callable[..., Any]
@@ -88,6 +96,30 @@ def test_a_design_starts_at_its_first_target_in_its_sense_and_carries_the_body(f
     np.testing.assert_allclose(sides, 1, atol=1e-9)
     still = [patch.get_xy()[0] for patch in axes.patches if patch.get_alpha() == 0.15]
     np.testing.assert_allclose(still, task.positions)
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+def test_between_limits_a_task_starts_at_its_first_target_in_its_sense(sense: int) -> None:
+    angles = np.mean(driver_ranges(ROCKER)[0]) + sense * np.radians([-20, 0, 20, 40])
+    state = solve_position(ROCKER, angles)
+    wanted = Requirements(rotatability=Rotatability.ANY)
+    problem = Problem(task=MotionTask(state.p, state.theta3), requirements=wanted)
+    axes = Figure().subplots()
+    driver = np.array(frames_of(animate(ROCKER, problem, seconds=4, fps=20, ax=axes), axes)["driver"])
+    turned = np.unwrap(np.arctan2(*driver[:, 1].T[::-1]))
+    assert turned[0] == pytest.approx(angles[0], abs=1e-6)
+    assert np.sign(turned[1] - turned[0]) == sense
+    low, high = driver_ranges(ROCKER)[0]
+    assert np.ptp(turned) == pytest.approx(high - low, abs=1e-2)
+
+
+def test_a_change_point_linkage_moves_between_its_dead_positions() -> None:
+    axes = Figure().subplots()
+    parallelogram = FourBar((0, 0), (4, 0), 1, 4, 1)
+    told = frames_of(animate(parallelogram, seconds=1, fps=20, ax=axes), axes)
+    assert np.isfinite(told["coupler"]).all()
+    output = np.diff(np.array(told["output"]), axis=1)[:, 0]
+    np.testing.assert_allclose(np.hypot(*output.T), 1)
 
 
 def test_a_new_figure_only_where_no_axes_are_given() -> None:

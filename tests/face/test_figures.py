@@ -142,7 +142,7 @@ def test_rates_are_the_slopes_of_the_angles_and_places_drawn() -> None:
 
 
 def test_torque_of_a_design_is_that_of_virtual_work(few: Result) -> None:
-    (ax,) = plot_dynamics(few.best, few.problem, quantities=("torque",), ax=axes())
+    (ax,) = plot_dynamics(few.best, few.problem, quantities="torque", ax=axes())
     given, linkage = few.problem.dynamics, few.best.linkage
     assert given is not None
     assert given.masses is not None
@@ -234,6 +234,7 @@ def test_all_quantities_by_default_a_panel_each() -> None:
         (lambda: plot_linkage(FourBar((0, 0), (4, 0), [1, 2], 4, 3)), r"batch of shape \(2,\)"),
         (lambda: plot_linkage(FourBar((0, 0), (9, 0), 1, 1, 1)), "closes at no driver angle"),
         (lambda: plot_kinematics(CRANK_ROCKER, quantities=("jerk",)), "'jerk' is not known; allowed are a"),
+        (lambda: plot_kinematics(CRANK_ROCKER, quantities=()), "quantities names none; allowed are angle"),
         (lambda: plot_kinematics(CRANK_ROCKER, ax=axes()), "ax has 1 axes; allowed are 5"),
         (lambda: plot_dynamics(CRANK_ROCKER), "has no masses"),
     ],
