@@ -28,6 +28,7 @@ from grashof.problems import MotionTask, Problem, ProblemError
 from grashof.problems.checks import FloatArray
 from grashof.subject import Linkage, Subject
 
+_STEPS = 6  # of the path from frame to frame, so that it is drawn smooth
 _WRITERS = {".gif": "pillow", ".mp4": "ffmpeg"}
 
 
@@ -68,7 +69,7 @@ def animate(
     frames = round(seconds * fps) if np.isfinite(seconds * fps) else 0
     if frames < 2:
         raise ProblemError(f"seconds * fps is {seconds * fps:g}; allowed are two frames and more")
-    state = solve_position(subject.linkage, _driver(subject, frames))
+    state = solve_position(subject.linkage, _driver(subject, frames * _STEPS))
     axes = new_axes(ax)
     moving, figure = _Moving(axes, subject, state), figure_of(axes)
     if ax is None:  # laid out once: a new layout for every frame would take most of the time
@@ -128,9 +129,9 @@ def check_animation(path: Path) -> None:
         raise ProblemError(f"{path}: {reason}; allowed is a file in a folder that can be written") from None
 
 
-def _driver(subject: Subject, frames: int) -> FloatArray:
-    """Driver angle of every frame, shape (frames,), rad: evenly round, or swinging between limits."""
-    phase, sweep = TURN * np.arange(frames) / frames, subject.sweep
+def _driver(subject: Subject, count: int) -> FloatArray:
+    """Driver angles of the motion, shape (count,), rad: evenly round, or swinging between limits."""
+    phase, sweep = TURN * np.arange(count) / count, subject.sweep
     start, sense = sweep.ranges[0][0], 1
     if subject.verdict is not None:
         start, sense = float(subject.verdict.theta2[0]), subject.verdict.direction
@@ -170,16 +171,16 @@ class _Moving:
 
     def show(self, frame: int) -> list[Artist]:
         """Put everything where it is in a frame; what has moved."""
-        state = self._state
-        self._links.move(state.a[frame], state.b[frame], state.p[frame])
-        self._trace.set_data(*state.p[: frame + 1].T)
+        state, step = self._state, frame * _STEPS
+        self._links.move(state.a[step], state.b[step], state.p[step])
+        self._trace.set_data(*state.p[: step + 1].T)
         for body in self._bodies:
-            body.set_xy(self._corners[frame])
+            body.set_xy(self._corners[step])
         return [*self._links.lines, self._links.plate, self._trace, *self._bodies]
 
 
 def _carried(subject: Subject, state: Position) -> list[FloatArray]:
-    """Corners of the body that the task has P carry, in every frame; none where it has none."""
+    """Corners of the body that the task has P carry, in every step; none where it has none."""
     task = None if subject.problem is None else subject.problem.task
     if not isinstance(task, MotionTask):
         return []

@@ -9,7 +9,6 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Polygon
 
 from grashof.analysis import Position, solve_position
-from grashof.linkage_sweep import TURN
 from grashof.problems import FourBar, MotionTask, PathTask, Problem, Task
 from grashof.problems.checks import FloatArray
 from grashof.subject import Subject
@@ -111,23 +110,23 @@ def draw_sense(axes: Axes, subject: Subject) -> None:
 
 
 def draw_path(axes: Axes, subject: Subject) -> None:
-    """The path of P over all that the driver can do; with a task the part used is drawn out."""
-    linkage, problem, verdict = subject.linkage, subject.problem, subject.verdict
-    if problem is None or verdict is None or closes(problem.task):
-        for index, angles in enumerate(subject.sweep.angles()):
-            p = solve_position(linkage, angles).p
-            label = "path of P" if index == 0 else None
-            axes.plot(*p.T, color=PATH, linewidth=1.6, label=label, zorder=2)
-        return
-    start, end = verdict.theta2.min(), verdict.theta2.max()
-    if verdict.full_rotation:
-        for index, assembly in enumerate(sorted(set(verdict.assembly))):
-            turn = solve_position(linkage, np.linspace(start, start + TURN, 361), assembly)
-            label = "path of P, whole turn" if index == 0 else None
-            axes.plot(*turn.p.T, color=PATH, linewidth=0.8, linestyle=":", label=label, zorder=2)
-    if verdict.branch_ok:  # else no motion joins the targets
-        way = solve_position(linkage, np.linspace(start, end, 181), verdict.assembly[0])
-        axes.plot(*way.p.T, color=PATH, linewidth=1.6, label="path of P, first to last target", zorder=2)
+    """The path of P over all that the driver can do; of an open task dotted, and the part used drawn out."""
+    linkage, problem, sweep = subject.linkage, subject.problem, subject.sweep
+    verdict = None if problem is None or closes(problem.task) else subject.verdict
+    style: dict[str, Any] = {"color": PATH, "linewidth": 1.6, "label": "path of P", "zorder": 2}
+    signs = [int(linkage.assembly)]
+    if verdict is not None:
+        whole = "whole turn" if sweep.turns else "all that it reaches"
+        style |= {"linewidth": 0.8, "linestyle": ":", "label": f"path of P, {whole}"}
+        signs = sorted(set(verdict.assembly.tolist()))
+    for sign in signs:
+        for angles in sweep.angles():
+            axes.plot(*solve_position(linkage, angles, sign).p.T, **style)
+            style["label"] = None
+    if verdict is not None and verdict.branch_ok:  # else no motion joins the targets
+        angles = np.linspace(verdict.theta2.min(), verdict.theta2.max(), 181)
+        way = solve_position(linkage, angles, verdict.assembly[0]).p
+        axes.plot(*way.T, color=PATH, linewidth=1.6, label="path of P, first to last target", zorder=2)
 
 
 def draw_scene(axes: Axes, problem: Problem) -> None:

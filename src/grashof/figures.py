@@ -3,14 +3,15 @@
 Every function draws into the axes given as ``ax``, or else into a new figure of pyplot, and returns
 the axes; none of them shows or saves anything. A linkage is a `FourBar`, a `LinkageSpec` as
 `load_linkage_spec` reads it, or a `Candidate` of a result; with a `Problem` its task is drawn, and
-unit, speed and masses are the problem's. Text is written as text and fonts are those of matplotlib's
-settings; `save` of `grashof.draw` writes the same bytes each time.
+unit, speed and masses are the problem's. Fonts are those of matplotlib's settings; `grashof.draw.save`
+writes text as text, and the same bytes each time.
 """
 
 from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
+from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -20,6 +21,7 @@ from grashof.curves import plot_dynamics, plot_kinematics
 from grashof.figure_parts import (
     COUPLER,
     GROUND,
+    KEPT_OUT,
     PATH,
     Links,
     draw_ground,
@@ -159,7 +161,7 @@ def plot_design_space(result: Result, *, ax: Axes | None = None) -> Axes:
     """Plot the worst transmission angle of all designs against their size, the Pareto-optimal ones ringed.
 
     The colour is the peak torque where the problem has dynamics, or else the position error where the
-    targets are not met exactly. The best ten carry their rank.
+    targets are not met exactly; grey where it is not finite. The best ten carry their rank.
 
     Parameters
     ----------
@@ -194,7 +196,8 @@ def plot_design_space(result: Result, *, ax: Axes | None = None) -> Axes:
         ax.scatter(size, mu, color=COUPLER, label="design", zorder=3)
     else:
         known = np.where(np.isfinite(third), third, np.nan)
-        dots = ax.scatter(size, mu, c=known, cmap="viridis", plotnonfinite=True, label="design", zorder=3)
+        scale = colormaps["viridis"].with_extremes(bad=KEPT_OUT)
+        dots = ax.scatter(size, mu, c=known, cmap=scale, plotnonfinite=True, label="design", zorder=3)
         bar = figure_of(ax).colorbar(dots, ax=ax)
         bar.set_label(label, parse_math=False)
     ax.scatter(
@@ -232,7 +235,9 @@ def _positions(
     """A, B and P wherever the linkage is drawn, each of shape (2,)."""
     assembly: npt.ArrayLike = subject.linkage.assembly
     if theta2 is not None:
-        angles = np.atleast_1d(np.asarray(theta2, dtype=np.float64))
+        angles = np.ravel(np.asarray(theta2, dtype=np.float64))
+        if not angles.size:
+            raise ProblemError("theta2 is empty; allowed is one driver angle or more")
     elif subject.problem is not None and subject.verdict is not None:
         shown = targets_shown(subject.problem.task)
         angles, assembly = subject.verdict.theta2[shown], subject.verdict.assembly[shown]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -71,3 +72,12 @@ def test_benchmark_of_the_analysis_agrees_with_the_plain_form(tmp_path: Path) ->
     difference = float(said.split("largest difference ")[1].split()[0])
     assert difference < 1e-12
     assert "50 linkages at 64 angles" in said
+
+
+def test_pictures_of_the_readme_are_made(tmp_path: Path) -> None:
+    run("pictures.py", "made", cwd=tmp_path)
+    made = {path.name: path.stat().st_size for path in (tmp_path / "made").iterdir()}
+    readme = (SCRIPTS.parent / "README.md").read_text(encoding="utf-8")
+    shown = set(re.findall(r"\]\(docs/([\w.-]+)\)", readme))
+    assert {"luggage.png", "luggage.gif", "design-space.png"} < set(made) <= shown
+    assert made["luggage.gif"] < 600_000
