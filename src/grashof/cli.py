@@ -166,7 +166,7 @@ def animate(
     out: Annotated[
         Path | None, typer.Option(help="File, .gif or .mp4; NAME.gif by default.", show_default=False)
     ] = None,
-    seconds: Annotated[float, typer.Option(min=0.1, max=60, help="Length of the motion.")] = 4.0,
+    seconds: Annotated[float, typer.Option(min=0.1, max=20, help="Length of the motion.")] = 4.0,
     fps: Annotated[float, typer.Option(min=1, max=50, help="Frames a second.")] = 25.0,
 ) -> None:
     """Write LINKAGE in motion: a turn of its driver, or from limit to limit and back.

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 
 from grashof.analysis import solve_position
 from grashof.analysis.over_task import torque_peak
-from grashof.curves import plot_dynamics, plot_kinematics
+from grashof.figure_curves import plot_dynamics, plot_kinematics
 from grashof.figure_parts import (
     COUPLER,
     GROUND,

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from grashof.curves import DYNAMICS, KINEMATICS, Panel, draw_curves
 from grashof.draw import STYLE
+from grashof.figure_curves import DYNAMICS, KINEMATICS, Panel, draw_curves
 from grashof.figure_parts import COUPLER, DRIVER, GROUND, OUTPUT
 from grashof.figures import plot_linkage
 from grashof.linkage_report import LinkageReport, mass_tracks
