@@ -68,6 +68,14 @@ def finite_number(value: float, where: str) -> float:
     raise ProblemError(f"{where} is {reprlib.repr(value)}; allowed is a finite number")
 
 
+def positive_number(value: float, where: str) -> float:
+    """`value` as a float, refused when it is not greater than zero."""
+    number = finite_number(value, where)
+    if number <= 0:
+        raise ProblemError(f"{where} is {number:.15g}; allowed are numbers greater than zero")
+    return number
+
+
 def number_within(value: float, low: float, high: float, where: str) -> float:
     """`value` as a float, refused outside [low, high]."""
     number = finite_number(value, where)

@@ -78,6 +78,34 @@ class LinkageSpec(Displayed):
     dynamics: LinkageDynamics | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class ListedDesign:
+    """A design of a candidates list, with what the list says of its targets.
+
+    Parameters
+    ----------
+    spec : LinkageSpec
+    rank : int
+    id : str
+    theta2 : tuple of float, rad
+        Driver angle at each target.
+    assembly : tuple of int
+        Of the linkage at each target.
+    position_error : tuple of float or None, length
+        Distance from each target; None where it has no position.
+    angle_error : tuple of float or None, rad
+        The same of its angle; empty for a path.
+    """
+
+    spec: LinkageSpec
+    rank: int
+    id: str
+    theta2: tuple[float, ...]
+    assembly: tuple[int, ...]
+    position_error: tuple[float | None, ...]
+    angle_error: tuple[float | None, ...]
+
+
 def load_linkage(linkage: str | os.PathLike[str]) -> FourBar:
     """Linkage of the catalogue, of a TOML file, or of a candidates list.
 
@@ -114,7 +142,7 @@ def load_linkage_spec(linkage: str | os.PathLike[str]) -> LinkageSpec:
     text = os.fspath(linkage)
     file, mark, rank = text.rpartition("#")
     if mark and file.endswith(".json"):
-        return _candidate(Path(file), rank)
+        return _candidate(Path(file), rank)[0]
     if text.endswith(".json"):
         raise ProblemError(f"{text}: is a list of designs; allowed is {text}#1 for the first of them")
     if isinstance(linkage, str) and not _looks_like_path(text):
@@ -126,6 +154,37 @@ def load_linkage_spec(linkage: str | os.PathLike[str]) -> LinkageSpec:
             raise ProblemError(f"{text!r} is no linkage of the catalogue and no file; {_hint(text)}")
     path = Path(linkage)
     return _parsed(_text(path, "a linkage file"), str(path), path.stem)
+
+
+def load_design(path: Path, rank: str) -> ListedDesign:
+    """Design of a list that `grashof solve` wrote, with its targets.
+
+    Parameters
+    ----------
+    path : Path
+        A candidates.json.
+    rank : str
+
+    Raises
+    ------
+    ProblemError
+        As for `load_linkage`, or a design without targets.
+    """
+    spec, design = _candidate(path, rank)
+    try:
+        return ListedDesign(
+            spec=spec,
+            rank=int(rank),
+            id=str(design["id"]),
+            theta2=tuple(float(angle) for angle in design["theta2"]),
+            assembly=tuple(int(sign) for sign in design["assembly"]),
+            position_error=_errors(design["position_error"]),
+            angle_error=_errors(design.get("angle_error", [])),
+        )
+    except (KeyError, TypeError, ValueError):
+        raise ProblemError(
+            f"{path}#{rank}: states no targets; allowed is a candidates.json of grashof solve"
+        ) from None
 
 
 def linkage_catalogue() -> tuple[str, ...]:
@@ -188,8 +247,8 @@ def _parsed(text: str, file_name: str, name: str) -> LinkageSpec:
 _LINKAGE_KEYS = ("o2", "o4", "r2", "r3", "r4", "coupler_point", "assembly", "body_angle")
 
 
-def _candidate(path: Path, rank: str) -> LinkageSpec:
-    """Design of a list that `grashof solve` wrote."""
+def _candidate(path: Path, rank: str) -> tuple[LinkageSpec, dict[str, Any]]:
+    """Design of a list that `grashof solve` wrote, and all that the list says of it."""
     where = f"{path}#{rank}"
     try:
         content = json.loads(_text(path, "a list of designs"))
@@ -217,4 +276,8 @@ def _candidate(path: Path, rank: str) -> LinkageSpec:
     if linkage.shape:
         raise ProblemError(f"{where}: states a batch; allowed is one linkage")
     stem = f"{path.parent.name or path.stem}-{int(rank)}"
-    return LinkageSpec(linkage, stem, f"{title}: design {int(rank)}", str(path), unit)
+    return LinkageSpec(linkage, stem, f"{title}: design {int(rank)}", str(path), unit), design
+
+
+def _errors(given: list[float | None]) -> tuple[float | None, ...]:
+    return tuple(None if error is None else float(error) for error in given)

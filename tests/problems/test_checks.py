@@ -17,6 +17,7 @@ from grashof.problems.checks import (
     near_miss,
     number_within,
     outline,
+    positive_number,
     whole_number,
 )
 
@@ -81,6 +82,13 @@ def test_finite_number_takes_every_kind_of_number(value: float) -> None:
 def test_finite_number_refuses(value: float) -> None:
     with pytest.raises(ProblemError, match=r"^here is .*; allowed is a finite number$"):
         finite_number(value, "here")
+
+
+@pytest.mark.parametrize("value", [0, -1.5, float("nan")])
+def test_positive_number_refuses(value: float) -> None:
+    with pytest.raises(ProblemError, match="width is"):
+        positive_number(value, "width")
+    assert positive_number(0.5, "width") == 0.5
 
 
 def test_number_within_allows_the_ends_and_shows_a_near_excess() -> None:
