@@ -1,4 +1,4 @@
-"""The command line: solve, check, problems, analyse, animate."""
+"""The command line: solve, check, problems, analyse, animate, export."""
 
 from __future__ import annotations
 
@@ -40,8 +40,7 @@ class Exit(IntEnum):
 
 
 TOP = 50
-# Names of the contract that later versions bring.
-_LATER_COMMANDS = ("export",)
+# Options of the contract that later versions bring.
 _LATER_OPTIONS = ("--resume", "--scheduler")
 # Typer makes the base of its usage errors public only through this one.
 _UsageError: type[Exception] = typer.BadParameter.__bases__[0]
@@ -177,6 +176,63 @@ def animate(
         _animate(linkage, out, seconds, fps)
 
 
+@app.command()
+def export(
+    linkage: Annotated[
+        str,
+        typer.Argument(
+            metavar="LINKAGE",
+            help="As for analyse; for --xlsx alone also several designs, DIR/candidates.json#1,3,5.",
+        ),
+    ],
+    dxf: Annotated[
+        Path | None, typer.Option(help="Drawing of the parts to cut, and how they stack.", show_default=False)
+    ] = None,
+    svg: Annotated[Path | None, typer.Option(help="The same drawing.", show_default=False)] = None,
+    xlsx: Annotated[
+        Path | None,
+        typer.Option(help="Excel workbook: the list, and a sheet for each design.", show_default=False),
+    ] = None,
+    width: Annotated[float, typer.Option(help="Of the links, mm.")] = 20.0,
+    hole: Annotated[float, typer.Option(help="Diameter of holes and pins, mm.")] = 6.0,
+    thickness: Annotated[float, typer.Option(help="Of the material, mm.")] = 5.0,
+    clearance: Annotated[
+        float | None,
+        typer.Option(
+            help="Least gap between parts on one layer, mm.", show_default="a twentieth of the width"
+        ),
+    ] = None,
+    scale: Annotated[str, typer.Option(help="Of a model: 0.05 or 1:20.")] = "1",
+    mm_per_unit: Annotated[
+        float | None,
+        typer.Option(help="Where the length unit is none of mm, cm, m, in, ft.", show_default=False),
+    ] = None,
+    theta2_deg: Annotated[
+        tuple[float, float] | None,
+        typer.Option(
+            metavar="LOW HIGH",
+            help="Driver angles of the use; all that the driver reaches by default.",
+            show_default=False,
+        ),
+    ] = None,
+) -> None:
+    """Write the parts of LINKAGE for the workshop: plates to cut, stacked so that nothing collides.
+
+    Exit code 0: done; 2: bad input; 3: the surroundings failed.
+    """
+    from grashof.workshop.export import Making, export_files, told
+    from grashof.workshop.plates import PlateSizes
+
+    given = {"dxf": dxf, "svg": svg, "xlsx": xlsx}
+    files = {kind: path for kind, path in given.items() if path is not None}
+    with _errors_told():
+        making = Making(PlateSizes(width, hole, thickness, clearance), scale, mm_per_unit, theta2_deg)
+        plan = export_files(linkage, making, files)
+        for line in told(plan) if plan else ():
+            say(line)
+        say(f"written: {', '.join(map(str, files.values()))}", err=True)
+
+
 def main() -> None:
     """Entry point of the `grashof` command."""
     app(prog_name="grashof")
@@ -271,9 +327,8 @@ def _report(note: str, files: list[str], folder: Path) -> None:
 
 
 def _later(given: list[str]) -> str:
-    """What to say of a name that only a later version knows; empty when none is given."""
-    words = [word for word in given[:1] if word in _LATER_COMMANDS]
-    words += [word for word in given if word.partition("=")[0] in _LATER_OPTIONS]
+    """What to say of an option that only a later version knows; empty when none is given."""
+    words = [word for word in given if word.partition("=")[0] in _LATER_OPTIONS]
     return f"{words[0].partition('=')[0]} is not in this version" if words else ""
 
 

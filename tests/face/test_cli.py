@@ -161,7 +161,6 @@ def test_output_folder_that_cannot_be_written(grashof: Grashof, tmp_path: Path) 
         ("solv luggage", "solve"),
         ("solve luggage --resume", "--resume is not in this version"),
         ("solve luggage --scheduler=here", "--scheduler is not in this version"),
-        ("export crank.toml", "export is not in this version"),
         (f"solve luggage --out {'x' * 300}", "File name too long"),
     ],
 )

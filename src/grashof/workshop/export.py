@@ -1,0 +1,165 @@
+"""What `grashof export` writes: DXF and SVG of the parts, and an Excel workbook."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from grashof.problems import LinkageSpec, ProblemError, load_linkage_spec
+from grashof.problems.checks import finite_number, positive_number
+from grashof.problems.linkage_file import METRES, ListedDesign, load_design
+from grashof.workshop.dxf import dxf
+from grashof.workshop.files import write_whole
+from grashof.workshop.plan import Plan, plan_parts
+from grashof.workshop.plates import PlateSizes
+from grashof.workshop.sheet import sheet
+from grashof.workshop.svg import svg
+from grashof.workshop.workbook import listed_candidates, workbook
+
+
+@dataclass(frozen=True, slots=True)
+class Making:
+    """How big the parts are made, and for which motion.
+
+    Parameters
+    ----------
+    sizes : PlateSizes
+    scale : str
+        Of a model: a number, or a ratio such as 1:20.
+    mm_per_unit : float, optional
+        Where the length unit is none of mm, cm, m, in, ft.
+    theta2_deg : pair of float, optional
+        Driver angles of the use.
+    """
+
+    sizes: PlateSizes
+    scale: str = "1"
+    mm_per_unit: float | None = None
+    theta2_deg: tuple[float, float] | None = None
+
+
+def export_files(linkage: str, making: Making, files: dict[str, Path]) -> Plan | None:
+    """Write what is asked for, all of it or nothing.
+
+    Parameters
+    ----------
+    linkage : str
+        As for `load_linkage`; for a workbook alone also ``DIR/candidates.json#1,3,5``.
+    making : Making
+    files : dict of str to Path
+        By kind: dxf, svg, xlsx.
+
+    Returns
+    -------
+    Plan or None
+        What is drawn, if anything is.
+
+    Raises
+    ------
+    ProblemError
+        Bad input, named.
+    OSError
+        The disk is full or the folder is lost.
+    """
+    if not files:
+        raise ProblemError("nothing to write; allowed are --dxf FILE, --svg FILE, --xlsx FILE, or several")
+    for kind, path in files.items():
+        _refuse_path(kind, path)
+    chosen, listed = _chosen(linkage)
+    drawn = [kind for kind in files if kind != "xlsx"]
+    if drawn and len(chosen) > 1:
+        raise ProblemError(f"--{drawn[0]} takes one design; {linkage} names {len(chosen)}")
+    contents: dict[str, bytes] = {}
+    made = None
+    if drawn:
+        made = _plan(chosen[0], making)
+        drawing = sheet(made, _heading(chosen[0], making))
+        writers = {"dxf": dxf, "svg": svg}
+        contents = {kind: writers[kind](drawing).encode("utf-8") for kind in drawn}
+    if "xlsx" in files:
+        designs = [one for one in chosen if isinstance(one, ListedDesign)]
+        contents["xlsx"] = workbook(chosen, listed_candidates(listed, designs) if listed else None)
+    write_whole({files[kind]: content for kind, content in contents.items()})
+    return made
+
+
+def told(plan: Plan) -> list[str]:
+    """The parts list and the notes, as lines for the terminal."""
+    rows = plan.rows()
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = ["  ".join(map(str.ljust, row, widths)).rstrip() for row in rows]
+    return [*lines, *plan.notes]
+
+
+def _refuse_path(kind: str, path: Path) -> None:
+    if path.suffix.lower() != f".{kind}":
+        raise ProblemError(f"--{kind} {path}: allowed is a file name that ends in .{kind}")
+    try:
+        taken, there = path.is_dir(), path.parent.is_dir()
+    except OSError as error:  # a name too long
+        raise ProblemError(f"--{kind} {path}: {error.strerror}") from None
+    if taken:
+        raise ProblemError(f"--{kind} {path}: is a folder; allowed is a file")
+    if not there:
+        raise ProblemError(f"--{kind} {path}: there is no folder {path.parent}")
+
+
+def _chosen(linkage: str) -> tuple[list[LinkageSpec | ListedDesign], Path | None]:
+    """What LINKAGE names, and the list that it is from."""
+    file, mark, ranks = linkage.rpartition("#")
+    if not (mark and file.endswith(".json")):
+        return [load_linkage_spec(linkage)], None
+    path = Path(file)
+    return [load_design(path, rank.strip()) for rank in dict.fromkeys(ranks.split(","))], path
+
+
+def _plan(one: LinkageSpec | ListedDesign, making: Making) -> Plan:
+    spec, theta2 = (one.spec, one.theta2[0]) if isinstance(one, ListedDesign) else (one, None)
+    within = None
+    if making.theta2_deg is not None:
+        low, high = (math.radians(finite_number(angle, "theta2_deg")) for angle in making.theta2_deg)
+        within = (low, high)
+    made = plan_parts(spec.linkage, making.sizes, _millimetres(spec, making), within=within, theta2=theta2)
+    notes = list(made.notes)
+    if spec.output_arm is not None:
+        notes.append(
+            f"the output arm, {spec.output_arm:g} {spec.length_unit} about O4, is not among the parts"
+        )
+    if isinstance(one, ListedDesign) and len(set(one.assembly)) > 1:
+        notes.append(
+            "the targets need both assemblies; only the motion on that of the first one is looked at"
+        )
+    return replace(made, notes=tuple(notes))
+
+
+def _millimetres(spec: LinkageSpec, making: Making) -> float:
+    """Millimetres of the parts for one unit of the linkage."""
+    given, unit = making.mm_per_unit, spec.length_unit
+    if unit in METRES:
+        if given is not None:
+            raise ProblemError(
+                f"mm_per_unit is given, but length_unit of {spec.name} is {unit}; allowed is --scale"
+            )
+        given = METRES[unit] * 1000
+    elif given is None:
+        raise ProblemError(
+            f"length_unit of {spec.name} is {unit!r}, none of {', '.join(METRES)}; allowed is "
+            "--mm-per-unit NUMBER besides, the millimetres of one unit"
+        )
+    return _ratio(making.scale) * positive_number(given, "mm_per_unit")
+
+
+def _ratio(scale: str) -> float:
+    part, _, whole = scale.partition(":")
+    try:
+        return positive_number(float(part), "scale") / positive_number(float(whole or 1), "scale")
+    except ValueError:
+        raise ProblemError(
+            f"scale is {scale!r}; allowed is a number above 0 or a ratio such as 1:20"
+        ) from None
+
+
+def _heading(one: LinkageSpec | ListedDesign, making: Making) -> str:
+    spec = one.spec if isinstance(one, ListedDesign) else one
+    return f"{spec.title or spec.name}, scale {making.scale}"

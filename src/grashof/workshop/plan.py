@@ -1,0 +1,197 @@
+"""A linkage as parts: plates, spacers and pins, each with its layers, ready to be drawn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from grashof.analysis import full_rotation, solve_position
+from grashof.problems import FourBar, ProblemError
+from grashof.problems.checks import FloatArray, positive_number
+from grashof.workshop.plates import Plate, PlateSizes, base, link_plates, spacer
+from grashof.workshop.stacking import LINKS, Pin, Stack, places, ranges_of_use, stack, sweep
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Part:
+    """A part cut from the sheet, and where each copy of it goes.
+
+    Parameters
+    ----------
+    plate : Plate
+    layers : tuple of int
+        Of each copy.
+    places : ndarray, shape (n, 3)
+        Of each copy in the assembly: x and y of its origin in mm from O2, and its angle in rad.
+    """
+
+    plate: Plate
+    layers: tuple[int, ...]
+    places: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Plan:
+    """All that is made for a linkage.
+
+    Parameters
+    ----------
+    sizes : PlateSizes
+    parts : tuple of Part
+        Base, driver, coupler, output, and spacers if there are any.
+    pins : tuple of Pin
+    layers : int
+        How many, with those of the bases.
+    theta2 : float, rad
+        Driver angle of the assembly.
+    joints : dict of str to pair of float, mm
+        O2, A, B, O4 and P in the assembly, from O2.
+    notes : tuple of str
+        What a maker has to know.
+    """
+
+    sizes: PlateSizes
+    parts: tuple[Part, ...]
+    pins: tuple[Pin, ...]
+    layers: int
+    theta2: float
+    joints: dict[str, tuple[float, float]]
+    notes: tuple[str, ...]
+
+    def pin_length(self, pin: Pin) -> float:
+        """Length of a pin from the outer face of its first plate to that of its last one, mm."""
+        return (pin.high - pin.low + 1) * self.sizes.thickness
+
+    def rows(self) -> list[tuple[str, ...]]:
+        """The parts list, its heading first."""
+        thick, hole = f"{self.sizes.thickness:g}", self.sizes.hole
+        rows: list[tuple[str, ...]] = [("part", "count", "layer", "thickness mm", "between holes mm")]
+        for part in self.parts:
+            layers = ", ".join(str(layer) for layer in sorted(set(part.layers)))
+            distances = ", ".join(f"{joints} {length:.10g}" for joints, length in part.plate.distances)
+            rows.append((part.plate.name, str(len(part.layers)), layers, thick, distances or "-"))
+        for pin in self.pins:
+            name = pin.name if pin.name.startswith("post") else f"pin {pin.name}"
+            about = f"diameter {hole:g}, length {self.pin_length(pin):g}"
+            rows.append((name, "1", f"{pin.low} to {pin.high}", "-", about))
+        return rows
+
+
+def plan_parts(
+    linkage: FourBar,
+    sizes: PlateSizes | None = None,
+    mm_per_unit: float = 1.0,
+    *,
+    within: tuple[float, float] | None = None,
+    theta2: float | None = None,
+) -> Plan:
+    """Parts of a linkage, on as few layers as let it move freely.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        One linkage.
+    sizes : PlateSizes, optional
+    mm_per_unit : float
+        Millimetres of the plates for one unit of the linkage; a scale goes in here, too.
+    within : pair of float, rad, optional
+        Driver angles of its use; by default the whole turn, or all between dead positions.
+    theta2 : float, rad, optional
+        Driver angle of the assembly; by default a quarter into the motion. Of a linkage with two ranges
+        between dead positions, only that of this angle is used.
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    ProblemError
+        A batch, a link too short for the width, or angles at which the linkage cannot be assembled.
+
+    Examples
+    --------
+    >>> crank_rocker = FourBar(o2=(0, 0), o4=(100, 0), r2=30, r3=90, r4=80)
+    >>> [(part.plate.name, part.layers) for part in plan_parts(crank_rocker).parts]
+    [('base', (0,)), ('driver', (1,)), ('coupler', (2,)), ('output', (1,))]
+    """
+    sizes = sizes or PlateSizes()
+    scaled = _in_millimetres(linkage, mm_per_unit)
+    plates, note = link_plates(scaled, sizes)
+    ranges = ranges_of_use(scaled, within, theta2)
+    order = stack(plates, scaled, sweep(scaled, ranges, sizes.gap), sizes)
+    low, high = ranges[0]
+    if theta2 is None or (theta2 - low) % (2 * np.pi) > high - low:
+        theta2 = low + (high - low) / 4
+    return Plan(
+        sizes=sizes,
+        parts=_parts(plates, order, scaled, sizes, theta2),
+        pins=order.pins,
+        layers=max(order.layers.values()) + len(order.bases),
+        theta2=theta2,
+        joints=_joints(scaled, theta2),
+        notes=(
+            _use(scaled, ranges, within),
+            "pins end flush with their outer plates; their lengths leave nothing for heads or rings",
+            *_two_bases(order),
+            *([note] if note else []),
+        ),
+    )
+
+
+def _in_millimetres(linkage: FourBar, mm_per_unit: float) -> FourBar:
+    """The linkage in mm, with O2 at the origin."""
+    if linkage.shape:
+        raise ProblemError(f"linkage is a batch of shape {linkage.shape}; allowed is one linkage")
+    scale = positive_number(mm_per_unit, "mm_per_unit")
+    return FourBar(
+        o2=(0, 0),
+        o4=(linkage.o4 - linkage.o2) * scale,
+        r2=linkage.r2 * scale,
+        r3=linkage.r3 * scale,
+        r4=linkage.r4 * scale,
+        coupler_point=linkage.coupler_point * scale,
+        assembly=linkage.assembly,
+    )
+
+
+def _parts(
+    plates: dict[str, Plate], order: Stack, linkage: FourBar, sizes: PlateSizes, theta2: float
+) -> tuple[Part, ...]:
+    where = {name: place[0] for name, place in places(linkage, np.array([theta2])).items()}
+    on_base = np.array([0.0, 0.0, float(linkage.theta1)])
+    holes = {"O2": 0.0, "O4": float(linkage.r1)}
+    if order.posts:
+        holes = {"post 1": order.posts[0], **holes, "post 2": order.posts[1]}
+    for name, along in holes.items():
+        where[name] = np.array([along * np.cos(on_base[2]), along * np.sin(on_base[2]), 0.0])
+    parts = [Part(base(holes, sizes), order.bases, np.tile(on_base, (len(order.bases), 1)))]
+    parts += [Part(plates[name], (order.layers[name],), where[name][None]) for name in LINKS]
+    rings = [(layer, where[pin.name]) for pin in order.pins for layer in pin.passed]
+    if rings:
+        layers, there = zip(*rings, strict=True)
+        parts.append(Part(spacer(sizes), layers, np.array(there)))
+    return tuple(parts)
+
+
+def _joints(linkage: FourBar, theta2: float) -> dict[str, tuple[float, float]]:
+    state = solve_position(linkage, theta2)
+    points = {"O2": linkage.o2, "A": state.a, "B": state.b, "O4": linkage.o4, "P": state.p}
+    return {name: (float(point[0]), float(point[1])) for name, point in points.items()}
+
+
+def _use(
+    linkage: FourBar, ranges: tuple[tuple[float, float], ...], within: tuple[float, float] | None
+) -> str:
+    """Over which motion nothing meets."""
+    if within is None and full_rotation(linkage):
+        return "free over the whole turn of the driver"
+    stretches = " and ".join(f"{low:.1f} to {high:.1f}" for low, high in np.degrees(ranges))
+    return f"free for theta2 = {stretches} deg" + ("" if within else ", between the dead positions")
+
+
+def _two_bases(order: Stack) -> list[str]:
+    if not order.posts:
+        return []
+    return ["a second base carries O4 from the other side; on one base", *(f"- {pair}" for pair in order.met)]

@@ -1,0 +1,227 @@
+"""Shapes of the parts: a point, a line or a triangle between holes, widened all round by half a width."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations, pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+from grashof.problems import FourBar, ProblemError
+from grashof.problems.checks import FloatArray, frozen_array, number_within, positive_number
+
+# A link longer than so many widths is a slip in the unit, and no plate.
+_SLENDEREST = 1000
+
+
+@dataclass(frozen=True, slots=True)
+class PlateSizes:
+    """What the plates of a linkage are cut to.
+
+    Parameters
+    ----------
+    width : float, mm
+        Of the links; their ends are semicircles about the holes. The base is twice as wide.
+    hole : float, mm
+        Diameter of the holes, and of the pins.
+    thickness : float, mm
+        Of the material, the same for all parts.
+    clearance : float, mm
+        Least gap between parts that pass each other on one layer; a twentieth of the width by default.
+
+    Raises
+    ------
+    ProblemError
+        A number that is not positive, a hole as wide as the plate, or a clearance outside a
+        hundredth of the width to the width.
+
+    Examples
+    --------
+    >>> PlateSizes(width=20, hole=6).least_spacing
+    13.0
+    """
+
+    width: float = 20.0
+    hole: float = 6.0
+    thickness: float = 5.0
+    clearance: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("width", "hole", "thickness"):
+            object.__setattr__(self, name, positive_number(getattr(self, name), f"{name} in mm"))
+        if self.hole >= self.width:
+            raise ProblemError(f"hole is {self.hole:g} mm; allowed is less than the width, {self.width:g} mm")
+        gap = self.width / 20 if self.clearance is None else self.clearance
+        low, high = self.width / 100, self.width
+        object.__setattr__(self, "clearance", number_within(gap, low, high, "clearance in mm"))
+
+    @property
+    def gap(self) -> float:
+        """The clearance, mm."""
+        return float(self.clearance or 0.0)
+
+    @property
+    def least_spacing(self) -> float:
+        """Least distance of two holes, mm: then as much is left between them as beside each."""
+        return (self.width + self.hole) / 2
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Plate:
+    """A part cut from the sheet, in a frame of its own: O2, A or O4 at the origin, the next joint along +x.
+
+    Parameters
+    ----------
+    name : str
+    joints : tuple of str
+        What each hole is for.
+    holes : ndarray, shape (n, 2), mm
+        Centres.
+    corners : ndarray, shape (1 to 3, 2), mm
+        Point, line or triangle (counter-clockwise) that the plate surrounds.
+    width : float, mm
+    hole : float, mm
+        Diameter.
+    """
+
+    name: str
+    joints: tuple[str, ...]
+    holes: FloatArray
+    corners: FloatArray
+    width: float
+    hole: float
+
+    @property
+    def outline(self) -> FloatArray:
+        """The closed outline, counter-clockwise: x, y in mm and the bulge to the next row; shape (k, 3).
+
+        The bulge, as in a DXF polyline, is the tangent of a quarter of the arc's angle; 0 for a line.
+        """
+        return outline(self.corners, self.width / 2)
+
+    @property
+    def distances(self) -> tuple[tuple[str, float], ...]:
+        """Distances between the holes (mm) by the names of their joints; of a row of four, to the next."""
+        holes = list(zip(self.joints, self.holes, strict=True))
+        pairs = combinations(holes, 2) if len(holes) <= 3 else pairwise(holes)
+        return tuple((f"{one}-{other}", float(np.hypot(*(b - a)))) for (one, a), (other, b) in pairs)
+
+
+def outline(corners: npt.ArrayLike, radius: float) -> FloatArray:
+    """Everything within `radius` of a point, a line or a convex polygon, as lines and arcs.
+
+    Parameters
+    ----------
+    corners : array_like, shape (n, 2)
+        Counter-clockwise.
+    radius : float
+
+    Returns
+    -------
+    ndarray, shape (2 max(n, 1) or 2, 3)
+        x, y and bulge (tangent of a quarter of the arc's angle) of each vertex, counter-clockwise.
+
+    Examples
+    --------
+    >>> outline([(0, 0), (50, 0)], 10).round(6).tolist()
+    [[0.0, 10.0, 1.0], [0.0, -10.0, 0.0], [50.0, -10.0, 1.0], [50.0, 10.0, 0.0]]
+    """
+    points = np.asarray(corners, dtype=np.float64)
+    if len(points) == 1:
+        (x, y), r = points[0], radius
+        return np.array([[x - r, y, 1.0], [x + r, y, 1.0]])
+    sides = np.roll(points, -1, axis=0) - points
+    normals = np.stack([sides[:, 1], -sides[:, 0]], axis=1) * radius / np.hypot(*sides.T)[:, None]
+    before = np.roll(normals, 1, axis=0)
+    cross = before[:, 0] * normals[:, 1] - before[:, 1] * normals[:, 0]
+    turn = np.abs(np.arctan2(cross, (before * normals).sum(axis=1)))
+    arcs = np.column_stack([points + before, np.tan(turn / 4)])
+    lines = np.column_stack([points + normals, np.zeros(len(points))])
+    return np.stack([arcs, lines], axis=1).reshape(-1, 3)
+
+
+def link_plates(linkage: FourBar, sizes: PlateSizes) -> tuple[dict[str, Plate], str]:
+    """Plates of the links `driver`, `coupler` and `output`, and what to say of P.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        One linkage, in mm.
+    sizes : PlateSizes
+
+    Returns
+    -------
+    plates : dict of str to Plate
+    note : str
+        Why P has no hole; empty when it has one.
+
+    Raises
+    ------
+    ProblemError
+        A link too short or too long for its width.
+    """
+    u, v = linkage.coupler_point.tolist()
+    r2, r3, r4 = float(linkage.r2), float(linkage.r3), float(linkage.r4)
+    reach = max(abs(u), abs(u - r3), abs(v))
+    for name, length in (("r1", float(linkage.r1)), ("r2", r2), ("r3", r3), ("r4", r4), ("A-P", reach)):
+        _refuse_length(name, length, sizes)
+    coupler, note = _coupler(r3, u, v, sizes)
+    plates = {
+        "driver": bar("driver", ("O2", "A"), (0.0, r2), sizes),
+        "coupler": coupler,
+        "output": bar("output", ("O4", "B"), (0.0, r4), sizes),
+    }
+    return plates, note
+
+
+def bar(name: str, joints: tuple[str, ...], along: tuple[float, ...], sizes: PlateSizes) -> Plate:
+    """A straight plate with holes at positions along x (mm), rounded about the outermost ones."""
+    holes = np.array([(x, 0.0) for x in along])
+    ends = np.array([(min(along), 0.0), (max(along), 0.0)])
+    return _plate(name, joints, holes, ends, sizes)
+
+
+def base(along: dict[str, float], sizes: PlateSizes) -> Plate:
+    """The base: a bar with holes for the given joints, twice as wide as the links."""
+    plate = bar("base", tuple(along), tuple(along.values()), sizes)
+    return Plate(plate.name, plate.joints, plate.holes, plate.corners, 2 * sizes.width, sizes.hole)
+
+
+def spacer(sizes: PlateSizes) -> Plate:
+    """The ring about a pin where it passes a layer without a plate of its own: as wide as a link's end."""
+    centre = np.zeros((1, 2))
+    return _plate("spacer", ("pin",), centre, centre, sizes)
+
+
+def _coupler(r3: float, u: float, v: float, sizes: PlateSizes) -> tuple[Plate, str]:
+    """Plate of the coupler: a triangle, or a bar where P is too near to A or B or on their line."""
+    for joint, distance in (("A", np.hypot(u, v)), ("B", np.hypot(u - r3, v))):
+        if distance < sizes.least_spacing:
+            where = f"it lies {distance:.4g} mm from {joint}, and holes are at least"
+            note = f"the coupler has no hole for P: {where} {sizes.least_spacing:g} mm apart"
+            return bar("coupler", ("A", "B"), (0.0, r3), sizes), note
+    joints = ("A", "B", "P")
+    if abs(v) <= 1e-9 * max(r3, abs(u)):
+        return bar("coupler", joints, (0.0, r3, u), sizes), ""
+    holes = np.array([(0.0, 0.0), (r3, 0.0), (u, v)])
+    return _plate("coupler", joints, holes, holes if v > 0 else holes[[0, 2, 1]], sizes), ""
+
+
+def _plate(
+    name: str, joints: tuple[str, ...], holes: FloatArray, corners: FloatArray, sizes: PlateSizes
+) -> Plate:
+    return Plate(name, joints, frozen_array(holes), frozen_array(corners), sizes.width, sizes.hole)
+
+
+def _refuse_length(name: str, length: float, sizes: PlateSizes) -> None:
+    if length > _SLENDEREST * sizes.width:
+        raise ProblemError(
+            f"{name} is {length:.6g} mm, over {_SLENDEREST} widths of {sizes.width:g} mm; allowed is a "
+            f"width from {length / _SLENDEREST:.4g} mm, or a smaller scale"
+        )
+    if name != "A-P" and length < sizes.least_spacing:
+        raise ProblemError(
+            f"{name} is {length:.4g} mm; allowed for width {sizes.width:g} and hole {sizes.hole:g} mm is at "
+            f"least {sizes.least_spacing:g} mm: as much between two holes as beside them"
+        )

@@ -1,0 +1,285 @@
+"""The layer on which each plate lies, so that no plate or pin hits another one while the linkage moves.
+
+The base is layer 0. A pin joins two plates and passes all layers between, on each of them inside a spacer as
+wide as a link's end: there it is in the way of every other part. The coupler shares a pin with both other
+links, so only driver and output can share a layer, and there are eight orders on one base. Empty layers would
+make pins longer and free nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from itertools import combinations, product
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+
+from grashof.analysis import driver_ranges, full_rotation, solve_position
+from grashof.analysis.mobility import range_index
+from grashof.problems import FourBar, ProblemError
+from grashof.problems.checks import FloatArray
+from grashof.workshop.plates import Plate, PlateSizes
+
+LINKS = ("driver", "coupler", "output")
+# What each pin joins, beginning on the base where it stands on it.
+JOINTS = {
+    "O2": ("base", "driver"),
+    "A": ("driver", "coupler"),
+    "B": ("coupler", "output"),
+    "O4": ("base", "output"),
+}
+GeometryArray: TypeAlias = npt.NDArray[np.object_]
+_SAMPLES = 721
+_SHORTEST_STEP = 1e-9  # rad; a step across the jump at a change point is never short enough
+
+
+@dataclass(frozen=True, slots=True)
+class Pin:
+    """A pin through the layers `low` to `high`, both in plates with a hole for it."""
+
+    name: str
+    low: int
+    high: int
+
+    @property
+    def passed(self) -> range:
+        """Layers between, where it runs in spacers."""
+        return range(self.low + 1, self.high)
+
+
+@dataclass(frozen=True, slots=True)
+class Stack:
+    """Who lies where.
+
+    Parameters
+    ----------
+    layers : mapping of str to int
+        Of `driver`, `coupler` and `output`; the base is on layer 0.
+    pins : tuple of Pin
+        O2, A, B, O4, and the posts between two bases.
+    posts : tuple of float, mm
+        Where the posts stand, from O2 towards O4; none with a single base.
+    met : tuple of str
+        For each order that was tried before: two parts that would come too close, and where.
+    """
+
+    layers: Mapping[str, int]
+    pins: tuple[Pin, ...]
+    posts: tuple[float, ...] = ()
+    met: tuple[str, ...] = ()
+
+    @property
+    def bases(self) -> tuple[int, ...]:
+        """Layers of the bases."""
+        return (0, max(self.layers.values()) + 1) if self.posts else (0,)
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """A linkage at every angle of a sweep.
+
+    Parameters
+    ----------
+    theta2 : ndarray, shape (n,), rad
+    places : mapping of str to ndarray, shape (n, 3)
+        Of each link and pin: where the origin of its plate is, x and y in mm, and its angle in rad.
+    """
+
+    theta2: FloatArray
+    places: Mapping[str, FloatArray]
+
+
+def ranges_of_use(
+    linkage: FourBar, within: tuple[float, float] | None = None, at: float | None = None
+) -> tuple[tuple[float, float], ...]:
+    """Driver angles that the plates are to move through.
+
+    Parameters
+    ----------
+    linkage : FourBar
+    within : pair of float, rad, optional
+        First and last angle of the use.
+    at : float, rad, optional
+        An angle of the use: of two ranges between dead positions only the one with it counts.
+
+    Returns
+    -------
+    tuple of pair of float, rad
+        By default the whole turn, or all that lies between dead positions.
+
+    Raises
+    ------
+    ProblemError
+        The linkage cannot be assembled on `within`, or at all.
+    """
+    ends = driver_ranges(linkage)
+    whole = tuple((float(low), float(high)) for low, high in ends if np.isfinite(low))
+    if not whole:
+        raise ProblemError("the linkage cannot be assembled at any driver angle; change its lengths")
+    if within is None:
+        number = -1 if at is None else int(range_index(linkage, at)[0])
+        return whole if number < 0 else (whole[number],)
+    low, high = within
+    index, inside = range_index(linkage, low)
+    room, allowed = 2 * np.pi, "up to a turn"
+    if not full_rotation(linkage):
+        room = whole[int(index)][1] - float(inside) if index >= 0 else 0.0
+        allowed = " or ".join(f"{a:.6g} to {b:.6g} deg" for a, b in np.degrees(whole))
+    if not 0 < high - low <= room + 1e-9:
+        given = f"{np.degrees(low):.6g} to {np.degrees(high):.6g}"
+        raise ProblemError(f"theta2 from {given} deg: allowed is {allowed}, the lesser first")
+    return ((low, high),)
+
+
+def sweep(linkage: FourBar, ranges: tuple[tuple[float, float], ...], step: float) -> Motion:
+    """The linkage at so many driver angles that no joint moves farther than `step` from one to the next.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        One linkage, in mm.
+    ranges : tuple of pair of float, rad
+    step : float, mm
+    """
+    # Closer towards the ends, where at a dead position the links run away from their driver.
+    share = (1 - np.cos(np.linspace(0, np.pi, _SAMPLES))) / 2
+    theta2 = np.concatenate([_fine(linkage, low + (high - low) * share, step) for low, high in ranges])
+    return Motion(theta2, places(linkage, theta2))
+
+
+def places(linkage: FourBar, theta2: FloatArray) -> dict[str, FloatArray]:
+    """Origin (mm) and angle (rad) of each link's plate, and of each pin, shape (n, 3)."""
+    state = solve_position(linkage, theta2)
+    o2, o4 = (np.broadcast_to(pivot, state.a.shape) for pivot in (linkage.o2, linkage.o4))
+    still = np.zeros_like(theta2)
+    placed = {
+        "driver": (o2, state.theta2), "coupler": (state.a, state.theta3), "output": (o4, state.theta4),
+        "O2": (o2, still), "A": (state.a, still), "B": (state.b, still), "O4": (o4, still),
+    }  # fmt: skip
+    return {name: np.column_stack([*origin.T, angle]) for name, (origin, angle) in placed.items()}
+
+
+def placed(points: FloatArray, place: FloatArray) -> FloatArray:
+    """Points (m, 2) of a plate where the plate is, shape (..., m, 2), for places (..., 3)."""
+    cos, sin = np.cos(place[..., 2])[..., None], np.sin(place[..., 2])[..., None]
+    x, y = points[:, 0], points[:, 1]
+    moved = np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
+    result: FloatArray = moved + place[..., None, :2]
+    return result
+
+
+def stack(plates: Mapping[str, Plate], linkage: FourBar, motion: Motion, sizes: PlateSizes) -> Stack:
+    """The least number of layers on which nothing meets.
+
+    Parameters
+    ----------
+    plates : mapping of str to Plate
+        Of the three links.
+    linkage : FourBar
+        In mm.
+    motion : Motion
+        Swept in steps of at most the clearance, so that nothing can pass unseen between two of them.
+    sizes : PlateSizes
+
+    Returns
+    -------
+    Stack
+        With two bases, joined by posts outside the reach of the links, where no order on one base is free:
+        the second one carries O4 from the other side, so that its pin passes no layer.
+    """
+
+    @cache
+    def cores(name: str) -> GeometryArray:
+        return _cores(plates, motion, name)
+
+    @cache
+    def gap(one: str, other: str) -> tuple[float, float]:
+        """Least gap between two parts over the motion, and the driver angle there."""
+        gaps = shapely.distance(cores(one), cores(other)) - sizes.width
+        worst = int(np.argmin(gaps))
+        return float(gaps[worst]), float(motion.theta2[worst])
+
+    met: dict[str, None] = {}
+    for layers in _orders():
+        pins = tuple(_pin(name, layers) for name in JOINTS)
+        pair = next((pair for pair in _passing(layers, pins) if gap(*pair)[0] < sizes.gap), None)
+        if pair is None:
+            return Stack(layers, pins, met=tuple(met))
+        met[_meeting(*pair, *gap(*pair))] = None
+    layers = {"driver": 1, "coupler": 2, "output": 3}
+    posts = _posts(plates, linkage, motion, sizes)
+    pins = (*(_pin(name, layers) for name in ("O2", "A", "B")), Pin("O4", 3, 4))
+    pins += tuple(Pin(f"post {i}", 0, 4) for i in range(1, len(posts) + 1))
+    return Stack(layers, pins, posts, tuple(met))
+
+
+def _orders() -> list[dict[str, int]]:
+    """The ways to lay the links in layers: fewest layers first, fewest spacers, the driver lowest."""
+    orders = [
+        dict(zip(LINKS, levels, strict=True))
+        for levels in product((1, 2, 3), repeat=3)
+        if levels[1] not in (levels[0], levels[2]) and set(levels) == set(range(1, max(levels) + 1))
+    ]
+
+    def cost(layers: dict[str, int]) -> tuple[int, int, int]:
+        spacers = sum(len(_pin(name, layers).passed) for name in JOINTS)
+        return max(layers.values()), spacers, layers["driver"]
+
+    return sorted(orders, key=cost)
+
+
+def _pin(name: str, layers: Mapping[str, int]) -> Pin:
+    low, high = sorted(layers.get(part, 0) for part in JOINTS[name])
+    return Pin(name, low, high)
+
+
+def _passing(layers: Mapping[str, int], pins: tuple[Pin, ...]) -> Iterator[tuple[str, str]]:
+    """Pairs of parts that are on the same layer somewhere."""
+    for layer in range(1, max(layers.values()) + 1):
+        there = [name for name in LINKS if layers[name] == layer]
+        there += [pin.name for pin in pins if layer in pin.passed]
+        yield from combinations(there, 2)
+
+
+def _cores(plates: Mapping[str, Plate], motion: Motion, name: str) -> GeometryArray:
+    """What a part surrounds by half a width, at every angle of the sweep: geometries, shape (n,)."""
+    corners = plates[name].corners if name in plates else np.zeros((1, 2))
+    at = placed(corners, motion.places[name])
+    if len(corners) == 1:
+        return np.asarray(shapely.points(at[:, 0]))
+    return np.asarray(shapely.linestrings(at) if len(corners) == 2 else shapely.polygons(at))
+
+
+def _meeting(one: str, other: str, gap: float, theta2: float) -> str:
+    one, other = (name if name in LINKS else f"pin {name}" for name in (one, other))
+    how = "meet" if gap <= 0 else f"come within {gap:.2g} mm"
+    return f"{one} and {other} {how} at theta2 = {round(np.degrees(theta2), 1) % 360:.1f} deg"
+
+
+def _posts(
+    plates: Mapping[str, Plate], linkage: FourBar, motion: Motion, sizes: PlateSizes
+) -> tuple[float, float]:
+    """Positions on the ground line, from O2 towards O4, that no link reaches."""
+    along = np.array([np.cos(linkage.theta1), np.sin(linkage.theta1)])
+    reached = np.concatenate(
+        [((placed(plates[name].corners, motion.places[name]) - linkage.o2) @ along).ravel() for name in LINKS]
+    )
+    apart = sizes.width + 2 * sizes.gap
+    return float(reached.min() - apart), float(reached.max() + apart)
+
+
+def _fine(linkage: FourBar, theta2: FloatArray, step: float) -> FloatArray:
+    """Driver angles with others between them, until A, B and P make no longer step."""
+    while True:
+        state = solve_position(linkage, theta2)
+        joints = np.stack([state.a, state.b, state.p], axis=1)
+        moved = np.diff(joints, axis=0)  # NaN, and so never too long, beside a place where the loop is open
+        too_far = np.hypot(moved[..., 0], moved[..., 1]).max(axis=1) > step
+        long = np.flatnonzero(too_far & (np.diff(theta2) > _SHORTEST_STEP))
+        if not long.size:
+            return theta2[np.isfinite(joints).all(axis=(1, 2))]
+        theta2 = np.insert(theta2, long + 1, (theta2[long] + theta2[long + 1]) / 2)

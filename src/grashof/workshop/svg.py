@@ -1,0 +1,78 @@
+"""The drawing as SVG."""
+
+from __future__ import annotations
+
+from xml.etree import ElementTree as ET
+
+import numpy as np
+
+from grashof.problems.checks import FloatArray
+from grashof.workshop.sheet import CUT, ENGRAVE, NOTES, PINS, Circle, Outline, Sheet, Text
+
+_HAIRLINE, _DRAWN = 0.1, 0.4  # mm
+_COLOURS = {CUT: "#ff0000", ENGRAVE: "#0000ff", PINS: "#c000c0", NOTES: "#606060"}
+_LEVELS = ("#008040", "#0080a0")
+
+
+def svg(drawing: Sheet) -> str:
+    """A drawing as the text of an SVG file: in mm, outlines as paths with true arcs, holes as circles.
+
+    Every layer is a group with its name as id; red is cut and blue engraved.
+
+    Parameters
+    ----------
+    drawing : Sheet
+    """
+    size = (_number(drawing.width), _number(drawing.height))
+    root = ET.Element("svg", xmlns="http://www.w3.org/2000/svg", version="1.1")
+    root.attrib |= {"width": f"{size[0]}mm", "height": f"{size[1]}mm", "viewBox": f"0 0 {size[0]} {size[1]}"}
+    if drawing.title:
+        ET.SubElement(root, "title").text = drawing.title
+    for index, name in enumerate(drawing.layers):
+        colour = _COLOURS.get(name, _LEVELS[index % 2])
+        group = ET.SubElement(root, "g", id=name, fill="none", stroke=colour)
+        group.set("stroke-width", _number(_HAIRLINE if name in (CUT, ENGRAVE) else _DRAWN))
+        for shape in drawing.shapes:
+            if shape.layer == name:
+                _add(group, shape, drawing.height, colour)
+    ET.indent(root, "")
+    return ET.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
+
+
+def _add(group: ET.Element, shape: Outline | Circle | Text, top: float, colour: str) -> None:
+    """A shape with y turned down, as SVG has it."""
+    if isinstance(shape, Outline):
+        ET.SubElement(group, "path", d=_path(shape.vertices, top))
+        return
+    x, y = _number(shape.x), _number(top - shape.y)
+    if isinstance(shape, Circle):
+        ET.SubElement(group, "circle", cx=x, cy=y, r=_number(shape.radius))
+        return
+    text = ET.SubElement(group, "text", x=x, y=y, fill=colour, stroke="none")
+    text.text = shape.words
+    # Capitals, which DXF's height is of, are 0.7 of the font's size.
+    text.attrib |= {"font-family": "sans-serif", "font-size": _number(shape.height / 0.7)}
+    if shape.centred:
+        text.attrib |= {"text-anchor": "middle", "dominant-baseline": "central"}
+    if shape.angle:
+        text.set("transform", f"rotate({_number(-np.degrees(shape.angle))} {x} {y})")
+
+
+def _path(vertices: FloatArray, top: float) -> str:
+    """Path data of a closed outline."""
+    points = [f"{_number(x)} {_number(top - y)}" for x, y, _ in vertices]
+    parts = [f"M {points[0]}"]
+    ends = np.roll(vertices, -1, axis=0)
+    for start, end, point in zip(vertices, ends, [*points[1:], points[0]], strict=True):
+        bulge = start[2]
+        if bulge:
+            # Counter-clockwise in the drawing; no arc here is longer than half a circle.
+            radius = np.hypot(*(end - start)[:2]) / (2 * np.sin(2 * np.arctan(bulge)))
+            parts.append(f"A {_number(radius)} {_number(radius)} 0 0 0 {point}")
+        else:
+            parts.append(f"L {point}")
+    return " ".join([*parts, "Z"])
+
+
+def _number(value: float) -> str:
+    return f"{float(value) + 0.0:.15g}"

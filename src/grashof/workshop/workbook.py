@@ -1,0 +1,278 @@
+"""The candidate list as an Excel workbook, with a sheet for every design chosen."""
+
+from __future__ import annotations
+
+import csv
+import re
+import zipfile
+from collections.abc import Sequence
+from contextlib import suppress
+from datetime import datetime
+from io import BytesIO
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from grashof.analysis import (
+    driver_ranges,
+    full_rotation,
+    grashof_class,
+    solve_position,
+    transmission_angle,
+    worst_transmission_cycle,
+)
+from grashof.analysis.transmission import quality
+from grashof.problems import LinkageSpec, ProblemError
+from grashof.problems.linkage_file import ListedDesign
+from grashof.workshop.sheet import printable
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from openpyxl.cell import Cell, MergedCell
+    from openpyxl.worksheet.worksheet import Worksheet
+
+_EPOCH = datetime(2000, 1, 1)  # a spreadsheet's times have no zone
+_MODIFIED = re.compile(rb"(<dcterms:modified[^>]*>)[^<]*")
+_TRANSMISSION_COLUMN = 13
+
+
+def workbook(chosen: Sequence[LinkageSpec | ListedDesign], candidates: pd.DataFrame | None = None) -> bytes:
+    """An Excel workbook: the candidate list, if there is one, then a sheet for each linkage.
+
+    Numbers have 16 digits there; Excel calculates with 15.
+
+    Parameters
+    ----------
+    chosen : sequence of LinkageSpec or ListedDesign
+    candidates : DataFrame, optional
+        The list, as candidates.csv has it.
+
+    Returns
+    -------
+    bytes
+        The .xlsx file; the same for the same input, without any time.
+
+    Raises
+    ------
+    ProblemError
+        openpyxl is not installed.
+    """
+    book = _openpyxl().Workbook()
+    book.remove(book.active)
+    book.properties.creator, book.properties.created = "Grashof", _EPOCH
+    if candidates is not None:
+        unit = _spec(chosen[0]).length_unit if chosen else ""
+        _list_sheet(book.create_sheet("candidates"), candidates, unit)
+    for one in chosen:
+        name = f"design {one.rank}" if isinstance(one, ListedDesign) else "linkage"
+        _linkage_sheet(book.create_sheet(name), one)
+    file = BytesIO()
+    book.save(file)
+    return _without_times(file.getvalue())
+
+
+def listed_candidates(path: Path, designs: Sequence[ListedDesign]) -> pd.DataFrame:
+    """The candidates.csv beside a candidates.json, checked to be of the same run.
+
+    Parameters
+    ----------
+    path : Path
+        Of the candidates.json.
+    designs : sequence of ListedDesign
+        Out of it.
+
+    Raises
+    ------
+    ProblemError
+        It is missing, is no table, or lists other designs.
+    """
+    import pandas as pd
+
+    table = path.with_name("candidates.csv")
+    try:
+        with table.open(encoding="utf-8", newline="") as file:
+            rows = [{name: _value(text) for name, text in row.items()} for row in csv.DictReader(file)]
+        ids = {row["rank"]: row["id"] for row in rows}
+    except OSError as error:
+        raise ProblemError(f"{table}: cannot be read: {error.strerror}; --xlsx lists it") from None
+    except (ValueError, KeyError, TypeError, csv.Error):
+        raise ProblemError(f"{table}: is no table of designs; allowed is that of grashof solve") from None
+    for design in designs:
+        if ids.get(design.rank) != design.id:
+            raise ProblemError(
+                f"{table}: does not list design {design.rank} of {path.name}, {design.id}; solve again"
+            )
+    return pd.DataFrame(rows, dtype=object)
+
+
+def _value(text: str) -> bool | int | float | str | None:
+    """What a cell of a CSV file says; pandas would lose the last digit of some numbers."""
+    if text in ("", "True", "False"):
+        return None if not text else text == "True"
+    for kind in (int, float):
+        with suppress(ValueError):
+            return kind(text)
+    return text
+
+
+def _list_sheet(page: Worksheet, frame: pd.DataFrame, unit: str) -> None:
+    from openpyxl.comments import Comment
+    from openpyxl.utils import get_column_letter
+
+    for column, name in enumerate(frame.columns, start=1):
+        _bold(_put(page, 1, column, name))
+        for row, value in enumerate(frame[name].tolist(), start=2):
+            _put(page, row, column, value)
+        page.column_dimensions[get_column_letter(column)].width = max(len(name), 8) + 3
+    note = f"Lengths in {unit or 'the unit of the problem'}; angles in degrees, where the name ends in _deg; "
+    note += "omega4_max in rad/s, speeds and accelerations of P in lengths over s and s2; N m and N"
+    page["A1"].comment = Comment(note, "Grashof", height=120, width=360)
+    page.freeze_panes = "C2"
+
+
+def _linkage_sheet(page: Worksheet, one: LinkageSpec | ListedDesign) -> None:
+    spec = _spec(one)
+    facts = _facts(spec)
+    for row, (name, value, unit) in enumerate(facts, start=1):
+        _bold(_put(page, row, 1, name))
+        _put(page, row, 2, value)
+        _put(page, row, 3, unit)
+    if isinstance(one, ListedDesign):
+        _table(page, len(facts) + 2, 1, _targets(one))
+    transmission = _transmission(spec)
+    _table(page, 1, _TRANSMISSION_COLUMN, transmission)
+    _chart(page, len(transmission))
+    for letter, width in (("A", 32), ("B", 24)):
+        page.column_dimensions[letter].width = width
+
+
+def _facts(spec: LinkageSpec) -> list[tuple[str, Any, str]]:
+    """What there is to say of a linkage: name, value, unit."""
+    linkage, unit = spec.linkage, spec.length_unit
+    points = {"o2": linkage.o2, "o4": linkage.o4, "p": linkage.coupler_point}
+    names = {"o2": ("o2_x", "o2_y"), "o4": ("o4_x", "o4_y"), "p": ("p_u", "p_v")}
+    return [
+        ("title", spec.title or spec.name, ""),
+        ("source", spec.source, ""),
+        *((f"r{i}", float(length), unit) for i, length in enumerate(linkage.lengths, start=1)),
+        *(
+            (name, float(part), unit)
+            for key, point in points.items()
+            for name, part in zip(names[key], point, strict=True)
+        ),
+        ("assembly", int(linkage.assembly), ""),
+        ("body_angle_deg", float(np.degrees(linkage.body_angle)), "deg"),
+        ("grashof_class", str(grashof_class(linkage)), ""),
+        ("full_rotation", bool(full_rotation(linkage)), ""),
+        ("transmission_min_cycle_deg", float(np.degrees(worst_transmission_cycle(linkage))), "deg"),
+    ]
+
+
+def _targets(design: ListedDesign) -> list[Sequence[Any]]:
+    """Where the linkage stands at each target, under a heading."""
+    state = solve_position(design.spec.linkage, design.theta2, design.assembly)
+    heading = ("target", "theta2_deg", "assembly", "a_x", "a_y", "b_x", "b_y", "p_x", "p_y", "position_error")
+    rows: list[Sequence[Any]] = [heading + (("angle_error_deg",) if design.angle_error else ())]
+    numbers = np.column_stack([state.a, state.b, state.p]).tolist()
+    for i, (angle, joints) in enumerate(zip(np.degrees(design.theta2).tolist(), numbers, strict=True)):
+        row = [i + 1, angle, design.assembly[i], *joints, design.position_error[i]]
+        if design.angle_error:
+            turned = design.angle_error[i]
+            row.append(None if turned is None else float(np.degrees(turned)))
+        rows.append(row)
+    return rows
+
+
+def _transmission(spec: LinkageSpec) -> list[Sequence[Any]]:
+    """Transmission angle at the ends of each driver range and at every whole degree, under a heading."""
+    rows: list[Sequence[Any]] = [("theta2_deg", "mu_deg", "quality_deg")]
+    for low, high in np.degrees(driver_ranges(spec.linkage)).tolist():
+        if np.isfinite(low):
+            theta2 = np.unique([low, *np.arange(np.ceil(low), high), high])
+            mu = transmission_angle(spec.linkage, np.radians(theta2))
+            apart = [(None,) * 3] if len(rows) > 1 else []  # a gap in the chart, too
+            rows += apart
+            rows += np.column_stack([theta2, np.degrees(mu), np.degrees(quality(mu))]).tolist()
+    return rows
+
+
+def _chart(page: Worksheet, rows: int) -> None:
+    """The transmission angle over the driver angle, beside its table."""
+    from openpyxl.chart import Reference, ScatterChart, Series
+
+    chart = ScatterChart(scatterStyle="lineMarker")
+    chart.title = "Transmission angle over driver angle"
+    chart.x_axis.title, chart.y_axis.title = "theta2, deg", "mu, deg"
+    chart.x_axis.delete = chart.y_axis.delete = False  # hidden by default
+    chart.x_axis.number_format = chart.y_axis.number_format = "0"
+    chart.legend, chart.width, chart.height = None, 18, 10
+    theta2, mu = (
+        Reference(page, min_col=column, min_row=2, max_row=rows)
+        for column in (_TRANSMISSION_COLUMN, _TRANSMISSION_COLUMN + 1)
+    )
+    line = Series(mu, theta2)
+    line.marker.symbol, line.smooth = "none", False
+    chart.series.append(line)
+    page.add_chart(chart, "Q2")
+
+
+def _table(page: Worksheet, row: int, column: int, lines: Sequence[Sequence[Any]]) -> None:
+    """Lines of cells from a corner on, the first one a heading."""
+    from openpyxl.utils import get_column_letter
+
+    for down, line in enumerate(lines):
+        for right, value in enumerate(line):
+            cell = _put(page, row + down, column + right, value)
+            if not down:
+                _bold(cell)
+                width = max(12, len(str(value)) + 3)
+                letter = get_column_letter(column + right)
+                page.column_dimensions[letter].width = max(width, page.column_dimensions[letter].width)
+
+
+def _put(page: Worksheet, row: int, column: int, value: Any) -> Cell | MergedCell:
+    """Write a cell: numbers as numbers, text that no spreadsheet takes for a formula, and no NaN."""
+    cell = page.cell(row, column)
+    if isinstance(value, str):
+        cell.value = printable(value)
+        cell.data_type = "s"
+        cell.quotePrefix = value[:1] in "=+-@"
+    elif isinstance(value, float) and not np.isfinite(value):
+        cell.value = None if np.isnan(value) else str(value)
+    else:
+        cell.value = value
+    return cell
+
+
+def _bold(cell: Cell | MergedCell) -> None:
+    from openpyxl.styles import Font
+
+    cell.font = Font(bold=True)
+
+
+def _spec(one: LinkageSpec | ListedDesign) -> LinkageSpec:
+    return one.spec if isinstance(one, ListedDesign) else one
+
+
+def _openpyxl() -> ModuleType:
+    try:
+        import openpyxl
+    except ModuleNotFoundError:
+        raise ProblemError("--xlsx needs openpyxl: pip install 'grashof[export]'") from None
+    return openpyxl
+
+
+def _without_times(file: bytes) -> bytes:
+    """The workbook with the time of its writing, which openpyxl puts in everywhere, taken out."""
+    made = BytesIO()
+    with zipfile.ZipFile(BytesIO(file)) as old, zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as new:
+        for name in old.namelist():
+            content = old.read(name)
+            if name == "docProps/core.xml":
+                content = _MODIFIED.sub(rb"\g<1>" + _EPOCH.isoformat().encode() + b"Z", content)
+            entry = zipfile.ZipInfo(name, _EPOCH.timetuple()[:6])
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            new.writestr(entry, content)
+    return made.getvalue()
