@@ -10,7 +10,7 @@ from grashof.problems.errors import (
     ProblemError,
     SolverError,
 )
-from grashof.problems.files import catalogue, load, problem_text
+from grashof.problems.files import catalogue, load, load_with_text, problem_text
 from grashof.problems.linkage import FourBar
 from grashof.problems.linkage_file import (
     LinkageDynamics,
@@ -54,5 +54,6 @@ __all__ = [
     "load",
     "load_linkage",
     "load_linkage_spec",
+    "load_with_text",
     "problem_text",
 ]

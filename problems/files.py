@@ -34,14 +34,28 @@ def load(problem: str | os.PathLike[str]) -> Problem:
     >>> len(luggage.task), luggage.requirements.link_length
     (4, (0.3, 8.0))
     """
+    return load_with_text(problem)[0]
+
+
+def load_with_text(problem: str | os.PathLike[str]) -> tuple[Problem, str]:
+    """The same as `load`, with the text of the file, which is read once.
+
+    Examples
+    --------
+    >>> luggage, text = load_with_text("luggage")
+    >>> text == problem_text("luggage")
+    True
+    """
     if isinstance(problem, str) and not _looks_like_path(problem):
         if problem in catalogue():
-            return _parsed(problem_text(problem), f"{problem}.toml", problem)
+            text = problem_text(problem)
+            return _parsed(text, f"{problem}.toml", problem), text
         # Path.exists raises for names that no file can have; this says False.
         if not problem or not os.path.exists(problem):  # noqa: PTH110
             raise ProblemError(f"{problem!r} is no problem of the catalogue and no file; {_hint(problem)}")
     path = Path(problem)
-    return _parsed(_text(path), str(path), path.stem)
+    text = _text(path)
+    return _parsed(text, str(path), path.stem), text
 
 
 def catalogue() -> tuple[str, ...]:

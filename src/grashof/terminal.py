@@ -132,12 +132,17 @@ def heading(result: Result, verified: int) -> str:
     unit = result.problem.length_unit
     lengths = f" Lengths in {unit}." if unit else ""
     shown = f" The best {_ROWS}:" if len(result) > _ROWS else ""
-    goals = [*([] if exact else ["error"]), "mu"]
-    goals, last = (goals, "size") if result.problem.dynamics is None else ([*goals, "size"], "torque")
     return (
         f"{found}, {error}.{lengths}\n"
-        f"mu: worst transmission angle; *: Pareto-optimal in {', '.join(goals)} and {last}.{shown}"
+        f"mu: worst transmission angle; *: Pareto-optimal in {goals(result.problem)}.{shown}"
     )
+
+
+def goals(problem: Problem) -> str:
+    """What the Pareto mark is about, in words."""
+    names = [] if problem.requirements.is_exact(problem.task) else ["error"]
+    names += ["mu", "size"] if problem.dynamics is None else ["mu", "size", "torque"]
+    return f"{', '.join(names[:-1])} and {names[-1]}"
 
 
 def _classes(result: Result) -> set[str]:
