@@ -8,7 +8,14 @@ import numpy as np
 import pytest
 
 # By name: in an editable install the packages lie in folders of their own, not below `grashof`.
-PACKAGES = ("grashof", "grashof.problems", "grashof.analysis", "grashof.synth", "grashof.workshop")
+PACKAGES = (
+    "grashof",
+    "grashof.problems",
+    "grashof.analysis",
+    "grashof.synth",
+    "grashof.page",
+    "grashof.workshop",
+)
 MODULES = sorted(
     f"{package}.{module.name}"
     for package in PACKAGES

@@ -55,7 +55,7 @@ def modules_after(statement: str) -> set[str]:
 
 def test_importing_grashof_loads_no_solver_and_no_plots() -> None:
     loaded = modules_after("import grashof")
-    assert not loaded & {"casadi", "matplotlib", "pandas", "pydantic", "rich", "shapely"}
+    assert not loaded & {"casadi", "jinja2", "matplotlib", "pandas", "pydantic", "rich", "shapely"}
 
 
 def test_a_worker_process_loads_only_what_it_solves_with() -> None:

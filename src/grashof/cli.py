@@ -23,6 +23,7 @@ from grashof.problems import (
     catalogue,
     load,
     load_linkage_spec,
+    load_with_text,
     problem_text,
 )
 from grashof.problems.checks import counted
@@ -102,13 +103,14 @@ def solve(
     ] = None,
     drawings: Annotated[int, typer.Option(min=0, help="How many of them to draw.")] = 8,
 ) -> None:
-    """Find designs for PROBLEM; write the ranked list, the record of the run, and drawings.
+    """Find designs for PROBLEM; write the ranked list, a page to look at, the record, drawings.
 
     Exit code 0: at least one verified design; 1: none; 2: bad input; 3: the surroundings failed;
     130: interrupted.
     """
     with _errors_told():
-        raise typer.Exit(_solve(load(problem), out, starts, seed, workers, time_limit, top, drawings))
+        loaded, text = load_with_text(problem)
+        raise typer.Exit(_solve(loaded, text, out, starts, seed, workers, time_limit, top, drawings))
 
 
 @app.command()
@@ -151,7 +153,7 @@ def analyse(
         typer.Option(help="Of the driver; by default the file's, or 1 rad/s.", show_default=False),
     ] = None,
 ) -> None:
-    """Say how LINKAGE moves and what it takes; write tables, a summary and plots.
+    """Say how LINKAGE moves and what it takes; write tables, a summary, a page to look at and plots.
 
     Exit code 0: done; 2: bad input; 3: the surroundings failed.
     """
@@ -240,6 +242,7 @@ def main() -> None:
 
 def _solve(
     problem: Problem,
+    text: str,
     out: Path | None,
     starts: int | None,
     seed: int | None,
@@ -248,7 +251,7 @@ def _solve(
     top: int | None,
     drawings: int,
 ) -> Exit:
-    from grashof.folder import check_writable
+    from grashof.folder import PAGE, check_writable
     from grashof.output import write_run
     from grashof.synth import synthesize
     from grashof.terminal import print_table, search_progress
@@ -279,19 +282,21 @@ def _solve(
             )
         result = replace(found, candidates=found.candidates[:top])
         if result.candidates or result.complete:  # an interrupted search with nothing replaces nothing
-            files = write_run(folder, result, settings, drawings, stop=interrupted)
+            files = write_run(folder, result, settings, drawings, stop=interrupted, problem_text=text)
             _report(result.note, files, folder)
         else:
             say(result.note, err=True)
         if result.candidates:
             print_table(result, len(found))
+        if result.candidates or result.complete:
+            _point_to(folder / PAGE)
     if interrupted():
         return Exit.INTERRUPTED
     return Exit.OK if result.candidates else Exit.NO_DESIGN
 
 
 def _analyse(linkage: str, out: Path | None, speed_rpm: float | None) -> None:
-    from grashof.folder import ANALYSIS_RECORD, check_writable
+    from grashof.folder import ANALYSIS_PAGE, ANALYSIS_RECORD, check_writable
     from grashof.linkage_output import print_report, write_report
     from grashof.linkage_report import report_on
 
@@ -304,6 +309,7 @@ def _analyse(linkage: str, out: Path | None, speed_rpm: float | None) -> None:
         say(note, err=True)
     _report("", files, folder)
     print_report(report)
+    _point_to(folder / ANALYSIS_PAGE)
 
 
 def _animate(linkage: str, out: Path | None, seconds: float, fps: float) -> None:
@@ -321,9 +327,13 @@ def _report(note: str, files: list[str], folder: Path) -> None:
     if note:
         say(note, err=True)
     drawn = sum(name.endswith(".png") for name in files)
-    named = [name for name in files if name.endswith((".csv", ".json"))]
+    named = [name for name in files if name.endswith((".csv", ".json", ".html"))]
     pictures = f" and {counted(drawn, 'drawing')} (PNG, SVG)" if drawn else ""
     say(f"{folder}: {', '.join(named)}{pictures}", err=True)
+
+
+def _point_to(page: Path) -> None:
+    say(f"Open {page} in a browser to look at it.", err=True)
 
 
 def _later(given: list[str]) -> str:

@@ -13,13 +13,15 @@ from grashof.problems import ProblemError
 
 RECORD = "run.json"
 ANALYSIS_RECORD = "analysis.json"
+PAGE = "report.html"
+ANALYSIS_PAGE = "analysis.html"
 # Every name that a run writes, by its record; a drawing's carries its rank.
 _NAMES = {
     RECORD: re.compile(
-        r"candidates\.(csv|json)|nearest\.csv|run\.json|design-(?P<rank>[0-9]{2,})\.(png|svg)"
+        r"candidates\.(csv|json)|nearest\.csv|run\.json|report\.html|design-(?P<rank>[0-9]{2,})\.(png|svg)"
     ),
     ANALYSIS_RECORD: re.compile(
-        r"(kinematics|dynamics|extremes|summary)\.csv|(summary|analysis)\.json"
+        r"(kinematics|dynamics|extremes|summary)\.csv|(summary|analysis)\.json|analysis\.html"
         r"|(path|angles|velocities|accelerations|torque|forces)\.(png|svg)(?P<rank>)"
     ),
 }

@@ -14,18 +14,19 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from grashof.folder import ANALYSIS_RECORD, replacing_own_files
-from grashof.linkage_report import Fact, LinkageReport
-from grashof.output import linkage_json, write_csv, write_json
+from grashof.folder import ANALYSIS_PAGE, ANALYSIS_RECORD, replacing_own_files
+from grashof.linkage_report import LinkageReport
+from grashof.output import linkage_json, write_csv, write_json, write_page
 from grashof.streams import say
 from grashof.terminal import console
+from grashof.wording import number_text, value_text
 
-_PACKAGES = ("grashof", "numpy", "scipy", "pandas", "matplotlib")
+_PACKAGES = ("grashof", "numpy", "scipy", "pandas", "matplotlib", "jinja2")
 _UNBOUNDED = 1000
 
 
 def write_report(folder: Path, report: LinkageReport) -> list[str]:
-    """Write tables, summary, plots and the record of them; the names of the files, sorted.
+    """Write tables, summary, the page, plots and the record of them; the names of the files, sorted.
 
     Raises
     ------
@@ -34,18 +35,22 @@ def write_report(folder: Path, report: LinkageReport) -> list[str]:
     """
     from grashof.draw import save
     from grashof.linkage_plots import plots  # matplotlib takes half a second to import
+    from grashof.page import analysis_page
 
+    about = {
+        "versions": {"python": platform.python_version(), **{name: version(name) for name in _PACKAGES}},
+        "settings": {"linkage": report.spec.name, "speed_rpm": report.speed_rpm},
+    }
     with replacing_own_files(folder, record=ANALYSIS_RECORD) as fresh:
         for name, table in report.tables.items():
             write_csv(fresh / f"{name}.csv", table)
         write_csv(fresh / "summary.csv", _summary_frame(report))
         write_json(fresh / "summary.json", _summary(report))
+        write_page(fresh / ANALYSIS_PAGE, analysis_page(report, about))
         for name, figure in plots(report):
             save(figure, [fresh / f"{name}.png", fresh / f"{name}.svg"])
         files = sorted({*(path.name for path in fresh.iterdir()), ANALYSIS_RECORD})
-        versions = {"python": platform.python_version(), **{name: version(name) for name in _PACKAGES}}
-        settings = {"linkage": report.spec.name, "speed_rpm": report.speed_rpm}
-        write_json(fresh / ANALYSIS_RECORD, {"versions": versions, "settings": settings, "files": files})
+        write_json(fresh / ANALYSIS_RECORD, {**about, "files": files})
     return files
 
 
@@ -83,7 +88,7 @@ def _facts_table(report: LinkageReport) -> Table:
     table.add_column("value", justify="right", no_wrap=True)
     table.add_column("unit", no_wrap=True)
     for fact in report.facts:
-        table.add_row(fact.label, _shown(fact), fact.unit)
+        table.add_row(fact.label, value_text(fact.value), fact.unit)
     return table
 
 
@@ -103,22 +108,9 @@ def _extremes_table(report: LinkageReport, digits: int) -> Table:
         table.add_column(name, justify="left" if left else "right", no_wrap=True)
     columns = ("min", "theta2_min_deg", "max", "theta2_max_deg")
     for row in frame.to_dict("records"):
-        values = (_number(row[name], digits) for name in columns)
+        values = (number_text(row[name], digits) for name in columns)
         table.add_row(*([str(row["range"])] if many else []), str(row["what"]), str(row["unit"]), *values)
     return table
-
-
-def _shown(fact: Fact) -> str:
-    if isinstance(fact.value, bool):
-        return "yes" if fact.value else "no"
-    return f"{fact.value:.6g}" if isinstance(fact.value, float) else str(fact.value)
-
-
-def _number(value: Any, digits: int) -> str:
-    number = float(value)
-    if np.isinf(number):
-        return "no limit" if number > 0 else "-no limit"
-    return "-" if np.isnan(number) else f"{number + 0.0:.{digits}g}"
 
 
 def _summary_frame(report: LinkageReport) -> pd.DataFrame:

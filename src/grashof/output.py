@@ -1,4 +1,4 @@
-"""What a run writes: the candidates as CSV and JSON, the closest miss, the record, the drawings."""
+"""What a run writes: the candidates as CSV and JSON, the closest miss, the page, the record, the drawings."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from grashof.folder import RECORD, replacing_own_files
+from grashof.folder import PAGE, RECORD, replacing_own_files
 from grashof.problems import FourBar, Problem
 from grashof.problems.checks import FloatArray
 from grashof.synth import Candidate, Result
@@ -20,7 +20,7 @@ from grashof.synth.table import DYNAMICS, MANUFACTURING, MOTION, to_frame
 if TYPE_CHECKING:
     import pandas as pd
 
-_PACKAGES = ("grashof", "casadi", "numpy", "scipy", "pandas", "matplotlib")
+_PACKAGES = ("grashof", "casadi", "numpy", "scipy", "pandas", "matplotlib", "jinja2")
 
 
 def write_run(
@@ -29,6 +29,7 @@ def write_run(
     settings: dict[str, Any],
     drawings: int,
     stop: Callable[[], bool] = lambda: False,
+    problem_text: str = "",
 ) -> list[str]:
     """Write all files of a run, the lists first: a drawing that fails does not cost them.
 
@@ -42,6 +43,8 @@ def write_run(
         How many of the best designs to draw.
     stop : callable
         Asked before every drawing; the others are left out when it says True.
+    problem_text : str
+        The problem file, for the page.
 
     Returns
     -------
@@ -53,14 +56,18 @@ def write_run(
     OSError
         The disk is full or the folder is lost; it then holds what it held before, or the lists alone.
     """
+    from grashof.page import search_page  # only a run needs the templates
+
+    frame = result.to_frame()
     with replacing_own_files(folder) as fresh:
         if result.candidates:
-            frame = result.to_frame()
             write_csv(fresh / "candidates.csv", frame)
             write_json(fresh / "candidates.json", _designs(result, frame))
         if result.nearest:
             misses = ["; ".join(str(d) for d in candidate.verdict.defects) for candidate in result.nearest]
-            write_csv(fresh / "nearest.csv", to_frame(result.problem, result.nearest).assign(misses=misses))
+            frame = to_frame(result.problem, result.nearest).assign(misses=misses)
+            write_csv(fresh / "nearest.csv", frame)
+        write_page(fresh / PAGE, search_page(result, frame, _about(settings), problem_text))
         files = _write_record(fresh, result, settings)
     if drawings and result.candidates and not stop():
         with replacing_own_files(folder, keep=files) as fresh:
@@ -159,12 +166,17 @@ def linkage_json(linkage: FourBar) -> dict[str, Any]:
     }
 
 
+def _about(settings: dict[str, Any]) -> dict[str, Any]:
+    """What it takes to run the search again."""
+    versions = {"python": platform.python_version(), **{name: version(name) for name in _PACKAGES}}
+    return {"versions": versions, "settings": settings}
+
+
 def _record(result: Result, settings: dict[str, Any], files: list[str]) -> dict[str, Any]:
     guards = {name: result.counts.get(f"solver: {name}", 0) for name in _GUARDS}
     return {
         "problem": result.problem.name,
-        "versions": {"python": platform.python_version(), **{name: version(name) for name in _PACKAGES}},
-        "settings": settings,
+        **_about(settings),
         "complete": result.complete,
         "designs": len(result),
         "note": result.note,
@@ -188,3 +200,8 @@ def write_csv(path: Path, frame: pd.DataFrame) -> None:
 def write_json(path: Path, content: dict[str, Any]) -> None:
     """JSON that every reader knows: no NaN."""
     path.write_text(json.dumps(content, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def write_page(path: Path, page: str) -> None:
+    """HTML as it is, with the same line ends everywhere."""
+    path.write_text(page, encoding="utf-8", newline="\n")

@@ -1,0 +1,146 @@
+"""The page of an analysis: the moving linkage, every curve of its tables, extremes and summary."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from grashof.linkage_report import LinkageReport
+from grashof.output import linkage_json
+from grashof.page.render import compact, render
+from grashof.wording import number_text, value_text
+
+_SCRIPTS = ("linkage.js", "svg.js", "stage.js", "player.js", "curves.js", "analysis.js")
+_POINTS = ("a", "b", "p")
+_JOINTS = {"f12": "O2", "f32": "A", "f43": "B", "f14": "O4"}
+_EXTREMES = (("min", "least"), ("theta2_min_deg", "at θ2"), ("max", "largest"), ("theta2_max_deg", "at θ2"))
+_REAL_TIME = 120.0  # rpm: what turns faster cannot be watched
+
+
+def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
+    """The page of an analysis as HTML.
+
+    Parameters
+    ----------
+    report : LinkageReport
+    record : mapping
+        "versions" and "settings" of the run.
+
+    Returns
+    -------
+    str
+        One file: it needs no other and no network.
+    """
+    spec = report.spec
+    tables = [table for name, table in report.tables.items() if name != "extremes"]
+    curves = [_by_range(table, len(report.ranges)) for table in tables]
+    data = {
+        "scene": {"unit": spec.length_unit},
+        "designs": [
+            {
+                "linkage": linkage_json(spec.linkage),
+                "low": low,
+                "high": high,
+                "turns": report.turns,
+                "direction": 1 if report.speed_rpm >= 0 else -1,
+            }
+            for low, high in report.ranges
+        ],
+        "theta2": [part["theta2_deg"].tolist() for part in curves[0]],
+        "panels": [
+            {
+                "title": title,
+                "unit": unit,
+                "series": [
+                    {"label": label, "values": [compact(part[key].tolist()) for part in curves[number]]}
+                    for key, label in names.items()
+                    for number, table in enumerate(tables)
+                    if key in table
+                ],
+            }
+            for title, unit, names in panels(report.unit)
+            if any(key in table for key in names for table in tables)
+        ],
+    }
+    lengths = [f"{float(length):.6g}" for length in spec.linkage.lengths]
+    return render(
+        "analysis.html",
+        _SCRIPTS,
+        data,
+        title=spec.title or spec.name,
+        spec=spec,
+        report=report,
+        lengths=lengths,
+        ranges=[f"{np.degrees(low):.6g} to {np.degrees(high):.6g} deg" for low, high in report.ranges],
+        facts=[(fact.label, value_text(fact.value), fact.unit) for fact in report.facts],
+        extremes=_extremes(report.tables["extremes"]),
+        extreme_columns=[label for _, label in _EXTREMES],
+        many="range" in report.tables["extremes"],
+        record=record,
+        real_time=abs(report.speed_rpm) if 0 < abs(report.speed_rpm) <= _REAL_TIME else None,
+    )
+
+
+def panels(unit: str) -> list[tuple[str, str, dict[str, str]]]:
+    """Title, unit and columns (with their labels) of every plot over the driver angle.
+
+    Examples
+    --------
+    >>> title, unit, names = panels("mm")[3]
+    >>> title, unit, names
+    ('speed of A, B, P', 'mm/s', {'a_speed': 'A', 'b_speed': 'B', 'p_speed': 'P'})
+    """
+    places = [
+        (f"place of {name.upper()}", unit, {f"{name}_x": "x", f"{name}_y": "y"}) for name in reversed(_POINTS)
+    ]
+    rates = [
+        (
+            f"{what} of {name.upper()}", f"{unit}/{per}", {f"{name}_{what}_{axis}": axis for axis in "xy"},
+        )
+        for name in reversed(_POINTS)
+        for what, per in (("velocity", "s"), ("acceleration", "s²"))
+    ]  # fmt: skip
+    forces = [
+        (f"force {name.upper()} in {place}", "N", {f"{name}_{axis}": axis for axis in "xy"})
+        for name, place in _JOINTS.items()
+    ]
+    sizes = {key: {f"{name}_{key}": name.upper() for name in _POINTS} for key in ("speed", "acceleration")}
+    return [
+        ("angles", "deg", {"theta3_deg": "θ3", "theta4_deg": "θ4", "mu_deg": "μ"}),
+        ("angular velocity", "rad/s", {"omega3": "ω3", "omega4": "ω4"}),
+        ("angular acceleration", "rad/s²", {"alpha3": "α3", "alpha4": "α4"}),
+        ("speed of A, B, P", f"{unit}/s", sizes["speed"]),
+        ("acceleration of A, B, P", f"{unit}/s²", sizes["acceleration"]),
+        ("torque factor of the output arm", unit, {"torque_factor": "factor"}),
+        ("drive torque", "N m", {"torque": "torque"}),
+        ("drive power", "W", {"power": "power"}),
+        ("joint forces", "N", _JOINTS),
+        (
+            "shaking force", "N",
+            {"shaking_force_x": "x", "shaking_force_y": "y", "shaking_force": "size"},
+        ),
+        ("shaking moment about O2", "N m", {"shaking_moment": "moment"}),
+        *places,
+        *rates,
+        *forces,
+    ]  # fmt: skip
+
+
+def _by_range(table: pd.DataFrame, count: int) -> list[pd.DataFrame]:
+    """The rows of each range of the driver."""
+    return [table[table["range"] == n] for n in range(1, count + 1)] if "range" in table else [table]
+
+
+def _extremes(table: pd.DataFrame) -> list[dict[str, Any]]:
+    return [
+        {
+            "range": row.get("range", ""),
+            "what": row["what"],
+            "unit": row["unit"],
+            "cells": [number_text(row[key], 6) for key, _ in _EXTREMES],
+        }
+        for row in table.to_dict("records")
+    ]

@@ -1,0 +1,156 @@
+"""Designs as the page's scripts move them: the linkage, its driver's travel, torque over it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import fields, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from grashof.analysis import (
+    Loads,
+    driver_ranges,
+    full_rotation,
+    inverse_dynamics,
+    solve_kinematics,
+    stated_masses,
+)
+from grashof.analysis.mobility import range_index
+from grashof.analysis.over_task import motion_ends
+from grashof.linkage_sweep import INSET, TURN, dead_positions_unwarned
+from grashof.output import linkage_json
+from grashof.page.render import compact
+from grashof.problems import FourBar, Problem
+from grashof.problems.checks import FloatArray
+from grashof.problems.dynamics_spec import metres
+from grashof.synth import Candidate
+
+STEPS = 180
+
+
+class Travel(NamedTuple):
+    """How far a driver goes.
+
+    Parameters
+    ----------
+    low, high : float, rad
+        Ends of a whole turn, or of a range between dead positions; NaN where nothing can be assembled.
+    turns : bool
+        Whether the driver turns fully.
+    """
+
+    low: float
+    high: float
+    turns: bool
+
+    def angles(self, inset: float = 0.0) -> FloatArray:
+        """Driver angles to sample a curve at, shape (STEPS + 1,), rad; as the page's scripts have them.
+
+        Even over a turn; otherwise closer towards the dead positions, where the linkage runs away
+        from its driver, and beginning `inset` from them.
+        """
+        share = np.linspace(0, 1, STEPS + 1)
+        if self.turns:
+            return self.low + (self.high - self.low) * share
+        low, high = self.low + inset, self.high - inset
+        angles: FloatArray = low + (high - low) * (1 - np.cos(np.pi * share)) / 2
+        return angles
+
+
+def driver_travel(linkage: FourBar, theta2: FloatArray) -> Travel:
+    """Travel of the driver that holds its angles at the targets.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        A single linkage.
+    theta2 : ndarray, shape (N,), rad
+        Driver angles at the targets, counted on along the motion.
+
+    Returns
+    -------
+    Travel
+        A whole turn, from a multiple of 360 deg where all the angles lie in one such turn; or the
+        range between dead positions that the first target lies in.
+
+    Examples
+    --------
+    >>> crank = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
+    >>> np.degrees(driver_travel(crank, np.radians([370.0, 500.0]))[:2]).round(9).tolist()
+    [360.0, 720.0]
+    """
+    first, last = float(theta2.min()), float(theta2.max())
+    if full_rotation(linkage):
+        low = TURN * float(np.floor(first / TURN))
+        low = low if last <= low + TURN else first
+        return Travel(low, low + TURN, True)
+    index, inside = range_index(linkage, theta2[0])
+    low, high = driver_ranges(linkage)[max(int(index), 0)]
+    turned = 0.0 if index < 0 else TURN * float(np.round((theta2[0] - inside) / TURN))
+    return Travel(float(low) + turned, float(high) + turned, False)
+
+
+def designs_of(problem: Problem, designs: Sequence[Candidate], frame: pd.DataFrame) -> list[dict[str, Any]]:
+    """Designs as JSON, their figures in full precision.
+
+    Parameters
+    ----------
+    problem : Problem
+    designs : sequence of Candidate
+        Linkages that can be assembled.
+    frame : DataFrame
+        Their rows, as `to_frame` makes them.
+    """
+    linkages = [
+        replace(each.linkage, assembly=np.asarray(each.verdict.assembly[0], dtype=np.float64))
+        for each in designs
+    ]
+    travels = [
+        driver_travel(linkage, each.verdict.theta2) for linkage, each in zip(linkages, designs, strict=True)
+    ]
+    torques = _torques(problem, linkages, travels)
+    rows = frame.to_dict("records")
+    return [
+        {
+            "id": design.id,
+            "linkage": linkage_json(linkage),
+            **travel._asdict(),
+            "direction": design.verdict.direction,
+            "theta2": design.verdict.theta2.tolist(),
+            "assemblies": design.verdict.assembly.tolist(),
+            "task": list(motion_ends(problem.task, design.verdict)) if design.verdict.branch_ok else None,
+            "torque": torque,
+            "figures": {str(key): _plain(value) for key, value in figures.items()},
+        }
+        for design, linkage, travel, torque, figures in zip(
+            designs, linkages, travels, torques, rows, strict=True
+        )
+    ]
+
+
+def _torques(
+    problem: Problem, linkages: Sequence[FourBar], travels: Sequence[Travel]
+) -> list[list[float | None]] | list[None]:
+    """Drive torque over the travel of each linkage, N m; None for each without dynamics."""
+    if problem.dynamics is None or not linkages:
+        return [None] * len(linkages)
+    spec, metre = problem.dynamics, metres(problem.length_unit)
+    names = [field.name for field in fields(FourBar)]
+    batch = FourBar(**{name: np.stack([getattr(each, name) for each in linkages]) for name in names})[:, None]
+    theta2 = np.stack([travel.angles(INSET) for travel in travels])
+    with dead_positions_unwarned():
+        state = solve_kinematics(batch, theta2, spec.omega2)
+        loads = Loads(gravity=np.array(spec.gravity) / metre)
+        torque = metre**2 * inverse_dynamics(state, stated_masses(batch, spec), loads).torque
+    return [compact(row) for row in torque.tolist()]
+
+
+def _plain(value: Any) -> float | int | str | bool | None:
+    """A figure as JSON knows it; null where it is not finite."""
+    if isinstance(value, str | bool | np.bool_):
+        return value if isinstance(value, str) else bool(value)
+    if value is None or not np.isfinite(value):
+        return None
+    return int(value) if isinstance(value, int | np.integer) else float(value)

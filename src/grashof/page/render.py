@@ -1,0 +1,61 @@
+"""One self-contained file out of a template, the style, scripts and data."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
+from importlib import resources
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+
+def render(template: str, scripts: Sequence[str], data: Mapping[str, Any], **shown: Any) -> str:
+    """A page that needs no other file and no network.
+
+    Parameters
+    ----------
+    template : str
+        Name of its template.
+    scripts : sequence of str
+        Names of its scripts, in order.
+    data : mapping
+        For the scripts, as JSON: no NaN.
+    **shown
+        For the template, which escapes it.
+    """
+    return (
+        _environment()
+        .get_template(template)
+        .render(
+            style=_text("page.css"),
+            script="\n".join(map(_text, scripts)),
+            data=data,
+            **shown,
+        )
+    )
+
+
+def compact(values: Iterable[float]) -> list[float | None]:
+    """Samples of a curve as short JSON: five significant digits, null where there is no finite value."""
+    return [float(f"{value:.5g}") if math.isfinite(value) else None for value in values]
+
+
+@cache
+def _environment() -> Environment:
+    made = Environment(
+        loader=PackageLoader("grashof.page"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    made.policies["json.dumps_kwargs"] = {"allow_nan": False, "separators": (",", ":")}
+    return made
+
+
+@cache
+def _text(name: str) -> str:
+    """A style sheet or script of this package."""
+    return (resources.files("grashof.page") / "templates" / name).read_text(encoding="utf-8")

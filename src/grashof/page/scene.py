@@ -1,0 +1,66 @@
+"""What a page draws of a problem: targets, scene, areas kept out, regions, the published path."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from grashof.analysis import driver_ranges, solve_position
+from grashof.page.render import compact
+from grashof.problems import MotionTask, PathTask, Problem, Task, catalogue, load
+from grashof.problems.checks import FloatArray
+from grashof.problems.published import published
+
+_REGIONS = ("o2", "o4", "a", "b")
+_SAMPLES = 181
+
+
+def scene_of(problem: Problem) -> dict[str, Any]:
+    """A problem as the scripts draw it; lengths in its unit, angles in rad, null where free or open."""
+    wanted = problem.requirements
+    boxes = {name: box for name in _REGIONS if (box := getattr(wanted, name)) is not None}
+    return {
+        **_targets(problem.task),
+        "unit": problem.length_unit,
+        "outlines": [corners.tolist() for corners in problem.outlines],
+        "keepOut": [corners.tolist() for corners in wanted.keep_out],
+        "keptOut": list(wanted.keep_out_for),
+        "regions": [
+            {
+                "name": ", ".join(name.upper() for name, other in boxes.items() if other == box),
+                "x": _given(np.array(box.x)),
+                "y": _given(np.array(box.y)),
+            }
+            for box in dict.fromkeys(boxes.values())
+        ],
+        "published": _published(problem),
+    }
+
+
+def _targets(task: Task) -> dict[str, Any]:
+    if isinstance(task, MotionTask):
+        poses = np.column_stack([task.positions, task.angles])
+        body = None if task.body is None or not task.has_angle.any() else task.body.tolist()
+        return {"poses": [_given(pose) for pose in poses], "body": body, "closed": False}
+    return {"points": task.points.tolist(), "closed": task.closed}
+
+
+def _given(numbers: FloatArray) -> list[float | None]:
+    return [float(number) if np.isfinite(number) else None for number in numbers]
+
+
+def _published(problem: Problem) -> dict[str, Any] | None:
+    """Path of the best published design, for a path of the catalogue."""
+    task, known = problem.task, published(problem.name)
+    if not known or problem.name not in catalogue() or not isinstance(task, PathTask):
+        return None
+    if not np.array_equal(task.points, load(problem.name).task.positions):
+        return None  # another problem of the same name
+    best = known[0]
+    low, high = driver_ranges(best.linkage)[0]
+    path = solve_position(best.linkage, np.linspace(low, high, _SAMPLES)).p
+    return {
+        "label": f"{best.method} {best.year}",
+        "path": [compact(point) for point in path if np.isfinite(point).all()],
+    }

@@ -1,0 +1,123 @@
+"""The page of a search: the task, the designs to choose from, and how they were found."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from grashof.page.columns import Column, figure_units, listed
+from grashof.page.designs import designs_of, driver_travel
+from grashof.page.render import render
+from grashof.page.scene import scene_of
+from grashof.problems import Problem
+from grashof.problems.checks import counted
+from grashof.synth import Result
+from grashof.terminal import goals, summary
+
+_SCRIPTS = (
+    "linkage.js", "svg.js", "stage.js", "player.js", "curves.js", "scatter.js", "table.js", "compare.js",
+    "search.js",
+)  # fmt: skip
+# How a count of the record is headed; the rest come first.
+_OUTCOMES = {"rejected: ": "Rejected, by the first requirement missed", "solver: ": "Ipopt ended with"}
+_REAL_TIME = 120.0  # rpm: what turns faster cannot be watched
+
+
+def search_page(result: Result, frame: pd.DataFrame, record: Mapping[str, Any], text: str = "") -> str:
+    """The page of a search as HTML; of its closest misses, called so, where it found no design.
+
+    Parameters
+    ----------
+    result : Result
+    frame : DataFrame
+        Rows of its candidates, or of its nearest with the column "misses" where it has none.
+    record : mapping
+        "versions" and "settings" of the run.
+    text : str
+        The problem file.
+
+    Returns
+    -------
+    str
+        One file: it needs no other and no network.
+    """
+    problem = result.problem
+    listing = result.candidates or result.nearest
+    moving = [not np.isnan(driver_travel(each.linkage, each.verdict.theta2).low) for each in listing]
+    designs = [each for each, moves in zip(listing, moving, strict=True) if moves]
+    frame = frame[moving] if designs else frame.iloc[:0]
+    columns = listed(problem, frame) if designs else []
+    data = {
+        "found": bool(result.candidates),
+        "scene": scene_of(problem),
+        "columns": [
+            {"key": each.key, "label": each.label, "unit": each.unit, "better": each.better}
+            for each in columns
+        ],
+        "units": figure_units(frame, problem.length_unit) if designs else [],
+        "designs": designs_of(problem, designs, frame),
+        "torqueUnit": "N m",
+    }
+    return render(
+        "search.html",
+        _SCRIPTS,
+        data,
+        title=problem.title or problem.name,
+        problem=problem,
+        asked=[line.strip() for line in summary(problem)][1:],
+        found=bool(result.candidates),
+        headline=_headline(result),
+        note=result.note,
+        goals=goals(problem).replace("mu", "μ"),
+        columns=columns,
+        rows=_rows(frame, columns),
+        classes=sorted(set(frame["grashof_class"])) if designs else [],
+        counts=_counts(result.counts),
+        seconds={stage: f"{time:.2f}" for stage, time in result.seconds.items()},
+        record=record,
+        text=text,
+        real_time=_real_time(problem),
+    )
+
+
+def _headline(result: Result) -> str:
+    listed = len(result.candidates)
+    if not listed:
+        return "No design found." if result.complete else "Interrupted before any design was found."
+    verified = max(result.counts.get("verified and distinct", 0), listed)
+    shown = f", the best {listed} listed" if verified > listed else ""
+    cut = "" if result.complete else "; the search was interrupted"
+    return f"{counted(verified, 'distinct verified design')}{shown}{cut}."
+
+
+def _rows(frame: pd.DataFrame, columns: list[Column]) -> list[dict[str, Any]]:
+    """The table as text, a row for each design."""
+    return [
+        {
+            "rank": row["rank"],
+            "id": row["id"],
+            "pareto": bool(row["pareto"]),
+            "kind": row["grashof_class"],
+            "misses": row.get("misses", ""),
+            "cells": [column.text(row[column.key]) for column in columns],
+        }
+        for row in frame.to_dict("records")
+    ]
+
+
+def _counts(counts: Mapping[str, int]) -> list[tuple[str, list[tuple[str, int]]]]:
+    """Counts of the search under headings, those by outcome each under its own."""
+    tables: dict[str, list[tuple[str, int]]] = {"Counted": [], **{head: [] for head in _OUTCOMES.values()}}
+    for name, count in counts.items():
+        mark = next((mark for mark in _OUTCOMES if name.startswith(mark)), "")
+        tables[_OUTCOMES.get(mark, "Counted")].append((name.removeprefix(mark), count))
+    return [(heading, rows) for heading, rows in tables.items() if rows]
+
+
+def _real_time(problem: Problem) -> float | None:
+    """Speed of the driver in rpm where one is stated that can be watched."""
+    speed = None if problem.dynamics is None else problem.dynamics.speed_rpm
+    return speed if speed is not None and speed <= _REAL_TIME else None

@@ -1,0 +1,73 @@
+// Designs side by side, at the same scale, at the same place of the task at the same moment.
+class Comparison {
+  constructor(root, { scene, designs, columns, onPick, onChange }) {
+    Object.assign(this, { root, scene, designs, columns, onPick, onChange, indexes: [], stages: [] });
+    this.list = $("[data-list]", root);
+    this.player = new Player(root, { onMove: (progress) => this.move(progress) });
+    const last = (designs[0] ? designs[0].theta2.length : 2) - (scene.closed ? 0 : 1);
+    this.player.travel({ low: 0, high: last, wraps: scene.closed, step: 0.02 });
+    root.addEventListener("keydown", (event) => {
+      if (event.target.closest(".stage") && this.player.key(event)) event.preventDefault();
+    });
+  }
+
+  toggle(index, wanted) {
+    this.indexes = this.indexes.filter((each) => each !== index);
+    if (wanted) this.indexes.push(index);
+    else if (!this.indexes.length) this.player.pause();
+    this.root.hidden = !this.indexes.length;
+    this.draw();
+    this.onChange(index, wanted);
+  }
+
+  draw() {
+    const chosen = this.indexes.map((index) => this.designs[index]);
+    this.stages = [];
+    this.list.replaceChildren(...this.indexes.map((index) => this.card(index)));
+    this.stages.forEach((stage, k) => stage.show(chosen[k], chosen));
+    this.move(this.player.value);
+  }
+
+  card(index) {
+    const design = this.designs[index];
+    const card = $("template", this.root).content.cloneNode(true).firstElementChild;
+    const pick = $("[data-pick]", card);
+    pick.textContent = `Design ${design.figures.rank}`;
+    pick.addEventListener("click", () => this.onPick(index));
+    $("[data-remove]", card).addEventListener("click", () => this.toggle(index, false));
+    $("[data-remove]", card).setAttribute("aria-label", `Remove design ${design.figures.rank}`);
+    const output = $("output", card);
+    const svg = $(".stage", card);
+    svg.setAttribute("aria-label", `Design ${design.figures.rank}`);
+    this.stages.push(
+      new Stage(svg, this.scene, {
+        onDraw: ({ theta2, mu }) => {
+          output.textContent = minus(`θ2 ${(theta2 * DEG).toFixed(1)} deg, μ ${(mu * DEG).toFixed(1)} deg`);
+        },
+      }),
+    );
+    $("tbody", card).append(
+      ...this.columns.map(({ key, label, unit }) => {
+        const row = document.createElement("tr");
+        for (const text of [label, figure(design.figures[key]), unit]) row.insertCell().textContent = text;
+        return row;
+      }),
+    );
+    return card;
+  }
+
+  move(progress) {
+    this.stages.forEach((stage) => stage.move(angleAt(stage.design, progress)));
+  }
+
+  state() {
+    return this.indexes.map((index, k) => ({ design: this.designs[index].id, ...this.stages[k].state }));
+  }
+}
+
+// Driver angle between target number `progress` and the next; after the last one a turn is completed.
+function angleAt({ theta2, direction }, progress) {
+  const knots = [...theta2, theta2[0] + direction * TURN];
+  const k = Math.min(Math.floor(progress), knots.length - 2);
+  return knots[k] + (knots[k + 1] - knots[k]) * (progress - k);
+}

@@ -1,0 +1,69 @@
+// Position of a four-bar in closed form, and how far its driver goes. Angles in rad.
+const TURN = 2 * Math.PI;
+const DEG = 180 / Math.PI;
+const STEPS = 180;
+
+const wrapped = (angle) => angle - TURN * Math.round(angle / TURN);
+
+// B is the crossing of the circles about A and O4 on the side that the assembly names. Heron's
+// product keeps its digits near dead positions; past one, where only rounding leads, it counts as 0,
+// so the loop is always closed.
+function positionOf(linkage, theta2, assembly = linkage.assembly) {
+  const { o2, o4, r2, r3, r4 } = linkage;
+  const a = [o2[0] + r2 * Math.cos(theta2), o2[1] + r2 * Math.sin(theta2)];
+  const [x, y] = [o4[0] - a[0], o4[1] - a[1]];
+  const s = Math.hypot(x, y);
+  const [nx, ny] = s > 0 ? [x / s, y / s] : [1, 0];
+  const heron = (r3 + r4 - s) * (r3 + r4 + s) * (s - r3 + r4) * (s + r3 - r4);
+  const along = s > 0 ? (s + ((r3 - r4) * (r3 + r4)) / s) / 2 : 0;
+  const beside = assembly * (s > 0 ? Math.sqrt(Math.max(heron, 0)) / (2 * s) : r3);
+  const b = [a[0] + along * nx - beside * ny, a[1] + along * ny + beside * nx];
+  const [cos, sin] = [(b[0] - a[0]) / r3, (b[1] - a[1]) / r3];
+  const [u, v] = linkage.coupler_point;
+  return {
+    theta2,
+    theta3: Math.atan2(sin, cos),
+    theta4: Math.atan2(b[1] - o4[1], b[0] - o4[0]),
+    o2,
+    o4,
+    a,
+    b,
+    p: [a[0] + u * cos - v * sin, a[1] + u * sin + v * cos],
+    mu: transmissionAt(linkage, s),
+  };
+}
+
+// min(mu, 180 - mu) by the law of cosines in A-B-O4, from the diagonal s.
+function transmissionAt({ r3, r4 }, s) {
+  const cosine = (r3 * r3 + r4 * r4 - s * s) / (2 * r3 * r4);
+  return Math.acos(Math.min(1, Math.abs(cosine)));
+}
+
+// The driver angle, counted by whole turns into the travel or held at its ends.
+function within(design, theta2) {
+  if (design.turns) return design.low + ((((theta2 - design.low) % TURN) + TURN) % TURN);
+  return Math.min(Math.max(theta2, design.low), design.high);
+}
+
+// Angles from one to another, closer towards dead positions; as Python samples the torque.
+function anglesBetween(low, high, even, steps = STEPS) {
+  return Array.from({ length: steps + 1 }, (_, k) => {
+    const share = even ? k / steps : (1 - Math.cos((Math.PI * k) / steps)) / 2;
+    return low + (high - low) * share;
+  });
+}
+
+const travelAngles = (design) => anglesBetween(design.low, design.high, design.turns);
+
+// Value at x of samples at rising places; null beside a gap.
+function interpolated(places, values, x) {
+  let [low, high] = [0, places.length - 1];
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (places[middle] <= x) low = middle;
+    else high = middle;
+  }
+  if (values[low] === null || values[high] === null) return null;
+  const width = places[high] - places[low];
+  return width > 0 ? values[low] + ((values[high] - values[low]) * (x - places[low])) / width : values[low];
+}

@@ -1,0 +1,103 @@
+// Play, pause, step and set: a value that runs to and fro over its travel, or around.
+class Player {
+  constructor(root, { onMove }) {
+    Object.assign(this, {
+      onMove,
+      low: 0,
+      high: 1,
+      wraps: false,
+      sense: 1,
+      value: 0,
+      playing: false,
+      step: 0.01,
+    });
+    this.button = $("[data-play]", root);
+    this.slider = $("input[type=range]", root);
+    this.pace = $("[data-pace]", root);
+    this.button.addEventListener("click", () => this.toggle());
+    this.slider.addEventListener("input", () => {
+      this.pause();
+      this.set(this.low + (this.high - this.low) * Number(this.slider.value));
+    });
+  }
+
+  // The ends of the travel, whether it goes around, and in which sense; `step` is one press of a key.
+  travel({ low, high, wraps, sense = 1, step }) {
+    Object.assign(this, { low, high, wraps, sense, step });
+    this.set(this.value);
+  }
+
+  set(value) {
+    const span = this.high - this.low;
+    if (this.wraps && (value < this.low || value > this.high)) {
+      value = this.low + ((((value - this.low) % span) + span) % span);
+    }
+    this.value = Math.min(Math.max(value, this.low), this.high);
+    this.slider.value = span > 0 ? (this.value - this.low) / span : 0;
+    this.onMove(this.value);
+  }
+
+  toggle() {
+    if (this.playing) this.pause();
+    else this.play();
+  }
+
+  play() {
+    this.playing = true;
+    this.shown();
+    let before = performance.now();
+    const frame = (now) => {
+      if (!this.playing) return;
+      const seconds = Math.min((now - before) / 1000, 0.1);
+      before = now;
+      const next = this.value + (this.sense * seconds * (this.high - this.low)) / this.seconds();
+      if (!this.wraps && (next > this.high || next < this.low)) this.sense = -this.sense;
+      this.set(next);
+      requestAnimationFrame(frame);
+    };
+    requestAnimationFrame(frame);
+  }
+
+  // Seconds over the travel: the pace is stated for a whole turn where the travel is an angle.
+  seconds() {
+    const paced = Number(this.pace.value);
+    return this.pace.dataset.pace === "turn" ? (paced * (this.high - this.low)) / TURN : paced;
+  }
+
+  pause() {
+    this.playing = false;
+    this.shown();
+  }
+
+  shown() {
+    this.button.textContent = this.playing ? "Pause" : "Play";
+    this.button.setAttribute("aria-pressed", String(this.playing));
+  }
+
+  // Arrows step, Home and End go to the ends; says whether the key was one of them.
+  key(event) {
+    const steps = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 };
+    if (event.key in steps) this.set(this.value + steps[event.key] * (event.shiftKey ? 10 : 1) * this.step);
+    else if (event.key === "Home") this.set(this.low);
+    else if (event.key === "End") this.set(this.high);
+    else return false;
+    this.pause();
+    return true;
+  }
+}
+
+// Arrow keys on a drawing turn its driver.
+function listenToKeys(stage, player) {
+  stage.svg.addEventListener("keydown", (event) => {
+    if (player.key(event)) event.preventDefault();
+  });
+}
+
+// The space bar plays and pauses, unless what has the focus needs it.
+function playOnSpace(player) {
+  document.addEventListener("keydown", (event) => {
+    if (event.key !== " " || event.target.closest("button, input, select, summary, a, [role=button]")) return;
+    event.preventDefault();
+    player().toggle();
+  });
+}

@@ -1,0 +1,178 @@
+// Designs by two figures, a third as the area of the points; a click picks one.
+class Scatter {
+  constructor(root, { columns, designs, onPick }) {
+    Object.assign(this, {
+      svg: $("svg", root),
+      note: $("figcaption", root),
+      columns,
+      designs,
+      onPick,
+      chosen: 0,
+    });
+    this.selects = Object.fromEntries($$("select", root).map((select) => [select.dataset.axis, select]));
+    this.visible = new Set(designs.keys());
+    const wanted = {
+      x: ["size"],
+      y: ["transmission_min_task_deg", "transmission_min_cycle_deg"],
+      area: ["torque_peak", ""],
+    };
+    for (const [axis, select] of Object.entries(this.selects)) {
+      const offered = columns.map(({ key, label, unit }) => new Option(withUnit(label, unit), key));
+      select.append(...(axis === "area" ? [new Option("none", "")] : []), ...offered);
+      select.value = wanted[axis].find((key) => [...select.options].some((option) => option.value === key));
+      select.addEventListener("change", () => this.draw());
+    }
+    this.svg.addEventListener("keydown", (event) => this.key(event));
+    onResize(this.svg, () => this.draw());
+  }
+
+  column(axis) {
+    return this.columns.find(({ key }) => key === this.selects[axis].value);
+  }
+
+  value(index, axis) {
+    const column = this.column(axis);
+    return column ? this.designs[index].figures[column.key] : null;
+  }
+
+  draw() {
+    const [width, height] = [this.svg.clientWidth, this.svg.clientHeight];
+    if (width < 80) return;
+    set(this.svg, { viewBox: `0 0 ${width} ${height}` });
+    this.svg.replaceChildren();
+    const frame = { left: 46, right: width - 14, top: 8, bottom: height - 34 };
+    this.shown = [...this.designs.keys()].filter(
+      (k) => this.value(k, "x") !== null && this.value(k, "y") !== null,
+    );
+    const scales = { x: this.axis("x", frame), y: this.axis("y", frame) };
+    this.place = (k) => [scales.x(this.value(k, "x")), scales.y(this.value(k, "y"))];
+    this.front();
+    const layer = add(this.svg, "g", { class: "points" });
+    // Big ones first, so that none is hidden.
+    const order = [...this.shown].sort((a, b) => this.radius(b) - this.radius(a));
+    this.points = new Map(order.map((k) => [k, this.point(layer, k)]));
+    this.mark(this.chosen);
+  }
+
+  axis(axis, { left, right, top, bottom }) {
+    const values = this.shown.map((k) => this.value(k, axis));
+    let [low, high] = values.length ? [Math.min(...values), Math.max(...values)] : [0, 1];
+    const margin = Math.max(0.08 * (high - low), 1e-3 * Math.abs(high)) || 1; // more than rounding
+    [low, high] = [low - margin, high + margin];
+    const share = (value) => (value - low) / (high - low);
+    const scale =
+      axis === "x"
+        ? (value) => left + (right - left) * share(value)
+        : (value) => bottom - (bottom - top) * share(value);
+    const layer = add(this.svg, "g", { class: "grid" });
+    const { at, decimals } = ticks(low, high, axis === "x" ? (right - left) / 70 : (bottom - top) / 36);
+    for (const value of at) {
+      const label = minus((value + 0).toFixed(decimals));
+      const place = px(scale(value));
+      if (axis === "x") {
+        add(layer, "path", { d: `M${place} ${top}V${bottom}` });
+        add(layer, "text", { x: place, y: bottom + 14, "text-anchor": "middle" }, label);
+      } else {
+        add(layer, "path", { d: `M${left} ${place}H${right}` });
+        add(layer, "text", { x: left - 5, y: Number(place) + 4, "text-anchor": "end" }, label);
+      }
+    }
+    const { label, unit } = this.column(axis);
+    const place =
+      axis === "x" ? { x: right, y: bottom + 29, "text-anchor": "end" } : { x: left + 5, y: top + 9 };
+    add(layer, "text", { ...place, class: "axis" }, withUnit(label, unit));
+    return scale;
+  }
+
+  radius(k) {
+    const values = this.shown.map((each) => this.value(each, "area")).filter((value) => value !== null);
+    const value = this.value(k, "area");
+    if (value === null || !values.length) return 5;
+    const [low, high] = [Math.min(...values), Math.max(...values)];
+    const share = high > low ? (value - low) / (high - low) : 0.5;
+    return Math.sqrt(12 + 70 * share);
+  }
+
+  // A step line through the designs that no other beats in both axes.
+  front() {
+    const better = { x: this.column("x").better, y: this.column("y").better };
+    if (!better.x || !better.y) return;
+    const gain = (k, axis) => better[axis] * this.value(k, axis);
+    const best = [];
+    for (const k of [...this.shown].sort(
+      (a, b) => gain(b, "x") - gain(a, "x") || gain(b, "y") - gain(a, "y"),
+    )) {
+      if (!best.length || gain(k, "y") > gain(best.at(-1), "y")) best.push(k);
+    }
+    const corners = best.flatMap((k, n) => {
+      const [x, y] = this.place(k);
+      return n
+        ? [
+            [x, this.place(best[n - 1])[1]],
+            [x, y],
+          ]
+        : [[x, y]];
+    });
+    add(this.svg, "path", { d: through(corners), class: "front" });
+  }
+
+  point(layer, k) {
+    const { figures } = this.designs[k];
+    const [cx, cy] = this.place(k);
+    const told = ["x", "y", "area"]
+      .map((axis) => this.column(axis))
+      .filter(Boolean)
+      .map(({ key, label, unit }) => `${label} ${figure(figures[key])} ${unit}`.trim());
+    const name = `design ${figures.rank}: ${told.join(", ")}${figures.pareto ? ", Pareto-optimal" : ""}`;
+    const style = `point${figures.pareto ? " pareto" : ""}${this.visible.has(k) ? "" : " filtered"}`;
+    const node = add(layer, "circle", {
+      cx,
+      cy,
+      r: this.radius(k),
+      class: style,
+      tabindex: -1,
+      role: "button",
+      "aria-label": name,
+      "data-index": k,
+    });
+    add(node, "title", {}, name);
+    node.addEventListener("click", () => this.onPick(k));
+    return node;
+  }
+
+  // The chosen design has a ring, and is where the tab key enters.
+  mark(index) {
+    this.chosen = index;
+    if (!this.points) return;
+    for (const [k, node] of this.points) {
+      node.classList.toggle("chosen", k === index);
+      node.setAttribute("aria-pressed", String(k === index));
+      node.tabIndex = k === index || (!this.points.has(index) && k === this.shown[0]) ? 0 : -1;
+    }
+    const node = this.points.get(index);
+    // On top of the others, but not while the focus is here: moving a node drops it.
+    if (node && !this.svg.contains(document.activeElement)) node.parentNode.append(node);
+  }
+
+  filter(visible) {
+    this.visible = new Set(visible);
+    for (const [k, node] of this.points || []) node.classList.toggle("filtered", !this.visible.has(k));
+  }
+
+  // Arrows go from point to point along the x axis, Enter and space pick.
+  key(event) {
+    const index = Number(event.target.dataset.index);
+    if (Number.isNaN(index)) return;
+    const order = [...this.shown].sort((a, b) => this.place(a)[0] - this.place(b)[0]);
+    const step = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
+    if (step) {
+      const next = order[(order.indexOf(index) + step + order.length) % order.length];
+      for (const node of this.points.values()) node.tabIndex = -1;
+      this.points.get(next).tabIndex = 0;
+      this.points.get(next).focus();
+    } else if (event.key === "Enter" || event.key === " ") this.onPick(index);
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+}

@@ -1,0 +1,162 @@
+// The page of a search: what is chosen is drawn, marked and told everywhere.
+class SearchPage {
+  constructor({ found, scene, columns, units, designs, torqueUnit }) {
+    Object.assign(this, { found, scene, units, designs, torqueUnit, chosen: 0 });
+    const choose = (index) => this.choose(index);
+    const turnTo = (degrees) => this.turnTo(degrees / DEG);
+    this.stage = new Stage($("#stage"), scene, {
+      onDrive: (theta2) => this.turnTo(theta2),
+      onDraw: (state) => this.moved(state),
+    });
+    this.player = new Player($("#player"), { onMove: (theta2) => this.stage.move(theta2) });
+    this.transmission = new Curves($("#transmission"), { onPick: turnTo });
+    this.torque = designs[0].torque && new Curves($("#torque"), { onPick: turnTo });
+    this.scatter = $("#scatter") && new Scatter($("#scatter"), { columns, designs, onPick: choose });
+    this.comparison = new Comparison($("#compare"), {
+      scene,
+      designs,
+      columns,
+      onPick: choose,
+      onChange: (index, wanted) => this.compared(index, wanted),
+    });
+    this.table = new DesignTable($("#designs"), {
+      designs,
+      onPick: (index) => {
+        this.choose(index);
+        $("#chosen").scrollIntoView({ block: "nearest" });
+      },
+      onFilter: (shown) => this.scatter && this.scatter.filter(shown),
+      onCompare: (index, wanted) => this.comparison.toggle(index, wanted),
+    });
+    this.table.pictures();
+    this.controls();
+    this.choose(0);
+  }
+
+  get design() {
+    return this.designs[this.chosen];
+  }
+
+  choose(index) {
+    this.player.pause();
+    this.chosen = index;
+    this.curves(this.design);
+    this.stage.show(this.design);
+    this.travel(this.design);
+    this.player.set(this.design.theta2[0]);
+    this.table.mark(index);
+    if (this.scatter) this.scatter.mark(index);
+    this.tell(this.design);
+    this.tellCompared();
+  }
+
+  turnTo(theta2) {
+    this.player.pause();
+    this.player.set(theta2);
+  }
+
+  // The driver goes as far as it can, or only through the task.
+  travel({ low, high, turns, direction, task }) {
+    const choice = $("#only-task");
+    choice.disabled = !task || this.scene.closed;
+    const part = choice.checked && !choice.disabled;
+    const [from, to] = part ? [Math.min(...task), Math.max(...task)] : [low, high];
+    this.player.travel({ low: from, high: to, wraps: turns && !part, sense: direction, step: 1 / DEG });
+    tellTravel(this.stage, from, to);
+  }
+
+  curves(design) {
+    const angles = travelAngles(design);
+    const places = angles.map((angle) => angle * DEG);
+    const marks = design.theta2.map((angle) => within(design, angle) * DEG);
+    const whole = this.scene.closed || !design.task;
+    const bold = whole ? null : design.task.map((angle) => angle * DEG).sort((a, b) => a - b);
+    const mu = angles.map((angle) => positionOf(design.linkage, angle).mu * DEG);
+    const panel = { title: "Transmission angle", unit: "deg", limits: [0, 90] };
+    this.transmission.show({ ...panel, series: [{ label: "μ", values: mu }] }, places, { bold, marks });
+    if (!this.torque) return;
+    const series = [{ label: "T", values: design.torque }];
+    const options = { bold, marks, bounded: !design.turns };
+    this.torque.show({ title: "Drive torque", unit: this.torqueUnit, series }, places, options);
+  }
+
+  moved(state) {
+    const degrees = state.theta2 * DEG;
+    this.transmission.mark(degrees, [state.mu * DEG]);
+    if (this.torque) this.torque.mark(degrees);
+    tellPosition(this.stage, state);
+  }
+
+  // Name and figures of the design that is shown.
+  tell({ id, figures }) {
+    const { found } = this;
+    $("#chosen").textContent = `${found ? "Design" : "Closest miss"} ${figures.rank}`;
+    const pareto = figures.pareto && found ? ", Pareto-optimal" : "";
+    $("#about").textContent = `${id}, ${figures.grashof_class}${pareto}`;
+    $("#named").textContent = $("#chosen").textContent.toLowerCase();
+    if (found) $("#rank").textContent = figures.rank;
+    else $("#misses").textContent = figures.misses;
+    const known = this.units.filter(([key]) => figures[key] !== null);
+    const lines = known.map(([key, unit]) => {
+      const line = document.createElement("div");
+      line.append(document.createElement("dt"), document.createElement("dd"));
+      line.firstChild.textContent = key;
+      line.lastChild.textContent = `${figure(figures[key], 6)} ${unit}`.trim();
+      return line;
+    });
+    $("#figures dl").replaceChildren(...lines);
+  }
+
+  compared(index, wanted) {
+    this.table.compared(index, wanted);
+    this.tellCompared();
+  }
+
+  tellCompared() {
+    const compared = this.comparison.indexes.includes(this.chosen);
+    $("#add").textContent = compared ? "Remove from comparison" : "Compare";
+    $("#add").setAttribute("aria-pressed", String(compared));
+  }
+
+  controls() {
+    for (const name of ["trace", "ghosts", "close"]) {
+      $(`#${name}`).addEventListener("change", (event) => {
+        this.stage[name] = event.target.checked;
+        this.stage.draw();
+      });
+    }
+    $("#only-task").addEventListener("change", () => this.travel(this.design));
+    $("#add").addEventListener("click", () => {
+      this.comparison.toggle(this.chosen, !this.comparison.indexes.includes(this.chosen));
+    });
+    const targets = $("#targets");
+    targets.append(...this.design.theta2.map((_, k) => new Option(`target ${k + 1}`, k)));
+    targets.addEventListener("change", () => {
+      this.turnTo(within(this.design, this.design.theta2[Number(targets.value)]));
+      targets.value = "";
+    });
+    const { comparison, player } = this;
+    listenToKeys(this.stage, player);
+    playOnSpace(() => (comparison.root.contains(document.activeElement) ? comparison.player : player));
+  }
+
+  state() {
+    return {
+      design: this.design.id,
+      ...this.stage.state,
+      playing: this.player.playing,
+      listed: this.table.listed().map((index) => this.designs[index].id),
+      compared: this.comparison.state(),
+    };
+  }
+}
+
+// Without any design the page shows the task.
+function start(data) {
+  if (data.designs.length) return new SearchPage(data);
+  new Stage($("#stage"), data.scene).show(null);
+  return { state: () => ({ design: null }) };
+}
+
+const page = start(JSON.parse($("#data").textContent));
+window.grashof = Object.freeze({ state: () => page.state() });

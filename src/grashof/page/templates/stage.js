@@ -1,0 +1,347 @@
+// The drawing: the scene, the targets, and a linkage that follows its driver.
+const MANY_TARGETS = 24;
+
+// Corners of the body that stands at a place in a direction.
+function bodyAt(body, [x, y], angle) {
+  const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
+  return body.map(([u, v]) => [x + u * cos - v * sin, y + u * sin + v * cos]);
+}
+
+// Poses as a design has them where they leave parts free: { at, angle, whole }, or null.
+function posesOf(scene, design) {
+  return (scene.poses || []).map(([x, y, angle], k) => {
+    const whole = x !== null && angle !== null;
+    if (whole) return { at: [x, y], angle, whole };
+    if (!design) return x === null ? null : { at: [x, y], angle: null, whole };
+    const state = positionOf(design.linkage, design.theta2[k], design.assemblies[k]);
+    return {
+      at: x === null ? state.p : [x, y],
+      angle: angle === null ? state.theta3 + design.linkage.body_angle : angle,
+      whole,
+    };
+  });
+}
+
+// Everything that has to be seen of a scene with some designs; `close`: the targets without the linkage.
+function pointsToSee(scene, designs, close) {
+  const points = [...(scene.outlines || []).flat(), ...(scene.points || [])];
+  for (const design of designs.length ? designs : [null]) {
+    for (const pose of posesOf(scene, design)) {
+      if (!pose) continue;
+      points.push(pose.at);
+      if (scene.body && pose.angle !== null) points.push(...bodyAt(scene.body, pose.at, pose.angle));
+    }
+    if (!design || close) continue;
+    for (const angle of travelAngles(design)) {
+      const { o2, o4, a, b, p } = positionOf(design.linkage, angle);
+      points.push(o2, o4, a, b, p);
+    }
+  }
+  return points;
+}
+
+class Stage {
+  constructor(svg, scene, { onDrive = null, onDraw = () => {} } = {}) {
+    Object.assign(this, {
+      svg,
+      scene,
+      onDrive,
+      onDraw,
+      design: null,
+      together: [],
+      theta2: 0,
+      trace: true,
+      ghosts: false,
+      close: false,
+    });
+    onResize(svg, () => this.draw());
+    if (onDrive) this.drags();
+  }
+
+  // Shows a design, or only the scene; `together`: designs that share the scale.
+  show(design, together = design ? [design] : []) {
+    this.design = design;
+    this.together = together;
+    if (design) this.theta2 = within(design, this.theta2);
+    this.draw();
+  }
+
+  draw() {
+    const [width, height] = [this.svg.clientWidth, this.svg.clientHeight];
+    if (width < 80) return;
+    set(this.svg, { viewBox: `0 0 ${width} ${height}` });
+    this.scale(width, height, pointsToSee(this.scene, this.together, this.close));
+    this.svg.replaceChildren();
+    this.grid(width, height);
+    this.areas();
+    if (this.design && this.trace) this.traces();
+    this.targets();
+    if (this.design) {
+      if (this.ghosts) this.drawGhosts();
+      this.parts = this.linkage();
+      this.move(this.theta2);
+    }
+  }
+
+  scale(width, height, seen) {
+    const xs = seen.map((point) => point[0]);
+    const ys = seen.map((point) => point[1]);
+    const [left, right, low, high] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
+    const margin = Math.min(40, width / 10);
+    const unit = Math.min(
+      (width - 2 * margin) / (right - left || 1),
+      (height - 2 * margin) / (high - low || 1),
+    );
+    const [x0, y0] = [width / 2 - (unit * (left + right)) / 2, height / 2 + (unit * (low + high)) / 2];
+    this.at = ([x, y]) => [x0 + unit * x, y0 - unit * y];
+    this.back = ([x, y]) => [(x - x0) / unit, (y0 - y) / unit];
+    this.unit = unit;
+    this.decimals = Math.max(0, Math.ceil(Math.log10(unit)) + 1); // a tenth of a pixel and less
+  }
+
+  grid(width, height) {
+    const layer = add(this.svg, "g", { class: "grid" });
+    const [left, high] = this.back([0, 0]);
+    const [right, low] = this.back([width, height]);
+    for (const [axis, from, to] of [
+      ["x", left, right],
+      ["y", low, high],
+    ]) {
+      const { at, decimals } = ticks(from, to, (axis === "x" ? width : height) / 60);
+      for (const value of at) {
+        const [x, y] = this.at([value, value]);
+        const label = minus((value + 0).toFixed(decimals));
+        if (axis === "x") {
+          add(layer, "path", { d: `M${px(x)} 0V${height}` });
+          if (x > 34 && x < width - 46)
+            add(layer, "text", { x, y: height - 5, "text-anchor": "middle" }, label);
+        } else {
+          add(layer, "path", { d: `M0 ${px(y)}H${width}` });
+          if (y > 30 && y < height - 18) add(layer, "text", { x: 5, y: y - 3 }, label);
+        }
+      }
+    }
+    add(
+      layer,
+      "text",
+      { x: width - 6, y: height - 5, "text-anchor": "end", class: "axis" },
+      withUnit("x", this.scene.unit),
+    );
+    add(layer, "text", { x: 5, y: 13, class: "axis" }, withUnit("y", this.scene.unit));
+  }
+
+  areas() {
+    const { scene } = this;
+    const [width, height] = [this.svg.clientWidth, this.svg.clientHeight];
+    const beyond = 20; // px: so far out of sight goes a side that is open or far away
+    for (const corners of scene.keepOut || []) {
+      add(this.svg, "path", { d: through(corners.map(this.at), true), class: "kept-out" });
+    }
+    for (const { name, x, y } of scene.regions || []) {
+      const seen = (place, most) => Math.min(Math.max(place, -beyond), most + beyond);
+      const [left, bottom] = this.at([x[0] === null ? -Infinity : x[0], y[0] === null ? -Infinity : y[0]]);
+      const [right, top] = this.at([x[1] === null ? Infinity : x[1], y[1] === null ? Infinity : y[1]]);
+      const [x0, x1, y0, y1] = [
+        seen(left, width),
+        seen(right, width),
+        seen(top, height),
+        seen(bottom, height),
+      ];
+      const single = x0 === x1 && y0 === y1;
+      const shape = single
+        ? `M${px(x0)} ${px(y0)}m-7 0h14m-7 -7v14`
+        : `M${px(x0)} ${px(y0)}H${px(x1)}V${px(y1)}H${px(x0)}Z`;
+      add(this.svg, "path", { d: shape, class: "region" });
+      const place = {
+        x: Math.min(Math.max(x0 + 4, 40), width - 70),
+        y: Math.min(Math.max(y0 + 13, 26), height - 20),
+      };
+      add(this.svg, "text", { ...place, class: "region-name" }, `${name} region`);
+    }
+    for (const corners of scene.outlines || []) {
+      add(this.svg, "path", { d: through(corners.map(this.at)), class: "outline" });
+    }
+  }
+
+  targets() {
+    const { scene, design } = this;
+    const layer = add(this.svg, "g", { class: "targets" });
+    if (scene.published) {
+      add(layer, "path", { d: through(scene.published.path.map(this.at)), class: "published" });
+    }
+    const poses = posesOf(scene, design);
+    const every = poses.length > MANY_TARGETS ? Math.round(poses.length / 12) : 1;
+    poses.forEach((pose, k) => {
+      if (!pose || k % every) return;
+      const style = pose.whole ? "body" : "body free";
+      if (scene.body && pose.angle !== null) {
+        add(layer, "path", {
+          d: through(bodyAt(scene.body, pose.at, pose.angle).map(this.at), true),
+          class: style,
+        });
+      }
+      const [x, y] = this.at(pose.at);
+      if (pose.angle !== null) {
+        const [cos, sin] = [Math.cos(pose.angle), Math.sin(pose.angle)];
+        add(layer, "path", { d: `M${px(x)} ${px(y)}l${px(22 * cos)} ${px(-22 * sin)}`, class: "pose" });
+      }
+      add(layer, "circle", { cx: x, cy: y, r: 2.5, class: "pose-origin" });
+      add(layer, "text", { x: x - 6, y: y - 6, "text-anchor": "end", class: "number" }, k + 1);
+    });
+    const points = scene.points || [];
+    const returns = points.length > 1 && points[0].every((value, k) => value === points.at(-1)[k]);
+    const shown = returns ? points.slice(0, -1) : points;
+    const step = shown.length > MANY_TARGETS ? Math.round(shown.length / 12) : 1;
+    shown.forEach((point, k) => {
+      const [x, y] = this.at(point);
+      add(layer, "circle", { cx: x, cy: y, r: shown.length > MANY_TARGETS ? 2.5 : 4, class: "target" });
+      if (k % step === 0)
+        add(layer, "text", { x: x - 6, y: y - 6, "text-anchor": "end", class: "number" }, k + 1);
+    });
+  }
+
+  traces() {
+    const { linkage, task } = this.design;
+    const path = (angles) => through(angles.map((angle) => this.at(positionOf(linkage, angle).p)));
+    add(this.svg, "path", {
+      d: path(travelAngles(this.design)),
+      class: task === undefined ? "trace" : "trace whole",
+    });
+    if (task) add(this.svg, "path", { d: path(anglesBetween(...task, true)), class: "trace" });
+  }
+
+  drawGhosts() {
+    const { linkage, theta2, assemblies } = this.design;
+    const every = theta2.length > MANY_TARGETS ? Math.round(theta2.length / 12) : 1;
+    const layer = add(this.svg, "g", { class: "ghosts" });
+    theta2.forEach((angle, k) => {
+      if (k % every) return;
+      const state = positionOf(linkage, angle, assemblies[k]);
+      const [o2, o4, a, b, p] = [state.o2, state.o4, state.a, state.b, state.p].map(this.at);
+      add(layer, "path", { d: through([o2, a]), class: "driver" });
+      add(layer, "path", { d: through([o4, b]), class: "output" });
+      add(layer, "path", { d: through([a, b, p], true), class: "coupler" });
+    });
+  }
+
+  // The parts that move, and the ground pivots.
+  linkage() {
+    const { o2, o4 } = this.design.linkage;
+    const ground = add(this.svg, "g", { class: "ground" });
+    for (const [name, pivot] of [
+      ["O2", o2],
+      ["O4", o4],
+    ]) {
+      const [x, y] = this.at(pivot);
+      add(ground, "path", { d: `M${px(x)} ${px(y)}l-8 13h16Z` });
+      add(ground, "text", { x: x + 10, y: y + 14 }, name);
+    }
+    const layer = add(this.svg, "g", { class: "linkage" });
+    const parts = {};
+    if (this.scene.body) parts.body = add(layer, "path", { class: "body live" });
+    for (const name of ["coupler", "output", "driver"]) parts[name] = add(layer, "path", { class: name });
+    parts.sense = add(layer, "path", { class: "sense" });
+    for (const name of ["o2", "o4", "a", "b", "p"]) {
+      parts[name] = add(layer, "circle", { r: name === "p" ? 3.5 : 4, class: `joint ${name}` });
+    }
+    for (const name of ["A", "B", "P"]) parts[name] = add(layer, "text", {}, name);
+    if (this.onDrive) {
+      parts.hold = add(layer, "path", { class: "hold" });
+      add(parts.hold, "title", {}, "Drag the driver");
+    }
+    return parts;
+  }
+
+  move(theta2) {
+    if (!this.design) return;
+    this.theta2 = within(this.design, theta2);
+    const { linkage, direction } = this.design;
+    const state = positionOf(linkage, this.theta2);
+    this.state = state;
+    this.onDraw(state);
+    if (!this.parts) return;
+    const places = Object.fromEntries(
+      ["o2", "o4", "a", "b", "p"].map((name) => [name, this.at(state[name])]),
+    );
+    const { o2, o4, a, b, p } = places;
+    const { parts } = this;
+    set(parts.driver, { d: through([o2, a]) });
+    set(parts.output, { d: through([o4, b]) });
+    set(parts.coupler, { d: through([a, b, p], true) });
+    for (const [name, [x, y]] of Object.entries(places)) set(parts[name], { cx: px(x), cy: px(y) });
+    const middle = [(a[0] + b[0] + p[0]) / 3, (a[1] + b[1] + p[1]) / 3];
+    set(parts.P, { x: px(p[0] + 9), y: px(p[1] + 16) });
+    for (const name of ["A", "B"]) {
+      const [x, y] = places[name.toLowerCase()];
+      const away = Math.hypot(x - middle[0], y - middle[1]) || 1;
+      set(parts[name], {
+        x: px(x + (15 * (x - middle[0])) / away),
+        y: px(y + 4 + (15 * (y - middle[1])) / away),
+        "text-anchor": "middle",
+      });
+    }
+    if (parts.body) {
+      const corners = bodyAt(this.scene.body, state.p, state.theta3 + linkage.body_angle);
+      set(parts.body, { d: through(corners.map(this.at), true) });
+    }
+    set(parts.sense, { d: this.senseArrow(o2, direction) });
+    if (parts.hold) set(parts.hold, { d: through([o2, a]) });
+  }
+
+  // An arrow about O2, ahead of the driver in the sense in which it meets the targets.
+  senseArrow([x, y], direction) {
+    const radius = Math.max(18, Math.min(0.4 * this.design.linkage.r2 * this.unit, 60));
+    const on = (angle, r = radius) => [x + r * Math.cos(angle), y - r * Math.sin(angle)];
+    const [from, to] = [this.theta2 + direction * 0.25, this.theta2 + direction * 1.25];
+    const arc = Array.from({ length: 13 }, (_, k) => on(from + ((to - from) * k) / 12));
+    const barb = to - (direction * 8) / radius;
+    return through(arc) + through([on(barb, radius + 4), on(to), on(barb, radius - 4)]);
+  }
+
+  // Dragging adds up turns, so that a driver held at its limit comes back where it left it.
+  drags() {
+    let last = null;
+    let wanted = 0;
+    const angleAt = (event) => {
+      const frame = this.svg.getBoundingClientRect();
+      const [x, y] = this.back([
+        event.clientX - frame.left - this.svg.clientLeft,
+        event.clientY - frame.top - this.svg.clientTop,
+      ]);
+      return Math.atan2(y - this.design.linkage.o2[1], x - this.design.linkage.o2[0]);
+    };
+    this.svg.addEventListener("pointerdown", (event) => {
+      if (!this.design || !event.target.closest(".hold")) return;
+      event.preventDefault();
+      this.svg.focus({ preventScroll: true });
+      this.svg.setPointerCapture(event.pointerId);
+      last = angleAt(event);
+      wanted = this.theta2;
+    });
+    this.svg.addEventListener("pointermove", (event) => {
+      if (last === null) return;
+      const angle = angleAt(event);
+      wanted += wrapped(angle - last);
+      last = angle;
+      this.onDrive(wanted);
+    });
+    for (const end of ["pointerup", "pointercancel"])
+      this.svg.addEventListener(end, () => {
+        last = null;
+      });
+  }
+}
+
+// The angles and the place of P as text, beside the drawing and for screen readers.
+function tellPosition(stage, { theta2, theta3, theta4, p }) {
+  const [driver, coupler, output] = [theta2, theta3, theta4].map((angle) => minus((angle * DEG).toFixed(2)));
+  const place = p.map((value) => minus(value.toFixed(stage.decimals))).join(", ");
+  $("#angles").textContent = `θ2 ${driver}, θ3 ${coupler}, θ4 ${output} deg`;
+  $("#place").textContent = withUnit(`P ${place}`, stage.scene.unit);
+  const degrees = (theta2 * DEG).toFixed(1);
+  set(stage.svg, { "aria-valuenow": degrees, "aria-valuetext": `${degrees} degrees` });
+}
+
+function tellTravel(stage, low, high) {
+  set(stage.svg, { "aria-valuemin": (low * DEG).toFixed(1), "aria-valuemax": (high * DEG).toFixed(1) });
+}
