@@ -212,7 +212,7 @@ def unsaved(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(grashof.draw, "save", lambda _, paths: [path.touch() for path in paths])
 
 
-TABLES = {"kinematics.csv", "extremes.csv", "summary.csv", "summary.json", "analysis.json"}
+TABLES = {"kinematics.csv", "extremes.csv", "summary.csv", "summary.json", "analysis.json", "analysis.html"}
 
 
 def pictures(*names: str) -> set[str]:
@@ -270,7 +270,7 @@ def test_a_limited_range_on_the_terminal(grashof: Grashof, tmp_path: Path) -> No
     (tmp_path / "rocker.toml").write_text(text)
     done = grashof("analyse", "rocker.toml")
     assert done.exit_code == 0, done.output
-    assert done.stderr.count("\n") == 2
+    assert done.stderr.count("\n") == 3  # the note, the files, the page to open
     assert "dead positions bound the driver's motion" in done.stderr
     assert "no limit" in done.stdout
     assert "infinite" in (tmp_path / "rocker-analysis" / "summary.json").read_text()

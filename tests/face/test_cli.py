@@ -30,7 +30,7 @@ def test_solve_writes_a_verified_list(grashof: Grashof, tmp_path: Path) -> None:
     assert done.exit_code == 0, done.output
     folder = tmp_path / "luggage-designs"
     drawings = {f"design-0{rank}.{kind}" for rank in (1, 2) for kind in ("png", "svg")}
-    expected = {"candidates.csv", "candidates.json", "run.json"} | drawings
+    expected = {"candidates.csv", "candidates.json", "report.html", "run.json"} | drawings
     assert {path.name for path in folder.iterdir()} == expected
     table = pd.read_csv(folder / "candidates.csv")
     assert 1 <= len(table) <= 12
@@ -48,6 +48,7 @@ def test_solve_writes_a_verified_list(grashof: Grashof, tmp_path: Path) -> None:
     assert record["settings"]["seed"] == 0
     assert record["counts"]["verified and distinct"] >= len(table)
     assert "distinct" in done.stdout
+    assert done.output.splitlines()[-1] == "Open luggage-designs/report.html in a browser to look at it."
     for design, row in zip(designs, table.itertuples(), strict=True):
         for key in ("circuit_ok", "branch_ok", "order_ok", "full_rotation", "pareto"):
             assert design[key] is bool(getattr(row, key))
@@ -73,7 +74,8 @@ def test_second_run_replaces_only_its_own_files(grashof: Grashof, tmp_path: Path
     assert {"notes.txt", "design-99.png", "design-01.png"} <= names
     assert "design-02.png" not in names
     assert grashof("solve", impossible, "--out", out, "--starts", "16").exit_code == 1
-    assert {path.name for path in out.iterdir()} == {"notes.txt", "design-99.png", "nearest.csv", "run.json"}
+    names = {"notes.txt", "design-99.png", "nearest.csv", "report.html", "run.json"}
+    assert {path.name for path in out.iterdir()} == names
 
 
 def test_impossible_problem_names_what_stands_in_the_way(
@@ -182,7 +184,7 @@ def test_help_is_no_error(grashof: Grashof) -> None:
 def test_a_tilde_is_a_name(grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
     assert grashof("solve", "luggage", "--out", "~", "--starts", "8", "--drawings", "1").exit_code == 0
-    names = {"candidates.csv", "candidates.json", "run.json", "design-01.png", "design-01.svg"}
+    names = {"candidates.csv", "candidates.json", "report.html", "run.json", "design-01.png", "design-01.svg"}
     assert {path.name for path in (tmp_path / "~").iterdir()} == names
     assert [path.name for path in tmp_path.iterdir()] == ["~"]
 
@@ -265,7 +267,7 @@ def test_interrupt_while_drawing_leaves_drawings_out(
     monkeypatch.setattr(grashof_draw, "draw_design", interrupted)
     done = grashof("solve", "luggage", "--starts", "16")
     assert done.exit_code == 130
-    names = {"candidates.csv", "candidates.json", "run.json"}
+    names = {"candidates.csv", "candidates.json", "report.html", "run.json"}
     names |= {f"design-0{rank}.{kind}" for rank in (1, 2) for kind in ("png", "svg")}
     folder = tmp_path / "luggage-designs"
     assert {path.name for path in folder.iterdir()} == names
@@ -282,7 +284,7 @@ def test_a_drawing_that_fails_does_not_cost_the_lists(
     monkeypatch.setattr(grashof_draw, "save", fail)
     assert grashof("solve", "luggage", "--starts", "16").exit_code == code
     folder = tmp_path / "luggage-designs"
-    names = {"candidates.csv", "candidates.json", "run.json"}
+    names = {"candidates.csv", "candidates.json", "report.html", "run.json"}
     assert {path.name for path in folder.iterdir()} == names
     assert set(json.loads((folder / "run.json").read_text())["files"]) == names
 

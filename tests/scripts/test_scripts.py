@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import pytest
 
 from grashof import load, synthesize
 
@@ -81,3 +83,18 @@ def test_pictures_of_the_readme_are_made(tmp_path: Path) -> None:
     shown = set(re.findall(r"\]\(docs/([\w.-]+)\)", readme))
     assert {"luggage.png", "luggage.gif", "design-space.png"} < set(made) <= shown
     assert made["luggage.gif"] < 600_000
+
+
+def test_benchmark_of_the_page_measures(tmp_path: Path) -> None:
+    said = run("benchmark_report.py", "--designs", "60", "--runs", "1", cwd=tmp_path)
+    assert "luggage, 60 designs" in said
+    assert float(said.split()[-2]) < 1  # MB
+
+
+@pytest.mark.skipif(
+    not any(map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))),
+    reason="no Chromium on this machine: the picture of the page is not made",
+)
+def test_picture_of_the_page_is_made(tmp_path: Path) -> None:
+    run("report_picture.py", "docs/report.png", cwd=tmp_path)
+    assert (tmp_path / "docs" / "report.png").read_bytes().startswith(b"\x89PNG")

@@ -1,0 +1,202 @@
+"""The pages as files: whole, escaped, small, and with the figures of the lists."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from html import unescape
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import grashof.figure_parts
+from grashof.analysis import Loads, driver_ranges, solve_kinematics, solve_position, virtual_work_torque
+from grashof.analysis.mass import stated_masses
+from grashof.linkage_report import report_on
+from grashof.output import write_run
+from grashof.page import analysis_page, search_page
+from grashof.page.designs import Travel, driver_travel
+from grashof.problems import FourBar, LinkageSpec, PathTask, Problem, load, load_linkage_spec
+from grashof.synth import Result
+
+HOSTILE = "</script><script>alert(1)</script><!-- & \u2028 ' \" {{ 7*7 }}"
+RECORD: dict[str, Any] = {"versions": {"grashof": "0"}, "settings": {"seed": 0, "time_limit": None}}
+ROCKER = FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1))
+
+
+class Parts(HTMLParser):
+    """Tags with their attributes, and the text outside scripts and style."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.text = ""
+        self.data: Any = None
+        self.inside = ""
+        self.feed(page)
+        self.close()
+
+    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attributes)))
+        self.inside = "json" if ("id", "data") in attributes else tag
+
+    def handle_endtag(self, tag: str) -> None:
+        self.inside = ""
+
+    def handle_data(self, data: str) -> None:
+        if self.inside == "json":
+            self.data = json.loads(data)
+        elif self.inside not in ("script", "style"):
+            self.text += data
+
+
+def page_of(result: Result, text: str = "") -> str:
+    return search_page(result, result.to_frame(), RECORD, text)
+
+
+@pytest.fixture(scope="module")
+def hostile(few: Result) -> str:
+    problem = replace(
+        few.problem, title=HOSTILE, source=HOSTILE, name=HOSTILE, length_unit=HOSTILE, dynamics=None
+    )
+    return page_of(replace(few, problem=problem, note=HOSTILE), HOSTILE)
+
+
+def test_what_the_user_wrote_is_text(hostile: str) -> None:
+    parts = Parts(hostile)
+    assert [tag for tag, _ in parts.tags].count("script") == 2
+    assert hostile.count("<script>alert") == 0
+    assert parts.text.count(HOSTILE) >= 5
+    assert parts.data["scene"]["unit"] == HOSTILE
+
+
+@pytest.mark.parametrize("kind", ["search", "analysis"])
+def test_one_file_without_any_other(hostile: str, kind: str) -> None:
+    page = hostile if kind == "search" else analysis_page(report_on(load_linkage_spec("pumpjack")), RECORD)
+    for tag, attributes in Parts(page).tags:
+        assert not {"src", "href", "srcset", "data", "action"} & set(attributes), tag
+        assert tag not in ("link", "iframe", "img", "object")
+    assert set(re.findall(r"\w+://[^\"' ]*", page)) == {"http://www.w3.org/2000/svg"}
+    assert not re.search(r"url\(|@import|fetch\(|XMLHttpRequest|import\(", page)
+
+
+def test_figures_are_those_of_the_list(few: Result, tmp_path: Path) -> None:
+    write_run(tmp_path, few, {"seed": 0}, drawings=0, problem_text="kind = 'motion'")
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    parts = Parts(page)
+    listed = json.loads((tmp_path / "candidates.json").read_text(encoding="utf-8"))["designs"]
+    assert len(parts.data["designs"]) == len(listed) == len(few)
+    for shown, design in zip(parts.data["designs"], listed, strict=True):
+        assert shown["linkage"] == design["linkage"]
+        assert shown["theta2"] == design["theta2"]
+        for key in set(shown["figures"]) & set(design) - {"assembly"}:
+            assert shown["figures"][key] == design[key], key
+    record = json.loads((tmp_path / "run.json").read_text(encoding="utf-8"))
+    assert "report.html" in record["files"]
+    for version in record["versions"].values():
+        assert version in parts.text
+    for name, count in record["counts"].items():
+        assert name.rpartition(": ")[2] in parts.text
+        assert str(count) in parts.text
+    assert "kind = 'motion'" in parts.text
+    assert "transmission at least 15 deg over the task" in parts.text
+
+
+def test_fifty_designs_are_small(few: Result) -> None:
+    fifty = replace(few, candidates=(few.candidates * 5)[:50])
+    assert len(page_of(fifty).encode()) < 500_000
+
+
+def test_colours_are_those_of_the_drawings() -> None:
+    style = Path(grashof.figure_parts.__file__).with_name("page") / "templates" / "page.css"
+    colours = dict(
+        re.findall(r"--([\w-]+): (#\w+)", style.read_text(encoding="utf-8").partition("@media")[0])
+    )
+    for name in ("driver", "coupler", "output", "body", "path", "scene", "ground", "target", "kept_out"):
+        assert colours[name.replace("_", "-")] == getattr(grashof.figure_parts, name.upper())
+
+
+def test_torque_is_that_of_virtual_work(few: Result) -> None:
+    designs = Parts(page_of(few)).data["designs"]
+    spec = few.problem.dynamics
+    assert spec is not None
+    for shown, candidate in zip(designs, few.candidates, strict=True):
+        theta2 = Travel(shown["low"], shown["high"], shown["turns"]).angles()
+        state = solve_kinematics(candidate.linkage, theta2, spec.omega2)
+        masses, still = stated_masses(candidate.linkage, spec), np.zeros((4, len(theta2)))
+        expected = virtual_work_torque(state, masses, Loads(gravity=np.array(spec.gravity)), still)
+        np.testing.assert_allclose(shown["torque"], expected, rtol=1e-4, atol=1e-4 * np.abs(expected).max())
+
+
+def test_travel_holds_the_targets() -> None:
+    low, high = driver_ranges(ROCKER)[0]
+    assert driver_travel(ROCKER, np.array([0.1, 0.2])) == pytest.approx((low, high, False))
+    turned = driver_travel(ROCKER, 2 * np.pi + np.array([0.1, 0.2]))
+    assert turned == pytest.approx((low + 2 * np.pi, high + 2 * np.pi, False))
+    crank = FourBar((0, 0), (4, 0), 1, 4, 3)
+    assert driver_travel(crank, np.array([-0.1, 0.2])) == pytest.approx((-0.1, 2 * np.pi - 0.1, True))
+    angles = Travel(low, high, turns=False).angles()
+    assert np.isfinite(solve_position(ROCKER, angles).theta3).all()
+
+
+def test_an_empty_list_shows_the_closest_miss_as_one(few: Result) -> None:
+    missed = replace(few, candidates=(), nearest=few.candidates[:1], note="nothing fits")
+    frame = few.to_frame().iloc[:1].assign(misses="r3: r3 is 9, allowed is 1 to 8")
+    parts = Parts(search_page(missed, frame, RECORD))
+    assert "No design found." in parts.text
+    assert "Nothing fits." in parts.text
+    assert "Not a design: it misses" in parts.text
+    assert parts.data["designs"][0]["figures"]["misses"] == "r3: r3 is 9, allowed is 1 to 8"
+    assert parts.data["found"] is False
+    assert "Pareto-optimal in" not in parts.text
+
+
+def test_a_search_without_anything_shows_the_task(few: Result) -> None:
+    nothing = replace(few, candidates=(), nearest=(), note="no real dyads")
+    parts = Parts(page_of(nothing))
+    assert parts.data["designs"] == []
+    assert len(parts.data["scene"]["poses"]) == 4
+    assert parts.data["scene"]["body"] is not None
+
+
+def test_the_scene_is_the_problem() -> None:
+    problem = load("path-ellipse")
+    scene = Parts(page_of(Result(problem, (), (), {}, {}, note="none"))).data["scene"]
+    assert scene["points"] == problem.task.positions.tolist()
+    assert scene["regions"] == [{"name": "O2, O4", "x": [-80, 80], "y": [-80, 80]}]
+    assert scene["published"]["label"] == "Lin, GA-DE 2010"
+    gap = np.array(scene["published"]["path"])[:, None] - problem.task.positions
+    assert np.hypot(*np.moveaxis(gap, -1, 0)).min(axis=0).max() < 0.5
+    assert isinstance(problem.task, PathTask)
+    other = Problem(task=PathTask(problem.task.points[1:]), name="path-ellipse")
+    assert Parts(page_of(Result(other, (), (), {}, {}))).data["scene"]["published"] is None
+
+
+def test_an_analysis_shows_every_curve_and_figure() -> None:
+    report = report_on(load_linkage_spec("pumpjack"))
+    page = analysis_page(report, RECORD)
+    parts = Parts(page)
+    shown = [series["values"][0] for panel in parts.data["panels"] for series in panel["series"]]
+    for name in ("kinematics", "dynamics"):
+        for key, values in report.tables[name].drop(columns=["theta2_deg", "omega2"]).items():
+            nearest = min(np.abs(np.array(curve, dtype=float) - values).max() for curve in shown)
+            assert nearest <= 1e-4 * np.abs(values).max() + 1e-12, key
+    text = unescape(parts.text)
+    for fact in report.facts:
+        assert fact.label in text
+    for what in report.tables["extremes"]["what"]:
+        assert what in text
+
+
+def test_ranges_of_an_analysis_are_apart() -> None:
+    double = FourBar((0, 0), (4, 0), 3, 1, 3, (0.5, 1))
+    report = report_on(LinkageSpec(double, "double", title=HOSTILE))
+    parts = Parts(analysis_page(report, RECORD))
+    assert [(each["low"], each["high"]) for each in parts.data["designs"]] == list(report.ranges)
+    for angles, (low, high) in zip(parts.data["theta2"], report.ranges, strict=True):
+        assert (angles[0], angles[-1]) == pytest.approx((np.degrees(low), np.degrees(high)))
+    assert HOSTILE in parts.text
