@@ -17,7 +17,6 @@ _SCRIPTS = ("linkage.js", "svg.js", "stage.js", "player.js", "curves.js", "analy
 _POINTS = ("a", "b", "p")
 _JOINTS = {"f12": "O2", "f32": "A", "f43": "B", "f14": "O4"}
 _EXTREMES = (("min", "least"), ("theta2_min_deg", "at θ2"), ("max", "largest"), ("theta2_max_deg", "at θ2"))
-_REAL_TIME = 120.0  # rpm: what turns faster cannot be watched
 
 
 def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
@@ -80,7 +79,7 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         extreme_columns=[label for _, label in _EXTREMES],
         many="range" in report.tables["extremes"],
         record=record,
-        real_time=abs(report.speed_rpm) if 0 < abs(report.speed_rpm) <= _REAL_TIME else None,
+        speed_rpm=abs(report.speed_rpm),
     )
 
 

@@ -12,7 +12,6 @@ from grashof.page.columns import Column, figure_units, listed
 from grashof.page.designs import designs_of, driver_travel
 from grashof.page.render import render
 from grashof.page.scene import scene_of
-from grashof.problems import Problem
 from grashof.problems.checks import counted
 from grashof.synth import Result
 from grashof.terminal import goals, summary
@@ -23,7 +22,6 @@ _SCRIPTS = (
 )  # fmt: skip
 # How a count of the record is headed; the rest come first.
 _OUTCOMES = {"rejected: ": "Rejected, by the first requirement missed", "solver: ": "Ipopt ended with"}
-_REAL_TIME = 120.0  # rpm: what turns faster cannot be watched
 
 
 def search_page(result: Result, frame: pd.DataFrame, record: Mapping[str, Any], text: str = "") -> str:
@@ -79,7 +77,7 @@ def search_page(result: Result, frame: pd.DataFrame, record: Mapping[str, Any], 
         seconds={stage: f"{time:.2f}" for stage, time in result.seconds.items()},
         record=record,
         text=text,
-        real_time=_real_time(problem),
+        speed_rpm=None if problem.dynamics is None else problem.dynamics.speed_rpm,
     )
 
 
@@ -115,9 +113,3 @@ def _counts(counts: Mapping[str, int]) -> list[tuple[str, list[tuple[str, int]]]
         mark = next((mark for mark in _OUTCOMES if name.startswith(mark)), "")
         tables[_OUTCOMES.get(mark, "Counted")].append((name.removeprefix(mark), count))
     return [(heading, rows) for heading, rows in tables.items() if rows]
-
-
-def _real_time(problem: Problem) -> float | None:
-    """Speed of the driver in rpm where one is stated that can be watched."""
-    speed = None if problem.dynamics is None else problem.dynamics.speed_rpm
-    return speed if speed is not None and speed <= _REAL_TIME else None

@@ -94,8 +94,8 @@ class SearchPage {
     const pareto = figures.pareto && found ? ", Pareto-optimal" : "";
     $("#about").textContent = `${id}, ${figures.grashof_class}${pareto}`;
     $("#named").textContent = $("#chosen").textContent.toLowerCase();
-    if (found) $("#rank").textContent = figures.rank;
-    else $("#misses").textContent = figures.misses;
+    for (const node of $$("[data-rank]")) node.textContent = figures.rank;
+    if (!found) $("#misses").textContent = figures.misses;
     const known = this.units.filter(([key]) => figures[key] !== null);
     const lines = known.map(([key, unit]) => {
       const line = document.createElement("div");
