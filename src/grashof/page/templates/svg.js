@@ -1,4 +1,4 @@
-// Small helpers: elements, paths, round numbers for axes, numbers as text.
+// Small functions: elements, paths, round numbers for axes, numbers as text.
 const $ = (selector, root = document) => root.querySelector(selector);
 const $$ = (selector, root = document) => [...root.querySelectorAll(selector)];
 
