@@ -13,9 +13,9 @@ from grashof.problems.errors import (
 from grashof.problems.files import catalogue, load, load_with_text, problem_text
 from grashof.problems.linkage import FourBar
 from grashof.problems.linkage_file import (
-    LinkageDynamics,
     LinkageSpec,
     linkage_catalogue,
+    linkage_text,
     load_linkage,
     load_linkage_spec,
 )
@@ -34,7 +34,6 @@ __all__ = [
     "FourBar",
     "GrashofError",
     "GrashofWarning",
-    "LinkageDynamics",
     "LinkageSpec",
     "Manufacturing",
     "MotionTask",
@@ -51,6 +50,7 @@ __all__ = [
     "TransmissionOver",
     "catalogue",
     "linkage_catalogue",
+    "linkage_text",
     "load",
     "load_linkage",
     "load_linkage_spec",

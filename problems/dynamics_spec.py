@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from grashof.problems.checks import finite_number
+from grashof.problems.checks import finite_number, positive_number
 from grashof.problems.errors import ProblemError
 
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048}
@@ -17,7 +18,7 @@ Triple = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True, init=False)
 class DynamicsSpec:
-    """Masses, speed and gravity; kg, s and the problem's length unit.
+    """Masses, speed and gravity, of a problem or of one linkage; kg, s and its length unit.
 
     Parameters
     ----------
@@ -29,14 +30,15 @@ class DynamicsSpec:
     payload : float, kg
         Carried at P, as a point.
     speed_rpm : float
-        Of the driver, in the sense that the task asks for; 1 rad/s by default.
+        Of the driver; 1 rad/s by default. Of a linkage counter-clockwise; of a problem greater than
+        zero, in the sense that the task asks for.
     gravity : two floats, m/s^2
         In metres whatever the length unit; none by default.
 
     Raises
     ------
     ProblemError
-        Numbers that are not finite, negative masses, or links whose masses are said twice or not at all.
+        Numbers that are not finite, negative masses, or links whose masses are said twice or by half.
 
     Examples
     --------
@@ -65,24 +67,40 @@ class DynamicsSpec:
             raise ProblemError(
                 "dynamics.mass_per_length does not go with masses and inertias; allowed is one or the other"
             )
-        if mass_per_length is None and masses is None and inertias is None:
-            raise ProblemError(
-                "dynamics does not say what the links weigh; "
-                "mass_per_length is needed, or masses and inertias"
-            )
-        for name, given in (("masses", masses), ("inertias", inertias)):
-            if given is None and mass_per_length is None:
-                raise ProblemError(f"dynamics.{name} is missing; masses and inertias are needed together")
+        if (masses is None) != (inertias is None):
+            absent = "masses" if masses is None else "inertias"
+            raise ProblemError(f"dynamics.{absent} is missing; masses and inertias are needed together")
         if mass_per_length is not None:
-            mass_per_length = _above_zero(mass_per_length, "dynamics.mass_per_length")
+            mass_per_length = positive_number(mass_per_length, "dynamics.mass_per_length")
         object.__setattr__(self, "mass_per_length", mass_per_length)
         object.__setattr__(self, "masses", _triple(masses, "dynamics.masses"))
         object.__setattr__(self, "inertias", _triple(inertias, "dynamics.inertias"))
         if self.masses is not None and not any(self.masses):
             raise ProblemError("dynamics.masses are all zero; one at least has a mass")
         object.__setattr__(self, "payload", _from_zero(payload, "dynamics.payload"))
-        object.__setattr__(self, "speed_rpm", _above_zero(speed_rpm, "dynamics.speed_rpm"))
+        object.__setattr__(self, "speed_rpm", finite_number(speed_rpm, "dynamics.speed_rpm"))
         object.__setattr__(self, "gravity", _numbers(gravity, 2, "dynamics.gravity"))
+
+    @property
+    def stated(self) -> dict[str, Any]:
+        """The arguments that give this value, without those that are not said: a file's table."""
+        every = {name: getattr(self, name) for name in self.__slots__}
+        return {name: value for name, value in every.items() if value is not None}
+
+    def turning(self, direction: int) -> DynamicsSpec:
+        """The dynamics of a linkage whose driver turns counter-clockwise (+1) or clockwise (-1).
+
+        Examples
+        --------
+        >>> DynamicsSpec(payload=1.0, speed_rpm=20).turning(-1).speed_rpm
+        -20.0
+        """
+        return replace(self, speed_rpm=direction * abs(self.speed_rpm))
+
+    @property
+    def has_masses(self) -> bool:
+        """Whether the links or the payload have a mass."""
+        return self.mass_per_length is not None or self.masses is not None or self.payload > 0
 
     @property
     def omega2(self) -> float:
@@ -130,11 +148,4 @@ def _from_zero(value: float, where: str) -> float:
     number = finite_number(value, where)
     if number < 0:
         raise ProblemError(f"{where} is {number:.15g}; allowed is a number from zero")
-    return number
-
-
-def _above_zero(value: float, where: str) -> float:
-    number = finite_number(value, where)
-    if number <= 0:
-        raise ProblemError(f"{where} is {number:.15g}; allowed is a number greater than zero")
     return number

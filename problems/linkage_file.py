@@ -1,7 +1,4 @@
-"""Linkage files: one four-bar as TOML, the catalogue of real ones, and designs out of a candidates list.
-
-The table `[dynamics]` is read here by itself; it is to share its reader with that of problem files.
-"""
+"""Linkage files: one four-bar as TOML, the catalogue of real ones, and designs out of a candidates list."""
 
 from __future__ import annotations
 
@@ -16,43 +13,9 @@ from typing import Any
 
 from grashof.problems.checks import near_miss
 from grashof.problems.display import Displayed
+from grashof.problems.dynamics_spec import DynamicsSpec
 from grashof.problems.errors import ProblemError
 from grashof.problems.linkage import FourBar
-
-# Metres in each unit that [dynamics] knows.
-METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048}
-Triple = tuple[float, float, float]
-
-
-@dataclass(frozen=True, slots=True)
-class LinkageDynamics:
-    """What a linkage file says about speed and masses; in the file's length unit, kg and s.
-
-    Parameters
-    ----------
-    speed_rpm : float
-        Of the driver, counter-clockwise.
-    gravity : pair of float, m/s2
-        Whatever the length unit.
-    mass_per_length : float, kg/length, optional
-        Of all links, as uniform bars.
-    masses, inertias : triple of float, kg and kg length^2, optional
-        Of links 2, 3 and 4, about centres halfway between the joints.
-    payload : float, kg
-        Carried at P.
-    """
-
-    speed_rpm: float | None = None
-    gravity: tuple[float, float] = (0.0, 0.0)
-    mass_per_length: float | None = None
-    masses: Triple | None = None
-    inertias: Triple | None = None
-    payload: float = 0.0
-
-    @property
-    def has_masses(self) -> bool:
-        """Whether any link or payload has a mass."""
-        return self.mass_per_length is not None or self.masses is not None or self.payload > 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +29,8 @@ class LinkageSpec(Displayed):
     output_arm : float, length, optional
         Radius about O4 of what the output link drives, such as a horsehead: its stroke and torque
         factor are told.
-    dynamics : LinkageDynamics, optional
+    dynamics : DynamicsSpec, optional
+        It need not say masses.
     """
 
     linkage: FourBar
@@ -75,7 +39,7 @@ class LinkageSpec(Displayed):
     source: str = ""
     length_unit: str = ""
     output_arm: float | None = None
-    dynamics: LinkageDynamics | None = None
+    dynamics: DynamicsSpec | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,9 +110,8 @@ def load_linkage_spec(linkage: str | os.PathLike[str]) -> LinkageSpec:
     if text.endswith(".json"):
         raise ProblemError(f"{text}: is a list of designs; allowed is {text}#1 for the first of them")
     if isinstance(linkage, str) and not _looks_like_path(text):
-        files = _catalogue_files()
-        if text in files:
-            return _parsed(files[text].read_text(encoding="utf-8"), f"{text}.toml", text)
+        if text in _catalogue_files():
+            return _parsed(linkage_text(text), f"{text}.toml", text)
         # Path.exists raises for names that no file can have; this says False.
         if not text or not os.path.exists(text):  # noqa: PTH110
             raise ProblemError(f"{text!r} is no linkage of the catalogue and no file; {_hint(text)}")
@@ -196,6 +159,25 @@ def linkage_catalogue() -> tuple[str, ...]:
     ('lufkin-c912d', 'pumpjack')
     """
     return tuple(sorted(_catalogue_files()))
+
+
+def linkage_text(name: str) -> str:
+    """Linkage of the catalogue as TOML, to copy and change.
+
+    Raises
+    ------
+    ProblemError
+        No linkage of the catalogue has this name.
+
+    Examples
+    --------
+    >>> print(linkage_text("pumpjack").splitlines()[3])
+    length_unit = "m"
+    """
+    files = _catalogue_files()
+    if name not in files:
+        raise ProblemError(f"{name!r} is no linkage of the catalogue; {_hint(name)}")
+    return files[name].read_text(encoding="utf-8")
 
 
 def _catalogue_files() -> dict[str, Traversable]:
@@ -267,16 +249,18 @@ def _candidate(path: Path, rank: str) -> tuple[LinkageSpec, dict[str, Any]]:
     try:
         given: dict[str, Any] = {key: design["linkage"][key] for key in _LINKAGE_KEYS}
         linkage = FourBar(**given)
+        driven = DynamicsSpec(**content.get("dynamics", {})).turning(design["direction"])
     except ProblemError as error:
         raise ProblemError(f"{where}: {error}") from None
     except (KeyError, TypeError):
         raise ProblemError(
-            f"{where}: states no linkage; allowed are the keys {', '.join(_LINKAGE_KEYS)}"
+            f"{where}: states no linkage and direction; allowed are the keys {', '.join(_LINKAGE_KEYS)}"
         ) from None
     if linkage.shape:
         raise ProblemError(f"{where}: states a batch; allowed is one linkage")
     stem = f"{path.parent.name or path.stem}-{int(rank)}"
-    return LinkageSpec(linkage, stem, f"{title}: design {int(rank)}", str(path), unit), design
+    heading = f"{title}: design {int(rank)}"
+    return LinkageSpec(linkage, stem, heading, str(path), unit, dynamics=driven), design
 
 
 def _errors(given: list[float | None]) -> tuple[float | None, ...]:

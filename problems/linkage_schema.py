@@ -9,10 +9,11 @@ from pydantic import AfterValidator, BaseModel, Field, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from grashof.problems.checks import counted, finite_number, near_miss
+from grashof.problems.dynamics_spec import metres
 from grashof.problems.errors import ProblemError
 from grashof.problems.linkage import FourBar
-from grashof.problems.linkage_file import METRES, LinkageDynamics, LinkageSpec
-from grashof.problems.schema import _described, _listed, _path, _Table
+from grashof.problems.linkage_file import LinkageSpec
+from grashof.problems.schema import DynamicsTable, _described, _listed, _path, _Table
 
 
 def linkage_from(document: dict[str, Any], name: str) -> LinkageSpec:
@@ -61,46 +62,6 @@ def _of_length(count: int, allowed: str) -> AfterValidator:
 
 
 Point = Annotated[list[float], _listed("[x, y]"), _of_length(2, "[x, y]")]
-Three = Annotated[
-    list[float],
-    _listed("three numbers, for links 2, 3 and 4"),
-    _of_length(3, "three numbers, for links 2, 3 and 4"),
-]
-
-
-class DynamicsTable(_Table):
-    """The table `[dynamics]`."""
-
-    speed_rpm: float | None = None
-    gravity: Point = Field(default=[0.0, 0.0])
-    mass_per_length: float | None = None
-    masses: Three | None = None
-    inertias: Three | None = None
-    payload: float = 0.0
-
-    def value(self) -> LinkageDynamics:
-        """What the table states."""
-        if (self.masses is None) != (self.inertias is None):
-            absent = "masses" if self.masses is None else "inertias"
-            raise ProblemError(f"dynamics.{absent} is missing; masses and inertias go together")
-        if self.masses is not None and self.mass_per_length is not None:
-            raise ProblemError("dynamics.mass_per_length is given besides masses; allowed is one of them")
-        for key in ("mass_per_length", "payload", "masses", "inertias"):
-            given = getattr(self, key)
-            for number in given if isinstance(given, list) else [] if given is None else [given]:
-                if finite_number(number, f"dynamics.{key}") < 0:
-                    raise ProblemError(f"dynamics.{key} is {given}; allowed are numbers from zero")
-        if self.speed_rpm is not None:
-            finite_number(self.speed_rpm, "dynamics.speed_rpm")
-        x, y = (finite_number(part, "dynamics.gravity") for part in self.gravity)
-        return LinkageDynamics(
-            speed_rpm=self.speed_rpm,
-            gravity=(x, y),
-            mass_per_length=self.mass_per_length,
-            masses=_triple(self.masses),
-            inertias=_triple(self.inertias),
-            payload=self.payload,
-        )
 
 
 class LinkageTable(_Table):
@@ -126,10 +87,8 @@ class LinkageTable(_Table):
         """The linkage itself, checked with what belongs to it."""
         if self.output_arm is not None and finite_number(self.output_arm, "output_arm") <= 0:
             raise ProblemError(f"output_arm is {self.output_arm:g}; allowed are lengths greater than zero")
-        if self.dynamics is not None and self.dynamics.value().has_masses and self.length_unit not in METRES:
-            raise ProblemError(
-                f"length_unit is {self.length_unit!r}; allowed with masses is one of {', '.join(METRES)}"
-            )
+        if self.dynamics is not None and self.dynamics.value().has_masses:
+            metres(self.length_unit)  # refuses one that is not known
         linkage = FourBar(
             o2=self.o2,
             o4=self._o4(),
@@ -181,10 +140,3 @@ def _said(error: ErrorDetails) -> str:
     homes = (name for name, other in _TABLES.items() if key in other.model_fields)
     meant = near_miss(key, keys) or next((f"{home}.{key}".lstrip(".") for home in homes), None)
     return f"{path} is unknown; " + (f"did you mean {meant}?" if meant else f"allowed are {', '.join(keys)}")
-
-
-def _triple(values: list[float] | None) -> tuple[float, float, float] | None:
-    if values is None:
-        return None
-    second, third, fourth = values
-    return second, third, fourth

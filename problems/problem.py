@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import reprlib
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from grashof.problems.checks import FloatArray, finite_number, outline, whole_number
+from grashof.problems.checks import FloatArray, finite_number, outline, positive_number, whole_number
 from grashof.problems.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.errors import ProblemError
 from grashof.problems.manufacturing import Manufacturing
@@ -25,14 +26,18 @@ class Objective:
         Weight of the worst transmission angle, as a share of 90 deg.
     compactness : float
         Weight of the (small) size of the linkage in its motion, in sizes of the task.
+    torque : float
+        Weight of the (small) peak of the drive torque over the motion used, in reference torques of
+        the problem; it needs dynamics.
     """
 
     transmission: float = 1.0
     compactness: float = 0.0
+    torque: float = 0.0
 
     def __post_init__(self) -> None:
-        weights = (self.transmission, self.compactness)
-        for name, weight in zip(("transmission", "compactness"), weights, strict=True):
+        weights = (self.transmission, self.compactness, self.torque)
+        for name, weight in zip(self.__slots__, weights, strict=True):
             if finite_number(weight, f"objective.maximise.{name}") < 0:
                 raise ProblemError(f"objective.maximise.{name} is {weight:g}; allowed is a weight from 0")
         if sum(weights) <= 0:
@@ -120,7 +125,37 @@ class Problem:
             raise ProblemError(f"scene.outlines is {self.outlines!r}; allowed is a list of outlines")
         if self.dynamics is not None:
             metres(self.length_unit)  # refuses one that is not known
+            positive_number(self.dynamics.speed_rpm, "dynamics.speed_rpm")
+            if not self.dynamics.has_masses:
+                raise ProblemError(
+                    "dynamics has no mass; mass_per_length is needed, masses and inertias, or payload"
+                )
+        elif self.objective.torque > 0:
+            raise ProblemError("dynamics is missing; objective.maximise asks for the torque")
+        if self.objective.torque > 0 and not self.requirements.same_branch:
+            raise ProblemError(
+                "requirements.same_branch is false; allowed is true when objective.maximise asks for torque"
+            )
         checked = tuple(
             outline(corners, f"scene.outlines[{index}]") for index, corners in enumerate(self.outlines)
         )
         object.__setattr__(self, "outlines", checked)
+
+    @property
+    def reference_torque(self) -> float:
+        """What the objective counts the torque in, N m; it depends on the problem alone.
+
+        M S (g + omega2^2 S): the mass of links and payload, held and turned at a radius of the task's
+        size S. `mass_per_length` counts as one bar of length S.
+
+        Raises
+        ------
+        ProblemError
+            The problem has no dynamics.
+        """
+        spec = self.dynamics
+        if spec is None:
+            raise ProblemError("dynamics is missing; without masses there is no torque")
+        size = self.task.size * metres(self.length_unit)
+        mass = (spec.mass_per_length or 0.0) * self.task.size + sum(spec.masses or ()) + spec.payload
+        return mass * size * (math.hypot(*spec.gravity) + spec.omega2**2 * size)

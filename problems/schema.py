@@ -8,7 +8,6 @@ from __future__ import annotations
 import json
 import re
 import reprlib
-from collections.abc import Sequence
 from typing import Annotated, Any, Self
 
 from pydantic import (
@@ -68,9 +67,8 @@ def problem_from(document: dict[str, Any], name: str) -> Problem:
     raise ProblemError(_message(errors))
 
 
-# What a validator of this module says about a value: the message of either is what is allowed instead.
+# What a validator of this module says about a value: its message is what is allowed instead.
 _WRONG = "wrong"
-_UNSUPPORTED = "unsupported"
 
 
 def _listed(allowed: str) -> BeforeValidator:
@@ -84,12 +82,12 @@ def _listed(allowed: str) -> BeforeValidator:
     return BeforeValidator(refuse)
 
 
-def _one_of(supported: Sequence[str], later: Sequence[str]) -> AfterValidator:
-    """Validator of a word: one of those supported; those of a later version are refused by name."""
+def _one_of(*words: str) -> AfterValidator:
+    """Validator of a word: one of those given."""
 
     def refuse(word: str) -> str:
-        if word not in supported:
-            raise PydanticCustomError(_UNSUPPORTED if word in later else _WRONG, " or ".join(supported))
+        if word not in words:
+            raise PydanticCustomError(_WRONG, f"{', '.join(words[:-1])} or {words[-1]}")
         return word
 
     return AfterValidator(refuse)
@@ -219,15 +217,16 @@ class RequirementsTable(_Table):
 class WeightsTable(_Table):
     transmission: float = 0.0
     compactness: float = 0.0
+    torque: float = 0.0
 
 
 Maximise = Annotated[
-    Annotated[str, _one_of(("transmission", "compactness"), later=("torque",)), Tag("<word>")]
+    Annotated[str, _one_of("transmission", "compactness", "torque"), Tag("<word>")]
     | Annotated[WeightsTable, Tag("<table>")],
     Discriminator(
         lambda value: "<table>" if isinstance(value, WeightsTable) else _tag(value),
         custom_error_type=_WRONG,
-        custom_error_message="transmission, compactness or a table of weights",
+        custom_error_message="transmission, compactness, torque or a table of weights",
     ),
 ]
 
@@ -237,8 +236,8 @@ class ObjectiveTable(_Table):
 
     def value(self) -> Objective:
         if isinstance(self.maximise, WeightsTable):
-            return Objective(self.maximise.transmission, self.maximise.compactness)
-        return Objective(float(self.maximise == "transmission"), float(self.maximise == "compactness"))
+            return Objective(**dict(self.maximise))
+        return Objective(**{name: float(name == self.maximise) for name in WeightsTable.model_fields})
 
 
 class ManufacturingTable(_Table):
@@ -273,7 +272,7 @@ class SearchTable(_Table):
 
 
 class ProblemFile(_Table):
-    kind: Annotated[str, _one_of(("motion", "path"), later=())]
+    kind: Annotated[str, _one_of("motion", "path")]
     title: str = ""
     source: str = ""
     length_unit: str = ""
@@ -331,12 +330,6 @@ _TABLES: dict[str, type[_Table]] = {
     "search": SearchTable,
 }
 
-# Keys of the contract that are not built yet. They are no fields of the tables above, so that a table
-# holds only what does something.
-_LATER = {
-    "objective.maximise.torque",
-}
-
 _ALLOWED = {
     "float_type": "a number",
     "int_type": "a whole number",
@@ -364,14 +357,11 @@ def _described(error: ErrorDetails) -> str:
         # A value type names its key from the top of the file; a box cannot know whose it is.
         return text if text.startswith(path) else f"{path}.{text}"
     allowed = _ALLOWED.get(kind, error["msg"])
-    unsupported = ", which is not supported by this version" if kind == _UNSUPPORTED else ""
-    return f"{path} is {_shown(error['input'])}{unsupported}; allowed is {allowed}"
+    return f"{path} is {_shown(error['input'])}; allowed is {allowed}"
 
 
 def _unknown(location: tuple[int | str, ...]) -> str:
     path, table, key = _path(location), _path(location[:-1]), str(location[-1])
-    if path in _LATER:
-        return f"{path} is not supported by this version"
     keys = list(_TABLES[table].model_fields)
     # A key under the wrong heading; x and y of a box say nothing about where they belong.
     homes = (name for name, other in _TABLES.items() if key in other.model_fields and other is not BoxTable)

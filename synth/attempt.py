@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.analysis import verify
+from grashof.analysis.over_task import torque_peak
 from grashof.problems import ProblemError
 from grashof.problems.checks import ComplexArray
 from grashof.synth.burmester import Dyads, polish
@@ -143,7 +144,8 @@ def _candidate(
     except ProblemError:  # two pivots coincide
         return None
     verdict = verify(linkage, setup.problem.task, setup.problem.requirements, setup.constraints)
-    return Candidate(linkage, verdict, number, iterations, cognate_of)
+    torque = torque_peak(linkage, setup.problem, verdict) if verdict.ok else np.nan
+    return Candidate(linkage, verdict, number, iterations, cognate_of, torque)
 
 
 def _cognates(setup: Setup, candidate: Candidate) -> tuple[Candidate, ...]:

@@ -12,6 +12,7 @@ from grashof.synth.finds import GROUPS, Finds
 from grashof.synth.result import weigh
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
+from grashof.synth.torque import SCREENED, torque_peaks
 
 POOL = 6000  # finds among which starts are picked
 PEAKS, PEAK_SPACING = 8, 0.25
@@ -28,8 +29,10 @@ def feasible_starts(setup: Setup, finds: Finds, enough: int) -> list[Start]:
     """
     if not len(finds):
         return []
-    finds = finds[_pool(_merit(setup, finds))]
-    merit, signatures = _merit(setup, finds), _signatures(setup, finds)
+    every = merits(setup, finds)
+    pool = _pool(every)
+    finds, merit = finds[pool], every[pool]
+    signatures = _signatures(setup, finds)
     spacing = PEAK_SPACING if setup.exact else MISS_SPACING
     peaks = pick_apart(signatures, merit, spacing, PEAKS)
     free = [Start.of_find(finds, int(index), setup.problem.objective) for index in peaks]
@@ -122,7 +125,7 @@ def _signatures(setup: Setup, finds: Finds) -> FloatArray:
     return signature(setup.linkages(finds.points, finds.assembly), origin)
 
 
-def _merit(setup: Setup, finds: Finds) -> FloatArray:
+def merits(setup: Setup, finds: Finds) -> FloatArray:
     """Score of each find; its size is that of a box around what is known of it at the first target."""
     if not setup.exact:
         return -finds.error
@@ -130,4 +133,8 @@ def _merit(setup: Setup, finds: Finds) -> FloatArray:
     size = np.zeros(len(finds))
     if objective.compactness > 0:
         size = np.hypot(np.ptp(finds.points.real, axis=1), np.ptp(finds.points.imag, axis=1))
-    return weigh(objective, finds.transmission, size)
+    if not objective.torque:
+        return weigh(objective, finds.transmission, size)
+    ways = finds.theta2, finds.direction, finds.assembly
+    torque = torque_peaks(setup.problem, finds.points, *ways, SCREENED)
+    return weigh(objective, finds.transmission, size, torque)

@@ -27,7 +27,7 @@ def cognate_points(points: ComplexArray, timed: bool) -> list[ComplexArray]:
     Notes
     -----
     The third ground pivot makes O2-O4-O6 similar to A-B-P; parallelograms carry the rest (Roberts
-    1875, Chebyshev 1878; Norton, *Design of Machinery*, sec. 3.8).
+    1875, Chebyshev 1878; Norton, *Design of Machinery*, ch. 3, "Cognates").
     """
     o2, o4, a, b, p = points
     k = (p - a) / (b - a)

@@ -22,7 +22,7 @@ from grashof.synth.burmester import (
     radius_error,
     trace_four_pose_curves,
 )
-from grashof.synth.choose import feasible_starts, mended_starts
+from grashof.synth.choose import feasible_starts, mended_starts, merits
 from grashof.synth.choose import relaxed_starts as relaxed
 from grashof.synth.five_poses import five_pose_dyads, five_pose_guides
 from grashof.synth.own import screened
@@ -94,7 +94,7 @@ def rounds(setup: Setup, enough: int, rng: np.random.Generator) -> Iterator[Roun
     pairs = screened(setup, screen(motion, body, dyads, setup.wanted, most))
     feasible = pairs[pairs.feasible]
     if settled:
-        chosen = np.argsort(-pairs.transmission, kind="stable")
+        chosen = np.argsort(-merits(setup, pairs), kind="stable")
         starts = [Start.of_find(pairs, int(index), setup.problem.objective) for index in chosen]
     else:
         starts = feasible_starts(setup, feasible, enough)

@@ -13,6 +13,8 @@ from grashof.synth.setup import Setup
 from grashof.synth.start import Start
 
 BOXES = ("o2", "o4", "a", "b")
+LOADS = 10  # numbers that drive the torque
+STEPS = 24  # in every half turn, between driver angles at which the torque is bounded
 PLANES = 4  # half-planes that bound a free region
 
 
@@ -38,6 +40,10 @@ class Form:
         Transmission is judged over the task, not over the turn.
     ratio, box_a, box_b, compact : bool
         Whether these requirements, and the size, have a part in it.
+    torque : int
+        At how many driver angles the torque is bounded; 0 where it has no part in it.
+    closed : bool
+        The motion used is a whole turn.
     keep_out : tuple of str
         Of o2, o4, a, b, p: which are held in free regions, the moving ones at every target.
     stay : bool
@@ -59,6 +65,8 @@ class Form:
     box_a: bool
     box_b: bool
     compact: bool
+    torque: int
+    closed: bool
     keep_out: tuple[str, ...]
     stay: bool
     elastic: bool
@@ -70,6 +78,7 @@ class Form:
         turn_weights = np.zeros(len(setup.targets)) if setup.turn_weights is None else setup.turn_weights
         low = min(limits[0] for limits in wanted.link_lengths)
         high = max(limits[1] for limits in wanted.link_lengths)
+        plain = start.stay or bool(start.relaxed) or not setup.exact
         return cls(
             targets=len(start.visit),
             poses=setup.motion is not None,
@@ -84,6 +93,8 @@ class Form:
             box_a=wanted.a != Box() and wanted.a is not None,
             box_b=wanted.b != Box() and wanted.b is not None,
             compact=start.objective.compactness > 0 and not start.stay and setup.exact,
+            torque=0 if plain or start.objective.torque == 0 else _grid_size(start, closed),
+            closed=closed,
             keep_out=_held(setup),
             stay=start.stay,
             elastic=bool(start.relaxed),
@@ -92,6 +103,12 @@ class Form:
     def places_of(self, name: str) -> int:
         """At how many places a point is held in free regions."""
         return 1 if name in ("o2", "o4") else self.targets
+
+
+def _grid_size(start: Start, closed: bool) -> int:
+    """At how many driver angles the torque is bounded."""
+    long = closed or abs(start.theta2[-1] - start.theta2[0]) > np.pi
+    return (2 if long else 1) * STEPS + 1
 
 
 def _held(setup: Setup) -> tuple[str, ...]:
@@ -125,6 +142,8 @@ class Unknowns:
             sizes |= {"body_angle": 1}
         if form.compact:
             sizes |= {"low": 2, "high": 2}
+        if form.torque:
+            sizes |= {"peak": 1}
         if form.elastic:
             sizes |= {"slack": 1}
         parts = {name: ca.SX.sym(name, size) for name, size in sizes.items()}
@@ -154,6 +173,7 @@ class Given:
     ratio: ca.SX
     least_transmission: ca.SX
     weights: ca.SX
+    load: ca.SX
     error_scale: ca.SX
     arms: ca.SX
     lengths: ca.SX
@@ -173,7 +193,7 @@ class Given:
             "rotation": 2 * n, "shift": 2 * n, "targets": 2 * n, "turns": n,
             "square_weights": 2 * n, "timing": n, "at_first": n, "body": 2,
             "direction": 1, "assembly": 1, "longer": 1, "margin": 1, "ratio": 1, "least_transmission": 1,
-            "weights": 2, "error_scale": 1, "arms": 2, "lengths": 8, "start": 8, "angles": 2,
+            "weights": 3, "load": LOADS, "error_scale": 1, "arms": 2, "lengths": 8, "start": 8, "angles": 2,
             "relaxed": len(GROUPS), "origin": 2, "scale": 1,
             "planes": 3 * PLANES * sum(map(form.places_of, form.keep_out)), "boxes": 16,
         }  # fmt: skip

@@ -27,6 +27,7 @@ from grashof.synth.finds import GROUPS
 from grashof.synth.form import Form, Given, Unknowns
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
+from grashof.synth.torque import loads, torque_bound, torque_peaks
 
 FAR = 1e3  # sizes: stands for "no limit"
 INSET = 1e-8  # sizes, rad: limits are tightened by this much, so that the polished design keeps them
@@ -50,6 +51,8 @@ class Solve:
     status : str
         Ipopt's return status.
     iterations : int
+    torque : float
+        The greatest at the grid as the programme has it, in reference torques; NaN where it has no part.
     """
 
     points: tuple[complex, complex, complex, complex, complex]
@@ -58,6 +61,7 @@ class Solve:
     body_angle: float
     status: str
     iterations: int
+    torque: float = np.nan
 
 
 def solve(setup: Setup, start: Start, max_iter: int = 150) -> Solve:
@@ -100,6 +104,7 @@ def solve(setup: Setup, start: Start, max_iter: int = 150) -> Solve:
         body_angle=body_angle,
         status=str(stats["return_status"]),
         iterations=int(stats["iter_count"]),
+        torque=float(x[-1]) * _torque(form, setup, start) if form.torque else np.nan,
     )
 
 
@@ -140,6 +145,8 @@ def _programme(form: Form, max_iter: int, constraints: tuple[Constraint, ...]) -
     cost = -given.weights[0] * unknown["tau"] / (np.pi / 2)
     if form.compact:
         cost += given.weights[1] * diagonal(rows, unknown, places)
+    if form.torque:
+        cost += given.weights[2] * torque_bound(rows, form, given, unknown, places)
     if not form.exact:  # the error comes first; the rest only settles what the error leaves open
         cost = given.error_scale * square(form, given, unknown, places) - 1e-8 * unknown["tau"]
     if form.stay:
@@ -152,6 +159,7 @@ def _programme(form: Form, max_iter: int, constraints: tuple[Constraint, ...]) -
     options: dict[str, Any] = {
         "print_time": False,
         "show_eval_warnings": False,
+        "calc_lam_p": False,
         "ipopt": {**_IPOPT, "max_iter": max_iter},
     }
     solver = ca.nlpsol("four_bar", "ipopt", programme, options)
@@ -161,6 +169,8 @@ def _programme(form: Form, max_iter: int, constraints: tuple[Constraint, ...]) -
 def _parameters(form: Form, setup: Setup, start: Start) -> FloatArray:
     wanted, visit = setup.wanted, list(start.visit)
     r1, r2, _, _ = start.lengths
+    torque, best = _torque(form, setup, start), start.objective
+    weights = np.array([best.transmission, best.compactness, best.torque * torque])
     longer = {Rotatability.CRANK_ROCKER: 1.0, Rotatability.DOUBLE_CRANK: -1.0}
     none = np.zeros(form.targets, dtype=np.complex128)
     corners = []
@@ -181,7 +191,8 @@ def _parameters(form: Form, setup: Setup, start: Start) -> FloatArray:
         [longer.get(wanted.rotatability, 1.0 if r1 > r2 else -1.0)],
         [wanted.rotatability_margin + INSET, wanted.link_ratio_max],
         [np.radians(wanted.transmission_min_deg)],
-        [start.objective.transmission, start.objective.compactness],
+        weights / weights.sum(),
+        loads(setup.problem, torque),
         [1.0 / max(_square(setup, start), LEAST_SQUARE)],
         _inset(wanted.coupler_arms or (0.0, FAR)),
         np.array(wanted.link_lengths).T.ravel(),
@@ -216,9 +227,20 @@ def _guess(form: Form, setup: Setup, start: Start) -> FloatArray:
     if form.compact:
         every = np.concatenate([start.points, start.track.ravel(), setup.targets])
         guess += [every.real.min(), every.imag.min(), every.real.max(), every.imag.max()]
+    if form.torque:
+        guess += [1.0]
     if form.elastic:
         guess += [1.0]
     return np.array(guess)
+
+
+def _torque(form: Form, setup: Setup, start: Start) -> float:
+    """Unit of the programme's torque: its peak at the start, in reference torques."""
+    if not form.torque:
+        return 1.0
+    way, sense, sign = (np.array([each]) for each in (start.theta2, start.direction, start.assembly))
+    peak = float(torque_peaks(setup.problem, start.points[None], way, sense, sign, form.torque)[0])
+    return peak if 1e-9 < peak < np.inf else 1.0
 
 
 def _square(setup: Setup, start: Start) -> float:
@@ -256,7 +278,8 @@ def _unknown_limits(form: Form, setup: Setup, start: Start) -> tuple[FloatArray,
     if not form.poses:
         limits += [(-100.0, 100.0)] * form.targets + [(-FAR, FAR)] * 2
         limits += [(-100.0, 100.0)] * any(form.angles)
-    limits += [(-FAR, FAR)] * (4 * form.compact) + [(0.0, FAR)] * form.elastic
+    limits += [(-FAR, FAR)] * (4 * form.compact) + [(0.0, np.inf)] * (form.torque > 0)
+    limits += [(0.0, FAR)] * form.elastic
     low_high = np.array(limits)
     return low_high[:, 0], low_high[:, 1]
 

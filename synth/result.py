@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike
 from typing import TYPE_CHECKING
@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from grashof.analysis import Verdict
-from grashof.analysis.over_task import torque_peak
 from grashof.problems import FourBar, NoSolutionError, Objective, Problem, TransmissionOver
 from grashof.problems.checks import BoolArray, FloatArray
 from grashof.problems.display import Displayed
@@ -35,6 +34,8 @@ class Candidate(Displayed):
         Of Ipopt.
     cognate_of : str
         Id of the design whose coupler curve this one traces too; empty for the others.
+    torque_peak : float, N m
+        Greatest magnitude of the drive torque over the motion used; NaN where it is not known.
     """
 
     linkage: FourBar
@@ -42,6 +43,7 @@ class Candidate(Displayed):
     start: int
     iterations: int
     cognate_of: str = ""
+    torque_peak: float = np.nan
 
     @property
     def id(self) -> str:
@@ -68,12 +70,21 @@ class Candidate(Displayed):
             return -float(np.sqrt(self.verdict.square / len(problem.task))) / problem.task.size
         transmission = self.transmission(problem.requirements.transmission_over)
         size = self.verdict.size / problem.task.size
-        return float(weigh(problem.objective, np.array(transmission), np.array(size)))
+        if not problem.objective.torque:
+            return float(weigh(problem.objective, np.array(transmission), np.array(size)))
+        torque = np.inf if np.isnan(self.torque_peak) else self.torque_peak / problem.reference_torque
+        return float(weigh(problem.objective, np.array(transmission), np.array(size), np.array(torque)))
 
 
-def weigh(objective: Objective, transmission: FloatArray, size: FloatArray) -> FloatArray:
-    """Scores of transmission angles (rad) and sizes (in sizes of the task), shape (n,)."""
-    return objective.transmission * transmission / (np.pi / 2) - objective.compactness * size
+def weigh(
+    objective: Objective, transmission: FloatArray, size: FloatArray, torque: FloatArray | None = None
+) -> FloatArray:
+    """Scores of transmission angles (rad), sizes (in sizes of the task) and torques (in reference torques).
+
+    All of shape (n,); the torque only where it has a weight.
+    """
+    score = objective.transmission * transmission / (np.pi / 2) - objective.compactness * size
+    return score if torque is None else score - objective.torque * torque
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,9 +146,7 @@ def ranked(problem: Problem, candidates: list[Candidate]) -> tuple[Candidate, ..
     return tuple(candidates[i] for i in pick_apart(signatures, score, DISTINCT, len(candidates)))
 
 
-def pareto_optimal(
-    problem: Problem, candidates: tuple[Candidate, ...], torque: Sequence[float] | None = None
-) -> BoolArray:
+def pareto_optimal(problem: Problem, candidates: tuple[Candidate, ...]) -> BoolArray:
     """Which candidates no other one beats in error, worst transmission, size and torque; shape (n,).
 
     Errors up to 1e-9 sizes are exact and count as equal. The torque is the greatest on the task
@@ -147,23 +156,19 @@ def pareto_optimal(
     ----------
     problem : Problem
     candidates : tuple of Candidate
-    torque : sequence of float, N m, optional
-        Their `torque_peak`, where it is known already.
     """
     over = problem.requirements.transmission_over
-    if problem.dynamics is None:
-        torque = [0.0] * len(candidates)
-    elif torque is None:
-        torque = [torque_peak(candidate.linkage, problem, candidate.verdict) for candidate in candidates]
     costs = np.array([
         (
             max(candidate.verdict.error_rms / problem.task.size, 1e-9),
             -candidate.transmission(over),
             candidate.verdict.size,
-            np.inf if np.isnan(peak) else peak,
+            np.inf if np.isnan(candidate.torque_peak) else candidate.torque_peak,
         )
-        for candidate, peak in zip(candidates, torque, strict=True)
+        for candidate in candidates
     ]).reshape(-1, 4)  # fmt: skip
+    if problem.dynamics is None:
+        costs[:, 3] = 0.0
     no_worse = (costs[:, None] <= costs[None]).all(axis=2)
     better = (costs[:, None] < costs[None]).any(axis=2)
     beaten: BoolArray = np.any(no_worse & better, axis=0)

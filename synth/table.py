@@ -35,7 +35,7 @@ COLUMNS = (
 def to_frame(problem: Problem, candidates: tuple[Candidate, ...]) -> pd.DataFrame:
     """Candidates as rows, in the order given, with the columns `COLUMNS`."""
     motions = [over_task(candidate.linkage, problem, candidate.verdict) for candidate in candidates]
-    best = pareto_optimal(problem, candidates, [motion.torque_peak for motion in motions])
+    best = pareto_optimal(problem, candidates)
     rows = [
         {
             "rank": rank,

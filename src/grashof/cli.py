@@ -1,4 +1,4 @@
-"""The command line: solve, check, problems, analyse, animate, export."""
+"""The command line: solve, check, problems, linkages, analyse, animate, export."""
 
 from __future__ import annotations
 
@@ -21,6 +21,8 @@ from grashof.problems import (
     ProblemError,
     SolverError,
     catalogue,
+    linkage_catalogue,
+    linkage_text,
     load,
     load_linkage_spec,
     load_with_text,
@@ -142,6 +144,21 @@ def problems(
 
 
 @app.command()
+def linkages(
+    name: Annotated[
+        str | None, typer.Argument(help="Print this linkage as TOML, to copy and change.", show_default=False)
+    ] = None,
+) -> None:
+    """List the linkages of the catalogue, or print one."""
+    with _errors_told():
+        if name is not None:
+            say(linkage_text(name).removesuffix("\n"))
+            return
+        for each in linkage_catalogue():
+            say(f"{each:20} {load_linkage_spec(each).title}")
+
+
+@app.command()
 def analyse(
     linkage: LinkageArgument,
     out: Annotated[
@@ -150,7 +167,7 @@ def analyse(
     ] = None,
     speed_rpm: Annotated[
         float | None,
-        typer.Option(help="Of the driver; by default the file's, or 1 rad/s.", show_default=False),
+        typer.Option(help="Of the driver, clockwise below 0; the file's by default.", show_default=False),
     ] = None,
 ) -> None:
     """Say how LINKAGE moves and what it takes; write tables, a summary, a page to look at and plots.

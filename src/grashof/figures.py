@@ -16,7 +16,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from grashof.analysis import solve_position
-from grashof.analysis.over_task import torque_peak
 from grashof.figure_curves import plot_dynamics, plot_kinematics
 from grashof.figure_parts import (
     COUPLER,
@@ -183,8 +182,8 @@ def plot_design_space(result: Result, *, ax: Axes | None = None) -> Axes:
     over = problem.requirements.transmission_over
     size = np.array([candidate.verdict.size for candidate in candidates])
     mu = np.degrees([candidate.transmission(over) for candidate in candidates])
-    torque = [torque_peak(each.linkage, problem, each.verdict) for each in candidates]
-    front = pareto_optimal(problem, candidates, torque)
+    torque = [candidate.torque_peak for candidate in candidates]
+    front = pareto_optimal(problem, candidates)
     unit = problem.length_unit or "length"
     ax = new_axes(ax)
     label, third = None, np.zeros(len(candidates))

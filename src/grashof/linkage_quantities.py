@@ -20,7 +20,7 @@ from grashof.analysis import (
 )
 from grashof.problems import LinkageSpec
 from grashof.problems.checks import FloatArray
-from grashof.problems.linkage_file import METRES
+from grashof.problems.dynamics_spec import metres
 
 Curve = Callable[[Kinematics], FloatArray]
 MAGNITUDES = {
@@ -108,12 +108,12 @@ def _ratio(state: Kinematics) -> FloatArray:
 
 def dynamic_quantities(spec: LinkageSpec, masses: Masses, loads: Loads) -> list[Quantity]:
     """Torque, power and forces in N, N m and W, whatever the length unit."""
-    metres = METRES[spec.length_unit]
+    metre = metres(spec.length_unit)
 
     def quantity(
         key: str, label: str, unit: str, of: Callable[[Dynamics], FloatArray], power: int
     ) -> Quantity:
-        return Quantity(key, label, unit, lambda s: of(inverse_dynamics(s, masses, loads)) * metres**power)
+        return Quantity(key, label, unit, lambda s: of(inverse_dynamics(s, masses, loads)) * metre**power)
 
     found = [
         quantity("torque", "drive torque", "N m", lambda d: d.torque, 2),

@@ -16,14 +16,13 @@ from grashof.analysis import (
     Masses,
     driver_ranges,
     full_rotation,
-    given_masses,
     solve_kinematics,
+    stated_masses,
     transmission_angle,
-    uniform_bars,
 )
 from grashof.problems import DeadPositionWarning, FourBar, LinkageSpec, ProblemError
 from grashof.problems.checks import FloatArray
-from grashof.problems.linkage_file import METRES
+from grashof.problems.dynamics_spec import metres
 
 TURN = 2 * np.pi
 INSET = 1e-6  # rad: extremes of rates are sought so far from a dead position
@@ -62,7 +61,7 @@ class Sweep:
         """
         given = spec.dynamics
         if speed_rpm is None:
-            speed_rpm = given.speed_rpm if given is not None and given.speed_rpm is not None else 60 / TURN
+            speed_rpm = 60 / TURN if given is None else given.speed_rpm
         if not np.isfinite(speed_rpm):
             raise ProblemError(f"speed_rpm is {speed_rpm}; allowed are finite numbers")
         if full_rotation(spec.linkage):
@@ -114,17 +113,12 @@ def dead_positions_unwarned() -> Iterator[None]:
 def masses_of(spec: LinkageSpec) -> Masses | None:
     """Masses that the file states, if any."""
     given = spec.dynamics
-    if given is None or not given.has_masses:
-        return None
-    if given.masses is not None and given.inertias is not None:
-        masses = given_masses(spec.linkage, given.masses, given.inertias)
-        return masses.with_payload(given.payload, spec.linkage.coupler_point) if given.payload else masses
-    return uniform_bars(spec.linkage, given.mass_per_length or 0.0, given.payload)
+    return stated_masses(spec.linkage, given) if given is not None and given.has_masses else None
 
 
 def loads_of(spec: LinkageSpec) -> Loads:
     """Gravity in the file's length unit."""
     given = spec.dynamics
-    if given is None or spec.length_unit not in METRES:
+    if given is None or not given.has_masses:
         return Loads()
-    return Loads(gravity=np.array(given.gravity) / METRES[spec.length_unit])
+    return Loads(gravity=np.array(given.gravity) / metres(spec.length_unit))

@@ -17,7 +17,7 @@ from grashof.problems import FourBar, LinkageSpec, Problem, ProblemError
 from grashof.problems.checks import FloatArray, counted
 from grashof.subject import Linkage
 from grashof.synth import Candidate, Result
-from grashof.terminal import best_rows, heading
+from grashof.terminal import UNITS, best_rows, heading
 
 _ROWS = 12  # of a batch
 _SMALL = {**STYLE, "font.size": 7, "axes.grid": False}
@@ -52,7 +52,7 @@ def _result(result: Result) -> str:
     rows = best_rows(result)
     note = f"<p>{escape(result.note)}</p>" if result.note else ""
     told = "<br>".join(escape(line) for line in heading(result, len(result)).splitlines())
-    names = (f"{name} (deg)" if name.startswith("mu") else name for name in rows[0])
+    names = (f"{name} ({UNITS[name]})" if name in UNITS else name for name in rows[0])
     table = _table(names, (row.values() for row in rows))
     return f"<p>{told}</p>{note}{_side_by_side(table, _drawing(result.best, result.problem))}"
 

@@ -103,6 +103,7 @@ def _designs(result: Result, frame: pd.DataFrame) -> dict[str, Any]:
         "title": problem.title,
         "length_unit": problem.length_unit,
         "angle_unit": "rad",
+        **({} if problem.dynamics is None else {"dynamics": problem.dynamics.stated}),
         "designs": [
             {"rank": rank, **_design(candidate), "pareto": bool(best), **figures}
             for rank, (candidate, best, figures) in enumerate(

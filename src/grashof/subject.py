@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.analysis import Verdict, verify
-from grashof.linkage_sweep import TURN, Sweep
-from grashof.problems import FourBar, LinkageDynamics, LinkageSpec, Problem, ProblemError
+from grashof.linkage_sweep import Sweep
+from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, Problem, ProblemError
 from grashof.synth import Candidate
 
 Linkage = FourBar | LinkageSpec | Candidate
@@ -75,13 +75,6 @@ class Subject:
 def _posed(spec: LinkageSpec, problem: Problem, verdict: Verdict) -> LinkageSpec:
     """The linkage with what its problem says of unit and masses."""
     linkage = replace(spec.linkage, assembly=np.asarray(verdict.assembly[0], dtype=np.float64))
-    given = problem.dynamics
-    if given is None:
-        dynamics = LinkageDynamics(verdict.direction * 60 / TURN)
-    else:
-        dynamics = LinkageDynamics(
-            verdict.direction * given.speed_rpm, given.gravity, given.mass_per_length, given.masses,
-            given.inertias, given.payload,
-        )  # fmt: skip
+    dynamics = (problem.dynamics or DynamicsSpec()).turning(verdict.direction)
     title = problem.title or problem.name
     return LinkageSpec(linkage, spec.name, title, length_unit=problem.length_unit, dynamics=dynamics)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import asdict
 from io import StringIO
 
 import numpy as np
@@ -25,6 +26,7 @@ _PIPED_WIDTH = 140
 _WIDE = 100  # columns; narrower terminals get fewer digits
 _UNBOUNDED = 1000
 # Columns that a narrow terminal does without, first to last.
+UNITS = {"mu task": "deg", "mu turn": "deg", "torque": "N m"}  # of columns; lengths are in the problem's
 _DROPPED = (("class",), ("O2", "O4"), ("size",), ("mu turn",))
 _JUSTIFY: dict[str, JustifyMethod] = {"O2": "center", "O4": "center", "class": "left"}
 
@@ -97,6 +99,7 @@ def best_rows(result: Result, digits: int = 4) -> list[dict[str, str]]:
     left_out = [
         *(["error rms"] if result.problem.requirements.is_exact(result.problem.task) else []),
         *(["class"] if len(_classes(result)) == 1 else []),
+        *([] if result.problem.objective.torque else ["torque"]),
     ]
     rows = [
         {"#": f"{rank}{'*' if front[rank - 1] else ' '}", **_cells(candidate, digits)}
@@ -111,7 +114,7 @@ def _table(result: Result, digits: int, left_out: Sequence[str]) -> Table:
     names = [name for name in rows[0] if name not in left_out]
     for name in names:
         title = name.replace(" ", "\n") if name == "error rms" or "size" in left_out else name
-        unit = "\ndeg" if name.startswith("mu") else ""
+        unit = f"\n{UNITS[name]}" if name in UNITS else ""
         table.add_column(f"{title}{unit}", justify=_JUSTIFY.get(name, "right"), no_wrap=True)
     for row in rows:
         table.add_row(*(row[name] for name in names))
@@ -156,6 +159,7 @@ def _cells(candidate: Candidate, digits: int) -> dict[str, str]:
         "error rms": f"{verdict.error_rms:.2g}",
         "mu task": f"{task:.1f}",
         "mu turn": f"{turn:.1f}" if verdict.full_rotation else "-",
+        "torque": f"{candidate.torque_peak:.{digits}g}",
         "size": f"{verdict.size:.{digits}g}",
         **{f"r{i}": f"{length:.{digits}g}" for i, length in enumerate(linkage.lengths, start=1)},
         **{name: f"{x:.3g}, {y:.3g}" for name, (x, y) in (("O2", linkage.o2), ("O4", linkage.o4))},
@@ -194,11 +198,11 @@ def summary(problem: Problem) -> list[str]:
         lines.append(f"  made to within {made.length_tolerance:g}{unit}, band {made.band:g}{unit}")
     if problem.dynamics is not None:
         lines.append(f"  {_driven(problem.dynamics)}")
-    weights = problem.objective
+    weights = {name: weight for name, weight in asdict(problem.objective).items() if weight}
     search = problem.search
     return [
         *lines,
-        f"  objective: transmission {weights.transmission:g}, compactness {weights.compactness:g}",
+        f"  objective: {', '.join(f'{name} {weight:g}' for name, weight in weights.items())}",
         f"  search: up to {search.starts} starts, {search.enough} designs, seed {search.seed}",
     ]
 

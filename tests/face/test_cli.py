@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 
 import grashof.draw as grashof_draw
 from grashof.analysis import verify
-from grashof.problems import FourBar, Problem, load, problem_text
+from grashof.problems import FourBar, Problem, linkage_catalogue, linkage_text, load, problem_text
 from grashof.synth import Candidate
 
 Grashof = Callable[..., Any]
@@ -104,10 +104,10 @@ BAD = {
     "equal poses": ("[3.5, 4, -5]", "[5, 4, 360]", "equal"),
     "lo above hi": ("link_length = [0.3, 8]", "link_length = [8, 0.3]", "link_length"),
     "misspelt": ("coupler_arms", "coupler_arm", "did you mean coupler_arms?"),
-    "not built yet": (
+    "no such objective": (
         "[requirements]",
-        "[objective]\nmaximise = 'torque'\n[requirements]",
-        "not supported by this version",
+        "[objective]\nmaximise = 'power'\n[requirements]",
+        "allowed is transmission, compactness or torque",
     ),
     "area that crosses itself": (
         "[requirements]",
@@ -231,6 +231,13 @@ def test_check_and_problems(grashof: Grashof, tmp_path: Path) -> None:
     (tmp_path / "copy.toml").write_text(text, encoding="utf-8")
     assert grashof("check", "copy.toml").exit_code == 0
     assert grashof("problems", "nothing").exit_code == 2
+
+
+def test_linkages_of_the_catalogue(grashof: Grashof) -> None:
+    listed = grashof("linkages").stdout.splitlines()
+    assert tuple(line.split()[0] for line in listed) == linkage_catalogue()
+    assert grashof("linkages", "pumpjack").stdout == linkage_text("pumpjack")
+    assert "did you mean pumpjack?" in grashof("linkages", "pumpjak").stderr
     assert grashof("check", "nothing").exit_code == 2
 
 

@@ -9,7 +9,7 @@ import pytest
 from rich.console import Console
 
 from grashof.analysis.mobility import GrashofClass
-from grashof.problems import Box, Requirements, load
+from grashof.problems import Box, Objective, Requirements, load
 from grashof.synth import Progress, Result
 from grashof.terminal import print_table, search_progress, summary
 
@@ -27,6 +27,18 @@ def test_table_shows_what_one_decides_by(few: Result, capsys: pytest.CaptureFixt
     for x, y in (best.linkage.o2, best.linkage.o4):
         assert f"{x:.3g}, {y:.3g}" in row
     assert max(map(len, lines)) < 100
+
+
+def test_the_torque_is_shown_where_it_is_asked_for(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
+    print_table(few)
+    assert "torque  " not in capsys.readouterr().out
+    driven = replace(few.problem, objective=Objective(transmission=1, torque=0.5))
+    assert "  objective: transmission 1, torque 0.5" in summary(driven)
+    print_table(replace(few, problem=driven))
+    lines = capsys.readouterr().out.splitlines()
+    row = next(line for line in lines if line.lstrip().startswith("1"))
+    assert f" {few.candidates[0].torque_peak:.4g} " in row
+    assert any("N m" in line for line in lines)
 
 
 @pytest.mark.parametrize("mixed", [False, True])

@@ -30,6 +30,16 @@ def test_by_default_the_driver_turns_at_one_radian_a_second_without_weight() -> 
     hash(spec)
 
 
+def test_a_linkage_may_turn_either_way_without_masses() -> None:
+    spec = DynamicsSpec(speed_rpm=-60, gravity=(0, -1))
+    assert not spec.has_masses
+    assert spec.omega2 == pytest.approx(-2 * math.pi)
+    assert DynamicsSpec(payload=1).has_masses
+    for each in (spec, DynamicsSpec(masses=(1, 2, 3), inertias=(0, 0, 1))):
+        assert DynamicsSpec(**each.stated) == each
+    assert "masses" not in spec.stated
+
+
 def test_nothing_is_driven_unless_the_problem_says_so() -> None:
     assert Problem(task=MotionTask.from_degrees([[0, 0, 0], [3, 4, 90]])).dynamics is None
     assert load("dwell").dynamics is None
@@ -93,11 +103,11 @@ def test_any_word_is_a_unit_without_dynamics() -> None:
 
 
 ZERO = "allowed is a number from zero"
-MORE = "allowed is a number greater than zero"
+MORE = "allowed are numbers greater than zero"
 BAD = [
     (
         "",
-        "dynamics does not say what the links weigh; mass_per_length is needed, or masses and inertias",
+        "dynamics has no mass; mass_per_length is needed, masses and inertias, or payload",
     ),
     ("masses = [1, 2, 3]", "dynamics.inertias is missing; masses and inertias are needed together"),
     ("inertias = [1, 2, 3]", "dynamics.masses is missing; masses and inertias are needed together"),

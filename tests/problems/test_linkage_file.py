@@ -10,7 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from grashof.problems import FourBar, ProblemError, linkage_catalogue, load_linkage, load_linkage_spec
+from grashof.problems import (
+    DynamicsSpec,
+    FourBar,
+    ProblemError,
+    linkage_catalogue,
+    load_linkage,
+    load_linkage_spec,
+)
 
 ROOT = Path(__file__).parents[2]
 PLAIN = "o4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n"
@@ -77,11 +84,11 @@ def test_a_plain_file_and_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         (PLAIN + "coupler = [1, 1]", "coupler is unknown; did you mean coupler_point?"),
         (PLAIN + "speed_rpm = 3", "speed_rpm is unknown; did you mean dynamics.speed_rpm?"),
         (PLAIN + "[dynamics]\nspeed = 3", "dynamics.speed is unknown; did you mean speed_rpm?"),
-        (PLAIN + "[dynamics]\npayload = 3", "length_unit is ''; allowed with masses"),
+        (PLAIN + "[dynamics]\npayload = 3", "length_unit is ''; with dynamics allowed are mm"),
         (PLAIN + "[dynamics]\nmasses = [1, 2, 3]", "dynamics.inertias is missing"),
-        (PLAIN + "[dynamics]\nmasses = [1, 2]\ninertias = [1, 2, 3]", "masses is [1, 2]; allowed is three"),
-        (PLAIN + "[dynamics]\npayload = -1", "dynamics.payload is -1.0; allowed are numbers from zero"),
-        (PLAIN + "[dynamics]\ngravity = [0, nan]", "dynamics.gravity is nan"),
+        (PLAIN + "[dynamics]\nmasses = [1, 2]\ninertias = [1, 2, 3]", "masses has 2 entries; allowed are 3"),
+        (PLAIN + "[dynamics]\npayload = -1", "dynamics.payload is -1; allowed is a number from zero"),
+        (PLAIN + "[dynamics]\ngravity = [0, nan]", "dynamics.gravity[1] is nan"),
         (PLAIN + "[dynamics]\nspeed_rpm = inf", "dynamics.speed_rpm is inf"),
         (PLAIN + "dynamics = 3", "dynamics is 3; allowed is a table"),
         (PLAIN + "r1 = 4", "r1 is given besides o4"),
@@ -107,6 +114,16 @@ def test_what_a_file_may_not_say(tmp_path: Path, text: str, message: str) -> Non
     assert "\n" not in str(refused.value) or "TOML" in message
 
 
+def test_speed_and_gravity_need_no_masses(tmp_path: Path) -> None:
+    for table, expected in {
+        "speed_rpm = -3": DynamicsSpec(speed_rpm=-3),
+        "gravity = [0, -1]": DynamicsSpec(gravity=(0, -1)),
+        "payload = 2": DynamicsSpec(payload=2),
+    }.items():
+        spec = load_linkage_spec(written(tmp_path, f"length_unit = 'in'\n{PLAIN}[dynamics]\n{table}"))
+        assert spec.dynamics == expected
+
+
 def test_a_name_that_is_none() -> None:
     for name, message in [
         ("pumpjak", "did you mean pumpjack?"),
@@ -126,7 +143,7 @@ def listed(**changes: Any) -> str:
         "o2": [0, 0], "o4": [4, 0], "r2": 1.0, "r3": 4.0, "r4": 3.0, "coupler_point": [0.1, 0.3],
         "assembly": -1, "body_angle": 0.25,
     }  # fmt: skip
-    design = {"rank": 3, "linkage": linkage | changes}
+    design = {"rank": 3, "linkage": linkage | changes, "direction": 1}
     return json.dumps({"problem": "p", "title": "P", "length_unit": "m", "designs": [design]})
 
 
@@ -138,6 +155,12 @@ def test_a_design_of_a_list(tmp_path: Path) -> None:
     spec = load_linkage_spec(f"{path}#3")
     assert spec.linkage == FourBar((0, 0), (4, 0), 1, 4, 3, (0.1, 0.3), -1, 0.25)
     assert (spec.name, spec.title, spec.length_unit) == ("p#designs-3", "P: design 3", "m")
+    assert spec.dynamics == DynamicsSpec()
+    masses = {"masses": [1, 2, 3], "inertias": [0, 1, 0.1], "speed_rpm": 7}
+    content = json.loads(listed()) | {"dynamics": masses}
+    content["designs"][0]["direction"] = -1
+    path.write_text(json.dumps(content))
+    assert load_linkage_spec(f"{path}#3").dynamics == DynamicsSpec(**masses | {"speed_rpm": -7})
     for text, rank, message in [
         (listed(), "4", "has no design 4; its ranks are 1 to 3"),
         (listed(), "x", "has no design x"),

@@ -49,10 +49,11 @@ def test_bad_outlines(outlines: list[list[list[float]]], message: str) -> None:
         ((-1, 2), "objective.maximise.transmission is -1; allowed is a weight from 0"),
         ((1, -0.5), "objective.maximise.compactness is -0.5; allowed is a weight from 0"),
         ((1, math.nan), "objective.maximise.compactness is nan; allowed is a finite number"),
+        ((1, 0, -1), "objective.maximise.torque is -1; allowed is a weight from 0"),
         ((0, 0), "objective.maximise has no weight greater than zero; one at least is needed"),
     ],
 )
-def test_bad_weights(weights: tuple[float, float], message: str) -> None:
+def test_bad_weights(weights: tuple[float, ...], message: str) -> None:
     with pytest.raises(ProblemError, match=rf"^{message}$"):
         Objective(*weights)
 

@@ -217,11 +217,11 @@ STRUCTURE = [
     (HEAD + "[requirements]\no2 = { x = [1, {}] }", "requirements.o2.x[1] is a table; allowed is a number"),
     (
         HEAD + "[objective]\nmaximise = 3",
-        "objective.maximise is 3; allowed is transmission, compactness or a table of weights",
+        "objective.maximise is 3; allowed is transmission, compactness, torque or a table of weights",
     ),
     (
         HEAD + "[objective]\nmaximise = 'speed'",
-        "objective.maximise is 'speed'; allowed is transmission or compactness",
+        "objective.maximise is 'speed'; allowed is transmission, compactness or torque",
     ),
     (
         HEAD + "[objective]\nmaximise = { transmission = true }",
@@ -347,19 +347,31 @@ def test_unknown_keys(text: str, expected: str) -> None:
     assert message(text) == expected
 
 
-LATER = [
-    (
-        "[objective]\nmaximise = 'torque'",
-        "objective.maximise is 'torque', which is not supported by this version; "
-        "allowed is transmission or compactness",
-    ),
-    ("[objective]\nmaximise = { torque = 1 }", "objective.maximise.torque is not supported by this version"),
-]
+DRIVEN = 'length_unit = "m"\n{}\n[objective]\nmaximise = {}\n[dynamics]\nmass_per_length = 2\n'
 
 
-@pytest.mark.parametrize(("text", "expected"), LATER)
-def test_keys_of_later_versions_are_refused_by_name(text: str, expected: str) -> None:
-    assert message(HEAD + text) == expected
+@pytest.mark.parametrize(
+    ("maximise", "expected"),
+    [
+        ("'torque'", Objective(0, 0, 1)),
+        ("{ transmission = 1, torque = 0.1 }", Objective(1, 0, 0.1)),
+        ("{ torque = 2, compactness = 1 }", Objective(0, 1, 2)),
+    ],
+)
+def test_the_torque_is_an_objective(maximise: str, expected: Objective) -> None:
+    assert problem_from(tomllib.loads(DRIVEN.format(HEAD, maximise)), "test").objective == expected
+
+
+@pytest.mark.parametrize("maximise", ["'torque'", "{ transmission = 1, torque = 0.1 }"])
+def test_the_torque_as_an_objective_needs_masses(maximise: str) -> None:
+    expected = "dynamics is missing; objective.maximise asks for the torque"
+    assert message(f"{HEAD}[objective]\nmaximise = {maximise}") == expected
+
+
+def test_the_torque_as_an_objective_needs_a_motion() -> None:
+    text = DRIVEN.format(HEAD, "'torque'") + "[requirements]\nsame_branch = false"
+    with pytest.raises(ProblemError, match=r"requirements\.same_branch is false; allowed is true when"):
+        problem_from(tomllib.loads(text), "test")
 
 
 KEEP_OUT = {

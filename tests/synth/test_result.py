@@ -125,16 +125,19 @@ def test_pareto_marks_with_the_torque(luggage_designs: Designs, luggage: Problem
     assert marks[without].all()  # one more goal takes no mark away
     assert marks[int(np.argmin(peaks))]
     assert without.sum() < marks.sum() < len(marks)
-    assert pareto_optimal(luggage, luggage_designs, peaks).tolist() == marks.tolist()
+    assert [c.torque_peak for c in luggage_designs] == peaks
 
 
 def test_an_unknown_torque_counts_as_infinite(luggage_designs: Designs, luggage: Problem) -> None:
-    """The same design twice: once with a torque, and once without a motion that joins the targets."""
-    pair = (luggage_designs[0], luggage_designs[0])
-    assert pareto_optimal(luggage, pair, [1.0, np.nan]).tolist() == [True, False]
-    assert pareto_optimal(luggage, pair, [np.inf, np.nan]).tolist() == [True, True]
-    torn = replace(pair[1], verdict=replace(pair[1].verdict, branch_ok=False))
-    assert pareto_optimal(luggage, (pair[0], torn)).tolist() == [True, False]
+    """As of a design without a motion that joins its targets."""
+    unknown, endless, known = (
+        replace(luggage_designs[0], torque_peak=peak) for peak in (np.nan, np.inf, 1.0)
+    )
+    assert pareto_optimal(luggage, (known, unknown)).tolist() == [True, False]
+    assert pareto_optimal(luggage, (endless, unknown)).tolist() == [True, True]
+    driven = replace(luggage, objective=Objective(0, 0, 1))
+    assert [each.score(driven) for each in (unknown, endless)] == [-np.inf, -np.inf]
+    assert known.score(driven) == pytest.approx(-1 / driven.reference_torque, rel=1e-15)
 
 
 def test_ids_name_designs(luggage_designs: Designs) -> None:
