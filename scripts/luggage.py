@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from grashof import synthesize
-from grashof.draw import draw_design, save
+from grashof.figures import draw_design, save
 from grashof.problems import (
     DynamicsSpec,
     MotionTask,

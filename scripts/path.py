@@ -13,7 +13,7 @@ import numpy as np
 
 from grashof import synthesize
 from grashof.analysis import verify
-from grashof.draw import draw_design, save
+from grashof.figures import draw_design, save
 from grashof.problems import Box, FourBar, PathTask, Problem, Requirements, Rotatability
 
 

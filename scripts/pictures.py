@@ -11,8 +11,8 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from grashof import load, plot_design_space, plot_kinematics, synthesize
-from grashof.animation import save_animation
-from grashof.draw import STYLE, draw_design, draw_motion, save
+from grashof.figures import draw_design, draw_motion, save, save_animation
+from grashof.figures.files import STYLE
 from grashof.problems import load_linkage_spec
 
 DOCS = Path(__file__).parents[1] / "docs"

@@ -13,7 +13,9 @@ PACKAGES = (
     "grashof.problems",
     "grashof.analysis",
     "grashof.synth",
+    "grashof.figures",
     "grashof.page",
+    "grashof.survey",
     "grashof.workshop",
 )
 MODULES = sorted(

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 from grashof.problems.display import Displayed
 
 if TYPE_CHECKING:
-    from grashof.animation import animate
     from grashof.figures import (
+        animate,
         plot_coupler_curve,
         plot_design_space,
         plot_dynamics,
@@ -34,8 +34,7 @@ _HOMES = {
     "GrashofError": "problems",
     "load": "problems",
     "synthesize": "synth",
-    "animate": "animation",
-    **dict.fromkeys((name for name in __all__ if name.startswith("plot_")), "figures"),
+    **dict.fromkeys((name for name in __all__ if name.startswith(("animate", "plot_"))), "figures"),
 }
 
 

@@ -314,8 +314,8 @@ def _solve(
 
 def _analyse(linkage: str, out: Path | None, speed_rpm: float | None) -> None:
     from grashof.folder import ANALYSIS_PAGE, ANALYSIS_RECORD, check_writable
-    from grashof.linkage_output import print_report, write_report
-    from grashof.linkage_report import report_on
+    from grashof.survey import report_on
+    from grashof.survey.output import print_report, write_report
 
     spec = load_linkage_spec(linkage)
     folder = out if out is not None else Path(f"{spec.name}-analysis")
@@ -330,8 +330,8 @@ def _analyse(linkage: str, out: Path | None, speed_rpm: float | None) -> None:
 
 
 def _animate(linkage: str, out: Path | None, seconds: float, fps: float) -> None:
-    from grashof.animation import check_animation, save_animation
-    from grashof.draw import draw_motion
+    from grashof.figures.animation import check_animation, save_animation
+    from grashof.figures.files import draw_motion
 
     spec = load_linkage_spec(linkage)
     path = out if out is not None else Path(f"{spec.name}.gif")

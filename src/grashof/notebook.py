@@ -11,11 +11,11 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from grashof.analysis import grashof_class
-from grashof.draw import STYLE
-from grashof.figures import plot_linkage
+from grashof.figures.files import STYLE
+from grashof.figures.linkage import plot_linkage
+from grashof.figures.subject import Linkage
 from grashof.problems import FourBar, LinkageSpec, Problem, ProblemError
 from grashof.problems.checks import FloatArray, counted
-from grashof.subject import Linkage
 from grashof.synth import Candidate, Result
 from grashof.terminal import UNITS, best_rows, heading
 

@@ -77,7 +77,7 @@ def write_run(
 
 
 def _draw(folder: Path, result: Result, drawings: int, stop: Callable[[], bool]) -> None:
-    from grashof.draw import draw_design, save  # matplotlib takes half a second to import
+    from grashof.figures.files import draw_design, save  # matplotlib takes half a second to import
 
     for rank, candidate in enumerate(result.candidates[:drawings], start=1):
         if stop():

@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-import grashof.draw
+import grashof.figures.files
 from grashof.analysis import (
     Loads,
     driver_ranges,
@@ -22,9 +22,9 @@ from grashof.analysis import (
     solve_kinematics,
     uniform_bars,
 )
-from grashof.linkage_report import LinkageReport, report_on
 from grashof.output import write_run
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, MotionTask, ProblemError, load_linkage_spec
+from grashof.survey import LinkageReport, report_on
 from grashof.synth import Result, synthesize
 
 Grashof = Callable[..., Any]
@@ -215,7 +215,7 @@ def test_a_linkage_that_never_closes_is_bad_input(grashof: Grashof, tmp_path: Pa
 @pytest.fixture
 def unsaved(monkeypatch: pytest.MonkeyPatch) -> None:
     """Pictures as empty files: saving them takes most of the time."""
-    monkeypatch.setattr(grashof.draw, "save", lambda _, paths: [path.touch() for path in paths])
+    monkeypatch.setattr(grashof.figures.files, "save", lambda _, paths: [path.touch() for path in paths])
 
 
 TABLES = {"kinematics.csv", "extremes.csv", "summary.csv", "summary.json", "analysis.json", "analysis.html"}
@@ -329,11 +329,11 @@ def test_given_masses_and_payload() -> None:
 
 def test_plots_of_a_limited_range_are_made(tmp_path: Path) -> None:
     """Rates without bound are cut off, and no warning is given."""
-    from grashof.linkage_plots import plots
+    from grashof.survey.plots import plots
 
     made = dict(plots(report_on(LinkageSpec(DOUBLE_ROCKER, "rocker", length_unit="mm"))))
     files = [tmp_path / f"velocities.{kind}" for kind in ("png", "svg")]
-    grashof.draw.save(made["velocities"], files)
+    grashof.figures.files.save(made["velocities"], files)
     assert min(file.stat().st_size for file in files) > 10_000
     assert list(made) == ["path", "angles", "velocities", "accelerations"]
     rates, speeds = made["velocities"].axes

@@ -18,11 +18,11 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from PIL import Image, ImageSequence
 
-import grashof.animation as grashof_animation
+import grashof.figures.animation as grashof_animation
 from grashof import animate
 from grashof.analysis import driver_ranges, solve_position
-from grashof.animation import save_animation
-from grashof.figure_parts import COUPLER, DRIVER, OUTPUT, PATH
+from grashof.figures import save_animation
+from grashof.figures.parts import COUPLER, DRIVER, OUTPUT, PATH
 from grashof.problems import (
     FourBar,
     MotionTask,

@@ -16,7 +16,7 @@ import pandas as pd
 import pytest
 from matplotlib.figure import Figure
 
-import grashof.draw as grashof_draw
+import grashof.figures.files as grashof_draw
 from grashof.analysis import verify
 from grashof.problems import FourBar, Problem, linkage_catalogue, linkage_text, load, problem_text
 from grashof.synth import Candidate

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 
-from grashof.draw import draw_design, save
-from grashof.figure_parts import BODY, DRIVER, PATH
+from grashof.figures import draw_design, save
+from grashof.figures.parts import BODY, DRIVER, PATH
 from grashof.synth import Result
 
 

@@ -15,7 +15,6 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 
-from grashof import figure_parts as parts
 from grashof import plot_coupler_curve, plot_design_space, plot_dynamics, plot_kinematics, plot_linkage
 from grashof.analysis import (
     Loads,
@@ -26,8 +25,8 @@ from grashof.analysis import (
     virtual_work_torque,
 )
 from grashof.analysis.planted import planted_path
-from grashof.draw import save
-from grashof.linkage_report import report_on
+from grashof.figures import parts
+from grashof.figures.files import save
 from grashof.problems import (
     AssemblyError,
     FourBar,
@@ -37,6 +36,7 @@ from grashof.problems import (
     ProblemError,
     load_linkage_spec,
 )
+from grashof.survey import report_on
 from grashof.synth import Result
 
 CRANK_ROCKER = FourBar((0, 0), (4, 1), 1, 4, 3, (2, 1), assembly=-1)

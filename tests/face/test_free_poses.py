@@ -11,8 +11,8 @@ from matplotlib.colors import to_hex
 
 from grashof import synthesize
 from grashof.analysis.planted import planted_motion
-from grashof.draw import draw_design
-from grashof.figure_parts import BODY, COUPLER, DRIVER
+from grashof.figures.files import draw_design
+from grashof.figures.parts import BODY, COUPLER, DRIVER
 from grashof.problems import MotionTask, Problem, Requirements
 from grashof.synth import Result
 

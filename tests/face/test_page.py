@@ -13,14 +13,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-import grashof.figure_parts
+import grashof.figures.parts
 from grashof.analysis import Loads, driver_ranges, solve_kinematics, solve_position, virtual_work_torque
 from grashof.analysis.mass import stated_masses
-from grashof.linkage_report import report_on
 from grashof.output import write_run
 from grashof.page import analysis_page, search_page
 from grashof.page.designs import Travel, driver_travel
 from grashof.problems import FourBar, LinkageSpec, PathTask, Problem, load, load_linkage_spec
+from grashof.survey import report_on
 from grashof.synth import Result
 
 HOSTILE = "</script><script>alert(1)</script><!-- & \u2028 ' \" {{ 7*7 }}"
@@ -112,12 +112,12 @@ def test_fifty_designs_are_small(few: Result) -> None:
 
 
 def test_colours_are_those_of_the_drawings() -> None:
-    style = Path(grashof.figure_parts.__file__).with_name("page") / "templates" / "page.css"
+    style = Path(grashof.figures.parts.__file__).parents[1] / "page" / "templates" / "page.css"
     colours = dict(
         re.findall(r"--([\w-]+): (#\w+)", style.read_text(encoding="utf-8").partition("@media")[0])
     )
     for name in ("driver", "coupler", "output", "body", "path", "scene", "ground", "target", "kept_out"):
-        assert colours[name.replace("_", "-")] == getattr(grashof.figure_parts, name.upper())
+        assert colours[name.replace("_", "-")] == getattr(grashof.figures.parts, name.upper())
 
 
 def test_torque_is_that_of_virtual_work(few: Result) -> None:

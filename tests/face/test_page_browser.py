@@ -14,9 +14,9 @@ from playwright.sync_api import Browser, Locator, Page, sync_playwright
 
 from grashof.analysis import driver_ranges, solve_position, transmission_angle
 from grashof.analysis.transmission import quality
-from grashof.linkage_report import report_on
 from grashof.page import analysis_page, search_page
 from grashof.problems import FourBar, LinkageSpec
+from grashof.survey import report_on
 from grashof.synth import Result
 
 RECORD: dict[str, Any] = {"versions": {"grashof": "0"}, "settings": {"seed": 0}}

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from grashof.linkage_report import LinkageReport
 from grashof.output import linkage_json
 from grashof.page.render import compact, render
+from grashof.survey.report import LinkageReport
 from grashof.wording import number_text, value_text
 
 _SCRIPTS = ("linkage.js", "svg.js", "stage.js", "player.js", "curves.js", "analysis.js")

@@ -19,12 +19,12 @@ from grashof.analysis import (
 )
 from grashof.analysis.mobility import range_index
 from grashof.analysis.over_task import motion_ends
-from grashof.linkage_sweep import INSET, TURN, dead_positions_unwarned
 from grashof.output import linkage_json
 from grashof.page.render import compact
 from grashof.problems import FourBar, Problem
 from grashof.problems.checks import FloatArray
 from grashof.problems.dynamics_spec import metres
+from grashof.survey.sweep import INSET, TURN, dead_positions_unwarned
 from grashof.synth import Candidate
 
 STEPS = 180

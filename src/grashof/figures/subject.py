@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.analysis import Verdict, verify
-from grashof.linkage_sweep import Sweep
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, Problem, ProblemError
+from grashof.survey.sweep import Sweep
 from grashof.synth import Candidate
 
 Linkage = FourBar | LinkageSpec | Candidate

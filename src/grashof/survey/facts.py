@@ -23,8 +23,8 @@ from grashof.analysis import (
     triple_rocker_kind,
     worst_transmission,
 )
-from grashof.linkage_sweep import Sweep
 from grashof.problems import AssemblyError, LinkageSpec, ProblemError
+from grashof.survey.sweep import Sweep
 
 _HARMONICS = 5
 

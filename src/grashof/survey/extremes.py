@@ -6,10 +6,10 @@ import numpy as np
 import pandas as pd
 
 from grashof.analysis import extremes_of, transmission_angle
-from grashof.linkage_quantities import MAGNITUDES, POSITIONS, Quantity
-from grashof.linkage_sweep import INSET, TURN, Sweep
 from grashof.problems import AssemblyError, FourBar
 from grashof.problems.checks import FloatArray
+from grashof.survey.quantities import MAGNITUDES, POSITIONS, Quantity
+from grashof.survey.sweep import INSET, TURN, Sweep
 
 _WIDE_INSET = 1e-4  # rad: extremes of rates are sought so far from a dead position of a change point
 

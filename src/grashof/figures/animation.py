@@ -13,7 +13,8 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
 from grashof.analysis import Position, solve_position
-from grashof.figure_parts import (
+from grashof.figures.linkage import figure_of, new_axes, plane
+from grashof.figures.parts import (
     BODY,
     PATH,
     Links,
@@ -22,11 +23,10 @@ from grashof.figure_parts import (
     draw_scene,
     draw_task,
 )
-from grashof.figures import figure_of, new_axes, plane
-from grashof.linkage_sweep import TURN
+from grashof.figures.subject import Linkage, Subject
 from grashof.problems import MotionTask, Problem, ProblemError
 from grashof.problems.checks import FloatArray
-from grashof.subject import Linkage, Subject
+from grashof.survey.sweep import TURN
 
 _STEPS = 6  # of the path from frame to frame, so that it is drawn smooth
 _WRITERS = {".gif": "pillow", ".mp4": "ffmpeg"}

@@ -9,9 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Polygon
 
 from grashof.analysis import Position, solve_position
+from grashof.figures.subject import Subject
 from grashof.problems import FourBar, MotionTask, PathTask, Problem, Task
 from grashof.problems.checks import FloatArray
-from grashof.subject import Subject
 
 # Told apart by the colour-blind, too (after Okabe & Ito, *Color Universal Design*, 2008).
 DRIVER, COUPLER, OUTPUT, PATH = "#d55e00", "#0072b2", "#009e73", "#8c3f78"

@@ -9,12 +9,12 @@ import numpy.typing as npt
 import pandas as pd
 from matplotlib.axes import Axes
 
-from grashof.figure_parts import COUPLER, GROUND, OUTPUT, PATH, TARGET
-from grashof.linkage_quantities import dynamic_quantities, kinematic_quantities, table_of
-from grashof.linkage_sweep import Sweep, dead_positions_unwarned, loads_of, masses_of
+from grashof.figures.parts import COUPLER, GROUND, OUTPUT, PATH, TARGET
+from grashof.figures.subject import Linkage, Subject
 from grashof.problems import Problem, ProblemError
 from grashof.problems.checks import FloatArray
-from grashof.subject import Linkage, Subject
+from grashof.survey.quantities import dynamic_quantities, kinematic_quantities, table_of
+from grashof.survey.sweep import Sweep, dead_positions_unwarned, loads_of, masses_of
 
 AxesArray = npt.NDArray[np.object_]
 # What each panel shows: the label of its axis, and the columns of the analysis with their names.

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from grashof.draw import STYLE
-from grashof.figure_curves import DYNAMICS, KINEMATICS, Panel, draw_curves
-from grashof.figure_parts import COUPLER, DRIVER, GROUND, OUTPUT
-from grashof.figures import plot_linkage
-from grashof.linkage_report import LinkageReport, mass_tracks
+from grashof.figures.curves import DYNAMICS, KINEMATICS, Panel, draw_curves
+from grashof.figures.files import STYLE
+from grashof.figures.linkage import plot_linkage
+from grashof.figures.parts import COUPLER, DRIVER, GROUND, OUTPUT
+from grashof.survey.report import LinkageReport, mass_tracks
 
 _TRACKS = {"link 2": DRIVER, "link 3": COUPLER, "link 4": OUTPUT, "all links": GROUND}
 _KINEMATIC = {

@@ -1,11 +1,4 @@
-"""Figures of linkages and designs for papers and notebooks, with matplotlib.
-
-Every function draws into the axes given as ``ax``, or else into a new figure of pyplot, and returns
-the axes; none of them shows or saves anything. A linkage is a `FourBar`, a `LinkageSpec` as
-`load_linkage_spec` reads it, or a `Candidate` of a result; with a `Problem` its task is drawn, and
-unit, speed and masses are the problem's. Fonts are those of matplotlib's settings; `grashof.draw.save`
-writes text as text, and the same bytes each time.
-"""
+"""Figures of a linkage, its coupler curve and the designs of a result."""
 
 from __future__ import annotations
 
@@ -16,8 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from grashof.analysis import solve_position
-from grashof.figure_curves import plot_dynamics, plot_kinematics
-from grashof.figure_parts import (
+from grashof.figures.parts import (
     COUPLER,
     GROUND,
     KEPT_OUT,
@@ -31,19 +23,11 @@ from grashof.figure_parts import (
     name_point,
     targets_shown,
 )
+from grashof.figures.subject import Linkage, Subject
 from grashof.problems import AssemblyError, Problem, ProblemError
 from grashof.problems.checks import FloatArray
-from grashof.subject import Linkage, Subject
 from grashof.synth import Result
 from grashof.synth.result import pareto_optimal
-
-__all__ = [
-    "plot_coupler_curve",
-    "plot_design_space",
-    "plot_dynamics",
-    "plot_kinematics",
-    "plot_linkage",
-]
 
 _NUMBERED = 10  # designs that carry their rank
 

@@ -9,12 +9,12 @@ import numpy as np
 import pandas as pd
 
 from grashof.analysis import GrashofClass, Masses, grashof_class, system_centre
-from grashof.linkage_extremes import extremes_table
-from grashof.linkage_facts import Fact, facts_of
-from grashof.linkage_quantities import Quantity, dynamic_quantities, kinematic_quantities, table_of
-from grashof.linkage_sweep import Sweep, dead_positions_unwarned, loads_of, masses_of
 from grashof.problems import LinkageSpec
 from grashof.problems.checks import FloatArray
+from grashof.survey.extremes import extremes_table
+from grashof.survey.facts import Fact, facts_of
+from grashof.survey.quantities import Quantity, dynamic_quantities, kinematic_quantities, table_of
+from grashof.survey.sweep import Sweep, dead_positions_unwarned, loads_of, masses_of
 
 __all__ = ["Fact", "LinkageReport", "Quantity", "mass_tracks", "report_on"]
 

@@ -11,11 +11,11 @@ from matplotlib import rc_context
 from matplotlib.animation import FuncAnimation
 from matplotlib.figure import Figure
 
-from grashof.animation import animate
-from grashof.figure_parts import closes
-from grashof.figures import plot_linkage
+from grashof.figures.animation import animate
+from grashof.figures.linkage import plot_linkage
+from grashof.figures.parts import closes
+from grashof.figures.subject import Linkage, Subject
 from grashof.problems import Problem
-from grashof.subject import Linkage, Subject
 from grashof.synth import Candidate
 
 # Settings of matplotlib. Fixed names inside the SVG and no date: the same design gives the same bytes.

@@ -15,9 +15,9 @@ from rich.console import Console
 from rich.table import Table
 
 from grashof.folder import ANALYSIS_PAGE, ANALYSIS_RECORD, replacing_own_files
-from grashof.linkage_report import LinkageReport
 from grashof.output import linkage_json, write_csv, write_json, write_page
 from grashof.streams import say
+from grashof.survey.report import LinkageReport
 from grashof.terminal import console
 from grashof.wording import number_text, value_text
 
@@ -33,9 +33,9 @@ def write_report(folder: Path, report: LinkageReport) -> list[str]:
     OSError
         The disk is full or the folder is lost; it then holds what it held before.
     """
-    from grashof.draw import save
-    from grashof.linkage_plots import plots  # matplotlib takes half a second to import
+    from grashof.figures.files import save
     from grashof.page import analysis_page
+    from grashof.survey.plots import plots  # matplotlib takes half a second to import
 
     about = {
         "versions": {"python": platform.python_version(), **{name: version(name) for name in _PACKAGES}},

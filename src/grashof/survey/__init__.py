@@ -1,0 +1,7 @@
+"""All that a linkage does and takes: what `grashof analyse` tells, as tables, facts, pages and plots."""
+
+from grashof.survey.facts import Fact
+from grashof.survey.quantities import Quantity
+from grashof.survey.report import LinkageReport, report_on
+
+__all__ = ["Fact", "LinkageReport", "Quantity", "report_on"]
