@@ -28,7 +28,7 @@ from grashof.survey import LinkageReport, report_on
 from grashof.synth import Result, synthesize
 
 Grashof = Callable[..., Any]
-GOLDEN = json.loads((Path(__file__).parents[1] / "data" / "golden.json").read_text(encoding="utf-8"))
+GOLDEN = json.loads((Path(__file__).parents[2] / "data" / "golden.json").read_text(encoding="utf-8"))
 DOUBLE_ROCKER = FourBar((0, 0), (4, 0), 3, 1, 3, (0.5, 1))
 ONE_RANGE = FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1))
 
