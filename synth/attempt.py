@@ -13,14 +13,18 @@ from grashof.problems.checks import ComplexArray
 from grashof.synth.burmester import Dyads, polish
 from grashof.synth.cognates import assembly_of, cognate_points, position_of
 from grashof.synth.finds import Configurations, dyad_lacks, judge, met
+from grashof.synth.form import ADDED
 from grashof.synth.path_polish import Polished, Wish, polish_path
 from grashof.synth.programme import Solve, solve
 from grashof.synth.result import Candidate
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
+from grashof.synth.torque import overlooked
 
 UNSOLVED = frozenset({"order", "same_branch"})  # no smooth constraint can relax these
 NUDGE = 0.1  # sizes: a polish that moves a start farther has lost it
+SOLVED = ("Solve_Succeeded", "Solved_To_Acceptable_Level")
+EXCHANGES = 4  # times at most that a solve is repeated for its torque
 CLOSE = 1e-4  # sizes: a least-squares design so near to its targets can be made exact
 
 
@@ -65,11 +69,34 @@ def attempt(setup: Setup, start: Start, number: int) -> Attempt:
     candidate = _made(setup, start, solved, number) if as_it_is else None
     free = setup.motion is None or len(setup.targets) < 5  # five poses leave nothing to solve for
     if not as_it_is or (free and start.settled and (candidate is None or not candidate.verdict.ok)):
-        solved = solve(setup, start)
+        solved = _solved(setup, start)
         candidate = _made(setup, start, solved, number)
     if candidate is None or not candidate.verdict.ok or setup.turns is not None:
         return Attempt(solved.status, candidate)
     return Attempt(solved.status, candidate, _cognates(setup, candidate))
+
+
+def _solved(setup: Setup, start: Start) -> Solve:
+    """Solve; again from there with other driver angles added, as long as the torque exceeds its bound there.
+
+    An exchange method for a bound that holds over an interval (Hettich & Kortanek 1993, section 7).
+    """
+    solved = solve(setup, start)
+    for _ in range(EXCHANGES):
+        if np.isnan(solved.torque) or solved.status not in SOLVED:
+            break
+        points, theta2 = np.array(solved.points), np.array(solved.theta2)
+        peaks = overlooked(setup.problem, points, theta2, start.direction, start.assembly, solved.torque)
+        if not peaks:
+            break
+        o2, o4, a, b, p = solved.points
+        start = replace(start, o2=o2, o4=o4, a=a, b=b, p=p, theta2=solved.theta2, theta3=solved.theta3)
+        start = replace(start, body_angle=solved.body_angle, torque_at=(*peaks, *start.torque_at)[:ADDED])
+        again = solve(setup, start)
+        if again.status not in SOLVED:
+            break
+        solved = replace(again, iterations=solved.iterations + again.iterations)
+    return solved
 
 
 def _on_targets(setup: Setup, start: Start) -> Start:

@@ -14,6 +14,7 @@ from grashof.synth.start import Start
 
 BOXES = ("o2", "o4", "a", "b")
 LOADS = 10  # numbers that drive the torque
+ADDED = 8  # driver angles, at most, that are added to the grid
 STEPS = 24  # in every half turn, between driver angles at which the torque is bounded
 PLANES = 4  # half-planes that bound a free region
 
@@ -174,6 +175,7 @@ class Given:
     least_transmission: ca.SX
     weights: ca.SX
     load: ca.SX
+    torque_at: ca.SX
     error_scale: ca.SX
     arms: ca.SX
     lengths: ca.SX
@@ -193,8 +195,8 @@ class Given:
             "rotation": 2 * n, "shift": 2 * n, "targets": 2 * n, "turns": n,
             "square_weights": 2 * n, "timing": n, "at_first": n, "body": 2,
             "direction": 1, "assembly": 1, "longer": 1, "margin": 1, "ratio": 1, "least_transmission": 1,
-            "weights": 3, "load": LOADS, "error_scale": 1, "arms": 2, "lengths": 8, "start": 8, "angles": 2,
-            "relaxed": len(GROUPS), "origin": 2, "scale": 1,
+            "weights": 3, "load": LOADS, "torque_at": ADDED, "error_scale": 1, "arms": 2, "lengths": 8,
+            "start": 8, "angles": 2, "relaxed": len(GROUPS), "origin": 2, "scale": 1,
             "planes": 3 * PLANES * sum(map(form.places_of, form.keep_out)), "boxes": 16,
         }  # fmt: skip
         parts = {name: ca.SX.sym(name, size) for name, size in sizes.items()}

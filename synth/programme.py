@@ -24,7 +24,7 @@ from grashof.synth.constraints import (
     square,
 )
 from grashof.synth.finds import GROUPS
-from grashof.synth.form import Form, Given, Unknowns
+from grashof.synth.form import ADDED, Form, Given, Unknowns
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
 from grashof.synth.torque import loads, torque_bound, torque_peaks
@@ -52,7 +52,7 @@ class Solve:
         Ipopt's return status.
     iterations : int
     torque : float
-        The greatest at the grid as the programme has it, in reference torques; NaN where it has no part.
+        The greatest that the programme knows of, in reference torques; NaN where it has no part.
     """
 
     points: tuple[complex, complex, complex, complex, complex]
@@ -193,6 +193,7 @@ def _parameters(form: Form, setup: Setup, start: Start) -> FloatArray:
         [np.radians(wanted.transmission_min_deg)],
         weights / weights.sum(),
         loads(setup.problem, torque),
+        np.pad(start.torque_at, (0, ADDED - len(start.torque_at))),
         [1.0 / max(_square(setup, start), LEAST_SQUARE)],
         _inset(wanted.coupler_arms or (0.0, FAR)),
         np.array(wanted.link_lengths).T.ravel(),

@@ -45,6 +45,8 @@ class Start:
         The targets leave no freedom: the design is there already, or nowhere near.
     relaxed : tuple of str
         Requirements (keys) that it may miss, coming as near as it can; all others hold.
+    torque_at : tuple of float
+        Where else the torque is bounded, as shares of the motion used.
     """
 
     o2: complex
@@ -63,6 +65,7 @@ class Start:
     stay: bool = False
     settled: bool = False
     relaxed: tuple[str, ...] = ()
+    torque_at: tuple[float, ...] = ()
 
     @classmethod
     def of_linkage(cls, setup: Setup, linkage: FourBar, verdict: Verdict) -> Start:

@@ -12,9 +12,11 @@ from grashof.problems.checks import ComplexArray, FloatArray
 from grashof.problems.dynamics_spec import metres
 from grashof.synth.constraints import Places, Rows, cross, unit
 from grashof.synth.finds import TURN
-from grashof.synth.form import LOADS, Form, Given, Unknowns
+from grashof.synth.form import ADDED, LOADS, Form, Given, Unknowns
 
 SCREENED = 25  # driver angles where many linkages are compared
+LOOKED_AT = 30 * SCREENED  # driver angles where one linkage is looked at
+AGREES = 2e-3  # share of its bound by which a torque may exceed it
 
 
 def loads(problem: Problem, scale: float) -> FloatArray:
@@ -37,13 +39,14 @@ def loads(problem: Problem, scale: float) -> FloatArray:
 
 
 def torque_bound(rows: Rows, form: Form, given: Given, unknown: Unknowns, places: Places) -> ca.SX:
-    """What the torque does not exceed at any driver angle of the grid."""
+    """What the torque does not exceed at any driver angle of an even grid, and at those added to it."""
     arm, coupler = places.p[0] - places.a[0], places.b[0] - places.a[0]
     r, theta2 = unknown["r"], unknown["theta2"]
     at_coupler = ca.vertcat(ca.dot(coupler, arm), cross(coupler, arm)) / r[2]
     ground = unknown["o4"] - unknown["o2"]
     last = theta2[0] + given.direction * TURN if form.closed else theta2[form.targets - 1]
-    for angle in _grid(theta2[0], last, form.torque):
+    shares = [*np.linspace(0, 1, form.torque), *ca.vertsplit(given.torque_at)]
+    for angle in (theta2[0] + share * (last - theta2[0]) for share in shares):
         torque = drive_torque(ground, r, at_coupler, given.assembly, angle, given.load)
         rows.add("nonnegative", unknown["peak"] - torque, unknown["peak"] + torque)
     return unknown["peak"]
@@ -112,7 +115,7 @@ def torque_peaks(
     assembly: FloatArray,
     count: int,
 ) -> FloatArray:
-    """Greatest magnitude at the grid over the motion that each linkage is used in.
+    """Greatest magnitude at an even grid over the motion that each linkage is used in.
 
     Parameters
     ----------
@@ -127,34 +130,69 @@ def torque_peaks(
     Returns
     -------
     ndarray, shape (n,)
+        In reference torques; infinite where a linkage does not close.
+    """
+    peaks: FloatArray = _curves(problem, points, theta2, direction, assembly, count).max(axis=1)
+    return peaks
+
+
+def overlooked(
+    problem: Problem, points: ComplexArray, theta2: FloatArray, direction: int, assembly: int, bound: float
+) -> list[float]:
+    """Where a linkage's torque has peaks above a bound, as shares of the motion; the worst few.
+
+    Parameters
+    ----------
+    problem : Problem
+    points : ndarray of complex, shape (5,), sizes
+    theta2 : ndarray, shape (N,), rad
+        In the order of visit.
+    direction, assembly : int
+    bound : float
         In reference torques.
     """
+    sense, sign = np.array([direction]), np.array([assembly])
+    (curve,) = _curves(problem, points[None], theta2[None], sense, sign, LOOKED_AT)
+    beside = np.concatenate([[-np.inf], curve, [-np.inf]])
+    peaks = np.flatnonzero((curve >= beside[:-2]) & (curve > beside[2:]) & (curve > bound * (1 + AGREES)))
+    worst = peaks[np.argsort(-curve[peaks], kind="stable")][: ADDED // 2]
+    return [float(peak) / (LOOKED_AT - 1) for peak in worst]
+
+
+def _curves(
+    problem: Problem,
+    points: ComplexArray,
+    theta2: FloatArray,
+    direction: FloatArray,
+    assembly: FloatArray,
+    count: int,
+) -> FloatArray:
+    """Magnitudes in reference torques, shape (n, count)."""
     o2, o4, a, b, p = points.T
     coupler, last = b - a, theta2[:, -1]
     if getattr(problem.task, "closed", False):
         last = theta2[:, 0] + direction * TURN
     arm = (p - a) * np.abs(coupler) / coupler
-    shape = [
+    shape = np.array([
         (o4 - o2).real, (o4 - o2).imag, np.abs(o4 - o2), np.abs(a - o2), np.abs(coupler), np.abs(b - o4),
-        arm.real, arm.imag, assembly, theta2[:, 0], last,
-    ]  # fmt: skip
-    peaks = np.asarray(_peak(count)(np.array(shape), loads(problem, 1.0))).ravel()
-    return np.where(np.isnan(peaks), np.inf, peaks)
+        arm.real, arm.imag, assembly,
+    ])  # fmt: skip
+    angles = np.linspace(theta2[:, 0], last, count, axis=1)
+    at_once = SCREENED if count % SCREENED == 0 else count
+    given = np.repeat(shape, count // at_once, axis=1), angles.reshape(-1, at_once).T, loads(problem, 1.0)
+    torque = np.asarray(_torque(at_once)(*given)).T.reshape(angles.shape)
+    sizes: FloatArray = np.nan_to_num(np.abs(torque), nan=np.inf)
+    return sizes
 
 
 @lru_cache(maxsize=4)
-def _peak(count: int) -> ca.Function:
-    shape, load = ca.SX.sym("shape", 11), ca.SX.sym("load", LOADS)
+def _torque(count: int) -> ca.Function:
+    """Torque of one linkage at so many driver angles: a call for each would take three times as long."""
+    shape, theta2, load = ca.SX.sym("shape", 9), ca.SX.sym("theta2", count), ca.SX.sym("load", LOADS)
     torque = [
-        drive_torque(shape[:2], shape[2:6], shape[6:8], shape[8], theta2, load)
-        for theta2 in _grid(shape[9], shape[10], count)
+        drive_torque(shape[:2], shape[2:6], shape[6:8], shape[8], theta2[k], load) for k in range(count)
     ]
-    return ca.Function("torque_peak", [shape, load], [ca.norm_inf(ca.vertcat(*torque))])
-
-
-def _grid(first: ca.SX, last: ca.SX, count: int) -> list[ca.SX]:
-    """Driver angles from the first to the last, in equal steps."""
-    return [first + (last - first) * k / (count - 1) for k in range(count)]
+    return ca.Function("drive_torque", [shape, theta2, load], [ca.vertcat(*torque)])
 
 
 def _left(vector: ca.SX) -> ca.SX:
