@@ -103,7 +103,7 @@ def solve(
             min=1, help="Most designs in the list.", show_default=f"{TOP}, or search.enough if more"
         ),
     ] = None,
-    drawings: Annotated[int, typer.Option(min=0, help="How many of them to draw.")] = 8,
+    drawings: Annotated[int, typer.Option(min=0, help="How many of them to draw.")] = 3,
 ) -> None:
     """Find designs for PROBLEM; write the ranked list, a page to look at, the record, drawings.
 
