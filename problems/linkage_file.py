@@ -15,6 +15,7 @@ from grashof.problems.checks import near_miss
 from grashof.problems.display import Displayed
 from grashof.problems.dynamics_spec import DynamicsSpec
 from grashof.problems.errors import ProblemError
+from grashof.problems.files import catalogue
 from grashof.problems.linkage import FourBar
 
 
@@ -77,7 +78,7 @@ def load_linkage(linkage: str | os.PathLike[str]) -> FourBar:
     ----------
     linkage : str or path-like
         A name of `linkage_catalogue`, a linkage file, or ``DIR/candidates.json#3`` for the design of
-        rank 3 of a list.
+        rank 3 of a list; in place of the rank also the design's id.
 
     Raises
     ------
@@ -104,9 +105,12 @@ def load_linkage_spec(linkage: str | os.PathLike[str]) -> LinkageSpec:
     ('in', 180.0)
     """
     text = os.fspath(linkage)
-    file, mark, rank = text.rpartition("#")
+    file, mark, which = text.rpartition("#")
     if mark and file.endswith(".json"):
-        return _candidate(Path(file), rank)[0]
+        return _candidate(Path(file), which)[0]
+    table, row = (file, which) if mark and file.endswith(".csv") else (text, "1")
+    if table.endswith(".csv"):
+        raise ProblemError(f"{text}: is a table; allowed is {table.removesuffix('.csv')}.json#{row}")
     if text.endswith(".json"):
         raise ProblemError(f"{text}: is a list of designs; allowed is {text}#1 for the first of them")
     if isinstance(linkage, str) and not _looks_like_path(text):
@@ -114,30 +118,33 @@ def load_linkage_spec(linkage: str | os.PathLike[str]) -> LinkageSpec:
             return _parsed(linkage_text(text), f"{text}.toml", text)
         # Path.exists raises for names that no file can have; this says False.
         if not text or not os.path.exists(text):  # noqa: PTH110
+            if text in catalogue():
+                raise ProblemError(_problem_given(text, text))
             raise ProblemError(f"{text!r} is no linkage of the catalogue and no file; {_hint(text)}")
     path = Path(linkage)
     return _parsed(_text(path, "a linkage file"), str(path), path.stem)
 
 
-def load_design(path: Path, rank: str) -> ListedDesign:
+def load_design(path: Path, which: str) -> ListedDesign:
     """Design of a list that `grashof solve` wrote, with its targets.
 
     Parameters
     ----------
     path : Path
         A candidates.json.
-    rank : str
+    which : str
+        Rank or id.
 
     Raises
     ------
     ProblemError
         As for `load_linkage`, or a design without targets.
     """
-    spec, design = _candidate(path, rank)
+    spec, design = _candidate(path, which)
     try:
         return ListedDesign(
             spec=spec,
-            rank=int(rank),
+            rank=int(design["rank"]),
             id=str(design["id"]),
             theta2=tuple(float(angle) for angle in design["theta2"]),
             assembly=tuple(int(sign) for sign in design["assembly"]),
@@ -146,7 +153,7 @@ def load_design(path: Path, rank: str) -> ListedDesign:
         )
     except (KeyError, TypeError, ValueError):
         raise ProblemError(
-            f"{path}#{rank}: states no targets; allowed is a candidates.json of grashof solve"
+            f"{path}#{which}: states no targets; allowed is a candidates.json of grashof solve"
         ) from None
 
 
@@ -191,6 +198,10 @@ def _hint(name: str) -> str:
     return f"did you mean {meant}?" if meant else f"the catalogue has {', '.join(names)}"
 
 
+def _problem_given(given: str, name: str) -> str:
+    return f"{given}: is a problem; solve it, then name a design: {name}-designs/candidates.json#1"
+
+
 def _looks_like_path(text: str) -> bool:
     separators = {"/", os.sep, os.altsep}
     return text.endswith(".toml") or any(sep in text for sep in separators if sep)
@@ -220,6 +231,8 @@ def _parsed(text: str, file_name: str, name: str) -> LinkageSpec:
     # Besides its own error: an integer of thousands of digits, lists nested a thousand deep.
     except (ValueError, RecursionError) as error:
         raise ProblemError(f"{file_name}: is not TOML: {error}") from None
+    if "kind" in document:
+        raise ProblemError(_problem_given(file_name, name))
     try:
         return linkage_from(document, name)
     except ProblemError as error:
@@ -229,23 +242,27 @@ def _parsed(text: str, file_name: str, name: str) -> LinkageSpec:
 _LINKAGE_KEYS = ("o2", "o4", "r2", "r3", "r4", "coupler_point", "assembly", "body_angle")
 
 
-def _candidate(path: Path, rank: str) -> tuple[LinkageSpec, dict[str, Any]]:
+def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
     """Design of a list that `grashof solve` wrote, and all that the list says of it."""
-    where = f"{path}#{rank}"
+    where = f"{path}#{which}"
     try:
         content = json.loads(_text(path, "a list of designs"))
         designs = {int(design["rank"]): design for design in content["designs"]}
+        ranks = {
+            str(name): rank for rank, design in designs.items() for name in (rank, design.get("id", rank))
+        }
         title, unit = str(content["title"] or content["problem"]), str(content["length_unit"])
     except ProblemError:
         raise
-    except (ValueError, KeyError, TypeError, RecursionError):
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise ProblemError(
             f"{path}: is no list of designs; allowed is a candidates.json of grashof solve"
         ) from None
-    if not (rank.isascii() and rank.isdigit()) or int(rank) not in designs:
-        ranks = f"1 to {max(designs)}" if designs else "none"
-        raise ProblemError(f"{where}: has no design {rank or '(none named)'}; its ranks are {ranks}")
-    design = designs[int(rank)]
+    if which not in ranks:
+        allowed = f"a rank, 1 to {max(designs)}, or the id of a design" if designs else "none, it is empty"
+        raise ProblemError(f"{where}: has no design {which or '(none named)'}; allowed is {allowed}")
+    rank = ranks[which]
+    design = designs[rank]
     try:
         given: dict[str, Any] = {key: design["linkage"][key] for key in _LINKAGE_KEYS}
         linkage = FourBar(**given)
@@ -258,8 +275,8 @@ def _candidate(path: Path, rank: str) -> tuple[LinkageSpec, dict[str, Any]]:
         ) from None
     if linkage.shape:
         raise ProblemError(f"{where}: states a batch; allowed is one linkage")
-    stem = f"{path.parent.name or path.stem}-{int(rank)}"
-    heading = f"{title}: design {int(rank)}"
+    stem = f"{path.parent.name or path.stem}-{rank}"
+    heading = f"{title}: design {rank}"
     return LinkageSpec(linkage, stem, heading, str(path), unit, dynamics=driven), design
 
 

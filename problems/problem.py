@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from grashof.problems.checks import FloatArray, finite_number, outline, positive_number, whole_number
+from grashof.problems.checks import FloatArray, counted, finite_number, outline, positive_number, whole_number
 from grashof.problems.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.errors import ProblemError
 from grashof.problems.manufacturing import Manufacturing
@@ -85,7 +85,7 @@ def _named(kind: Any) -> str:
     return " or ".join(each.__name__ for each in getattr(kind, "__args__", (kind,))).replace("Type", "")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Problem:
     """All that is asked, as a problem file states it.
 
@@ -140,6 +140,9 @@ class Problem:
             outline(corners, f"scene.outlines[{index}]") for index, corners in enumerate(self.outlines)
         )
         object.__setattr__(self, "outlines", checked)
+
+    def __repr__(self) -> str:
+        return f"<Problem {self.name}: {type(self.task).__name__} of {counted(len(self.task), 'target')}>"
 
     @property
     def reference_torque(self) -> float:

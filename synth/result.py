@@ -12,7 +12,7 @@ import numpy as np
 
 from grashof.analysis import Verdict
 from grashof.problems import FourBar, NoSolutionError, Objective, Problem, TransmissionOver
-from grashof.problems.checks import BoolArray, FloatArray
+from grashof.problems.checks import BoolArray, FloatArray, counted
 from grashof.problems.display import Displayed
 from grashof.synth.distinct import DISTINCT, pick_apart, signature
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Candidate(Displayed):
     """A design with the judge's verdict on it.
 
@@ -45,6 +45,9 @@ class Candidate(Displayed):
     cognate_of: str = ""
     torque_peak: float = np.nan
 
+    def __repr__(self) -> str:
+        return f"<Candidate {self._words}>"
+
     @property
     def id(self) -> str:
         """Name by the design itself: the same for the same numbers (to six digits) in any list.
@@ -54,6 +57,14 @@ class Candidate(Displayed):
         numbers = [*signature(self.linkage), self.linkage.assembly, self.linkage.body_angle]
         text = " ".join(f"{number + 0.0:.5e}" for number in numbers)
         return "d" + hashlib.sha256(text.encode()).hexdigest()[:7]
+
+    @property
+    def _words(self) -> str:
+        lengths = ", ".join(f"{length:.4g}" for length in self.linkage.lengths)
+        worst = np.degrees(self.verdict.transmission_min_task)
+        return (
+            f"{self.id}: {self.verdict.grashof_class}, r1 to r4 {lengths}, mu {worst:.1f} deg over the task"
+        )
 
     def transmission(self, over: TransmissionOver) -> float:
         """Worst transmission angle over the task or the cycle, rad."""
@@ -87,7 +98,7 @@ def weigh(
     return score if torque is None else score - objective.torque * torque
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Result(Displayed):
     """A ranked list of verified, distinct designs, best first; `nearest` when there is none.
 
@@ -105,6 +116,8 @@ class Result(Displayed):
         Why the list is empty or was cut short; empty otherwise.
     complete : bool
         False when the search was interrupted.
+    ended : str
+        Why the search ended before it had as many designs as were asked for; empty when it had.
     """
 
     problem: Problem
@@ -114,6 +127,11 @@ class Result(Displayed):
     seconds: Mapping[str, float]
     note: str = ""
     complete: bool = True
+    ended: str = ""
+
+    def __repr__(self) -> str:
+        best = f"best {self.best._words}" if self.candidates else self.note
+        return f"<Result of {self.problem.name}: {counted(len(self), 'design')}; {best}>"
 
     @property
     def best(self) -> Candidate:

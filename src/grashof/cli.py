@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from enum import IntEnum
+from importlib.metadata import version
 from pathlib import Path
 from threading import Event
 from types import FrameType
@@ -80,9 +81,25 @@ ProblemArgument = Annotated[
 LinkageArgument = Annotated[
     str,
     typer.Argument(
-        metavar="LINKAGE", help="Name in the catalogue of linkages, a linkage file, or DIR/candidates.json#3."
+        metavar="LINKAGE",
+        help="Name in the catalogue of linkages, a linkage file, or DIR/candidates.json#3 (rank or id).",
     ),
 ]
+
+
+def _tell_version(wanted: bool) -> None:
+    if wanted:
+        say(f"grashof {version('grashof')}")
+        raise typer.Exit
+
+
+@app.callback()
+def grashof(
+    _version: Annotated[
+        bool, typer.Option("--version", callback=_tell_version, is_eager=True, help="Print it and exit.")
+    ] = False,
+) -> None:
+    """The command without a subcommand."""
 
 
 @app.command()

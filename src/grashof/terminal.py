@@ -15,7 +15,7 @@ from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
 from rich.progress import Progress as Bar
 from rich.table import Table
 
-from grashof.problems import DynamicsSpec, PathTask, Problem, Task
+from grashof.problems import DynamicsSpec, PathTask, Problem, Task, TransmissionOver
 from grashof.problems.checks import counted
 from grashof.streams import say
 from grashof.synth import Candidate, Progress, Result
@@ -198,13 +198,28 @@ def summary(problem: Problem) -> list[str]:
         lines.append(f"  made to within {made.length_tolerance:g}{unit}, band {made.band:g}{unit}")
     if problem.dynamics is not None:
         lines.append(f"  {_driven(problem.dynamics)}")
-    weights = {name: weight for name, weight in asdict(problem.objective).items() if weight}
     search = problem.search
     return [
         *lines,
-        f"  objective: {', '.join(f'{name} {weight:g}' for name, weight in weights.items())}",
+        f"  best: {_best(problem)}",
         f"  search: up to {search.starts} starts, {search.enough} designs, seed {search.seed}",
     ]
+
+
+def _best(problem: Problem) -> str:
+    """What designs are ranked by, as `Candidate.score` does it."""
+    if not problem.requirements.is_exact(problem.task):
+        return "smallest error (rms)"
+    over = "turn" if problem.requirements.transmission_over is TransmissionOver.CYCLE else "task"
+    words = {
+        "transmission": f"greatest worst transmission angle over the {over}",
+        "compactness": "smallest size",
+        "torque": "smallest peak torque",
+    }
+    weights = {words[name]: weight for name, weight in asdict(problem.objective).items() if weight}
+    if len(weights) == 1:
+        return next(iter(weights))
+    return f"a weighted sum: {', '.join(f'{word} {weight:g}' for word, weight in weights.items())}"
 
 
 def _driven(spec: DynamicsSpec) -> str:

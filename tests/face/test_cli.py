@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -346,3 +347,8 @@ def test_interrupt_writes_what_was_verified(tmp_path: Path) -> None:
     table = pd.read_csv(tmp_path / "long-designs" / "candidates.csv")
     assert len(table) > 0
     assert json.loads((tmp_path / "long-designs" / "run.json").read_text())["complete"] is False
+
+
+def test_the_version(grashof: Grashof) -> None:
+    done = grashof("--version")
+    assert (done.exit_code, done.stdout) == (0, f"grashof {version('grashof')}\n")

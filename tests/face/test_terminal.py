@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from rich.console import Console
 
 from grashof.analysis.mobility import GrashofClass
-from grashof.problems import Box, Objective, Requirements, load
+from grashof.problems import Box, Objective, Requirements, TransmissionOver, load
 from grashof.synth import Progress, Result
 from grashof.terminal import print_table, search_progress, summary
 
@@ -33,12 +34,30 @@ def test_the_torque_is_shown_where_it_is_asked_for(few: Result, capsys: pytest.C
     print_table(few)
     assert "torque  " not in capsys.readouterr().out
     driven = replace(few.problem, objective=Objective(transmission=1, torque=0.5))
-    assert "  objective: transmission 1, torque 0.5" in summary(driven)
+    sum_of = "greatest worst transmission angle over the task 1, smallest peak torque 0.5"
+    assert f"  best: a weighted sum: {sum_of}" in summary(driven)
     print_table(replace(few, problem=driven))
     lines = capsys.readouterr().out.splitlines()
     row = next(line for line in lines if line.lstrip().startswith("1"))
     assert f" {few.candidates[0].torque_peak:.4g} " in row
     assert any("N m" in line for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({}, "greatest worst transmission angle over the task"),
+        (
+            {"requirements": Requirements(transmission_over=TransmissionOver.CYCLE)},
+            "greatest worst transmission angle over the turn",
+        ),
+        ({"objective": Objective(transmission=0, compactness=2)}, "smallest size"),
+        ({"objective": Objective(transmission=0, torque=1)}, "smallest peak torque"),
+        ({"requirements": Requirements(exact=False)}, "smallest error (rms)"),
+    ],
+)
+def test_the_summary_says_what_is_best(few: Result, changes: dict[str, Any], said: str) -> None:
+    assert f"  best: {said}" in summary(replace(few.problem, **changes))
 
 
 @pytest.mark.parametrize("mixed", [False, True])

@@ -104,6 +104,7 @@ def test_a_plain_file_and_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         (PLAIN.replace("[4, 0]", "[4, 0, 0]"), "allowed is [x, y]"),
         (PLAIN.replace("[4, 0]", "[inf, 0]"), "all numbers must be finite"),
         ("r2 = ", "is not TOML"),
+        ("kind = 'motion'", "is a problem; solve it, then name a design: mine-designs/candidates.json#1"),
     ],
 )  # fmt: skip
 def test_what_a_file_may_not_say(tmp_path: Path, text: str, message: str) -> None:
@@ -127,7 +128,13 @@ def test_speed_and_gravity_need_no_masses(tmp_path: Path) -> None:
 def test_a_name_that_is_none() -> None:
     for name, message in [
         ("pumpjak", "did you mean pumpjack?"),
-        ("luggage", "the catalogue has lufkin-c912d, pumpjack"),
+        (
+            "luggage",
+            "^luggage: is a problem; solve it, then name a design: luggage-designs/candidates.json#1$",
+        ),
+        ("chair", "the catalogue has lufkin-c912d, pumpjack"),
+        ("d/candidates.csv#3", "is a table; allowed is d/candidates.json#3$"),
+        ("candidates.csv", "is a table; allowed is candidates.json#1$"),
         ("", "no linkage of the catalogue"),
         ("no/such.toml", "there is no such file"),
         ("./", "is a folder"),
@@ -143,7 +150,7 @@ def listed(**changes: Any) -> str:
         "o2": [0, 0], "o4": [4, 0], "r2": 1.0, "r3": 4.0, "r4": 3.0, "coupler_point": [0.1, 0.3],
         "assembly": -1, "body_angle": 0.25,
     }  # fmt: skip
-    design = {"rank": 3, "linkage": linkage | changes, "direction": 1}
+    design = {"rank": 3, "id": "dabcdef0", "linkage": linkage | changes, "direction": 1}
     return json.dumps({"problem": "p", "title": "P", "length_unit": "m", "designs": [design]})
 
 
@@ -156,13 +163,14 @@ def test_a_design_of_a_list(tmp_path: Path) -> None:
     assert spec.linkage == FourBar((0, 0), (4, 0), 1, 4, 3, (0.1, 0.3), -1, 0.25)
     assert (spec.name, spec.title, spec.length_unit) == ("p#designs-3", "P: design 3", "m")
     assert spec.dynamics == DynamicsSpec()
+    assert load_linkage_spec(f"{path}#dabcdef0").name == spec.name
     masses = {"masses": [1, 2, 3], "inertias": [0, 1, 0.1], "speed_rpm": 7}
     content = json.loads(listed()) | {"dynamics": masses}
     content["designs"][0]["direction"] = -1
     path.write_text(json.dumps(content))
     assert load_linkage_spec(f"{path}#3").dynamics == DynamicsSpec(**masses | {"speed_rpm": -7})
     for text, rank, message in [
-        (listed(), "4", "has no design 4; its ranks are 1 to 3"),
+        (listed(), "4", "has no design 4; allowed is a rank, 1 to 3, or the id of a design"),
         (listed(), "x", "has no design x"),
         (listed(), "", "has no design"),
         (listed(r2=0), "3", "#3: r2 is 0"),

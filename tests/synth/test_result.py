@@ -186,3 +186,14 @@ def test_verdicts_are_the_judges(luggage_result: Result, luggage: Problem) -> No
         assert again.transmission_min_task == candidate.verdict.transmission_min_task
         assert again.size == candidate.verdict.size
         assert again.theta2.tobytes() == candidate.verdict.theta2.tobytes()
+
+
+def test_values_show_themselves_in_one_line(luggage_result: Result) -> None:
+    best, problem = luggage_result.best, luggage_result.problem
+    mu = np.degrees(best.verdict.transmission_min_task)
+    assert repr(best).startswith(f"<Candidate {best.id}: crank-rocker, r1 to r4 ")
+    assert f"mu {mu:.1f} deg over the task" in repr(best)
+    assert f"<Result of luggage: {len(luggage_result)} designs; best {best.id}" in repr(luggage_result)
+    assert repr(Result(problem, (), (), {}, {}, note="nothing")) == "<Result of luggage: 0 designs; nothing>"
+    assert repr(problem) == "<Problem luggage: MotionTask of 4 targets>"
+    assert max(len(repr(value)) for value in (best, problem, luggage_result)) < 160

@@ -70,7 +70,9 @@ def _ezdxf() -> ModuleType:
     try:
         import ezdxf
     except ModuleNotFoundError:
-        raise ProblemError("--dxf needs ezdxf: pip install 'grashof[export]'") from None
+        raise ProblemError(
+            "--dxf needs ezdxf: pip install 'grashof[export]' (in a clone '.[export]')"
+        ) from None
     return ezdxf
 
 

@@ -108,11 +108,12 @@ def _refuse_path(kind: str, path: Path) -> None:
 
 def _chosen(linkage: str) -> tuple[list[LinkageSpec | ListedDesign], Path | None]:
     """What LINKAGE names, and the list that it is from."""
-    file, mark, ranks = linkage.rpartition("#")
+    file, mark, names = linkage.rpartition("#")
     if not (mark and file.endswith(".json")):
         return [load_linkage_spec(linkage)], None
     path = Path(file)
-    return [load_design(path, rank.strip()) for rank in dict.fromkeys(ranks.split(","))], path
+    designs = {one.rank: one for one in (load_design(path, name.strip()) for name in names.split(","))}
+    return list(designs.values()), path
 
 
 def _plan(one: LinkageSpec | ListedDesign, making: Making) -> Plan:

@@ -69,7 +69,9 @@ class Plan:
         rows: list[tuple[str, ...]] = [("part", "count", "layer", "thickness mm", "between holes mm")]
         for part in self.parts:
             layers = ", ".join(str(layer) for layer in sorted(set(part.layers)))
-            distances = ", ".join(f"{joints} {length:.10g}" for joints, length in part.plate.distances)
+            distances = ", ".join(
+                f"{joints} {round(length, 3):.10g}" for joints, length in part.plate.distances
+            )
             rows.append((part.plate.name, str(len(part.layers)), layers, thick, distances or "-"))
         for pin in self.pins:
             name = pin.name if pin.name.startswith("post") else f"pin {pin.name}"

@@ -260,7 +260,9 @@ def _openpyxl() -> ModuleType:
     try:
         import openpyxl
     except ModuleNotFoundError:
-        raise ProblemError("--xlsx needs openpyxl: pip install 'grashof[export]'") from None
+        raise ProblemError(
+            "--xlsx needs openpyxl: pip install 'grashof[export]' (in a clone '.[export]')"
+        ) from None
     return openpyxl
 
 

@@ -61,6 +61,9 @@ def test_a_design_stands_at_its_first_target(grashof: Grashof, few: Result, tmp_
     crank = a - o2
     assert abs(crank) == pytest.approx(20 * float(few.best.linkage.r2), rel=1e-12)
     assert np.exp(1j * np.angle(crank)) == pytest.approx(np.exp(1j * few.best.verdict.theta2[0]))
+    same = grashof("export", f"d/candidates.json#1,{few.best.id}", "--dxf", "two.dxf", "--scale", "1:50")
+    assert same.exit_code == 0, same.stderr
+    assert not [word for word in same.stdout.split() if len(word.strip(",").partition(".")[2]) > 3]
     several = grashof("export", "d/candidates.json#1,2", "--svg", "one.svg", "--xlsx", "one.xlsx")
     assert several.exit_code == 2
     assert several.stderr == "grashof: --svg takes one design; d/candidates.json#1,2 names 2\n"
@@ -123,7 +126,10 @@ def test_a_missing_library_is_named(
     monkeypatch.setitem(sys.modules, library, None)
     done = grashof("export", "pumpjack", option, f"a.{option[2:]}")
     assert done.exit_code == 2
-    assert done.stderr == f"grashof: {option} needs {library}: pip install 'grashof[export]'\n"
+    assert (
+        done.stderr
+        == f"grashof: {option} needs {library}: pip install 'grashof[export]' (in a clone '.[export]')\n"
+    )
     assert list(tmp_path.iterdir()) == []
 
 
