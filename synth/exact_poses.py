@@ -122,7 +122,8 @@ def obstacle(setup: Setup, rng: np.random.Generator) -> str:
         if len(dyads) < 2:
             found = "no real dyad" if not len(dyads) else "a single real dyad"
             return f"the {count} poses have {found}, and a linkage needs two{sliding}"
-        return f"the {count} poses have {len(dyads)} real dyads only{sliding}"
+        few = ", so one linkage at most, or its two drivers" if len(dyads) == 2 else ""
+        return f"the {count} poses have {len(dyads)} real dyads only{few}{sliding}"
     if count < 4:
         return ""
     for name, pivot in _fixed_pivots(setup):

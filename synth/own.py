@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -20,6 +21,8 @@ FAR = 1e3  # stands for an amount without bound
 NEAREST = 8  # starts that are tried for the closest miss
 # What makes an expression true or false; as a number, 1 where a condition holds.
 _TRUTHS = (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_NOT, ca.OP_AND, ca.OP_OR)
+# Where in CasADi's source an error arose, which its messages begin with.
+_PLACE = re.compile(r'^\S+\.[ch]pp:\d+: (Assertion ".*?" failed: )?')
 WRONG = (TypeError, ValueError, AttributeError, IndexError, KeyError, RuntimeError, NotImplementedError)
 
 
@@ -135,7 +138,9 @@ def _try_on_symbols(constraint: Constraint, targets: int) -> None:
     try:
         value = constraint(design)
     except WRONG as error:
-        reason = " ".join(str(error).split())
+        reason = _PLACE.sub("", " ".join(str(error).split())).rstrip(".")
+        if "truth value" in reason:
+            reason += " (casadi.fmax, casadi.fmin and casadi.if_else do what max, min and if cannot)"
         raise ProblemError(
             f"constraint {name_of(constraint)} fails on symbols: {reason}; allowed are functions of a design "
             "made of arithmetic that works on CasADi symbols"

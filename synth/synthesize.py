@@ -15,7 +15,7 @@ import numpy as np
 
 from grashof.analysis import verify
 from grashof.analysis.design import Constraint
-from grashof.problems import MotionTask, Problem, ProblemError, Search, SolverError
+from grashof.problems import MotionTask, Problem, ProblemError, Rotatability, Search, SolverError
 from grashof.problems.checks import counted, finite_number, whole_number
 from grashof.synth import exact_poses, paths
 from grashof.synth.attempt import Attempt, attempt
@@ -181,8 +181,9 @@ def _search(
                 obstacle = exact_poses.obstacle(setup, rng)
     found.counts["verified and distinct"] = len(found.best)
     times = {**seconds, "total": perf_counter() - begun}
-    note = "" if found.best else _why(nearest, complete, obstacle or _exhausted(found))
-    return Result(setup.problem, found.best, nearest, dict(found.counts), times, note, complete)
+    note = "" if found.best else _why(setup, nearest, complete, obstacle or _exhausted(found))
+    why = _why_ended(setup, search, found, complete)
+    return Result(setup.problem, found.best, nearest, dict(found.counts), times, note, complete, why)
 
 
 @dataclass(slots=True)
@@ -197,16 +198,28 @@ class _Found:
     solved: int = 0
     stale: int = 0
 
+    @property
+    def exact(self) -> bool:
+        """Whether the designs meet every target."""
+        return self.problem.requirements.is_exact(self.problem.task)
+
     def wants_more(self, search: Search) -> bool:
-        """Whether the list is too short and solves are left."""
-        exact = self.problem.requirements.is_exact(self.problem.task)
-        stale = self.stale >= (STALE_EXACT if exact else STALE)
-        hopeless = stale or (not self.best and self.solved >= FRUITLESS)
-        return len(self.best) < search.enough and self.solved < search.starts and not hopeless
+        """Whether the list is too short, solves are left and there is hope."""
+        return len(self.best) < search.enough and not self.no_use(search)
+
+    def no_use(self, search: Search) -> str:
+        """Why to solve no more, however short the list is; empty where it may be of use."""
+        if self.solved >= search.starts:
+            return "starts allows no more"
+        if self.stale >= (STALE_EXACT if self.exact else STALE):
+            return (
+                f"the last {self.stale} rounds of starts brought nothing {'new' if self.exact else 'better'}"
+            )
+        return "none of them gave a design" if not self.best and self.solved >= FRUITLESS else ""
 
     def gained_on(self, before: tuple[Candidate, ...]) -> bool:
         """Whether there are more exact designs than before, or a better least-squares one."""
-        if self.problem.requirements.is_exact(self.problem.task):
+        if self.exact:
             return len(self.best) > len(before)
         return self.best[0].score(self.problem) > (1 - GAIN) * before[0].score(self.problem)
 
@@ -323,21 +336,38 @@ def _approximate(setup: Setup, search: Search, ended: Callable[[], bool]) -> tup
     return tuple(found for found in judged if not found.verdict.ok)
 
 
+def _why_ended(setup: Setup, search: Search, found: _Found, complete: bool) -> str:
+    """Why the search ended with fewer designs than are enough; empty when it has them."""
+    if len(found.best) >= search.enough:
+        return ""
+    settled = setup.motion is not None and len(setup.targets) > 4
+    exhausted = "the poses leave no freedom" if settled else "there are no other starts"
+    why = (found.no_use(search) or exhausted) if complete else "it was stopped"
+    return f"the search ended after {found.solved} of {counted(search.starts, 'solve')}: {why}"
+
+
 def _exhausted(found: _Found) -> str:
     every = found.counts["linkages through the points"]
     return f"none of the {every} linkages through the points meets all requirements" if every else ""
 
 
-def _why(nearest: tuple[Candidate, ...], complete: bool, obstacle: str) -> str:
+def _why(setup: Setup, nearest: tuple[Candidate, ...], complete: bool, obstacle: str) -> str:
     if not complete:
         return "no design: the search was stopped before it found one"
     if obstacle:
-        closest = f"; the closest one misses {_missed(nearest[0])}" if nearest else ""
+        closest = f"; the closest one misses {_missed(setup, nearest[0])}" if nearest else ""
         return f"no design: {obstacle}{closest}"
     if not nearest:
         return "no design: the search found none, nor a near miss"
-    return f"no design meets all requirements; the closest one misses {_missed(nearest[0])}"
+    return f"no design meets all requirements; the closest one misses {_missed(setup, nearest[0])}"
 
 
-def _missed(candidate: Candidate) -> str:
-    return " and ".join(str(defect) for defect in candidate.verdict.defects)
+def _missed(setup: Setup, candidate: Candidate) -> str:
+    """What a design misses, and which line of the problem file would ask for less."""
+    defects = candidate.verdict.defects
+    missed, less = {defect.requirement for defect in defects}, ""
+    if "rotatability" in missed and setup.wanted.rotatability is not Rotatability.ANY:
+        less = '; rotatability = "any" asks for less'
+    if "exact" in missed:
+        less += "; exact = false asks for less"
+    return " and ".join(map(str, defects)) + less

@@ -314,6 +314,8 @@ def _solve(
                 progress=progress,
                 stop=interrupted,
             )
+        if found.ended:
+            say(found.ended, err=True)
         result = replace(found, candidates=found.candidates[:top])
         if result.candidates or result.complete:  # an interrupted search with nothing replaces nothing
             files = write_run(folder, result, settings, drawings, stop=interrupted, problem_text=text)

@@ -179,6 +179,7 @@ def _record(result: Result, settings: dict[str, Any], files: list[str]) -> dict[
         "problem": result.problem.name,
         **_about(settings),
         "complete": result.complete,
+        "ended": result.ended,
         "designs": len(result),
         "note": result.note,
         "counts": dict(result.counts),

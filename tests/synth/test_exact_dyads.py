@@ -212,7 +212,8 @@ def test_two_real_dyads_that_make_no_usable_linkage_are_counted() -> None:
     setup, _, _ = planted(0, 5, link_length=(1e3, 1e4))
     count = len(_dyads(setup, rng()))
     assert count >= 2
-    assert obstacle(setup, rng()) == f"the 5 poses have {count} real dyads only"
+    few = ", so one linkage at most, or its two drivers" if count == 2 else ""
+    assert obstacle(setup, rng()) == f"the 5 poses have {count} real dyads only{few}"
 
 
 def test_six_poses_at_random_have_no_dyads() -> None:

@@ -22,6 +22,11 @@ THREE = Problem(task=MotionTask.from_degrees([[0, 0, 0], [2, 1, 20], [3, 3, 50]]
         (lambda _: "r2", "gives 'r2'; allowed is a scalar"),
         (lambda _: [], "gives nothing; allowed is a scalar"),
         (lambda design: np.max([design.r2, design.r3]), "fails on symbols: .*CasADi"),
+        (
+            lambda design: max(design.r2, design.r3),
+            "fails on symbols: Cannot compute the truth value of .*casadi.fmax",
+        ),
+        (lambda design: design.o2[5], "fails on symbols: Slice .* out of bounds"),
         (lambda design: sum(design.theta2), "fails on symbols: .*CasADi"),
         (lambda design: design.r9, "fails on symbols: .*r9"),
     ],

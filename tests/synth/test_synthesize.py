@@ -169,6 +169,7 @@ def test_the_requirement_in_the_way_is_named(kind: str) -> None:
     assert len(result) == 0
     assert result.complete
     assert f"misses {key}: " in result.note
+    assert ('; rotatability = "any" asks for less' in result.note) == (key == "rotatability")
     assert {defect.requirement for defect in result.nearest[0].verdict.defects} == {key}
     assert result.counts["verified and distinct"] == 0
 

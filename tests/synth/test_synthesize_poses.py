@@ -196,6 +196,8 @@ def test_five_poses_that_no_linkage_meets_come_with_the_closest() -> None:
     assert result.note.startswith("no design: the 5 poses have ")
     assert result.nearest
     assert "; the closest one misses " in result.note
+    assert result.note.endswith("; exact = false asks for less")
+    assert result.ended.endswith(": the poses leave no freedom")
     assert not result.nearest[0].verdict.ok
 
 

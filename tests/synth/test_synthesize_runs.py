@@ -13,6 +13,7 @@ import pytest
 
 from grashof import synthesize
 from grashof.problems import Box, Problem, ProblemError, Search, SolverError
+from grashof.problems.checks import counted
 from grashof.synth import Progress, Result
 
 pytestmark = pytest.mark.usefixtures("coarse_curves")
@@ -130,6 +131,10 @@ def test_no_more_solves_than_starts(luggage: Problem, starts: int) -> None:
     assert executor.jobs == starts
     solves = sum(count for name, count in result.counts.items() if name.startswith("solver: "))
     assert solves == starts
+    assert (
+        result.ended
+        == f"the search ended after {starts} of {counted(starts, 'solve')}: starts allows no more"
+    )
     assert 1 <= len(result) <= starts
     assert {candidate.start for candidate in result.candidates} <= set(range(starts))
 
@@ -159,6 +164,7 @@ def test_stopped_before_anything_was_found(luggage: Problem) -> None:
     result = synthesize(luggage, stop=lambda: True)
     assert (len(result), result.complete, result.nearest) == (0, False, ())
     assert "stopped" in result.note
+    assert result.ended == "the search ended after 0 of 200 solves: it was stopped"
     assert "solver: Solve_Succeeded" not in result.counts
 
 

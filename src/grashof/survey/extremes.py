@@ -13,6 +13,8 @@ from grashof.survey.sweep import INSET, TURN, Sweep
 
 _WIDE_INSET = 1e-4  # rad: extremes of rates are sought so far from a dead position of a change point
 
+_CONSTANT = 1e-12  # least and largest values apart, as a share: the quantity is constant
+
 
 def _listed(quantity: Quantity) -> bool:
     """Extremes are told of every quantity but the components of vectors that have a size."""
@@ -20,7 +22,10 @@ def _listed(quantity: Quantity) -> bool:
 
 
 def extremes_table(sweep: Sweep, quantities: list[Quantity]) -> pd.DataFrame:
-    """A row for each quantity: least and largest value, and the driver angles of both."""
+    """A row for each quantity: least and largest value, and the driver angles of both.
+
+    The angles are NaN where the quantity is constant.
+    """
     rows = []
     for number, (low, high) in enumerate(sweep.ranges, start=1):
         for quantity in filter(_listed, quantities):
@@ -68,6 +73,8 @@ def _extreme(sweep: Sweep, quantity: Quantity, low: float, high: float) -> dict[
         if sweep.turns:
             at = at % TURN if TURN - at % TURN > 1e-9 else 0.0
         told |= {name: float(value), f"theta2_{name}_deg": float(np.round(np.degrees(at), 9) + 0.0)}
+    if np.isclose(least, largest, rtol=_CONSTANT, atol=0.0):  # rounding alone would choose the angles
+        told |= dict.fromkeys(("theta2_min_deg", "theta2_max_deg"), np.nan)
     return told
 
 

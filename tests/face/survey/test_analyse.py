@@ -126,6 +126,15 @@ def test_the_table_is_the_motion(jack: LinkageReport) -> None:
     assert table["theta4_deg"].max() - table["theta4_deg"].min() == pytest.approx(46.65, abs=0.01)
 
 
+def test_what_is_constant_is_least_and_largest_nowhere(jack: LinkageReport) -> None:
+    table = extremes(jack)
+    speed = table.loc["a_velocity"]
+    assert speed["min"] == pytest.approx(speed["max"], rel=1e-12)
+    angles = table[["theta2_min_deg", "theta2_max_deg"]].isna().all(axis=1)
+    assert angles["a_velocity"]
+    assert not angles[["omega3", "omega4", "mu_deg"]].any()
+
+
 def test_speed_scales_rates() -> None:
     spec = load_linkage_spec("lufkin-c912d")
     slow, fast = (report_on(spec, speed).tables["kinematics"] for speed in (None, -60 / np.pi))
