@@ -210,7 +210,7 @@ class _Found:
     def no_use(self, search: Search) -> str:
         """Why to solve no more, however short the list is; empty where it may be of use."""
         if self.solved >= search.starts:
-            return "starts allows no more"
+            return f"starts = {search.starts} allows no more"
         if self.stale >= (STALE_EXACT if self.exact else STALE):
             return (
                 f"the last {self.stale} rounds of starts brought nothing {'new' if self.exact else 'better'}"

@@ -349,6 +349,13 @@ def test_interrupt_writes_what_was_verified(tmp_path: Path) -> None:
     assert json.loads((tmp_path / "long-designs" / "run.json").read_text())["complete"] is False
 
 
+def test_a_short_list_says_why_it_is_short(grashof: Grashof, tmp_path: Path) -> None:
+    done = grashof("solve", "luggage", "--starts", "3", "--drawings", "0")
+    said = "the search ended after 3 of 3 solves: starts = 3 allows no more"
+    assert done.stderr.splitlines().count(said) == 1
+    assert json.loads((tmp_path / "luggage-designs/run.json").read_text())["ended"] == said
+
+
 def test_the_version(grashof: Grashof) -> None:
     done = grashof("--version")
     assert (done.exit_code, done.stdout) == (0, f"grashof {version('grashof')}\n")

@@ -72,7 +72,7 @@ def check_designs(result: Result, judge: Callable[[FourBar, MotionTask], Any], t
 def test_luggage_gives_twenty_and_more(luggage_result: Result, independent_judge: Any) -> None:
     assert len(luggage_result) >= 20
     assert luggage_result.complete
-    assert luggage_result.note == ""
+    assert luggage_result.note == luggage_result.ended == ""
     assert luggage_result.nearest == ()
     check_designs(luggage_result, independent_judge)
     assert all(np.degrees(c.verdict.transmission_min_task) >= 15 - 1e-6 for c in luggage_result.candidates)

@@ -133,7 +133,7 @@ def test_no_more_solves_than_starts(luggage: Problem, starts: int) -> None:
     assert solves == starts
     assert (
         result.ended
-        == f"the search ended after {starts} of {counted(starts, 'solve')}: starts allows no more"
+        == f"the search ended after {starts} of {counted(starts, 'solve')}: starts = {starts} allows no more"
     )
     assert 1 <= len(result) <= starts
     assert {candidate.start for candidate in result.candidates} <= set(range(starts))

@@ -128,10 +128,10 @@ def test_the_table_is_the_motion(jack: LinkageReport) -> None:
 
 def test_what_is_constant_is_least_and_largest_nowhere(jack: LinkageReport) -> None:
     table = extremes(jack)
-    speed = table.loc["a_velocity"]
+    speed = table.loc["a_speed"]
     assert speed["min"] == pytest.approx(speed["max"], rel=1e-12)
     angles = table[["theta2_min_deg", "theta2_max_deg"]].isna().all(axis=1)
-    assert angles["a_velocity"]
+    assert angles["a_speed"]
     assert not angles[["omega3", "omega4", "mu_deg"]].any()
 
 
