@@ -12,7 +12,7 @@ from grashof.analysis import GrashofClass, driver_ranges, reach_box
 from grashof.analysis.extent import diagonal
 from grashof.problems import FourBar
 
-CHECKED = settings(derandomize=True, deadline=None, max_examples=20)
+CHECKED = settings(max_examples=20)
 Brute = Callable[..., tuple[npt.NDArray[np.complex128], ...]]
 Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from grashof.analysis import Extremes, GrashofClass, extremes, extremes_of, solve_kinematics
 from grashof.problems import AssemblyError, DeadPositionWarning, FourBar, ProblemError
 
-CHECKED = settings(derandomize=True, deadline=None, max_examples=10)
+CHECKED = settings(max_examples=10)
 TURN = 2 * np.pi
 SPEED = TURN / 3
 Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]

@@ -14,7 +14,7 @@ from scipy.optimize import root
 from grashof.analysis import GrashofClass, driver_ranges, full_rotation, solve_kinematics, solve_position
 from grashof.problems import AssemblyError, DeadPositionWarning, FourBar, ProblemError
 
-CHECKED = settings(derandomize=True, deadline=None, max_examples=25)
+CHECKED = settings(max_examples=25)
 TURN = 2 * np.pi
 Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
 Curves = Callable[[float], npt.NDArray[np.float64]]

@@ -23,7 +23,7 @@ from grashof.analysis import (
 from grashof.analysis.mobility import range_index
 from grashof.problems import FourBar
 
-CHECKED = settings(derandomize=True, deadline=None, max_examples=25)
+CHECKED = settings(max_examples=25)
 MARCHED = settings(CHECKED, max_examples=30)
 TURN = 2 * math.pi
 STEP = 0.01  # rad along the curve of closed loops

@@ -13,7 +13,7 @@ from grashof.analysis.motion import driver_way, nearest_to_poses
 from grashof.analysis.planted import planted_motion
 from grashof.problems import FourBar, MotionTask
 
-CHECKED = settings(derandomize=True, deadline=None, max_examples=25)
+CHECKED = settings(max_examples=25)
 TURN = 2 * np.pi
 Brute = Callable[..., tuple[npt.NDArray[np.complex128], ...]]
 Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]

@@ -13,7 +13,7 @@ from grashof.analysis.motion import at_poses, nearest_to_poses
 from grashof.analysis.planted import planted_motion
 from grashof.problems import FourBar, MotionTask
 
-CHECKED = settings(derandomize=True, deadline=None, max_examples=40)
+CHECKED = settings(max_examples=40)
 Brute = Callable[..., tuple[npt.NDArray[np.complex128], ...]]
 Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
 Kinds = list[str]

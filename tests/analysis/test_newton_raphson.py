@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from grashof.analysis import GrashofClass, driver_ranges, newton_position, solve_position
 from grashof.problems import FourBar
 
-CHECKED = settings(derandomize=True, deadline=None, max_examples=25)
+CHECKED = settings(max_examples=25)
 Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
 
 

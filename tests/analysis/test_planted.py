@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from grashof.analysis import GrashofClass, grashof_class, solve_position
 from grashof.analysis.planted import planted_motion, random_full_crank, uneven_driver_angles
 
-CHECKED = settings(derandomize=True, deadline=None, max_examples=60)
+CHECKED = settings(max_examples=60)
 
 
 def test_random_linkages_turn_fully_and_spread_as_promised() -> None:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from grashof.analysis import GrashofClass, driver_ranges, solve_position
 from grashof.problems import FourBar
 
-CHECKED = settings(derandomize=True, deadline=None, max_examples=25)
+CHECKED = settings(max_examples=25)
 TURN = np.pi * 2
 Brute = Callable[..., tuple[npt.NDArray[np.complex128], ...]]
 Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]

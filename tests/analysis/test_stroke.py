@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from grashof.analysis import GrashofClass, extremes, output_stroke, solve_kinematics
 from grashof.problems import FourBar
 
-CHECKED = settings(derandomize=True, deadline=None, max_examples=20)
+CHECKED = settings(max_examples=20)
 TURN = 2 * np.pi
 Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
 

@@ -84,7 +84,7 @@ def standard_error(share: float, samples: int = SAMPLES) -> float:
 
 
 @given(seed=st.integers(0, 2**32), assembly=st.sampled_from([1, -1]))
-@settings(max_examples=100, deadline=None, derandomize=True)
+@settings(max_examples=100)
 def test_derivatives_are_the_differences(seed: int, assembly: int) -> None:
     rng = np.random.default_rng(seed)
     linkage, theta2 = random_full_crank(rng), uneven_driver_angles(rng, 5)
@@ -199,7 +199,7 @@ def test_shares_are_those_of_linkages_made_one_by_one(kind: str) -> None:
 
 
 @given(seed=st.integers(0, 2**32), motion=st.booleans())
-@settings(max_examples=25, deadline=None, derandomize=True)
+@settings(max_examples=25)
 def test_small_tolerances_agree_linearised_and_exact(seed: int, motion: bool) -> None:
     rng = np.random.default_rng(seed)
     task, linkage = planted_motion(rng, 4) if motion else planted_path(rng, 5)

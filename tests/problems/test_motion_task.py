@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grashof.problems import MotionTask, ProblemError, Requirements, load
@@ -88,7 +88,6 @@ def test_exact_as_long_as_unknowns_are_enough(kinds: list[str], exact: bool) -> 
 
 
 @given(st.lists(st.sampled_from([WHOLE, PLACE, TURNED]), min_size=2, max_size=12))
-@settings(derandomize=True, deadline=None)
 def test_exact_is_the_count_of_unknowns_and_equations(kinds: list[str]) -> None:
     if set(kinds) == {TURNED}:
         return

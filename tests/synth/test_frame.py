@@ -9,7 +9,7 @@ from grashof.analysis.planted import planted_motion
 from grashof.problems import Box, MotionTask, Requirements
 from grashof.synth.frame import Frame
 
-bounded = settings(derandomize=True, max_examples=60, deadline=None)
+bounded = settings(max_examples=60)
 point = st.tuples(st.floats(-50, 50), st.floats(-50, 50))
 
 

@@ -15,7 +15,7 @@ from grashof.synth import Candidate, Result
 from grashof.synth.result import pareto_optimal, ranked, weigh
 
 Designs = tuple[Candidate, ...]
-bounded = settings(derandomize=True, max_examples=60, deadline=None)
+bounded = settings(max_examples=60)
 
 
 def with_figures(candidate: Candidate, error: float, transmission: float, size: float) -> Candidate:

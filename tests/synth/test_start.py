@@ -13,7 +13,7 @@ from grashof.synth.finds import Finds
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
 
-bounded = settings(derandomize=True, max_examples=80, deadline=None)
+bounded = settings(max_examples=80)
 angle = st.floats(-3, 3)
 
 

@@ -14,7 +14,7 @@ from grashof.synth.three_poses import (
     circle_dyads_of_ground,
 )
 
-bounded = settings(derandomize=True, max_examples=100, deadline=None)
+bounded = settings(max_examples=100)
 seeds = st.integers(0, 100_000)
 
 
