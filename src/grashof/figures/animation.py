@@ -13,6 +13,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
 from grashof.analysis import Position, solve_position
+from grashof.analysis.smooth import smooth_polygon
 from grashof.figures.linkage import figure_of, new_axes, plane
 from grashof.figures.parts import (
     BODY,
@@ -28,7 +29,6 @@ from grashof.problems import MotionTask, Problem, ProblemError
 from grashof.problems.checks import FloatArray
 from grashof.survey.sweep import TURN
 
-_STEPS = 6  # of the path from frame to frame, so that it is drawn smooth
 _WRITERS = {".gif": "pillow", ".mp4": "ffmpeg"}
 
 
@@ -69,9 +69,11 @@ def animate(
     frames = round(seconds * fps) if np.isfinite(seconds * fps) else 0
     if frames < 2:
         raise ProblemError(f"seconds * fps is {seconds * fps:g}; allowed are two frames and more")
-    state = solve_position(subject.linkage, _driver(subject, frames * _STEPS))
+    turns = np.arange(frames + 1) / frames
+    state = solve_position(subject.linkage, _driver(subject, turns[:-1]))
+    trace = smooth_polygon(lambda turn: solve_position(subject.linkage, _driver(subject, turn)).p, turns)
     axes = new_axes(ax)
-    moving, figure = _Moving(axes, subject, state), figure_of(axes)
+    moving, figure = _Moving(axes, subject, state, *trace), figure_of(axes)
     if ax is None:  # laid out once: a new layout for every frame would take most of the time
         figure.draw_without_rendering()
         figure.set_layout_engine("none")
@@ -129,9 +131,9 @@ def check_animation(path: Path) -> None:
         raise ProblemError(f"{path}: {reason}; allowed is a file in a folder that can be written") from None
 
 
-def _driver(subject: Subject, count: int) -> FloatArray:
-    """Driver angles of the motion, shape (count,), rad: evenly round, or swinging between limits."""
-    phase, sweep = TURN * np.arange(count) / count, subject.sweep
+def _driver(subject: Subject, turns: FloatArray) -> FloatArray:
+    """Driver angles at shares of the motion, shape (N,), rad: evenly round, or swinging between limits."""
+    phase, sweep = TURN * turns, subject.sweep
     start, sense = sweep.ranges[0][0], 1
     if subject.verdict is not None:
         start, sense = float(subject.verdict.theta2[0]), subject.verdict.direction
@@ -141,19 +143,34 @@ def _driver(subject: Subject, count: int) -> FloatArray:
     middle, half = (low + high) / 2, (high - low) / 2
     beside = (start - middle + np.pi) % TURN - np.pi
     chosen = np.argmin(np.abs(beside) - half)  # the range that holds the start
-    phase += sense * np.arccos(np.clip(-beside / half, -1, 1))[chosen]
+    phase = phase + sense * np.arccos(np.clip(-beside / half, -1, 1))[chosen]
     angles: FloatArray = middle[chosen] - half[chosen] * np.cos(phase)
     return angles
 
 
 class _Moving:
-    """The artists of an animation, and the motion that they show."""
+    """The artists of an animation, and the motion that they show.
 
-    def __init__(self, axes: Axes, subject: Subject, state: Position) -> None:
+    Parameters
+    ----------
+    axes : Axes
+    subject : Subject
+    state : Position
+        In every frame.
+    turns : ndarray, shape (N,)
+        Shares of the motion at the points of the path.
+    path : ndarray, shape (N, 2), length
+        What P draws, over the whole motion.
+    """
+
+    def __init__(
+        self, axes: Axes, subject: Subject, state: Position, turns: FloatArray, path: FloatArray
+    ) -> None:
         linkage, problem = subject.linkage, subject.problem
-        self._state = state
+        self._state, self._path = state, path
+        frames = len(state.p)
+        self._drawn = np.searchsorted(turns, np.arange(frames) / frames, side="right")
         self._links = Links(axes, linkage, state.a[0], state.b[0], state.p[0], named=False)
-        path = np.vstack([state.p, state.p[:1]])
         axes.plot(*path.T, color=PATH, linewidth=0.8, linestyle=":", zorder=2)
         (self._trace,) = axes.plot([], [], color=PATH, linewidth=1.8, zorder=3)
         self._corners = _carried(subject, state)
@@ -166,21 +183,21 @@ class _Moving:
         ]
         draw_ground(axes, linkage)
         plane(axes, subject)
-        axes.update_datalim(np.concatenate([state.a, state.b, state.p, *self._corners]))
+        axes.update_datalim(np.concatenate([state.a, state.b, path, *self._corners]))
         axes.autoscale_view()
 
     def show(self, frame: int) -> list[Artist]:
         """Put everything where it is in a frame; what has moved."""
-        state, step = self._state, frame * _STEPS
-        self._links.move(state.a[step], state.b[step], state.p[step])
-        self._trace.set_data(*state.p[: step + 1].T)
+        state = self._state
+        self._links.move(state.a[frame], state.b[frame], state.p[frame])
+        self._trace.set_data(*self._path[: self._drawn[frame]].T)
         for body in self._bodies:
-            body.set_xy(self._corners[step])
+            body.set_xy(self._corners[frame])
         return [*self._links.lines, self._links.plate, self._trace, *self._bodies]
 
 
 def _carried(subject: Subject, state: Position) -> list[FloatArray]:
-    """Corners of the body that the task has P carry, in every step; none where it has none."""
+    """Corners of the body that the task has P carry, in every frame; none where it has none."""
     task = None if subject.problem is None else subject.problem.task
     if not isinstance(task, MotionTask):
         return []

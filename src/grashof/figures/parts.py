@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Polygon
 
 from grashof.analysis import Position, solve_position
+from grashof.analysis.smooth import smooth_polygon
 from grashof.figures.subject import Subject
 from grashof.problems import FourBar, MotionTask, PathTask, Problem, Task
 from grashof.problems.checks import FloatArray
@@ -121,12 +122,17 @@ def draw_path(axes: Axes, subject: Subject) -> None:
         signs = sorted(set(verdict.assembly.tolist()))
     for sign in signs:
         for angles in sweep.angles():
-            axes.plot(*solve_position(linkage, angles, sign).p.T, **style)
+            axes.plot(*_path_of_p(linkage, angles, sign).T, **style)
             style["label"] = None
     if verdict is not None and verdict.branch_ok:  # else no motion joins the targets
         angles = np.linspace(verdict.theta2.min(), verdict.theta2.max(), 181)
-        way = solve_position(linkage, angles, verdict.assembly[0]).p
+        way = _path_of_p(linkage, angles, int(verdict.assembly[0]))
         axes.plot(*way.T, color=PATH, linewidth=1.6, label="path of P, first to last target", zorder=2)
+
+
+def _path_of_p(linkage: FourBar, theta2: FloatArray, assembly: int) -> FloatArray:
+    """P at some driver angles and as many between them as its path needs, shape (N, 2)."""
+    return smooth_polygon(lambda angles: solve_position(linkage, angles, assembly).p, theta2)[1]
 
 
 def draw_scene(axes: Axes, problem: Problem) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from grashof.analysis import driver_ranges, solve_position
+from grashof.analysis.smooth import smooth_polygon
 from grashof.page.render import compact
 from grashof.problems import MotionTask, PathTask, Problem, Task, catalogue, load
 from grashof.problems.checks import FloatArray
@@ -59,7 +60,8 @@ def _published(problem: Problem) -> dict[str, Any] | None:
         return None  # another problem of the same name
     best = known[0]
     low, high = driver_ranges(best.linkage)[0]
-    path = solve_position(best.linkage, np.linspace(low, high, _SAMPLES)).p
+    angles = np.linspace(low, high, _SAMPLES)
+    path = smooth_polygon(lambda theta2: solve_position(best.linkage, theta2).p, angles)[1]
     return {
         "label": f"{best.method} {best.year}",
         "path": [compact(point) for point in path if np.isfinite(point).all()],

@@ -22,6 +22,8 @@ from grashof.synth import Result
 RECORD: dict[str, Any] = {"versions": {"grashof": "0"}, "settings": {"seed": 0}}
 TITLE = "<script>document.title = 'caught'</script>"
 ROCKER = FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1))
+# Its driver just turns; in one degree P moves a fifth of its whole way.
+NEARLY_DEAD = FourBar((0, 0), (1.38, 0), 1.43, 1.7, 1.74, (1, 1))
 # Points of the scatter plot that a click in their middle meets.
 UNCOVERED = """
 [...document.querySelectorAll(".point")].filter((node) => {
@@ -56,6 +58,7 @@ def folder(few: Result, tmp_path_factory: pytest.TempPathFactory) -> Path:
         "missed": search_page(missed, frame.iloc[:1].assign(misses="r3"), RECORD),
         "nothing": search_page(replace(missed, nearest=()), frame.iloc[:0], RECORD),
         "rocker": analysis_page(report_on(LinkageSpec(ROCKER, "rocker", title=TITLE)), RECORD),
+        "swift": analysis_page(report_on(LinkageSpec(NEARLY_DEAD, "swift")), RECORD),
     }
     for name, page in pages.items():
         (path / f"{name}.html").write_text(page, encoding="utf-8")
@@ -158,6 +161,17 @@ def test_a_driver_that_cannot_turn_stays_between_its_limits(opened: Open) -> Non
     page.locator("#player [data-play]").click()
     wait_until(page, f"Math.abs(grashof.state().theta2 - {middle}) > 0.1")
     assert_closed(ROCKER, state(page))
+
+
+def test_the_path_of_p_is_smooth_where_p_runs_fast(opened: Open) -> None:
+    path = opened("swift").locator("#stage .trace").get_attribute("d")
+    assert path is not None
+    points = np.array([pair.split() for pair in path[1:].split("L")], dtype=float)
+    steps = np.diff(points, axis=0) @ [1, 1j]
+    assert np.abs(steps).max() < 0.011 * np.ptp(points, axis=0).max()
+    seen = np.abs(steps) > 2  # px: shorter ones are rounded
+    turns = np.degrees(np.abs(np.angle(steps[1:] / steps[:-1])))
+    assert turns[seen[1:] & seen[:-1]].max() < 6
 
 
 def test_columns_are_sorted(opened: Open, few: Result) -> None:

@@ -55,6 +55,58 @@ function anglesBetween(low, high, even, steps = STEPS) {
 
 const travelAngles = (design) => anglesBetween(design.low, design.high, design.turns);
 
+// The path of P over some driver angles as { angles, points }: with others between them while a chord is
+// longer than `chord` of the path's extent, or turns by more than 4 deg and can be seen.
+function pathOf(linkage, given, chord = 0.01, most = 2000) {
+  let angles = given;
+  let points = angles.map((angle) => positionOf(linkage, angle).p);
+  for (let round = 0; round < 24; round += 1) {
+    const coarse = coarseChords(points, chord);
+    const left = most - angles.length;
+    if (left <= 0 || !coarse.includes(true)) break;
+    const [nextAngles, nextPoints] = [[angles[0]], [points[0]]];
+    let added = 0;
+    for (let k = 1; k < angles.length; k += 1) {
+      if (coarse[k - 1] && added < left) {
+        const middle = (angles[k - 1] + angles[k]) / 2;
+        nextAngles.push(middle);
+        nextPoints.push(positionOf(linkage, middle).p);
+        added += 1;
+      }
+      nextAngles.push(angles[k]);
+      nextPoints.push(points[k]);
+    }
+    [angles, points] = [nextAngles, nextPoints];
+  }
+  return { angles, points };
+}
+
+// Which chords of a polygon have to be halved, as in Python.
+function coarseChords(points, chord) {
+  const spans = [0, 1].map((axis) => {
+    const values = points.map((point) => point[axis]);
+    return Math.max(...values) - Math.min(...values);
+  });
+  const extent = Math.max(...spans);
+  const steps = points.slice(1).map((point, k) => [point[0] - points[k][0], point[1] - points[k][1]]);
+  const lengths = steps.map(([x, y]) => Math.hypot(x, y));
+  const ways = steps.map(([x, y]) => Math.atan2(y, x));
+  const coarse = lengths.map((length) => length > chord * extent);
+  for (let k = 1; k < steps.length; k += 1) {
+    const longer = Math.max(lengths[k], lengths[k - 1]);
+    if (longer <= (chord / 5) * extent || Math.abs(wrapped(ways[k] - ways[k - 1])) <= 4 / DEG) continue;
+    for (const each of [k - 1, k]) if (lengths[each] > longer / 2) coarse[each] = true;
+  }
+  return coarse;
+}
+
+// The same over the whole travel of a design; kept, as every drawing of it needs it.
+const travelled = new WeakMap();
+function travelPath(design) {
+  if (!travelled.has(design)) travelled.set(design, pathOf(design.linkage, travelAngles(design)));
+  return travelled.get(design);
+}
+
 // Value at x of samples at rising places; null beside a gap.
 function interpolated(places, values, x) {
   let [low, high] = [0, places.length - 1];

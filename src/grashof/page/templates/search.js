@@ -66,7 +66,7 @@ class SearchPage {
   }
 
   curves(design) {
-    const angles = travelAngles(design);
+    const { angles } = travelPath(design);
     const places = angles.map((angle) => angle * DEG);
     const marks = design.theta2.map((angle) => within(design, angle) * DEG);
     const whole = this.scene.closed || !design.task;
@@ -77,7 +77,8 @@ class SearchPage {
     if (!this.torque) return;
     const series = [{ label: "T", values: design.torque }];
     const options = { bold, marks, bounded: !design.turns };
-    this.torque.show({ title: "Drive torque", unit: this.torqueUnit, series }, places, options);
+    const sampled = travelAngles(design).map((angle) => angle * DEG);
+    this.torque.show({ title: "Drive torque", unit: this.torqueUnit, series }, sampled, options);
   }
 
   moved(state) {

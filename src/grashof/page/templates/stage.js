@@ -32,7 +32,7 @@ function pointsToSee(scene, designs, close) {
       if (scene.body && pose.angle !== null) points.push(...bodyAt(scene.body, pose.at, pose.angle));
     }
     if (!design || close) continue;
-    for (const angle of travelAngles(design)) {
+    for (const angle of travelPath(design).angles) {
       const { o2, o4, a, b, p } = positionOf(design.linkage, angle);
       points.push(o2, o4, a, b, p);
     }
@@ -202,12 +202,10 @@ class Stage {
 
   traces() {
     const { linkage, task } = this.design;
-    const path = (angles) => through(angles.map((angle) => this.at(positionOf(linkage, angle).p)));
-    add(this.svg, "path", {
-      d: path(travelAngles(this.design)),
-      class: task === undefined ? "trace" : "trace whole",
-    });
-    if (task) add(this.svg, "path", { d: path(anglesBetween(...task, true)), class: "trace" });
+    const draw = ({ points }, style) =>
+      add(this.svg, "path", { d: through(points.map(this.at)), class: style });
+    draw(travelPath(this.design), task === undefined ? "trace" : "trace whole");
+    if (task) draw(pathOf(linkage, anglesBetween(...task, true)), "trace");
   }
 
   drawGhosts() {

@@ -89,7 +89,7 @@ function thumbnail(design, width = 66, height = 44) {
     "aria-hidden": "true",
   });
   const { theta2, linkage, low, high } = design;
-  const path = anglesBetween(low, high, design.turns, 72).map((angle) => positionOf(linkage, angle).p);
+  const path = pathOf(linkage, anglesBetween(low, high, design.turns, 36), 0.04).points;
   const { o2, o4, a, b, p } = positionOf(linkage, theta2[theta2.length >> 1]);
   const points = [...path, o2, o4, a, b, p];
   const [xs, ys] = [points.map((point) => point[0]), points.map((point) => point[1])];
