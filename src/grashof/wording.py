@@ -17,7 +17,7 @@ def value_text(value: float | int | str | bool) -> str:
     """
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+    return f"{value + 0.0:.6g}" if isinstance(value, float) else str(value)
 
 
 def number_text(value: Any, digits: int) -> str:

@@ -23,6 +23,7 @@ from grashof.figures.parts import (
     draw_ground,
     draw_scene,
     draw_task,
+    name_points,
 )
 from grashof.figures.subject import Linkage, Subject
 from grashof.problems import MotionTask, Problem, ProblemError
@@ -184,7 +185,7 @@ class _Moving:
         draw_ground(axes, linkage)
         plane(axes, subject)
         axes.update_datalim(np.concatenate([state.a, state.b, path, *self._corners]))
-        axes.autoscale_view()
+        name_points(axes, {"O2": linkage.o2, "O4": linkage.o4})
 
     def show(self, frame: int) -> list[Artist]:
         """Put everything where it is in a frame; what has moved."""

@@ -15,12 +15,14 @@ from grashof.figures.parts import (
     KEPT_OUT,
     PATH,
     Links,
+    apart,
     draw_ground,
     draw_path,
     draw_scene,
     draw_sense,
     draw_task,
-    name_point,
+    in_points,
+    name_points,
     targets_shown,
 )
 from grashof.figures.subject import Linkage, Subject
@@ -78,14 +80,13 @@ def plot_linkage(
     shades = np.linspace(0.3, 1, len(positions)) if len(positions) > 1 else [1.0]
     for index, ((a, b, p), shade) in enumerate(zip(positions, shades, strict=True), start=1):
         Links(ax, subject.linkage, a, b, p, shade, named=index == len(positions))
-    name_point(ax, "A", a)
-    name_point(ax, "B", b)
-    if min(np.hypot(*(p - a)), np.hypot(*(p - b))) > 0:
-        name_point(ax, "P", p)
     draw_task(ax, subject)
     draw_ground(ax, subject.linkage)
     draw_sense(ax, subject)
     plane(ax, subject)
+    names = {"O2": subject.linkage.o2, "O4": subject.linkage.o4, "A": a, "B": b}
+    in_joint = min(np.hypot(*(p - a)), np.hypot(*(p - b))) == 0
+    name_points(ax, names if in_joint else {**names, "P": p})
     last = "target" if problem is not None and theta2 is None else "position"
     heading = f"light to dark: first to last {last}" if len(positions) > 1 else None
     ax.legend(loc="best", title=heading, title_fontsize="small", fontsize="small")
@@ -144,7 +145,8 @@ def plot_design_space(result: Result, *, ax: Axes | None = None) -> Axes:
     """Plot the worst transmission angle of all designs against their size, the Pareto-optimal ones ringed.
 
     The colour is the peak torque where the problem has dynamics, or else the position error where the
-    targets are not met exactly; grey where it is not finite. The best ten carry their rank.
+    targets are not met exactly; grey where it is not finite. The best ten carry their rank, where there is
+    room for it.
 
     Parameters
     ----------
@@ -187,8 +189,14 @@ def plot_design_space(result: Result, *, ax: Axes | None = None) -> Axes:
         size[front], mu[front], s=110, facecolors="none", edgecolors=GROUND, linewidths=1.2,
         label="Pareto-optimal", zorder=4,
     )  # fmt: skip
-    for rank, place in enumerate(zip(size[:_NUMBERED], mu[:_NUMBERED], strict=True), start=1):
-        ax.annotate(f"{rank}", place, (6, 5), textcoords="offset points", fontsize="small", zorder=5)
+    best = np.column_stack([size, mu])[:_NUMBERED]
+    taken: list[FloatArray] = []
+    for rank, (place, there) in enumerate(zip(best, in_points(ax, best), strict=True), start=1):
+        if apart(there, taken):
+            ax.annotate(
+                f"{rank}", tuple(place), (6, 5), textcoords="offset points", fontsize="small", zorder=5
+            )
+            taken.append(there)
     ax.set_xlabel(f"size of the design ({unit})", parse_math=False)
     ax.set_ylabel(f"worst transmission angle over the {over} (deg)")
     ax.legend(loc="best", fontsize="small")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,8 @@ SCENE, GROUND, KEPT_OUT = "#5d6d7e", "#17202a", "#909497"
 # Targets up to which the linkage is drawn at each, and up to which each carries its number.
 _CROWD = {"path": 6, "motion": 8}
 _NUMBERED = 24
+_SIDES = ((7, -12), (7, 6), (-20, 6), (-20, -12))  # pt: where a name may stand beside its point
+_TEXT = (16.0, 11.0)  # pt: texts of two characters so far apart do not cover each other
 
 
 class Links:
@@ -82,17 +85,37 @@ class Links:
         return [np.array(points) for points in each]
 
 
-def name_point(axes: Axes, name: str, point: FloatArray) -> None:
-    """Write a name below a point of shape (2,)."""
-    axes.annotate(name, tuple(point), (7, -12), textcoords="offset points", color=GROUND, zorder=8)
+def name_points(axes: Axes, points: Mapping[str, FloatArray]) -> None:
+    """Write names beside points of shape (2,), each where it covers none written before.
+
+    The axes' limits stand by then.
+    """
+    places = in_points(axes, np.array(list(points.values())))
+    taken: list[FloatArray] = []
+    for (name, point), place in zip(points.items(), places, strict=True):
+        side = next((side for side in _SIDES if apart(place + side, taken)), _SIDES[0])
+        taken.append(place + side)
+        axes.annotate(name, tuple(point), side, textcoords="offset points", color=GROUND, zorder=8)
+
+
+def in_points(axes: Axes, places: FloatArray) -> FloatArray:
+    """Where places of shape (N, 2) are on the page, pt; with the limits and the scale as they now are."""
+    axes.autoscale_view()
+    axes.apply_aspect()
+    inches: FloatArray = axes.figure.dpi_scale_trans.inverted().transform(axes.transData.transform(places))
+    return 72 * inches
+
+
+def apart(place: FloatArray, others: Sequence[FloatArray]) -> bool:
+    """Whether a short text at a place, pt, covers none at others."""
+    return not any((np.abs(place - other) < _TEXT).all() for other in others)
 
 
 def draw_ground(axes: Axes, linkage: FourBar) -> None:
-    """The ground pivots with their names."""
-    for name, pivot in (("O2", linkage.o2), ("O4", linkage.o4)):
+    """The ground pivots."""
+    for pivot in (linkage.o2, linkage.o4):
         axes.plot(*pivot[:, None], marker="^", color=GROUND, markersize=11, zorder=6)
         axes.plot(*pivot[:, None], marker="o", color="white", markersize=3, zorder=7)
-        name_point(axes, name, pivot)
 
 
 def draw_sense(axes: Axes, subject: Subject) -> None:

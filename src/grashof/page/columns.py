@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 
 from grashof.problems import PathTask, Problem
+from grashof.synth.table import DYNAMICS, MOTION
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +27,8 @@ class Column:
         Of its numbers, -1 for powers of ten.
     better : int
         +1 where more is better, -1 where less is, 0 for neither.
+    about : str
+        What it is, where its label does not say so.
     """
 
     key: str
@@ -33,6 +36,7 @@ class Column:
     unit: str
     decimals: int
     better: int = 0
+    about: str = ""
 
     def text(self, value: Any) -> str:
         """A value as the table shows it."""
@@ -41,7 +45,7 @@ class Column:
             return "no limit"
         if math.isnan(number):
             return "–"
-        return f"{number:.{self.decimals}f}" if self.decimals >= 0 else f"{number:.3e}"
+        return f"{number:z.{self.decimals}f}" if self.decimals >= 0 else f"{number:.3e}"
 
 
 # Key, label, unit (of length: "length"), significant digits of the largest, which way is better.
@@ -50,8 +54,8 @@ _LISTED = (
     ("transmission_min_task_deg", "μ task", "deg", 3, 1),
     ("transmission_min_cycle_deg", "μ turn", "deg", 3, 1),
     ("size", "size", "length", 4, -1),
-    ("torque_peak", "peak torque", "N m", 4, -1),
-    ("joint_force_peak", "peak force", "N", 4, -1),
+    ("torque_peak", "peak torque, task", "N m", 4, -1),
+    ("joint_force_peak", "peak force, task", "N", 4, -1),
     ("share_within_made", "made within", "share", 3, 1),
     *((name, name, "length", 4, 0) for name in ("r1", "r2", "r3", "r4")),
 )
@@ -60,6 +64,9 @@ _UNITS = {
     "torque_peak": "N m", "torque_rms": "N m", "joint_force_peak": "N", "error_sse": "length²",
     "move_u": "", "move_v": "",
 }  # fmt: skip
+_SIZE = "diagonal of the box around O2, O4 and all that A, B and P reach from the first target to the last"
+# What figures are, where their names do not tell.
+_ABOUT = {"size": _SIZE} | dict.fromkeys((*MOTION, *DYNAMICS), "from the first target to the last")
 _LENGTHS = (
     "o2_x", "o2_y", "o4_x", "o4_y", "r1", "r2", "r3", "r4", "p_u", "p_v", "error_max", "error_rms", "size",
     "hausdorff", "frechet", "worst_move",
@@ -79,17 +86,23 @@ def listed(problem: Problem, frame: pd.DataFrame) -> list[Column]:
     elif not frame["full_rotation"].any():
         left_out.add("transmission_min_cycle_deg")
     return [
-        Column(key, label, in_length(unit, problem.length_unit), _decimals(frame[key], digits), better)
+        Column(
+            key,
+            label,
+            in_length(unit, problem.length_unit),
+            _decimals(frame[key], digits),
+            better,
+            _ABOUT.get(key, ""),
+        )
         for key, label, unit, digits, better in _LISTED
         if key not in left_out and (unit == "deg" or not frame[key].isna().all())
     ]
 
 
-def figure_units(frame: pd.DataFrame, length_unit: str) -> list[tuple[str, str]]:
-    """Name and unit of every column of candidates.csv that is filled, in its order."""
-    return [
-        (str(key), in_length(_unit(str(key)), length_unit)) for key in frame if not frame[key].isna().all()
-    ]
+def figure_units(frame: pd.DataFrame, length_unit: str) -> list[tuple[str, str, str]]:
+    """Name, unit and meaning of every column of candidates.csv that is filled, in its order."""
+    filled = [str(key) for key in frame if not frame[key].isna().all()]
+    return [(key, in_length(_unit(key), length_unit), _ABOUT.get(key, "")) for key in filled]
 
 
 def in_length(unit: str, length_unit: str) -> str:

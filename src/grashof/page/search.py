@@ -52,7 +52,13 @@ def search_page(result: Result, frame: pd.DataFrame, record: Mapping[str, Any], 
         "found": bool(result.candidates),
         "scene": scene_of(problem),
         "columns": [
-            {"key": each.key, "label": each.label, "unit": each.unit, "better": each.better}
+            {
+                "key": each.key,
+                "label": each.label,
+                "unit": each.unit,
+                "better": each.better,
+                "about": each.about,
+            }
             for each in columns
         ],
         "units": figure_units(frame, problem.length_unit) if designs else [],

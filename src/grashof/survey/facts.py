@@ -68,14 +68,16 @@ def facts_of(sweep: Sweep, masses: Masses | None, tables: Mapping[str, pd.DataFr
             yield Fact(f"driver_{name}{mark}_deg", label, float(np.degrees(end)), "deg")
     if turns:
         worst = float(np.degrees(worst_transmission(linkage, *ranges[0])))
-        yield Fact("transmission_min_deg", "worst transmission angle", worst, "deg")
+        yield Fact("transmission_min_deg", f"worst transmission angle {sweep.over}", worst, "deg")
     else:
-        yield Fact("transmission_min_deg", "worst transmission angle (dead positions)", 0.0, "deg")
+        yield Fact(
+            "transmission_min_deg", f"worst transmission angle {sweep.over} (dead positions)", 0.0, "deg"
+        )
     yield from _stroke_facts(spec, turns, tables["extremes"])
     box = np.array([reach_box(linkage, low, high) for low, high in ranges])
     extent = np.max(box[:, 1], axis=0) - np.min(box[:, 0], axis=0)
-    yield Fact("size", "size (diagonal of the box it needs)", float(np.hypot(*extent)), unit)
-    yield from _path_facts(spec, ranges, turns)
+    yield Fact("size", f"size {sweep.over} (diagonal of the box it needs)", float(np.hypot(*extent)), unit)
+    yield from _path_facts(sweep)
     if masses is not None:
         yield from _mass_facts(spec, masses, tables["dynamics"], turns)
 
@@ -113,16 +115,16 @@ def _stroke_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame) -> Ite
         yield Fact("torque_factor_at_0_deg", "torque factor of the output arm at theta2 = 0", factor, unit)
 
 
-def _path_facts(spec: LinkageSpec, ranges: tuple[tuple[float, float], ...], turns: bool) -> Iterator[Fact]:
+def _path_facts(sweep: Sweep) -> Iterator[Fact]:
+    spec, ranges, turns = sweep.spec, sweep.ranges, sweep.turns
     linkage, unit = spec.linkage, spec.length_unit or "length"
     low, high = ranges[0]
-    where = ", range 1" if len(ranges) > 1 else ""
+    where = sweep.over if len(ranges) == 1 else "over range 1"
     for degree in (4, 8):
         r2 = float(coupler_fit_r2(linkage, low, high, degree))
         if np.isfinite(r2):
-            yield Fact(
-                f"coupler_fit_r2_degree_{degree}", f"R2 of degree {degree} through the path of P{where}", r2
-            )
+            label = f"R2 of degree {degree} through the path of P {where}"
+            yield Fact(f"coupler_fit_r2_degree_{degree}", label, r2)
     if turns:
         series = coupler_fourier(linkage)
         for harmonic in range(1, _HARMONICS + 1):

@@ -97,14 +97,14 @@ def _extremes_table(report: LinkageReport, digits: int) -> Table:
     many = "range" in frame
     for name in (
         *(["range"] if many else []),
-        "extremes",
+        f"extremes {report.sweep.over}",
         "unit",
         "least",
         "at theta2",
         "largest",
         "at theta2",
     ):
-        left = name in ("extremes", "unit")
+        left = name.startswith("extremes") or name == "unit"
         table.add_column(name, justify="left" if left else "right", no_wrap=True)
     columns = ("min", "theta2_min_deg", "max", "theta2_max_deg")
     for row in frame.to_dict("records"):

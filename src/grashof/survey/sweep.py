@@ -71,6 +71,11 @@ class Sweep:
             raise ProblemError(f"{spec.name}: the linkage closes at no driver angle, so it has no motion")
         return cls(spec, speed_rpm, ranges, False)
 
+    @property
+    def over(self) -> str:
+        """In words, what its figures are taken over: not a task, as those of a design."""
+        return "over the turn" if self.turns else "over the travel"
+
     def state(self, theta2: FloatArray) -> Kinematics:
         """Kinematics at driver angles, rad."""
         return solve_kinematics(self.spec.linkage, theta2, self.speed_rpm * TURN / 60)

@@ -18,6 +18,7 @@ from grashof.analysis import Loads, driver_ranges, solve_kinematics, solve_posit
 from grashof.analysis.mass import stated_masses
 from grashof.output import write_run
 from grashof.page import analysis_page, search_page
+from grashof.page.columns import Column
 from grashof.page.designs import Travel, driver_travel
 from grashof.problems import FourBar, LinkageSpec, PathTask, Problem, load, load_linkage_spec
 from grashof.survey import report_on
@@ -190,6 +191,27 @@ def test_an_analysis_shows_every_curve_and_figure() -> None:
         assert fact.label in text
     for what in report.tables["extremes"]["what"]:
         assert what in text
+
+
+def test_what_figures_are_taken_over_is_said(few: Result) -> None:
+    parts = Parts(page_of(few))
+    told = {column["label"]: column["about"] for column in parts.data["columns"]}
+    assert told["size"].startswith("diagonal of the box around O2, O4")
+    assert told["peak torque, task"] == told["peak force, task"] == "from the first target to the last"
+    assert set(told.values()) - {""} <= {attributes.get("title") for _, attributes in parts.tags}
+    abouts = {key: about for key, _, about in parts.data["units"]}
+    assert abouts["coupler_fit_r2"] == "from the first target to the last"
+    for linkage, over in ((load_linkage_spec("pumpjack"), "turn"), (LinkageSpec(ROCKER, "rocker"), "travel")):
+        report = report_on(linkage)
+        labels = {fact.key: fact.label for fact in report.facts}
+        for key in ("size", "transmission_min_deg"):
+            assert f"over the {over}" in labels[key]
+        assert f"Extremes over the {over}" in Parts(analysis_page(report, RECORD)).text
+    assert labels["coupler_fit_r2_degree_4"].startswith("R2 of degree 4 through the path of P over ")
+
+
+def test_what_rounds_to_zero_has_no_sign() -> None:
+    assert Column("o2_x", "O2", "mm", 2).text(-0.001) == "0.00"
 
 
 def test_ranges_of_an_analysis_are_apart() -> None:

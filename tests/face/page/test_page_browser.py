@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -189,11 +190,14 @@ def test_columns_are_sorted(opened: Open, few: Result) -> None:
 
 def test_designs_are_filtered(opened: Open, few: Result) -> None:
     page, frame = opened("search"), few.to_frame()
-    size, transmission = frame["size"].median(), frame["transmission_min_task_deg"].median()
-    page.fill("[name=size]", str(size))
-    assert set(state(page)["listed"]) == set(frame.loc[frame["size"] <= size, "id"])
-    page.fill("[name=transmission]", str(transmission))
-    both = (frame["size"] <= size) & (frame["transmission_min_task_deg"] >= transmission)
+    sizes = frame["size"].round(2)  # as the table shows them
+    angles = frame["transmission_min_task_deg"].round(1)
+    size, transmission = sorted(sizes)[len(frame) // 2], sorted(angles)[len(frame) // 2]
+    assert (frame["size"] > size).any()
+    page.fill("[name=size]", f"{size:.2f}")
+    assert set(state(page)["listed"]) == set(frame.loc[sizes <= size, "id"])
+    page.fill("[name=transmission]", f"{transmission:.1f}")
+    both = (sizes <= size) & (angles >= transmission)
     assert set(state(page)["listed"]) == set(frame.loc[both, "id"])
     assert page.locator("form output").inner_text() == f"{both.sum()} of {len(frame)}"
     assert page.locator(".point:not(.filtered)").count() == both.sum()
@@ -204,6 +208,23 @@ def test_designs_are_filtered(opened: Open, few: Result) -> None:
     page.uncheck("[name=pareto]")
     page.fill("[name=text]", frame["id"][3])
     assert state(page)["listed"] == [frame["id"][3]]
+
+
+def test_a_filter_compares_with_the_numbers_shown(opened: Open, few: Result) -> None:
+    page = opened("search")
+    nothing = page.get_by_text("no design matches")
+    for name, key in (("transmission", "transmission_min_task_deg"), ("size", "size")):
+        column = page.locator("table.designs thead th").evaluate_all(
+            "(heads, key) => heads.findIndex((head) => head.dataset.key === key)", key
+        )
+        for row in page.locator("tr[data-index]").all():
+            page.fill(f"[name={name}]", row.locator("th, td").nth(column).inner_text())
+            assert row.is_visible()
+            assert not nothing.is_visible()
+        page.fill(f"[name={name}]", "")
+    page.fill("[name=transmission]", "89")
+    assert state(page)["listed"] == []
+    assert nothing.is_visible()
 
 
 def test_a_point_of_the_scatter_plot_picks_its_design(opened: Open, few: Result) -> None:
@@ -266,6 +287,33 @@ def test_the_keyboard_is_enough(opened: Open, few: Result) -> None:
         "[...document.querySelectorAll('button, select, input')].filter((node) => node.tabIndex < 0).length"
     )
     assert unreachable == 0
+
+
+def test_arrows_turn_the_driver_wherever_nothing_else_needs_them(opened: Open) -> None:
+    page = opened("search")
+    turned = [state(page)["theta2"]]
+    for key in ("ArrowRight", "Shift+ArrowRight", "ArrowLeft", "Alt+ArrowRight", "ArrowDown"):
+        page.keyboard.press(key)
+        turned.append(state(page)["theta2"])
+    np.testing.assert_allclose(np.degrees(np.diff(turned)), [1, 10, -1, 0, 0], atol=1e-9)
+    for needs_them in ("[name=text]", "[data-pace]", "#designs .scroll"):
+        page.locator(needs_them).focus()
+        page.keyboard.press("ArrowRight")
+        assert state(page)["theta2"] == turned[-1]
+
+
+@pytest.mark.parametrize("width", [360, 1400])
+@pytest.mark.parametrize("name", ["search", "missed", "rocker", "swift"])
+def test_numbers_of_the_axes_stand_apart(opened: Open, name: str, width: int) -> None:
+    page = opened(name, viewport={"width": width, "height": 900})
+    boxes = [each.bounding_box() for each in page.locator("#stage .numbers text").all()]
+    assert len(boxes) > 5
+    for one, other in combinations([box for box in boxes if box], 2):
+        gaps = (
+            max(one[axis], other[axis]) - min(one[axis] + one[side], other[axis] + other[side])
+            for axis, side in (("x", "width"), ("y", "height"))
+        )
+        assert max(gaps) > 0
 
 
 def test_it_runs_only_when_asked_to(opened: Open) -> None:

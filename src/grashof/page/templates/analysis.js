@@ -16,7 +16,7 @@ class AnalysisPage {
     const ranges = $("#range");
     if (ranges) ranges.addEventListener("change", () => this.choose(Number(ranges.value)));
     listenToKeys(this.stage, this.player);
-    playOnSpace(() => this.player);
+    listenOnPage(() => this.player);
     this.choose(0);
   }
 

@@ -42,7 +42,7 @@ class Comparison {
     this.stages.push(
       new Stage(svg, this.scene, {
         onDraw: ({ theta2, mu }) => {
-          output.textContent = minus(`θ2 ${(theta2 * DEG).toFixed(1)} deg, μ ${(mu * DEG).toFixed(1)} deg`);
+          output.textContent = `θ2 ${fixed(theta2 * DEG, 1)} deg, μ ${fixed(mu * DEG, 1)} deg`;
         },
       }),
     );

@@ -74,8 +74,8 @@ class Curves {
       this.panel.unit === "deg" ? degreeTicks(low, high, about) : ticks(low, high, about);
     for (const value of at) {
       add(layer, "path", { d: `M${left} ${px(this.y(value))}H${right}`, class: value === 0 ? "zero" : "" });
-      const label = Math.abs(value) >= 1e5 ? value.toExponential(1) : (value + 0).toFixed(decimals);
-      add(layer, "text", { x: left - 5, y: this.y(value) + 4, "text-anchor": "end" }, minus(label));
+      const label = Math.abs(value) >= 1e5 ? minus(value.toExponential(1)) : fixed(value, decimals);
+      add(layer, "text", { x: left - 5, y: this.y(value) + 4, "text-anchor": "end" }, label);
     }
     for (const place of degreeTicks(first, last, (right - left) / 48).at) {
       add(layer, "path", { d: `M${px(this.x(place))} ${top}V${bottom}` });
@@ -83,7 +83,7 @@ class Curves {
         layer,
         "text",
         { x: this.x(place), y: bottom + 14, "text-anchor": "middle" },
-        minus(place.toFixed(0)),
+        fixed(place, 0),
       );
     }
     for (const place of this.marks) {

@@ -76,6 +76,7 @@ class Player {
 
   // Arrows step, Home and End go to the ends; says whether the key was one of them.
   key(event) {
+    if (event.altKey || event.ctrlKey || event.metaKey) return false;
     const steps = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 };
     if (event.key in steps) this.set(this.value + steps[event.key] * (event.shiftKey ? 10 : 1) * this.step);
     else if (event.key === "Home") this.set(this.low);
@@ -93,11 +94,18 @@ function listenToKeys(stage, player) {
   });
 }
 
-// The space bar plays and pauses, unless what has the focus needs it.
-function playOnSpace(player) {
+// On the whole page the space bar plays and pauses, and the arrows to the left and right turn the
+// driver, unless what has the focus needs them.
+function listenOnPage(player) {
   document.addEventListener("keydown", (event) => {
-    if (event.key !== " " || event.target.closest("button, input, select, summary, a, [role=button]")) return;
+    if (event.defaultPrevented) return;
+    const needs = (selector) => event.target.closest(selector);
+    if (event.key === " ") {
+      if (needs("button, input, select, summary, a, [role=button]")) return;
+      player().toggle();
+    } else if (event.key === "ArrowLeft" || event.key === "ArrowRight") {
+      if (needs("input:not([type=checkbox]), select, .scroll, pre") || !player().key(event)) return;
+    } else return;
     event.preventDefault();
-    player().toggle();
   });
 }

@@ -67,7 +67,7 @@ class Scatter {
     const layer = add(this.svg, "g", { class: "grid" });
     const { at, decimals } = ticks(low, high, axis === "x" ? (right - left) / 70 : (bottom - top) / 36);
     for (const value of at) {
-      const label = minus((value + 0).toFixed(decimals));
+      const label = fixed(value, decimals);
       const place = px(scale(value));
       if (axis === "x") {
         add(layer, "path", { d: `M${place} ${top}V${bottom}` });

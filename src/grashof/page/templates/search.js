@@ -98,8 +98,9 @@ class SearchPage {
     for (const node of $$("[data-rank]")) node.textContent = figures.rank;
     if (!found) $("#misses").textContent = figures.misses;
     const known = this.units.filter(([key]) => figures[key] !== null);
-    const lines = known.map(([key, unit]) => {
+    const lines = known.map(([key, unit, about]) => {
       const line = document.createElement("div");
+      line.title = about;
       line.append(document.createElement("dt"), document.createElement("dd"));
       line.firstChild.textContent = key;
       line.lastChild.textContent = `${figure(figures[key], 6)} ${unit}`.trim();
@@ -138,7 +139,7 @@ class SearchPage {
     });
     const { comparison, player } = this;
     listenToKeys(this.stage, player);
-    playOnSpace(() => (comparison.root.contains(document.activeElement) ? comparison.player : player));
+    listenOnPage(() => (comparison.root.contains(document.activeElement) ? comparison.player : player));
   }
 
   state() {

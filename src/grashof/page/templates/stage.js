@@ -1,5 +1,7 @@
 // The drawing: the scene, the targets, and a linkage that follows its driver.
 const MANY_TARGETS = 24;
+const DIGIT = 7; // px: no character of an axis is wider
+const STRIP = { left: 34, below: 18 }; // px: along the edges, for the numbers of the axes
 
 // Corners of the body that stands at a place in a direction.
 function bodyAt(body, [x, y], angle) {
@@ -72,7 +74,7 @@ class Stage {
     set(this.svg, { viewBox: `0 0 ${width} ${height}` });
     this.scale(width, height, pointsToSee(this.scene, this.together, this.close));
     this.svg.replaceChildren();
-    this.grid(width, height);
+    const numbers = this.grid(width, height);
     this.areas();
     if (this.design && this.trace) this.traces();
     this.targets();
@@ -81,6 +83,7 @@ class Stage {
       this.parts = this.linkage();
       this.move(this.theta2);
     }
+    this.svg.append(numbers);
   }
 
   scale(width, height, seen) {
@@ -99,8 +102,19 @@ class Stage {
     this.decimals = Math.max(0, Math.ceil(Math.log10(unit)) + 1); // a tenth of a pixel and less
   }
 
+  // Lines below all that is drawn, their numbers above it; what lies outside a close view does not
+  // reach under the numbers.
   grid(width, height) {
-    const layer = add(this.svg, "g", { class: "grid" });
+    const lines = add(this.svg, "g", { class: "grid" });
+    const numbers = element("g", { class: "numbers" });
+    if (this.close) {
+      add(numbers, "path", { d: `M0 0H${STRIP.left}V${height - STRIP.below}H${width}V${height}H0Z` });
+    }
+    const text = (place, words, style = "") => add(numbers, "text", { ...place, class: style }, words);
+    const name = withUnit("x", this.scene.unit);
+    const end = width - 14 - DIGIT * name.length;
+    text({ x: width - 6, y: height - 5, "text-anchor": "end" }, name, "axis");
+    text({ x: 5, y: 13 }, withUnit("y", this.scene.unit), "axis");
     const [left, high] = this.back([0, 0]);
     const [right, low] = this.back([width, height]);
     for (const [axis, from, to] of [
@@ -110,24 +124,18 @@ class Stage {
       const { at, decimals } = ticks(from, to, (axis === "x" ? width : height) / 60);
       for (const value of at) {
         const [x, y] = this.at([value, value]);
-        const label = minus((value + 0).toFixed(decimals));
+        const label = fixed(value, decimals);
         if (axis === "x") {
-          add(layer, "path", { d: `M${px(x)} 0V${height}` });
-          if (x > 34 && x < width - 46)
-            add(layer, "text", { x, y: height - 5, "text-anchor": "middle" }, label);
+          add(lines, "path", { d: `M${px(x)} 0V${height}` });
+          if (x > STRIP.left && x + (DIGIT * label.length) / 2 < end)
+            text({ x, y: height - 5, "text-anchor": "middle" }, label);
         } else {
-          add(layer, "path", { d: `M0 ${px(y)}H${width}` });
-          if (y > 30 && y < height - 18) add(layer, "text", { x: 5, y: y - 3 }, label);
+          add(lines, "path", { d: `M0 ${px(y)}H${width}` });
+          if (y > 30 && y < height - STRIP.below) text({ x: 5, y: y - 3 }, label);
         }
       }
     }
-    add(
-      layer,
-      "text",
-      { x: width - 6, y: height - 5, "text-anchor": "end", class: "axis" },
-      withUnit("x", this.scene.unit),
-    );
-    add(layer, "text", { x: 5, y: 13, class: "axis" }, withUnit("y", this.scene.unit));
+    return numbers;
   }
 
   areas() {
@@ -332,8 +340,8 @@ class Stage {
 
 // The angles and the place of P as text, beside the drawing and for screen readers.
 function tellPosition(stage, { theta2, theta3, theta4, p }) {
-  const [driver, coupler, output] = [theta2, theta3, theta4].map((angle) => minus((angle * DEG).toFixed(2)));
-  const place = p.map((value) => minus(value.toFixed(stage.decimals))).join(", ");
+  const [driver, coupler, output] = [theta2, theta3, theta4].map((angle) => fixed(angle * DEG, 2));
+  const place = p.map((value) => fixed(value, stage.decimals)).join(", ");
   $("#angles").textContent = `θ2 ${driver}, θ3 ${coupler}, θ4 ${output} deg`;
   $("#place").textContent = withUnit(`P ${place}`, stage.scene.unit);
   const degrees = (theta2 * DEG).toFixed(1);

@@ -53,6 +53,9 @@ function degreeTicks(low, high, about) {
 
 const minus = (text) => text.replaceAll("-", "−");
 
+// So many decimals; what rounds to zero has no sign.
+const fixed = (value, decimals) => minus((Number(value.toFixed(decimals)) + 0).toFixed(decimals));
+
 function figure(value, digits = 4) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   if (typeof value === "boolean") return value ? "yes" : "no";

@@ -3,6 +3,7 @@ class DesignTable {
   constructor(root, { designs, onPick, onFilter, onCompare }) {
     Object.assign(this, { designs, onFilter, body: $("tbody", root), form: $("form", root) });
     this.rows = $$("tr", this.body);
+    this.none = $("[data-none]", root);
     this.headers = $$("th[aria-sort]", root);
     for (const header of this.headers) {
       $("button", header).addEventListener("click", () => this.sort(header));
@@ -39,17 +40,24 @@ class DesignTable {
   filter() {
     const wanted = new FormData(this.form);
     const text = wanted.get("text").trim().toLowerCase();
-    const transmission = this.form.elements.transmission;
-    const passes = ({ id, figures }) =>
+    const [least, most] = [wanted.get("transmission"), wanted.get("size")];
+    const passes = (row, { id, figures }) =>
       `${figures.rank} ${id} ${figures.grashof_class}`.toLowerCase().includes(text) &&
       (!wanted.get("class") || figures.grashof_class === wanted.get("class")) &&
-      !(Number(transmission.value) > figures[transmission.dataset.key]) &&
-      !(wanted.get("size") && figures.size > Number(wanted.get("size"))) &&
+      (!least || this.shown(row, this.form.elements.transmission.dataset.key) >= Number(least)) &&
+      (!most || this.shown(row, "size") <= Number(most)) &&
       (!wanted.get("pareto") || figures.pareto);
-    for (const row of this.rows) row.hidden = !passes(this.designs[Number(row.dataset.index)]);
+    for (const row of this.rows) row.hidden = !passes(row, this.designs[Number(row.dataset.index)]);
     const shown = this.listed();
+    this.none.hidden = shown.length > 0;
     $("output", this.form).textContent = `${shown.length} of ${this.rows.length}`;
     this.onFilter(shown);
+  }
+
+  // A number as the table shows it, rounded; NaN where it is not known.
+  shown(row, key) {
+    const { cellIndex } = this.headers.find((header) => header.dataset.key === key);
+    return Number(row.cells[cellIndex].textContent);
   }
 
   // Designs as listed now, by their index.
