@@ -296,7 +296,7 @@ def test_arrows_turn_the_driver_wherever_nothing_else_needs_them(opened: Open) -
         page.keyboard.press(key)
         turned.append(state(page)["theta2"])
     np.testing.assert_allclose(np.degrees(np.diff(turned)), [1, 10, -1, 0, 0], atol=1e-9)
-    for needs_them in ("[name=text]", "[data-pace]", "#designs .scroll"):
+    for needs_them in ("[name=text]", "#player [data-pace]", "#designs .scroll"):
         page.locator(needs_them).focus()
         page.keyboard.press("ArrowRight")
         assert state(page)["theta2"] == turned[-1]
