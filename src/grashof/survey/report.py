@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from grashof.analysis import GrashofClass, Masses, grashof_class, system_centre
+from grashof.analysis import GrashofClass, Masses, grashof_class, solve_position, system_centre
+from grashof.analysis.smooth import smooth_polygon
 from grashof.problems import LinkageSpec
 from grashof.problems.checks import FloatArray
 from grashof.survey.extremes import extremes_table
@@ -116,7 +117,10 @@ def mass_tracks(report: LinkageReport) -> dict[str, FloatArray]:
     linkage, masses = report.spec.linkage, report.masses
     tracks: dict[str, FloatArray] = {}
     with dead_positions_unwarned():
-        states = report.sweep.states()
+        fine = (
+            smooth_polygon(lambda t: solve_position(linkage, t).b, each)[0] for each in report.sweep.angles()
+        )
+        states = [report.sweep.state(angles) for angles in fine]
         for link in (2, 3, 4):
             halfway = np.array([float(getattr(linkage, f"r{link}")) / 2, 0.0])
             at = halfway if masses is None else masses.of(link).centre
