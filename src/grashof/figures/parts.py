@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -20,6 +23,14 @@ SCENE, GROUND, KEPT_OUT = "#5d6d7e", "#17202a", "#909497"
 # Targets up to which the linkage is drawn at each, and up to which each carries its number.
 _CROWD = {"path": 6, "motion": 8}
 _NUMBERED = 24
+
+
+@contextmanager
+def missing_glyphs_unwarned() -> Iterator[None]:
+    """No warning for signs that the font lacks: pixels show a box for them, SVG keeps the text."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", r"Glyph .* missing from", UserWarning)
+        yield
 
 
 class Links:
