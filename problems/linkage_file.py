@@ -12,6 +12,8 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from grashof.problems.checks import GREATEST, finite_number, near_miss, number_within, readable
 from grashof.problems.display import Displayed
 from grashof.problems.dynamics_spec import DynamicsSpec
@@ -282,15 +284,15 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
     document = {"title": heading, "length_unit": unit, "dynamics": content.get("dynamics", {}), **stated}
     try:
         spec = linkage_from(document, readable(f"{path.parent.name or path.stem}-{rank}"))
-        linkage = replace(spec.linkage, body_angle=finite_number(turned, "body_angle"))
+        linkage = replace(spec.linkage, body_angle=np.asarray(finite_number(turned, "body_angle")))
     except ProblemError as error:
         raise ProblemError(f"{where}: {error}") from None
     if direction not in (1, -1):
         raise ProblemError(f"{where}: direction is {reprlib.repr(direction)}; allowed is +1 or -1")
     driven = (spec.dynamics or DynamicsSpec()).turning(direction)
-    words = {"title": f"{spec.title}: design {rank}", "source": str(path), "length_unit": spec.length_unit}
-    told = {name: readable(text) for name, text in words.items()}  # JSON can spell what no file can hold
-    return replace(spec, linkage=linkage, dynamics=driven, **told), design
+    words = (f"{spec.title}: design {rank}", str(path), spec.length_unit)
+    title, source, unit = map(readable, words)  # JSON can spell what no file can hold
+    return LinkageSpec(linkage, spec.name, title, source, unit, dynamics=driven), design
 
 
 def _errors(given: list[float | None]) -> tuple[float | None, ...]:
