@@ -233,7 +233,7 @@ TARGETS = {"id": "x", "theta2": [0.1, 0.2], "assembly": [1, 1], "position_error"
 def test_targets_edited_by_hand(tmp_path: Path, changes: dict[str, Any]) -> None:
     path = tmp_path / "candidates.json"
     path.write_text(edited(**TARGETS))
-    assert load_design(path, "03").theta2 == (0.1, 0.2)
+    assert load_design(path, "3").theta2 == (0.1, 0.2)
     path.write_text(edited(**TARGETS | changes))
     with pytest.raises(ProblemError, match="#3: states no targets"):
         load_design(path, "3")
