@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
@@ -9,7 +10,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from grashof.analysis.position import solve_position
-from grashof.problems import FourBar
+from grashof.problems import FourBar, ProblemError
 from grashof.problems.checks import FloatArray, IntArray
 
 
@@ -48,7 +49,7 @@ class Design:
     def of(cls, linkage: FourBar, theta2: FloatArray, assembly: IntArray) -> Design:
         """The numbers of a linkage at driver angles in the order of visit, shape (N,)."""
         state = solve_position(linkage, theta2, assembly)
-        r1, r2, r3, r4 = (float(length) for length in linkage.lengths)
+        r1, r2, r3, r4 = linkage.lengths  # not Python's floats: (r1 - 5)**0.5 would be complex below 5
         return cls(
             o2=linkage.o2,
             o4=linkage.o4,
@@ -56,7 +57,7 @@ class Design:
             r2=r2,
             r3=r3,
             r4=r4,
-            theta1=float(linkage.theta1),
+            theta1=linkage.theta1,
             coupler_point=linkage.coupler_point,
             theta2=np.asarray(theta2),
             a=list(state.a),
@@ -71,6 +72,11 @@ Constraint: TypeAlias = Callable[[Design], Any]  # zero or negative where it is 
 def greatest(constraint: Constraint, design: Design) -> float:
     """The greatest of the values of a constraint on the numbers of a design; NaN when one is none.
 
+    Raises
+    ------
+    ProblemError
+        The values are no numbers.
+
     Examples
     --------
     >>> linkage = FourBar(o2=(0, 0), o4=(4, 1), r2=1, r3=4, r4=3, coupler_point=(2, 1))
@@ -78,7 +84,15 @@ def greatest(constraint: Constraint, design: Design) -> float:
     >>> greatest(lambda design: (design.o2[1] - design.o4[1]) ** 2 - 0.01, design)
     0.99
     """
-    return float(np.max(np.asarray(constraint(design), dtype=np.float64)))
+    with np.errstate(all="ignore"):  # where it has no value it is missed; no news to be warned of
+        values = constraint(design)
+    try:
+        return float(np.max(np.asarray(values, dtype=np.float64)))
+    except (TypeError, ValueError):
+        given = " ".join(reprlib.repr(values).split())
+        raise ProblemError(
+            f"constraint {name_of(constraint)} gives {given} on numbers; allowed is a scalar, or several"
+        ) from None
 
 
 def name_of(constraint: Constraint) -> str:

@@ -21,6 +21,8 @@ BoolArray: TypeAlias = npt.NDArray[np.bool_]
 ComplexArray: TypeAlias = npt.NDArray[np.complex128]
 Limits: TypeAlias = tuple[float, float]
 
+GREATEST = 1e20  # of lengths, masses and speeds in files: squares of torques stay within the floats
+
 
 def frozen_array(values: npt.ArrayLike) -> FloatArray:
     """Read-only float64 copy of `values` (a NumPy scalar where they have no shape)."""
@@ -123,6 +125,17 @@ def near_miss(word: str, allowed: Sequence[str]) -> str | None:
     by_folded = {name.casefold(): name for name in allowed}
     close = difflib.get_close_matches(word.casefold(), by_folded, n=1)
     return by_folded[close[0]] if close else None
+
+
+def readable(text: str) -> str:
+    r"""Text that every file can hold, such as of a file name that is not UTF-8.
+
+    Examples
+    --------
+    >>> readable("caf\udce9")
+    'caf?'
+    """
+    return text.encode("utf-8", "replace").decode("utf-8")
 
 
 def _plain(row: object) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from grashof.problems.checks import finite_number, positive_number
+from grashof.problems.checks import GREATEST, number_within, positive_number
 from grashof.problems.errors import ProblemError
 
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048}
@@ -38,7 +38,8 @@ class DynamicsSpec:
     Raises
     ------
     ProblemError
-        Numbers that are not finite, negative masses, or links whose masses are said twice or by half.
+        Numbers that are not finite or beyond 1e20, negative masses, or links whose masses are said
+        twice or by half.
 
     Examples
     --------
@@ -71,14 +72,16 @@ class DynamicsSpec:
             absent = "masses" if masses is None else "inertias"
             raise ProblemError(f"dynamics.{absent} is missing; masses and inertias are needed together")
         if mass_per_length is not None:
-            mass_per_length = positive_number(mass_per_length, "dynamics.mass_per_length")
+            mass_per_length = positive_number(
+                _bounded(mass_per_length, "dynamics.mass_per_length"), "dynamics.mass_per_length"
+            )
         object.__setattr__(self, "mass_per_length", mass_per_length)
         object.__setattr__(self, "masses", _triple(masses, "dynamics.masses"))
         object.__setattr__(self, "inertias", _triple(inertias, "dynamics.inertias"))
         if self.masses is not None and not any(self.masses):
             raise ProblemError("dynamics.masses are all zero; one at least has a mass")
         object.__setattr__(self, "payload", _from_zero(payload, "dynamics.payload"))
-        object.__setattr__(self, "speed_rpm", finite_number(speed_rpm, "dynamics.speed_rpm"))
+        object.__setattr__(self, "speed_rpm", _bounded(speed_rpm, "dynamics.speed_rpm"))
         object.__setattr__(self, "gravity", _numbers(gravity, 2, "dynamics.gravity"))
 
     @property
@@ -134,7 +137,7 @@ def _numbers(values: Sequence[float], count: int, where: str) -> tuple[float, ..
     if len(numbers) != count:
         entries = "1 entry" if len(numbers) == 1 else f"{len(numbers)} entries"
         raise ProblemError(f"{where} has {entries}; allowed are {count} numbers")
-    return tuple(finite_number(value, f"{where}[{index}]") for index, value in enumerate(numbers))
+    return tuple(_bounded(value, f"{where}[{index}]") for index, value in enumerate(numbers))
 
 
 def _triple(values: Sequence[float] | None, where: str) -> tuple[float, ...] | None:
@@ -145,7 +148,11 @@ def _triple(values: Sequence[float] | None, where: str) -> tuple[float, ...] | N
 
 
 def _from_zero(value: float, where: str) -> float:
-    number = finite_number(value, where)
+    number = _bounded(value, where)
     if number < 0:
         raise ProblemError(f"{where} is {number:.15g}; allowed is a number from zero")
     return number
+
+
+def _bounded(value: float, where: str) -> float:
+    return number_within(value, -GREATEST, GREATEST, where)

@@ -8,7 +8,7 @@ from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
-from grashof.problems.checks import near_miss
+from grashof.problems.checks import near_miss, readable
 from grashof.problems.errors import ProblemError
 from grashof.problems.problem import Problem
 
@@ -55,7 +55,7 @@ def load_with_text(problem: str | os.PathLike[str]) -> tuple[Problem, str]:
             raise ProblemError(f"{problem!r} is no problem of the catalogue and no file; {_hint(problem)}")
     path = Path(problem)
     text = _text(path)
-    return _parsed(text, str(path), path.stem), text
+    return _parsed(text, str(path), readable(path.stem)), text
 
 
 def catalogue() -> tuple[str, ...]:

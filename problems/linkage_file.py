@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import json
 import os
+import reprlib
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
-from grashof.problems.checks import near_miss
+import numpy as np
+
+from grashof.problems.checks import GREATEST, finite_number, near_miss, number_within, readable
 from grashof.problems.display import Displayed
 from grashof.problems.dynamics_spec import DynamicsSpec
 from grashof.problems.errors import ProblemError
@@ -70,6 +73,12 @@ class ListedDesign:
     position_error: tuple[float | None, ...]
     angle_error: tuple[float | None, ...]
 
+    def __post_init__(self) -> None:
+        counts = {len(self.theta2), len(self.assembly), len(self.position_error)}
+        counts |= {len(self.angle_error)} if self.angle_error else set()
+        if len(counts) > 1 or 0 in counts or any(sign not in (1, -1) for sign in self.assembly):
+            raise ProblemError("theta2, assembly and errors do not say the same number of targets")
+
 
 def load_linkage(linkage: str | os.PathLike[str]) -> FourBar:
     """Linkage of the catalogue, of a TOML file, or of a candidates list.
@@ -122,7 +131,7 @@ def load_linkage_spec(linkage: str | os.PathLike[str]) -> LinkageSpec:
                 raise ProblemError(_problem_given(text, text))
             raise ProblemError(f"{text!r} is no linkage of the catalogue and no file; {_hint(text)}")
     path = Path(linkage)
-    return _parsed(_text(path, "a linkage file"), str(path), path.stem)
+    return _parsed(_text(path, "a linkage file"), str(path), readable(path.stem))
 
 
 def load_design(path: Path, which: str) -> ListedDesign:
@@ -145,9 +154,9 @@ def load_design(path: Path, which: str) -> ListedDesign:
         return ListedDesign(
             spec=spec,
             rank=int(design["rank"]),
-            id=str(design["id"]),
-            theta2=tuple(float(angle) for angle in design["theta2"]),
-            assembly=tuple(int(sign) for sign in design["assembly"]),
+            id=readable(str(design["id"])),
+            theta2=tuple(number_within(angle, -GREATEST, GREATEST, "theta2") for angle in design["theta2"]),
+            assembly=tuple(design["assembly"]),
             position_error=_errors(design["position_error"]),
             angle_error=_errors(design.get("angle_error", [])),
         )
@@ -244,6 +253,8 @@ _LINKAGE_KEYS = ("o2", "o4", "r2", "r3", "r4", "coupler_point", "assembly", "bod
 
 def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
     """Design of a list that `grashof solve` wrote, and all that the list says of it."""
+    from grashof.problems.linkage_schema import linkage_from
+
     where = f"{path}#{which}"
     try:
         content = json.loads(_text(path, "a list of designs"))
@@ -251,10 +262,10 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
         ranks = {
             str(name): rank for rank, design in designs.items() for name in (rank, design.get("id", rank))
         }
-        title, unit = str(content["title"] or content["problem"]), str(content["length_unit"])
+        heading, unit = content["title"] or content["problem"], content["length_unit"]
     except ProblemError:
         raise
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
         raise ProblemError(
             f"{path}: is no list of designs; allowed is a candidates.json of grashof solve"
         ) from None
@@ -264,20 +275,24 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
     rank = ranks[which]
     design = designs[rank]
     try:
-        given: dict[str, Any] = {key: design["linkage"][key] for key in _LINKAGE_KEYS}
-        linkage = FourBar(**given)
-        driven = DynamicsSpec(**content.get("dynamics", {})).turning(design["direction"])
-    except ProblemError as error:
-        raise ProblemError(f"{where}: {error}") from None
+        stated = {key: design["linkage"][key] for key in _LINKAGE_KEYS}
+        turned, direction = stated.pop("body_angle"), design["direction"]
     except (KeyError, TypeError):
         raise ProblemError(
             f"{where}: states no linkage and direction; allowed are the keys {', '.join(_LINKAGE_KEYS)}"
         ) from None
-    if linkage.shape:
-        raise ProblemError(f"{where}: states a batch; allowed is one linkage")
-    stem = f"{path.parent.name or path.stem}-{rank}"
-    heading = f"{title}: design {rank}"
-    return LinkageSpec(linkage, stem, heading, str(path), unit, dynamics=driven), design
+    document = {"title": heading, "length_unit": unit, "dynamics": content.get("dynamics", {}), **stated}
+    try:
+        spec = linkage_from(document, readable(f"{path.parent.name or path.stem}-{rank}"))
+        linkage = replace(spec.linkage, body_angle=np.asarray(finite_number(turned, "body_angle")))
+    except ProblemError as error:
+        raise ProblemError(f"{where}: {error}") from None
+    if direction not in (1, -1):
+        raise ProblemError(f"{where}: direction is {reprlib.repr(direction)}; allowed is +1 or -1")
+    driven = (spec.dynamics or DynamicsSpec()).turning(direction)
+    words = (f"{spec.title}: design {rank}", str(path), spec.length_unit)
+    title, source, unit = map(readable, words)  # JSON can spell what no file can hold
+    return LinkageSpec(linkage, spec.name, title, source, unit, dynamics=driven), design
 
 
 def _errors(given: list[float | None]) -> tuple[float | None, ...]:

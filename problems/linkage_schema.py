@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import AfterValidator, BaseModel, Field, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
 
-from grashof.problems.checks import counted, finite_number, near_miss
+from grashof.problems.checks import GREATEST, counted, finite_number, near_miss, number_within
 from grashof.problems.dynamics_spec import metres
 from grashof.problems.errors import ProblemError
 from grashof.problems.linkage import FourBar
@@ -64,6 +64,9 @@ def _of_length(count: int, allowed: str) -> AfterValidator:
 Point = Annotated[list[float], _listed("[x, y]"), _of_length(2, "[x, y]")]
 
 
+_LENGTHS = ("o2", "o4", "r1", "r2", "r3", "r4", "coupler_point", "output_arm")
+
+
 class LinkageTable(_Table):
     """The whole linkage file."""
 
@@ -99,6 +102,9 @@ class LinkageTable(_Table):
             assembly=self.assembly,
             body_angle=np.radians(finite_number(self.body_angle_deg, "body_angle_deg")),
         )
+        for key in _LENGTHS:
+            for length in np.atleast_1d(0.0 if (given := getattr(self, key)) is None else given).tolist():
+                number_within(length, -GREATEST, GREATEST, key)
         if not linkage.r1 > 0:
             raise ProblemError("o4 is where o2 is; allowed are two different ground pivots")
         return linkage

@@ -23,7 +23,7 @@ NEAREST = 8  # starts that are tried for the closest miss
 _TRUTHS = (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_NOT, ca.OP_AND, ca.OP_OR)
 # Where in CasADi's source an error arose, which its messages begin with.
 _PLACE = re.compile(r'^\S+\.[ch]pp:\d+: (Assertion ".*?" failed: )?')
-WRONG = (TypeError, ValueError, AttributeError, IndexError, KeyError, RuntimeError, NotImplementedError)
+WRONG = (TypeError, ValueError, AttributeError, IndexError, KeyError, RuntimeError, ArithmeticError)
 
 
 def refuse_unusable(setup: Setup, *, in_processes: bool) -> None:
@@ -101,7 +101,7 @@ def _met(setup: Setup, start: Start) -> bool:
 
 def _design(setup: Setup, start: Start) -> Design:
     a, b, p = (list(setup.frame.outward(track)) for track in start.track)
-    r1, r2, r3, r4 = (length * setup.frame.scale for length in start.lengths)
+    r1, r2, r3, r4 = np.array(start.lengths) * setup.frame.scale
     arm = start.arm * setup.frame.scale
     return Design(
         o2=setup.frame.outward(np.array(start.o2)),
@@ -110,7 +110,7 @@ def _design(setup: Setup, start: Start) -> Design:
         r2=r2,
         r3=r3,
         r4=r4,
-        theta1=start.theta1,
+        theta1=np.float64(start.theta1),
         coupler_point=np.array([arm.real, arm.imag]),
         theta2=np.array(start.theta2),
         a=a,

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from grashof.analysis import grashof_class
 from grashof.figures.files import STYLE
 from grashof.figures.linkage import plot_linkage
+from grashof.figures.parts import missing_glyphs_unwarned
 from grashof.figures.subject import Linkage
 from grashof.problems import FourBar, LinkageSpec, Problem, ProblemError
 from grashof.problems.checks import FloatArray, counted
@@ -124,6 +125,7 @@ def _drawing(linkage: Linkage, problem: Problem | None = None) -> str:
         legend = axes.get_legend()
         if legend is not None:
             legend.remove()
-        figure.savefig(page, format="svg", metadata={"Date": None})
+        with missing_glyphs_unwarned():
+            figure.savefig(page, format="svg", metadata={"Date": None})
     text = page.getvalue()
     return text[text.index("<svg") :]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -18,6 +19,7 @@ from grashof.problems import (
     load_linkage,
     load_linkage_spec,
 )
+from grashof.problems.linkage_file import load_design
 
 ROOT = Path(__file__).parents[2]
 PLAIN = "o4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n"
@@ -102,6 +104,7 @@ def test_a_plain_file_and_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         (PLAIN.replace("o4 = [4, 0]", "r1 = 0"), "r1 is 0; allowed are lengths"),
         (PLAIN.replace("[4, 0]", "[0, 0]"), "o4 is where o2 is"),
         (PLAIN.replace("[4, 0]", "[4, 0, 0]"), "allowed is [x, y]"),
+        (PLAIN.replace("[4, 0]", "[1e300, 0]"), "o4 is 1e+300; allowed is -1e+20 to 1e+20"),
         (PLAIN.replace("[4, 0]", "[inf, 0]"), "all numbers must be finite"),
         ("r2 = ", "is not TOML"),
         ("kind = 'motion'", "is a problem; solve it, then name a design: mine-designs/candidates.json#1"),
@@ -174,10 +177,78 @@ def test_a_design_of_a_list(tmp_path: Path) -> None:
         (listed(), "x", "has no design x"),
         (listed(), "", "has no design"),
         (listed(r2=0), "3", "#3: r2 is 0"),
-        (listed(r2=[1, 2]), "3", "states a batch"),
+        (listed(r2=[1, 2]), "3", "#3: r2 is .*; allowed is a number"),
+        (listed(), "9" * 5000, "has no design 9"),
         ("[]", "3", "is no list of designs"),
         ("{", "3", "is no list of designs"),
     ]:
         path.write_text(text)
         with pytest.raises(ProblemError, match=message):
             load_linkage(f"{path}#{rank}")
+
+
+def edited(**changes: Any) -> str:
+    """The list with its design, or what stands beside the designs, changed by hand."""
+    content = json.loads(listed())
+    for key, value in changes.items():
+        (content if key in ("title", "length_unit", "dynamics") else content["designs"][0])[key] = value
+    return json.dumps(content)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"direction": 0}, "#3: direction is 0; allowed is +1 or -1"),
+        ({"direction": 2}, "#3: direction is 2; allowed is +1 or -1"),
+        ({"direction": "x"}, "#3: direction is 'x'; allowed is +1 or -1"),
+        ({"dynamics": 5}, "#3: dynamics is 5; allowed is a table"),
+        ({"dynamics": {"masse": [1, 1, 1]}}, "#3: dynamics.masse is unknown; did you mean masses?"),
+        ({"dynamics": {"mass_per_length": 1}, "length_unit": "ell"}, "#3: length_unit is 'ell'"),
+        ({"dynamics": {"speed_rpm": 1e300}}, "#3: dynamics.speed_rpm is 1e+300; allowed is -1e+20 to 1e+20"),
+        ({"length_unit": None}, "#3: length_unit is"),
+        ({"rank": float("inf")}, "is no list of designs"),
+        ({"linkage": 5}, "states no linkage"),
+    ],
+)
+def test_a_list_edited_by_hand(tmp_path: Path, changes: dict[str, Any], message: str) -> None:
+    path = tmp_path / "candidates.json"
+    path.write_text(edited(**changes))
+    with pytest.raises(ProblemError) as refused:
+        load_linkage_spec(f"{path}#3")
+    assert message in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+TARGETS = {"id": "x", "theta2": [0.1, 0.2], "assembly": [1, 1], "position_error": [0.0, None]}
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"theta2": []}, {"theta2": [0.1]}, {"theta2": [0.1, float("inf")]}, {"theta2": [0.1, 1e300]},
+        {"assembly": [1, 0]}, {"assembly": [1, float("inf")]}, {"assembly": [1]}, {"assembly": None},
+        {"position_error": []}, {"angle_error": [0.1]}, {"angle_error": None},
+    ],
+)  # fmt: skip
+def test_targets_edited_by_hand(tmp_path: Path, changes: dict[str, Any]) -> None:
+    path = tmp_path / "candidates.json"
+    path.write_text(edited(**TARGETS))
+    assert load_design(path, "3").theta2 == (0.1, 0.2)
+    path.write_text(edited(**TARGETS | changes))
+    with pytest.raises(ProblemError, match="#3: states no targets"):
+        load_design(path, "3")
+
+
+def test_a_title_that_no_file_can_hold(tmp_path: Path) -> None:
+    path = tmp_path / "candidates.json"
+    path.write_text(edited(title="\ud800 1"))
+    assert load_linkage_spec(f"{path}#3").title == "? 1: design 3"
+
+
+def test_a_file_name_that_is_not_text(tmp_path: Path) -> None:
+    path = tmp_path / os.fsdecode(b"caf\xe9.toml")
+    try:
+        path.write_text(PLAIN)
+    except OSError:
+        pytest.skip("this file system takes UTF-8 names only")
+    assert load_linkage_spec(path).name == "caf?"

@@ -1,6 +1,7 @@
 """The user's own constraints: held by every design, refused where unusable, named when in the way."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import casadi as ca
@@ -9,6 +10,7 @@ import pytest
 
 from grashof import load, synthesize
 from grashof.analysis import Design
+from grashof.analysis.design import greatest as greatest_of
 from grashof.analysis.planted import planted_motion, planted_path
 from grashof.problems import MotionTask, PathTask, Problem, ProblemError, Requirements
 from grashof.synth import Result
@@ -200,12 +202,37 @@ def test_a_function_that_only_works_on_numbers_is_refused() -> None:
     def greatest(design: Design) -> Any:
         return float(design.r2) - 3
 
-    for wrong in (branches, misspelt, takes_nothing, greatest):
+    def divides(_: Design) -> Any:
+        return 1 / 0
+
+    for wrong in (branches, misspelt, takes_nothing, greatest, divides):
         with pytest.raises(ProblemError) as refused:
             synthesize(THREE, constraints=[wrong])
         said = str(refused.value)
         assert said.startswith(f"constraint {wrong.__name__} fails on symbols: ")
         assert said.endswith("functions of a design made of arithmetic that works on CasADi symbols")
+
+
+def short_root(design: Design) -> Any:
+    """No number where r1 is below 2; a complex one of Python's if r1 were a float of Python's."""
+    return (design.r1 - 2) ** 0.5 - 3
+
+
+def test_where_a_constraint_has_no_value_it_is_missed() -> None:
+    result = synthesize(THREE, starts=16, enough=3, constraints=[short_root])
+    assert result.candidates
+    assert all(2 <= candidate.linkage.r1 <= 11 + 1e-6 for candidate in result.candidates)
+    short = replace(result.best.linkage, o4=result.best.linkage.o2 + np.array([1.0, 0.0]))
+    design = Design.of(short, result.best.verdict.theta2, result.best.verdict.assembly)
+    assert np.isnan(greatest_of(short_root, design))
+
+
+def test_what_is_no_number_on_numbers_is_named() -> None:
+    def matrix(design: Design) -> Any:
+        return ca.SX.ones(2, 2) * design.r1
+
+    with pytest.raises(ProblemError, match=r"^constraint matrix gives SX.* on numbers; allowed is"):
+        synthesize(THREE, starts=4, constraints=[matrix])
 
 
 def test_a_lambda_is_refused_where_it_would_have_to_travel() -> None:

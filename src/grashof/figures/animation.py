@@ -23,6 +23,7 @@ from grashof.figures.parts import (
     draw_ground,
     draw_scene,
     draw_task,
+    missing_glyphs_unwarned,
     name_points,
 )
 from grashof.figures.subject import Linkage, Subject
@@ -103,7 +104,8 @@ def save_animation(animation: FuncAnimation, path: str | os.PathLike[str]) -> No
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=".writing-") as folder:
         fresh = Path(folder) / path.name
         try:
-            animation.save(fresh, writer=_WRITERS[path.suffix.lower()], dpi=100)
+            with missing_glyphs_unwarned():
+                animation.save(fresh, writer=_WRITERS[path.suffix.lower()], dpi=100)
         except subprocess.CalledProcessError as error:
             raise OSError(f"{path}: ffmpeg ended with code {error.returncode}") from None
         fresh.replace(path)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from matplotlib.figure import Figure
 
 from grashof.figures.animation import animate
 from grashof.figures.linkage import plot_linkage
-from grashof.figures.parts import closes
+from grashof.figures.parts import closes, missing_glyphs_unwarned
 from grashof.figures.subject import Linkage, Subject
 from grashof.problems import Problem
 from grashof.synth import Candidate
@@ -31,6 +32,8 @@ STYLE: Any = {
     "grid.linewidth": 0.4,
     "grid.alpha": 0.5,
 }
+
+_TITLE_WIDTH = 80  # characters
 
 
 def draw_design(problem: Problem, candidate: Candidate, rank: int) -> Figure:
@@ -65,13 +68,14 @@ def draw_motion(
     """Moving picture of a linkage, 600 by 500 pixels; see `animate`."""
     with rc_context(STYLE):
         axes = Figure(figsize=(6.0, 5.0)).add_axes((0.1, 0.1, 0.87, 0.81))
-        axes.set_title(Subject.of(linkage, problem).spec.title, parse_math=False, wrap=True)
+        title = Subject.of(linkage, problem).spec.title
+        axes.set_title("\n".join(wrap(title, _TITLE_WIDTH)), parse_math=False)  # its own wrap reads $ as math
         return animate(linkage, problem, seconds=seconds, fps=fps, ax=axes)
 
 
 def save(figure: Figure, paths: Iterable[Path]) -> None:
     """Write a figure to each path, in the format of its ending; the same figure gives the same bytes."""
-    with rc_context(STYLE):
+    with rc_context(STYLE), missing_glyphs_unwarned():
         for path in paths:
             dated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
             figure.savefig(path, dpi=130, metadata=dated.get(path.suffix, {"Software": None}))

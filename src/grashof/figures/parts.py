@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -24,6 +26,14 @@ _CROWD = {"path": 6, "motion": 8}
 _NUMBERED = 24
 _SIDES = ((7, -12), (7, 6), (-20, 6), (-20, -12))  # pt: where a name may stand beside its point
 _TEXT = (16.0, 11.0)  # pt: texts of two characters so far apart do not cover each other
+
+
+@contextmanager
+def missing_glyphs_unwarned() -> Iterator[None]:
+    """No warning for signs that the font lacks: pixels show a box for them, SVG keeps the text."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", r"Glyph .* missing from", UserWarning)
+        yield
 
 
 class Links:

@@ -84,7 +84,7 @@ def report_on(spec: LinkageSpec, speed_rpm: float | None = None) -> LinkageRepor
     Raises
     ------
     ProblemError
-        The linkage closes at no driver angle, or a speed that is not finite.
+        The linkage closes at no driver angle, or a speed that is not finite or beyond 1e20.
     """
     sweep, masses = Sweep.of(spec, speed_rpm), masses_of(spec)
     with dead_positions_unwarned():

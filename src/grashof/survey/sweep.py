@@ -21,7 +21,7 @@ from grashof.analysis import (
     transmission_angle,
 )
 from grashof.problems import DeadPositionWarning, FourBar, LinkageSpec, ProblemError
-from grashof.problems.checks import FloatArray
+from grashof.problems.checks import GREATEST, FloatArray, number_within
 from grashof.problems.dynamics_spec import metres
 
 TURN = 2 * np.pi
@@ -57,13 +57,12 @@ class Sweep:
         Raises
         ------
         ProblemError
-            The linkage closes at no driver angle, or a speed that is not finite.
+            The linkage closes at no driver angle, or a speed that is not finite or beyond 1e20.
         """
         given = spec.dynamics
         if speed_rpm is None:
             speed_rpm = 60 / TURN if given is None else given.speed_rpm
-        if not np.isfinite(speed_rpm):
-            raise ProblemError(f"speed_rpm is {speed_rpm}; allowed are finite numbers")
+        speed_rpm = number_within(speed_rpm, -GREATEST, GREATEST, "speed_rpm")
         if full_rotation(spec.linkage):
             return cls(spec, speed_rpm, ((0.0, TURN),), True)
         ranges = tuple(_between_dead_positions(spec.linkage))

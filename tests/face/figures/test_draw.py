@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 
-from grashof.figures import draw_design, save
+from grashof.figures import draw_design, save, save_animation
+from grashof.figures.files import draw_motion
 from grashof.figures.parts import BODY, DRIVER, PATH
 from grashof.synth import Result
 
@@ -89,6 +90,15 @@ def test_dollars_and_backslashes_are_plain_text(few: Result, tmp_path: Path) -> 
     figure = draw_design(problem, few.candidates[0], 1)
     save(figure, [tmp_path / "d.png", tmp_path / "d.svg"])
     assert figure.axes[0].get_title().startswith(r"$\nonsense{ for 5$: design 1")
+    save_animation(draw_motion(few.candidates[0], problem, seconds=0.2, fps=10), tmp_path / "d.gif")
+
+
+def test_signs_that_the_font_lacks_stay_in_the_svg(few: Result, tmp_path: Path) -> None:
+    problem = replace(few.problem, title="\N{CJK UNIFIED IDEOGRAPH-4F38}\x07", dynamics=None)
+    figure = draw_design(problem, few.candidates[0], 1)
+    save(figure, [tmp_path / "d.png", tmp_path / "d.svg"])  # warnings are errors here
+    assert "\N{CJK UNIFIED IDEOGRAPH-4F38}" in (tmp_path / "d.svg").read_text(encoding="utf-8")
+    save_animation(draw_motion(few.candidates[0], problem, seconds=0.2, fps=10), tmp_path / "d.gif")
 
 
 def test_same_design_same_bytes(few: Result, tmp_path: Path) -> None:
