@@ -15,6 +15,8 @@ from grashof.problems.manufacturing import Manufacturing
 from grashof.problems.requirements import Requirements
 from grashof.problems.task import Task
 
+_HEAVIEST = 1e9
+
 
 @dataclass(frozen=True, slots=True)
 class Objective:
@@ -38,8 +40,10 @@ class Objective:
     def __post_init__(self) -> None:
         weights = (self.transmission, self.compactness, self.torque)
         for name, weight in zip(self.__slots__, weights, strict=True):
-            if finite_number(weight, f"objective.maximise.{name}") < 0:
-                raise ProblemError(f"objective.maximise.{name} is {weight:g}; allowed is a weight from 0")
+            if not 0 <= finite_number(weight, f"objective.maximise.{name}") <= _HEAVIEST:
+                raise ProblemError(
+                    f"objective.maximise.{name} is {weight:g}; allowed is a weight from 0 to {_HEAVIEST:g}"
+                )
         if sum(weights) <= 0:
             raise ProblemError("objective.maximise has no weight greater than zero; one at least is needed")
 

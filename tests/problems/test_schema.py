@@ -300,7 +300,7 @@ SENSE = [
     ),
     (
         "[objective]\nmaximise = { transmission = -1 }",
-        "objective.maximise.transmission is -1; allowed is a weight from 0",
+        "objective.maximise.transmission is -1; allowed is a weight from 0 to 1e+09",
     ),
     ("[search]\nstarts = 0", "search.starts is 0; allowed is a whole number from 1"),
     (
