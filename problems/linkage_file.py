@@ -5,21 +5,21 @@ from __future__ import annotations
 import json
 import os
 import reprlib
-import tomllib
 from dataclasses import dataclass, replace
-from importlib import resources
-from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from grashof.problems.checks import GREATEST, finite_number, near_miss, number_within, readable
+from grashof.problems.checks import GREATEST, finite_number, number_within, readable
 from grashof.problems.display import Displayed
 from grashof.problems.dynamics_spec import DynamicsSpec
 from grashof.problems.errors import ProblemError
 from grashof.problems.files import catalogue
 from grashof.problems.linkage import FourBar
+from grashof.problems.toml_file import Catalogue, document_of, exists, file_text, looks_like_path
+
+_LINKAGES = Catalogue("linkage", "linkages")
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,16 +122,15 @@ def load_linkage_spec(linkage: str | os.PathLike[str]) -> LinkageSpec:
         raise ProblemError(f"{text}: is a table; allowed is {table.removesuffix('.csv')}.json#{row}")
     if text.endswith(".json"):
         raise ProblemError(f"{text}: is a list of designs; allowed is {text}#1 for the first of them")
-    if isinstance(linkage, str) and not _looks_like_path(text):
-        if text in _catalogue_files():
-            return _parsed(linkage_text(text), f"{text}.toml", text)
-        # Path.exists raises for names that no file can have; this says False.
-        if not text or not os.path.exists(text):  # noqa: PTH110
+    if isinstance(linkage, str) and not looks_like_path(text):
+        if text in _LINKAGES.names:
+            return _parsed(_LINKAGES.text(text), f"{text}.toml", text)
+        if not exists(text):
             if text in catalogue():
                 raise ProblemError(_problem_given(text, text))
-            raise ProblemError(f"{text!r} is no linkage of the catalogue and no file; {_hint(text)}")
+            raise ProblemError(f"{text!r} is no linkage of the catalogue and no file; {_LINKAGES.hint(text)}")
     path = Path(linkage)
-    return _parsed(_text(path, "a linkage file"), str(path), readable(path.stem))
+    return _parsed(file_text(path, "a linkage file"), str(path), readable(path.stem))
 
 
 def load_design(path: Path, which: str) -> ListedDesign:
@@ -174,7 +173,7 @@ def linkage_catalogue() -> tuple[str, ...]:
     >>> linkage_catalogue()
     ('lufkin-c912d', 'pumpjack')
     """
-    return tuple(sorted(_catalogue_files()))
+    return _LINKAGES.names
 
 
 def linkage_text(name: str) -> str:
@@ -190,56 +189,18 @@ def linkage_text(name: str) -> str:
     >>> print(linkage_text("pumpjack").splitlines()[3])
     length_unit = "m"
     """
-    files = _catalogue_files()
-    if name not in files:
-        raise ProblemError(f"{name!r} is no linkage of the catalogue; {_hint(name)}")
-    return files[name].read_text(encoding="utf-8")
-
-
-def _catalogue_files() -> dict[str, Traversable]:
-    folder = resources.files("grashof.problems") / "data" / "linkages"
-    return {Path(file.name).stem: file for file in folder.iterdir() if file.name.endswith(".toml")}
-
-
-def _hint(name: str) -> str:
-    names = linkage_catalogue()
-    meant = near_miss(name, names)
-    return f"did you mean {meant}?" if meant else f"the catalogue has {', '.join(names)}"
+    return _LINKAGES.text(name)
 
 
 def _problem_given(given: str, name: str) -> str:
     return f"{given}: is a problem; solve it, then name a design: {name}-designs/candidates.json#1"
 
 
-def _looks_like_path(text: str) -> bool:
-    separators = {"/", os.sep, os.altsep}
-    return text.endswith(".toml") or any(sep in text for sep in separators if sep)
-
-
-def _text(path: Path, allowed: str) -> str:
-    if os.path.isdir(path):  # noqa: PTH112
-        raise ProblemError(f"{path}: is a folder; allowed is {allowed}")
-    try:
-        return path.read_bytes().decode("utf-8-sig")
-    except FileNotFoundError:
-        raise ProblemError(f"{path}: there is no such file") from None
-    except OSError as error:
-        raise ProblemError(f"{path}: cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError as error:
-        raise ProblemError(f"{path}: is not UTF-8 text, at byte {error.start}") from None
-    except ValueError as error:  # no name of a file, such as one with a null character
-        raise ProblemError(f"{str(path)!r}: cannot be read: {error}") from None
-
-
 def _parsed(text: str, file_name: str, name: str) -> LinkageSpec:
     # Here, not above: worker processes import this package, and need not pay for pydantic.
     from grashof.problems.linkage_schema import linkage_from
 
-    try:
-        document = tomllib.loads(text)
-    # Besides its own error: an integer of thousands of digits, lists nested a thousand deep.
-    except (ValueError, RecursionError) as error:
-        raise ProblemError(f"{file_name}: is not TOML: {error}") from None
+    document = document_of(text, file_name)
     if "kind" in document:
         raise ProblemError(_problem_given(file_name, name))
     try:
@@ -257,7 +218,7 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
 
     where = f"{path}#{which}"
     try:
-        content = json.loads(_text(path, "a list of designs"))
+        content = json.loads(file_text(path, "a list of designs"))
         designs = {int(design["rank"]): design for design in content["designs"]}
         ranks = {
             str(name): rank for rank, design in designs.items() for name in (rank, design.get("id", rank))
