@@ -5,15 +5,15 @@ from __future__ import annotations
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import AfterValidator, BaseModel, Field, ValidationError
-from pydantic_core import ErrorDetails, PydanticCustomError
+from pydantic import Field
 
-from grashof.problems.checks import GREATEST, counted, finite_number, near_miss, number_within
+from grashof.problems.checks import GREATEST, finite_number, number_within
 from grashof.problems.dynamics_spec import metres
 from grashof.problems.errors import ProblemError
 from grashof.problems.linkage import FourBar
 from grashof.problems.linkage_file import LinkageSpec
-from grashof.problems.schema import DynamicsTable, _described, _listed, _path, _Table
+from grashof.problems.schema import DynamicsTable
+from grashof.problems.tables import Table, listed, of_length, stated
 
 
 def linkage_from(document: dict[str, Any], name: str) -> LinkageSpec:
@@ -40,34 +40,16 @@ def linkage_from(document: dict[str, Any], name: str) -> LinkageSpec:
         ...
     grashof.problems.errors.ProblemError: coupler is unknown; did you mean coupler_point?
     """
-    try:
-        file = LinkageTable.model_validate(document)
-    except ValidationError as refused:
-        errors = refused.errors(include_url=False)
-    else:
-        return file.spec(name)
-    # A missing key comes last: most often it stands in the file, misspelt, and that error says more.
-    first = min(errors, key=lambda error: error["type"] == "missing")
-    more = f" (and {counted(len(errors) - 1, 'more error')})" if len(errors) > 1 else ""
-    raise ProblemError(f"{_said(first)}{more}")
+    return stated(LinkageTable, document, _TABLES).spec(name)
 
 
-def _of_length(count: int, allowed: str) -> AfterValidator:
-    def refuse(values: list[float]) -> list[float]:
-        if len(values) != count:
-            raise PydanticCustomError("wrong", allowed)
-        return values
-
-    return AfterValidator(refuse)
-
-
-Point = Annotated[list[float], _listed("[x, y]"), _of_length(2, "[x, y]")]
+Point = Annotated[list[float], listed("[x, y]"), of_length(2, "[x, y]")]
 
 
 _LENGTHS = ("o2", "o4", "r1", "r2", "r3", "r4", "coupler_point", "output_arm")
 
 
-class LinkageTable(_Table):
+class LinkageTable(Table):
     """The whole linkage file."""
 
     title: str = ""
@@ -135,14 +117,4 @@ class LinkageTable(_Table):
         )
 
 
-_TABLES: dict[str, type[BaseModel]] = {"": LinkageTable, "dynamics": DynamicsTable}
-
-
-def _said(error: ErrorDetails) -> str:
-    if error["type"] != "extra_forbidden":
-        return _described(error)
-    path, table, key = _path(error["loc"]), _path(error["loc"][:-1]), str(error["loc"][-1])
-    keys = list(_TABLES[table].model_fields)
-    homes = (name for name, other in _TABLES.items() if key in other.model_fields)
-    meant = near_miss(key, keys) or next((f"{home}.{key}".lstrip(".") for home in homes), None)
-    return f"{path} is unknown; " + (f"did you mean {meant}?" if meant else f"allowed are {', '.join(keys)}")
+_TABLES: dict[str, type[Table]] = {"": LinkageTable, "dynamics": DynamicsTable}

@@ -12,7 +12,6 @@ from grashof.survey.quantities import MAGNITUDES, POSITIONS, Quantity
 from grashof.survey.sweep import INSET, TURN, Sweep
 
 _WIDE_INSET = 1e-4  # rad: extremes of rates are sought so far from a dead position of a change point
-
 _CONSTANT = 1e-12  # least and largest values apart, as a share: the quantity is constant
 
 

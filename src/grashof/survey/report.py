@@ -14,10 +14,8 @@ from grashof.problems import LinkageSpec
 from grashof.problems.checks import FloatArray
 from grashof.survey.extremes import extremes_table
 from grashof.survey.facts import Fact, facts_of
-from grashof.survey.quantities import Quantity, dynamic_quantities, kinematic_quantities, table_of
+from grashof.survey.quantities import dynamic_quantities, kinematic_quantities, table_of
 from grashof.survey.sweep import Sweep, dead_positions_unwarned, loads_of, masses_of
-
-__all__ = ["Fact", "LinkageReport", "Quantity", "mass_tracks", "report_on"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
