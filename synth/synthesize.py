@@ -13,12 +13,12 @@ from time import perf_counter
 
 import numpy as np
 
-from grashof.analysis import verify
 from grashof.analysis.design import Constraint
-from grashof.problems import MotionTask, Problem, ProblemError, Rotatability, Search, SolverError
+from grashof.problems import MotionTask, Problem, ProblemError, Search, SolverError
 from grashof.problems.checks import counted, finite_number, whole_number
 from grashof.synth import exact_poses, paths
 from grashof.synth.attempt import Attempt, attempt
+from grashof.synth.explain import approximate, closest_misses, exhausted, why_none
 from grashof.synth.own import mended, refuse_unusable
 from grashof.synth.own import relaxed as relaxed_own
 from grashof.synth.result import Candidate, Result, ranked
@@ -154,6 +154,13 @@ def _search(
     finder = exact_poses if setup.motion is not None else paths
     found = _Found(setup.problem)
     obstacle = ""
+
+    def solve_other(problem: Problem) -> Result:
+        most = min(search.starts, FRUITLESS)
+        return synthesize(
+            problem, constraints=setup.constraints, starts=most, enough=1, seed=search.seed, stop=ended
+        )
+
     complete, seconds = True, {"screening": 0.0, "solving": 0.0}
     with _solving(workers, executor) as solve:
         since = perf_counter()
@@ -174,14 +181,15 @@ def _search(
         nearest: tuple[Candidate, ...] = ()
         if not found.best and complete:
             relaxed = finder.relaxed_starts(setup, rng) + relaxed_own(setup, made.starts)
-            nearest = _nearest(solve(setup, relaxed, found.solved))
-            nearest = nearest or _nearest(found.rejected)
-            nearest += _approximate(setup, search, ended)
+            nearest = closest_misses(solve(setup, relaxed, found.solved))
+            nearest = nearest or closest_misses(found.rejected)
+            if not ended():
+                nearest += approximate(setup, solve_other)
             if setup.motion is not None:
                 obstacle = exact_poses.obstacle(setup, rng)
     found.counts["verified and distinct"] = len(found.best)
     times = {**seconds, "total": perf_counter() - begun}
-    note = "" if found.best else _why(setup, nearest, complete, obstacle or _exhausted(found))
+    note = "" if found.best else why_none(setup, nearest, complete, obstacle or exhausted(found.counts))
     why = _why_ended(setup, search, found, complete)
     return Result(setup.problem, found.best, nearest, dict(found.counts), times, note, complete, why)
 
@@ -298,44 +306,6 @@ def _outcome(result: Attempt) -> str:
     return f"rejected: {result.candidate.verdict.defects[0].requirement}"
 
 
-def _nearest(attempts: list[Attempt]) -> tuple[Candidate, ...]:
-    """The closest miss for each set of missed requirements, fewest and smallest misses first."""
-    closest: dict[frozenset[str], tuple[float, Candidate]] = {}
-    for result in attempts:
-        if result.candidate is None or result.candidate.verdict.ok:
-            continue
-        defects = result.candidate.verdict.defects
-        kind = frozenset(defect.requirement for defect in defects)
-        miss = sum(defect.miss for defect in defects)
-        if kind not in closest or miss < closest[kind][0]:
-            closest[kind] = (miss, result.candidate)
-    if not closest:
-        return ()
-    fewest = min(len(kind) for kind in closest)
-    found = [
-        (miss, sorted(kind), candidate) for kind, (miss, candidate) in closest.items() if len(kind) == fewest
-    ]
-    return tuple(candidate for _, _, candidate in sorted(found, key=lambda item: item[:2]))
-
-
-def _approximate(setup: Setup, search: Search, ended: Callable[[], bool]) -> tuple[Candidate, ...]:
-    """For exact poses that leave nothing to choose: designs that come as near as they can."""
-    problem = setup.problem
-    if setup.motion is None or len(setup.targets) < 5 or ended():
-        return ()
-    loose = replace(problem, requirements=replace(problem.requirements, exact=False))
-    most = min(search.starts, FRUITLESS)
-    result = synthesize(
-        loose, constraints=setup.constraints, starts=most, enough=1, seed=search.seed, stop=ended
-    )
-    wanted, own = problem.requirements, setup.constraints
-    judged = (
-        replace(found, verdict=verify(found.linkage, problem.task, wanted, own))
-        for found in result.candidates
-    )
-    return tuple(found for found in judged if not found.verdict.ok)
-
-
 def _why_ended(setup: Setup, search: Search, found: _Found, complete: bool) -> str:
     """Why the search ended with fewer designs than are enough; empty when it has them."""
     if len(found.best) >= search.enough:
@@ -344,30 +314,3 @@ def _why_ended(setup: Setup, search: Search, found: _Found, complete: bool) -> s
     exhausted = "the poses leave no freedom" if settled else "there are no other starts"
     why = (found.no_use(search) or exhausted) if complete else "it was stopped"
     return f"the search ended after {found.solved} of {counted(search.starts, 'solve')}: {why}"
-
-
-def _exhausted(found: _Found) -> str:
-    every = found.counts["linkages through the points"]
-    return f"none of the {every} linkages through the points meets all requirements" if every else ""
-
-
-def _why(setup: Setup, nearest: tuple[Candidate, ...], complete: bool, obstacle: str) -> str:
-    if not complete:
-        return "no design: the search was stopped before it found one"
-    if obstacle:
-        closest = f"; the closest one misses {_missed(setup, nearest[0])}" if nearest else ""
-        return f"no design: {obstacle}{closest}"
-    if not nearest:
-        return "no design: the search found none, nor a near miss"
-    return f"no design meets all requirements; the closest one misses {_missed(setup, nearest[0])}"
-
-
-def _missed(setup: Setup, candidate: Candidate) -> str:
-    """What a design misses, and which line of the problem file would ask for less."""
-    defects = candidate.verdict.defects
-    missed, less = {defect.requirement for defect in defects}, ""
-    if "rotatability" in missed and setup.wanted.rotatability is not Rotatability.ANY:
-        less = '; rotatability = "any" asks for less'
-    if "exact" in missed:
-        less += "; exact = false asks for less"
-    return " and ".join(map(str, defects)) + less
