@@ -13,7 +13,7 @@ from grashof.problems.checks import ComplexArray
 from grashof.synth.burmester import Dyads, polish
 from grashof.synth.cognates import assembly_of, cognate_points, position_of
 from grashof.synth.finds import Configurations, dyad_lacks, judge, met
-from grashof.synth.form import ADDED
+from grashof.synth.form import ADDED, Form
 from grashof.synth.path_polish import Polished, Wish, polish_path
 from grashof.synth.programme import Solve, solve
 from grashof.synth.result import Candidate
@@ -21,11 +21,15 @@ from grashof.synth.setup import Setup
 from grashof.synth.start import Start
 from grashof.synth.torque import overlooked
 
+TRANSMISSION = "transmission_min_deg"
 UNSOLVED = frozenset({"order", "same_branch"})  # no smooth constraint can relax these
 NUDGE = 0.1  # sizes: a polish that moves a start farther has lost it
 SOLVED = ("Solve_Succeeded", "Solved_To_Acceptable_Level")
 EXCHANGES = 4  # times at most that a solve is repeated for its torque
 CLOSE = 1e-4  # sizes: a least-squares design so near to its targets can be made exact
+# The judge may put the ends of the motion a little farther than the programme: so many solves at most
+# ask for that much more of the transmission, unless what is missing is more than a little (rad).
+MORE, BEYOND, A_LITTLE = 5, 1.05, 0.2
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,11 +73,44 @@ def attempt(setup: Setup, start: Start, number: int) -> Attempt:
     candidate = _made(setup, start, solved, number) if as_it_is else None
     free = setup.motion is None or len(setup.targets) < 5  # five poses leave nothing to solve for
     if not as_it_is or (free and start.settled and (candidate is None or not candidate.verdict.ok)):
-        solved = _solved(setup, start)
-        candidate = _made(setup, start, solved, number)
+        solved, candidate = _solved_and_made(setup, start, number)
     if candidate is None or not candidate.verdict.ok or setup.turns is not None:
         return Attempt(solved.status, candidate)
     return Attempt(solved.status, candidate, _cognates(setup, candidate))
+
+
+def _solved_and_made(setup: Setup, start: Start, number: int) -> tuple[Solve, Candidate | None]:
+    """Solve and judge; again, asking for more, as long as the transmission alone is a little short."""
+    solved = _solved(setup, start)
+    if solved.status not in SOLVED and any(Form.of(setup, start).nearest):
+        start = replace(start, loose=True)
+        solved = _solved(setup, start)
+    candidate = _made(setup, start, solved, number)
+    for _ in range(0 if setup.exact else MORE):
+        short = _short_of_transmission(candidate)
+        if not 0 < short < A_LITTLE:
+            break
+        start = replace(begun_from(start, solved), more_transmission=start.more_transmission + BEYOND * short)
+        again = _solved(setup, start)
+        if again.status not in SOLVED:
+            break
+        solved = replace(again, iterations=solved.iterations + again.iterations)
+        candidate = _made(setup, start, solved, number)
+    return solved, candidate
+
+
+def _short_of_transmission(candidate: Candidate | None) -> float:
+    """By how much the transmission is missed, where nothing else is, rad; else zero."""
+    if candidate is None or {defect.requirement for defect in candidate.verdict.defects} != {TRANSMISSION}:
+        return 0.0
+    return candidate.verdict.defects[0].miss
+
+
+def begun_from(start: Start, solved: Solve) -> Start:
+    """A start where a solve ended."""
+    o2, o4, a, b, p = solved.points
+    moved = replace(start, o2=o2, o4=o4, a=a, b=b, p=p, body_angle=solved.body_angle)
+    return replace(moved, theta2=solved.theta2, theta3=solved.theta3)
 
 
 def _solved(setup: Setup, start: Start) -> Solve:
@@ -89,9 +126,7 @@ def _solved(setup: Setup, start: Start) -> Solve:
         peaks = overlooked(setup.problem, points, theta2, start.direction, start.assembly, solved.torque)
         if not peaks:
             break
-        o2, o4, a, b, p = solved.points
-        start = replace(start, o2=o2, o4=o4, a=a, b=b, p=p, theta2=solved.theta2, theta3=solved.theta3)
-        start = replace(start, body_angle=solved.body_angle, torque_at=(*peaks, *start.torque_at)[:ADDED])
+        start = replace(begun_from(start, solved), torque_at=(*peaks, *start.torque_at)[:ADDED])
         again = solve(setup, start)
         if again.status not in SOLVED:
             break
@@ -148,11 +183,14 @@ def _made(setup: Setup, start: Start, solved: Solve, number: int) -> Candidate |
         dyads = polish(setup.motion, Dyads(moving=points[2:4], ground=points[:2]))
         points = np.concatenate([dyads.ground, dyads.moving, points[4:]])
     else:
-        polished = _on_path(setup, start.visit, points, solved)
+        polished = None if start.bounded else _on_path(setup, start.visit, points, solved)
         if polished is not None:
-            points, body_angle = polished.points, polished.body_angle
-    made = _Made(points, body_angle, start.assembly)
-    return _candidate(setup, made, number, solved.iterations)
+            made = _Made(polished.points, polished.body_angle, start.assembly)
+            candidate = _candidate(setup, made, number, solved.iterations)
+            # On its targets a least-squares design may lie beyond a limit that is active.
+            if setup.exact or (candidate is not None and candidate.verdict.ok):
+                return candidate
+    return _candidate(setup, _Made(points, body_angle, start.assembly), number, solved.iterations)
 
 
 @dataclass(frozen=True, slots=True)

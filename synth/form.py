@@ -51,6 +51,11 @@ class Form:
         The distance from the start is the objective.
     elastic : bool
         Requirements may be missed; how far is the objective.
+    nearest : tuple of bool
+        At which targets, in the order of visit, the driver stands where the miss is least, as the
+        judge has it.
+    most_error, zoned : bool
+        The error as a whole, or that at every target, is bounded, and the problem's objective decides.
     """
 
     targets: int
@@ -71,6 +76,14 @@ class Form:
     keep_out: tuple[str, ...]
     stay: bool
     elastic: bool
+    nearest: tuple[bool, ...]
+    most_error: bool
+    zoned: bool
+
+    @property
+    def fits(self) -> bool:
+        """Whether the objective is the error, which comes before all others."""
+        return not (self.exact or self.most_error or self.zoned)
 
     @classmethod
     def of(cls, setup: Setup, start: Start) -> Form:
@@ -79,7 +92,7 @@ class Form:
         turn_weights = np.zeros(len(setup.targets)) if setup.turn_weights is None else setup.turn_weights
         low = min(limits[0] for limits in wanted.link_lengths)
         high = max(limits[1] for limits in wanted.link_lengths)
-        plain = start.stay or bool(start.relaxed) or not setup.exact
+        plain = start.stay or bool(start.relaxed) or not (setup.exact or start.bounded)
         return cls(
             targets=len(start.visit),
             poses=setup.motion is not None,
@@ -93,12 +106,15 @@ class Form:
             ratio=bool(start.relaxed) or high > low * wanted.link_ratio_max,
             box_a=wanted.a != Box() and wanted.a is not None,
             box_b=wanted.b != Box() and wanted.b is not None,
-            compact=start.objective.compactness > 0 and not start.stay and setup.exact,
+            compact=start.objective.compactness > 0 and not plain,
             torque=0 if plain or start.objective.torque == 0 else _grid_size(start, closed),
             closed=closed,
             keep_out=_held(setup),
             stay=start.stay,
             elastic=bool(start.relaxed),
+            nearest=_nearest(setup, start),
+            most_error=bool(np.isfinite(start.most_error)),
+            zoned=start.zoned,
         )
 
     def places_of(self, name: str) -> int:
@@ -110,6 +126,23 @@ def _grid_size(start: Start, closed: bool) -> int:
     """At how many driver angles the torque is bounded."""
     long = closed or abs(start.theta2[-1] - start.theta2[0]) > np.pi
     return (2 if long else 1) * STEPS + 1
+
+
+def _nearest(setup: Setup, start: Start) -> tuple[bool, ...]:
+    """At which targets a limit, or the objective, depends on the driver angle that the judge finds."""
+    wanted, count = setup.wanted, len(start.visit)
+    if setup.exact or setup.timing is not None or start.relaxed or start.loose:
+        return (False,) * count
+    moving = set(wanted.keep_out_for) - {"o2", "o4"} if wanted.keep_out else set()
+    boxed = any(box not in (None, Box()) for box in (wanted.a, wanted.b))
+    every = bool(boxed or moving or setup.constraints or (start.zoned and setup.turns is not None))
+    over_task = wanted.transmission_over is TransmissionOver.TASK and not setup.closed
+    ends = bool(over_task and (wanted.transmission_min_deg > 0 or start.bounded))
+    nearest = np.full(count, every)
+    nearest[[0, -1]] |= ends
+    if wanted.theta2_start_deg is not None:  # a pose is met where it is nearest, a point where it is told
+        nearest[start.visit.index(0)] = setup.turns is not None
+    return tuple(nearest.tolist())
 
 
 def _held(setup: Setup) -> tuple[str, ...]:
@@ -182,6 +215,8 @@ class Given:
     start: ca.SX
     angles: ca.SX
     relaxed: ca.SX
+    most_error: ca.SX
+    zones: ca.SX
     origin: ca.SX
     scale: ca.SX
     planes: ca.SX
@@ -196,7 +231,7 @@ class Given:
             "square_weights": 2 * n, "timing": n, "at_first": n, "body": 2,
             "direction": 1, "assembly": 1, "longer": 1, "margin": 1, "ratio": 1, "least_transmission": 1,
             "weights": 3, "load": LOADS, "torque_at": ADDED, "error_scale": 1, "arms": 2, "lengths": 8,
-            "start": 8, "angles": 2, "relaxed": len(GROUPS), "origin": 2, "scale": 1,
+            "start": 8, "angles": 2, "relaxed": len(GROUPS), "most_error": 1, "zones": 2 * n, "origin": 2, "scale": 1,
             "planes": 3 * PLANES * sum(map(form.places_of, form.keep_out)), "boxes": 16,
         }  # fmt: skip
         parts = {name: ca.SX.sym(name, size) for name, size in sizes.items()}

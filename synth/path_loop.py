@@ -30,11 +30,13 @@ class PathTarget:
     timing : ndarray, shape (N,), rad, or None
         Driver rotation from the first point.
     wanted : Requirements
-        In the frame of the points. Its lengths, ratio and pivot boxes draw the search inwards.
+        In the frame of the points. Its limits draw the search inwards.
     turns : ndarray, shape (N,), rad, or None
         Angles of the body, for poses.
     turn_weights : ndarray, shape (N,), sizes squared, or None
         Of the squared turns from there; zero where the angle is free.
+    closed : bool
+        The motion used is a whole turn.
     """
 
     points: ComplexArray
@@ -43,6 +45,12 @@ class PathTarget:
     wanted: Requirements
     turns: FloatArray | None = None
     turn_weights: FloatArray | None = None
+    closed: bool = False
+
+    @property
+    def jumbled(self) -> bool:
+        """Whether the driver may meet the targets in any order."""
+        return self.timing is None and not self.wanted.order
 
     @property
     def steps(self) -> FloatArray:
@@ -166,7 +174,7 @@ def _driver_angles(target: PathTarget, batch: Batch) -> FloatArray:
     unknowns, sense = batch.unknowns, batch.direction[:, None]
     if target.timing is not None:
         return unknowns[:, 3:4] + sense * target.timing
-    if not target.wanted.order:
+    if target.jumbled:
         return unknowns[:, 3:]
     _, gone = shares_of_turn(unknowns[:, 4:])
     return unknowns[:, 3:4] + TURN * sense * gone
@@ -176,7 +184,7 @@ def by_unknowns(target: PathTarget, batch: Batch) -> FloatArray:
     """Derivative of the driver angles, (n, N, M)."""
     n = len(target.points)
     slope = np.zeros((len(batch), n, batch.unknowns.shape[1]))
-    if target.timing is None and not target.wanted.order:
+    if target.jumbled:
         slope[:, :, 3:] = np.eye(n)
         return slope
     slope[:, :, 3] = 1

@@ -9,12 +9,15 @@ improves the proportions and angles of a whole batch.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 
 from grashof.problems import Rotatability
 from grashof.problems.checks import ComplexArray, FloatArray
+from grashof.synth.path_limits import Placement, oversteps
 from grashof.synth.path_loop import (
     Batch,
     Loop,
@@ -24,11 +27,14 @@ from grashof.synth.path_loop import (
     by_theta3_of,
     by_unknowns,
 )
-from grashof.synth.path_pulls import pulls
 
 # So many steps on end that take less than this share of its error away end the work on a linkage.
 LOOK, STALL = 5, 1e-3
 HEAVY = 1e4  # damping under which no step is worth trying
+PULL = 0.03  # sizes of error that overstepping a limit by one unit counts as, where fit comes first
+
+# Cost (n,), residuals (n, R), and their derivative by the unknowns (n, R, M), of a batch.
+Model: TypeAlias = Callable[["Batch"], tuple[FloatArray, FloatArray, FloatArray]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,6 +94,11 @@ def place(target: PathTarget, batch: Batch) -> Placed:
     """Where the linkages of a batch fit the points best."""
     loop = Loop.of(target, batch)
     z, _, _, error = _project(target, loop)
+    return _standing(target, loop, z, error)
+
+
+def _standing(target: PathTarget, loop: Loop, z: ComplexArray, error: FloatArray) -> Placed:
+    """Where linkages stand with given z0, z1, z2 (n, 3); `error` is that of the points alone."""
     z0, z1, z2 = z.T
     ground = z1 / loop.r2
     o4 = z0 + ground
@@ -105,13 +116,14 @@ def place(target: PathTarget, batch: Batch) -> Placed:
 
 
 def improve(
-    target: PathTarget, batch: Batch, steps: int, tolerance: float, until: int = 1
+    model: Model, batch: Batch, steps: int, tolerance: float, until: int = 1
 ) -> tuple[Batch, FloatArray]:
     """Levenberg-Marquardt on every linkage of a batch.
 
     Parameters
     ----------
-    target : PathTarget
+    model : callable
+        What is made small: see `fitting` and `within_limits`.
     batch : Batch
     steps : int
         At most.
@@ -124,12 +136,12 @@ def improve(
     error : ndarray, shape (n,), sizes squared
     """
     result = replace(batch, unknowns=batch.unknowns.copy())
-    error, residual, jacobian = _linearised(target, batch)
+    error, residual, jacobian = model(batch)
     damping, marked, least = np.full(len(batch), 1e-2), error, error.copy()
     rows = np.arange(len(batch))
     for number in range(1, steps + 1):
         tried = replace(batch, unknowns=batch.unknowns + _step(residual, jacobian, damping))
-        new_error, new_residual, new_jacobian = _linearised(target, tried)
+        new_error, new_residual, new_jacobian = model(tried)
         better = new_error < error
         batch = replace(batch, unknowns=np.where(better[:, None], tried.unknowns, batch.unknowns))
         error = np.where(better, new_error, error)
@@ -186,25 +198,107 @@ def _back_substituted(r: ComplexArray, right: ComplexArray) -> ComplexArray:
     return np.stack([z0, z1, z2], axis=1)
 
 
-def _linearised(target: PathTarget, batch: Batch) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Cost (n,), residuals and pulls (n, 2N + L), their derivative by the unknowns (n, 2N + L, M)."""
+def fitting(target: PathTarget) -> Model:
+    """The error of linkages that are placed best, with a light pull towards the limits."""
+
+    def model(batch: Batch) -> tuple[FloatArray, FloatArray, FloatArray]:
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            loop = Loop.of(target, batch)
+            z, q, r, error = _project(target, loop)
+            by_theta2 = by_unknowns(target, batch)
+            by_theta3 = by_theta3_of(loop, by_theta2)
+            residual, slope = _missed(target, loop, z, by_theta2, by_theta3)
+            share = np.swapaxes(q.conj(), 1, 2) @ slope
+            slope -= q @ share
+            at = Placement(loop, by_theta2, by_theta3, z, -_back_substituted(r, share))
+            return _joined(target, at, residual, slope, PULL, error)
+
+    return model
+
+
+def within_limits(target: PathTarget, weight: float) -> Model:
+    """The error under limits, for batches with their places among the unknowns (see `with_places`).
+
+    Parameters
+    ----------
+    target : PathTarget
+    weight : float, sizes
+        Error that overstepping a limit by one unit counts as.
+    """
+
+    def model(batch: Batch) -> tuple[FloatArray, FloatArray, FloatArray]:
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            loop, z = _loop_and_places(target, batch)
+            inner = replace(batch, unknowns=batch.unknowns[:, :-PLACES])
+            n, width = batch.unknowns.shape
+            by_theta2 = np.zeros((*loop.theta2.shape, width))
+            by_theta2[..., :-PLACES] = by_unknowns(target, inner)
+            by_theta3 = by_theta3_of(loop, by_theta2)
+            by_z = np.zeros((n, 3, width), dtype=np.complex128)
+            for k in range(3):
+                by_z[:, k, width - PLACES + 2 * k], by_z[:, k, width - PLACES + 2 * k + 1] = 1, 1j
+            residual, slope = _missed(target, loop, z, by_theta2, by_theta3)
+            spanned = np.stack([np.ones_like(loop.e2), loop.e2, loop.e3], axis=-1)
+            slope += np.sqrt(target.weights)[:, None] * (spanned @ by_z)
+            error = np.where(loop.closes, (np.abs(residual) ** 2).sum(axis=1), np.inf)
+            return _joined(
+                target, Placement(loop, by_theta2, by_theta3, z, by_z), residual, slope, weight, error
+            )
+
+    return model
+
+
+PLACES = 6  # unknowns that place a linkage: real and imaginary parts of z0, z1, z2
+
+
+def with_places(target: PathTarget, batch: Batch) -> Batch:
+    """A batch with z0, z1, z2 as six more unknowns, where the linkages fit the points best."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        loop = Loop.of(target, batch)
-        z, q, r, error = _project(target, loop)
-        root = np.sqrt(target.weights)
+        z, _, _, error = _project(target, Loop.of(target, batch))
+    sound = np.isfinite(error)
+    parts = np.stack([z.real, z.imag], axis=-1).reshape(len(batch), PLACES)
+    return replace(batch, unknowns=np.concatenate([batch.unknowns, parts], axis=1))[sound]
+
+
+def standing(target: PathTarget, batch: Batch) -> Placed:
+    """Where the linkages of a batch with places stand."""
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        loop, z = _loop_and_places(target, batch)
         fit = z[:, :1] + z[:, 1:2] * loop.e2 + z[:, 2:] * loop.e3
-        residual = (target.points - fit) * root
-        by_theta2 = by_unknowns(target, batch)
-        by_theta3 = by_theta3_of(loop, by_theta2)
-        turned2, turned3 = 1j * z[:, 1:2] * loop.e2, 1j * z[:, 2:] * loop.e3
-        slope = turned2[..., None] * by_theta2 + turned3[..., None] * by_theta3
-        slope *= root[:, None]
-        share = np.swapaxes(q.conj(), 1, 2) @ slope
-        slope -= q @ share
-        pull, by_pull = pulls(target, loop, by_theta2[:, 0], z, -_back_substituted(r, share))
-        turned, _ = body_turns(target, loop)
-        by_turned = by_body_turns(target, by_theta3)
-        both = np.concatenate([residual.real, residual.imag, turned, pull], axis=1)
-        jacobian = np.concatenate([-slope.real, -slope.imag, by_turned, by_pull], axis=1)
-        cost: FloatArray = error + (turned**2).sum(axis=1) + (pull**2).sum(axis=1)
-        return cost, both, jacobian
+        error = (target.weights * np.abs(target.points - fit) ** 2).sum(axis=1)
+        return _standing(target, loop, z, np.where(loop.closes, error, np.inf))
+
+
+def _loop_and_places(target: PathTarget, batch: Batch) -> tuple[Loop, ComplexArray]:
+    loop = Loop.of(target, replace(batch, unknowns=batch.unknowns[:, :-PLACES]))
+    parts = batch.unknowns[:, -PLACES:].reshape(len(batch), 3, 2)
+    return loop, parts[..., 0] + 1j * parts[..., 1]
+
+
+def _missed(
+    target: PathTarget, loop: Loop, z: ComplexArray, by_theta2: FloatArray, by_theta3: FloatArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """From P to the points, weighted (n, N), and the derivative of P with z held (n, N, M)."""
+    root = np.sqrt(target.weights)
+    turned2, turned3 = z[:, 1:2] * loop.e2, z[:, 2:] * loop.e3
+    residual = (target.points - z[:, :1] - turned2 - turned3) * root
+    slope = (1j * turned2)[..., None] * by_theta2 + (1j * turned3)[..., None] * by_theta3
+    return residual, slope * root[:, None]
+
+
+def _joined(
+    target: PathTarget,
+    at: Placement,
+    residual: ComplexArray,
+    slope: ComplexArray,
+    weight: float,
+    error: FloatArray,
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Points, turns of the body and limits as one model; `slope` is the derivative of P."""
+    over, by_over = oversteps(target, at)
+    turned, _ = body_turns(target, at.loop)
+    both = np.concatenate([residual.real, residual.imag, turned, weight * over], axis=1)
+    by_turned = by_body_turns(target, at.by_theta3)
+    jacobian = np.concatenate([-slope.real, -slope.imag, by_turned, weight * by_over], axis=1)
+    cost: FloatArray = error + (turned**2).sum(axis=1) + weight**2 * (over**2).sum(axis=1)
+    return cost, both, jacobian

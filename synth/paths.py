@@ -12,41 +12,28 @@ from dataclasses import replace
 import numpy as np
 
 from grashof.problems import PathTask, Requirements
-from grashof.problems.checks import BoolArray, ComplexArray, FloatArray
+from grashof.problems.checks import ComplexArray, FloatArray
+from grashof.synth import least_squares
 from grashof.synth.choose import feasible_starts, mended_starts
 from grashof.synth.choose import relaxed_starts as relaxed
 from grashof.synth.cognates import cognate_points
-from grashof.synth.finds import (
-    GROUPS,
-    Configurations,
-    Finds,
-    as_they_come,
-    dyad_lacks,
-    follow,
-    judge,
-    keep_out_lack,
-)
+from grashof.synth.finds import Finds, follow
 from grashof.synth.nine_points import coupler_turns, linkages_through
-from grashof.synth.own import screened
-from grashof.synth.path_loop import PathTarget
-from grashof.synth.path_search import Placed, draw, improve, place
+from grashof.synth.path_finds import entries_of, judged, path_target
+from grashof.synth.path_loop import TURN, PathTarget
+from grashof.synth.path_search import Placed, draw, fitting, improve, place
 from grashof.synth.path_thinning import refined, thinned
 from grashof.synth.setup import Setup
 from grashof.synth.start import Round, Start
 
-TURN = 2 * np.pi
-# Draws, and how many of the best go on for how many steps: few solutions, least squares, or a whole family.
+# Draws, and how many of the best go on for how many steps: few solutions, or a whole family.
 ISOLATED = (4000, ((300, 8), (80, 12), (20, 50)))
-LEAST_SQUARES = (2000, ((200, 6), (60, 10), (20, 50)))
 FAMILY = (6000, ((1500, 10), (800, 10)))
 TIMED = (600, ((60, 6), (20, 60)))
 FEW_POINTS = 48  # of a longer path decide which finds are worth the rest
 BARREN = 12  # so many rounds on end without a start end the search
 EXACT = 1e-16  # sizes squared: such an error is left to the solver
 SEARCHES = 6  # rounds of the search before all linkages through nine points are computed
-MOST_CURVES = 6  # least-squares starts of a round
-NEAR_BEST = 1.6  # times the least error of a round: least-squares finds beyond are not solved
-SAME_CURVE = 0.1  # of the rms error: two least-squares finds closer at every target are one
 FOUND = 1e-5  # sizes: rms error of a start for an exact task
 
 
@@ -79,42 +66,21 @@ def rounds(setup: Setup, enough: int, rng: np.random.Generator) -> Iterator[Roun
             yield _search_round(setup, enough, rng)
         yield _all_round(setup, rng)
         return
-    barren, curves = 0, list[ComplexArray]()
+    barren = 0
     while barren < BARREN:
-        found = _search_round(setup, enough, rng)
-        if not setup.exact:
-            found = replace(found, starts=_new_curves(setup, found.starts, curves))
+        found = _search_round(setup, enough, rng) if setup.exact else least_squares.starts(setup, rng)
         barren = 0 if found.starts else barren + 1
         yield found
 
 
-def _new_curves(setup: Setup, starts: list[Start], curves: list[ComplexArray]) -> list[Start]:
-    """Least-squares starts that pass the targets by another way than all before, which `curves` keeps.
-
-    Cognates pass them by the same way; they are added to every design afterwards.
-    """
-    new = list[Start]()
-    for start in starts:
-        order = np.argsort(start.visit)
-        p, turned = start.track[2][order], np.array(start.theta3)[order] + start.body_angle
-        near = SAME_CURVE * setup.missed(p, turned)
-        if len(new) < MOST_CURVES and all(np.abs(p - other).max() > near for other in curves):
-            new.append(start)
-            curves.append(p)
-    return new
-
-
 def _search_round(setup: Setup, enough: int, rng: np.random.Generator) -> Round:
     finds, family = search(setup, enough, rng), _family(setup, path_target(setup))
-    if not setup.exact:
-        finds = finds[finds.error <= NEAR_BEST * finds.error.min(initial=np.inf)]
     feasible = finds[finds.feasible]
     starts = feasible_starts(setup, feasible, enough)
     if len(starts) < enough:
         starts += mended_starts(setup, finds, enough)
-    # Without freedom, or with no error left to reduce, a find is the design already.
-    settled = not family and (setup.exact or finds.error.min(initial=1.0) < FOUND)
-    return Round([replace(start, settled=settled) for start in starts], {"feasible finds": len(feasible)})
+    # Without freedom a find is the design already.
+    return Round([replace(start, settled=not family) for start in starts], {"feasible finds": len(feasible)})
 
 
 def _all_round(setup: Setup, rng: np.random.Generator) -> Round:
@@ -122,7 +88,7 @@ def _all_round(setup: Setup, rng: np.random.Generator) -> Round:
     target = path_target(setup)
     linkages = linkages_through(target.points, rng)
     every = _from_every_side(linkages).reshape(-1, 5)
-    finds = _judged(setup, target, *_as_found(every, target))
+    finds = judged(setup, target, *_as_found(every, target))
     feasible = finds.feasible.reshape(-1, 3, 2)
     usable = feasible.any(axis=2)
     first = usable & (np.cumsum(usable, axis=1) == 1)
@@ -176,44 +142,14 @@ def search(setup: Setup, enough: int, rng: np.random.Generator, *, to_boxes: boo
         error = place(some, batch).error
         for keep_now, steps_now in stages:
             best = np.argsort(error, kind="stable")[:keep_now]
-            batch, error = improve(some, batch[best], steps_now, EXACT, until=min(enough, keep_now))
+            batch, error = improve(fitting(some), batch[best], steps_now, EXACT, until=min(enough, keep_now))
         batch = refined(target, index, batch[np.argsort(error, kind="stable")[:keep]])
-        batch, _ = improve(target, batch, steps, EXACT, until=min(enough, keep))
+        batch, _ = improve(fitting(target), batch, steps, EXACT, until=min(enough, keep))
         placed = place(target, batch)
     sound = np.isfinite(placed.error)
     if setup.exact:
         sound &= placed.error <= len(target.points) * FOUND**2
-    return _judged(setup, target, _at(placed, sound), batch.direction[sound])
-
-
-def path_target(setup: Setup) -> PathTarget:
-    """What the search has to pass; a last point that repeats the first counts as its second half."""
-    last = -1 if _repeats(setup) else None
-    weights, turn_weights = setup.weights[:last].copy(), setup.turn_weights
-    if last:
-        weights[0] += setup.weights[-1]
-    if turn_weights is not None:
-        added = turn_weights[-1] if last else 0.0
-        turn_weights = turn_weights[:last] + np.eye(1, len(weights))[0] * added
-    return PathTarget(
-        points=setup.targets[:last],
-        weights=weights,
-        timing=None if setup.timing is None else np.abs(setup.timing[:last]),
-        wanted=setup.wanted,
-        turns=None if setup.turns is None else setup.turns[:last],
-        turn_weights=turn_weights,
-    )
-
-
-def _repeats(setup: Setup) -> bool:
-    """Whether the last target is the first one again."""
-    given, apart = setup.weights[[0, -1]] > 0, abs(setup.targets[0] - setup.targets[-1])
-    same = given[0] == given[1] and apart < 1e-12
-    if setup.turns is not None and setup.turn_weights is not None:
-        given = setup.turn_weights[[0, -1]] > 0
-        apart = abs(np.exp(1j * setup.turns[0]) - np.exp(1j * setup.turns[-1]))
-        same = same and given[0] == given[1] and apart < 1e-12
-    return bool(same)
+    return judged(setup, target, entries_of(placed, sound), batch.direction[sound])
 
 
 def _effort(setup: Setup, target: PathTarget) -> tuple[int, tuple[tuple[int, int], ...]]:
@@ -221,7 +157,7 @@ def _effort(setup: Setup, target: PathTarget) -> tuple[int, tuple[tuple[int, int
         return FAMILY
     if target.timing is not None:
         return TIMED
-    return ISOLATED if setup.exact else LEAST_SQUARES
+    return ISOLATED
 
 
 def _family(setup: Setup, target: PathTarget) -> bool:
@@ -247,23 +183,3 @@ def _has_nine_points(setup: Setup) -> bool:
     points = path_target(setup).points
     apart = np.abs(points[:, None] - points) + np.eye(len(points))
     return setup.exact and setup.timing is None and len(points) == 9 and bool(apart.min() > 1e-9)
-
-
-def _at(placed: Placed, rows: BoolArray) -> Placed:
-    return Placed(*(getattr(placed, name)[rows] for name in placed.__slots__))
-
-
-def _judged(setup: Setup, target: PathTarget, placed: Placed, direction: FloatArray) -> Finds:
-    a, b, theta2 = placed.a, placed.b, placed.theta2
-    if _repeats(setup):
-        a, b = (np.concatenate([points, points[:, :1]], axis=1) for points in (a, b))
-        theta2 = np.concatenate([theta2, theta2[:, :1] + TURN * direction[:, None]], axis=1)
-    visit = np.broadcast_to(np.arange(theta2.shape[1]), theta2.shape)
-    if not target.wanted.order:
-        visit, theta2, direction = as_they_come(theta2)
-    p = placed.p[:, 0]
-    lacks = dyad_lacks("o2", placed.o2, a, p, setup.wanted) + dyad_lacks("o4", placed.o4, b, p, setup.wanted)
-    lacks[:, GROUPS.index("keep_out")] += keep_out_lack("p", placed.p, setup.wanted)
-    found = Configurations(placed.o2, placed.o4, a, b, visit, theta2, direction)
-    error = np.sqrt(placed.error / len(setup.targets))
-    return screened(setup, judge(found, p, error, lacks, setup.wanted, placed.body_angle))

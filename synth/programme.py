@@ -31,6 +31,7 @@ from grashof.synth.torque import loads, torque_bound, torque_peaks
 
 FAR = 1e3  # sizes: stands for "no limit"
 INSET = 1e-8  # sizes, rad: limits are tightened by this much, so that the polished design keeps them
+ZONE_INSET = 1e-7  # share of a zone that the programme leaves to the judge
 LEAST_STEP = 1e-4  # rad, of the driver between two targets that are both met
 LEAST_TRANSMISSION = 1e-3  # rad: keeps the motion away from dead positions
 LEAST_SQUARE = 1e-8  # sizes squared: scales the squared distances to about 1
@@ -147,7 +148,7 @@ def _programme(form: Form, max_iter: int, constraints: tuple[Constraint, ...]) -
         cost += given.weights[1] * diagonal(rows, unknown, places)
     if form.torque:
         cost += given.weights[2] * torque_bound(rows, form, given, unknown, places)
-    if not form.exact:  # the error comes first; the rest only settles what the error leaves open
+    if form.fits:  # the error comes first; the rest only settles what the error leaves open
         cost = given.error_scale * square(form, given, unknown, places) - 1e-8 * unknown["tau"]
     if form.stay:
         moved = ca.vertcat(*(unknown[name] for name in ("o2", "o4", "a", "b"))) - given.start
@@ -201,10 +202,18 @@ def _parameters(form: Form, setup: Setup, start: Start) -> FloatArray:
         [_lifted(wanted.ground_angle_deg, start.theta1)],
         [_lifted(wanted.theta2_start_deg, start.theta2[visit.index(0)])],
         [float(group in start.relaxed) for group in GROUPS],
+        [min(start.most_error, FAR) ** 2 * form.targets],
+        _zones(setup)[:, visit].ravel(),
         [setup.frame.origin.real, setup.frame.origin.imag, setup.frame.scale],
         _planes(form, setup, start),
         corners,
     ])  # fmt: skip
+
+
+def _zones(setup: Setup) -> FloatArray:
+    """How far each target may be missed, drawn in a little: sizes, and rad; shape (2, N)."""
+    zones = np.full((2, len(setup.targets)), FAR) if setup.zones is None else setup.zones
+    return zones * (1 - ZONE_INSET)
 
 
 def _planes(form: Form, setup: Setup, start: Start) -> FloatArray:
@@ -274,7 +283,8 @@ def _unknown_limits(form: Form, setup: Setup, start: Start) -> tuple[FloatArray,
     limits.append(_turned(ground, start.theta1))
     for k, target in enumerate(start.visit):
         limits.append(_turned(first if target == 0 else None, start.theta2[k]))
-    least = 0.0 if form.elastic else np.radians(wanted.transmission_min_deg) + INSET
+    least = np.radians(wanted.transmission_min_deg) + INSET + start.more_transmission
+    least = 0.0 if form.elastic else min(least, np.pi / 2 - INSET)
     limits.append((max(LEAST_TRANSMISSION, least), np.pi / 2))
     if not form.poses:
         limits += [(-100.0, 100.0)] * form.targets + [(-FAR, FAR)] * 2
@@ -292,7 +302,7 @@ def _constraint_limits(programme: _Programme, setup: Setup, start: Start) -> tup
     cycle = not programme.form.over_task
     free = (-np.inf, np.inf)
     # Where only the error counts, a crank may start and end in any half turn.
-    bare = not programme.form.exact and programme.form.crank and setup.wanted.transmission_min_deg == 0
+    bare = programme.form.fits and programme.form.crank and setup.wanted.transmission_min_deg == 0
     limits = {
         "zero": (0.0, 0.0),
         "nonnegative": (0.0, np.inf),

@@ -41,6 +41,8 @@ class Setup:
         Every target is met; otherwise least squares.
     constraints : tuple of callable
         The user's own.
+    zones : ndarray, shape (2, N), sizes and rad, or None
+        How far the position and the angle of each target may be missed.
     """
 
     problem: Problem
@@ -54,6 +56,7 @@ class Setup:
     wanted: Requirements
     exact: bool
     constraints: tuple[Constraint, ...] = ()
+    zones: FloatArray | None = None
 
     @classmethod
     def of(cls, problem: Problem, constraints: Sequence[Constraint] = ()) -> Setup:
@@ -82,6 +85,11 @@ class Setup:
             exact=exact,
             constraints=tuple(constraints),
         )
+
+    @property
+    def closed(self) -> bool:
+        """Whether the motion used is a whole turn."""
+        return isinstance(self.problem.task, PathTask) and self.problem.task.closed
 
     def missed(self, p: ComplexArray, turned: FloatArray) -> FloatArray:
         """Root mean weighted square of what targets are missed by, sizes.

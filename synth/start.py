@@ -47,6 +47,16 @@ class Start:
         Requirements (keys) that it may miss, coming as near as it can; all others hold.
     torque_at : tuple of float
         Where else the torque is bounded, as shares of the motion used.
+    promise : float, sizes
+        Root mean square error that a least-squares search came to here, with what limits add.
+    more_transmission : float, rad
+        By how much more than required the transmission is bounded.
+    loose : bool
+        Driver angles need not be where the judge will find them.
+    most_error : float, sizes
+        Root mean square error up to which the objective decides.
+    zoned : bool
+        The objective decides as long as each target is missed by no more than it may.
     """
 
     o2: complex
@@ -66,6 +76,11 @@ class Start:
     settled: bool = False
     relaxed: tuple[str, ...] = ()
     torque_at: tuple[float, ...] = ()
+    promise: float = 0.0
+    more_transmission: float = 0.0
+    loose: bool = False
+    most_error: float = np.inf
+    zoned: bool = False
 
     @classmethod
     def of_linkage(cls, setup: Setup, linkage: FourBar, verdict: Verdict) -> Start:
@@ -92,6 +107,11 @@ class Start:
     def points(self) -> ComplexArray:
         """O2, O4, and A, B, P at the first target, shape (5,), sizes."""
         return np.array([self.o2, self.o4, self.a, self.b, self.p])
+
+    @property
+    def bounded(self) -> bool:
+        """Whether the error is bounded, and the objective decides."""
+        return self.zoned or bool(np.isfinite(self.most_error))
 
     @property
     def theta1(self) -> float:
