@@ -1,36 +1,122 @@
-"""Starts where the squared errors are made least: a batched search under every limit.
+"""Starts where the squared errors are made least.
 
-Linkages that are feasible by construction are placed best on the targets; then their places are
-unknowns, too, and what oversteps a limit counts as an error, more so from stage to stage. So the
-search ends where the programme does, whichever limits are active.
+Linkages that are feasible by construction are placed best on the targets. Where the best of them keep
+every limit, that is all there is to it. Where they do not, their places are unknowns, too, and what
+oversteps a limit counts as an error, more so from stage to stage: so the search ends where the
+programme does, whichever limits are active.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from grashof.problems import TransmissionOver
-from grashof.problems.checks import BoolArray, FloatArray, IntArray
+from grashof.problems.checks import BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.synth.finds import GROUPS, Finds
 from grashof.synth.path_finds import entries_of, judged, path_target
 from grashof.synth.path_loop import Batch, PathTarget
-from grashof.synth.path_search import PLACES, Placed, draw, improve, standing, with_places, within_limits
+from grashof.synth.path_search import (
+    PLACES,
+    Placed,
+    draw,
+    fitting,
+    improve,
+    place,
+    standing,
+    with_places,
+    within_limits,
+)
 from grashof.synth.path_thinning import refined, thinned
 from grashof.synth.setup import Setup
 from grashof.synth.start import Round, Start
 
 DRAWS, TIMED_DRAWS = 2000, 600
-# How many of the best distinct go on, for how many steps, at what weight of the limits (in sizes).
-STAGES = ((400, 8, 0.3), (200, 10, 1.0), (80, 30, 5.0))
 FEW_TARGETS = 48  # of a longer task decide which finds are worth the rest
-LONG, LONG_STEPS = 24, 10  # how many of these are improved on all targets
-COPY = 0.01  # sizes: two linkages closer at three targets are one
-# Starts of a round: the best, some of the others, and some of before the limits bear fully.
-BEST, OTHERS, EARLY = 12, 4, 8
-UNLIMITED = ("order", "same_branch", "keep_out", "constraints")  # no residual of the search stands for them
 FOUND = 1e-5  # sizes: so small an error is none
+# Where no limit binds: how many of the best go on for how many steps.
+FREE_STAGES, TIMED_STAGES = ((200, 6), (60, 10), (20, 50)), ((60, 6), (20, 60))
+MOST_CURVES = 6  # starts of such a round
+NEAR_BEST = 1.6  # times the least error of the round: finds beyond are not solved
+SAME_ERROR = 1e-3  # share: a feasible find so near to the best one says that no limit binds
+SAME_CURVE = 0.1  # of the rms error: two finds closer at every target are one
+# Where limits bind: how many of the best distinct go on, for how many steps, at what weight of the
+# limits (in sizes).
+STAGES = ((400, 8, 0.3), (200, 10, 1.0), (80, 30, 5.0))
+LONG, LONG_STEPS = 24, 10  # of a thinned task so many are improved on all targets
+COPY = 0.01  # sizes: two linkages closer at three targets are one
+# Starts of a round: the best, some of the others, and some of before the limits bear fully; fewer on
+# tasks of more targets than `AMPLE`, whose solves take longer.
+BEST, OTHERS, EARLY = 12, 4, 8
+AMPLE, FEWEST = 24, 0.25
+UNLIMITED = ("order", "same_branch", "keep_out", "constraints")  # no residual of the search stands for them
+
+
+def rounds(setup: Setup, rng: np.random.Generator, size: int = 1) -> Iterator[Round]:
+    """Rounds of starts without end.
+
+    Parameters
+    ----------
+    setup : Setup
+    rng : numpy.random.Generator
+    size : int
+        How many times the usual number of linkages to draw, and of starts to take.
+
+    Yields
+    ------
+    Round
+    """
+    binding = False
+    while True:
+        free = None if binding else _free_round(setup, rng, size)
+        binding = free is None
+        yield _limited_round(setup, rng, size) if free is None else free
+
+
+def _free_round(setup: Setup, rng: np.random.Generator, size: int) -> Round | None:
+    """Starts from the linkages that fit best; None where the best of them break a limit."""
+    target = path_target(setup)
+    timed = target.timing is not None
+    some, index = thinned(target, FEW_TARGETS)
+    with np.errstate(all="ignore"):
+        batch = draw(some, size * (TIMED_DRAWS if timed else DRAWS), rng)
+        error = place(some, batch).error
+        *stages, (keep, steps) = TIMED_STAGES if timed else FREE_STAGES
+        for keep_now, steps_now in stages:
+            best = np.argsort(error, kind="stable")[: size * keep_now]
+            batch, error = improve(fitting(some), batch[best], steps_now, 0.0)
+        batch = refined(target, index, batch[np.argsort(error, kind="stable")[: size * keep]])
+        batch, _ = improve(fitting(target), batch, steps, 0.0)
+        placed = place(target, batch)
+    sound = np.isfinite(placed.error)
+    finds = judged(setup, target, entries_of(placed, sound), batch.direction[sound])
+    least = finds.error.min(initial=np.inf)
+    feasible = finds[finds.feasible & (finds.error <= NEAR_BEST * least)]
+    if not len(feasible) or feasible.error.min() > max(least * (1 + SAME_ERROR), FOUND):
+        return None
+    order = np.argsort(feasible.error, kind="stable")
+    starts = [_start(setup, feasible, feasible.error, int(k)) for k in order]
+    return Round(
+        _other_curves(starts, size * MOST_CURVES), {"feasible finds": len(feasible)}, free=True
+    )
+
+
+def _other_curves(starts: list[Start], most: int) -> list[Start]:
+    """Starts that pass the targets by another way than all before.
+
+    Cognates pass them by the same way; they are added to every design afterwards.
+    """
+    chosen, curves = list[Start](), list[ComplexArray]()
+    for start in starts:
+        order = np.argsort(start.visit)
+        p = start.track[2][order]
+        near = SAME_CURVE * max(start.promise, FOUND)
+        if len(chosen) < most and all(np.abs(p - other).max() > near for other in curves):
+            chosen.append(start)
+            curves.append(p)
+    return chosen
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,27 +127,17 @@ class _Stage:
     error: FloatArray
 
 
-def starts(setup: Setup, rng: np.random.Generator, size: int = 1) -> Round:
-    """One round of starts.
-
-    Parameters
-    ----------
-    setup : Setup
-    rng : numpy.random.Generator
-    size : int
-        How many times the usual number of linkages to draw, and of starts to take.
-
-    Returns
-    -------
-    Round
-    """
+def _limited_round(setup: Setup, rng: np.random.Generator, size: int) -> Round:
+    """Starts of the search under every limit."""
     early, late = _search(setup, rng, size)
-    chosen = [_start(setup, late, k) for k in range(min(size * BEST, len(late.error)))]
+    share = size * min(1.0, max(AMPLE / len(setup.targets), FEWEST))
+    best, others, before = (round(share * count) for count in (BEST, OTHERS, EARLY))
+    chosen = [_start(setup, late.finds, late.error, k) for k in range(min(best, len(late.error)))]
     rest = np.arange(len(chosen), len(late.error))
-    chosen += [_start(setup, late, k) for k in _some(rng, rest, size * OTHERS)]
+    chosen += [_start(setup, late.finds, late.error, k) for k in _some(rng, rest, others)]
     if _ends_bind(setup):  # the search may shift the ends of the motion, the programme may not
-        some = _some(rng, np.arange(len(early.error)), size * EARLY)
-        chosen += [replace(_start(setup, early, k), promise=0.0) for k in some]
+        some = _some(rng, np.arange(len(early.error)), before)
+        chosen += [replace(_start(setup, early.finds, early.error, k), promise=0.0) for k in some]
     return Round(chosen, {"feasible finds": int(late.finds.feasible.sum())})
 
 
@@ -129,10 +205,10 @@ def _distinct(placed: Placed) -> IntArray:
     return np.array(picked, dtype=np.int64)
 
 
-def _start(setup: Setup, stage: _Stage, index: int) -> Start:
-    start = Start.of_find(stage.finds, index, setup.problem.objective)
-    met = bool(stage.finds.feasible[index]) and stage.finds.error[index] < FOUND
-    return replace(start, promise=float(stage.error[index]), settled=met)
+def _start(setup: Setup, finds: Finds, error: FloatArray, index: int) -> Start:
+    start = Start.of_find(finds, index, setup.problem.objective)
+    met = bool(finds.feasible[index]) and finds.error[index] < FOUND
+    return replace(start, promise=float(error[index]), settled=met)
 
 
 def _some(rng: np.random.Generator, every: IntArray, count: int) -> list[int]:

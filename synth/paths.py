@@ -20,7 +20,7 @@ from grashof.synth.cognates import cognate_points
 from grashof.synth.finds import Finds, follow
 from grashof.synth.nine_points import coupler_turns, linkages_through
 from grashof.synth.path_finds import entries_of, judged, path_target
-from grashof.synth.path_loop import TURN, PathTarget
+from grashof.synth.path_loop import PathTarget
 from grashof.synth.path_search import Placed, draw, fitting, improve, place
 from grashof.synth.path_thinning import refined, thinned
 from grashof.synth.setup import Setup
@@ -68,7 +68,7 @@ def rounds(setup: Setup, enough: int, rng: np.random.Generator) -> Iterator[Roun
         return
     barren = 0
     while barren < BARREN:
-        found = _search_round(setup, enough, rng) if setup.exact else least_squares.starts(setup, rng)
+        found = _search_round(setup, enough, rng) if setup.exact else next(least)
         barren = 0 if found.starts else barren + 1
         yield found
 

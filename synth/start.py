@@ -174,7 +174,10 @@ class Round:
         The most promising first.
     counts : mapping of str to int
         Of what was looked at.
+    free : bool
+        No limit binds: what passes the targets by the same way is the same design or a cognate.
     """
 
     starts: list[Start]
     counts: Mapping[str, int]
+    free: bool = False
