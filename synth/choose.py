@@ -18,6 +18,7 @@ POOL = 6000  # finds among which starts are picked
 PEAKS, PEAK_SPACING = 8, 0.25
 SPACINGS = (0.5, 0.35, 0.25, 0.18, 0.12, 0.08, 0.06, 0.04, 0.03, 0.02, 0.015)
 MISSES, MISS_SPACING = 40, 0.05  # starts from finds that lack something, the least first
+OTHERS = 10.0  # weight of what else is missed, where one requirement may be
 NEARLY = 0.1  # finds that lack no more are also spread over, for variety
 
 
@@ -138,3 +139,10 @@ def merits(setup: Setup, finds: Finds) -> FloatArray:
     ways = finds.theta2, finds.direction, finds.assembly
     torque = torque_peaks(setup.problem, finds.points, *ways, SCREENED)
     return weigh(objective, finds.transmission, size, torque)
+
+
+def closest_starts(setup: Setup, finds: Finds, group: str, most: int) -> list[Start]:
+    """Starts from finds that lack little of one requirement, and nothing of the others if that can be."""
+    lacks = finds.lacks[:, GROUPS.index(group)]
+    others = finds.lacks.sum(axis=1) - lacks
+    return _distinct_starts(setup, finds, -lacks - OTHERS * others - finds.error, most)

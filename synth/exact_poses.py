@@ -24,6 +24,7 @@ from grashof.synth.burmester import (
 )
 from grashof.synth.choose import feasible_starts, mended_starts, merits
 from grashof.synth.choose import relaxed_starts as relaxed
+from grashof.synth.finds import Finds
 from grashof.synth.five_poses import five_pose_dyads, five_pose_guides
 from grashof.synth.own import screened
 from grashof.synth.screen import near_misses, screen
@@ -111,6 +112,16 @@ def relaxed_starts(setup: Setup, rng: np.random.Generator) -> list[Start]:
     pairs = near_misses(_motion(setup), setup.targets[0], _dyads(setup, rng), setup.wanted, NEAR_PAIRS)
     settled = len(setup.targets) > 4
     return [replace(start, settled=settled) for start in relaxed(setup, pairs)]
+
+
+def finds(setup: Setup, rng: np.random.Generator) -> Finds:
+    """Pairs of dyads that meet all requirements; with what they lack where none does."""
+    motion, body, dyads = _motion(setup), setup.targets[0], _dyads(setup, rng)
+    most = SAMPLED_PAIRS if len(setup.targets) < 4 else PAIRS
+    pairs = screened(setup, screen(motion, body, dyads, setup.wanted, most))
+    if pairs.feasible.any():
+        return pairs[pairs.feasible]
+    return screened(setup, near_misses(motion, body, dyads, setup.wanted, NEAR_PAIRS))
 
 
 def obstacle(setup: Setup, rng: np.random.Generator) -> str:

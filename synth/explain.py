@@ -1,15 +1,119 @@
-"""Why there is no design: the closest misses, and what stands in the way."""
+"""Why there is no design: what alone would have to be relaxed, and the closest misses."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from grashof.analysis import verify
+import numpy as np
+
+from grashof.analysis import Verdict, verify
 from grashof.problems import Problem, Rotatability
+from grashof.synth import exact_poses, paths
 from grashof.synth.attempt import Attempt
+from grashof.synth.looser import Relaxation
+from grashof.synth.own import relaxed as relaxed_own
+from grashof.synth.relax import Solver, relaxations
 from grashof.synth.result import Candidate, Result
 from grashof.synth.setup import Setup
+from grashof.synth.start import Start
+
+STOPPED = "no design: the search was stopped before it found one"
+SHOWN = 8  # least-squares designs that stand for the nearest
+ALTERNATIVES = 6  # that the note names
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """A search that ended empty.
+
+    Parameters
+    ----------
+    setup : Setup
+    starts : list of Start
+        Of its last round.
+    rejected : list of Attempt
+        What was solved, in vain.
+    counts : mapping of str to int
+        See `Result`.
+    """
+
+    setup: Setup
+    starts: list[Start]
+    rejected: list[Attempt]
+    counts: Mapping[str, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """Why a list is empty.
+
+    Parameters
+    ----------
+    note : str
+    nearest : tuple of Candidate
+        The closest misses, the smallest first.
+    designs : tuple of Candidate
+        Designs that do meet all requirements, where looking for near ones came upon some.
+    """
+
+    note: str
+    nearest: tuple[Candidate, ...] = ()
+    designs: tuple[Candidate, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class _Near:
+    """A design of least squares: judged as such, and against the requirements as they were asked."""
+
+    by_squares: Verdict
+    candidate: Candidate
+
+
+def explain(
+    failure: Failure,
+    solve: Solver,
+    search: Callable[[Problem], Result],
+    rng: np.random.Generator,
+    ended: Callable[[], bool],
+) -> Explanation:
+    """Say why a search found nothing: what would do instead, and how near designs come.
+
+    Parameters
+    ----------
+    failure : Failure
+    solve : callable
+        Attempts from starts.
+    search : callable
+        A search of limited effort for another problem, which explains nothing.
+    rng : numpy.random.Generator
+    ended : callable
+        Asked between solves: to be content with what there is.
+
+    Returns
+    -------
+    Explanation
+    """
+    setup = failure.setup
+    known = [one.candidate for one in failure.rejected if one.candidate is not None]
+    ways = relaxations(setup, solve, known, rng, ended)
+    near = [] if ended() else _by_least_squares(setup, search)
+    designs = tuple(one.candidate for one in near if one.candidate.verdict.ok)
+    if designs:
+        return Explanation("", designs=designs)
+    why = exact_poses.obstacle(setup, rng) if setup.motion is not None else _exhausted(failure.counts)
+    if ways:
+        near = [one for one in near[:1] if _miss(one) < 1]  # farther away than the task is long
+        missed = [(way.miss, way.candidate) for way in ways] + [(_miss(one), one.candidate) for one in near]
+        missed.sort(key=lambda pair: pair[0])
+        return Explanation(_ways_note(setup, ways, near, why), tuple(one for _, one in missed))
+    if near:
+        note = f"no design: {why or 'exact: none'}; {_comes_within(setup, near[0])}, with exact = false"
+        return Explanation(note, tuple(one.candidate for one in near))
+    relaxed = _relaxed_starts(failure, rng)
+    nearest = () if ended() else closest_misses(solve(setup, relaxed, len(failure.rejected)))
+    nearest = nearest or closest_misses(failure.rejected)
+    return Explanation(_none_note(setup, nearest, why), nearest)
 
 
 def closest_misses(attempts: list[Attempt]) -> tuple[Candidate, ...]:
@@ -32,43 +136,82 @@ def closest_misses(attempts: list[Attempt]) -> tuple[Candidate, ...]:
     return tuple(candidate for _, _, candidate in sorted(found, key=lambda item: item[:2]))
 
 
-def approximate(setup: Setup, solve: Callable[[Problem], Result]) -> tuple[Candidate, ...]:
-    """For exact poses that leave nothing to choose: designs that come as near as they can.
-
-    Parameters
-    ----------
-    setup : Setup
-    solve : callable
-        A search of its own for another problem.
-    """
-    problem = setup.problem
-    if setup.motion is None or len(setup.targets) < 5:
-        return ()
-    loose = replace(problem, requirements=replace(problem.requirements, exact=False))
-    wanted, own = problem.requirements, setup.constraints
-    judged = (
-        replace(found, verdict=verify(found.linkage, problem.task, wanted, own))
-        for found in solve(loose).candidates
-    )
-    return tuple(found for found in judged if not found.verdict.ok)
+def _by_least_squares(setup: Setup, search: Callable[[Problem], Result]) -> list[_Near]:
+    """For targets to be met exactly: designs that come as near as they can, the nearest first."""
+    problem, own = setup.problem, setup.constraints
+    wanted = problem.requirements
+    if not setup.exact or not _may_be_near(setup):
+        return []
+    found = search(replace(problem, requirements=replace(wanted, exact=False))).candidates[:SHOWN]
+    return [
+        _Near(one.verdict, replace(one, verdict=verify(one.linkage, problem.task, wanted, own)))
+        for one in found
+    ]
 
 
-def exhausted(counts: Mapping[str, int]) -> str:
+def _may_be_near(setup: Setup) -> bool:
+    """Whether least squares can be tried: two poses leave it nothing to make small."""
+    return len(setup.targets) > 2
+
+
+def _relaxed_starts(failure: Failure, rng: np.random.Generator) -> list[Start]:
+    """Starts that may miss the smallest set of requirements that is known to do."""
+    setup = failure.setup
+    finder = paths if setup.motion is None else exact_poses
+    return finder.relaxed_starts(setup, rng) + relaxed_own(setup, failure.starts)
+
+
+def _miss(near: _Near) -> float:
+    """By how much a least-squares design misses its targets: sizes or rad."""
+    defects = near.candidate.verdict.defects
+    return max((defect.miss for defect in defects if defect.requirement == "exact"), default=0.0)
+
+
+def _exhausted(counts: Mapping[str, int]) -> str:
     """What is known of a task of which all linkages were computed; empty for others."""
     every = counts.get("linkages through the points", 0)
     return f"none of the {every} linkages through the points meets all requirements" if every else ""
 
 
-def why_none(setup: Setup, nearest: tuple[Candidate, ...], complete: bool, obstacle: str) -> str:
-    """The note of an empty list."""
-    if not complete:
-        return "no design: the search was stopped before it found one"
-    if obstacle:
-        closest = f"; the closest one misses {_missed(setup, nearest[0])}" if nearest else ""
-        return f"no design: {obstacle}{closest}"
+def _ways_note(setup: Setup, ways: list[Relaxation], near: list[_Near], why: str) -> str:
+    """The note that names single requirements, the smallest miss first."""
+    priced = [(way.miss, way.words) for way in ways]
+    if near:
+        priced.append((_miss(near[0]), f"exact = false, {_comes_within(setup, near[0], then='then ')}"))
+    words = [text for _, text in sorted(priced)][:ALTERNATIVES]
+    said = f"no design: {why}" if why else "no design meets all requirements"
+    alone = "this alone would do" if len(words) == 1 else "each of these alone would do"
+    return f"{said}; {alone}: {'; '.join(words)}"
+
+
+def _comes_within(setup: Setup, near: _Near, then: str = "") -> str:
+    """How near a least-squares design comes; figures are rounded up, so that they hold."""
+    unit = f" {setup.problem.length_unit}" if setup.problem.length_unit else ""
+    text = f"the closest {then}comes within {_up(near.by_squares.error_max)}{unit} everywhere"
+    turned = near.by_squares.angle_error
+    if turned is None or np.isnan(turned).all():
+        return text
+    return f"{text} and within {_up(float(np.degrees(np.nanmax(turned))))} deg"
+
+
+def _up(value: float) -> str:
+    """A number rounded up to three digits."""
+    if not 0 < value < np.inf:
+        return f"{value:g}"
+    step = 10.0 ** (np.floor(np.log10(value)) - 2)
+    return f"{np.ceil(value / step) * step:.3g}"
+
+
+def _none_note(setup: Setup, nearest: tuple[Candidate, ...], why: str) -> str:
+    """The note where no single requirement does."""
+    squares = ", nor a least-squares design" if setup.exact and _may_be_near(setup) else ""
+    closest = f"; the closest one misses {_missed(setup, nearest[0])}" if nearest else ""
+    if why:
+        return f"no design: {why}{'; least squares finds none either' if squares else ''}{closest}"
     if not nearest:
-        return "no design: the search found none, nor a near miss"
-    return f"no design meets all requirements; the closest one misses {_missed(setup, nearest[0])}"
+        return f"no design: the search found none{squares}, nor a near miss"
+    alone = len({defect.requirement for defect in nearest[0].verdict.defects}) == 1
+    return f"no design meets all requirements{'' if alone else ', nor all but one'}{closest}"
 
 
 def _missed(setup: Setup, candidate: Candidate) -> str:
@@ -77,6 +220,4 @@ def _missed(setup: Setup, candidate: Candidate) -> str:
     missed, less = {defect.requirement for defect in defects}, ""
     if "rotatability" in missed and setup.wanted.rotatability is not Rotatability.ANY:
         less = '; rotatability = "any" asks for less'
-    if "exact" in missed:
-        less += "; exact = false asks for less"
     return " and ".join(map(str, defects)) + less

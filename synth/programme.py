@@ -26,7 +26,7 @@ from grashof.synth.constraints import (
 from grashof.synth.finds import GROUPS
 from grashof.synth.form import ADDED, Form, Given, Unknowns
 from grashof.synth.setup import Setup
-from grashof.synth.start import Start
+from grashof.synth.start import LENGTHS, Start
 from grashof.synth.torque import loads, torque_bound, torque_peaks
 
 FAR = 1e3  # sizes: stands for "no limit"
@@ -34,6 +34,7 @@ INSET = 1e-8  # sizes, rad: limits are tightened by this much, so that the polis
 ZONE_INSET = 1e-7  # share of a zone that the programme leaves to the judge
 LEAST_STEP = 1e-4  # rad, of the driver between two targets that are both met
 LEAST_TRANSMISSION = 1e-3  # rad: keeps the motion away from dead positions
+SLIGHT = 1e-4  # weight of the error beside the slack
 LEAST_SQUARE = 1e-8  # sizes squared: scales the squared distances to about 1
 
 
@@ -156,6 +157,8 @@ def _programme(form: Form, max_iter: int, constraints: tuple[Constraint, ...]) -
     if form.elastic:
         require_limits(rows, given, unknown)
         cost = unknown["slack"]
+        if not form.exact:  # of equal slack the smaller error
+            cost += SLIGHT * given.error_scale * square(form, given, unknown, places)
     programme = {"x": unknown.vector, "p": given.vector, "f": cost, "g": ca.vertcat(*rows.expressions)}
     options: dict[str, Any] = {
         "print_time": False,
@@ -277,8 +280,9 @@ def _unknown_limits(form: Form, setup: Setup, start: Start) -> tuple[FloatArray,
         for middle, side in zip((point.real, point.imag), sides, strict=True):
             low, high = _near(_inset(side))
             limits.append((max(low, middle - start.radius), min(high, middle + start.radius)))
-    for low, high in wanted.link_lengths:
-        limits.append((1e-6, FAR) if form.elastic else _inset((max(low, 1e-6), min(high, FAR))))
+    for name, (low, high) in zip(LENGTHS, wanted.link_lengths, strict=True):
+        loose = form.elastic and start.gives(name)
+        limits.append((1e-6, FAR) if loose else _inset((max(low, 1e-6), min(high, FAR))))
     ground, first = (None if key in start.relaxed else getattr(wanted, key) for key in ANGLES)
     limits.append(_turned(ground, start.theta1))
     for k, target in enumerate(start.visit):

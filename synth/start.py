@@ -14,6 +14,9 @@ from grashof.synth.finds import Finds
 from grashof.synth.setup import Setup
 
 
+LENGTHS = ("r1", "r2", "r3", "r4")
+
+
 @dataclass(frozen=True, slots=True)
 class Start:
     """Where a solve begins, in the frame of the search.
@@ -44,7 +47,8 @@ class Start:
     settled : bool
         The targets leave no freedom: the design is there already, or nowhere near.
     relaxed : tuple of str
-        Requirements (keys) that it may miss, coming as near as it can; all others hold.
+        Requirements (keys) that it may miss, coming as near as it can; all others hold. With
+        "link_length" all lengths, or only those of r1 to r4 that are named.
     torque_at : tuple of float
         Where else the torque is bounded, as shares of the motion used.
     promise : float, sizes
@@ -135,6 +139,11 @@ class Start:
     def lengths(self) -> tuple[float, float, float, float]:
         """r1, r2, r3, r4 in sizes."""
         return abs(self.o4 - self.o2), abs(self.a - self.o2), abs(self.b - self.a), abs(self.b - self.o4)
+
+    def gives(self, length: str) -> bool:
+        """Whether one of r1 to r4 may miss its limits."""
+        named = any(name in LENGTHS for name in self.relaxed)
+        return length in self.relaxed if named else "link_length" in self.relaxed
 
     @property
     def half_turns(self) -> tuple[int, int]:

@@ -18,9 +18,8 @@ from grashof.problems import MotionTask, Problem, ProblemError, Search, SolverEr
 from grashof.problems.checks import counted, finite_number, whole_number
 from grashof.synth import exact_poses, paths
 from grashof.synth.attempt import Attempt, attempt
-from grashof.synth.explain import approximate, closest_misses, exhausted, why_none
+from grashof.synth.explain import STOPPED, Explanation, Failure, explain
 from grashof.synth.own import mended, refuse_unusable
-from grashof.synth.own import relaxed as relaxed_own
 from grashof.synth.result import Candidate, Result, ranked
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
@@ -29,6 +28,7 @@ BATCH = 16  # solves between two looks at what is verified; fixed, so that worke
 FRUITLESS = 64  # so many solves without one verified design end the search
 # So many rounds of starts on end that gain nothing, too: least squares and exact.
 STALE, STALE_EXACT = 2, 20
+NEAR = 8  # least-squares designs that are enough where there is no exact one
 GAIN = 1e-4  # of the error
 
 
@@ -149,17 +149,17 @@ def _search(
     progress: Callable[[Progress], object] | None,
     workers: int,
     executor: Executor | None,
+    *,
+    explained: bool = True,
 ) -> Result:
     rng = np.random.default_rng(np.random.SeedSequence(search.seed))
     finder = exact_poses if setup.motion is not None else paths
     found = _Found(setup.problem)
-    obstacle = ""
 
-    def solve_other(problem: Problem) -> Result:
-        most = min(search.starts, FRUITLESS)
-        return synthesize(
-            problem, constraints=setup.constraints, starts=most, enough=1, seed=search.seed, stop=ended
-        )
+    def near(problem: Problem) -> Result:
+        few = replace(search, starts=min(search.starts, FRUITLESS), enough=min(search.enough, NEAR))
+        other = Setup.of(problem, setup.constraints)
+        return _search(other, few, perf_counter(), ended, None, 1, None, explained=False)
 
     complete, seconds = True, {"screening": 0.0, "solving": 0.0}
     with _solving(workers, executor) as solve:
@@ -178,20 +178,16 @@ def _search(
             if ended():
                 complete = False
                 break
-        nearest: tuple[Candidate, ...] = ()
-        if not found.best and complete:
-            relaxed = finder.relaxed_starts(setup, rng) + relaxed_own(setup, made.starts)
-            nearest = closest_misses(solve(setup, relaxed, found.solved))
-            nearest = nearest or closest_misses(found.rejected)
-            if not ended():
-                nearest += approximate(setup, solve_other)
-            if setup.motion is not None:
-                obstacle = exact_poses.obstacle(setup, rng)
+        said = Explanation("" if found.best else STOPPED)
+        if not found.best and complete and explained:
+            said = explain(Failure(setup, made.starts, found.rejected, found.counts), solve, near, rng, ended)
+            found.best = ranked(setup.problem, list(said.designs))
+            seconds["explaining"] = perf_counter() - since
     found.counts["verified and distinct"] = len(found.best)
     times = {**seconds, "total": perf_counter() - begun}
-    note = "" if found.best else why_none(setup, nearest, complete, obstacle or exhausted(found.counts))
     why = _why_ended(setup, search, found, complete)
-    return Result(setup.problem, found.best, nearest, dict(found.counts), times, note, complete, why)
+    counts = dict(found.counts)
+    return Result(setup.problem, found.best, said.nearest, counts, times, said.note, complete, why)
 
 
 @dataclass(slots=True)

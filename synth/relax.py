@@ -1,0 +1,144 @@
+"""Which single requirement stands in the way, and by how much it alone would have to be relaxed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TypeAlias
+
+import numpy as np
+
+from grashof.analysis import verify
+from grashof.problems.checks import FloatArray
+from grashof.synth import exact_poses, paths
+from grashof.synth.attempt import Attempt
+from grashof.synth.choose import closest_starts
+from grashof.synth.finds import GROUPS, Configurations, Finds, dyad_lacks, judge, keep_out_lack
+from grashof.synth.looser import LENGTHS, Relaxation, limiting, loosest, relaxation
+from grashof.synth.own import screened
+from grashof.synth.result import Candidate
+from grashof.synth.setup import Setup
+from grashof.synth.start import Start
+
+SOLVES = 6  # starts for each requirement
+FINDS = 20  # of a search for them
+
+Solver: TypeAlias = Callable[[Setup, list[Start], int], list[Attempt]]
+
+
+def relaxations(
+    setup: Setup,
+    solve: Solver,
+    known: list[Candidate],
+    rng: np.random.Generator,
+    ended: Callable[[], bool],
+) -> list[Relaxation]:
+    """For each requirement that may be the only one in the way: how it would have to be relaxed.
+
+    Parameters
+    ----------
+    setup : Setup
+    solve : callable
+        Attempts from starts.
+    known : list of Candidate
+        Designs that were rejected.
+    rng : numpy.random.Generator
+    ended : callable
+        Asked before every requirement.
+
+    Returns
+    -------
+    list of Relaxation
+        One for each requirement at most, the smallest miss first. The judge has accepted each of the
+        designs under the relaxed requirement and all others.
+
+    Notes
+    -----
+    Without the requirement a search finds linkages that meet all others; from the nearest of them the
+    elastic programme makes what is missed of it as small as it can. Fixed numbers of draws and solves
+    bound the time, so that the seed decides.
+    """
+    found = list[Relaxation]()
+    for key in limiting(setup.problem, setup.constraints):
+        if ended():
+            break
+        rejected = [one for one in known if {d.requirement for d in one.verdict.defects} == {key}]
+        best = _least(setup, key, _candidates(setup, key, solve, rng) + rejected)
+        if best is not None:
+            found.append(best if setup.exact else _closer(setup, best, solve))
+    return sorted(found, key=lambda one: (one.miss, one.key))
+
+
+def _least(setup: Setup, key: str, candidates: list[Candidate]) -> Relaxation | None:
+    """The smallest relaxation of a requirement that makes one of some designs do."""
+    made = [relaxation(setup.problem, setup.constraints, key, candidate) for candidate in candidates]
+    return min(
+        (one for one in made if one is not None),
+        key=lambda one: (one.miss, -one.candidate.score(setup.problem)),
+        default=None,
+    )
+
+
+def _candidates(setup: Setup, key: str, solve: Solver, rng: np.random.Generator) -> list[Candidate]:
+    """Designs that miss a requirement by little, and others by nothing if that can be."""
+    loose = _loose(setup, key)
+    finds = rejudged(setup, _finds(loose, rng))
+    group = "link_length" if key in LENGTHS else key
+    starts = closest_starts(setup, finds, group, SOLVES)
+    settled = setup.motion is not None and len(setup.targets) > 4
+    if settled:
+        return _judged(setup, solve(loose, [replace(start, settled=True) for start in starts], 0))
+    found = _judged(setup, solve(loose, [replace(start, settled=True) for start in starts[:2]], 0))
+    if key not in ("order", "same_branch"):  # no smooth constraint can relax these
+        gives = (group, *(LENGTHS if key == "link_length" else [key] if group != key else []))
+        found += _judged(setup, solve(setup, [replace(start, relaxed=gives) for start in starts], 0))
+    return found
+
+
+def _judged(setup: Setup, attempts: list[Attempt]) -> list[Candidate]:
+    """The designs of attempts, judged by the requirements as they were asked."""
+    task, wanted = setup.problem.task, setup.problem.requirements
+    return [
+        replace(one.candidate, verdict=verify(one.candidate.linkage, task, wanted, setup.constraints))
+        for one in attempts
+        if one.candidate is not None
+    ]
+
+
+def _loose(setup: Setup, key: str) -> Setup:
+    problem = replace(setup.problem, requirements=loosest(setup.problem, key))
+    return Setup.of(problem, () if key == "constraints" else setup.constraints)
+
+
+def _closer(setup: Setup, found: Relaxation, solve: Solver) -> Relaxation:
+    """The same relaxation with a design of smaller error, solved under the relaxed requirement."""
+    problem = replace(setup.problem, requirements=found.requirements)
+    eased = Setup.of(problem, found.constraints)
+    judged = verify(found.candidate.linkage, problem.task, found.requirements, found.constraints)
+    (made,) = solve(eased, [Start.of_linkage(eased, found.candidate.linkage, judged)], 0)
+    if made.candidate is None or not made.candidate.verdict.ok:
+        return found
+    (better,) = _judged(setup, [made])
+    return replace(found, candidate=min(found.candidate, better, key=lambda one: -one.score(problem)))
+
+
+def _finds(setup: Setup, rng: np.random.Generator) -> Finds:
+    """Linkages that a search comes up with, feasible ones if there are any."""
+    if setup.motion is not None:
+        return exact_poses.finds(setup, rng)
+    return paths.search(setup, FINDS, rng)
+
+
+def rejudged(setup: Setup, finds: Finds) -> Finds:
+    """Finds with what they lack of the requirements of another setup of the same task."""
+    if not len(finds):
+        return finds
+    o2, o4, a, b, p = finds.points.T
+    counted: FloatArray = np.take_along_axis(finds.theta2, np.argsort(finds.visit, axis=1), axis=1)
+    at_a = o2[:, None] + np.abs(a - o2)[:, None] * np.exp(1j * counted)
+    at_b = at_a + finds.coupler
+    at_p = at_a + ((p - a) / (b - a))[:, None] * finds.coupler
+    lacks = dyad_lacks("o2", o2, at_a, p, setup.wanted) + dyad_lacks("o4", o4, at_b, p, setup.wanted)
+    lacks[:, GROUPS.index("keep_out")] += keep_out_lack("p", at_p, setup.wanted)
+    found = Configurations(o2, o4, at_a, at_b, finds.visit, finds.theta2, finds.direction)
+    return screened(setup, judge(found, p, finds.error, lacks, setup.wanted, finds.body_angle))
