@@ -8,7 +8,15 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from grashof.problems.checks import FloatArray, counted, finite_number, outline, positive_number, whole_number
+from grashof.problems.checks import (
+    FloatArray,
+    counted,
+    finite_number,
+    number_within,
+    outline,
+    positive_number,
+    whole_number,
+)
 from grashof.problems.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.errors import ProblemError
 from grashof.problems.manufacturing import Manufacturing
@@ -16,6 +24,7 @@ from grashof.problems.requirements import Requirements
 from grashof.problems.task import Task
 
 _HEAVIEST = 1e9
+EFFORTS = (0.2, 100.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,17 +68,22 @@ class Search:
     enough : int
         Stop between batches once so many distinct designs are verified.
     seed : int
-        Of all randomness.
+        Random seed.
+    effort : float
+        How long to look for better designs before giving up, 0.2 to 100: the rounds of a search with
+        1 come first and unchanged.
     """
 
     starts: int = 200
     enough: int = 50
     seed: int = 0
+    effort: float = 1.0
 
     def __post_init__(self) -> None:
         whole_number(self.starts, 1, "search.starts")
         whole_number(self.enough, 1, "search.enough")
         whole_number(self.seed, 0, "search.seed")
+        object.__setattr__(self, "effort", number_within(self.effort, *EFFORTS, "search.effort"))
 
 
 _KINDS: dict[str, Any] = {

@@ -206,6 +206,7 @@ class SearchTable(Table):
     starts: int | None = None
     enough: int | None = None
     seed: int | None = None
+    effort: float | None = None
 
     def value(self) -> Search:
         given: dict[str, Any] = {key: getattr(self, key) for key in self.model_fields_set}

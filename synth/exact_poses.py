@@ -75,7 +75,7 @@ def degenerate(setup: Setup) -> str:
     return ""
 
 
-def rounds(setup: Setup, enough: int, rng: np.random.Generator) -> Iterator[Round]:
+def rounds(setup: Setup, enough: int, rng: np.random.Generator, size: int = 1) -> Iterator[Round]:
     """The one round of starts that there is, with the number of feasible pairs of dyads.
 
     Parameters
@@ -84,13 +84,17 @@ def rounds(setup: Setup, enough: int, rng: np.random.Generator) -> Iterator[Roun
     enough : int
         Distinct designs wanted.
     rng : numpy.random.Generator
+    size : int
+        Above 1 for more of the same; where the poses leave no freedom, there is none.
 
     Yields
     ------
     Round
     """
-    motion, body, dyads = _motion(setup), setup.targets[0], _dyads(setup, rng)
     settled = len(setup.targets) > 4
+    if settled and size > 1:
+        return
+    motion, body, dyads = _motion(setup), setup.targets[0], _dyads(setup, rng)
     most = SAMPLED_PAIRS if len(setup.targets) < 4 else PAIRS
     pairs = screened(setup, screen(motion, body, dyads, setup.wanted, most))
     feasible = pairs[pairs.feasible]

@@ -13,10 +13,11 @@ from grashof.synth import exact_poses, paths
 from grashof.synth.attempt import Attempt
 from grashof.synth.looser import Relaxation
 from grashof.synth.own import relaxed as relaxed_own
-from grashof.synth.relax import Solver, relaxations
+from grashof.synth.relax import relaxations
 from grashof.synth.result import Candidate, Result
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
+from grashof.synth.workers import Solver
 
 STOPPED = "no design: the search was stopped before it found one"
 SHOWN = 8  # least-squares designs that stand for the nearest

@@ -98,9 +98,7 @@ def _free_round(setup: Setup, rng: np.random.Generator, size: int) -> Round | No
         return None
     order = np.argsort(feasible.error, kind="stable")
     starts = [_start(setup, feasible, feasible.error, int(k)) for k in order]
-    return Round(
-        _other_curves(starts, size * MOST_CURVES), {"feasible finds": len(feasible)}, free=True
-    )
+    return Round(_other_curves(starts, size * MOST_CURVES), {"feasible finds": len(feasible)}, free=True)
 
 
 def _other_curves(starts: list[Start], most: int) -> list[Start]:
@@ -138,7 +136,7 @@ def _limited_round(setup: Setup, rng: np.random.Generator, size: int) -> Round:
     if _ends_bind(setup):  # the search may shift the ends of the motion, the programme may not
         some = _some(rng, np.arange(len(early.error)), before)
         chosen += [replace(_start(setup, early.finds, early.error, k), promise=0.0) for k in some]
-    return Round(chosen, {"feasible finds": int(late.finds.feasible.sum())})
+    return Round(chosen, {"feasible finds": int(late.finds.feasible.sum())}, size)
 
 
 def _search(setup: Setup, rng: np.random.Generator, size: int) -> tuple[_Stage, _Stage]:

@@ -207,6 +207,7 @@ def _angle_changed(problem: Problem, key: str, missed: list[Defect]) -> tuple[Re
 def _areas_drawn_in(problem: Problem, key: str, missed: list[Defect]) -> tuple[Requirements, str] | None:
     # Here, not above: shapely takes a while to import, and few problems have areas.
     import shapely
+
     from grashof.problems.areas import solid
 
     by = _rounded(max(defect.found for defect in missed), 0.0)

@@ -46,7 +46,7 @@ def degenerate(setup: Setup) -> str:
     return f"all positions are at ({x:.6g}, {y:.6g}): a single pivot there does the job"
 
 
-def rounds(setup: Setup, enough: int, rng: np.random.Generator) -> Iterator[Round]:
+def rounds(setup: Setup, enough: int, rng: np.random.Generator, size: int = 1) -> Iterator[Round]:
     """Rounds of starts; later ones only when more are needed.
 
     Parameters
@@ -55,11 +55,15 @@ def rounds(setup: Setup, enough: int, rng: np.random.Generator) -> Iterator[Roun
     enough : int
         Distinct designs wanted.
     rng : numpy.random.Generator
+    size : int
+        Of least squares: how many times the usual number of linkages to draw.
 
     Yields
     ------
     Round
     """
+    if not setup.exact:
+        yield from least_squares.rounds(setup, rng, size)
     if _has_nine_points(setup):
         # All linkages can be had, but for points in order the search is most often there sooner.
         for _ in range(SEARCHES if setup.wanted.order else 0):
@@ -68,7 +72,7 @@ def rounds(setup: Setup, enough: int, rng: np.random.Generator) -> Iterator[Roun
         return
     barren = 0
     while barren < BARREN:
-        found = _search_round(setup, enough, rng) if setup.exact else next(least)
+        found = _search_round(setup, enough, rng)
         barren = 0 if found.starts else barren + 1
         yield found
 

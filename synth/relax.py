@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TypeAlias
 
 import numpy as np
 
@@ -19,11 +18,10 @@ from grashof.synth.own import screened
 from grashof.synth.result import Candidate
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
+from grashof.synth.workers import Solver
 
 SOLVES = 6  # starts for each requirement
 FINDS = 20  # of a search for them
-
-Solver: TypeAlias = Callable[[Setup, list[Start], int], list[Attempt]]
 
 
 def relaxations(

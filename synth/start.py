@@ -13,7 +13,6 @@ from grashof.problems.checks import ComplexArray
 from grashof.synth.finds import Finds
 from grashof.synth.setup import Setup
 
-
 LENGTHS = ("r1", "r2", "r3", "r4")
 
 
@@ -183,10 +182,13 @@ class Round:
         The most promising first.
     counts : mapping of str to int
         Of what was looked at.
+    size : int
+        Its work, in usual rounds.
     free : bool
         No limit binds: what passes the targets by the same way is the same design or a cognate.
     """
 
     starts: list[Start]
     counts: Mapping[str, int]
+    size: int = 1
     free: bool = False

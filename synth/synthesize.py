@@ -2,34 +2,33 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor
-from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
-from multiprocessing import get_context
-from signal import SIG_IGN, SIGINT, signal
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+from itertools import count
 from time import perf_counter
+from typing import Protocol
 
 import numpy as np
 
 from grashof.analysis.design import Constraint
-from grashof.problems import MotionTask, Problem, ProblemError, Search, SolverError
+from grashof.problems import MotionTask, Problem, ProblemError, Search
 from grashof.problems.checks import counted, finite_number, whole_number
 from grashof.synth import exact_poses, paths
-from grashof.synth.attempt import Attempt, attempt
 from grashof.synth.explain import STOPPED, Explanation, Failure, explain
+from grashof.synth.ledger import Ledger
 from grashof.synth.own import mended, refuse_unusable
-from grashof.synth.result import Candidate, Result, ranked
+from grashof.synth.path_finds import path_target
+from grashof.synth.result import Result, ranked
 from grashof.synth.setup import Setup
-from grashof.synth.start import Start
+from grashof.synth.start import Round
+from grashof.synth.workers import Solver, solving
 
-BATCH = 16  # solves between two looks at what is verified; fixed, so that workers change nothing
-FRUITLESS = 64  # so many solves without one verified design end the search
-# So many rounds of starts on end that gain nothing, too: least squares and exact.
-STALE, STALE_EXACT = 2, 20
-NEAR = 8  # least-squares designs that are enough where there is no exact one
-GAIN = 1e-4  # of the error
+# Solves between two looks at what is verified, fixed, so that workers change nothing: of exact designs,
+# and of least squares, where every look may spare solves.
+BATCH, BATCH_LEAST_SQUARES = 16, 8
+LARGER = 2  # times the draws and starts of a usual round: rounds that more effort adds
+NEAR_EFFORT, NEAR = 0.35, 8  # of a search for designs that come near
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +56,7 @@ def synthesize(
     starts: int | None = None,
     enough: int | None = None,
     seed: int | None = None,
+    effort: float | None = None,
     workers: int = 1,
     executor: Executor | None = None,
     time_limit: float | None = None,
@@ -72,6 +72,7 @@ def synthesize(
         Your own: functions of a `Design`, zero or negative where met, made of arithmetic that works
         on symbols (`**`, `casadi.sin`, not ``np.max``). With more processes, functions of a module.
     starts, enough, seed : int, optional
+    effort : float, optional
         Override the problem's own (see `Search`).
     workers : int
         Processes. The result does not depend on it; a search of a second or two gains nothing.
@@ -107,7 +108,7 @@ def synthesize(
         raise ProblemError(f"problem is a {type(problem).__name__}; allowed is a Problem, such as load gives")
     if isinstance(constraints, str) or not isinstance(constraints, Sequence):
         raise ProblemError(f"constraints is {constraints!r}; allowed is a list of functions of a design")
-    given = {"starts": starts, "enough": enough, "seed": seed}
+    given = {"starts": starts, "enough": enough, "seed": seed, "effort": effort}
     search = replace(problem.search, **{name: n for name, n in given.items() if n is not None})
     whole_number(workers, 1, "workers")
     if time_limit is not None and finite_number(time_limit, "time_limit") <= 0:
@@ -134,11 +135,18 @@ def refuse_unsupported(problem: Problem) -> None:
         return
     if problem.requirements.is_exact(task) and task.is_whole:
         exact_poses.refuse_equal_poses(task)
-    elif (count := len(paths.path_target(Setup.of(problem)).points)) < 3:
+    elif (count := len(path_target(Setup.of(problem)).points)) < 3:
         raise ProblemError(
             f"motion.poses has {counted(count, 'distinct pose')}; allowed are three or more where parts are "
             "left free or requirements.exact is false"
         )
+
+
+class Finder(Protocol):
+    """A way to find starts."""
+
+    def rounds(self, setup: Setup, enough: int, rng: np.random.Generator, size: int) -> Iterator[Round]:
+        """Rounds of starts, the larger the more is asked for."""
 
 
 def _search(
@@ -152,161 +160,72 @@ def _search(
     *,
     explained: bool = True,
 ) -> Result:
-    rng = np.random.default_rng(np.random.SeedSequence(search.seed))
     finder = exact_poses if setup.motion is not None else paths
-    found = _Found(setup.problem)
+    ledger = Ledger(setup, search)
 
     def near(problem: Problem) -> Result:
-        few = replace(search, starts=min(search.starts, FRUITLESS), enough=min(search.enough, NEAR))
+        few = replace(search, effort=NEAR_EFFORT, enough=min(search.enough, NEAR))
         other = Setup.of(problem, setup.constraints)
         return _search(other, few, perf_counter(), ended, None, 1, None, explained=False)
 
     complete, seconds = True, {"screening": 0.0, "solving": 0.0}
-    with _solving(workers, executor) as solve:
+    with solving(workers, executor) as solve:
         since = perf_counter()
-        for made in finder.rounds(setup, search.enough, rng):
+        for made in _rounds(setup, finder, ledger):
             screened = perf_counter()
             seconds["screening"] += screened - since
-            found.counts.update(made.counts)
-            before = found.best
-            _solve_round(setup, mended(setup, made.starts), search, solve, found, ended, progress)
+            ledger.begin(made)
+            _solve_round(setup, made, solve, ledger, ended, progress)
             since = perf_counter()
             seconds["solving"] += since - screened
-            found.stale = found.stale + 1 if before and not found.gained_on(before) else 0
-            if not found.wants_more(search):
-                break
             if ended():
-                complete = False
+                complete = ledger.done or ledger.ended
                 break
-        said = Explanation("" if found.best else STOPPED)
-        if not found.best and complete and explained:
-            said = explain(Failure(setup, made.starts, found.rejected, found.counts), solve, near, rng, ended)
-            found.best = ranked(setup.problem, list(said.designs))
+        best, said = ledger.best, Explanation("" if ledger.best else STOPPED)
+        if not best and complete and explained:
+            failure = Failure(setup, made.starts, ledger.rejected, ledger.counts)
+            rng = np.random.default_rng(np.random.SeedSequence(search.seed, spawn_key=(0,)))
+            said = explain(failure, solve, near, rng, ended)
+            best = ranked(setup.problem, list(said.designs))
             seconds["explaining"] = perf_counter() - since
-    found.counts["verified and distinct"] = len(found.best)
+    counts = {**ledger.counts, "verified and distinct": len(best)}
     times = {**seconds, "total": perf_counter() - begun}
-    why = _why_ended(setup, search, found, complete)
-    counts = dict(found.counts)
-    return Result(setup.problem, found.best, said.nearest, counts, times, said.note, complete, why)
+    why = ledger.why(complete)
+    return Result(setup.problem, best, said.nearest, counts, times, said.note, complete, why)
 
 
-@dataclass(slots=True)
-class _Found:
-    """What a search has found so far."""
-
-    problem: Problem
-    verified: list[Candidate] = field(default_factory=list)
-    rejected: list[Attempt] = field(default_factory=list)
-    best: tuple[Candidate, ...] = ()
-    counts: Counter[str] = field(default_factory=Counter)
-    solved: int = 0
-    stale: int = 0
-
-    @property
-    def exact(self) -> bool:
-        """Whether the designs meet every target."""
-        return self.problem.requirements.is_exact(self.problem.task)
-
-    def wants_more(self, search: Search) -> bool:
-        """Whether the list is too short, solves are left and there is hope."""
-        return len(self.best) < search.enough and not self.no_use(search)
-
-    def no_use(self, search: Search) -> str:
-        """Why to solve no more, however short the list is; empty where it may be of use."""
-        if self.solved >= search.starts:
-            return f"starts = {search.starts} allows no more"
-        if self.stale >= (STALE_EXACT if self.exact else STALE):
-            return (
-                f"the last {self.stale} rounds of starts brought nothing {'new' if self.exact else 'better'}"
-            )
-        return "none of them gave a design" if not self.best and self.solved >= FRUITLESS else ""
-
-    def gained_on(self, before: tuple[Candidate, ...]) -> bool:
-        """Whether there are more exact designs than before, or a better least-squares one."""
-        if self.exact:
-            return len(self.best) > len(before)
-        return self.best[0].score(self.problem) > (1 - GAIN) * before[0].score(self.problem)
-
-    def take(self, attempts: list[Attempt]) -> None:
-        """Count a batch, keep what is verified, and rank it."""
-        for made in attempts:
-            self.counts[f"solver: {made.status}"] += 1
-            self.counts[_outcome(made)] += 1
-            if made.candidate is not None and made.candidate.verdict.ok:
-                self.verified += [made.candidate, *made.cognates]
-                self.counts["cognates verified"] += len(made.cognates)
-            else:
-                self.rejected.append(made)
-        self.solved += len(attempts)
-        self.best = ranked(self.problem, self.verified)
+def _rounds(setup: Setup, finder: Finder, ledger: Ledger) -> Iterator[Round]:
+    """Rounds until what the effort asks for is done: those of ``effort = 1`` first, then larger ones."""
+    for number in count():
+        seed = np.random.SeedSequence(ledger.search.seed, spawn_key=(number,) if number else ())
+        rng, size, any_starts = np.random.default_rng(seed), LARGER if number else 1, False
+        for made in finder.rounds(setup, ledger.search.enough, rng, size):
+            any_starts = any_starts or bool(made.starts)
+            yield made
+            if ledger.done or (not number and ledger.ended):
+                break
+        if not number:
+            ledger.plan_more()
+        if ledger.done or not any_starts:
+            return
 
 
 def _solve_round(
     setup: Setup,
-    starts: list[Start],
-    search: Search,
-    solve: Callable[[Setup, list[Start], int], list[Attempt]],
-    found: _Found,
+    made: Round,
+    solve: Solver,
+    ledger: Ledger,
     ended: Callable[[], bool],
     progress: Callable[[Progress], object] | None,
 ) -> None:
     """Solve starts batch by batch until enough is found or the search is ended."""
-    most, batch = min(len(starts), search.starts - found.solved), min(BATCH, search.enough)
-    for begin in range(0, most, batch):
-        if ended():
+    starts, search = mended(setup, made.starts), ledger.search
+    batch = min(BATCH, search.enough) if setup.exact else BATCH_LEAST_SQUARES
+    for begin in range(0, len(starts), batch):
+        if ended() or not ledger.within_round():
             return
-        found.take(solve(setup, starts[begin : min(begin + batch, most)], found.solved))
+        some = ledger.worthwhile(made, starts[begin : begin + batch], first=begin == 0)
+        if some:
+            ledger.take(solve(setup, some[: ledger.starts - ledger.solved], ledger.solved))
         if progress is not None:
-            progress(Progress(found.solved, search.starts, len(found.best), search.enough))
-        if not found.wants_more(search):
-            return
-
-
-@contextmanager
-def _solving(
-    workers: int, executor: Executor | None
-) -> Iterator[Callable[[Setup, list[Start], int], list[Attempt]]]:
-    """A function that makes attempts, in the order of their starts, here or in other processes."""
-    own = None
-    if executor is None and workers > 1:
-        own = executor = ProcessPoolExecutor(
-            workers, mp_context=get_context("spawn"), initializer=_ignore_interrupt
-        )
-
-    def solve(setup: Setup, batch: list[Start], first: int) -> list[Attempt]:
-        numbers = range(first, first + len(batch))
-        if executor is None:
-            return [attempt(setup, start, number) for start, number in zip(batch, numbers, strict=True)]
-        try:
-            return list(executor.map(attempt, [setup] * len(batch), batch, numbers))
-        except BrokenExecutor as error:
-            raise SolverError(f"a worker process was lost: {error}") from error
-
-    try:
-        yield solve
-    finally:
-        if own is not None:
-            own.shutdown(cancel_futures=True)
-
-
-def _ignore_interrupt() -> None:
-    """Ctrl-C reaches every process of a terminal; the parent alone decides what it means."""
-    signal(SIGINT, SIG_IGN)
-
-
-def _outcome(result: Attempt) -> str:
-    if result.candidate is None:
-        return "no linkage"
-    if result.candidate.verdict.ok:
-        return "verified"
-    return f"rejected: {result.candidate.verdict.defects[0].requirement}"
-
-
-def _why_ended(setup: Setup, search: Search, found: _Found, complete: bool) -> str:
-    """Why the search ended with fewer designs than are enough; empty when it has them."""
-    if len(found.best) >= search.enough:
-        return ""
-    settled = setup.motion is not None and len(setup.targets) > 4
-    exhausted = "the poses leave no freedom" if settled else "there are no other starts"
-    why = (found.no_use(search) or exhausted) if complete else "it was stopped"
-    return f"the search ended after {found.solved} of {counted(search.starts, 'solve')}: {why}"
+            progress(Progress(ledger.solved, ledger.starts, len(ledger.best), search.enough))
