@@ -17,7 +17,7 @@ from grashof.problems import TransmissionOver
 from grashof.problems.checks import BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.synth.finds import GROUPS, Finds
 from grashof.synth.path_finds import entries_of, judged, path_target
-from grashof.synth.path_loop import Batch, PathTarget
+from grashof.synth.path_loop import Batch, PathTarget, joined
 from grashof.synth.path_search import (
     PLACES,
     Placed,
@@ -39,12 +39,14 @@ FOUND = 1e-5  # sizes: so small an error is none
 # Where no limit binds: how many of the best go on for how many steps.
 FREE_STAGES, TIMED_STAGES = ((200, 6), (60, 10), (20, 50)), ((60, 6), (20, 60))
 MOST_CURVES = 6  # starts of such a round
-NEAR_BEST = 1.6  # times the least error of the round: finds beyond are not solved
+# Times the least error: what promises more is not solved; where the search may shift the ends of the
+# motion, its promise is a little off.
+NEAR_BEST, NEAR_BEST_SHIFTED = 1.6, 2.0
 SAME_ERROR = 1e-3  # share: a feasible find so near to the best one says that no limit binds
 SAME_CURVE = 0.1  # of the rms error: two finds closer at every target are one
 # Where limits bind: how many of the best distinct go on, for how many steps, at what weight of the
 # limits (in sizes).
-STAGES = ((400, 8, 0.3), (200, 10, 1.0), (80, 30, 5.0))
+STAGES = ((400, 8, 0.3), (200, 10, 1.0), (80, 20, 5.0), (40, 40, 5.0))
 LONG, LONG_STEPS = 24, 10  # of a thinned task so many are improved on all targets
 COPY = 0.01  # sizes: two linkages closer at three targets are one
 # Starts of a round: the best, some of the others, and some of before the limits bear fully; fewer on
@@ -68,27 +70,38 @@ def rounds(setup: Setup, rng: np.random.Generator, size: int = 1) -> Iterator[Ro
     ------
     Round
     """
-    binding = False
-    while True:
-        free = None if binding else _free_round(setup, rng, size)
-        binding = free is None
-        yield _limited_round(setup, rng, size) if free is None else free
-
-
-def _free_round(setup: Setup, rng: np.random.Generator, size: int) -> Round | None:
-    """Starts from the linkages that fit best; None where the best of them break a limit."""
     target = path_target(setup)
-    timed = target.timing is not None
     some, index = thinned(target, FEW_TARGETS)
+    while True:
+        drawn = draw(some, size * (DRAWS if target.timing is None else TIMED_DRAWS), rng)
+        best = _best_fitting(some, drawn, size)
+        free = _free_round(setup, _on_all_targets(target, index, best), size)
+        yield free or _limited_round(setup, rng, drawn, best, size)
+
+
+def _best_fitting(some: PathTarget, drawn: Batch, size: int) -> Batch:
+    """Of some linkages those that fit best, improved, whether they keep the limits or not."""
+    batch = drawn
     with np.errstate(all="ignore"):
-        batch = draw(some, size * (TIMED_DRAWS if timed else DRAWS), rng)
         error = place(some, batch).error
-        *stages, (keep, steps) = TIMED_STAGES if timed else FREE_STAGES
-        for keep_now, steps_now in stages:
-            best = np.argsort(error, kind="stable")[: size * keep_now]
-            batch, error = improve(fitting(some), batch[best], steps_now, 0.0)
-        batch = refined(target, index, batch[np.argsort(error, kind="stable")[: size * keep]])
-        batch, _ = improve(fitting(target), batch, steps, 0.0)
+        for keep, steps in FREE_STAGES if some.timing is None else TIMED_STAGES:
+            best = np.argsort(error, kind="stable")[: size * keep]
+            batch, error = improve(fitting(some), batch[best], steps, 0.0)
+        return batch[np.argsort(error, kind="stable")]
+
+
+def _on_all_targets(target: PathTarget, index: IntArray, batch: Batch) -> Batch:
+    """Linkages that know the targets `index` with driver angles at every one, improved there."""
+    if len(index) == len(target.points):
+        return batch
+    with np.errstate(all="ignore"):
+        return improve(fitting(target), refined(target, index, batch), LONG_STEPS, 0.0)[0]
+
+
+def _free_round(setup: Setup, batch: Batch, size: int) -> Round | None:
+    """Starts from linkages that fit best; None where the best of them break a limit."""
+    target = path_target(setup)
+    with np.errstate(all="ignore"):
         placed = place(target, batch)
     sound = np.isfinite(placed.error)
     finds = judged(setup, target, entries_of(placed, sound), batch.direction[sound])
@@ -98,7 +111,8 @@ def _free_round(setup: Setup, rng: np.random.Generator, size: int) -> Round | No
         return None
     order = np.argsort(feasible.error, kind="stable")
     starts = [_start(setup, feasible, feasible.error, int(k)) for k in order]
-    return Round(_other_curves(starts, size * MOST_CURVES), {"feasible finds": len(feasible)}, free=True)
+    counts = {"feasible finds": len(feasible)}
+    return Round(_other_curves(starts, size * MOST_CURVES), counts, size, NEAR_BEST, free=True)
 
 
 def _other_curves(starts: list[Start], most: int) -> list[Start]:
@@ -125,29 +139,32 @@ class _Stage:
     error: FloatArray
 
 
-def _limited_round(setup: Setup, rng: np.random.Generator, size: int) -> Round:
-    """Starts of the search under every limit."""
-    early, late = _search(setup, rng, size)
+def _limited_round(setup: Setup, rng: np.random.Generator, drawn: Batch, best: Batch, size: int) -> Round:
+    """Starts of the search under every limit, from drawn linkages and those that fit best."""
+    early, late = _search(setup, drawn, best, size)
     share = size * min(1.0, max(AMPLE / len(setup.targets), FEWEST))
-    best, others, before = (round(share * count) for count in (BEST, OTHERS, EARLY))
-    chosen = [_start(setup, late.finds, late.error, k) for k in range(min(best, len(late.error)))]
+    first, others, before = (round(share * count) for count in (BEST, OTHERS, EARLY))
+    chosen = [_start(setup, late.finds, late.error, k) for k in range(min(first, len(late.error)))]
     rest = np.arange(len(chosen), len(late.error))
     chosen += [_start(setup, late.finds, late.error, k) for k in _some(rng, rest, others)]
+    prune = NEAR_BEST
     if _ends_bind(setup):  # the search may shift the ends of the motion, the programme may not
         some = _some(rng, np.arange(len(early.error)), before)
         chosen += [replace(_start(setup, early.finds, early.error, k), promise=0.0) for k in some]
-    return Round(chosen, {"feasible finds": int(late.finds.feasible.sum())}, size)
+        prune = NEAR_BEST_SHIFTED
+    return Round(chosen, {"feasible finds": int(late.finds.feasible.sum())}, size, prune)
 
 
-def _search(setup: Setup, rng: np.random.Generator, size: int) -> tuple[_Stage, _Stage]:
+def _search(setup: Setup, drawn: Batch, best: Batch, size: int) -> tuple[_Stage, _Stage]:
     """Linkages after the first stage, and after the last one."""
     target = path_target(setup)
     some, index = thinned(target, FEW_TARGETS)
     with np.errstate(all="ignore"):
-        batch = with_places(some, draw(some, size * (DRAWS if target.timing is None else TIMED_DRAWS), rng))
-        early = batch
+        batch = early = with_places(some, drawn)
         for number, (keep, steps, weight) in enumerate(STAGES):
             model = within_limits(some, weight)
+            if number == len(STAGES) - 2:
+                batch = joined(batch, with_places(some, best))
             error, _, _ = model(batch)
             batch = _best_distinct(some, batch, error, size * keep, drawn=number == 0)
             batch, error = improve(model, batch, steps, 0.0)
@@ -155,13 +172,13 @@ def _search(setup: Setup, rng: np.random.Generator, size: int) -> tuple[_Stage, 
                 early = batch
         batch = _best_distinct(some, batch, error, len(batch), drawn=False)
         if len(index) < len(target.points):
-            batch = _on_all_targets(target, index, batch[: size * LONG])
+            batch = _with_places_refined(target, index, batch[: size * LONG])
             batch, _ = improve(within_limits(target, STAGES[-1][2]), batch, LONG_STEPS, 0.0)
-            early = _on_all_targets(target, index, early)
+            early = _with_places_refined(target, index, early)
         return _ranked(setup, target, early), _ranked(setup, target, batch)
 
 
-def _on_all_targets(target: PathTarget, index: IntArray, batch: Batch) -> Batch:
+def _with_places_refined(target: PathTarget, index: IntArray, batch: Batch) -> Batch:
     """Linkages that know the targets `index` with driver angles at every one, where they stand."""
     places = batch.unknowns[:, -PLACES:]
     inner = refined(target, index, replace(batch, unknowns=batch.unknowns[:, :-PLACES]))

@@ -21,9 +21,6 @@ STALE = 20  # so many rounds on end without a new exact design, too
 # Least squares: the best has come up in so many rounds, or so many rounds are done.
 AGREEING, MOST_ROUNDS = 3, 8
 SAME = 1e-3  # share: errors closer to the best one are the best one
-# Times the least error: what promises more is not solved. The search lets the ends of the motion shift
-# where limits bind, so its promise is a little off.
-PRUNE, PRUNE_FREE = 2.0, 1.6
 COPY = 0.1  # of the promise: starts closer at all targets end alike
 COPY_FLOOR = 1e-3  # sizes: where limits bind, closer than that at least
 EXACT_ERROR = 1e-7  # sizes: no error to speak of
@@ -166,7 +163,7 @@ class Ledger:
         return f"the search ended after {solves} of {self.starts}: {self.no_use or exhausted}"
 
     def _too_far(self, made: Round, start: Start) -> bool:
-        return start.promise > (PRUNE_FREE if made.free else PRUNE) * max(self.least, EXACT_ERROR)
+        return start.promise > made.prune * max(self.least, EXACT_ERROR)
 
     def _known(self, made: Round, start: Start) -> bool:
         marks = _marks(made, start)

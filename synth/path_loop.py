@@ -100,6 +100,13 @@ class Batch:
         return Batch(*(getattr(self, name)[index] for name in self.__slots__))
 
 
+def joined(first: Batch, second: Batch) -> Batch:
+    """Two batches as one."""
+    return Batch(
+        *(np.concatenate([getattr(batch, name) for batch in (first, second)]) for name in Batch.__slots__)
+    )
+
+
 @dataclass(frozen=True, slots=True)
 class Loop:
     """The closed loop with r1 = 1 along the real axis, at every point; derivatives by the unknowns."""

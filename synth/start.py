@@ -184,6 +184,8 @@ class Round:
         Of what was looked at.
     size : int
         Its work, in usual rounds.
+    prune : float
+        Least squares: starts that promise more than so many times the least error found are not solved.
     free : bool
         No limit binds: what passes the targets by the same way is the same design or a cognate.
     """
@@ -191,4 +193,5 @@ class Round:
     starts: list[Start]
     counts: Mapping[str, int]
     size: int = 1
+    prune: float = np.inf
     free: bool = False
