@@ -157,8 +157,8 @@ def _may_be_near(setup: Setup) -> bool:
 def _relaxed_starts(failure: Failure, rng: np.random.Generator) -> list[Start]:
     """Starts that may miss the smallest set of requirements that is known to do."""
     setup = failure.setup
-    finder = paths if setup.motion is None else exact_poses
-    return finder.relaxed_starts(setup, rng) + relaxed_own(setup, failure.starts)
+    find = paths.relaxed_starts if setup.motion is None else exact_poses.relaxed_starts
+    return find(setup, rng) + relaxed_own(setup, failure.starts)
 
 
 def _miss(near: _Near) -> float:

@@ -14,11 +14,11 @@ from grashof.synth import exact_poses, paths
 from grashof.synth.attempt import Attempt
 from grashof.synth.choose import closest_starts
 from grashof.synth.finds import GROUPS, Configurations, Finds, dyad_lacks, judge, keep_out_lack
-from grashof.synth.looser import LENGTHS, Relaxation, limiting, loosest, relaxation
+from grashof.synth.looser import Relaxation, limiting, loosest, relaxation
 from grashof.synth.own import screened
 from grashof.synth.result import Candidate
 from grashof.synth.setup import Setup
-from grashof.synth.start import Start
+from grashof.synth.start import LENGTHS, Start
 
 SOLVES = 6  # starts for each requirement
 FINDS = 20  # of a search for them

@@ -13,7 +13,6 @@ from grashof.problems.checks import ComplexArray
 from grashof.synth.finds import Finds
 from grashof.synth.setup import Setup
 
-
 LENGTHS = ("r1", "r2", "r3", "r4")
 
 
