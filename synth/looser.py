@@ -17,6 +17,7 @@ from grashof.synth.start import LENGTHS
 
 BOXES = ("o2", "o4", "a", "b")
 ANGLES = ("ground_angle_deg", "theta2_start_deg")
+LEAST_MARGIN = 1e-9  # of full rotation: below it lies a change point
 COARSEST = 0.02  # share of a change that its figure may be rounded by
 
 
@@ -154,7 +155,7 @@ def _eased(
 def _turning_less(wanted: Requirements, missed: list[Defect]) -> list[tuple[Requirements, str]]:
     tried = list[tuple[Requirements, str]]()
     asked, margins = wanted.rotatability, [d.found for d in missed if "margin" in d.what]
-    if margins and margins[0] >= 0:
+    if margins and margins[0] > LEAST_MARGIN:
         margin = max(_rounded(margins[0], wanted.rotatability_margin), 0.0)
         words = f"rotatability_margin {margin:g} instead of {wanted.rotatability_margin:g}"
         tried.append((replace(wanted, rotatability_margin=margin), words))

@@ -43,7 +43,8 @@ NEARBY = 5.0  # sizes: no farther away than limits demand
 WIDTH, SHRINK = 0.3, 0.6  # of their variation, in sizes and shares, less and less
 MOST, SPACING = 3000, 0.25  # among which the best are chosen, and how much they differ
 FARTHEST = 100.0  # sizes
-FAULTY = 1e6
+FAULTY = 1e6  # taken off the merits of what lacks something
+ROUNDING = 1e-10  # sizes, rad
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +73,10 @@ def circle_through(targets: ComplexArray) -> Circle:
     >>> circle_through(4 + 5 * np.exp(1j * np.array([0.1, 0.5, 1.5, 2.0]))).off < 1e-12
     True
     """
+    apart = targets - targets.mean()
+    across = np.linalg.svd(np.stack([apart.real, apart.imag]), compute_uv=False)[1]
+    if across < ROUNDING:
+        return Circle(complex(np.nan), np.inf, float(across))
     one = np.ones(len(targets))
     given = np.stack([2 * targets.real, 2 * targets.imag, one], axis=1)
     x, y, k = np.linalg.lstsq(given, np.abs(targets) ** 2)[0]
@@ -195,7 +200,8 @@ def _drawn(setup: Setup, samples: int, rng: np.random.Generator) -> _Drawn:
     o2, o4 = (
         rng.choice(ground_pivots(box, longest, samples, rng), samples) for box in (wanted.o2, wanted.o4)
     )
-    first = rng.integers(0, 4, samples)
+    boxed = [number for number, box in ((2, wanted.o2), (3, wanted.o4)) if box not in (None, Box())]
+    first = rng.choice([0, 1, *boxed], samples)
     a = np.choose(first, [arm, arm - coupler, o2 + crank, o4 - coupler + crank])
     return _kept(setup, _Drawn(a, coupler, crank))
 
@@ -233,7 +239,7 @@ def _varied(setup: Setup, parents: _Drawn, width: float, rng: np.random.Generato
     """Children of each parent: as many rows of all parents."""
     shape = (CHILDREN, len(parents))
     shift, turn = ((rng.normal(size=shape) + 1j * rng.normal(size=shape)) * width for _ in range(2))
-    crank = np.broadcast_to(parents.crank, shape)
+    crank: ComplexArray = np.broadcast_to(parents.crank, shape)
     if len(setup.targets) == 2 and setup.wanted.theta2_start_deg is None:
         chord = setup.targets[1] - setup.targets[0]
         radius: FloatArray = np.maximum(
@@ -281,6 +287,7 @@ def _judged(setup: Setup, drawn: _Drawn) -> Finds:
     if wanted.same_branch:
         near = np.maximum(LEAST_TRANSMISSION - found.transmission, 0.0)
         found.lacks[:, GROUPS.index("same_branch")] += near
+    found.lacks[found.lacks < ROUNDING] = 0.0
     return screened(setup, found)
 
 

@@ -22,6 +22,7 @@ from grashof.synth.start import LENGTHS, Start
 
 SOLVES = 6  # starts for each requirement
 FINDS = 20  # of a search for them
+DEAD = 1e-3  # rad: a transmission angle near a dead position
 
 Solver: TypeAlias = Callable[[Setup, list[Start], int], list[Attempt]]
 
@@ -141,4 +142,7 @@ def rejudged(setup: Setup, finds: Finds) -> Finds:
     lacks = dyad_lacks("o2", o2, at_a, p, setup.wanted) + dyad_lacks("o4", o4, at_b, p, setup.wanted)
     lacks[:, GROUPS.index("keep_out")] += keep_out_lack("p", at_p, setup.wanted)
     found = Configurations(o2, o4, at_a, at_b, finds.visit, finds.theta2, finds.direction)
-    return screened(setup, judge(found, p, finds.error, lacks, setup.wanted, finds.body_angle))
+    judged = judge(found, p, finds.error, lacks, setup.wanted, finds.body_angle)
+    if setup.wanted.same_branch:  # at a dead position rounding decides what else is lacking
+        judged.lacks[judged.transmission < DEAD, GROUPS.index("same_branch")] += 1.0
+    return screened(setup, judged)
