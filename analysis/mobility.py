@@ -10,6 +10,8 @@ import numpy.typing as npt
 from grashof.problems import FourBar
 from grashof.problems.checks import BoolArray, FloatArray, IntArray
 
+CHANGE = 1e-12  # share of r1+r2+r3+r4 within which a linkage has a change point
+
 
 class GrashofClass(StrEnum):
     """Kinds of four-bar by which links turn fully (link 2 is the driver)."""
@@ -30,7 +32,7 @@ _BY_SHORTEST = (
 )
 
 
-def grashof_class(linkage: FourBar, tolerance: float = 1e-12) -> GrashofClass:
+def grashof_class(linkage: FourBar, tolerance: float = CHANGE) -> GrashofClass:
     """Grashof class of a single linkage.
 
     Parameters
@@ -100,9 +102,39 @@ def rotatability(linkage: FourBar) -> FloatArray:
 
 
 def full_rotation(linkage: FourBar) -> BoolArray:
-    """Whether the driver turns fully without a dead position, shape (...)."""
-    turns: BoolArray = np.all(rotatability(linkage) > 0, axis=-1)
+    """Whether the driver turns fully without a dead position, shape (...).
+
+    A linkage with a change point does not: it has one there.
+    """
+    turns: BoolArray = np.all(rotatability(linkage) > CHANGE, axis=-1)
     return turns
+
+
+def passes_change_point(linkage: FourBar, start: float, end: float) -> bool:
+    """Whether a motion of the driver takes a linkage to a change point, where all joints are in line.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        A single linkage.
+    start, end : float, rad
+        Driver angles of the motion, in either order.
+
+    Notes
+    -----
+    A parallelogram linkage has them at theta1 and theta1 + pi. It can leave them as an antiparallelogram,
+    and a driver at rest there cannot say which: a dead position like others.
+
+    Examples
+    --------
+    >>> parallelogram = FourBar(o2=(0, 0), o4=(3, 0), r2=2, r3=3, r4=2)
+    >>> passes_change_point(parallelogram, 0.1, 3.1), passes_change_point(parallelogram, 3.1, 3.2)
+    (False, True)
+    """
+    stretched, folded = np.abs(rotatability(linkage)) <= CHANGE
+    low, high = (np.array(sorted((start, end))) - linkage.theta1) / np.pi
+    passed = np.arange(np.ceil(low - CHANGE), np.floor(high + CHANGE) + 1)
+    return bool((folded and (passed % 2 == 0).any()) or (stretched and (passed % 2 == 1).any()))
 
 
 def driver_ranges(linkage: FourBar) -> FloatArray:

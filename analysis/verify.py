@@ -15,6 +15,7 @@ from grashof.analysis.mobility import (
     circuit_index,
     full_rotation,
     grashof_class,
+    passes_change_point,
     rotatability,
 )
 from grashof.analysis.motion import STEADY, Targets, Way, driver_way, nearest_to_poses
@@ -158,6 +159,7 @@ def verify(
     branches = branch_index(linkage, targets.theta2, targets.assembly)
     circuit_ok = bool((circuits == circuits[0]).all() and circuits[0] >= 0)
     branch_ok = circuit_ok and bool((branches == branches[0]).all())
+    branch_ok = branch_ok and not passes_change_point(linkage, way.start, way.end)
     # Without a motion that joins the targets nothing is transmitted.
     task_worst = float(worst_transmission(linkage, way.start, way.end)) if branch_ok else 0.0
     cycle_worst = float(worst_transmission_cycle(linkage))

@@ -1,20 +1,21 @@
 """Starts for motion generation through whole poses, met exactly: dyads by theory, all their pairs.
 
-Two and three poses leave a dyad free in three and two numbers, which are sampled; four poses leave a
-curve of dyads (Burmester), which is traced; five leave up to four dyads. What meets more poses is
-among the dyads of five of them.
+Pure translations have parallelogram linkages. Else two and three poses leave a dyad free in three and
+two numbers, which are sampled; four poses leave a curve of dyads (Burmester), which is traced; five leave
+up to four dyads. What meets more poses is among the dyads of five of them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import combinations
+from itertools import combinations, zip_longest
 
 import numpy as np
 
-from grashof.problems import Box, MotionTask, ProblemError
-from grashof.problems.checks import ComplexArray, Limits, counted
+from grashof.problems import MotionTask, ProblemError
+from grashof.problems.checks import counted
+from grashof.synth import parallelograms
 from grashof.synth.burmester import (
     Displacements,
     Dyads,
@@ -27,18 +28,13 @@ from grashof.synth.choose import relaxed_starts as relaxed
 from grashof.synth.finds import Finds
 from grashof.synth.five_poses import five_pose_dyads, five_pose_guides
 from grashof.synth.own import screened
+from grashof.synth.parallelograms import translates
+from grashof.synth.sampled_dyads import joined, sampled_dyads
 from grashof.synth.screen import near_misses, screen
 from grashof.synth.setup import Setup
 from grashof.synth.start import Round, Start
-from grashof.synth.three_poses import (
-    bisector_dyads,
-    bisector_dyads_of_ground,
-    circle_dyads,
-    circle_dyads_of_ground,
-)
 
 LINES, CELL = 800, 0.01  # of the traced curves, in sizes
-SAMPLES = 4000  # dyads, where they are free in two or three numbers
 PAIRS, SAMPLED_PAIRS, NEAR_PAIRS = 1_000_000, 200_000, 150_000  # judged
 SUBSETS = 6  # fives of many poses that are tried
 NEARLY, EXACT = 1e-4, 1e-9  # radius error in sizes: before and after polishing
@@ -62,11 +58,8 @@ def degenerate(setup: Setup) -> str:
     turn = motion.rotation[1:] - 1
     if len(turn) == 1:
         return ""
-    if np.abs(turn).max() < 1e-9:
-        return (
-            "the poses are pure translations of each other: only parallelogram linkages, "
-            "which have a change point, could carry the body through them"
-        )
+    if translates(motion):
+        return ""
     widest = 1 + int(np.argmax(np.abs(turn)))
     pole = motion.shift[widest] / (1 - motion.rotation[widest])
     if np.abs(motion.apply(np.array([pole]))[0] - pole).max() < 1e-9:
@@ -91,10 +84,14 @@ def rounds(setup: Setup, enough: int, rng: np.random.Generator, size: int = 1) -
     ------
     Round
     """
-    settled = len(setup.targets) > 4
+    motion, body, settled = _motion(setup), setup.targets[0], len(setup.targets) > 4
     if settled and size > 1:
         return
-    motion, body, dyads = _motion(setup), setup.targets[0], _dyads(setup, rng)
+    sideways = parallelograms.starts(setup, enough, rng) if translates(motion) else []
+    if translates(motion) and len(setup.targets) > 2:
+        yield Round(sideways, {"feasible finds": len(sideways)})
+        return
+    dyads = _dyads(setup, rng)
     most = SAMPLED_PAIRS if len(setup.targets) < 4 else PAIRS
     pairs = screened(setup, screen(motion, body, dyads, setup.wanted, most))
     feasible = pairs[pairs.feasible]
@@ -108,11 +105,14 @@ def rounds(setup: Setup, enough: int, rng: np.random.Generator, size: int = 1) -
             near = pairs if miss_own else near_misses(motion, body, dyads, setup.wanted, NEAR_PAIRS)
             starts += mended_starts(setup, near, enough)
     counts = {"feasible finds": len(feasible), "exact dyads": len(dyads) if settled else 0}
-    yield Round([replace(start, settled=settled) for start in starts], counts)
+    starts = [replace(start, settled=settled) for start in starts]
+    yield Round([start for pair in zip_longest(sideways, starts) for start in pair if start], counts)
 
 
 def relaxed_starts(setup: Setup, rng: np.random.Generator) -> list[Start]:
     """Starts that may miss what stands in the way."""
+    if translates(_motion(setup)) and len(setup.targets) > 2:
+        return relaxed(setup, finds(setup, rng))
     pairs = near_misses(_motion(setup), setup.targets[0], _dyads(setup, rng), setup.wanted, NEAR_PAIRS)
     settled = len(setup.targets) > 4
     return [replace(start, settled=settled) for start in relaxed(setup, pairs)]
@@ -120,7 +120,10 @@ def relaxed_starts(setup: Setup, rng: np.random.Generator) -> list[Start]:
 
 def finds(setup: Setup, rng: np.random.Generator) -> Finds:
     """Pairs of dyads that meet all requirements; with what they lack where none does."""
-    motion, body, dyads = _motion(setup), setup.targets[0], _dyads(setup, rng)
+    motion, body = _motion(setup), setup.targets[0]
+    if translates(motion) and len(setup.targets) > 2:
+        return parallelograms.finds(setup, rng)
+    dyads = _dyads(setup, rng)
     most = SAMPLED_PAIRS if len(setup.targets) < 4 else PAIRS
     pairs = screened(setup, screen(motion, body, dyads, setup.wanted, most))
     if pairs.feasible.any():
@@ -130,7 +133,10 @@ def finds(setup: Setup, rng: np.random.Generator) -> Finds:
 
 def obstacle(setup: Setup, rng: np.random.Generator) -> str:
     """What theory says of poses without a design; empty where it says nothing."""
-    count, dyads = len(setup.targets), _dyads(setup, rng)
+    count = len(setup.targets)
+    if translates(_motion(setup)) and count > 2:
+        return parallelograms.obstacle(setup)
+    dyads = _dyads(setup, rng)
     if count > 4:
         guides = len(five_pose_guides(_motion(setup))) if count == 5 else 0
         sliding = f"; {counted(guides, 'dyad')} would have to be a slider" if guides else ""
@@ -161,43 +167,7 @@ def _dyads(setup: Setup, rng: np.random.Generator) -> Dyads:
         return trace_four_pose_curves(motion, reach, LINES, CELL, phase=float(rng.uniform(0.1, 0.9)))
     if count > 4:
         return _dyads_of_fives(motion, rng)
-    return _sampled(setup, motion, arms, longest, rng)
-
-
-def _sampled(
-    setup: Setup, motion: Displacements, arms: Limits, longest: float, rng: np.random.Generator
-) -> Dyads:
-    """Random dyads of two or three poses: half of them by the joint, half by the pivot."""
-    low, high = max(arms[0], 0.01), min(max(arms[1], 0.02), 100.0)
-    radius = np.exp(rng.uniform(np.log(low), np.log(high), SAMPLES))
-    moving = setup.targets[0] + radius * np.exp(1j * rng.uniform(-np.pi, np.pi, SAMPLES))
-    ground = np.concatenate([_pivots(box, longest, rng) for box in (setup.wanted.o2, setup.wanted.o4)])
-    if len(setup.targets) == 3:
-        halves = circle_dyads(motion, moving), circle_dyads_of_ground(motion, ground)
-    else:
-        halves = (
-            bisector_dyads(motion, moving, rng.normal(0, min(longest, 3.0), len(moving))),
-            bisector_dyads_of_ground(motion, ground, rng.normal(0, min(longest, 3.0), len(ground))),
-        )
-    both = _joined(*halves)
-    return both[np.isfinite(both.moving) & np.isfinite(both.ground)]
-
-
-def _joined(first: Dyads, second: Dyads) -> Dyads:
-    return Dyads(np.concatenate([first.moving, second.moving]), np.concatenate([first.ground, second.ground]))
-
-
-def _pivots(box: Box | None, longest: float, rng: np.random.Generator) -> ComplexArray:
-    """Random places of a ground pivot inside its box, within reach of the task."""
-    reach = min(3.0 + longest, 100.0)
-    x, y = (
-        (max(low, -reach), min(high, reach)) if low < reach and high > -reach else (low, high)
-        for low, high in (((box or Box()).x), ((box or Box()).y))
-    )
-    count = SAMPLES // 2 if x[0] < x[1] or y[0] < y[1] else SAMPLES // 20
-    wide = rng.uniform(*x, count) + 1j * rng.uniform(*y, count)
-    near = np.clip(rng.normal(0, 1.5, count), *x) + 1j * np.clip(rng.normal(0, 1.5, count), *y)
-    return np.where(rng.random(count) < 0.5, wide, near)
+    return sampled_dyads(motion, setup.targets[0], setup.wanted, rng)
 
 
 def _dyads_of_fives(motion: Displacements, rng: np.random.Generator) -> Dyads:
@@ -213,7 +183,7 @@ def _dyads_of_fives(motion: Displacements, rng: np.random.Generator) -> Dyads:
             dyads = polish(motion, dyads[near])
             dyads = dyads[radius_error(motion, dyads) < EXACT]
         apart = np.abs(dyads.moving[:, None] - found.moving).min(axis=1, initial=np.inf) > 1e-6
-        found = _joined(found, dyads[apart])
+        found = joined(found, dyads[apart])
         if len(found) >= 4:
             break
     return found

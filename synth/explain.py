@@ -104,8 +104,11 @@ def explain(
         return Explanation("", designs=designs)
     why = exact_poses.obstacle(setup, rng) if setup.motion is not None else _exhausted(failure.counts)
     if ways:
-        near = [one for one in near[:1] if _miss(one) < 1]  # farther away than the task is long
-        missed = [(way.miss, way.candidate) for way in ways] + [(_miss(one), one.candidate) for one in near]
+        size = setup.problem.task.size
+        near = [one for one in near[:1] if _miss(one, size) < 1]  # farther away than the task is long
+        missed = [(way.miss, way.candidate) for way in ways] + [
+            (_miss(one, size), one.candidate) for one in near
+        ]
         missed.sort(key=lambda pair: pair[0])
         return Explanation(_ways_note(setup, ways, near, why), tuple(one for _, one in missed))
     if near:
@@ -158,14 +161,15 @@ def _may_be_near(setup: Setup) -> bool:
 def _relaxed_starts(failure: Failure, rng: np.random.Generator) -> list[Start]:
     """Starts that may miss the smallest set of requirements that is known to do."""
     setup = failure.setup
-    finder = paths if setup.motion is None else exact_poses
-    return finder.relaxed_starts(setup, rng) + relaxed_own(setup, failure.starts)
+    find = paths.relaxed_starts if setup.motion is None else exact_poses.relaxed_starts
+    return find(setup, rng) + relaxed_own(setup, failure.starts)
 
 
-def _miss(near: _Near) -> float:
+def _miss(near: _Near, size: float) -> float:
     """By how much a least-squares design misses its targets: sizes or rad."""
-    defects = near.candidate.verdict.defects
-    return max((defect.miss for defect in defects if defect.requirement == "exact"), default=0.0)
+    verdict = near.by_squares
+    turned = 0.0 if verdict.angle_error is None else np.nanmax(verdict.angle_error, initial=0.0)
+    return max(verdict.error_max / size, float(turned))
 
 
 def _exhausted(counts: Mapping[str, int]) -> str:
@@ -178,7 +182,12 @@ def _ways_note(setup: Setup, ways: list[Relaxation], near: list[_Near], why: str
     """The note that names single requirements, the smallest miss first."""
     priced = [(way.miss, way.words) for way in ways]
     if near:
-        priced.append((_miss(near[0]), f"exact = false, {_comes_within(setup, near[0], then='then ')}"))
+        priced.append(
+            (
+                _miss(near[0], setup.problem.task.size),
+                f"exact = false, {_comes_within(setup, near[0], then='then ')}",
+            )
+        )
     words = [text for _, text in sorted(priced)][:ALTERNATIVES]
     said = f"no design: {why}" if why else "no design meets all requirements"
     alone = "this alone would do" if len(words) == 1 else "each of these alone would do"

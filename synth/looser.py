@@ -17,6 +17,7 @@ from grashof.synth.start import LENGTHS
 
 BOXES = ("o2", "o4", "a", "b")
 ANGLES = ("ground_angle_deg", "theta2_start_deg")
+LEAST_MARGIN = 1e-9  # of full rotation: below it lies a change point
 COARSEST = 0.02  # share of a change that its figure may be rounded by
 
 
@@ -90,7 +91,7 @@ def loosest(problem: Problem, key: str) -> Requirements:
     if key in (*LENGTHS, "link_length", "coupler_arms"):
         low, high = usual.link_length if key != "coupler_arms" else usual.coupler_arms  # type: ignore[misc]
         given = getattr(wanted, key)
-        return replace(wanted, **{key: (min(low, given[0]), max(high, given[1]))})
+        return _with(wanted, {key: (min(low, given[0]), max(high, given[1]))})
     loose: dict[str, Any] = {
         "rotatability": Rotatability.ANY,
         "order": False,
@@ -99,7 +100,7 @@ def loosest(problem: Problem, key: str) -> Requirements:
         "transmission_min_deg": 0.0,
         "keep_out": (),
     }
-    return replace(wanted, **{key: loose.get(key)})
+    return _with(wanted, {key: loose.get(key)})
 
 
 def relaxation(
@@ -141,7 +142,7 @@ def _eased(
     if key == "rotatability":
         return [(less, own, words) for less, words in _turning_less(wanted, missed)]
     if key in ("order", "same_branch"):
-        return [(replace(wanted, **{key: False}), own, f"{key} = false")]
+        return [(_with(wanted, {key: False}), own, f"{key} = false")]
     if not missed:
         return []
     if key == "constraints":
@@ -154,7 +155,7 @@ def _eased(
 def _turning_less(wanted: Requirements, missed: list[Defect]) -> list[tuple[Requirements, str]]:
     tried = list[tuple[Requirements, str]]()
     asked, margins = wanted.rotatability, [d.found for d in missed if "margin" in d.what]
-    if margins and margins[0] >= 0:
+    if margins and margins[0] > LEAST_MARGIN:
         margin = max(_rounded(margins[0], wanted.rotatability_margin), 0.0)
         words = f"rotatability_margin {margin:g} instead of {wanted.rotatability_margin:g}"
         tried.append((replace(wanted, rotatability_margin=margin), words))
@@ -176,7 +177,7 @@ def _own_eased(
 def _limits_changed(problem: Problem, key: str, missed: list[Defect]) -> tuple[Requirements, str] | None:
     given: Limits = getattr(problem.requirements.resolved(problem.task.size), key)
     reached = _reaching(given, [defect.found for defect in missed])
-    return replace(problem.requirements, **{key: reached}), _range_words(key, given, reached)
+    return _with(problem.requirements, {key: reached}), _range_words(key, given, reached)
 
 
 def _box_changed(problem: Problem, key: str, missed: list[Defect]) -> tuple[Requirements, str] | None:
@@ -188,23 +189,23 @@ def _box_changed(problem: Problem, key: str, missed: list[Defect]) -> tuple[Requ
         sides[axis] = _reaching(given, found)
         if found:
             words.append(_range_words(f"{key}.{axis}", given, sides[axis]))
-    return replace(problem.requirements, **{key: Box(**sides)}), " with ".join(words)
+    return _with(problem.requirements, {key: Box(**sides)}), " with ".join(words)
 
 
 def _number_changed(problem: Problem, key: str, missed: list[Defect]) -> tuple[Requirements, str] | None:
     asked = float(getattr(problem.requirements, key))
     value = _rounded(missed[0].found, asked)
-    changed = replace(problem.requirements, **{key: max(value, 0.0)})
+    changed = _with(problem.requirements, {key: max(value, 0.0)})
     return changed, f"{key} {max(value, 0.0):.10g} instead of {asked:g}"
 
 
 def _angle_changed(problem: Problem, key: str, missed: list[Defect]) -> tuple[Requirements, str] | None:
     asked, found = float(getattr(problem.requirements, key)), missed[0].found
     found += 360 * round((asked - found) / 360)
-    return replace(problem.requirements, **{key: found}), f"{key} {found:.6g} instead of {asked:g}"
+    return _with(problem.requirements, {key: found}), f"{key} {found:.6g} instead of {asked:g}"
 
 
-def _areas_drawn_in(problem: Problem, key: str, missed: list[Defect]) -> tuple[Requirements, str] | None:
+def _areas_drawn_in(problem: Problem, _: str, missed: list[Defect]) -> tuple[Requirements, str] | None:
     # Here, not above: shapely takes a while to import, and few problems have areas.
     import shapely
 
@@ -212,7 +213,7 @@ def _areas_drawn_in(problem: Problem, key: str, missed: list[Defect]) -> tuple[R
 
     by = _rounded(max(defect.found for defect in missed), 0.0)
     # Holes are closed: areas without them ask for more, which the judge then decides.
-    left = shapely.get_parts(solid(problem.requirements.keep_out).buffer(-by, join_style="mitre"))
+    left = shapely.get_parts(shapely.buffer(solid(problem.requirements.keep_out), -by, join_style="mitre"))
     areas = tuple(shapely.get_coordinates(part.exterior)[:-1] for part in left if not part.is_empty)
     return replace(problem.requirements, keep_out=areas), f"areas of keep_out drawn in by {by:g}"
 
@@ -224,6 +225,10 @@ _CHANGES: dict[str, _Change] = {
     **dict.fromkeys(("transmission_min_deg", "link_ratio_max"), _number_changed),
     "keep_out": _areas_drawn_in,
 }
+
+
+def _with(wanted: Requirements, changed: dict[str, Any]) -> Requirements:
+    return replace(wanted, **changed)
 
 
 def _reaching(given: Limits, found: list[float]) -> Limits:
@@ -243,7 +248,7 @@ def _rounded(value: float, asked: float) -> float:
         return value
     step = 10.0 ** np.floor(np.log10(COARSEST * way))
     away = np.ceil(value / step) if value > asked else np.floor(value / step)
-    return round(float(away * step), max(0, -round(np.log10(step))))
+    return round(float(away * step), max(0, -int(np.floor(np.log10(step)))))
 
 
 def _range_words(name: str, given: Limits, reached: Limits) -> str:

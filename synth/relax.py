@@ -13,15 +13,16 @@ from grashof.synth import exact_poses, paths
 from grashof.synth.attempt import Attempt
 from grashof.synth.choose import closest_starts
 from grashof.synth.finds import GROUPS, Configurations, Finds, dyad_lacks, judge, keep_out_lack
-from grashof.synth.looser import LENGTHS, Relaxation, limiting, loosest, relaxation
+from grashof.synth.looser import Relaxation, limiting, loosest, relaxation
 from grashof.synth.own import screened
 from grashof.synth.result import Candidate
 from grashof.synth.setup import Setup
-from grashof.synth.start import Start
+from grashof.synth.start import LENGTHS, Start
 from grashof.synth.workers import Solver
 
 SOLVES = 6  # starts for each requirement
 FINDS = 20  # of a search for them
+DEAD = 1e-3  # rad: a transmission angle near a dead position
 
 
 def relaxations(
@@ -139,4 +140,7 @@ def rejudged(setup: Setup, finds: Finds) -> Finds:
     lacks = dyad_lacks("o2", o2, at_a, p, setup.wanted) + dyad_lacks("o4", o4, at_b, p, setup.wanted)
     lacks[:, GROUPS.index("keep_out")] += keep_out_lack("p", at_p, setup.wanted)
     found = Configurations(o2, o4, at_a, at_b, finds.visit, finds.theta2, finds.direction)
-    return screened(setup, judge(found, p, finds.error, lacks, setup.wanted, finds.body_angle))
+    judged = judge(found, p, finds.error, lacks, setup.wanted, finds.body_angle)
+    if setup.wanted.same_branch:  # at a dead position rounding decides what else is lacking
+        judged.lacks[judged.transmission < DEAD, GROUPS.index("same_branch")] += 1.0
+    return screened(setup, judged)
