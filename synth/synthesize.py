@@ -19,6 +19,7 @@ from grashof.problems.checks import counted, finite_number, whole_number
 from grashof.synth import exact_poses, paths
 from grashof.synth.attempt import Attempt, attempt
 from grashof.synth.explain import approximate, closest_misses, exhausted, why_none
+from grashof.synth.families import listed
 from grashof.synth.own import mended, refuse_unusable
 from grashof.synth.own import relaxed as relaxed_own
 from grashof.synth.result import Candidate, Result, ranked
@@ -191,7 +192,8 @@ def _search(
     times = {**seconds, "total": perf_counter() - begun}
     note = "" if found.best else why_none(setup, nearest, complete, obstacle or exhausted(found.counts))
     why = _why_ended(setup, search, found, complete)
-    return Result(setup.problem, found.best, nearest, dict(found.counts), times, note, complete, why)
+    designs = listed(setup.problem, found.best)
+    return Result(setup.problem, designs, nearest, dict(found.counts), times, note, complete, why)
 
 
 @dataclass(slots=True)
