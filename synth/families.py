@@ -11,8 +11,8 @@ from grashof.problems import MotionTask, Problem, Task
 from grashof.problems.checks import BoolArray, FloatArray, IntArray
 from grashof.synth.cognates import same_curve
 from grashof.synth.distinct import apart, signature
-from grashof.synth.result import Candidate, middle_of, ranked
-from grashof.synth.symmetry import symmetries
+from grashof.synth.result import Candidate, ranked
+from grashof.synth.symmetry import middle_of, symmetries
 
 ALIKE = 0.05  # share of the largest number of two designs by which they differ at most
 

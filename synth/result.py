@@ -12,7 +12,7 @@ import numpy as np
 
 from grashof.analysis import Verdict
 from grashof.analysis.verify import SLACK
-from grashof.problems import FourBar, NoSolutionError, Objective, Problem, Task, TransmissionOver
+from grashof.problems import FourBar, NoSolutionError, Objective, Problem, TransmissionOver
 from grashof.problems.checks import BoolArray, FloatArray, counted
 from grashof.problems.display import Displayed
 from grashof.synth.distinct import DISTINCT, pick_apart, signature
@@ -237,16 +237,10 @@ def ranked(problem: Problem, candidates: Sequence[Candidate]) -> tuple[Candidate
     if not candidates:
         return ()
     ordered = sorted(candidates, key=lambda candidate: ranking_key(problem, candidate))
-    origin = middle_of(problem.task)
+    origin = np.nanmean(problem.task.positions, axis=0)
     signatures = np.array([signature(candidate.linkage, origin) for candidate in ordered])
     picked = pick_apart(signatures, -np.arange(len(ordered), dtype=np.float64), DISTINCT, len(ordered))
     return tuple(ordered[i] for i in picked)
-
-
-def middle_of(task: Task) -> FloatArray:
-    """Mean of the target positions, shape (2,): where `ranked` measures pivots from."""
-    middle: FloatArray = np.nanmean(task.positions, axis=0)
-    return middle
 
 
 def pareto_optimal(problem: Problem, candidates: tuple[Candidate, ...]) -> BoolArray:

@@ -59,10 +59,8 @@ def symmetries(task: Task) -> tuple[Symmetry, ...]:
     >>> [(each.turn.real, each.mirrored) for each in symmetries(line)]
     [(1.0, False), (1.0, True), (-1.0, False), (-1.0, True)]
     """
-    places = task.positions @ np.array([1, 1j])
-    places = places - np.nanmean(places)
-    orders = _orders(task, places)
-    places = places[: orders.shape[1]]
+    places = (_once(task) - middle_of(task)) @ np.array([1, 1j])
+    orders = _orders(task, len(places))
     found = [Symmetry(1 + 0j, False)]
     for order in orders:
         for mirrored in (False, True):
@@ -74,12 +72,23 @@ def symmetries(task: Task) -> tuple[Symmetry, ...]:
     return tuple(found)
 
 
-def _orders(task: Task, places: ComplexArray) -> IntArray:
-    """Orders in which the targets may be met, shape (k, n); without a last point that repeats the first."""
+def middle_of(task: Task) -> FloatArray:
+    """Mean of the target positions, shape (2,), length: it stays in its place under all symmetries."""
+    middle: FloatArray = np.nanmean(_once(task), axis=0)
+    return middle
+
+
+def _once(task: Task) -> FloatArray:
+    """Target positions, without a last point of a closed path that repeats the first; shape (n, 2)."""
+    places = task.positions
     closed = isinstance(task, PathTask) and task.closed
-    count = len(places)
-    if closed and abs(places[-1] - places[0]) <= EVEN * task.size:
-        count -= 1
+    again = closed and np.hypot(*(places[-1] - places[0])) <= EVEN * task.size
+    return places[:-1] if again else places
+
+
+def _orders(task: Task, count: int) -> IntArray:
+    """Orders in which the targets may be met, shape (k, count)."""
+    closed = isinstance(task, PathTask) and task.closed
     forth = np.arange(count)
     first = forth[:, None] if closed else np.zeros((1, 1), dtype=np.int64)
     return np.concatenate([(first + forth) % count, (first - 1 - forth) % count])
