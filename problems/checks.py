@@ -116,8 +116,10 @@ def span(points: FloatArray) -> float:
 
 
 def counted(number: int, noun: str) -> str:
-    """Count with its noun: 1 corner, 2 corners."""
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+    """Count with its noun: 1 corner, 2 corners, 2 families."""
+    if number == 1:
+        return f"{number} {noun}"
+    return f"{number} {noun[:-1]}ies" if noun.endswith("ly") else f"{number} {noun}s"
 
 
 def near_miss(word: str, allowed: Sequence[str]) -> str | None:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TypeAlias
+
 import numpy as np
 
 from grashof.analysis import solve_position
 from grashof.problems import FourBar
-from grashof.problems.checks import ComplexArray
+from grashof.problems.checks import ComplexArray, FloatArray
 
 
 def cognate_points(points: ComplexArray, timed: bool) -> list[ComplexArray]:
@@ -41,6 +43,57 @@ def cognate_points(points: ComplexArray, timed: bool) -> list[ComplexArray]:
     both = [right, left]
     swapped = [(second, first, at_second, at_first, p) for first, second, at_first, at_second, p in both]
     return [np.array(cognate) for cognate in (*both, *swapped)]
+
+
+def same_curve(signature: FloatArray, timed: bool) -> FloatArray:
+    """Signatures of the linkages that trace the same coupler curve, the given one first.
+
+    Parameters
+    ----------
+    signature : ndarray, shape (9,), length
+        See `grashof.synth.distinct.signature`.
+    timed : bool
+        Only those in which P moves with the driver as before.
+
+    Returns
+    -------
+    ndarray, shape (k, 9), length
+        Three linkages, either link at ground driving: six, or two when timed; fewer where P lies on
+        A or B.
+
+    Notes
+    -----
+    With k = P / AB in the coupler's frame the cognate at O4 has the ground line (O6, O4), O6 = O2 +
+    k (O4 - O2); its links are r2, r4, r3 times abs(1 - k), and its coupler point is k / (k - 1).
+    """
+    (o2, o4), (r2, r3, r4) = signature[:4].view(np.complex128), signature[4:7]
+    first = (o2, o4, r2, r3, r4, complex(*signature[7:]) / r3)
+    every = [first, _at_o4(first)]
+    if not timed:
+        every += [_driven_at_o4(one) for one in every]
+        every += [_at_o4(every[2]), _driven_at_o4(_at_o4(every[2]))]
+    rows = [
+        [z2.real, z2.imag, z4.real, z4.imag, a, b, c, b * k.real, b * k.imag] for z2, z4, a, b, c, k in every
+    ]
+    found = np.array(rows)
+    return found[np.isfinite(found).all(axis=1) & (found[:, 4:7] > 0).all(axis=1)]
+
+
+# O2, O4, r2, r3, r4 and P / AB in the coupler's frame.
+_Linkage: TypeAlias = tuple[complex, complex, float, float, float, complex]
+
+
+def _at_o4(linkage: _Linkage) -> _Linkage:
+    """The cognate that keeps O4; its driver turns as that of the linkage does."""
+    o2, o4, r2, r3, r4, k = linkage
+    scale = abs(1 - k)
+    return o2 + k * (o4 - o2), o4, scale * r2, scale * r4, scale * r3, k / (k - 1) if scale else 0j
+
+
+def _driven_at_o4(linkage: _Linkage) -> _Linkage:
+    """The same linkage, its other link at ground driving."""
+    o2, o4, r2, r3, r4, k = linkage
+    return o4, o2, r4, r3, r2, 1 - k
 
 
 def assembly_of(points: ComplexArray) -> int:

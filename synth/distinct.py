@@ -28,16 +28,17 @@ def apart(one: FloatArray, others: FloatArray) -> FloatArray:
 
     Parameters
     ----------
-    one : ndarray, shape (9,)
+    one : ndarray, shape (..., 9)
     others : ndarray, shape (n, 9)
 
     Returns
     -------
-    ndarray, shape (n,)
+    ndarray, shape (..., n)
         Above `DISTINCT` for distinct designs.
     """
-    scale = np.maximum(np.abs(one).max(), np.abs(others).max(axis=1))
-    difference: FloatArray = np.abs(others - one).max(axis=1) / scale
+    one = one[..., None, :]
+    scale = np.maximum(np.abs(one).max(axis=-1), np.abs(others).max(axis=-1))
+    difference: FloatArray = np.abs(others - one).max(axis=-1) / scale
     return difference
 
 

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from os import PathLike
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from grashof.analysis import Verdict
+from grashof.analysis.verify import SLACK
 from grashof.problems import FourBar, NoSolutionError, Objective, Problem, TransmissionOver
 from grashof.problems.checks import BoolArray, FloatArray, counted
 from grashof.problems.display import Displayed
@@ -18,6 +19,14 @@ from grashof.synth.distinct import DISTINCT, pick_apart, signature
 
 if TYPE_CHECKING:
     import pandas as pd
+
+SAME_ERROR = 1e-6  # sizes: least-squares errors up to it count as equal, or up to a greater tolerance
+DIGITS = 9  # decimals of errors (in sizes) and objectives that count; the others are rounding noise
+# Nobody would build what is greater (in sizes of the task), turns its driver by less, or comes
+# closer to a dead position (rad).
+MOST_SIZE, LEAST_TURN, LEAST_TRANSMISSION = 10.0, float(np.radians(5)), float(np.radians(0.1))
+# It is ranked as if its error were so many times as great, and its objective worse by this share.
+WORSE_ERROR, WORSE_OBJECTIVE = 1.02, 0.01
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -36,6 +45,10 @@ class Candidate(Displayed):
         Id of the design whose coupler curve this one traces too; empty for the others.
     torque_peak : float, N m
         Greatest magnitude of the drive torque over the motion used; NaN where it is not known.
+    best_at : str
+        What a design of a least-squares list was made for, such as "least error"; empty for the others.
+    family : str
+        Id of the best design of those like it; empty before designs are sorted into families.
     """
 
     linkage: FourBar
@@ -44,6 +57,8 @@ class Candidate(Displayed):
     iterations: int
     cognate_of: str = ""
     torque_peak: float = np.nan
+    best_at: str = ""
+    family: str = ""
 
     def __repr__(self) -> str:
         return f"<Candidate {self._words}>"
@@ -72,19 +87,35 @@ class Candidate(Displayed):
             return self.verdict.transmission_min_cycle
         return self.verdict.transmission_min_task
 
-    def score(self, problem: Problem) -> float:
-        """How good the design is by the problem's objective; greater is better.
+    def error(self, problem: Problem) -> float:
+        """What the design misses the task by, in sizes of the task.
 
-        With ``exact = false`` the error comes first.
+        The greatest position error where every target is to be met, or else the root mean square of
+        what least squares makes small.
         """
-        if not problem.requirements.is_exact(problem.task):
-            return -float(np.sqrt(self.verdict.square / len(problem.task))) / problem.task.size
+        if problem.requirements.is_exact(problem.task):
+            return self.verdict.error_max / problem.task.size
+        return float(np.sqrt(self.verdict.square / len(problem.task))) / problem.task.size
+
+    def objective(self, problem: Problem) -> float:
+        """How good the design is by the problem's objective, whatever its error; greater is better."""
         transmission = self.transmission(problem.requirements.transmission_over)
         size = self.verdict.size / problem.task.size
         if not problem.objective.torque:
             return float(weigh(problem.objective, np.array(transmission), np.array(size)))
         torque = np.inf if np.isnan(self.torque_peak) else self.torque_peak / problem.reference_torque
         return float(weigh(problem.objective, np.array(transmission), np.array(size), np.array(torque)))
+
+    def score(self, problem: Problem) -> float:
+        """How far a search has come with this design; greater is better.
+
+        The objective, or with ``exact = false`` the error, none up to `same_error`. Designs are
+        ranked by `ranking_key`.
+        """
+        if problem.requirements.is_exact(problem.task):
+            return self.objective(problem)
+        error = self.error(problem)
+        return 0.0 if error <= same_error(problem) else -error
 
 
 def weigh(
@@ -106,6 +137,7 @@ class Result(Displayed):
     ----------
     problem : Problem
     candidates : tuple of Candidate
+        The best design of each family, best first, then all the others, best first.
     nearest : tuple of Candidate
         For an empty list: designs with one requirement missed, each as little as was possible.
     counts : mapping of str to int
@@ -140,6 +172,19 @@ class Result(Displayed):
             raise NoSolutionError(self.note)
         return self.candidates[0]
 
+    @property
+    def families(self) -> tuple[tuple[Candidate, ...], ...]:
+        """Designs that are alike, best first; the families in the order of their best designs."""
+        members: dict[str, list[Candidate]] = {}
+        for candidate in self.candidates:
+            members.setdefault(candidate.family or candidate.id, []).append(candidate)
+        return tuple(tuple(family) for family in members.values())
+
+    def top(self, families: int) -> Result:
+        """The same with the first so many families only, each with all its members."""
+        kept = {each.id for family in self.families[:families] for each in family}
+        return replace(self, candidates=tuple(each for each in self.candidates if each.id in kept))
+
     def __len__(self) -> int:
         return len(self.candidates)
 
@@ -154,21 +199,55 @@ class Result(Displayed):
         self.to_frame().to_csv(path, index=False, lineterminator="\n")
 
 
-def ranked(problem: Problem, candidates: list[Candidate]) -> tuple[Candidate, ...]:
+def same_error(problem: Problem) -> float:
+    """Errors up to this one count as equal; in sizes of the task."""
+    tolerance = problem.requirements.tolerance
+    return tolerance if problem.requirements.is_exact(problem.task) else max(SAME_ERROR, tolerance)
+
+
+def impractical(problem: Problem, verdict: Verdict) -> bool:
+    """Whether nobody would build it: far too large, a driver that hardly turns, or a dead position met."""
+    return bool(
+        verdict.size > MOST_SIZE * problem.task.size
+        or np.ptp(verdict.theta2) < LEAST_TURN
+        or verdict.transmission_min_task < LEAST_TRANSMISSION
+    )
+
+
+def ranking_key(problem: Problem, candidate: Candidate) -> tuple[float, ...]:
+    """What designs are sorted by, best first: the one place that says which of two is better.
+
+    The error, none up to `same_error`; the objective; what people build; the smaller size; and
+    the dimensions, so that no two designs tie. What nobody would build (`impractical`) counts
+    with 1.02 times its least-squares error and an objective 1 % worse.
+    """
+    avoided = impractical(problem, candidate.verdict)
+    error, objective = candidate.error(problem), candidate.objective(problem)
+    if avoided:
+        objective -= WORSE_OBJECTIVE * abs(objective)
+        error *= 1.0 if problem.requirements.is_exact(problem.task) else WORSE_ERROR
+    counted_error = 0.0 if error <= same_error(problem) * (1 + SLACK) else round(error, DIGITS)
+    cost = np.inf if np.isnan(objective) else -round(objective, DIGITS)
+    numbers = signature(candidate.linkage).tolist()
+    return (counted_error, cost, float(avoided), candidate.verdict.size, *numbers)
+
+
+def ranked(problem: Problem, candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
     """Distinct candidates, best first; of two that are not distinct the better one stays."""
     if not candidates:
         return ()
-    score = np.array([candidate.score(problem) for candidate in candidates])
+    ordered = sorted(candidates, key=lambda candidate: ranking_key(problem, candidate))
     origin = np.nanmean(problem.task.positions, axis=0)
-    signatures = np.array([signature(candidate.linkage, origin) for candidate in candidates])
-    return tuple(candidates[i] for i in pick_apart(signatures, score, DISTINCT, len(candidates)))
+    signatures = np.array([signature(candidate.linkage, origin) for candidate in ordered])
+    picked = pick_apart(signatures, -np.arange(len(ordered), dtype=np.float64), DISTINCT, len(ordered))
+    return tuple(ordered[i] for i in picked)
 
 
 def pareto_optimal(problem: Problem, candidates: tuple[Candidate, ...]) -> BoolArray:
     """Which candidates no other one beats in error, worst transmission, size and torque; shape (n,).
 
-    Errors up to 1e-9 sizes are exact and count as equal. The torque is the greatest on the task
-    when the problem has dynamics; where it is not known it counts as infinite.
+    Errors up to `same_error` count as equal. The torque is the greatest on the task when the
+    problem has dynamics; where it is not known it counts as infinite.
 
     Parameters
     ----------
@@ -178,7 +257,7 @@ def pareto_optimal(problem: Problem, candidates: tuple[Candidate, ...]) -> BoolA
     over = problem.requirements.transmission_over
     costs = np.array([
         (
-            max(candidate.verdict.error_rms / problem.task.size, 1e-9),
+            max(candidate.verdict.error_rms / problem.task.size, same_error(problem)),
             -candidate.transmission(over),
             candidate.verdict.size,
             np.inf if np.isnan(candidate.torque_peak) else candidate.torque_peak,

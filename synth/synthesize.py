@@ -16,6 +16,7 @@ from grashof.problems import MotionTask, Problem, ProblemError, Search
 from grashof.problems.checks import counted, finite_number, whole_number
 from grashof.synth import exact_poses, paths
 from grashof.synth.explain import STOPPED, Explanation, Failure, explain
+from grashof.synth.families import listed
 from grashof.synth.ledger import Ledger
 from grashof.synth.own import mended, refuse_unusable
 from grashof.synth.path_finds import path_target
@@ -191,7 +192,8 @@ def _search(
     counts = {**ledger.counts, "verified and distinct": len(best)}
     times = {**seconds, "total": perf_counter() - begun}
     why = ledger.why(complete)
-    return Result(setup.problem, best, said.nearest, counts, times, said.note, complete, why)
+    designs = listed(setup.problem, best)
+    return Result(setup.problem, designs, said.nearest, counts, times, said.note, complete, why)
 
 
 def _rounds(setup: Setup, finder: Finder, ledger: Ledger) -> Iterator[Round]:

@@ -22,13 +22,13 @@ MANUFACTURING = (
 )  # fmt: skip
 # Columns without a meaning for a task stay empty.
 COLUMNS = (
-    "rank", "id", "family", "grashof_class", "direction", "assembly", "o2_x", "o2_y", "o4_x", "o4_y",
-    "r1", "r2", "r3", "r4", "p_u", "p_v", "body_angle_deg", "theta2_start_deg", "theta2_end_deg",
+    "rank", "id", "mechanism", "family", "grashof_class", "direction", "assembly", "o2_x", "o2_y", "o4_x",
+    "o4_y", "r1", "r2", "r3", "r4", "p_u", "p_v", "body_angle_deg", "theta2_start_deg", "theta2_end_deg",
     "error_max", "error_rms", "error_sse", "angle_error_max_deg", "angle_error_rms_deg",
     "transmission_min_task_deg", "transmission_min_cycle_deg", "circuit_ok", "branch_ok", "order_ok",
     "full_rotation", "omega4_max", "point_speed_max", "point_acceleration_max", "torque_peak",
     "torque_rms", "joint_force_peak", "coupler_fit_r2", "size", "pareto", "cognate_of", "start", "iterations",
-    "hausdorff", "frechet", *MANUFACTURING,
+    "best_at", "hausdorff", "frechet", *MANUFACTURING,
 )  # fmt: skip
 
 
@@ -50,6 +50,17 @@ def to_frame(problem: Problem, candidates: tuple[Candidate, ...]) -> pd.DataFram
         )
     ]
     return pd.DataFrame(rows, columns=list(COLUMNS))
+
+
+def labels(candidate: Candidate) -> dict[str, str]:
+    """What a design is called and what it is like, by column; empty text where there is nothing to say."""
+    return {
+        "id": candidate.id,
+        "mechanism": "four-bar",
+        "family": candidate.family or candidate.id,
+        "cognate_of": candidate.cognate_of,
+        "best_at": candidate.best_at,
+    }
 
 
 def _distances(problem: Problem, candidate: Candidate) -> dict[str, float]:
@@ -81,8 +92,7 @@ def _row(candidate: Candidate) -> dict[str, Any]:
             "angle_error_rms_deg": float(np.sqrt(np.nanmean(angle_error**2))),
         }
     return {
-        "id": candidate.id,
-        "family": "four-bar",
+        **{name: text or None for name, text in labels(candidate).items()},
         "grashof_class": str(verdict.grashof_class),
         "direction": verdict.direction,
         "assembly": int(linkage.assembly),
@@ -109,7 +119,6 @@ def _row(candidate: Candidate) -> dict[str, Any]:
         "order_ok": verdict.order_ok,
         "full_rotation": verdict.full_rotation,
         "size": verdict.size,
-        "cognate_of": candidate.cognate_of or None,
         "start": candidate.start,
         "iterations": candidate.iterations,
     }

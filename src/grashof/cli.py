@@ -6,7 +6,6 @@ import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
 from enum import IntEnum
 from importlib.metadata import version
 from pathlib import Path
@@ -117,7 +116,9 @@ def solve(
     top: Annotated[
         int | None,
         typer.Option(
-            min=1, help="Most designs in the list.", show_default=f"{TOP}, or search.enough if more"
+            min=1,
+            help="Most families of like designs in the list.",
+            show_default=f"{TOP}, or search.enough if more",
         ),
     ] = None,
     drawings: Annotated[int, typer.Option(min=0, help="How many of them to draw.")] = 3,
@@ -316,7 +317,7 @@ def _solve(
             )
         if found.ended:
             say(found.ended, err=True)
-        result = replace(found, candidates=found.candidates[:top])
+        result = found.top(top)
         if result.candidates or result.complete:  # an interrupted search with nothing replaces nothing
             files = write_run(folder, result, settings, drawings, stop=interrupted, problem_text=text)
             _report(result.note, files, folder)

@@ -15,7 +15,7 @@ from grashof.folder import PAGE, RECORD, replacing_own_files
 from grashof.problems import FourBar, Problem
 from grashof.problems.checks import FloatArray
 from grashof.synth import Candidate, Result
-from grashof.synth.table import DYNAMICS, MANUFACTURING, MOTION, to_frame
+from grashof.synth.table import DYNAMICS, MANUFACTURING, MOTION, labels, to_frame
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -122,8 +122,7 @@ def _design(candidate: Candidate) -> dict[str, Any]:
     verdict = candidate.verdict
     angle_error = {} if verdict.angle_error is None else {"angle_error": _given(verdict.angle_error)}
     return {
-        "id": candidate.id,
-        "family": "four-bar",
+        **labels(candidate),
         "linkage": linkage_json(candidate.linkage),
         "theta2": verdict.theta2.tolist(),
         "assembly": verdict.assembly.tolist(),

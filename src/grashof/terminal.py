@@ -19,7 +19,7 @@ from grashof.problems import DynamicsSpec, PathTask, Problem, Task, Transmission
 from grashof.problems.checks import counted
 from grashof.streams import say
 from grashof.synth import Candidate, Progress, Result
-from grashof.synth.result import pareto_optimal
+from grashof.synth.result import pareto_optimal, same_error
 
 _ROWS = 12
 _PIPED_WIDTH = 140
@@ -27,8 +27,9 @@ _WIDE = 100  # columns; narrower terminals get fewer digits
 _UNBOUNDED = 1000
 # Columns that a narrow terminal does without, first to last.
 UNITS = {"mu task": "deg", "mu turn": "deg", "torque": "N m"}  # of columns; lengths are in the problem's
-_DROPPED = (("class",), ("O2", "O4"), ("size",), ("mu turn",))
-_JUSTIFY: dict[str, JustifyMethod] = {"O2": "center", "O4": "center", "class": "left"}
+_DROPPED = (("class",), ("O2", "O4"), ("like this",), ("best at",), ("size",), ("mu turn",))
+_JUSTIFY: dict[str, JustifyMethod] = {"O2": "center", "O4": "center", "class": "left", "best at": "left"}
+_TWO_LINES = ("error rms", "like this")
 
 
 def console(*, stderr: bool = False) -> Console:
@@ -91,19 +92,26 @@ def _fitting(result: Result, width: int) -> list[str]:
 
 
 def best_rows(result: Result, digits: int = 4) -> list[dict[str, str]]:
-    """The best designs in cells, with what an engineer decides by; angles in deg.
+    """The best design of each family in cells, with what an engineer decides by; angles in deg.
 
-    Columns that are alike for all of them are left out.
+    "like this" is how many others the family has. Columns that are alike for all of them are left out.
     """
-    front = pareto_optimal(result.problem, result.candidates)
+    front, families = pareto_optimal(result.problem, result.candidates), result.families[:_ROWS]
     left_out = [
         *(["error rms"] if result.problem.requirements.is_exact(result.problem.task) else []),
         *(["class"] if len(_classes(result)) == 1 else []),
         *([] if result.problem.objective.torque else ["torque"]),
+        *([] if any(len(family) > 1 for family in families) else ["like this"]),
+        *([] if any(family[0].best_at for family in families) else ["best at"]),
     ]
     rows = [
-        {"#": f"{rank}{'*' if front[rank - 1] else ' '}", **_cells(candidate, digits)}
-        for rank, candidate in enumerate(result.candidates[:_ROWS], start=1)
+        {
+            "#": f"{rank}{'*' if front[rank - 1] else ' '}",
+            **_cells(family[0], digits),
+            "like this": str(len(family) - 1 or ""),
+            "best at": family[0].best_at,
+        }
+        for rank, family in enumerate(families, start=1)
     ]
     return [{name: cell for name, cell in row.items() if name not in left_out} for row in rows]
 
@@ -113,7 +121,7 @@ def _table(result: Result, digits: int, left_out: Sequence[str]) -> Table:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
     names = [name for name in rows[0] if name not in left_out]
     for name in names:
-        title = name.replace(" ", "\n") if name == "error rms" or "size" in left_out else name
+        title = name.replace(" ", "\n") if name in _TWO_LINES or digits < 4 or "size" in left_out else name
         unit = f"\n{UNITS[name]}" if name in UNITS else ""
         table.add_column(f"{title}{unit}", justify=_JUSTIFY.get(name, "right"), no_wrap=True)
     for row in rows:
@@ -128,13 +136,22 @@ def heading(result: Result, verified: int) -> str:
     error = f"largest position error {max(errors):.1e}" if exact else f"smallest error {min(errors):.3g}"
     classes = _classes(result)
     kind = f"{classes.pop()} " if len(classes) == 1 else ""
+    families = len(result.families)
     found = counted(verified, f"distinct verified {kind}design")
+    found += f" in {counted(families, 'family')}" if families < len(result) else ""
     if verified > len(result):  # nothing is known here of the class of the others
-        found = f"{verified} distinct designs verified, the best {len(result)} listed"
+        listed = (
+            f"{len(result)}"
+            if families == len(result)
+            else f"{counted(families, 'family')}, {len(result)} designs,"
+        )
+        found = f"{verified} distinct designs verified, the best {listed} listed"
         found += f" ({kind.strip()})" if kind else ""
     unit = result.problem.length_unit
     lengths = f" Lengths in {unit}." if unit else ""
-    shown = f" The best {_ROWS}:" if len(result) > _ROWS else ""
+    shown = f" The best {_ROWS}:" if families > _ROWS else ""
+    if families < len(result):
+        shown = f" The best of {f'the first {_ROWS} families' if families > _ROWS else 'each family'}:"
     return (
         f"{found}, {error}.{lengths}\n"
         f"mu: worst transmission angle; *: Pareto-optimal in {goals(result.problem)}.{shown}"
@@ -207,9 +224,7 @@ def summary(problem: Problem) -> list[str]:
 
 
 def _best(problem: Problem) -> str:
-    """What designs are ranked by, as `Candidate.score` does it."""
-    if not problem.requirements.is_exact(problem.task):
-        return "smallest error (rms)"
+    """What designs are ranked by, as `ranking_key` does it."""
     over = "turn" if problem.requirements.transmission_over is TransmissionOver.CYCLE else "task"
     words = {
         "transmission": f"greatest worst transmission angle over the {over}",
@@ -217,9 +232,12 @@ def _best(problem: Problem) -> str:
         "torque": "smallest peak torque",
     }
     weights = {words[name]: weight for name, weight in asdict(problem.objective).items() if weight}
-    if len(weights) == 1:
-        return next(iter(weights))
-    return f"a weighted sum: {', '.join(f'{word} {weight:g}' for word, weight in weights.items())}"
+    best = next(iter(weights))
+    if len(weights) > 1:
+        best = f"a weighted sum: {', '.join(f'{word} {weight:g}' for word, weight in weights.items())}"
+    if problem.requirements.is_exact(problem.task):
+        return best
+    return f"smallest error (rms); of errors up to {same_error(problem):g} sizes, {best}"
 
 
 def _driven(spec: DynamicsSpec) -> str:

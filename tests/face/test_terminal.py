@@ -53,7 +53,18 @@ def test_the_torque_is_shown_where_it_is_asked_for(few: Result, capsys: pytest.C
         ),
         ({"objective": Objective(transmission=0, compactness=2)}, "smallest size"),
         ({"objective": Objective(transmission=0, torque=1)}, "smallest peak torque"),
-        ({"requirements": Requirements(exact=False)}, "smallest error (rms)"),
+        (
+            {"requirements": Requirements(exact=False)},
+            "smallest error (rms); of errors up to 1e-06 sizes, "
+            "greatest worst transmission angle over the task",
+        ),
+        (
+            {
+                "requirements": Requirements(exact=False, tolerance=0.01),
+                "objective": Objective(transmission=0, compactness=2),
+            },
+            "smallest error (rms); of errors up to 0.01 sizes, smallest size",
+        ),
     ],
 )
 def test_the_summary_says_what_is_best(few: Result, changes: dict[str, Any], said: str) -> None:

@@ -6,7 +6,8 @@ import pytest
 from grashof.analysis.planted import random_full_crank
 from grashof.problems import FourBar
 from grashof.problems.checks import ComplexArray, FloatArray
-from grashof.synth.cognates import assembly_of, cognate_points, position_of
+from grashof.synth.cognates import assembly_of, cognate_points, position_of, same_curve
+from grashof.synth.distinct import signature
 
 
 def meeting_points(a: ComplexArray, o4: complex, r3: float, r4: float) -> ComplexArray:
@@ -124,3 +125,33 @@ def test_a_coupler_point_on_a_joint_leaves_one_cognate() -> None:
     right, left, *_ = cognate_points(points, timed=False)
     np.testing.assert_allclose(np.abs(right[[1, 2, 3, 3]] - right[[0, 0, 2, 1]]), [4, 1, 3, 4], atol=1e-12)
     assert abs(left[1] - left[0]) < 1e-12
+
+
+@pytest.mark.parametrize("case", range(len(CASES)))
+def test_linkages_of_the_same_curve_are_the_cognates_from_numbers_alone(case: int) -> None:
+    linkage, theta2 = CASES[case]
+    place = positions(linkage, theta2[:1])[0]
+    for timed in (False, True):
+        expected = [place, *([] if timed else [swapped(place)]), *cognate_points(place, timed)]
+        found = same_curve(signature(linkage), timed)
+        assert len(found) == len(expected) == (2 if timed else 6)
+        np.testing.assert_allclose(found[0], signature(linkage), rtol=1e-13)
+        for points in expected:
+            gaps = np.abs(found - numbers(points)).max(axis=1)
+            assert np.count_nonzero(gaps < 1e-9 * np.abs(numbers(points)).max()) == 1
+
+
+def numbers(points: ComplexArray) -> FloatArray:
+    """O2, O4, r2, r3, r4, u, v of a linkage that stands at these pivots."""
+    o2, o4, a, b, p = points
+    arm = (p - a) / (b - a) * abs(b - a)
+    lengths = [abs(a - o2), abs(b - a), abs(b - o4)]
+    return np.array([o2.real, o2.imag, o4.real, o4.imag, *lengths, arm.real, arm.imag])
+
+
+@pytest.mark.parametrize(("u", "count"), [(0.0, 4), (4.0, 4)])
+def test_a_linkage_with_p_on_a_joint_has_fewer_of_its_curve(u: float, count: int) -> None:
+    linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, coupler_point=(u, 0))
+    found = same_curve(signature(linkage), timed=False)
+    assert np.isfinite(found).all()
+    assert len(found) <= count

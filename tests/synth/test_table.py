@@ -1,6 +1,7 @@
 """The table: the columns of the contract, and numbers that come back from CSV as they were."""
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,17 +12,17 @@ from grashof.problems import Problem
 from grashof.synth import Result
 from grashof.synth.table import MANUFACTURING, to_frame
 
-# DESIGN section 4, word for word.
+# DESIGN section 4, word for word, and what has been added since.
 CONTRACT = """
-rank, id, family, grashof_class, direction, assembly, o2_x, o2_y, o4_x, o4_y, r1, r2, r3, r4, p_u, p_v,
-body_angle_deg, theta2_start_deg, theta2_end_deg, error_max, error_rms, error_sse, angle_error_max_deg,
+rank, id, mechanism, family, grashof_class, direction, assembly, o2_x, o2_y, o4_x, o4_y, r1, r2, r3, r4, p_u,
+p_v, body_angle_deg, theta2_start_deg, theta2_end_deg, error_max, error_rms, error_sse, angle_error_max_deg,
 angle_error_rms_deg, transmission_min_task_deg, transmission_min_cycle_deg, circuit_ok, branch_ok, order_ok,
 full_rotation, omega4_max, point_speed_max, point_acceleration_max, torque_peak, torque_rms,
-joint_force_peak, coupler_fit_r2, size, pareto, cognate_of, start, iterations, hausdorff, frechet,
+joint_force_peak, coupler_fit_r2, size, pareto, cognate_of, start, iterations, best_at, hausdorff, frechet,
 move_r1, move_r2, move_r3, move_r4, move_u, move_v, worst_move, share_within_linear, share_within_made
 """
 COLUMNS = [name.strip() for name in CONTRACT.split(",")]
-WITHOUT_MEANING = ["cognate_of", "hausdorff", "frechet", *MANUFACTURING]
+WITHOUT_MEANING = ["cognate_of", "best_at", "hausdorff", "frechet", *MANUFACTURING]
 
 
 @pytest.fixture(scope="module")
@@ -36,8 +37,13 @@ def test_columns_are_the_contract(frame: pd.DataFrame) -> None:
 def test_one_row_a_design_best_first(frame: pd.DataFrame, luggage_result: Result) -> None:
     assert frame["rank"].tolist() == list(range(1, len(luggage_result) + 1))
     assert frame["id"].tolist() == [candidate.id for candidate in luggage_result.candidates]
-    assert frame["transmission_min_task_deg"].is_monotonic_decreasing
-    assert set(frame["family"]) == {"four-bar"}
+    best, others = frame[frame["family"] == frame["id"]], frame[frame["family"] != frame["id"]]
+    assert best["rank"].tolist() == list(range(1, len(best) + 1))
+    assert len(others) > 1
+    assert set(others["family"]) <= set(best["id"])
+    for rows in (best, others):
+        assert rows["transmission_min_task_deg"].is_monotonic_decreasing
+    assert set(frame["mechanism"]) == {"four-bar"}
 
 
 def test_rows_describe_linkages_that_meet_the_first_and_last_pose(
@@ -91,6 +97,13 @@ def test_pareto_marks(frame: pd.DataFrame) -> None:
 def test_what_has_no_meaning_stays_empty(frame: pd.DataFrame) -> None:
     assert frame[WITHOUT_MEANING].isna().all(axis=None)
     assert frame.drop(columns=WITHOUT_MEANING).notna().all(axis=None)
+
+
+def test_what_a_design_is_best_at_is_told(luggage_result: Result, luggage: Problem) -> None:
+    first, second = luggage_result.candidates[:2]
+    told = to_frame(luggage, (replace(first, best_at="least error"), second))["best_at"]
+    assert told[0] == "least error"
+    assert pd.isna(told[1])
 
 
 def test_csv_keeps_every_digit(frame: pd.DataFrame, luggage_result: Result, tmp_path: Path) -> None:

@@ -66,7 +66,9 @@ _UNITS = {
 }  # fmt: skip
 _SIZE = "diagonal of the box around O2, O4 and all that A, B and P reach from the first target to the last"
 # What figures are, where their names do not tell.
-_ABOUT = {"size": _SIZE} | dict.fromkeys((*MOTION, *DYNAMICS), "from the first target to the last")
+_ABOUT = {"size": _SIZE, "family": "the best of the designs that are alike"} | dict.fromkeys(
+    (*MOTION, *DYNAMICS), "from the first target to the last"
+)
 _LENGTHS = (
     "o2_x", "o2_y", "o4_x", "o4_y", "r1", "r2", "r3", "r4", "p_u", "p_v", "error_max", "error_rms", "size",
     "hausdorff", "frechet", "worst_move",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
@@ -77,7 +78,9 @@ def search_page(result: Result, frame: pd.DataFrame, record: Mapping[str, Any], 
         note=result.note,
         goals=goals(problem).replace("mu", "μ"),
         columns=columns,
-        rows=_rows(frame, columns),
+        rows=(rows := _rows(frame, columns)),
+        alike=any(row["alike"] for row in rows),
+        best_at=any(row["best_at"] for row in rows),
         classes=sorted(set(frame["grashof_class"])) if designs else [],
         counts=_counts(result.counts),
         seconds={stage: f"{time:.2f}" for stage, time in result.seconds.items()},
@@ -92,17 +95,25 @@ def _headline(result: Result) -> str:
     if not listed:
         return "No design found." if result.complete else "Interrupted before any design was found."
     verified = max(result.counts.get("verified and distinct", 0), listed)
-    shown = f", the best {listed} listed" if verified > listed else ""
+    families = len(result.families)
+    kinds = counted(families, "family") if families < listed else ""
+    shown = f" in {kinds}" if kinds else ""
+    if verified > listed:
+        shown = f", the best {f'{kinds}, {listed} designs,' if kinds else listed} listed"
     cut = "" if result.complete else "; the search was interrupted"
     return f"{counted(verified, 'distinct verified design')}{shown}{cut}."
 
 
 def _rows(frame: pd.DataFrame, columns: list[Column]) -> list[dict[str, Any]]:
-    """The table as text, a row for each design."""
+    """The table as text, a row for each design; `alike` are the others of its family."""
+    families = Counter(frame["family"])
     return [
         {
             "rank": row["rank"],
             "id": row["id"],
+            "alike": families[row["family"]] - 1,
+            "first": row["id"] == row["family"],
+            "best_at": "" if pd.isna(row["best_at"]) else row["best_at"],
             "pareto": bool(row["pareto"]),
             "kind": row["grashof_class"],
             "misses": row.get("misses", ""),

@@ -1,7 +1,7 @@
 // The table of designs: sorted by its headers, filtered by the form above it.
 class DesignTable {
   constructor(root, { designs, onPick, onFilter, onCompare }) {
-    Object.assign(this, { designs, onFilter, body: $("tbody", root), form: $("form", root) });
+    Object.assign(this, { designs, onFilter, body: $("tbody", root), form: $("form", root), open: new Set() });
     this.rows = $$("tr", this.body);
     this.none = $("[data-none]", root);
     this.headers = $$("th[aria-sort]", root);
@@ -10,7 +10,8 @@ class DesignTable {
     }
     this.body.addEventListener("click", (event) => {
       const row = event.target.closest("tr");
-      if (row && !event.target.closest("label")) onPick(Number(row.dataset.index));
+      if (event.target.closest("[data-alike]")) this.toggle(this.design(row).figures.family);
+      else if (row && !event.target.closest("label")) onPick(Number(row.dataset.index));
     });
     for (const box of $$("input[data-compare]", this.body)) {
       box.addEventListener("change", () => onCompare(Number(box.closest("tr").dataset.index), box.checked));
@@ -18,6 +19,17 @@ class DesignTable {
     this.form.addEventListener("input", () => this.filter());
     this.form.addEventListener("reset", () => setTimeout(() => this.filter()));
     this.form.addEventListener("submit", (event) => event.preventDefault());
+    this.filter();
+  }
+
+  design(row) {
+    return this.designs[Number(row.dataset.index)];
+  }
+
+  // Show the other designs of a family, or no longer.
+  toggle(family) {
+    if (!this.open.delete(family)) this.open.add(family);
+    this.filter();
   }
 
   // By a header, the other way round when it is sorted already; what is not known goes last.
@@ -28,13 +40,22 @@ class DesignTable {
     for (const each of this.headers) each.setAttribute("aria-sort", each === header ? order : "none");
     const sign = order === "ascending" ? 1 : -1;
     const key = header.dataset.key;
-    const value = (row) => this.designs[Number(row.dataset.index)].figures[key];
+    const value = (row) => this.design(row).figures[key];
     const compared = (a, b) => {
       if (a === null || b === null) return (a === null) - (b === null);
       return sign * (typeof a === "string" ? a.localeCompare(b) : a - b);
     };
     this.rows.sort((a, b) => compared(value(a), value(b)) || a.dataset.index - b.dataset.index);
-    this.body.append(...this.rows);
+    this.arrange();
+  }
+
+  // Rows as sorted, the others of an open family behind the one that stands for it.
+  arrange() {
+    const place = new Map(this.rows.map((row, k) => [row, k]));
+    const behind = (row) => Number(row.classList.contains("member"));
+    const first = (row) => place.get(behind(row) ? this.first.get(this.design(row).figures.family) : row);
+    this.arranged = [...this.rows].sort((a, b) => first(a) - first(b) || behind(a) - behind(b));
+    this.body.append(...this.arranged);
   }
 
   filter() {
@@ -42,16 +63,43 @@ class DesignTable {
     const text = wanted.get("text").trim().toLowerCase();
     const [least, most] = [wanted.get("transmission"), wanted.get("size")];
     const passes = (row, { id, figures }) =>
-      `${figures.rank} ${id} ${figures.grashof_class}`.toLowerCase().includes(text) &&
+      `${figures.rank} ${id} ${figures.grashof_class} ${figures.best_at || ""}`.toLowerCase().includes(text) &&
       (!wanted.get("class") || figures.grashof_class === wanted.get("class")) &&
       (!least || this.shown(row, this.form.elements.transmission.dataset.key) >= Number(least)) &&
       (!most || this.shown(row, "size") <= Number(most)) &&
       (!wanted.get("pareto") || figures.pareto);
-    for (const row of this.rows) row.hidden = !passes(row, this.designs[Number(row.dataset.index)]);
-    const shown = this.listed();
-    this.none.hidden = shown.length > 0;
-    $("output", this.form).textContent = `${shown.length} of ${this.rows.length}`;
-    this.onFilter(shown);
+    for (const row of this.rows) row.hidden = !passes(row, this.design(row));
+    this.passing = this.listed();
+    this.fold(Boolean(wanted.get("fold")));
+    this.arrange();
+    this.none.hidden = this.passing.length > 0;
+    const families = this.first.size < this.passing.length ? ` in ${this.first.size} families` : "";
+    $("output", this.form).textContent = `${this.passing.length} of ${this.rows.length}${families}`;
+    this.onFilter(this.passing);
+  }
+
+  // Of each family one row stands for the others: the best that passes the filter.
+  fold(folded) {
+    const sizes = new Map();
+    this.first = new Map();
+    for (const row of [...this.rows].sort((a, b) => a.dataset.index - b.dataset.index)) {
+      const { family } = this.design(row).figures;
+      const behind = this.first.has(family);
+      const button = $("[data-alike]", row);
+      if (button) button.hidden = true;
+      row.classList.toggle("member", folded && behind && !row.hidden);
+      if (row.hidden) continue;
+      if (!behind) this.first.set(family, row);
+      sizes.set(family, (sizes.get(family) || 0) + 1);
+      row.hidden = folded && behind && !this.open.has(family);
+    }
+    for (const [family, row] of this.first) {
+      const button = $("[data-alike]", row);
+      if (!button || !folded || sizes.get(family) < 2) continue;
+      button.hidden = false;
+      button.textContent = `${sizes.get(family) - 1} like this`;
+      button.setAttribute("aria-expanded", String(this.open.has(family)));
+    }
   }
 
   // A number as the table shows it, rounded; NaN where it is not known.
@@ -62,10 +110,13 @@ class DesignTable {
 
   // Designs as listed now, by their index.
   listed() {
-    return this.rows.filter((row) => !row.hidden).map((row) => Number(row.dataset.index));
+    return (this.arranged || this.rows).filter((row) => !row.hidden).map((row) => Number(row.dataset.index));
   }
 
+  // The chosen design; its family opens where another one stands for it.
   mark(index) {
+    const { family } = this.designs[index].figures;
+    if (this.passing.includes(index) && !this.listed().includes(index)) this.toggle(family);
     for (const row of this.rows) {
       const chosen = Number(row.dataset.index) === index;
       row.classList.toggle("chosen", chosen);
@@ -82,8 +133,7 @@ class DesignTable {
   // Small pictures: the path of P and the linkage halfway through the task.
   pictures() {
     for (const row of this.rows) {
-      const design = this.designs[Number(row.dataset.index)];
-      $(".thumb", row).replaceWith(thumbnail(design));
+      $(".thumb", row).replaceWith(thumbnail(this.design(row)));
     }
   }
 }
