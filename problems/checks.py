@@ -21,7 +21,8 @@ BoolArray: TypeAlias = npt.NDArray[np.bool_]
 ComplexArray: TypeAlias = npt.NDArray[np.complex128]
 Limits: TypeAlias = tuple[float, float]
 
-GREATEST = 1e20  # of lengths, masses and speeds in files: squares of torques stay within the floats
+GREATEST = 1e20  # of lengths, masses and speeds: squares of torques stay within the floats
+LEAST = 1e-20  # size of a task, for the same reason
 
 
 def frozen_array(values: npt.ArrayLike) -> FloatArray:
@@ -31,7 +32,9 @@ def frozen_array(values: npt.ArrayLike) -> FloatArray:
     return array[()] if array.ndim == 0 else array
 
 
-def finite_rows(values: npt.ArrayLike, columns: int, where: str, row_means: str) -> FloatArray:
+def finite_rows(
+    values: npt.ArrayLike, columns: int, where: str, row_means: str, greatest: float = np.inf
+) -> FloatArray:
     """Array of shape (N, `columns`), each row checked by itself so that the message can name it."""
     if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
         raise ProblemError(f"{where} is {values!r}; allowed is a list, each entry {row_means}")
@@ -49,13 +52,15 @@ def finite_rows(values: npt.ArrayLike, columns: int, where: str, row_means: str)
             raise ProblemError(f"{name} is {_plain(row)}, {count}; allowed is {row_means}")
         if not np.isfinite(numbers).all():
             raise ProblemError(f"{name} is {_plain(row)}; all numbers must be finite")
+        if (np.abs(numbers) > greatest).any():
+            raise ProblemError(f"{name} is {_plain(row)}; allowed are numbers up to {greatest:g}")
         rows.append(numbers.astype(np.float64))
     return frozen_array(np.array(rows, dtype=np.float64).reshape(-1, columns))
 
 
 def outline(values: npt.ArrayLike, where: str) -> FloatArray:
     """Array of shape (N, 2), the corners of something drawn."""
-    corners = finite_rows(values, 2, where, "a corner [x, y]")
+    corners = finite_rows(values, 2, where, "a corner [x, y]", GREATEST)
     if len(corners) < 2:
         raise ProblemError(f"{where} has {counted(len(corners), 'corner')}; allowed are two or more")
     return corners
@@ -86,6 +91,14 @@ def number_within(value: float, low: float, high: float, where: str) -> float:
     return number
 
 
+def task_size(points: FloatArray, where: str) -> float:
+    """Greatest distance between two of N points (N, 2), refused where it is so small that digits are lost."""
+    size = span(points)
+    if 0 < size < LEAST:
+        raise ProblemError(f"{where} are at most {size:g} apart; allowed is a size from {LEAST:g}")
+    return size
+
+
 def whole_number(value: int, low: int, where: str) -> int:
     """`value` as an int, refused below `low` or when it is not whole."""
     if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < low:
@@ -94,7 +107,7 @@ def whole_number(value: int, low: int, where: str) -> int:
 
 
 def limits(values: Limits, where: str, *, least: float = -np.inf) -> Limits:
-    """A pair (lo, hi) with least <= lo <= hi, both finite."""
+    """A pair (lo, hi) with least <= lo <= hi <= `GREATEST`."""
     try:
         low, high = values
     except (TypeError, ValueError):
@@ -103,16 +116,17 @@ def limits(values: Limits, where: str, *, least: float = -np.inf) -> Limits:
     if low > high:
         found = f"[{low:.15g}, {high:.15g}]"
         raise ProblemError(f"{where} is {found}: lo exceeds hi; allowed is [lo, hi] with lo <= hi")
+    if high > GREATEST:
+        raise ProblemError(f"{where} is [{low:.15g}, {high:.15g}]; allowed is hi up to {GREATEST:g}")
     if low < least:
         raise ProblemError(f"{where} is [{low:.15g}, {high:.15g}]; allowed is lo from {least:g}")
     return low, high
 
 
 def span(points: FloatArray) -> float:
-    """Greatest distance between two of N points (N, 2); infinite beyond the floats."""
-    with np.errstate(over="ignore"):
-        separation = points[:, None] - points[None]
-        return float(np.hypot(separation[..., 0], separation[..., 1]).max(initial=0.0))
+    """Greatest distance between two of N points (N, 2)."""
+    separation = points[:, None] - points[None]
+    return float(np.hypot(separation[..., 0], separation[..., 1]).max(initial=0.0))
 
 
 def counted(number: int, noun: str) -> str:

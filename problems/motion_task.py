@@ -10,14 +10,18 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.checks import (
+    GREATEST,
+    LEAST,
     BoolArray,
     FloatArray,
     counted,
     finite_number,
     frozen_array,
     near_miss,
+    number_within,
     outline,
     span,
+    task_size,
 )
 from grashof.problems.errors import ProblemError
 
@@ -47,8 +51,8 @@ class MotionTask:
     Raises
     ------
     ProblemError
-        Fewer than two poses, numbers that are infinite, a pose with nothing given, no position at
-        all, two consecutive equal poses, or weights out of range.
+        Fewer than two poses, numbers that are infinite, lengths beyond 1e20, a size below 1e-20, a pose
+        with nothing given, no position at all, two consecutive equal poses, or weights out of range.
 
     Examples
     --------
@@ -89,14 +93,15 @@ class MotionTask:
         if len(places) < 2:
             raise ProblemError(f"motion.poses has {counted(len(places), 'pose')}; allowed are two or more")
         _refuse_halves(places, turned)
-        size = span(places[~np.isnan(places[:, 0])])
-        if not np.isfinite(size):
-            raise ProblemError("motion.poses are farther apart than the largest number")
+        _refuse_far(places)
+        size = task_size(places[~np.isnan(places[:, 0])], "motion.poses")
         _refuse_standing_still(places, turned)
-        if angle_length is not None and finite_number(angle_length, "motion.angle_length") <= 0:
-            raise ProblemError(
-                f"motion.angle_length is {angle_length:g}; allowed is a length greater than zero"
-            )
+        if angle_length is not None:
+            if finite_number(angle_length, "motion.angle_length") <= 0:
+                raise ProblemError(
+                    f"motion.angle_length is {angle_length:g}; allowed is a length greater than zero"
+                )
+            number_within(angle_length, LEAST, GREATEST, "motion.angle_length")
         if size == 0 and angle_length is None:
             raise ProblemError(
                 "motion.angle_length is missing: poses at a single place have no size to take it from"
@@ -213,6 +218,12 @@ def _weights(values: npt.ArrayLike | None, count: int) -> FloatArray:
             f"motion.weights[{index}] is {weights[index]}; allowed is a number from {least:g} to {most:g}"
         )
     return frozen_array(weights)
+
+
+def _refuse_far(positions: FloatArray) -> None:
+    for index in np.flatnonzero((np.abs(positions) > GREATEST).any(axis=1)):
+        x, y = positions[index]
+        raise ProblemError(f"motion.poses[{index}] is at {x:g}, {y:g}; allowed is up to {GREATEST:g}")
 
 
 def _refuse_halves(positions: FloatArray, angles: FloatArray) -> None:

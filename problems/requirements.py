@@ -8,7 +8,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from grashof.problems.checks import FloatArray, Limits, finite_number, limits, number_within
+from grashof.problems.checks import GREATEST, FloatArray, Limits, finite_number, limits, number_within
 from grashof.problems.errors import ProblemError
 from grashof.problems.task import Task
 
@@ -179,8 +179,8 @@ class Requirements:
         """
         return replace(
             self,
-            link_length=self.link_length or (0.01 * size, 20.0 * size),
-            coupler_arms=self.coupler_arms or (0.0, 30.0 * size),
+            link_length=self.link_length or (0.01 * size, min(20.0 * size, GREATEST)),
+            coupler_arms=self.coupler_arms or (0.0, min(30.0 * size, GREATEST)),
             o2=self.o2 or Box(),
             o4=self.o4 or Box(),
             a=self.a or Box(),
@@ -226,6 +226,9 @@ def _side(values: Limits, name: str) -> Limits:
         raise ProblemError(f"{name} is {values!r}; {allowed}") from None
     if not (low <= high and low < np.inf and high > -np.inf):
         raise ProblemError(f"{name} is [{low:.15g}, {high:.15g}]; {allowed}")
+    for side in (low, high):
+        if GREATEST < abs(side) < np.inf:
+            raise ProblemError(f"{name} is [{low:.15g}, {high:.15g}]; allowed is up to {GREATEST:g}")
     return low, high
 
 

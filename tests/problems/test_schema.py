@@ -309,6 +309,22 @@ SENSE = [
     ),
     ("[scene]\noutlines = [[]]", "scene.outlines[0] has 0 corners; allowed are two or more"),
     ("angle_length = 0", "motion.angle_length is 0; allowed is a length greater than zero"),
+    ("angle_length = 1e300", "motion.angle_length is 1e+300; allowed is 1e-20 to 1e+20"),
+    ("body = [[0, 0], [1, 1e21]]", "motion.body[1] is [1.0, 1e+21]; allowed are numbers up to 1e+20"),
+    (
+        "[scene]\noutlines = [[[0, 0], [1, -1e21]]]",
+        "scene.outlines[0][1] is [1.0, -1e+21]; allowed are numbers up to 1e+20",
+    ),
+    ("[requirements]\nr1 = [1, 1e21]", "requirements.r1 is [1, 1e+21]; allowed is hi up to 1e+20"),
+    (
+        "[requirements]\ncoupler_arms = [0, 1e300]",
+        "requirements.coupler_arms is [0, 1e+300]; allowed is hi up to 1e+20",
+    ),
+    ("[requirements]\no2 = { x = [0, 1e100] }", "requirements.o2.x is [0, 1e+100]; allowed is up to 1e+20"),
+    (
+        "[manufacturing]\nlength_tolerance = 1e300",
+        "manufacturing.length_tolerance is 1e+300; allowed is a length up to 1e+20",
+    ),
     (
         "weights = [1, 1, 1, 1e308]",
         "motion.weights[3] is 1e+308; allowed is a number from 1e-09 to 1e+09",
