@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import reprlib
+import unicodedata
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from numbers import Real
@@ -142,14 +143,38 @@ def near_miss(word: str, allowed: Sequence[str]) -> str | None:
 
 
 def readable(text: str) -> str:
-    r"""Text that every file can hold, such as of a file name that is not UTF-8.
+    r"""Text that every file and terminal can hold, such as of a file name that is not UTF-8.
 
     Examples
     --------
     >>> readable("caf\udce9")
     'caf?'
     """
-    return text.encode("utf-8", "replace").decode("utf-8")
+    return "".join("?" if _unprintable(character) else character for character in text)
+
+
+def plain_text(text: str, where: str) -> str:
+    r"""`text`, refused where a terminal, SVG or HTML would stumble over it: control characters, half ones.
+
+    Examples
+    --------
+    >>> plain_text("Étage 2", "title")
+    'Étage 2'
+    >>> plain_text("two\nlines", "title")
+    Traceback (most recent call last):
+        ...
+    grashof.problems.errors.ProblemError: title has control character U+000A; allowed is plain text
+    """
+    if not isinstance(text, str):
+        raise ProblemError(f"{where} is {reprlib.repr(text)}; allowed is text")
+    for character in filter(_unprintable, text):
+        raise ProblemError(f"{where} has control character U+{ord(character):04X}; allowed is plain text")
+    return text
+
+
+def _unprintable(character: str) -> bool:
+    # Control characters, halves of surrogate pairs, and the two that XML does not know.
+    return unicodedata.category(character) in ("Cc", "Cs") or character in "\ufffe\uffff"
 
 
 def _plain(row: object) -> str:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from grashof.problems.checks import GREATEST, finite_number, number_within, readable
+from grashof.problems.checks import GREATEST, finite_number, number_within, plain_text, readable
 from grashof.problems.display import Displayed
 from grashof.problems.dynamics_spec import DynamicsSpec
 from grashof.problems.errors import ProblemError
@@ -44,6 +44,10 @@ class LinkageSpec(Displayed):
     length_unit: str = ""
     output_arm: float | None = None
     dynamics: DynamicsSpec | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("name", "title", "source", "length_unit"):
+            plain_text(getattr(self, name), name)
 
 
 @dataclass(frozen=True, slots=True)
@@ -242,6 +246,8 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
         raise ProblemError(
             f"{where}: states no linkage and direction; allowed are the keys {', '.join(_LINKAGE_KEYS)}"
         ) from None
+    # JSON can spell what no file can hold.
+    heading, unit = (readable(word) if isinstance(word, str) else word for word in (heading, unit))
     document = {"title": heading, "length_unit": unit, "dynamics": content.get("dynamics", {}), **stated}
     try:
         spec = linkage_from(document, readable(f"{path.parent.name or path.stem}-{rank}"))
@@ -251,9 +257,8 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
     if direction not in (1, -1):
         raise ProblemError(f"{where}: direction is {reprlib.repr(direction)}; allowed is +1 or -1")
     driven = (spec.dynamics or DynamicsSpec()).turning(direction)
-    words = (f"{spec.title}: design {rank}", str(path), spec.length_unit)
-    title, source, unit = map(readable, words)  # JSON can spell what no file can hold
-    return LinkageSpec(linkage, spec.name, title, source, unit, dynamics=driven), design
+    title, source = f"{spec.title}: design {rank}", readable(str(path))
+    return LinkageSpec(linkage, spec.name, title, source, spec.length_unit, dynamics=driven), design
 
 
 def _errors(given: list[float | None]) -> tuple[float | None, ...]:

@@ -13,7 +13,7 @@ from grashof.problems.errors import ProblemError
 from grashof.problems.linkage import FourBar
 from grashof.problems.linkage_file import LinkageSpec
 from grashof.problems.schema import DynamicsTable
-from grashof.problems.tables import Table, listed, of_length, stated
+from grashof.problems.tables import Table, Text, listed, of_length, stated
 
 
 def linkage_from(document: dict[str, Any], name: str) -> LinkageSpec:
@@ -52,9 +52,9 @@ _LENGTHS = ("o2", "o4", "r1", "r2", "r3", "r4", "coupler_point", "output_arm")
 class LinkageTable(Table):
     """The whole linkage file."""
 
-    title: str = ""
-    source: str = ""
-    length_unit: str = ""
+    title: Text = ""
+    source: Text = ""
+    length_unit: Text = ""
     o2: Point = Field(default=[0.0, 0.0])
     o4: Point | None = None
     r1: float | None = None

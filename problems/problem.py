@@ -8,7 +8,15 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from grashof.problems.checks import FloatArray, counted, finite_number, outline, positive_number, whole_number
+from grashof.problems.checks import (
+    FloatArray,
+    counted,
+    finite_number,
+    outline,
+    plain_text,
+    positive_number,
+    whole_number,
+)
 from grashof.problems.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.errors import ProblemError
 from grashof.problems.manufacturing import Manufacturing
@@ -125,6 +133,8 @@ class Problem:
         for name, kind in _KINDS.items():
             if not isinstance(value := getattr(self, name), kind):
                 raise ProblemError(f"problem.{name} is {reprlib.repr(value)}; allowed is {_named(kind)}")
+        for name in ("name", "title", "source", "length_unit"):
+            plain_text(getattr(self, name), name)
         if isinstance(self.outlines, str) or not isinstance(self.outlines, Iterable):
             raise ProblemError(f"scene.outlines is {self.outlines!r}; allowed is a list of outlines")
         if self.dynamics is not None:

@@ -18,7 +18,7 @@ from grashof.problems.motion_task import MotionTask
 from grashof.problems.path_task import PathTask
 from grashof.problems.problem import Objective, Problem, Search
 from grashof.problems.requirements import Box, Requirements
-from grashof.problems.tables import LIST, TABLE, WORD, WRONG, Table, listed, one_of, stated, tag
+from grashof.problems.tables import LIST, TABLE, WORD, WRONG, Table, Text, listed, one_of, stated, tag
 from grashof.problems.task import Task
 
 
@@ -214,9 +214,9 @@ class SearchTable(Table):
 
 class ProblemFile(Table):
     kind: Annotated[str, one_of("motion", "path")]
-    title: str = ""
-    source: str = ""
-    length_unit: str = ""
+    title: Text = ""
+    source: Text = ""
+    length_unit: Text = ""
     motion: MotionTable | None = None
     path: PathTable | None = None
     scene: SceneTable = SceneTable()

@@ -6,7 +6,7 @@ import json
 import re
 import reprlib
 from collections.abc import Mapping
-from typing import Any, ClassVar, Self, TypeVar
+from typing import Annotated, Any, ClassVar, Self, TypeAlias, TypeVar
 
 from pydantic import (
     AfterValidator,
@@ -14,11 +14,12 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     ValidationError,
+    ValidationInfo,
     model_validator,
 )
 from pydantic_core import ErrorDetails, PydanticCustomError
 
-from grashof.problems.checks import counted, near_miss
+from grashof.problems.checks import counted, near_miss, plain_text
 from grashof.problems.errors import ProblemError
 
 # What a validator says about a value: its message is what is allowed instead.
@@ -79,6 +80,14 @@ def stated(table: type[AnyTable], document: dict[str, Any], tables: Mapping[str,
     first = min(errors, key=lambda error: error["type"] == "missing")
     more = f" (and {counted(len(errors) - 1, 'more error')})" if len(errors) > 1 else ""
     raise ProblemError(f"{_described(first, tables)}{more}")
+
+
+def _plain(text: str, key: ValidationInfo) -> str:
+    return plain_text(text, str(key.field_name))
+
+
+# Text for headings, axes and files.
+Text: TypeAlias = Annotated[str, AfterValidator(_plain)]
 
 
 def listed(allowed: str) -> BeforeValidator:

@@ -359,3 +359,12 @@ def test_a_short_list_says_why_it_is_short(grashof: Grashof, tmp_path: Path) -> 
 def test_the_version(grashof: Grashof) -> None:
     done = grashof("--version")
     assert (done.exit_code, done.stdout) == (0, f"grashof {version('grashof')}\n")
+
+
+def test_control_characters_of_names_do_not_reach_the_terminal(grashof: Grashof, tmp_path: Path) -> None:
+    path = tmp_path / "red\x1b[31m.toml"
+    done = grashof("check", path)
+    assert done.exit_code == 2
+    assert "red?[31m.toml: there is no such file" in done.stderr
+    path.write_text(problem_text("luggage"), encoding="utf-8")
+    assert grashof("check", path).stdout.startswith("red?[31m: Luggage")

@@ -494,3 +494,9 @@ def test_long_values_are_shortened_and_stay_on_one_line() -> None:
     assert text.startswith("title is [1, 1, 1,")
     assert len(text) < 100
     assert "\n" not in message(HEAD + '[requirements]\ntolerance = """a\nb"""')
+
+
+@pytest.mark.parametrize("key", ["title", "source", "length_unit"])
+def test_control_characters_are_refused(key: str) -> None:
+    said = f"{key} has control character U+001B; allowed is plain text"
+    assert message(f'{key} = "red \\u001b[31m"\n{HEAD}') == said
