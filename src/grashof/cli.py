@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
+import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -44,6 +46,7 @@ class Exit(IntEnum):
 
 
 TOP = 50
+TRACEBACK = "GRASHOF_TRACEBACK"  # environment variable: unexpected errors with their traceback
 # Options of the contract that later versions bring.
 _LATER_OPTIONS = ("--resume", "--scheduler")
 # Typer makes the base of its usage errors public only through this one.
@@ -62,6 +65,11 @@ class _Commands(TyperGroup):
         except _UsageError as error:
             say(f"grashof: {_later(given) or _one_line(error)}", err=True)
             code = Exit.BAD_INPUT
+        except Exception as error:  # noqa: BLE001  (the outermost boundary: nobody else tells what is left)
+            if os.environ.get(TRACEBACK):
+                say(traceback.format_exc(), err=True)
+            say(f"grashof: {_unexpected(error)}", err=True)
+            code = Exit.SURROUNDINGS
         sys.exit(code or Exit.OK)
 
 
@@ -271,6 +279,8 @@ def export(
 
 def main() -> None:
     """Entry point of the `grashof` command."""
+    # Drawings go to files: a backend meant for windows, or a misspelt one, must not stand in the way.
+    os.environ["MPLBACKEND"] = "agg"
     app(prog_name="grashof")
 
 
@@ -381,6 +391,11 @@ def _later(given: list[str]) -> str:
 def _one_line(error: Exception) -> str:
     message: str = getattr(error, "format_message", error.__str__)()
     return f"{' '.join(message.split()).rstrip('.')}; see grashof --help"
+
+
+def _unexpected(error: Exception) -> str:
+    words = " ".join(f"{type(error).__name__}: {error}".rstrip(": ").split())
+    return f"unexpected error: {words}; {TRACEBACK}=1 shows where, please report it with that"
 
 
 @contextmanager

@@ -368,3 +368,31 @@ def test_control_characters_of_names_do_not_reach_the_terminal(grashof: Grashof,
     assert "red?[31m.toml: there is no such file" in done.stderr
     path.write_text(problem_text("luggage"), encoding="utf-8")
     assert grashof("check", path).stdout.startswith("red?[31m: Luggage")
+
+
+def test_what_nobody_expected_ends_with_one_line(grashof: Grashof, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(_problem: Problem) -> list[str]:
+        raise ZeroDivisionError("division\nby zero")
+
+    monkeypatch.setattr("grashof.terminal.summary", broken)
+    monkeypatch.delenv("GRASHOF_TRACEBACK", raising=False)
+    done = grashof("check", "luggage")
+    assert done.exit_code == 3
+    line = done.stderr.removesuffix("\n")
+    assert line.startswith("grashof: unexpected error: ZeroDivisionError: division by zero;")
+    assert "\n" not in line
+    monkeypatch.setenv("GRASHOF_TRACEBACK", "1")
+    told = grashof("check", "luggage")
+    assert told.exit_code == 3
+    assert "Traceback (most recent call last)" in told.stderr
+    assert told.stderr.splitlines()[-1] == line
+
+
+def test_no_backend_of_matplotlib_stands_in_the_way(tmp_path: Path) -> None:
+    environment = {**os.environ, "MPLBACKEND": "nonsense"}
+    code = "import sys; from grashof.cli import main; sys.argv[0] = 'grashof'; main()"
+    done = subprocess.run(
+        [sys.executable, "-c", code, "animate", "pumpjack", "--seconds", "0.2", "--fps", "10"],
+        cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=120, check=False,
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (0, "pumpjack.gif\n")
