@@ -221,6 +221,8 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
     from grashof.problems.linkage_schema import linkage_from
 
     where = f"{path}#{which}"
+    if exists(str(path)) and not (path.is_file() or path.is_dir()):  # a pipe or a device may never end
+        raise ProblemError(f"{path}: is no ordinary file; allowed is a list of designs")
     try:
         content = json.loads(file_text(path, "a list of designs"))
         designs = {int(design["rank"]): design for design in content["designs"]}
