@@ -194,9 +194,15 @@ _GUARDS = ("Maximum_Iterations_Exceeded", "Maximum_WallTime_Exceeded")
 
 
 def write_csv(path: Path, frame: pd.DataFrame) -> None:
-    """A table with floats in full precision."""
+    """A table with floats in full precision; no text in it is a formula to a spreadsheet."""
+    texts = frame.select_dtypes(exclude=["number", "bool"]).columns
+    frame = frame.assign(**{name: frame[name].map(_no_formula) for name in texts})
     with path.open("w", encoding="utf-8", newline="") as file:  # pandas would read ~ as a home
         frame.to_csv(file, index=False, lineterminator="\n")
+
+
+def _no_formula(value: Any) -> Any:
+    return f"'{value}" if isinstance(value, str) and value.startswith(("=", "+", "-", "@")) else value
 
 
 def write_json(path: Path, content: dict[str, Any]) -> None:
