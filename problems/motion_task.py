@@ -24,6 +24,7 @@ from grashof.problems.checks import (
     task_size,
 )
 from grashof.problems.errors import ProblemError
+from grashof.problems.read_only import ReadOnly
 
 _POSE = "a pose [x, y, angle in degrees]"
 _SAME = 1e-12  # rad
@@ -32,7 +33,7 @@ _MOST_TURNED = 2e4 * np.pi  # rad: ten thousand turns
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
-class MotionTask:
+class MotionTask(ReadOnly):
     """Motion generation: the coupler carries a body through poses, in order.
 
     Parameters

@@ -10,12 +10,13 @@ import numpy.typing as npt
 
 from grashof.problems.checks import GREATEST, FloatArray, counted, finite_rows, frozen_array, span, task_size
 from grashof.problems.errors import ProblemError
+from grashof.problems.read_only import ReadOnly
 
 _TURN = 2 * np.pi
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
-class PathTask:
+class PathTask(ReadOnly):
     """Path generation: the coupler point P passes through points, in order.
 
     Parameters

@@ -20,6 +20,7 @@ from grashof.problems.checks import (
 from grashof.problems.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.errors import ProblemError
 from grashof.problems.manufacturing import Manufacturing
+from grashof.problems.read_only import ReadOnly
 from grashof.problems.requirements import Requirements
 from grashof.problems.task import Task
 
@@ -98,7 +99,7 @@ def _named(kind: Any) -> str:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Problem:
+class Problem(ReadOnly):
     """All that is asked, as a problem file states it.
 
     Parameters

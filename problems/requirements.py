@@ -10,6 +10,7 @@ import numpy as np
 
 from grashof.problems.checks import GREATEST, FloatArray, Limits, finite_number, limits, number_within
 from grashof.problems.errors import ProblemError
+from grashof.problems.read_only import ReadOnly
 from grashof.problems.task import Task
 
 
@@ -42,7 +43,7 @@ class Box:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Requirements:
+class Requirements(ReadOnly):
     """What a design must satisfy besides doing the task.
 
     Lengths are in the problem's unit; None means the default, which excludes only the absurd
