@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
-from grashof.problems.checks import GREATEST, FloatArray, counted, finite_rows
+from grashof.problems.checks import GREATEST, FloatArray, counted, finite_rows, noted, refuse
 from grashof.problems.errors import ProblemError
 
 _FLAT = 1e-12  # share of the square of its extent below which a polygon has no area
@@ -35,7 +35,13 @@ def polygons(values: Iterable[npt.ArrayLike], where: str) -> tuple[FloatArray, .
     """
     if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
         raise ProblemError(f"{where} is {values!r}; allowed is a list of polygons")
-    return tuple(_polygon(corners, f"{where}[{index}]") for index, corners in enumerate(values))
+    areas: list[FloatArray] = []
+    wrong: list[str] = []
+    for index, corners in enumerate(values):
+        with noted(wrong):
+            areas.append(_polygon(corners, f"{where}[{index}]"))
+    refuse(wrong)
+    return tuple(areas)
 
 
 def solid(areas: Sequence[FloatArray]) -> shapely.Geometry:

@@ -6,8 +6,8 @@ import difflib
 import math
 import reprlib
 import unicodedata
-from collections.abc import Iterable, Sequence
-from contextlib import suppress
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from numbers import Real
 from typing import TypeAlias
 
@@ -39,24 +39,55 @@ def finite_rows(
     """Array of shape (N, `columns`), each row checked by itself so that the message can name it."""
     if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
         raise ProblemError(f"{where} is {values!r}; allowed is a list, each entry {row_means}")
-    rows = []
+    rows: list[FloatArray] = []
+    wrong: list[str] = []
     for index, row in enumerate(values):
-        name = f"{where}[{index}]"
-        try:
-            numbers = np.asarray(row)
-        except ValueError:  # rows of unequal length inside
-            raise ProblemError(f"{name} is {row!r}; allowed is {row_means}") from None
-        if numbers.dtype.kind not in "iuf":
-            raise ProblemError(f"{name} is {row!r}; allowed is {row_means}")
-        if numbers.shape != (columns,):
-            count = counted(numbers.size, "number") if numbers.ndim == 1 else "no plain list of numbers"
-            raise ProblemError(f"{name} is {_plain(row)}, {count}; allowed is {row_means}")
-        if not np.isfinite(numbers).all():
-            raise ProblemError(f"{name} is {_plain(row)}; all numbers must be finite")
-        if (np.abs(numbers) > greatest).any():
-            raise ProblemError(f"{name} is {_plain(row)}; allowed are numbers up to {greatest:g}")
-        rows.append(numbers.astype(np.float64))
+        with noted(wrong):
+            rows.append(_finite_row(row, columns, f"{where}[{index}]", row_means, greatest))
+    refuse(wrong)
     return frozen_array(np.array(rows, dtype=np.float64).reshape(-1, columns))
+
+
+def _finite_row(row: object, columns: int, name: str, row_means: str, greatest: float) -> FloatArray:
+    try:
+        numbers = np.asarray(row)
+    except ValueError:  # rows of unequal length inside
+        raise ProblemError(f"{name} is {row!r}; allowed is {row_means}") from None
+    if numbers.dtype.kind not in "iuf":
+        raise ProblemError(f"{name} is {row!r}; allowed is {row_means}")
+    if numbers.shape != (columns,):
+        count = counted(numbers.size, "number") if numbers.ndim == 1 else "no plain list of numbers"
+        raise ProblemError(f"{name} is {_plain(row)}, {count}; allowed is {row_means}")
+    if not np.isfinite(numbers).all():
+        raise ProblemError(f"{name} is {_plain(row)}; all numbers must be finite")
+    if (np.abs(numbers) > greatest).any():
+        raise ProblemError(f"{name} is {_plain(row)}; allowed are numbers up to {greatest:g}")
+    return numbers.astype(np.float64)
+
+
+@contextmanager
+def noted(wrong: list[str]) -> Iterator[None]:
+    """Note what is refused inside, and go on."""
+    try:
+        yield
+    except ProblemError as error:
+        wrong += str(error).splitlines()
+
+
+def refuse(wrong: Sequence[str]) -> None:
+    """Refuse all that was noted, if there is anything."""
+    if wrong:
+        raise refused(wrong)
+
+
+def refused(wrong: Iterable[str]) -> ProblemError:
+    """The error of all that was noted, each in a line of its own and once."""
+    return ProblemError("\n".join(dict.fromkeys(wrong)))
+
+
+def located(error: ProblemError, where: str) -> ProblemError:
+    """The same error, every line of it beginning with the place, such as the name of a file."""
+    return ProblemError("\n".join(f"{where}: {line}" for line in str(error).splitlines()))
 
 
 def outline(values: npt.ArrayLike, where: str) -> FloatArray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from grashof.problems.checks import readable
+from grashof.problems.checks import located, readable
 from grashof.problems.errors import ProblemError
 from grashof.problems.problem import Problem
 from grashof.problems.toml_file import Catalogue, document_of, exists, file_text, looks_like_path
@@ -93,4 +93,4 @@ def _parsed(text: str, file_name: str, name: str) -> Problem:
     try:
         return problem_from(document, name)
     except ProblemError as error:
-        raise ProblemError(f"{file_name}: {error}") from None
+        raise located(error, file_name) from None

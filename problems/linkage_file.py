@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from grashof.problems.checks import GREATEST, finite_number, number_within, plain_text, readable
+from grashof.problems.checks import GREATEST, finite_number, located, number_within, plain_text, readable
 from grashof.problems.display import Displayed
 from grashof.problems.dynamics_spec import DynamicsSpec
 from grashof.problems.errors import ProblemError
@@ -210,7 +210,7 @@ def _parsed(text: str, file_name: str, name: str) -> LinkageSpec:
     try:
         return linkage_from(document, name)
     except ProblemError as error:
-        raise ProblemError(f"{file_name}: {error}") from None
+        raise located(error, file_name) from None
 
 
 _LINKAGE_KEYS = ("o2", "o4", "r2", "r3", "r4", "coupler_point", "assembly", "body_angle")
@@ -255,7 +255,7 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
         spec = linkage_from(document, readable(f"{path.parent.name or path.stem}-{rank}"))
         linkage = replace(spec.linkage, body_angle=np.asarray(finite_number(turned, "body_angle")))
     except ProblemError as error:
-        raise ProblemError(f"{where}: {error}") from None
+        raise located(error, where) from None
     if direction not in (1, -1):
         raise ProblemError(f"{where}: direction is {reprlib.repr(direction)}; allowed is +1 or -1")
     driven = (spec.dynamics or DynamicsSpec()).turning(direction)

@@ -18,8 +18,10 @@ from grashof.problems.checks import (
     finite_number,
     frozen_array,
     near_miss,
+    noted,
     number_within,
     outline,
+    refuse,
     span,
     task_size,
 )
@@ -125,7 +127,13 @@ class MotionTask(ReadOnly):
         """Task from rows [x, y, angle in degrees], or tables of x, y, angle, as problem files write them."""
         if isinstance(poses, (str, bytes, Mapping)) or not isinstance(poses, Iterable):
             raise ProblemError(f"motion.poses is {poses!r}; allowed is a list of poses")
-        rows = np.array([_row(pose, f"motion.poses[{k}]") for k, pose in enumerate(poses)]).reshape(-1, 3)
+        given: list[tuple[float, float, float]] = []
+        wrong: list[str] = []
+        for k, pose in enumerate(poses):
+            with noted(wrong):
+                given.append(_row(pose, f"motion.poses[{k}]"))
+        refuse(wrong)
+        rows = np.array(given).reshape(-1, 3)
         return cls(rows[:, :2], np.radians(rows[:, 2]), weights=weights, angle_length=angle_length, body=body)
 
     @property

@@ -12,9 +12,11 @@ from grashof.problems.checks import (
     FloatArray,
     counted,
     finite_number,
+    noted,
     outline,
     plain_text,
     positive_number,
+    refuse,
     whole_number,
 )
 from grashof.problems.dynamics_spec import DynamicsSpec, metres
@@ -138,19 +140,23 @@ class Problem(ReadOnly):
             plain_text(getattr(self, name), name)
         if isinstance(self.outlines, str) or not isinstance(self.outlines, Iterable):
             raise ProblemError(f"scene.outlines is {self.outlines!r}; allowed is a list of outlines")
+        wrong: list[str] = []
         if self.dynamics is not None:
-            metres(self.length_unit)  # refuses one that is not known
-            positive_number(self.dynamics.speed_rpm, "dynamics.speed_rpm")
+            with noted(wrong):
+                metres(self.length_unit)  # refuses one that is not known
+            with noted(wrong):
+                positive_number(self.dynamics.speed_rpm, "dynamics.speed_rpm")
             if not self.dynamics.has_masses:
-                raise ProblemError(
+                wrong.append(
                     "dynamics has no mass; mass_per_length is needed, masses and inertias, or payload"
                 )
         elif self.objective.torque > 0:
-            raise ProblemError("dynamics is missing; objective.maximise asks for the torque")
+            wrong.append("dynamics is missing; objective.maximise asks for the torque")
         if self.objective.torque > 0 and not self.requirements.same_branch:
-            raise ProblemError(
+            wrong.append(
                 "requirements.same_branch is false; allowed is true when objective.maximise asks for torque"
             )
+        refuse(wrong)
         checked = tuple(
             outline(corners, f"scene.outlines[{index}]") for index, corners in enumerate(self.outlines)
         )

@@ -8,7 +8,16 @@ from enum import StrEnum
 
 import numpy as np
 
-from grashof.problems.checks import GREATEST, FloatArray, Limits, finite_number, limits, number_within
+from grashof.problems.checks import (
+    GREATEST,
+    FloatArray,
+    Limits,
+    finite_number,
+    limits,
+    noted,
+    number_within,
+    refuse,
+)
 from grashof.problems.errors import ProblemError
 from grashof.problems.read_only import ReadOnly
 from grashof.problems.task import Task
@@ -38,8 +47,11 @@ class Box:
     y: Limits = (-np.inf, np.inf)
 
     def __post_init__(self) -> None:
+        wrong: list[str] = []
         for axis in ("x", "y"):
-            object.__setattr__(self, axis, _side(getattr(self, axis), axis))
+            with noted(wrong):
+                object.__setattr__(self, axis, _side(getattr(self, axis), axis))
+        refuse(wrong)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

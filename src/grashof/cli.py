@@ -404,7 +404,8 @@ def _errors_told() -> Iterator[None]:
     try:
         yield
     except ProblemError as error:
-        say(f"grashof: {error}", err=True)
+        for line in str(error).splitlines():
+            say(f"grashof: {line}", err=True)
         raise typer.Exit(Exit.BAD_INPUT) from None
     except (SolverError, OSError) as error:
         say(f"grashof: {error}", err=True)

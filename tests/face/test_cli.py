@@ -396,3 +396,15 @@ def test_no_backend_of_matplotlib_stands_in_the_way(tmp_path: Path) -> None:
         cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=120, check=False,
     )  # fmt: skip
     assert (done.returncode, done.stderr) == (0, "pumpjack.gif\n")
+
+
+def test_every_error_of_a_file_has_its_line(grashof: Grashof, tmp_path: Path) -> None:
+    path = tmp_path / "bad.toml"
+    path.write_text('kind = "motion"\n[motion]\nposes = [[1, 2], [3, 4, 5], 6]\n[search]\nseed = -1\n')
+    done = grashof("check", path)
+    assert done.exit_code == 2
+    assert done.stderr.splitlines() == [
+        f"grashof: {path}: motion.poses[0] is [1, 2], 2 numbers; allowed is a pose [x, y, angle in degrees]",
+        f"grashof: {path}: motion.poses[2] is 6; allowed is a pose [x, y, angle in degrees]",
+        f"grashof: {path}: search.seed is -1; allowed is a whole number from 0",
+    ]

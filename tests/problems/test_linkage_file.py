@@ -252,3 +252,22 @@ def test_a_file_name_that_is_not_text(tmp_path: Path) -> None:
     except OSError:
         pytest.skip("this file system takes UTF-8 names only")
     assert load_linkage_spec(path).name == "caf?"
+
+
+def test_all_errors_are_told_a_line_each(tmp_path: Path) -> None:
+    text = "o2 = [1, 2, 3]\no4 = [1e30, 0]\nr2 = -1\nr3 = 0\nr4 = 'x'\ncoupler = 2\noutput_arm = -1\n"
+    path = written(tmp_path, text)
+    with pytest.raises(ProblemError) as refused:
+        load_linkage(path)
+    assert str(refused.value).splitlines() == [
+        f"{path}: {line}"
+        for line in (
+            "o2 is [1, 2, 3]; allowed is [x, y]",
+            "o4 is 1e+30; allowed is -1e+20 to 1e+20",
+            "r2 is -1.0; allowed are lengths greater than zero",
+            "r3 is 0.0; allowed are lengths greater than zero",
+            "r4 is 'x'; allowed is a number",
+            "output_arm is -1; allowed are lengths greater than zero",
+            "coupler is unknown; did you mean coupler_point?",
+        )
+    ]

@@ -77,7 +77,8 @@ def test_exact_is_checked() -> None:
         ([[1, 2], [3, np.nan], [5, 6]], r"path.points\[1\] is \[3, nan\]; all numbers must be finite"),
         (
             [[1e100, 0], [-1e100, 0], [0, 1]],
-            r"path.points\[0\] is \[1e\+100, 0\]; allowed are numbers up to 1e\+20",
+            r"path.points\[0\] is \[1e\+100, 0\]; allowed are numbers up to 1e\+20\n"
+            r"path.points\[1\] is \[-1e\+100, 0\]; allowed are numbers up to 1e\+20",
         ),
         (
             [[0, 0], [1e-150, 0], [0, 1e-150]],
