@@ -298,7 +298,7 @@ def _solve(
     from grashof.folder import PAGE, check_writable
     from grashof.output import write_run
     from grashof.synth import synthesize
-    from grashof.terminal import print_table, search_progress
+    from grashof.terminal import beginning, print_table, search_progress
 
     folder = out if out is not None else Path(f"{problem.name}-designs")
     check_writable(folder, drawings)
@@ -313,7 +313,7 @@ def _solve(
         "top": top,
     }
     with _interruptible() as interrupted:
-        with search_progress(problem.name) as progress:
+        with search_progress(problem.name, beginning(problem)) as progress:
             found = synthesize(
                 problem,
                 starts=starts,
