@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import os
 import reprlib
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +16,9 @@ from grashof.problems.checks import GREATEST, finite_number, located, number_wit
 from grashof.problems.display import Displayed
 from grashof.problems.dynamics_spec import DynamicsSpec
 from grashof.problems.errors import ProblemError
-from grashof.problems.files import catalogue
+from grashof.problems.files import catalogue, problem_of
 from grashof.problems.linkage import FourBar
+from grashof.problems.problem import Problem
 from grashof.problems.toml_file import Catalogue, document_of, exists, file_text, looks_like_path
 
 _LINKAGES = Catalogue("linkage", "linkages")
@@ -35,6 +37,8 @@ class LinkageSpec(Displayed):
         factor are told.
     dynamics : DynamicsSpec, optional
         It need not say masses.
+    problem : Problem, optional
+        Of a design out of a list: what it was found for.
     """
 
     linkage: FourBar
@@ -44,6 +48,7 @@ class LinkageSpec(Displayed):
     length_unit: str = ""
     output_arm: float | None = None
     dynamics: DynamicsSpec | None = None
+    problem: Problem | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         for name in ("name", "title", "source", "length_unit"):
@@ -260,7 +265,25 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
         raise ProblemError(f"{where}: direction is {reprlib.repr(direction)}; allowed is +1 or -1")
     driven = (spec.dynamics or DynamicsSpec()).turning(direction)
     title, source = f"{spec.title}: design {rank}", readable(str(path))
-    return LinkageSpec(linkage, spec.name, title, source, spec.length_unit, dynamics=driven), design
+    problem = _listed_problem(content, path)
+    return LinkageSpec(linkage, spec.name, title, source, unit, dynamics=driven, problem=problem), design
+
+
+def _listed_problem(content: dict[str, Any], path: Path) -> Problem | None:
+    """The problem that a list was made for; None where a list, made by hand, does not state it."""
+    if (text := content.get("problem_toml")) is None:
+        return None
+    wrong = f"{reprlib.repr(text)} is no text"
+    if isinstance(text, str):
+        try:
+            return problem_of(text, "problem_toml", readable(str(content.get("problem", path.stem))))
+        except ProblemError as error:
+            wrong = str(error).splitlines()[0]
+    writer = content.get("grashof", "of unknown version")
+    raise ProblemError(
+        f"{path}: was written by grashof {writer}, and grashof {version('grashof')} cannot read its problem: "
+        f"{wrong}; solve it again"
+    )
 
 
 def _errors(given: list[float | None]) -> tuple[float | None, ...]:

@@ -14,6 +14,7 @@ import numpy as np
 from grashof.folder import PAGE, RECORD, replacing_own_files
 from grashof.problems import FourBar, Problem
 from grashof.problems.checks import FloatArray
+from grashof.problems.writing import problem_toml
 from grashof.synth import Candidate, Result
 from grashof.synth.table import DYNAMICS, MANUFACTURING, MOTION, to_frame
 
@@ -99,7 +100,9 @@ def _write_record(
 def _designs(result: Result, frame: pd.DataFrame) -> dict[str, Any]:
     problem = result.problem
     return {
+        "grashof": version("grashof"),
         "problem": problem.name,
+        "problem_toml": problem_toml(problem),
         "title": problem.title,
         "length_unit": problem.length_unit,
         "angle_unit": "rad",
