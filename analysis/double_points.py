@@ -12,6 +12,7 @@ from grashof.analysis.curve import coupler_curve
 from grashof.analysis.motion import TURN
 from grashof.problems import FourBar
 from grashof.problems.checks import ComplexArray, FloatArray, IntArray, frozen_array
+from grashof.problems.read_only import ReadOnly
 
 _REAL = 1e-6  # imaginary share up to which rounding may have split a double root
 _ROUNDING = 1e-12  # share of the size: gaps below it are rounding
@@ -20,7 +21,7 @@ _STEPS = 8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class DoublePoints:
+class DoublePoints(ReadOnly):
     """Where the coupler curve passes twice.
 
     Parameters

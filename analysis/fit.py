@@ -15,6 +15,7 @@ from grashof.analysis.position import solve_position
 from grashof.problems import FourBar
 from grashof.problems.checks import FloatArray, finite_rows, frozen_array, whole_number
 from grashof.problems.errors import ProblemError
+from grashof.problems.read_only import ReadOnly
 
 _NODES = 128  # of the quadrature over a motion
 _EQUAL = 1e-14  # share of their size by which equal values may differ
@@ -25,7 +26,7 @@ class NotAFunctionWarning(UserWarning):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class PolynomialFit:
+class PolynomialFit(ReadOnly):
     """A polynomial fitted to samples, in one coordinate or several; call it to evaluate it.
 
     Parameters

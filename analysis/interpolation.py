@@ -11,10 +11,11 @@ from scipy.interpolate import CubicSpline
 from grashof.analysis.fit import samples
 from grashof.problems.checks import FloatArray, finite_number, frozen_array
 from grashof.problems.errors import ProblemError
+from grashof.problems.read_only import ReadOnly
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class NewtonPolynomial:
+class NewtonPolynomial(ReadOnly):
     """The polynomial through given values, in Newton's form; call it to evaluate it.
 
     Parameters

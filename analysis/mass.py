@@ -11,10 +11,11 @@ import numpy.typing as npt
 from grashof.analysis.kinematics import Kinematics, PointMotion
 from grashof.problems import DynamicsSpec, FourBar, ProblemError
 from grashof.problems.checks import FloatArray, frozen_array
+from grashof.problems.read_only import ReadOnly
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
-class Body:
+class Body(ReadOnly):
     """Mass properties of a link, in the link's frame.
 
     Parameters

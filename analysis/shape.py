@@ -12,12 +12,13 @@ from grashof.analysis.position import solve_position
 from grashof.problems import FourBar
 from grashof.problems.checks import FloatArray, finite_rows, frozen_array, whole_number
 from grashof.problems.errors import ProblemError
+from grashof.problems.read_only import ReadOnly
 
 _STRAIGHT = 1e-11  # deviations below this share of the length are rounding
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class BestLine:
+class BestLine(ReadOnly):
     """The line with the least sum of squared distances from the points.
 
     Parameters
@@ -48,7 +49,7 @@ class BestLine:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class BestCircle:
+class BestCircle(ReadOnly):
     """The circle with the least sum of squared distances from the points.
 
     Parameters

@@ -12,11 +12,10 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
-from grashof.problems.checks import FloatArray, counted, finite_rows
+from grashof.problems.checks import GREATEST, FloatArray, counted, finite_rows, noted, refuse
 from grashof.problems.errors import ProblemError
 
 _FLAT = 1e-12  # share of the square of its extent below which a polygon has no area
-_FARTHEST = 1e100  # up to here areas and distances are numbers
 
 
 def polygons(values: Iterable[npt.ArrayLike], where: str) -> tuple[FloatArray, ...]:
@@ -36,7 +35,13 @@ def polygons(values: Iterable[npt.ArrayLike], where: str) -> tuple[FloatArray, .
     """
     if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
         raise ProblemError(f"{where} is {values!r}; allowed is a list of polygons")
-    return tuple(_polygon(corners, f"{where}[{index}]") for index, corners in enumerate(values))
+    areas: list[FloatArray] = []
+    wrong: list[str] = []
+    for index, corners in enumerate(values):
+        with noted(wrong):
+            areas.append(_polygon(corners, f"{where}[{index}]"))
+    refuse(wrong)
+    return tuple(areas)
 
 
 def solid(areas: Sequence[FloatArray]) -> shapely.Geometry:
@@ -63,10 +68,7 @@ def solid(areas: Sequence[FloatArray]) -> shapely.Geometry:
 
 
 def _polygon(values: npt.ArrayLike, where: str) -> FloatArray:
-    corners = finite_rows(values, 2, where, "a corner [x, y]")
-    farthest = float(np.abs(corners).max(initial=0.0))
-    if farthest > _FARTHEST:
-        raise ProblemError(f"{where} reaches {farthest:g}; allowed are coordinates up to {_FARTHEST:g}")
+    corners = finite_rows(values, 2, where, "a corner [x, y]", GREATEST)
     distinct = len(np.unique(corners, axis=0))
     if distinct < 3:
         raise ProblemError(f"{where} has {counted(distinct, 'distinct corner')}; allowed are three or more")

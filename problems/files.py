@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from grashof.problems.checks import readable
+from grashof.problems.checks import located, readable
 from grashof.problems.errors import ProblemError
 from grashof.problems.problem import Problem
 from grashof.problems.toml_file import Catalogue, document_of, exists, file_text, looks_like_path
@@ -49,13 +49,13 @@ def load_with_text(problem: str | os.PathLike[str]) -> tuple[Problem, str]:
     if isinstance(problem, str) and not looks_like_path(problem):
         if problem in _PROBLEMS.names:
             text = _PROBLEMS.text(problem)
-            return _parsed(text, f"{problem}.toml", problem), text
+            return problem_of(text, f"{problem}.toml", problem), text
         if not exists(problem):
             hint = _PROBLEMS.hint(problem)
             raise ProblemError(f"{problem!r} is no problem of the catalogue and no file; {hint}")
     path = Path(problem)
     text = file_text(path, "a problem file", _PROBLEMS.hint(path.stem))
-    return _parsed(text, str(path), readable(path.stem)), text
+    return problem_of(text, str(path), readable(path.stem)), text
 
 
 def catalogue() -> tuple[str, ...]:
@@ -85,7 +85,8 @@ def problem_text(name: str) -> str:
     return _PROBLEMS.text(name)
 
 
-def _parsed(text: str, file_name: str, name: str) -> Problem:
+def problem_of(text: str, file_name: str, name: str) -> Problem:
+    """Problem that the text of a file states; messages begin with the name of the file."""
     # Here, not above: worker processes import this package, and need not pay for pydantic.
     from grashof.problems.schema import problem_from
 
@@ -93,4 +94,4 @@ def _parsed(text: str, file_name: str, name: str) -> Problem:
     try:
         return problem_from(document, name)
     except ProblemError as error:
-        raise ProblemError(f"{file_name}: {error}") from None
+        raise located(error, file_name) from None

@@ -121,6 +121,14 @@ class FourBar(Displayed):
             taken[field.name] = value[(*index, slice(None))] if field.name in _POINTS else value[index]
         return FourBar(**taken)
 
+    def __repr__(self) -> str:
+        """Of a single linkage: Python that makes it, in full precision."""
+        if self.shape:
+            return f"<FourBar: batch of shape {self.shape}>"
+        values = {field.name: getattr(self, field.name).tolist() for field in fields(self)}
+        values |= {name: tuple(values[name]) for name in _POINTS} | {"assembly": int(self.assembly)}
+        return f"FourBar({', '.join(f'{name}={value!r}' for name, value in values.items())})"
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, FourBar):
             return NotImplemented

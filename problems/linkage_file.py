@@ -5,18 +5,20 @@ from __future__ import annotations
 import json
 import os
 import reprlib
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from grashof.problems.checks import GREATEST, finite_number, number_within, readable
+from grashof.problems.checks import GREATEST, finite_number, located, number_within, plain_text, readable
 from grashof.problems.display import Displayed
 from grashof.problems.dynamics_spec import DynamicsSpec
 from grashof.problems.errors import ProblemError
-from grashof.problems.files import catalogue
+from grashof.problems.files import catalogue, problem_of
 from grashof.problems.linkage import FourBar
+from grashof.problems.problem import Problem
 from grashof.problems.toml_file import Catalogue, document_of, exists, file_text, looks_like_path
 
 _LINKAGES = Catalogue("linkage", "linkages")
@@ -35,6 +37,8 @@ class LinkageSpec(Displayed):
         factor are told.
     dynamics : DynamicsSpec, optional
         It need not say masses.
+    problem : Problem, optional
+        Of a design out of a list: what it was found for.
     """
 
     linkage: FourBar
@@ -44,6 +48,11 @@ class LinkageSpec(Displayed):
     length_unit: str = ""
     output_arm: float | None = None
     dynamics: DynamicsSpec | None = None
+    problem: Problem | None = field(default=None, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        for name in ("name", "title", "source", "length_unit"):
+            plain_text(getattr(self, name), name)
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,7 +215,7 @@ def _parsed(text: str, file_name: str, name: str) -> LinkageSpec:
     try:
         return linkage_from(document, name)
     except ProblemError as error:
-        raise ProblemError(f"{file_name}: {error}") from None
+        raise located(error, file_name) from None
 
 
 _LINKAGE_KEYS = ("o2", "o4", "r2", "r3", "r4", "coupler_point", "assembly", "body_angle")
@@ -217,6 +226,8 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
     from grashof.problems.linkage_schema import linkage_from
 
     where = f"{path}#{which}"
+    if exists(str(path)) and not (path.is_file() or path.is_dir()):  # a pipe or a device may never end
+        raise ProblemError(f"{path}: is no ordinary file; allowed is a list of designs")
     try:
         content = json.loads(file_text(path, "a list of designs"))
         designs = {int(design["rank"]): design for design in content["designs"]}
@@ -242,18 +253,37 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
         raise ProblemError(
             f"{where}: states no linkage and direction; allowed are the keys {', '.join(_LINKAGE_KEYS)}"
         ) from None
+    # JSON can spell what no file can hold.
+    heading, unit = (readable(word) if isinstance(word, str) else word for word in (heading, unit))
     document = {"title": heading, "length_unit": unit, "dynamics": content.get("dynamics", {}), **stated}
     try:
         spec = linkage_from(document, readable(f"{path.parent.name or path.stem}-{rank}"))
         linkage = replace(spec.linkage, body_angle=np.asarray(finite_number(turned, "body_angle")))
     except ProblemError as error:
-        raise ProblemError(f"{where}: {error}") from None
+        raise located(error, where) from None
     if direction not in (1, -1):
         raise ProblemError(f"{where}: direction is {reprlib.repr(direction)}; allowed is +1 or -1")
     driven = (spec.dynamics or DynamicsSpec()).turning(direction)
-    words = (f"{spec.title}: design {rank}", str(path), spec.length_unit)
-    title, source, unit = map(readable, words)  # JSON can spell what no file can hold
-    return LinkageSpec(linkage, spec.name, title, source, unit, dynamics=driven), design
+    title, source = f"{spec.title}: design {rank}", readable(str(path))
+    problem = _listed_problem(content, path)
+    return LinkageSpec(linkage, spec.name, title, source, unit, dynamics=driven, problem=problem), design
+
+
+def _listed_problem(content: dict[str, Any], path: Path) -> Problem | None:
+    """The problem that a list was made for; None where a list, made by hand, does not state it."""
+    if (text := content.get("problem_toml")) is None:
+        return None
+    wrong = f"{reprlib.repr(text)} is no text"
+    if isinstance(text, str):
+        try:
+            return problem_of(text, "problem_toml", readable(str(content.get("problem", path.stem))))
+        except ProblemError as error:
+            wrong = str(error).splitlines()[0]
+    writer = content.get("grashof", "of unknown version")
+    raise ProblemError(
+        f"{path}: was written by grashof {writer}, and grashof {version('grashof')} cannot read its problem: "
+        f"{wrong}; solve it again"
+    )
 
 
 def _errors(given: list[float | None]) -> tuple[float | None, ...]:

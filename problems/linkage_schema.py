@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, ValidationInfo, field_validator
 
 from grashof.problems.checks import GREATEST, finite_number, number_within
 from grashof.problems.dynamics_spec import metres
@@ -13,7 +13,7 @@ from grashof.problems.errors import ProblemError
 from grashof.problems.linkage import FourBar
 from grashof.problems.linkage_file import LinkageSpec
 from grashof.problems.schema import DynamicsTable
-from grashof.problems.tables import Table, listed, of_length, stated
+from grashof.problems.tables import Table, Text, listed, of_length, stated
 
 
 def linkage_from(document: dict[str, Any], name: str) -> LinkageSpec:
@@ -28,7 +28,7 @@ def linkage_from(document: dict[str, Any], name: str) -> LinkageSpec:
     Raises
     ------
     ProblemError
-        The first error found, with its key path, and how many more there are.
+        All errors found, a line each, with their key paths.
 
     Examples
     --------
@@ -46,15 +46,12 @@ def linkage_from(document: dict[str, Any], name: str) -> LinkageSpec:
 Point = Annotated[list[float], listed("[x, y]"), of_length(2, "[x, y]")]
 
 
-_LENGTHS = ("o2", "o4", "r1", "r2", "r3", "r4", "coupler_point", "output_arm")
-
-
 class LinkageTable(Table):
     """The whole linkage file."""
 
-    title: str = ""
-    source: str = ""
-    length_unit: str = ""
+    title: Text = ""
+    source: Text = ""
+    length_unit: Text = ""
     o2: Point = Field(default=[0.0, 0.0])
     o4: Point | None = None
     r1: float | None = None
@@ -68,10 +65,32 @@ class LinkageTable(Table):
     output_arm: float | None = None
     dynamics: DynamicsTable | None = None
 
+    @field_validator("o2", "o4", "r2", "r3", "r4", "coupler_point", "assembly")
+    @classmethod
+    def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
+        plain = {"o2": (0, 0), "o4": (1, 0), "r2": 1, "r3": 1, "r4": 1}
+        FourBar(**{**plain, str(key.field_name): given})
+        for number in np.atleast_1d(given).tolist():
+            number_within(number, -GREATEST, GREATEST, str(key.field_name))
+        return given
+
+    @field_validator("r1", "output_arm")
+    @classmethod
+    def _length(cls, length: float | None, key: ValidationInfo) -> float | None:
+        where = str(key.field_name)
+        if length is not None:
+            if finite_number(length, where) <= 0:
+                raise ProblemError(f"{where} is {length:g}; allowed are lengths greater than zero")
+            number_within(length, -GREATEST, GREATEST, where)
+        return length
+
+    @field_validator("body_angle_deg", "ground_angle_deg")
+    @classmethod
+    def _angle(cls, angle: float | None, key: ValidationInfo) -> float | None:
+        return None if angle is None else finite_number(angle, str(key.field_name))
+
     def value(self) -> FourBar:
         """The linkage itself, checked with what belongs to it."""
-        if self.output_arm is not None and finite_number(self.output_arm, "output_arm") <= 0:
-            raise ProblemError(f"output_arm is {self.output_arm:g}; allowed are lengths greater than zero")
         if self.dynamics is not None and self.dynamics.value().has_masses:
             metres(self.length_unit)  # refuses one that is not known
         linkage = FourBar(
@@ -82,11 +101,8 @@ class LinkageTable(Table):
             r4=self.r4,
             coupler_point=self.coupler_point,
             assembly=self.assembly,
-            body_angle=np.radians(finite_number(self.body_angle_deg, "body_angle_deg")),
+            body_angle=np.radians(self.body_angle_deg),
         )
-        for key in _LENGTHS:
-            for length in np.atleast_1d(0.0 if (given := getattr(self, key)) is None else given).tolist():
-                number_within(length, -GREATEST, GREATEST, key)
         if not linkage.r1 > 0:
             raise ProblemError("o4 is where o2 is; allowed are two different ground pivots")
         return linkage
@@ -99,9 +115,7 @@ class LinkageTable(Table):
             return self.o4
         if self.r1 is None:
             raise ProblemError("o4 is missing; allowed is also r1 with ground_angle_deg")
-        if finite_number(self.r1, "r1") <= 0:
-            raise ProblemError(f"r1 is {self.r1:g}; allowed are lengths greater than zero")
-        angle = np.radians(finite_number(self.ground_angle_deg or 0.0, "ground_angle_deg"))
+        angle = np.radians(self.ground_angle_deg or 0.0)
         return [float(self.o2[0] + self.r1 * np.cos(angle)), float(self.o2[1] + self.r1 * np.sin(angle))]
 
     def spec(self, name: str) -> LinkageSpec:

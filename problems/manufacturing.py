@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from grashof.problems.checks import finite_number
+from grashof.problems.checks import GREATEST, finite_number
 from grashof.problems.errors import ProblemError
 
 
@@ -56,4 +56,6 @@ def _length(value: float, where: str) -> float:
     length = finite_number(value, where)
     if length <= 0:
         raise ProblemError(f"{where} is {length:.15g}; allowed is a length greater than zero")
+    if length > GREATEST:
+        raise ProblemError(f"{where} is {length:.15g}; allowed is a length up to {GREATEST:g}")
     return length

@@ -10,16 +10,23 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.checks import (
+    GREATEST,
+    LEAST,
     BoolArray,
     FloatArray,
     counted,
     finite_number,
     frozen_array,
     near_miss,
+    noted,
+    number_within,
     outline,
+    refuse,
     span,
+    task_size,
 )
 from grashof.problems.errors import ProblemError
+from grashof.problems.read_only import ReadOnly
 
 _POSE = "a pose [x, y, angle in degrees]"
 _SAME = 1e-12  # rad
@@ -28,7 +35,7 @@ _MOST_TURNED = 2e4 * np.pi  # rad: ten thousand turns
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
-class MotionTask:
+class MotionTask(ReadOnly):
     """Motion generation: the coupler carries a body through poses, in order.
 
     Parameters
@@ -47,8 +54,8 @@ class MotionTask:
     Raises
     ------
     ProblemError
-        Fewer than two poses, numbers that are infinite, a pose with nothing given, no position at
-        all, two consecutive equal poses, or weights out of range.
+        Fewer than two poses, numbers that are infinite, lengths beyond 1e20, a size below 1e-20, a pose
+        with nothing given, no position at all, two consecutive equal poses, or weights out of range.
 
     Examples
     --------
@@ -89,14 +96,15 @@ class MotionTask:
         if len(places) < 2:
             raise ProblemError(f"motion.poses has {counted(len(places), 'pose')}; allowed are two or more")
         _refuse_halves(places, turned)
-        size = span(places[~np.isnan(places[:, 0])])
-        if not np.isfinite(size):
-            raise ProblemError("motion.poses are farther apart than the largest number")
+        _refuse_far(places)
+        size = task_size(places[~np.isnan(places[:, 0])], "motion.poses")
         _refuse_standing_still(places, turned)
-        if angle_length is not None and finite_number(angle_length, "motion.angle_length") <= 0:
-            raise ProblemError(
-                f"motion.angle_length is {angle_length:g}; allowed is a length greater than zero"
-            )
+        if angle_length is not None:
+            if finite_number(angle_length, "motion.angle_length") <= 0:
+                raise ProblemError(
+                    f"motion.angle_length is {angle_length:g}; allowed is a length greater than zero"
+                )
+            number_within(angle_length, LEAST, GREATEST, "motion.angle_length")
         if size == 0 and angle_length is None:
             raise ProblemError(
                 "motion.angle_length is missing: poses at a single place have no size to take it from"
@@ -119,7 +127,13 @@ class MotionTask:
         """Task from rows [x, y, angle in degrees], or tables of x, y, angle, as problem files write them."""
         if isinstance(poses, (str, bytes, Mapping)) or not isinstance(poses, Iterable):
             raise ProblemError(f"motion.poses is {poses!r}; allowed is a list of poses")
-        rows = np.array([_row(pose, f"motion.poses[{k}]") for k, pose in enumerate(poses)]).reshape(-1, 3)
+        given: list[tuple[float, float, float]] = []
+        wrong: list[str] = []
+        for k, pose in enumerate(poses):
+            with noted(wrong):
+                given.append(_row(pose, f"motion.poses[{k}]"))
+        refuse(wrong)
+        rows = np.array(given).reshape(-1, 3)
         return cls(rows[:, :2], np.radians(rows[:, 2]), weights=weights, angle_length=angle_length, body=body)
 
     @property
@@ -213,6 +227,12 @@ def _weights(values: npt.ArrayLike | None, count: int) -> FloatArray:
             f"motion.weights[{index}] is {weights[index]}; allowed is a number from {least:g} to {most:g}"
         )
     return frozen_array(weights)
+
+
+def _refuse_far(positions: FloatArray) -> None:
+    for index in np.flatnonzero((np.abs(positions) > GREATEST).any(axis=1)):
+        x, y = positions[index]
+        raise ProblemError(f"motion.poses[{index}] is at {x:g}, {y:g}; allowed is up to {GREATEST:g}")
 
 
 def _refuse_halves(positions: FloatArray, angles: FloatArray) -> None:

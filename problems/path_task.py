@@ -8,14 +8,15 @@ from typing import ClassVar, Literal
 import numpy as np
 import numpy.typing as npt
 
-from grashof.problems.checks import FloatArray, counted, finite_rows, frozen_array, span
+from grashof.problems.checks import GREATEST, FloatArray, counted, finite_rows, frozen_array, span, task_size
 from grashof.problems.errors import ProblemError
+from grashof.problems.read_only import ReadOnly
 
 _TURN = 2 * np.pi
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
-class PathTask:
+class PathTask(ReadOnly):
     """Path generation: the coupler point P passes through points, in order.
 
     Parameters
@@ -31,8 +32,8 @@ class PathTask:
     Raises
     ------
     ProblemError
-        Fewer than three points, numbers that are not finite, two consecutive equal points (the last
-        may repeat the first), or a timing that is none.
+        Fewer than three points, numbers that are not finite or beyond 1e20, a size below 1e-20, two
+        consecutive equal points (the last may repeat the first), or a timing that is none.
 
     Examples
     --------
@@ -50,15 +51,14 @@ class PathTask:
     def __init__(
         self, points: npt.ArrayLike, *, timing: npt.ArrayLike | None = None, closed: bool = False
     ) -> None:
-        places = finite_rows(points, 2, "path.points", "a point [x, y]")
+        places = finite_rows(points, 2, "path.points", "a point [x, y]", GREATEST)
         if len(places) < 3:
             raise ProblemError(f"path.points has {counted(len(places), 'point')}; allowed are three or more")
-        if not np.isfinite(span(places)):
-            raise ProblemError("path.points are farther apart than the largest number")
         for index in np.flatnonzero(np.abs(np.diff(places, axis=0)).max(axis=1) == 0):
             raise ProblemError(
                 f"path.points[{index}] and path.points[{index + 1}] are equal; consecutive points must differ"
             )
+        task_size(places, "path.points")
         if not isinstance(closed, (bool, np.bool_)):
             raise ProblemError(f"path.closed is {closed!r}; allowed is true or false")
         rotation = None if timing is None else _timing(timing, len(places))

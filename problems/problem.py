@@ -12,14 +12,18 @@ from grashof.problems.checks import (
     FloatArray,
     counted,
     finite_number,
+    noted,
     number_within,
     outline,
+    plain_text,
     positive_number,
+    refuse,
     whole_number,
 )
 from grashof.problems.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.errors import ProblemError
 from grashof.problems.manufacturing import Manufacturing
+from grashof.problems.read_only import ReadOnly
 from grashof.problems.requirements import Requirements
 from grashof.problems.task import Task
 
@@ -104,7 +108,7 @@ def _named(kind: Any) -> str:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Problem:
+class Problem(ReadOnly):
     """All that is asked, as a problem file states it.
 
     Parameters
@@ -139,21 +143,27 @@ class Problem:
         for name, kind in _KINDS.items():
             if not isinstance(value := getattr(self, name), kind):
                 raise ProblemError(f"problem.{name} is {reprlib.repr(value)}; allowed is {_named(kind)}")
+        for name in ("name", "title", "source", "length_unit"):
+            plain_text(getattr(self, name), name)
         if isinstance(self.outlines, str) or not isinstance(self.outlines, Iterable):
             raise ProblemError(f"scene.outlines is {self.outlines!r}; allowed is a list of outlines")
+        wrong: list[str] = []
         if self.dynamics is not None:
-            metres(self.length_unit)  # refuses one that is not known
-            positive_number(self.dynamics.speed_rpm, "dynamics.speed_rpm")
+            with noted(wrong):
+                metres(self.length_unit)  # refuses one that is not known
+            with noted(wrong):
+                positive_number(self.dynamics.speed_rpm, "dynamics.speed_rpm")
             if not self.dynamics.has_masses:
-                raise ProblemError(
+                wrong.append(
                     "dynamics has no mass; mass_per_length is needed, masses and inertias, or payload"
                 )
         elif self.objective.torque > 0:
-            raise ProblemError("dynamics is missing; objective.maximise asks for the torque")
+            wrong.append("dynamics is missing; objective.maximise asks for the torque")
         if self.objective.torque > 0 and not self.requirements.same_branch:
-            raise ProblemError(
+            wrong.append(
                 "requirements.same_branch is false; allowed is true when objective.maximise asks for torque"
             )
+        refuse(wrong)
         checked = tuple(
             outline(corners, f"scene.outlines[{index}]") for index, corners in enumerate(self.outlines)
         )

@@ -8,8 +8,18 @@ from enum import StrEnum
 
 import numpy as np
 
-from grashof.problems.checks import FloatArray, Limits, finite_number, limits, number_within
+from grashof.problems.checks import (
+    GREATEST,
+    FloatArray,
+    Limits,
+    finite_number,
+    limits,
+    noted,
+    number_within,
+    refuse,
+)
 from grashof.problems.errors import ProblemError
+from grashof.problems.read_only import ReadOnly
 from grashof.problems.task import Task
 
 
@@ -37,12 +47,15 @@ class Box:
     y: Limits = (-np.inf, np.inf)
 
     def __post_init__(self) -> None:
+        wrong: list[str] = []
         for axis in ("x", "y"):
-            object.__setattr__(self, axis, _side(getattr(self, axis), axis))
+            with noted(wrong):
+                object.__setattr__(self, axis, _side(getattr(self, axis), axis))
+        refuse(wrong)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Requirements:
+class Requirements(ReadOnly):
     """What a design must satisfy besides doing the task.
 
     Lengths are in the problem's unit; None means the default, which excludes only the absurd
@@ -179,8 +192,8 @@ class Requirements:
         """
         return replace(
             self,
-            link_length=self.link_length or (0.01 * size, 20.0 * size),
-            coupler_arms=self.coupler_arms or (0.0, 30.0 * size),
+            link_length=self.link_length or (0.01 * size, min(20.0 * size, GREATEST)),
+            coupler_arms=self.coupler_arms or (0.0, min(30.0 * size, GREATEST)),
             o2=self.o2 or Box(),
             o4=self.o4 or Box(),
             a=self.a or Box(),
@@ -226,6 +239,9 @@ def _side(values: Limits, name: str) -> Limits:
         raise ProblemError(f"{name} is {values!r}; {allowed}") from None
     if not (low <= high and low < np.inf and high > -np.inf):
         raise ProblemError(f"{name} is [{low:.15g}, {high:.15g}]; {allowed}")
+    for side in (low, high):
+        if GREATEST < abs(side) < np.inf:
+            raise ProblemError(f"{name} is [{low:.15g}, {high:.15g}]; allowed is up to {GREATEST:g}")
     return low, high
 
 

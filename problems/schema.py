@@ -5,12 +5,13 @@ The value types check what the values mean; both kinds of error leave as one `Pr
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar
 
-from pydantic import AfterValidator, Discriminator, Tag
+from pydantic import AfterValidator, Discriminator, Tag, ValidationInfo, field_validator
 from pydantic_core import PydanticCustomError
 
-from grashof.problems.checks import FloatArray, outline
+from grashof.problems.checks import FloatArray, noted, outline, refuse, refused
 from grashof.problems.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.errors import ProblemError
 from grashof.problems.manufacturing import Manufacturing
@@ -18,7 +19,7 @@ from grashof.problems.motion_task import MotionTask
 from grashof.problems.path_task import PathTask
 from grashof.problems.problem import Objective, Problem, Search
 from grashof.problems.requirements import Box, Requirements
-from grashof.problems.tables import LIST, TABLE, WORD, WRONG, Table, listed, one_of, stated, tag
+from grashof.problems.tables import LIST, TABLE, WORD, WRONG, Table, Text, listed, one_of, stated, tag
 from grashof.problems.task import Task
 
 
@@ -35,7 +36,7 @@ def problem_from(document: dict[str, Any], name: str) -> Problem:
     Raises
     ------
     ProblemError
-        The first error found, with its key path, and how many more there are.
+        All errors found, a line each, with their key paths.
 
     Examples
     --------
@@ -45,9 +46,26 @@ def problem_from(document: dict[str, Any], name: str) -> Problem:
     >>> problem_from({"kind": "motion", "motion": {"pose": poses}}, "two poses")
     Traceback (most recent call last):
         ...
-    grashof.problems.errors.ProblemError: motion.pose is unknown; did you mean poses? (and 1 more error)
+    grashof.problems.errors.ProblemError: motion.pose is unknown; did you mean poses?
+    motion.poses is missing
     """
-    return stated(ProblemFile, document, _TABLES).problem(name)
+    wrong: list[str] = []
+    with noted(wrong):
+        return stated(ProblemFile, document, _TABLES).problem(name)
+    raise refused([*wrong, *_ill_matched(document)])
+
+
+def _ill_matched(document: dict[str, Any]) -> Iterator[str]:
+    """What is wrong between tables, which nothing else tells as long as one of them is wrong by itself."""
+    kind, unit = document.get("kind"), document.get("length_unit", "")
+    for other in {"motion": ["path"], "path": ["motion"]}.get(kind, []) if isinstance(kind, str) else []:
+        if other in document:
+            yield f'{other} does not belong to kind = "{kind}"'
+    wrong: list[str] = []
+    if "dynamics" in document and isinstance(unit, str):
+        with noted(wrong):
+            metres(unit)
+    yield from wrong
 
 
 Corners = Annotated[
@@ -62,6 +80,16 @@ class MotionTable(Table):
     angle_length: float | None = None
     body: Corners | None = None
 
+    @field_validator("*")
+    @classmethod
+    def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
+        if key.field_name == "poses":
+            MotionTask.from_degrees(given, angle_length=1.0)
+        elif given is not None and (key.field_name != "weights" or len(given) > 1):
+            poses = [[k, 0, 0] for k in range(len(given) if key.field_name == "weights" else 2)]
+            MotionTask.from_degrees(poses, **{str(key.field_name): given})
+        return given
+
     def value(self) -> MotionTask:
         return MotionTask.from_degrees(
             self.poses, weights=self.weights, angle_length=self.angle_length, body=self.body
@@ -75,6 +103,19 @@ class PathTable(Table):
     timing_deg: Annotated[list[float], listed("a list of angles")] | None = None
     closed: bool = False
 
+    @field_validator("points")
+    @classmethod
+    def _by_itself(cls, points: list[list[float]]) -> list[list[float]]:
+        PathTask(points)
+        return points
+
+    @field_validator("timing_deg")
+    @classmethod
+    def _in_order(cls, timing_deg: list[float] | None) -> list[float] | None:
+        if timing_deg is not None and len(timing_deg) > 2:
+            PathTask.from_degrees([[k, 0] for k in range(len(timing_deg))], timing_deg=timing_deg)
+        return timing_deg
+
     def value(self) -> PathTask:
         return PathTask.from_degrees(self.points, timing_deg=self.timing_deg, closed=self.closed)
 
@@ -86,8 +127,13 @@ class SceneTable(Table):
     outlines: Outlines | None = None
 
     def value(self) -> tuple[FloatArray, ...]:
-        drawn = self.outlines or []
-        return tuple(outline(corners, f"scene.outlines[{i}]") for i, corners in enumerate(drawn))
+        drawn: list[FloatArray] = []
+        wrong: list[str] = []
+        for i, corners in enumerate(self.outlines or []):
+            with noted(wrong):
+                drawn.append(outline(corners, f"scene.outlines[{i}]"))
+        refuse(wrong)
+        return tuple(drawn)
 
 
 class BoxTable(Table):
@@ -148,17 +194,33 @@ class RequirementsTable(Table):
     )
     keep_out_for: Annotated[list[str], listed("a list of o2, o4, a, b, p and links")] | None = None
 
+    @field_validator("*")
+    @classmethod
+    def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
+        if key.field_name not in _PLACES:
+            Requirements(**{str(key.field_name): given})
+        return given
+
     def value(self) -> Requirements:
         given: dict[str, Any] = {key: getattr(self, key) for key in self.model_fields_set}
-        for key in given.keys() & {"o2", "o4", "a", "b"}:
+        for key in given.keys() & _PLACES:
             given[key] = _box(given[key])
         return Requirements(**given)
+
+
+_PLACES = {"o2", "o4", "a", "b"}
 
 
 class WeightsTable(Table):
     transmission: float = 0.0
     compactness: float = 0.0
     torque: float = 0.0
+
+    @field_validator("*")
+    @classmethod
+    def _by_itself(cls, weight: float, key: ValidationInfo) -> float:
+        Objective(**{"transmission": 1.0, "compactness": 1.0, str(key.field_name): weight})
+        return weight
 
 
 Maximise = Annotated[
@@ -185,6 +247,12 @@ class ManufacturingTable(Table):
     length_tolerance: float
     band: float | None = None
 
+    @field_validator("*")
+    @classmethod
+    def _by_itself(cls, length: float | None, key: ValidationInfo) -> float | None:
+        Manufacturing(**{"length_tolerance": 1.0, str(key.field_name): length})  # type: ignore[arg-type]
+        return length
+
     def value(self) -> Manufacturing:
         return Manufacturing(self.length_tolerance, self.band)
 
@@ -197,6 +265,13 @@ class DynamicsTable(Table):
     inertias: Annotated[list[float], listed("[I2, I3, I4]")] | None = None
     payload: float | None = None
 
+    @field_validator("*")
+    @classmethod
+    def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
+        besides = {"masses": {"inertias": (1, 1, 1)}, "inertias": {"masses": (1, 1, 1)}}
+        DynamicsSpec(**besides.get(str(key.field_name), {}), **{str(key.field_name): given})
+        return given
+
     def value(self) -> DynamicsSpec:
         given: dict[str, Any] = {key: getattr(self, key) for key in self.model_fields_set}
         return DynamicsSpec(**given)
@@ -208,6 +283,12 @@ class SearchTable(Table):
     seed: int | None = None
     effort: float | None = None
 
+    @field_validator("*")
+    @classmethod
+    def _by_itself(cls, given: int, key: ValidationInfo) -> int:
+        Search(**{str(key.field_name): given})
+        return given
+
     def value(self) -> Search:
         given: dict[str, Any] = {key: getattr(self, key) for key in self.model_fields_set}
         return Search(**given)
@@ -215,9 +296,9 @@ class SearchTable(Table):
 
 class ProblemFile(Table):
     kind: Annotated[str, one_of("motion", "path")]
-    title: str = ""
-    source: str = ""
-    length_unit: str = ""
+    title: Text = ""
+    source: Text = ""
+    length_unit: Text = ""
     motion: MotionTable | None = None
     path: PathTable | None = None
     scene: SceneTable = SceneTable()

@@ -6,7 +6,7 @@ import json
 import re
 import reprlib
 from collections.abc import Mapping
-from typing import Any, ClassVar, Self, TypeVar
+from typing import Annotated, Any, ClassVar, Self, TypeAlias, TypeVar
 
 from pydantic import (
     AfterValidator,
@@ -14,11 +14,12 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     ValidationError,
+    ValidationInfo,
     model_validator,
 )
 from pydantic_core import ErrorDetails, PydanticCustomError
 
-from grashof.problems.checks import counted, near_miss
+from grashof.problems.checks import near_miss, plain_text
 from grashof.problems.errors import ProblemError
 
 # What a validator says about a value: its message is what is allowed instead.
@@ -69,16 +70,23 @@ def stated(table: type[AnyTable], document: dict[str, Any], tables: Mapping[str,
     Raises
     ------
     ProblemError
-        The first error found, with its key path, and how many more there are.
+        All errors found, a line each, with their key paths.
     """
     try:
         return table.model_validate(document)
     except ValidationError as refused:
         errors = refused.errors(include_url=False)
     # A missing key comes last: most often it stands in the file, misspelt, and that error says more.
-    first = min(errors, key=lambda error: error["type"] == "missing")
-    more = f" (and {counted(len(errors) - 1, 'more error')})" if len(errors) > 1 else ""
-    raise ProblemError(f"{_described(first, tables)}{more}")
+    errors.sort(key=lambda error: error["type"] == "missing")
+    raise ProblemError("\n".join(dict.fromkeys(_described(error, tables) for error in errors)))
+
+
+def _plain(text: str, key: ValidationInfo) -> str:
+    return plain_text(text, str(key.field_name))
+
+
+# Text for headings, axes and files.
+Text: TypeAlias = Annotated[str, AfterValidator(_plain)]
 
 
 def listed(allowed: str) -> BeforeValidator:
@@ -127,9 +135,9 @@ def _described(error: ErrorDetails, tables: Mapping[str, type[Table]]) -> str:
     if kind == "missing":
         return f"{path} is missing"
     if kind == "value_error":
-        text = str(error["ctx"]["error"])
+        lines = str(error["ctx"]["error"]).splitlines()
         # A value type names its key from the top of the file; a box cannot know whose it is.
-        return text if text.startswith(path) else f"{path}.{text}"
+        return "\n".join(line if line.startswith(path) else f"{path}.{line}" for line in lines)
     allowed = _ALLOWED.get(kind, error["msg"])
     return f"{path} is {_shown(error['input'])}; allowed is {allowed}"
 

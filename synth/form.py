@@ -232,7 +232,8 @@ class Given:
             "direction": 1, "assembly": 1, "longer": 1, "margin": 1, "ratio": 1, "least_transmission": 1,
             "weights": 3, "load": LOADS, "torque_at": ADDED,
             "error_scale": 1, "arms": 2, "lengths": 8,
-            "start": 8, "angles": 2, "relaxed": len(GROUPS), "most_error": 1, "zones": 2 * n, "origin": 2, "scale": 1,
+            "start": 8, "angles": 2, "relaxed": len(GROUPS), "most_error": 1, "zones": 2 * n,
+            "origin": 2, "scale": 1,
             "planes": 3 * PLANES * sum(map(form.places_of, form.keep_out)), "boxes": 16,
         }  # fmt: skip
         parts = {name: ca.SX.sym(name, size) for name, size in sizes.items()}

@@ -82,6 +82,8 @@ def _made(problem: Problem, candidate: Candidate) -> dict[str, float]:
 
 def _row(candidate: Candidate) -> dict[str, Any]:
     linkage, verdict = candidate.linkage, candidate.verdict
+    driver = np.degrees(verdict.theta2[[0, -1]])
+    start, end = (driver - 360 * np.ceil((driver[0] - 180) / 360)).tolist()  # it starts in (-180, 180]
     r1, r2, r3, r4 = (float(length) for length in linkage.lengths)
     angles = {}
     if verdict.angle_error is not None and not np.isnan(verdict.angle_error).all():
@@ -106,8 +108,8 @@ def _row(candidate: Candidate) -> dict[str, Any]:
         "r4": r4,
         "p_u": float(linkage.coupler_point[0]),
         "p_v": float(linkage.coupler_point[1]),
-        "theta2_start_deg": float(np.degrees(verdict.theta2[0])),
-        "theta2_end_deg": float(np.degrees(verdict.theta2[-1])),
+        "theta2_start_deg": start,
+        "theta2_end_deg": end,
         "error_max": verdict.error_max,
         "error_rms": verdict.error_rms,
         "error_sse": verdict.error_sse,

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
+import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from enum import IntEnum
@@ -43,6 +45,7 @@ class Exit(IntEnum):
 
 
 TOP = 50
+TRACEBACK = "GRASHOF_TRACEBACK"  # environment variable: unexpected errors with their traceback
 # Options of the contract that later versions bring.
 _LATER_OPTIONS = ("--resume", "--scheduler")
 # Typer makes the base of its usage errors public only through this one.
@@ -61,6 +64,11 @@ class _Commands(TyperGroup):
         except _UsageError as error:
             say(f"grashof: {_later(given) or _one_line(error)}", err=True)
             code = Exit.BAD_INPUT
+        except Exception as error:  # noqa: BLE001  (the outermost boundary: nobody else tells what is left)
+            if os.environ.get(TRACEBACK):
+                say(traceback.format_exc(), err=True)
+            say(f"grashof: {_unexpected(error)}", err=True)
+            code = Exit.SURROUNDINGS
         sys.exit(code or Exit.OK)
 
 
@@ -272,6 +280,8 @@ def export(
 
 def main() -> None:
     """Entry point of the `grashof` command."""
+    # Drawings go to files: a backend meant for windows, or a misspelt one, must not stand in the way.
+    os.environ["MPLBACKEND"] = "agg"
     app(prog_name="grashof")
 
 
@@ -289,7 +299,7 @@ def _solve(
     from grashof.folder import PAGE, check_writable
     from grashof.output import write_run
     from grashof.synth import synthesize
-    from grashof.terminal import print_table, search_progress
+    from grashof.terminal import beginning, print_table, search_progress
 
     folder = out if out is not None else Path(f"{problem.name}-designs")
     check_writable(folder, drawings)
@@ -304,7 +314,7 @@ def _solve(
         "top": top,
     }
     with _interruptible() as interrupted:
-        with search_progress(problem.name) as progress:
+        with search_progress(problem.name, beginning(problem)) as progress:
             found = synthesize(
                 problem,
                 starts=starts,
@@ -384,13 +394,19 @@ def _one_line(error: Exception) -> str:
     return f"{' '.join(message.split()).rstrip('.')}; see grashof --help"
 
 
+def _unexpected(error: Exception) -> str:
+    words = " ".join(f"{type(error).__name__}: {error}".rstrip(": ").split())
+    return f"unexpected error: {words}; {TRACEBACK}=1 shows where, please report it with that"
+
+
 @contextmanager
 def _errors_told() -> Iterator[None]:
     """Bad input and failed surroundings end the program with one line, not with a traceback."""
     try:
         yield
     except ProblemError as error:
-        say(f"grashof: {error}", err=True)
+        for line in str(error).splitlines():
+            say(f"grashof: {line}", err=True)
         raise typer.Exit(Exit.BAD_INPUT) from None
     except (SolverError, OSError) as error:
         say(f"grashof: {error}", err=True)

@@ -92,6 +92,8 @@ def replacing_own_files(folder: Path, keep: Collection[str] = (), record: str = 
 
 def own_files(folder: Path, record: str = RECORD) -> set[str]:
     """Names of the files that the last run wrote into a folder; empty where there was none."""
+    if not (folder / record).is_file():  # a pipe or a device may never end
+        return set()
     try:
         content = json.loads((folder / record).read_text(encoding="utf-8"))
         names, versions = content["files"], content["versions"]

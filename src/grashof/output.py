@@ -14,6 +14,7 @@ import numpy as np
 from grashof.folder import PAGE, RECORD, replacing_own_files
 from grashof.problems import FourBar, Problem
 from grashof.problems.checks import FloatArray
+from grashof.problems.writing import problem_toml
 from grashof.synth import Candidate, Result
 from grashof.synth.table import DYNAMICS, MANUFACTURING, MOTION, labels, to_frame
 
@@ -99,7 +100,9 @@ def _write_record(
 def _designs(result: Result, frame: pd.DataFrame) -> dict[str, Any]:
     problem = result.problem
     return {
+        "grashof": version("grashof"),
         "problem": problem.name,
+        "problem_toml": problem_toml(problem),
         "title": problem.title,
         "length_unit": problem.length_unit,
         "angle_unit": "rad",
@@ -193,9 +196,15 @@ _GUARDS = ("Maximum_Iterations_Exceeded", "Maximum_WallTime_Exceeded")
 
 
 def write_csv(path: Path, frame: pd.DataFrame) -> None:
-    """A table with floats in full precision."""
+    """A table with floats in full precision; no text in it is a formula to a spreadsheet."""
+    texts = frame.select_dtypes(exclude=["number", "bool"]).columns
+    frame = frame.assign(**{name: frame[name].map(_no_formula) for name in texts})
     with path.open("w", encoding="utf-8", newline="") as file:  # pandas would read ~ as a home
         frame.to_csv(file, index=False, lineterminator="\n")
+
+
+def _no_formula(value: Any) -> Any:
+    return f"'{value}" if isinstance(value, str) and value.startswith(("=", "+", "-", "@")) else value
 
 
 def write_json(path: Path, content: dict[str, Any]) -> None:

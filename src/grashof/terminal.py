@@ -15,7 +15,7 @@ from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
 from rich.progress import Progress as Bar
 from rich.table import Table
 
-from grashof.problems import DynamicsSpec, PathTask, Problem, Task, TransmissionOver
+from grashof.problems import DynamicsSpec, MotionTask, PathTask, Problem, Task, TransmissionOver
 from grashof.problems.checks import counted
 from grashof.streams import say
 from grashof.synth import Candidate, Progress, Result
@@ -41,20 +41,35 @@ def console(*, stderr: bool = False) -> Console:
 
 
 @contextmanager
-def search_progress(name: str) -> Iterator[Callable[[Progress], None]]:
-    """Something to give as `progress=`: a bar on a terminal, plain lines elsewhere; on stderr."""
+def search_progress(name: str, begin: str = "searching") -> Iterator[Callable[[Progress], None]]:
+    """Something to give as `progress=`: a bar on a terminal, plain lines elsewhere; on stderr.
+
+    Parameters
+    ----------
+    name : str
+        Of the problem.
+    begin : str
+        What the bar says until the first step is done.
+    """
     out = console(stderr=True)
     if not (out.is_terminal and sys.stderr.isatty()):  # the first alone can be forced by FORCE_COLOR
         yield lambda step: say(f"{name}: {_step(step)}", err=True)
         return
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[step]}"))
     with Bar(*columns, TimeElapsedColumn(), console=out, transient=True) as bar:
-        task = bar.add_task(name, total=None, step="tracing dyads and judging pairs")
+        task = bar.add_task(name, total=None, step=begin)
 
         def show(step: Progress) -> None:
             bar.update(task, completed=min(step.verified, step.enough), total=step.enough, step=_step(step))
 
         yield show
+
+
+def beginning(problem: Problem) -> str:
+    """What a search begins with, in words."""
+    task = problem.task
+    met = isinstance(task, MotionTask) and task.is_whole and problem.requirements.is_exact(task)
+    return "tracing dyads and judging pairs" if met else "searching"
 
 
 def _step(step: Progress) -> str:
@@ -132,8 +147,10 @@ def _table(result: Result, digits: int, left_out: Sequence[str]) -> Table:
 def heading(result: Result, verified: int) -> str:
     """How many designs there are, how exact, and what the columns of `best_rows` mean."""
     exact = result.problem.requirements.is_exact(result.problem.task)
-    errors = [candidate.verdict.error_max for candidate in result.candidates]
-    error = f"largest position error {max(errors):.1e}" if exact else f"smallest error {min(errors):.3g}"
+    verdicts = [candidate.verdict for candidate in result.candidates]
+    error = f"largest position error {max(each.error_max for each in verdicts):.1e}"
+    if not exact:  # as the column says it
+        error = f"smallest error rms {min(each.error_rms for each in verdicts):.2g}"
     classes = _classes(result)
     kind = f"{classes.pop()} " if len(classes) == 1 else ""
     families = len(result.families)

@@ -359,3 +359,52 @@ def test_a_short_list_says_why_it_is_short(grashof: Grashof, tmp_path: Path) -> 
 def test_the_version(grashof: Grashof) -> None:
     done = grashof("--version")
     assert (done.exit_code, done.stdout) == (0, f"grashof {version('grashof')}\n")
+
+
+def test_control_characters_of_names_do_not_reach_the_terminal(grashof: Grashof, tmp_path: Path) -> None:
+    path = tmp_path / "red\x1b[31m.toml"
+    done = grashof("check", path)
+    assert done.exit_code == 2
+    assert "red?[31m.toml: there is no such file" in done.stderr
+    path.write_text(problem_text("luggage"), encoding="utf-8")
+    assert grashof("check", path).stdout.startswith("red?[31m: Luggage")
+
+
+def test_what_nobody_expected_ends_with_one_line(grashof: Grashof, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(_problem: Problem) -> list[str]:
+        raise ZeroDivisionError("division\nby zero")
+
+    monkeypatch.setattr("grashof.terminal.summary", broken)
+    monkeypatch.delenv("GRASHOF_TRACEBACK", raising=False)
+    done = grashof("check", "luggage")
+    assert done.exit_code == 3
+    line = done.stderr.removesuffix("\n")
+    assert line.startswith("grashof: unexpected error: ZeroDivisionError: division by zero;")
+    assert "\n" not in line
+    monkeypatch.setenv("GRASHOF_TRACEBACK", "1")
+    told = grashof("check", "luggage")
+    assert told.exit_code == 3
+    assert "Traceback (most recent call last)" in told.stderr
+    assert told.stderr.splitlines()[-1] == line
+
+
+def test_no_backend_of_matplotlib_stands_in_the_way(tmp_path: Path) -> None:
+    environment = {**os.environ, "MPLBACKEND": "nonsense"}
+    code = "import sys; from grashof.cli import main; sys.argv[0] = 'grashof'; main()"
+    done = subprocess.run(
+        [sys.executable, "-c", code, "animate", "pumpjack", "--seconds", "0.2", "--fps", "10"],
+        cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=120, check=False,
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (0, "pumpjack.gif\n")
+
+
+def test_every_error_of_a_file_has_its_line(grashof: Grashof, tmp_path: Path) -> None:
+    path = tmp_path / "bad.toml"
+    path.write_text('kind = "motion"\n[motion]\nposes = [[1, 2], [3, 4, 5], 6]\n[search]\nseed = -1\n')
+    done = grashof("check", path)
+    assert done.exit_code == 2
+    assert done.stderr.splitlines() == [
+        f"grashof: {path}: motion.poses[0] is [1, 2], 2 numbers; allowed is a pose [x, y, angle in degrees]",
+        f"grashof: {path}: motion.poses[2] is 6; allowed is a pose [x, y, angle in degrees]",
+        f"grashof: {path}: search.seed is -1; allowed is a whole number from 0",
+    ]

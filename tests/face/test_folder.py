@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 import pytest
 
-from grashof.folder import RECORD, check_writable, own_files, replacing_own_files
-from grashof.problems import ProblemError
+from grashof.folder import ANALYSIS_RECORD, RECORD, check_writable, own_files, replacing_own_files
+from grashof.problems import ProblemError, load_linkage
 
 CSV = "candidates.csv"
 
@@ -102,3 +103,20 @@ def test_folder_that_cannot_be_made(tmp_path: Path) -> None:
         check_writable(tmp_path / ("x" * 300) / "below")
     check_writable(tmp_path / "new" / "deep")
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes in folders")
+@pytest.mark.parametrize("record", [RECORD, ANALYSIS_RECORD])
+def test_a_pipe_or_device_in_place_of_the_record_is_not_read(tmp_path: Path, record: str) -> None:
+    for place in (lambda path: os.mkfifo(path), lambda path: path.symlink_to("/dev/zero")):
+        place(tmp_path / record)
+        with pytest.raises(ProblemError, match=rf"{record} in it is not Grashof's own; allowed is"):
+            check_writable(tmp_path, record=record)
+        (tmp_path / record).unlink()
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes in folders")
+def test_a_pipe_in_place_of_a_list_is_not_read(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "candidates.json")
+    with pytest.raises(ProblemError, match=r"json: is no ordinary file; allowed is a list of designs"):
+        load_linkage(f"{tmp_path / 'candidates.json'}#1")

@@ -12,7 +12,7 @@ from rich.console import Console
 from grashof.analysis.mobility import GrashofClass
 from grashof.problems import Box, Objective, Requirements, TransmissionOver, load
 from grashof.synth import Progress, Result
-from grashof.terminal import print_table, search_progress, summary
+from grashof.terminal import beginning, best_rows, heading, print_table, search_progress, summary
 
 
 def test_table_shows_what_one_decides_by(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
@@ -148,3 +148,27 @@ def test_summary_names_every_requirement_given() -> None:
 )
 def test_summary_tells_the_task(name: str, said: str) -> None:
     assert said in summary(load(name))[1]
+
+
+def test_the_heading_tells_the_error_of_its_column(few: Result) -> None:
+    fitted = replace(few, problem=replace(few.problem, requirements=Requirements(exact=False)))
+    candidates = tuple(
+        replace(each, verdict=replace(each.verdict, position_error=np.array([0.0, 0.0, 0.0, 1 + 0.1 * rank])))
+        for rank, each in enumerate(few.candidates)
+    )
+    fitted = replace(fitted, candidates=candidates)
+    assert ", smallest error rms 0.5. Lengths in m." in heading(fitted, len(few))
+    assert best_rows(fitted)[0]["error rms"] == "0.5"
+
+
+@pytest.mark.parametrize(
+    ("name", "exact", "said"),
+    [
+        ("luggage", None, "tracing dyads and judging pairs"),
+        ("luggage", False, "searching"),
+        ("path-vertical-line", None, "searching"),
+    ],
+)
+def test_the_search_begins_with_what_it_does(name: str, exact: bool | None, said: str) -> None:
+    problem = load(name)
+    assert beginning(replace(problem, requirements=replace(problem.requirements, exact=exact))) == said

@@ -17,7 +17,9 @@ from grashof.problems.checks import (
     near_miss,
     number_within,
     outline,
+    plain_text,
     positive_number,
+    readable,
     whole_number,
 )
 
@@ -108,7 +110,7 @@ def test_whole_number_takes_numpy_integers() -> None:
     assert whole_number(np.int64(4), 1, "here") == 4  # type: ignore[arg-type]
 
 
-finite = st.floats(allow_nan=False, allow_infinity=False)
+finite = st.floats(-1e20, 1e20)
 
 
 @given(finite, finite)
@@ -147,3 +149,15 @@ def test_near_miss(word: str, meant: str | None) -> None:
 
 def test_counted() -> None:
     assert [counted(n, "pose") for n in (0, 1, 2)] == ["0 poses", "1 pose", "2 poses"]
+
+
+@pytest.mark.parametrize("character", ["\x00", "\x1b", "\n", "\x7f", "\x9b", "\ud800", "\uffff"])
+def test_text_that_drawings_and_terminals_stumble_over(character: str) -> None:
+    with pytest.raises(ProblemError, match=rf"^title has control character U\+{ord(character):04X}; allowed"):
+        plain_text(f"a{character}b", "title")
+    assert readable(f"a{character}b") == "a?b"
+
+
+def test_text_of_all_languages_is_plain() -> None:
+    for text in ("", "Étage \u2082", '階段 <&> "$x$"', "\U0001f9f3"):
+        assert plain_text(text, "title") == readable(text) == text

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import tomllib
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ import pytest
 from grashof.problems import (
     DynamicsSpec,
     FourBar,
+    MotionTask,
     ProblemError,
     linkage_catalogue,
     load_linkage,
@@ -252,3 +254,57 @@ def test_a_file_name_that_is_not_text(tmp_path: Path) -> None:
     except OSError:
         pytest.skip("this file system takes UTF-8 names only")
     assert load_linkage_spec(path).name == "caf?"
+
+
+def test_all_errors_are_told_a_line_each(tmp_path: Path) -> None:
+    text = "o2 = [1, 2, 3]\no4 = [1e30, 0]\nr2 = -1\nr3 = 0\nr4 = 'x'\ncoupler = 2\noutput_arm = -1\n"
+    path = written(tmp_path, text)
+    with pytest.raises(ProblemError) as refused:
+        load_linkage(path)
+    assert str(refused.value).splitlines() == [
+        f"{path}: {line}"
+        for line in (
+            "o2 is [1, 2, 3]; allowed is [x, y]",
+            "o4 is 1e+30; allowed is -1e+20 to 1e+20",
+            "r2 is -1.0; allowed are lengths greater than zero",
+            "r3 is 0.0; allowed are lengths greater than zero",
+            "r4 is 'x'; allowed is a number",
+            "output_arm is -1; allowed are lengths greater than zero",
+            "coupler is unknown; did you mean coupler_point?",
+        )
+    ]
+
+
+TASK = '"kind = \\"motion\\"\\n[motion]\\nposes = [[0, 0, 0], [3, 4, 90]]\\nbody = [[0, 0], [1, 1]]"'
+
+
+def test_a_design_of_a_list_knows_its_problem(tmp_path: Path) -> None:
+    path = tmp_path / "candidates.json"
+    path.write_text(listed())
+    assert load_linkage_spec(f"{path}#3").problem is None  # a list made by hand need not state it
+    path.write_text(listed().replace("{", f'{{"grashof": "0.1.0", "problem_toml": {TASK}, ', 1))
+    problem = load_linkage_spec(f"{path}#3").problem
+    assert problem is not None
+    assert isinstance(problem.task, MotionTask)
+    assert (problem.name, problem.task.body is not None) == ("p", True)
+    assert load_linkage_spec(f"{path}#3") == load_linkage_spec(f"{path}#3")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ('"kind = 3"', "problem_toml: kind is 3; allowed is a string"),
+        ('"kind = \\"six-bar\\"\\nspeed = 3"', "problem_toml: kind is 'six-bar'; allowed is"),
+        ('"["', "problem_toml: is not TOML"),
+        ("7", "7 is no text"),
+    ],
+)
+def test_a_list_of_another_version_is_refused_in_one_line(tmp_path: Path, text: str, said: str) -> None:
+    path = tmp_path / "candidates.json"
+    path.write_text(listed().replace("{", f'{{"grashof": "9.8", "problem_toml": {text}, ', 1))
+    with pytest.raises(ProblemError) as refused:
+        load_linkage_spec(f"{path}#3")
+    told = str(refused.value)
+    begin = f"{path}: was written by grashof 9.8, and grashof {version('grashof')} cannot read its problem: "
+    assert told.startswith(begin + said)
+    assert "\n" not in told

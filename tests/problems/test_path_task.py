@@ -75,7 +75,15 @@ def test_exact_is_checked() -> None:
         ([[1, 2], [3, 4]], "path.points has 2 points; allowed are three or more"),
         ([[1, 2], [3], [5, 6]], r"path.points\[1\] is \[3\], 1 number; allowed is a point \[x, y\]"),
         ([[1, 2], [3, np.nan], [5, 6]], r"path.points\[1\] is \[3, nan\]; all numbers must be finite"),
-        ([[1e308, 0], [-1e308, 0], [0, 1]], "path.points are farther apart than the largest number"),
+        (
+            [[1e100, 0], [-1e100, 0], [0, 1]],
+            r"path.points\[0\] is \[1e\+100, 0\]; allowed are numbers up to 1e\+20\n"
+            r"path.points\[1\] is \[-1e\+100, 0\]; allowed are numbers up to 1e\+20",
+        ),
+        (
+            [[0, 0], [1e-150, 0], [0, 1e-150]],
+            r"path.points are at most 1.41421e-150 apart; allowed is a size from 1e-20",
+        ),
         (
             [[1, 2], [1, 2], [5, 6]],
             r"path.points\[0\] and path.points\[1\] are equal; consecutive points must differ",

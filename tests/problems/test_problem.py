@@ -6,7 +6,16 @@ from typing import Any
 
 import pytest
 
-from grashof.problems import MotionTask, Objective, Problem, ProblemError, Requirements, Search
+from grashof.problems import (
+    FourBar,
+    LinkageSpec,
+    MotionTask,
+    Objective,
+    Problem,
+    ProblemError,
+    Requirements,
+    Search,
+)
 
 TASK = MotionTask.from_degrees([[0, 0, 0], [3, 4, 90]])
 
@@ -100,3 +109,16 @@ def test_parts_of_another_kind_are_refused(parts: dict[str, Any], message: str) 
 def test_words_are_no_truths(key: str) -> None:
     with pytest.raises(ProblemError, match=f"^requirements.{key} is 'no'; allowed is true or false$"):
         Requirements(**{key: "no"})  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", ["name", "title", "source", "length_unit"])
+def test_words_are_plain_text(name: str) -> None:
+    for kind, rest in (
+        (Problem, {"task": TASK}),
+        (LinkageSpec, {"linkage": FourBar((0, 0), (4, 0), 1, 4, 3)}),
+    ):
+        given: dict[str, Any] = {"name": "n", **rest, name: "bell \a"}
+        with pytest.raises(
+            ProblemError, match=rf"^{name} has control character U\+0007; allowed is plain text$"
+        ):
+            kind(**given)

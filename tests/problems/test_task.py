@@ -67,7 +67,8 @@ def test_a_task_pickles() -> None:
         ),
         ([[1, 2, 3], [np.nan, 2, 3]], r"motion.poses\[1\] is \[nan, 2, 3\]; all numbers must be finite"),
         ([[1, 2, 3], [1, 2, np.inf]], r"motion.poses\[1\] is \[1, 2, inf\]; all numbers must be finite"),
-        ([[1e308, 0, 0], [-1e308, 0, 0]], "motion.poses are farther apart than the largest number"),
+        ([[0, 0, 0], [0, -1e150, 9]], r"motion.poses\[1\] is at 0, -1e\+150; allowed is up to 1e\+20"),
+        ([[0, 0, 0], [0, 1e-30, 9]], "motion.poses are at most 1e-30 apart; allowed is a size from 1e-20"),
     ],
 )
 def test_bad_poses(poses: list[list[float]], message: str) -> None:

@@ -131,3 +131,19 @@ def test_an_empty_result_has_all_columns(luggage: Problem, tmp_path: Path) -> No
     empty.to_csv(tmp_path / "none.csv")
     assert (tmp_path / "none.csv").read_text() == ",".join(COLUMNS) + "\n"
     assert to_frame(luggage, ()).shape == (0, len(COLUMNS))
+
+
+@pytest.mark.parametrize("turns", [-2.0, 1.0, 3.0])
+def test_the_driver_starts_within_half_a_turn_and_is_never_wrapped(
+    luggage_result: Result, turns: float
+) -> None:
+    whole = [
+        replace(each, verdict=replace(each.verdict, theta2=each.verdict.theta2 + 2 * np.pi * turns))
+        for each in luggage_result.candidates
+    ]
+    frame = to_frame(luggage_result.problem, tuple(whole))
+    assert ((frame["theta2_start_deg"] > -180) & (frame["theta2_start_deg"] <= 180)).all()
+    for row, candidate in zip(frame.itertuples(), whole, strict=True):
+        first, last = np.degrees(candidate.verdict.theta2[[0, -1]])
+        assert row.theta2_end_deg - row.theta2_start_deg == pytest.approx(last - first, abs=1e-9)
+        assert np.sin(np.radians(row.theta2_start_deg - first)) == pytest.approx(0, abs=1e-9)

@@ -74,8 +74,8 @@ def plot_linkage(
     subject = Subject.of(linkage, problem)
     positions = _positions(subject, theta2)
     ax = new_axes(ax)
-    if problem is not None:
-        draw_scene(ax, problem)
+    if subject.problem is not None:
+        draw_scene(ax, subject.problem)
     draw_path(ax, subject)
     shades = np.linspace(0.3, 1, len(positions)) if len(positions) > 1 else [1.0]
     for index, ((a, b, p), shade) in enumerate(zip(positions, shades, strict=True), start=1):
@@ -87,7 +87,7 @@ def plot_linkage(
     names = {"O2": subject.linkage.o2, "O4": subject.linkage.o4, "A": a, "B": b}
     in_joint = min(np.hypot(*(p - a)), np.hypot(*(p - b))) == 0
     name_points(ax, names if in_joint else {**names, "P": p})
-    last = "target" if problem is not None and theta2 is None else "position"
+    last = "target" if subject.problem is not None and theta2 is None else "position"
     heading = f"light to dark: first to last {last}" if len(positions) > 1 else None
     ax.legend(loc="best", title=heading, title_fontsize="small", fontsize="small")
     return ax

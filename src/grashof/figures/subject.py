@@ -34,7 +34,7 @@ class Subject:
 
     @classmethod
     def of(cls, linkage: Linkage, problem: Problem | None = None) -> Subject:
-        """A linkage, judged by its problem if one is given.
+        """A linkage, judged by its problem if one is given or its list states it.
 
         Raises
         ------
@@ -42,7 +42,7 @@ class Subject:
             Anything but a single linkage.
         """
         if isinstance(linkage, LinkageSpec):
-            spec = linkage
+            spec, problem = linkage, linkage.problem if problem is None else problem
         elif isinstance(linkage, FourBar):
             spec = LinkageSpec(linkage, "linkage")
         elif isinstance(linkage, Candidate):
@@ -76,5 +76,5 @@ def _posed(spec: LinkageSpec, problem: Problem, verdict: Verdict) -> LinkageSpec
     """The linkage with what its problem says of unit and masses."""
     linkage = replace(spec.linkage, assembly=np.asarray(verdict.assembly[0], dtype=np.float64))
     dynamics = (problem.dynamics or DynamicsSpec()).turning(verdict.direction)
-    title = problem.title or problem.name
+    title = spec.title if problem is spec.problem else problem.title or problem.name
     return LinkageSpec(linkage, spec.name, title, length_unit=problem.length_unit, dynamics=dynamics)

@@ -23,6 +23,7 @@ from grashof import animate
 from grashof.analysis import driver_ranges, solve_position
 from grashof.figures import save_animation
 from grashof.figures.parts import COUPLER, DRIVER, OUTPUT, PATH
+from grashof.output import write_run
 from grashof.problems import (
     FourBar,
     MotionTask,
@@ -31,6 +32,7 @@ from grashof.problems import (
     Requirements,
     Rotatability,
     load_linkage,
+    load_linkage_spec,
 )
 from grashof.synth import Result
 
@@ -201,3 +203,26 @@ def test_the_command_names_the_file_after_the_linkage(grashof: Grashof, tmp_path
         assert picture.size == (600, 500)
     assert grashof("animate", "pumpjak").exit_code == 2
     assert grashof("animate", "pumpjack", "--fps", "99").exit_code == 2
+
+
+def test_a_design_of_a_list_moves_as_in_its_problem(few: Result, tmp_path: Path) -> None:
+    """The same picture in every frame as from the result itself: body, poses, scene and start."""
+    write_run(tmp_path, few, {}, drawings=0)
+    for rank in (1, 3):
+        told = []
+        design = few.candidates[rank - 1]
+        for linkage, problem in (
+            (design, few.problem),
+            (load_linkage_spec(f"{tmp_path}/candidates.json#{rank}"), None),
+        ):
+            axes = Figure().subplots()
+            frames = frames_of(animate(linkage, problem, seconds=1, fps=10, ax=axes), axes)
+            told.append((frames, [line.get_xydata() for line in axes.lines], len(axes.patches), axes.axis()))
+        assert len(told[0][0]["body"]) == 10
+        for one, other in zip(told[0][0].values(), told[1][0].values(), strict=True):
+            for parts in zip(one, other, strict=True):
+                np.testing.assert_allclose(*parts, atol=1e-9)
+        assert told[0][2] == told[1][2]
+        for ends in zip(told[0][1], told[1][1], strict=True):
+            np.testing.assert_allclose(*ends, atol=1e-9)
+        np.testing.assert_allclose(told[0][3], told[1][3], rtol=1e-9)

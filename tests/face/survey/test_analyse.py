@@ -361,3 +361,17 @@ def test_a_driver_at_rest_and_backwards(speed: float) -> None:
     # At rest the torque holds the weight.
     assert table.loc["torque", "max"] > 1000
     assert table.loc["f12", "min"] > 0
+
+
+@pytest.mark.parametrize("unit", ["=1+1", "@SUM(A1)", "+1", "-1"])
+def test_no_unit_is_a_formula_to_a_spreadsheet(grashof: Grashof, tmp_path: Path, unit: str) -> None:
+    text = f'length_unit = "{unit}"\no4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n'
+    (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
+    assert grashof("analyse", "mine.toml").exit_code == 0
+    for name in ("summary.csv", "extremes.csv"):
+        table = pd.read_csv(tmp_path / "mine-analysis" / name, dtype=str, keep_default_na=False)
+        assert f"'{unit}" in set(table["unit"])
+        assert not table["unit"].str.startswith(tuple("=+-@")).any()
+    numbers = pd.read_csv(tmp_path / "mine-analysis" / "extremes.csv")["min"]
+    assert numbers.dtype == float
+    assert numbers.min() < 0
