@@ -123,7 +123,12 @@ class Verdict:
 
 
 def verify(
-    linkage: FourBar, task: Task, requirements: Requirements, constraints: Sequence[Constraint] = ()
+    linkage: FourBar,
+    task: Task,
+    requirements: Requirements,
+    constraints: Sequence[Constraint] = (),
+    *,
+    most_square: float = np.inf,
 ) -> Verdict:
     """Judge a single linkage.
 
@@ -135,6 +140,8 @@ def verify(
         Defaults that depend on the size of the task are filled in.
     constraints : sequence of callable
         The user's own: functions of a `Design`, zero or negative where met.
+    most_square : float, length squared
+        Up to which `Verdict.square` is allowed: what ``error_factor`` makes of the least one found.
 
     Returns
     -------
@@ -167,6 +174,8 @@ def verify(
     worst = task_worst if over_task else cycle_worst
     defects = [
         *(_exactness(targets, task, wanted) if wanted.is_exact(task) else []),
+        *_zones(targets, task),
+        *_whole_error(targets, task, most_square),
         *_same_branch(circuit_ok, branch_ok, int(linkage.assembly), targets, wanted),
         *_order(way, wanted),
         *_rotatability(linkage, task, wanted),
@@ -240,6 +249,34 @@ def _exactness(targets: Targets, task: Task, wanted: Requirements) -> list[Defec
         found = float(np.degrees(turned))
         defects.append(Defect("exact", "the largest angle error in deg", found, f"up to {limit:.6g}", miss))
     return defects
+
+
+def _zones(targets: Targets, task: Task) -> list[Defect]:
+    """Targets that are missed by more than each of them may be."""
+    if task.zones is None:
+        return []
+    defects = []
+    misses = (targets.position_error, np.nan if targets.angle_error is None else targets.angle_error)
+    for what, miss, zone, size in zip(
+        ("position", "angle"), misses, task.zones, (task.size, 1.0), strict=True
+    ):
+        over = np.nan_to_num((np.broadcast_to(miss, zone.shape) - zone) / size, nan=-np.inf)
+        worst = int(np.argmax(over))
+        if over[worst] > SLACK:
+            unit = np.degrees(1.0) if what == "angle" else 1.0
+            key, deg = ("angle_within_deg", " in deg") if what == "angle" else ("within", "")
+            found, allowed = unit * float(miss[worst]), f"up to {unit * zone[worst]:.6g}"
+            said = f"the {what} error{deg} at target {worst + 1}"
+            defects.append(Defect(key, said, found, allowed, float(over[worst])))
+    return defects
+
+
+def _whole_error(targets: Targets, task: Task, most_square: float) -> list[Defect]:
+    found, most = (float(np.sqrt(square / len(task))) for square in (_square(targets, task), most_square))
+    miss = (found - most) / task.size
+    if not miss > SLACK:
+        return []
+    return [Defect("error_factor", "the error (root mean square)", found, f"up to {most:.6g}", miss)]
 
 
 def _same_branch(

@@ -27,6 +27,7 @@ from grashof.problems.checks import (
 )
 from grashof.problems.errors import ProblemError
 from grashof.problems.read_only import ReadOnly
+from grashof.problems.zones import LEAST_ZONE, zone_sizes
 
 _POSE = "a pose [x, y, angle in degrees]"
 _SAME = 1e-12  # rad
@@ -50,6 +51,11 @@ class MotionTask(ReadOnly):
         Length that one radian of orientation error counts as; the size of the task by default.
     body : array_like, shape (M, 2), length, optional
         Outline carried, in the body's frame (origin at the pose). Drawn only.
+    within : float or array_like, shape (N,), length, optional
+        How far each position may be missed; the objective then decides.
+    angle_within : float or array_like, shape (N,), rad, optional
+        The same of the angles. Where only one of the two is given, the other one is the same
+        through `angle_length`.
 
     Raises
     ------
@@ -71,6 +77,8 @@ class MotionTask(ReadOnly):
     weights: FloatArray
     angle_length: float
     body: FloatArray | None
+    within: FloatArray | None
+    angle_within: FloatArray | None
 
     def __init__(
         self,
@@ -80,6 +88,8 @@ class MotionTask(ReadOnly):
         weights: npt.ArrayLike | None = None,
         angle_length: float | None = None,
         body: npt.ArrayLike | None = None,
+        within: npt.ArrayLike | None = None,
+        angle_within: npt.ArrayLike | None = None,
     ) -> None:
         places = _numbers(positions, "positions")
         if places.ndim != 2 or places.shape[1] != 2:
@@ -109,6 +119,10 @@ class MotionTask(ReadOnly):
             raise ProblemError(
                 "motion.angle_length is missing: poses at a single place have no size to take it from"
             )
+        zone = zone_sizes(within, len(places), "motion.within", least=LEAST_ZONE * size)
+        turn_zone = zone_sizes(angle_within, len(places), "motion.angle_within_deg", least=LEAST_ZONE)
+        object.__setattr__(self, "within", zone)
+        object.__setattr__(self, "angle_within", turn_zone)
         object.__setattr__(self, "positions", frozen_array(places))
         object.__setattr__(self, "angles", frozen_array(turned))
         object.__setattr__(self, "weights", _weights(weights, len(places)))
@@ -123,6 +137,8 @@ class MotionTask(ReadOnly):
         weights: npt.ArrayLike | None = None,
         angle_length: float | None = None,
         body: npt.ArrayLike | None = None,
+        within: npt.ArrayLike | None = None,
+        angle_within_deg: npt.ArrayLike | None = None,
     ) -> MotionTask:
         """Task from rows [x, y, angle in degrees], or tables of x, y, angle, as problem files write them."""
         if isinstance(poses, (str, bytes, Mapping)) or not isinstance(poses, Iterable):
@@ -134,7 +150,16 @@ class MotionTask(ReadOnly):
                 given.append(_row(pose, f"motion.poses[{k}]"))
         refuse(wrong)
         rows = np.array(given).reshape(-1, 3)
-        return cls(rows[:, :2], np.radians(rows[:, 2]), weights=weights, angle_length=angle_length, body=body)
+        turn_zone = zone_sizes(angle_within_deg, len(rows), "motion.angle_within_deg", least=LEAST_ZONE)
+        return cls(
+            rows[:, :2],
+            np.radians(rows[:, 2]),
+            weights=weights,
+            angle_length=angle_length,
+            body=body,
+            within=within,
+            angle_within=None if turn_zone is None else np.radians(turn_zone),
+        )
 
     @property
     def size(self) -> float:
@@ -156,6 +181,24 @@ class MotionTask(ReadOnly):
     def is_whole(self) -> bool:
         """Whether every pose has both position and angle."""
         return bool((self.has_position & self.has_angle).all())
+
+    @property
+    def zones(self) -> FloatArray | None:
+        """How far positions (length) and angles (rad) may be missed, shape (2, N); infinite where free."""
+        if self.within is None and self.angle_within is None:
+            return None
+        place, turn = self.within, self.angle_within
+        place = turn * self.angle_length if place is None and turn is not None else place
+        turn = place / self.angle_length if turn is None and place is not None else turn
+        free = ~np.stack([self.has_position, self.has_angle])
+        zones: FloatArray = np.where(free, np.inf, np.stack([place, turn]))  # type: ignore[list-item]
+        return zones
+
+    def without_zones(self) -> MotionTask:
+        """The same targets, none of them to be missed."""
+        return MotionTask(
+            self.positions, self.angles, weights=self.weights, angle_length=self.angle_length, body=self.body
+        )
 
     @property
     def exact_by_default(self) -> bool:

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from grashof.problems.checks import GREATEST, FloatArray, counted, finite_rows, frozen_array, span, task_size
 from grashof.problems.errors import ProblemError
 from grashof.problems.read_only import ReadOnly
+from grashof.problems.zones import LEAST_ZONE, zone_sizes
 
 _TURN = 2 * np.pi
 
@@ -28,6 +29,8 @@ class PathTask(ReadOnly):
         most one turn. Its sense is free: a design may turn the driver either way.
     closed : bool
         One turn of the driver takes P round all points and back to the first.
+    within : float or array_like, shape (N,), length, optional
+        How far each point may be missed; the objective then decides.
 
     Raises
     ------
@@ -47,9 +50,15 @@ class PathTask(ReadOnly):
     points: FloatArray
     timing: FloatArray | None
     closed: bool
+    within: FloatArray | None
 
     def __init__(
-        self, points: npt.ArrayLike, *, timing: npt.ArrayLike | None = None, closed: bool = False
+        self,
+        points: npt.ArrayLike,
+        *,
+        timing: npt.ArrayLike | None = None,
+        closed: bool = False,
+        within: npt.ArrayLike | None = None,
     ) -> None:
         places = finite_rows(points, 2, "path.points", "a point [x, y]", GREATEST)
         if len(places) < 3:
@@ -58,9 +67,11 @@ class PathTask(ReadOnly):
             raise ProblemError(
                 f"path.points[{index}] and path.points[{index + 1}] are equal; consecutive points must differ"
             )
-        task_size(places, "path.points")
+        size = task_size(places, "path.points")
         if not isinstance(closed, (bool, np.bool_)):
             raise ProblemError(f"path.closed is {closed!r}; allowed is true or false")
+        zone = zone_sizes(within, len(places), "path.within", least=LEAST_ZONE * size)
+        object.__setattr__(self, "within", zone)
         rotation = None if timing is None else _timing(timing, len(places))
         object.__setattr__(self, "points", places)
         object.__setattr__(self, "timing", rotation)
@@ -68,11 +79,16 @@ class PathTask(ReadOnly):
 
     @classmethod
     def from_degrees(
-        cls, points: npt.ArrayLike, *, timing_deg: npt.ArrayLike | None = None, closed: bool = False
+        cls,
+        points: npt.ArrayLike,
+        *,
+        timing_deg: npt.ArrayLike | None = None,
+        closed: bool = False,
+        within: npt.ArrayLike | None = None,
     ) -> PathTask:
         """Task with its timing in degrees, as problem files write it."""
         timing = None if timing_deg is None else np.radians(_numbers(timing_deg))
-        return cls(points, timing=timing, closed=closed)
+        return cls(points, timing=timing, closed=closed, within=within)
 
     @property
     def positions(self) -> FloatArray:
@@ -83,6 +99,15 @@ class PathTask(ReadOnly):
     def size(self) -> float:
         """Greatest distance between two points."""
         return span(self.points)
+
+    @property
+    def zones(self) -> FloatArray | None:
+        """How far points (length) and angles (infinite: there are none) may be missed, shape (2, N)."""
+        return None if self.within is None else np.stack([self.within, np.full(len(self), np.inf)])
+
+    def without_zones(self) -> PathTask:
+        """The same targets, none of them to be missed."""
+        return PathTask(self.points, timing=self.timing, closed=self.closed)
 
     @property
     def exact_by_default(self) -> bool:

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 import reprlib
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
+
+import numpy as np
 
 from grashof.problems.checks import (
     FloatArray,
@@ -23,11 +25,17 @@ from grashof.problems.checks import (
 from grashof.problems.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.errors import ProblemError
 from grashof.problems.manufacturing import Manufacturing
+from grashof.problems.motion_task import MotionTask
 from grashof.problems.read_only import ReadOnly
 from grashof.problems.requirements import Requirements
 from grashof.problems.task import Task
 
 _HEAVIEST = 1e9
+LEAST_TOLERANCE = 1e-4  # sizes: from here on a tolerance is a zone about each target
+NO_OBJECTIVE = (
+    "objective is of no effect in least squares; allowed is also within (zones about the targets) or "
+    "requirements.error_factor"
+)
 EFFORTS = (0.2, 100.0)
 
 
@@ -163,11 +171,59 @@ class Problem(ReadOnly):
             wrong.append(
                 "requirements.same_branch is false; allowed is true when objective.maximise asks for torque"
             )
+        wrong += self._undecided()
         refuse(wrong)
         checked = tuple(
             outline(corners, f"scene.outlines[{index}]") for index, corners in enumerate(self.outlines)
         )
         object.__setattr__(self, "outlines", checked)
+
+    def _undecided(self) -> list[str]:
+        """What is contradictory about whether the error or the objective decides."""
+        wanted, kind, zones = self.requirements, self.task.kind, self.task.zones
+        wrong = []
+        if zones is not None and wanted.exact:
+            wrong.append(f"{kind}.within does not go with requirements.exact = true; it takes its place")
+        if zones is not None and wanted.error_factor is not None:
+            wrong.append(f"requirements.error_factor does not go with {kind}.within; allowed is one of them")
+        if wanted.error_factor is not None and wanted.is_exact(self.task):
+            wrong.append("requirements.error_factor needs least squares, exact = false")
+        if self.objective != Objective() and not self.by_objective:
+            wrong.append(NO_OBJECTIVE)
+        return wrong
+
+    @property
+    def by_objective(self) -> bool:
+        """Whether the objective decides which design is better; otherwise the error does."""
+        wanted = self.requirements
+        bounded = self.task.zones is not None or wanted.error_factor is not None
+        return bounded or wanted.is_exact(self.task)
+
+    @property
+    def zones(self) -> FloatArray | None:
+        """How far positions (length) and angles (rad) may be missed, shape (2, N), where that is said.
+
+        Each target's own zone, or a tolerance of `LEAST_TOLERANCE` and more where there are more
+        equations than unknowns and every target has to be met.
+        """
+        task, wanted = self.task, self.requirements
+        if task.zones is not None:
+            return task.zones
+        loose = wanted.tolerance >= LEAST_TOLERANCE and not task.exact_by_default
+        if not (loose and wanted.is_exact(task)):
+            return None
+        allowed = np.full((2, len(task)), wanted.tolerance * task.size)
+        if isinstance(task, MotionTask):
+            allowed[1] /= task.angle_length
+            return np.where(np.stack([task.has_position, task.has_angle]), allowed, np.inf)
+        return np.stack([allowed[0], np.full(len(task), np.inf)])
+
+    def without_zones(self, *, exact: bool | None = False) -> Problem:
+        """The same problem with no target to be missed, by least squares unless it says else."""
+        task = self.task.without_zones() if self.task.zones is not None else self.task
+        wanted = replace(self.requirements, exact=exact, error_factor=None)
+        objective = self.objective if wanted.is_exact(task) else Objective()
+        return replace(self, task=task, requirements=wanted, objective=objective)
 
     def __repr__(self) -> str:
         return f"<Problem {self.name}: {type(self.task).__name__} of {counted(len(self.task), 'target')}>"

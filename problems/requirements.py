@@ -68,6 +68,8 @@ class Requirements(ReadOnly):
         every target can be expected (see `is_exact`).
     tolerance : float
         A design is exact when its largest error is at most ``tolerance * size``.
+    error_factor : float, optional
+        Least squares: the objective decides among designs of up to so many times the least error found.
     rotatability : Rotatability
         full-crank (the driver turns fully), crank-rocker, double-crank, or any (the driver
         covers the task).
@@ -102,6 +104,7 @@ class Requirements(ReadOnly):
 
     exact: bool | None = None
     tolerance: float = 1e-6
+    error_factor: float | None = None
     rotatability: Rotatability = Rotatability.FULL_CRANK
     rotatability_margin: float = 1e-3
     order: bool = True
@@ -137,6 +140,9 @@ class Requirements(ReadOnly):
         for name, (low, high) in _RANGES.items():
             value = number_within(getattr(self, name), low, high, f"requirements.{name}")
             object.__setattr__(self, name, value)
+        if self.error_factor is not None:
+            factor = number_within(self.error_factor, 1.0, 1e6, "requirements.error_factor")
+            object.__setattr__(self, "error_factor", factor)
         for name in ("link_length", "r1", "r2", "r3", "r4", "coupler_arms"):
             if getattr(self, name) is not None:
                 pair = limits(getattr(self, name), f"requirements.{name}", least=0.0)
@@ -180,6 +186,8 @@ class Requirements(ReadOnly):
         >>> Requirements().is_exact(line), Requirements(exact=False).is_exact(line)
         (True, False)
         """
+        if task.zones is not None:
+            return False
         return task.exact_by_default if self.exact is None else self.exact
 
     def resolved(self, size: float) -> Requirements:

@@ -17,9 +17,9 @@ from grashof.problems.errors import ProblemError
 from grashof.problems.manufacturing import Manufacturing
 from grashof.problems.motion_task import MotionTask
 from grashof.problems.path_task import PathTask
-from grashof.problems.problem import Objective, Problem, Search
+from grashof.problems.problem import NO_OBJECTIVE, Objective, Problem, Search
 from grashof.problems.requirements import Box, Requirements
-from grashof.problems.tables import LIST, TABLE, WORD, WRONG, Table, Text, listed, one_of, stated, tag
+from grashof.problems.tables import LIST, NUMBER, TABLE, WORD, WRONG, Table, Text, listed, one_of, stated, tag
 from grashof.problems.task import Task
 
 
@@ -74,25 +74,42 @@ Corners = Annotated[
 Pair = Annotated[list[float], listed("[lo, hi]")]
 
 
+Zone = Annotated[
+    Annotated[float, Tag(NUMBER)] | Annotated[list[float], Tag(LIST)],
+    Discriminator(
+        tag, custom_error_type=WRONG, custom_error_message="a number, or a list of one for each target"
+    ),
+]
+
+
 class MotionTable(Table):
     poses: Annotated[list[Any], listed("a list of poses [x, y, angle in degrees]")]
     weights: Annotated[list[float], listed("a list of numbers")] | None = None
     angle_length: float | None = None
     body: Corners | None = None
+    within: Zone | None = None
+    angle_within_deg: Zone | None = None
 
     @field_validator("*")
     @classmethod
     def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
         if key.field_name == "poses":
             MotionTask.from_degrees(given, angle_length=1.0)
-        elif given is not None and (key.field_name != "weights" or len(given) > 1):
-            poses = [[k, 0, 0] for k in range(len(given) if key.field_name == "weights" else 2)]
+        elif given is not None:
+            each = key.field_name != "body" and isinstance(given, list)  # one for each pose
+            poses = [[k, 0, 0] for k in range(max(len(given), 2) if each else 2)]
+            given = given * 2 if each and len(given) == 1 else given
             MotionTask.from_degrees(poses, **{str(key.field_name): given})
         return given
 
     def value(self) -> MotionTask:
         return MotionTask.from_degrees(
-            self.poses, weights=self.weights, angle_length=self.angle_length, body=self.body
+            self.poses,
+            weights=self.weights,
+            angle_length=self.angle_length,
+            body=self.body,
+            within=self.within,
+            angle_within_deg=self.angle_within_deg,
         )
 
 
@@ -102,6 +119,7 @@ class PathTable(Table):
     ]
     timing_deg: Annotated[list[float], listed("a list of angles")] | None = None
     closed: bool = False
+    within: Zone | None = None
 
     @field_validator("points")
     @classmethod
@@ -117,7 +135,9 @@ class PathTable(Table):
         return timing_deg
 
     def value(self) -> PathTask:
-        return PathTask.from_degrees(self.points, timing_deg=self.timing_deg, closed=self.closed)
+        return PathTask.from_degrees(
+            self.points, timing_deg=self.timing_deg, closed=self.closed, within=self.within
+        )
 
 
 Outlines = Annotated[list[Corners], listed("a list of outlines, each a list of corners [x, y]")]
@@ -170,6 +190,7 @@ Place = Annotated[
 class RequirementsTable(Table):
     exact: bool | None = None
     tolerance: float | None = None
+    error_factor: float | None = None
     rotatability: str | None = None
     rotatability_margin: float | None = None
     order: bool | None = None
@@ -321,7 +342,7 @@ class ProblemFile(Table):
         return mine.value()
 
     def problem(self, name: str) -> Problem:
-        return Problem(
+        problem = Problem(
             name=name,
             title=self.title,
             source=self.source,
@@ -334,6 +355,9 @@ class ProblemFile(Table):
             manufacturing=None if self.manufacturing is None else self.manufacturing.value(),
             search=self.search.value(),
         )
+        if "objective" in self.model_fields_set and not problem.by_objective:
+            raise ProblemError(NO_OBJECTIVE)
+        return problem
 
 
 _TABLES: dict[str, type[Table]] = {

@@ -25,7 +25,7 @@ from grashof.problems.errors import ProblemError
 # What a validator says about a value: its message is what is allowed instead.
 WRONG = "wrong"
 # Tags tell the shapes of a value apart. They enter the location of an error and are left out of its path.
-TABLE, LIST, WORD = "<table>", "<list>", "<word>"
+TABLE, LIST, WORD, NUMBER = "<table>", "<list>", "<word>", "<number>"
 _ALLOWED = {
     "float_type": "a number",
     "int_type": "a whole number",
@@ -124,7 +124,7 @@ def one_of(*words: str) -> AfterValidator:
 
 def tag(value: object) -> str | None:
     """The tag of a value's shape."""
-    shapes = (((dict, Table), TABLE), (list, LIST), (str, WORD))
+    shapes = (((dict, Table), TABLE), (list, LIST), (str, WORD), (bool, None), ((int, float), NUMBER))
     return next((name for types, name in shapes if isinstance(value, types)), None)
 
 
@@ -155,7 +155,7 @@ def _path(location: tuple[int | str, ...]) -> str:
     for part in location:
         if isinstance(part, int):
             path += f"[{part}]"
-        elif part not in (TABLE, LIST, WORD):
+        elif part not in (TABLE, LIST, WORD, NUMBER):
             key = part if re.fullmatch(r"[A-Za-z0-9_-]+", part) else json.dumps(part)
             path += f".{key}" if path else key
     return path

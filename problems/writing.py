@@ -53,7 +53,8 @@ def _tables(problem: Problem) -> Iterator[tuple[str, Mapping[str, Any]]]:
         yield "scene", {"outlines": problem.outlines}
     wanted = problem.requirements
     yield "requirements", _given({field.name: getattr(wanted, field.name) for field in fields(Requirements)})
-    yield "objective", {"maximise": asdict(problem.objective)}
+    if problem.by_objective:
+        yield "objective", {"maximise": asdict(problem.objective)}
     if problem.dynamics is not None:
         yield "dynamics", problem.dynamics.stated
     if problem.manufacturing is not None:
@@ -68,12 +69,14 @@ def _given(table: Mapping[str, Any]) -> dict[str, Any]:
 def _task(task: Task) -> dict[str, Any]:
     if isinstance(task, PathTask):
         timing = None if task.timing is None else _degrees(task.timing)
-        return {"points": task.points, "timing_deg": timing, "closed": task.closed}
+        return {"points": task.points, "timing_deg": timing, "closed": task.closed, "within": task.within}
     return {
         "poses": _poses(task),
         "weights": task.weights,
         "angle_length": task.angle_length,
         "body": task.body,
+        "within": task.within,
+        "angle_within_deg": None if task.angle_within is None else _degrees(task.angle_within),
     }
 
 

@@ -186,11 +186,12 @@ def _made(setup: Setup, start: Start, solved: Solve, number: int) -> Candidate |
         polished = None if start.bounded else _on_path(setup, start.visit, points, solved)
         if polished is not None:
             made = _Made(polished.points, polished.body_angle, start.assembly)
-            candidate = _candidate(setup, made, number, solved.iterations)
+            candidate = _candidate(setup, made, number, solved.iterations, most_error=start.most_error)
             # On its targets a least-squares design may lie beyond a limit that is active.
             if setup.exact or (candidate is not None and candidate.verdict.ok):
                 return candidate
-    return _candidate(setup, _Made(points, body_angle, start.assembly), number, solved.iterations)
+    made = _Made(points, body_angle, start.assembly)
+    return _candidate(setup, made, number, solved.iterations, most_error=start.most_error)
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,14 +202,26 @@ class _Made:
 
 
 def _candidate(
-    setup: Setup, made: _Made, number: int, iterations: int, cognate_of: str = ""
+    setup: Setup,
+    made: _Made,
+    number: int,
+    iterations: int,
+    cognate_of: str = "",
+    most_error: float = np.inf,
 ) -> Candidate | None:
     body_angle = None if setup.motion is not None else np.array(made.body_angle)
     try:
         linkage = setup.linkages(made.points, np.array(made.assembly), body_angle)
     except ProblemError:  # two pivots coincide
         return None
-    verdict = verify(linkage, setup.problem.task, setup.problem.requirements, setup.constraints)
+    problem = setup.problem
+    verdict = verify(
+        linkage,
+        problem.task,
+        problem.requirements,
+        setup.constraints,
+        most_square=len(problem.task) * (most_error * setup.frame.scale) ** 2,
+    )
     torque = torque_peak(linkage, setup.problem, verdict) if verdict.ok else np.nan
     return Candidate(linkage, verdict, number, iterations, cognate_of, torque)
 

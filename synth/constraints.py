@@ -202,10 +202,10 @@ def _error(rows: Rows, form: Form, given: Given, unknown: Unknowns, places: Plac
     for k in range(form.targets if form.zoned else 0):
         if form.positions[k]:
             gap2 = ca.sumsqr(places.p[k] - given.target(k))
-            rows.add("nonnegative", 1 - gap2 / given.zones[k] ** 2)
+            rows.require("within", 1 - gap2 / given.zones[k] ** 2)
         if form.angles[k]:
             share = _off(given, unknown, k) / given.zones[form.targets + k]
-            rows.add("nonnegative", 1 - share**2)
+            rows.require("within", 1 - share**2)
 
 
 def _off(given: Given, unknown: Unknowns, k: int) -> ca.SX:

@@ -28,6 +28,7 @@ GROUPS = (
     "theta2_start_deg",
     "constraints",
     "keep_out",
+    "within",
 )
 
 

@@ -46,6 +46,7 @@ class Ledger:
     rounds: int = 0
     work: int = 0
     planned: float = np.inf
+    latest: list[Start] = field(default_factory=list)
     _stale: int = 0
     _least: list[float] = field(default_factory=list)
     _begun: list[ComplexArray] = field(default_factory=list)
@@ -60,6 +61,7 @@ class Ledger:
         """Open a round."""
         self.counts.update(made.counts)
         self.rounds += 1
+        self.latest = made.starts
         self.work += made.size
         self._least.append(np.inf)
         self._stale += bool(self.best)
@@ -85,18 +87,13 @@ class Ledger:
             if made.candidate is not None and made.candidate.verdict.ok:
                 self.verified += [made.candidate, *made.cognates]
                 self.counts["cognates verified"] += len(made.cognates)
-                self._least[-1] = min(self._least[-1], self.error(made.candidate))
+                self._least[-1] = min(self._least[-1], made.candidate.error(self.setup.problem))
             else:
                 self.rejected.append(made)
         self.solved += len(attempts)
         self.best = ranked(self.setup.problem, self.verified)
         if len(self.best) > before:
             self._stale = 0
-
-    def error(self, candidate: Candidate) -> float:
-        """What least squares makes small, by targets: root mean square, sizes."""
-        task = self.setup.problem.task
-        return float(np.sqrt(candidate.verdict.square / len(task))) / task.size
 
     @property
     def least(self) -> float:

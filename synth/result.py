@@ -109,10 +109,10 @@ class Candidate(Displayed):
     def score(self, problem: Problem) -> float:
         """How far a search has come with this design; greater is better.
 
-        The objective, or with ``exact = false`` the error, none up to `same_error`. Designs are
-        ranked by `ranking_key`.
+        The objective, or in least squares the error, none up to `same_error`. Designs are ranked by
+        `ranking_key`.
         """
-        if problem.requirements.is_exact(problem.task):
+        if problem.by_objective:
             return self.objective(problem)
         error = self.error(problem)
         return 0.0 if error <= same_error(problem) else -error
@@ -225,8 +225,9 @@ def ranking_key(problem: Problem, candidate: Candidate) -> tuple[float, ...]:
     error, objective = candidate.error(problem), candidate.objective(problem)
     if avoided:
         objective -= WORSE_OBJECTIVE * abs(objective)
-        error *= 1.0 if problem.requirements.is_exact(problem.task) else WORSE_ERROR
-    counted_error = 0.0 if error <= same_error(problem) * (1 + SLACK) else round(error, DIGITS)
+        error *= 1.0 if problem.by_objective else WORSE_ERROR
+    bounded = problem.by_objective and not problem.requirements.is_exact(problem.task)
+    counted_error = 0.0 if bounded or error <= same_error(problem) * (1 + SLACK) else round(error, DIGITS)
     cost = np.inf if np.isnan(objective) else -round(objective, DIGITS)
     numbers = signature(candidate.linkage).tolist()
     return (counted_error, cost, float(avoided), candidate.verdict.size, *numbers)
@@ -257,7 +258,7 @@ def pareto_optimal(problem: Problem, candidates: tuple[Candidate, ...]) -> BoolA
     over = problem.requirements.transmission_over
     costs = np.array([
         (
-            max(candidate.verdict.error_rms / problem.task.size, same_error(problem)),
+            max(candidate.error(problem), same_error(problem)),
             -candidate.transmission(over),
             candidate.verdict.size,
             np.inf if np.isnan(candidate.torque_peak) else candidate.torque_peak,

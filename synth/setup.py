@@ -62,7 +62,8 @@ class Setup:
     def of(cls, problem: Problem, constraints: Sequence[Constraint] = ()) -> Setup:
         """Make a problem ready."""
         task, frame = problem.task, Frame.of(problem.task)
-        exact, targets = problem.requirements.is_exact(task), frame.inward(task.positions)
+        zones, targets = problem.zones, frame.inward(task.positions)
+        exact = problem.requirements.is_exact(task) and zones is None
         weights, turns, turn_weights, motion = np.ones(len(task)), None, None, None
         if isinstance(task, MotionTask):
             weights = task.weights * task.has_position
@@ -84,7 +85,13 @@ class Setup:
             wanted=frame.requirements(problem.requirements),
             exact=exact,
             constraints=tuple(constraints),
+            zones=None if zones is None else zones / [[frame.scale], [1.0]],
         )
+
+    @property
+    def bounded(self) -> bool:
+        """Whether the objective decides among designs that may miss the targets."""
+        return self.zones is not None or self.problem.requirements.error_factor is not None
 
     @property
     def closed(self) -> bool:

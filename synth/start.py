@@ -89,6 +89,7 @@ class Start:
     def of_linkage(cls, setup: Setup, linkage: FourBar, verdict: Verdict) -> Start:
         """The start that a linkage makes where the judge found it nearest to the targets, in order."""
         state = solve_position(linkage, verdict.theta2, verdict.assembly)
+        visit = np.argsort(verdict.direction * verdict.theta2, kind="stable")
         at_first = (linkage.o2, linkage.o4, state.a[0], state.b[0], state.p[0])
         o2, o4, a, b, p = (complex(setup.frame.inward(point)) for point in at_first)
         return cls(
@@ -97,9 +98,9 @@ class Start:
             a=a,
             b=b,
             p=p,
-            visit=tuple(range(len(verdict.theta2))),
-            theta2=tuple(verdict.theta2.tolist()),
-            theta3=tuple(np.unwrap(state.theta3).tolist()),
+            visit=tuple(visit.tolist()),
+            theta2=tuple(verdict.theta2[visit].tolist()),
+            theta3=tuple(np.unwrap(state.theta3[visit]).tolist()),
             direction=verdict.direction,
             assembly=int(linkage.assembly),
             objective=setup.problem.objective,

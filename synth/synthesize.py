@@ -15,6 +15,7 @@ from grashof.analysis.design import Constraint
 from grashof.problems import MotionTask, Problem, ProblemError, Search
 from grashof.problems.checks import counted, finite_number, whole_number
 from grashof.synth import exact_poses, paths
+from grashof.synth.choice import Chosen, decided, offered
 from grashof.synth.explain import STOPPED, Explanation, Failure, explain
 from grashof.synth.families import listed
 from grashof.synth.ledger import Ledger
@@ -126,7 +127,9 @@ def synthesize(
         out_of_time = time_limit is not None and perf_counter() - begun > time_limit
         return out_of_time or (stop is not None and stop())
 
-    return _search(setup, search, begun, ended, progress, workers, executor)
+    with solving(workers, executor) as solve:
+        seconds = {"screening": 0.0, "solving": 0.0}
+        return _search(setup, _Run(search, solve, ended, progress, seconds))
 
 
 def refuse_unsupported(problem: Problem) -> None:
@@ -150,50 +153,81 @@ class Finder(Protocol):
         """Rounds of starts, the larger the more is asked for."""
 
 
-def _search(
-    setup: Setup,
-    search: Search,
-    begun: float,
-    ended: Callable[[], bool],
-    progress: Callable[[Progress], object] | None,
-    workers: int,
-    executor: Executor | None,
-    *,
-    explained: bool = True,
-) -> Result:
+@dataclass(frozen=True, slots=True)
+class _Run:
+    """How a search is run."""
+
+    search: Search
+    solve: Solver
+    ended: Callable[[], bool]
+    progress: Callable[[Progress], object] | None
+    seconds: dict[str, float]
+
+
+def _search(setup: Setup, run: _Run, *, explained: bool = True) -> Result:
+    """Search, choose, or explain why there is nothing to choose from."""
+    begun, problem = perf_counter(), setup.problem
+    ledger, complete = _found(_without_zones(setup), run)
+    if setup.bounded and not ledger.best and ledger.setup.exact and complete:  # as near as can be will do
+        ledger, complete = _found(_without_zones(setup, exact=False), run)
+    chosen = Chosen(ledger.best, ledger.rejected, 0)
+    since = perf_counter()
+    if setup.bounded:
+        first = ledger.solved
+        chosen = decided(setup, ledger.verified, ledger.least, first, run.solve, run.ended)
+    elif not setup.exact and ledger.best:
+        chosen = offered(setup, ledger, run.solve, run.ended)
+    run.seconds["choosing"] = perf_counter() - since
+    best, said = chosen.designs, Explanation("" if chosen.designs else STOPPED)
+    if not best and complete and explained:
+        since = perf_counter()
+        said = _explained(setup, run, ledger, chosen)
+        best = ranked(problem, list(said.designs))
+        run.seconds["explaining"] = perf_counter() - since
+    counts = {**ledger.counts, "solves for the choice": chosen.solved, "verified and distinct": len(best)}
+    times = {**run.seconds, "total": perf_counter() - begun}
+    why, designs = ledger.why(complete), listed(problem, best)
+    return Result(problem, designs, said.nearest, counts, times, said.note, complete, why)
+
+
+def _without_zones(setup: Setup, *, exact: bool | None = None) -> Setup:
+    """The search that comes first where targets may be missed: exact, or for the least error."""
+    if not setup.bounded:
+        return setup
+    problem = setup.problem
+    free = problem.task.zones is None  # an error factor, or a tolerance
+    return Setup.of(problem.without_zones(exact=False if free else exact), setup.constraints)
+
+
+def _found(setup: Setup, run: _Run) -> tuple[Ledger, bool]:
+    """What the rounds of a search come to, and whether they were all gone through."""
     finder = exact_poses if setup.motion is not None else paths
-    ledger = Ledger(setup, search)
+    ledger, complete = Ledger(setup, run.search), True
+    since = perf_counter()
+    for made in _rounds(setup, finder, ledger):
+        screened = perf_counter()
+        run.seconds["screening"] += screened - since
+        ledger.begin(made)
+        _solve_round(setup, made, ledger, run)
+        since = perf_counter()
+        run.seconds["solving"] += since - screened
+        if run.ended():
+            complete = ledger.done or ledger.ended
+            break
+    return ledger, complete
+
+
+def _explained(setup: Setup, run: _Run, ledger: Ledger, chosen: Chosen) -> Explanation:
+    search = run.search
 
     def near(problem: Problem) -> Result:
         few = replace(search, effort=NEAR_EFFORT, enough=min(search.enough, NEAR))
-        other = Setup.of(problem, setup.constraints)
-        return _search(other, few, perf_counter(), ended, None, 1, None, explained=False)
+        alone = replace(run, search=few, progress=None, seconds=dict.fromkeys(run.seconds, 0.0))
+        return _search(Setup.of(problem, setup.constraints), alone, explained=False)
 
-    complete, seconds = True, {"screening": 0.0, "solving": 0.0}
-    with solving(workers, executor) as solve:
-        since = perf_counter()
-        for made in _rounds(setup, finder, ledger):
-            screened = perf_counter()
-            seconds["screening"] += screened - since
-            ledger.begin(made)
-            _solve_round(setup, made, solve, ledger, ended, progress)
-            since = perf_counter()
-            seconds["solving"] += since - screened
-            if ended():
-                complete = ledger.done or ledger.ended
-                break
-        best, said = ledger.best, Explanation("" if ledger.best else STOPPED)
-        if not best and complete and explained:
-            failure = Failure(setup, made.starts, ledger.rejected, ledger.counts)
-            rng = np.random.default_rng(np.random.SeedSequence(search.seed, spawn_key=(0,)))
-            said = explain(failure, solve, near, rng, ended)
-            best = ranked(setup.problem, list(said.designs))
-            seconds["explaining"] = perf_counter() - since
-    counts = {**ledger.counts, "verified and distinct": len(best)}
-    times = {**seconds, "total": perf_counter() - begun}
-    why = ledger.why(complete)
-    designs = listed(setup.problem, best)
-    return Result(setup.problem, designs, said.nearest, counts, times, said.note, complete, why)
+    failure = Failure(setup, ledger.latest, chosen.rejected, ledger.counts)
+    rng = np.random.default_rng(np.random.SeedSequence(search.seed, spawn_key=(0,)))
+    return explain(failure, run.solve, near, rng, run.ended)
 
 
 def _rounds(setup: Setup, finder: Finder, ledger: Ledger) -> Iterator[Round]:
@@ -212,22 +246,15 @@ def _rounds(setup: Setup, finder: Finder, ledger: Ledger) -> Iterator[Round]:
             return
 
 
-def _solve_round(
-    setup: Setup,
-    made: Round,
-    solve: Solver,
-    ledger: Ledger,
-    ended: Callable[[], bool],
-    progress: Callable[[Progress], object] | None,
-) -> None:
+def _solve_round(setup: Setup, made: Round, ledger: Ledger, run: _Run) -> None:
     """Solve starts batch by batch until enough is found or the search is ended."""
-    starts, search = mended(setup, made.starts), ledger.search
-    batch = min(BATCH, search.enough) if setup.exact else BATCH_LEAST_SQUARES
+    starts, enough = mended(setup, made.starts), ledger.search.enough
+    batch = min(BATCH, enough) if setup.exact else BATCH_LEAST_SQUARES
     for begin in range(0, len(starts), batch):
-        if ended() or not ledger.within_round():
+        if run.ended() or not ledger.within_round():
             return
         some = ledger.worthwhile(made, starts[begin : begin + batch], first=begin == 0)
         if some:
-            ledger.take(solve(setup, some[: ledger.starts - ledger.solved], ledger.solved))
-        if progress is not None:
-            progress(Progress(ledger.solved, ledger.starts, len(ledger.best), search.enough))
+            ledger.take(run.solve(setup, some[: ledger.starts - ledger.solved], ledger.solved))
+        if run.progress is not None:
+            run.progress(Progress(ledger.solved, ledger.starts, len(ledger.best), enough))

@@ -1,0 +1,51 @@
+"""Zones: how far each target may be missed."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from grashof.problems.checks import GREATEST, FloatArray, counted, frozen_array
+from grashof.problems.errors import ProblemError
+
+LEAST_ZONE = 1e-12  # below, digits are lost
+
+
+def zone_sizes(values: npt.ArrayLike | None, count: int, where: str, *, least: float) -> FloatArray | None:
+    """How far each of `count` targets may be missed, shape (count,), from one number or one for each.
+
+    Parameters
+    ----------
+    values : array_like or None
+    count : int
+    where : str
+        Its key, for messages.
+    least : float
+        The smallest allowed.
+
+    Raises
+    ------
+    ProblemError
+        Not numbers, not as many as there are targets, or out of range.
+
+    Examples
+    --------
+    >>> zone_sizes(2.0, 3, "path.within", least=1e-12)
+    array([2., 2., 2.])
+    """
+    if values is None:
+        return None
+    allowed = "allowed is a number greater than zero, or a list of one for each target"
+    try:
+        numbers = np.asarray(values)
+    except ValueError:  # lists of unequal length inside
+        numbers = np.array(None)
+    if numbers.dtype.kind not in "iuf" or numbers.ndim > 1:
+        raise ProblemError(f"{where} is {values!r}; {allowed}")
+    if numbers.ndim == 1 and len(numbers) != count:
+        raise ProblemError(f"{where} has {counted(len(numbers), 'number')} for {count} targets; {allowed}")
+    for index, number in enumerate(np.atleast_1d(numbers)):
+        if not least <= number <= GREATEST:
+            name = f"{where}[{index}]" if numbers.ndim else where
+            raise ProblemError(f"{name} is {number:g}; allowed is {least:g} to {GREATEST:g}")
+    return frozen_array(np.broadcast_to(numbers, (count,)))

@@ -1,0 +1,210 @@
+"""A list to choose from: what a little more error buys, and what the objective makes of zones."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from grashof.analysis import verify
+from grashof.problems import Objective, Problem
+from grashof.problems.checks import FloatArray
+from grashof.synth.attempt import Attempt
+from grashof.synth.distinct import pick_apart, signature
+from grashof.synth.ledger import Ledger
+from grashof.synth.result import Candidate, pareto_optimal, ranked, same_error
+from grashof.synth.setup import Setup
+from grashof.synth.start import Start
+from grashof.synth.workers import Solver
+
+FACTORS = (1.02, 1.2, 1.5, 2.0)  # times the least error: so much is offered for other virtues
+GOALS = {"mu": Objective(), "size": Objective(transmission=0.0, compactness=1.0)}
+NEAR = 1.6  # times the error that is allowed: least-squares designs up to there are begun from
+SEEDS, MOST_SEEDS = 3, 24  # of them, for each goal; where the problem's objective decides
+APART = 0.05  # share: seeds that are closer are one
+SLACK = 1e-6  # share of the error: rounding
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """Designs of a list, and what was solved for them.
+
+    Parameters
+    ----------
+    designs : tuple of Candidate
+    rejected : list of Attempt
+    solved : int
+    """
+
+    designs: tuple[Candidate, ...]
+    rejected: list[Attempt]
+    solved: int
+
+
+def offered(setup: Setup, ledger: Ledger, solve: Solver, ended: Callable[[], bool]) -> Chosen:
+    """Beside the least error: within some times of it the best transmission and the smallest size.
+
+    Parameters
+    ----------
+    setup : Setup
+    ledger : Ledger
+        Of the search for the least error.
+    solve : callable
+        Attempts from starts.
+    ended : callable
+        Asked between solves.
+
+    Returns
+    -------
+    Chosen
+        Of all designs those that no other one beats in every goal, up to twice the least error.
+    """
+    problem, least = setup.problem, max(ledger.least, same_error(setup.problem))
+    seeds = _seeds(problem, ledger.verified, NEAR * least, SEEDS)
+    every, attempts = list(ledger.verified), list[Attempt]()
+    latest = dict[str, list[Candidate]]({goal: [] for goal in GOALS})
+    factors = FACTORS if ledger.least > same_error(problem) else FACTORS[:1]
+    for factor in factors:
+        if ended():
+            break
+        begun = [
+            (goal, _under(setup, one, objective, most_error=factor * least))
+            for goal, objective in GOALS.items()
+            for one in (*latest[goal], *seeds)
+        ]
+        made = solve(setup, [start for _, start in begun], ledger.solved + len(attempts))
+        attempts += made
+        for goal, objective in GOALS.items():
+            good = [
+                one.candidate
+                for (mine, _), one in zip(begun, made, strict=True)
+                if mine == goal and one.candidate is not None and one.candidate.verdict.ok
+            ]
+            every += good
+            valued = replace(problem, requirements=replace(problem.requirements, error_factor=factor))
+            valued = replace(valued, objective=objective)
+            latest[goal] = list(ranked(valued, good)[:1]) or latest[goal]
+    return Chosen(_worth_choosing(problem, every, least), _rejected(attempts), len(attempts))
+
+
+def decided(
+    setup: Setup,
+    found: Sequence[Candidate],
+    least: float,
+    first: int,
+    solve: Solver,
+    ended: Callable[[], bool],
+) -> Chosen:
+    """Where errors are allowed, the best designs by the problem's objective.
+
+    Parameters
+    ----------
+    setup : Setup
+        Of the problem with its zones, or its ``error_factor``.
+    found : sequence of Candidate
+        Designs of the search without: exact ones, or of least squares.
+    least : float
+        The least error among them, sizes.
+    first : int
+        Number of the first solve.
+    solve : callable
+        Attempts from starts.
+    ended : callable
+        Asked between solves.
+
+    Returns
+    -------
+    Chosen
+    """
+    problem, factor = setup.problem, setup.problem.requirements.error_factor
+    most = np.inf if factor is None else factor * max(least, same_error(problem))
+    allowed = most if factor is not None else max(_mean_zone(setup), least)
+    seeds = _seeds(problem, found, NEAR * allowed, MOST_SEEDS)
+    count = round(MOST_SEEDS * max(1.0, problem.search.effort))
+    starts = [
+        _under(setup, one, problem.objective, most_error=most, zoned=setup.zones is not None)
+        for one in seeds[:count]
+    ]
+    attempts = [] if ended() else solve(setup, starts, first)
+    again = [_judged(setup, one, most) for one in found]
+    good = [one for one in again if one.verdict.ok]
+    for one in attempts:
+        if one.candidate is not None and one.candidate.verdict.ok:
+            good += [one.candidate, *(each for each in one.cognates if _judged(setup, each, most).verdict.ok)]
+    rejected = _rejected(attempts)
+    if not good and setup.zones is not None and not ended():  # how large the zones would have to be
+        relaxed = [replace(start, relaxed=("within",)) for start in starts]
+        made = solve(setup, relaxed, first + len(attempts))
+        good = [one.candidate for one in made if one.candidate is not None and one.candidate.verdict.ok]
+        rejected, attempts = _rejected(made) + rejected, attempts + made
+    return Chosen(ranked(problem, good), rejected, len(attempts))
+
+
+def _judged(setup: Setup, candidate: Candidate, most_error: float) -> Candidate:
+    """A design judged by the problem as it is asked."""
+    problem, task = setup.problem, setup.problem.task
+    square = len(task) * (most_error * task.size) ** 2
+    verdict = verify(candidate.linkage, task, problem.requirements, setup.constraints, most_square=square)
+    return replace(candidate, verdict=verdict)
+
+
+def _under(
+    setup: Setup, candidate: Candidate, objective: Objective, *, most_error: float, zoned: bool = False
+) -> Start:
+    """A start at a design, from which the objective decides under a bound of the error."""
+    start = Start.of_linkage(setup, candidate.linkage, candidate.verdict)
+    return replace(start, objective=objective, most_error=most_error, zoned=zoned)
+
+
+def _seeds(problem: Problem, found: Sequence[Candidate], most: float, count: int) -> list[Candidate]:
+    """Designs up to some error that are well apart, the least error first."""
+    near = sorted(
+        (one for one in found if _error(problem, one) <= most or not len(found)),
+        key=lambda one: (_error(problem, one), one.id),
+    )
+    near = near or sorted(found, key=lambda one: (_error(problem, one), one.id))
+    if not near:
+        return []
+    origin = np.nanmean(problem.task.positions, axis=0)
+    signatures: FloatArray = np.array([signature(one.linkage, origin) for one in near])
+    picked = pick_apart(signatures, -np.arange(len(near), dtype=np.float64), APART, count)
+    return [near[k] for k in picked]
+
+
+def _error(problem: Problem, candidate: Candidate) -> float:
+    return float(np.sqrt(candidate.verdict.square / len(problem.task))) / problem.task.size
+
+
+def _mean_zone(setup: Setup) -> float:
+    """Error of a design that uses up every zone, root mean square, sizes."""
+    zones = np.zeros((2, 1)) if setup.zones is None else np.where(np.isfinite(setup.zones), setup.zones, 0.0)
+    weights = np.zeros(zones.shape[1]) if setup.turn_weights is None else setup.turn_weights
+    square = (setup.weights * zones[0] ** 2 + weights * zones[1] ** 2).sum()
+    return float(np.sqrt(square / len(setup.targets)))
+
+
+def _rejected(attempts: list[Attempt]) -> list[Attempt]:
+    return [one for one in attempts if one.candidate is None or not one.candidate.verdict.ok]
+
+
+def _worth_choosing(problem: Problem, every: list[Candidate], least: float) -> tuple[Candidate, ...]:
+    """What no other design beats, up to twice the least error, each with what it is best at."""
+    near = [one for one in every if _error(problem, one) <= FACTORS[-1] * least * (1 + SLACK)]
+    distinct = ranked(problem, near)
+    front = pareto_optimal(problem, distinct)
+    kept = [one for one, best in zip(distinct, front, strict=True) if best]
+    words: dict[int, list[str]] = {k: [] for k in range(len(kept))}
+    if kept:
+        words[0].append("least error")
+    over = problem.requirements.transmission_over
+    for factor in FACTORS[::-1]:
+        within = [k for k, one in enumerate(kept) if _error(problem, one) <= factor * least * (1 + SLACK)]
+        for goal, value in (
+            ("best mu", lambda k: -kept[k].transmission(over)),
+            ("smallest", lambda k: kept[k].verdict.size),
+        ):
+            best = min(within, key=value, default=None)
+            if best is not None and not any(text.startswith(goal) for text in words[best]):
+                words[best].append(f"{goal} within {factor:g} times")
+    return tuple(replace(one, best_at="; ".join(words[k])) for k, one in enumerate(kept))
