@@ -88,6 +88,16 @@ def offered(setup: Setup, ledger: Ledger, solve: Solver, ended: Callable[[], boo
     return Chosen(_worth_choosing(problem, every, least), _rejected(attempts), len(attempts))
 
 
+def of_use(setup: Setup) -> float:
+    """Up to which error a design is of use where zones are allowed, root mean square, sizes."""
+    if setup.zones is None:
+        return 0.0
+    zones = np.where(np.isfinite(setup.zones), setup.zones, 0.0)
+    turn_weights = np.zeros(zones.shape[1]) if setup.turn_weights is None else setup.turn_weights
+    square = (setup.weights * zones[0] ** 2 + turn_weights * zones[1] ** 2).sum()
+    return float(np.sqrt(square / len(setup.targets)))
+
+
 def decided(
     setup: Setup,
     found: Sequence[Candidate],
@@ -119,7 +129,7 @@ def decided(
     """
     problem, factor = setup.problem, setup.problem.requirements.error_factor
     most = np.inf if factor is None else factor * max(least, same_error(problem))
-    allowed = most if factor is not None else max(_mean_zone(setup), least)
+    allowed = most if factor is not None else max(of_use(setup), least)
     seeds = _seeds(problem, found, NEAR * allowed, MOST_SEEDS)
     count = round(MOST_SEEDS * max(1.0, problem.search.effort))
     starts = [
@@ -174,14 +184,6 @@ def _seeds(problem: Problem, found: Sequence[Candidate], most: float, count: int
 
 def _error(problem: Problem, candidate: Candidate) -> float:
     return float(np.sqrt(candidate.verdict.square / len(problem.task))) / problem.task.size
-
-
-def _mean_zone(setup: Setup) -> float:
-    """Error of a design that uses up every zone, root mean square, sizes."""
-    zones = np.zeros((2, 1)) if setup.zones is None else np.where(np.isfinite(setup.zones), setup.zones, 0.0)
-    weights = np.zeros(zones.shape[1]) if setup.turn_weights is None else setup.turn_weights
-    square = (setup.weights * zones[0] ** 2 + weights * zones[1] ** 2).sum()
-    return float(np.sqrt(square / len(setup.targets)))
 
 
 def _rejected(attempts: list[Attempt]) -> list[Attempt]:

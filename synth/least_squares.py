@@ -106,13 +106,15 @@ def _free_round(setup: Setup, batch: Batch, size: int) -> Round | None:
     sound = np.isfinite(placed.error)
     finds = judged(setup, target, entries_of(placed, sound), batch.direction[sound])
     least = finds.error.min(initial=np.inf)
-    feasible = finds[finds.feasible & (finds.error <= NEAR_BEST * least)]
+    useful = max(NEAR_BEST * least, setup.of_use)
+    feasible = finds[finds.feasible & (finds.error <= useful)]
     if not len(feasible) or feasible.error.min() > max(least * (1 + SAME_ERROR), FOUND):
         return None
     order = np.argsort(feasible.error, kind="stable")
     starts = [_start(setup, feasible, feasible.error, int(k)) for k in order]
     counts = {"feasible finds": len(feasible)}
-    return Round(_other_curves(starts, size * MOST_CURVES), counts, size, NEAR_BEST, free=True)
+    most = size * MOST_CURVES * (2 if setup.of_use else 1)
+    return Round(_other_curves(starts, most), counts, size, NEAR_BEST, free=True)
 
 
 def _other_curves(starts: list[Start], most: int) -> list[Start]:

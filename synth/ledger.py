@@ -160,7 +160,7 @@ class Ledger:
         return f"the search ended after {solves} of {self.starts}: {self.no_use or exhausted}"
 
     def _too_far(self, made: Round, start: Start) -> bool:
-        return start.promise > made.prune * max(self.least, EXACT_ERROR)
+        return start.promise > max(made.prune * max(self.least, EXACT_ERROR), self.setup.of_use)
 
     def _known(self, made: Round, start: Start) -> bool:
         marks = _marks(made, start)

@@ -43,6 +43,8 @@ class Setup:
         The user's own.
     zones : ndarray, shape (2, N), sizes and rad, or None
         How far the position and the angle of each target may be missed.
+    of_use : float, sizes
+        Least squares: designs up to this error are of use, be they far from the best.
     """
 
     problem: Problem
@@ -57,6 +59,7 @@ class Setup:
     exact: bool
     constraints: tuple[Constraint, ...] = ()
     zones: FloatArray | None = None
+    of_use: float = 0.0
 
     @classmethod
     def of(cls, problem: Problem, constraints: Sequence[Constraint] = ()) -> Setup:

@@ -15,7 +15,7 @@ from grashof.analysis.design import Constraint
 from grashof.problems import MotionTask, Problem, ProblemError, Search
 from grashof.problems.checks import counted, finite_number, whole_number
 from grashof.synth import exact_poses, paths
-from grashof.synth.choice import Chosen, decided, offered
+from grashof.synth.choice import Chosen, decided, of_use, offered
 from grashof.synth.explain import STOPPED, Explanation, Failure, explain
 from grashof.synth.families import listed
 from grashof.synth.ledger import Ledger
@@ -196,7 +196,8 @@ def _without_zones(setup: Setup, *, exact: bool | None = None) -> Setup:
         return setup
     problem = setup.problem
     free = problem.task.zones is None  # an error factor, or a tolerance
-    return Setup.of(problem.without_zones(exact=False if free else exact), setup.constraints)
+    without = Setup.of(problem.without_zones(exact=False if free else exact), setup.constraints)
+    return replace(without, of_use=of_use(setup))
 
 
 def _found(setup: Setup, run: _Run) -> tuple[Ledger, bool]:
