@@ -39,6 +39,8 @@ class Relaxation:
         Judged against the requirements as they were asked.
     miss : float
         By how much it misses them: sizes, rad or ratio.
+    figures : int
+        How many limits change.
     """
 
     key: str
@@ -47,6 +49,7 @@ class Relaxation:
     constraints: tuple[Constraint, ...]
     candidate: Candidate
     miss: float
+    figures: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +133,7 @@ def relaxation(
     miss = max((defect.miss for defect in missed), default=1.0)
     for wanted, eased, words in _eased(problem, own, key, missed):
         if verify(candidate.linkage, problem.task, wanted, eased).ok:
-            return Relaxation(key, words, wanted, eased, candidate, miss)
+            return Relaxation(key, words, wanted, eased, candidate, miss, words.count(" instead of "))
     return None
 
 
