@@ -39,6 +39,8 @@ class Relaxation:
         Judged against the requirements as they were asked.
     miss : float
         By how much it misses them: sizes, rad or ratio.
+    figures : int
+        How many limits change.
     """
 
     key: str
@@ -47,6 +49,7 @@ class Relaxation:
     constraints: tuple[Constraint, ...]
     candidate: Candidate
     miss: float
+    figures: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +133,7 @@ def relaxation(
     miss = max((defect.miss for defect in missed), default=1.0)
     for wanted, eased, words in _eased(problem, own, key, missed):
         if verify(candidate.linkage, problem.task, wanted, eased).ok:
-            return Relaxation(key, words, wanted, eased, candidate, miss)
+            return Relaxation(key, words, wanted, eased, candidate, miss, words.count(" instead of "))
     return None
 
 
@@ -171,7 +174,11 @@ def _own_eased(
 ) -> tuple[Requirements, tuple[Constraint, ...], str]:
     allowed = {defect.what: _rounded(defect.found, 0.0) for defect in missed}
     eased = tuple(Eased(one, allowed[name_of(one)]) if name_of(one) in allowed else one for one in own)
-    return wanted, eased, " and ".join(f"{name} up to {by:g} instead of 0" for name, by in allowed.items())
+    return (
+        wanted,
+        eased,
+        " with ".join(f"constraint {name} up to {by:g} instead of 0" for name, by in allowed.items()),
+    )
 
 
 def _limits_changed(problem: Problem, key: str, missed: list[Defect]) -> tuple[Requirements, str] | None:
@@ -215,7 +222,8 @@ def _areas_drawn_in(problem: Problem, _: str, missed: list[Defect]) -> tuple[Req
     # Holes are closed: areas without them ask for more, which the judge then decides.
     left = shapely.get_parts(shapely.buffer(solid(problem.requirements.keep_out), -by, join_style="mitre"))
     areas = tuple(shapely.get_coordinates(part.exterior)[:-1] for part in left if not part.is_empty)
-    return replace(problem.requirements, keep_out=areas), f"areas of keep_out drawn in by {by:g}"
+    parts = ", ".join(defect.what.removeprefix("the depth of ").removesuffix(" inside") for defect in missed)
+    return replace(problem.requirements, keep_out=areas), f"keep_out drawn in by {by:g}, so deep lies {parts}"
 
 
 _Change = Callable[[Problem, str, list[Defect]], tuple[Requirements, str] | None]

@@ -225,8 +225,7 @@ def _cranks(setup: Setup, samples: int, rng: np.random.Generator) -> ComplexArra
 def _on_bisector(chord: complex, radius: FloatArray, side: IntArray | FloatArray) -> ComplexArray:
     """From a point on the bisector of a chord, left (+1) or right (-1) of it, to the chord's begin."""
     height = np.sqrt(np.maximum(radius**2 - abs(chord) ** 2 / 4, 0.0))
-    crank: ComplexArray = -chord / 2 - 1j * side * height * chord / abs(chord)
-    return crank
+    return np.asarray(-chord / 2 - 1j * side * height * chord / abs(chord), dtype=np.complex128)
 
 
 def _arc(setup: Setup, crank: ComplexArray) -> tuple[FloatArray, FloatArray]:
@@ -239,7 +238,7 @@ def _varied(setup: Setup, parents: _Drawn, width: float, rng: np.random.Generato
     """Children of each parent: as many rows of all parents."""
     shape = (CHILDREN, len(parents))
     shift, turn = ((rng.normal(size=shape) + 1j * rng.normal(size=shape)) * width for _ in range(2))
-    crank: ComplexArray = np.broadcast_to(parents.crank, shape)
+    crank = np.broadcast_to(parents.crank, shape)
     if len(setup.targets) == 2 and setup.wanted.theta2_start_deg is None:
         chord = setup.targets[1] - setup.targets[0]
         radius: FloatArray = np.maximum(

@@ -35,7 +35,7 @@ INSET = 1e-8  # sizes, rad: limits are tightened by this much, so that the polis
 ZONE_INSET = 1e-7  # share of a zone that the programme leaves to the judge
 LEAST_STEP = 1e-4  # rad, of the driver between two targets that are both met
 LEAST_TRANSMISSION = 1e-3  # rad: keeps the motion away from dead positions
-SLIGHT = 1e-4  # weight of the error beside the slack
+SLIGHT = 1e-6  # weight of the error beside the slack
 LEAST_SQUARE = 1e-8  # sizes squared: scales the squared distances to about 1
 
 
@@ -278,13 +278,19 @@ def _turns(setup: Setup, start: Start) -> FloatArray:
 
 def _unknown_limits(form: Form, setup: Setup, start: Start) -> tuple[FloatArray, FloatArray]:
     wanted, limits = setup.wanted, list[Limits]()
-    for point, box in ((start.o2, wanted.o2), (start.o4, wanted.o4), (start.a, None), (start.b, None)):
-        sides = (box.x, box.y) if box is not None and not form.elastic else ((-FAR, FAR), (-FAR, FAR))
-        for middle, side in zip((point.real, point.imag), sides, strict=True):
-            low, high = _near(_inset(side))
+    boxed = (
+        ("o2", start.o2, wanted.o2),
+        ("o4", start.o4, wanted.o4),
+        ("a", start.a, None),
+        ("b", start.b, None),
+    )
+    for name, point, box in boxed:
+        for axis, middle in (("x", point.real), ("y", point.imag)):
+            loose = box is None or (form.elastic and not start.holds(f"{name}.{axis}"))
+            low, high = _near(_inset((-FAR, FAR) if loose else getattr(box, axis)))
             limits.append((max(low, middle - start.radius), min(high, middle + start.radius)))
     for name, (low, high) in zip(LENGTHS, wanted.link_lengths, strict=True):
-        loose = form.elastic and start.gives(name)
+        loose = form.elastic and not start.holds(name)
         limits.append((1e-6, FAR) if loose else _inset((max(low, 1e-6), min(high, FAR))))
     ground, first = (None if key in start.relaxed else getattr(wanted, key) for key in ANGLES)
     limits.append(_turned(ground, start.theta1))

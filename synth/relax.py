@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from grashof.analysis import verify
+from grashof.problems import Box
 from grashof.problems.checks import FloatArray
 from grashof.synth import exact_poses, paths
 from grashof.synth.attempt import Attempt
@@ -73,7 +74,7 @@ def _least(setup: Setup, key: str, candidates: list[Candidate]) -> Relaxation | 
     made = [relaxation(setup.problem, setup.constraints, key, candidate) for candidate in candidates]
     return min(
         (one for one in made if one is not None),
-        key=lambda one: (one.miss, -one.candidate.score(setup.problem)),
+        key=lambda one: (one.miss * max(one.figures, 1), -one.candidate.score(setup.problem)),
         default=None,
     )
 
@@ -89,9 +90,22 @@ def _candidates(setup: Setup, key: str, solve: Solver, rng: np.random.Generator)
         return _judged(setup, solve(loose, [replace(start, settled=True) for start in starts], 0))
     found = _judged(setup, solve(loose, [replace(start, settled=True) for start in starts[:2]], 0))
     if key not in ("order", "same_branch"):  # no smooth constraint can relax these
-        gives = (group, *(LENGTHS if key == "link_length" else [key] if group != key else []))
-        found += _judged(setup, solve(setup, [replace(start, relaxed=gives) for start in starts], 0))
+        whole, *sides = _parts(setup, key)
+        eased = [replace(start, relaxed=whole) for start in starts]
+        eased += [replace(start, relaxed=side) for side in sides for start in starts[: SOLVES // 2]]
+        found += _judged(setup, solve(setup, eased, 0))
     return found
+
+
+def _parts(setup: Setup, key: str) -> list[tuple[str, ...]]:
+    """What may be missed of a requirement: all of it, and of a box one side alone."""
+    if key in LENGTHS:
+        return [("link_length", key)]
+    if key == "link_length":
+        return [(key, *(name for name in LENGTHS if getattr(setup.wanted, name) is None))]
+    box = getattr(setup.wanted, key) if key in ("o2", "o4") else Box()
+    closed = [axis for axis in "xy" if np.isfinite(getattr(box, axis)).any()]
+    return [(key,), *((key, f"{key}.{axis}") for axis in closed if len(closed) > 1)]
 
 
 def _judged(setup: Setup, attempts: list[Attempt]) -> list[Candidate]:

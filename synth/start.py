@@ -46,8 +46,8 @@ class Start:
     settled : bool
         The targets leave no freedom: the design is there already, or nowhere near.
     relaxed : tuple of str
-        Requirements (keys) that it may miss, coming as near as it can; all others hold. With
-        "link_length" all lengths, or only those of r1 to r4 that are named.
+        Requirements (keys) that it may miss, coming as near as it can; all others hold. Of
+        "link_length", "o2" and "o4" parts may be named (r1, o2.x), which alone give way then.
     torque_at : tuple of float
         Where else the torque is bounded, as shares of the motion used.
     promise : float, sizes
@@ -140,10 +140,12 @@ class Start:
         """r1, r2, r3, r4 in sizes."""
         return abs(self.o4 - self.o2), abs(self.a - self.o2), abs(self.b - self.a), abs(self.b - self.o4)
 
-    def gives(self, length: str) -> bool:
-        """Whether one of r1 to r4 may miss its limits."""
-        named = any(name in LENGTHS for name in self.relaxed)
-        return length in self.relaxed if named else "link_length" in self.relaxed
+    def holds(self, part: str) -> bool:
+        """Whether a part (r1, o2.x) keeps its limits though the rest of its requirement may miss them."""
+        group = "link_length" if part in LENGTHS else part[:2]
+        parts = LENGTHS if part in LENGTHS else (f"{group}.x", f"{group}.y")
+        named = [name for name in parts if name in self.relaxed]
+        return group in self.relaxed and bool(named) and part not in named
 
     @property
     def half_turns(self) -> tuple[int, int]:

@@ -10,7 +10,7 @@ from grashof.analysis import verify
 from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, ProblemError, Requirements
 from grashof.synth.choose import PEAK_SPACING, PEAKS
 from grashof.synth.distinct import apart, signature
-from grashof.synth.exact_poses import degenerate, refuse_equal_poses, relaxed_starts, rounds
+from grashof.synth.exact_poses import degenerate, obstacle, refuse_equal_poses, relaxed_starts, rounds
 from grashof.synth.finds import GROUPS
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
@@ -47,7 +47,8 @@ def test_usual_poses_are_not_degenerate(
 def test_pure_translation_is_told() -> None:
     for turn in (0, 360):
         setup = poses([[0, 0, 10], [1, 0, 10], [2, 1, 10 + turn], [0, 3, 10]])
-        assert "pure translations" in degenerate(setup)
+        assert "pure translations" in obstacle(setup, np.random.default_rng(0))
+        assert degenerate(setup) == ""
     assert degenerate(poses([[0, 0, 10], [1, 0, 10], [2, 1, 10.1], [0, 3, 10]])) == ""
 
 

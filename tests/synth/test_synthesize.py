@@ -129,14 +129,15 @@ def test_too_much_transmission_is_named_with_the_nearest_design(independent_judg
     result = synthesize(luggage_with(transmission_over="cycle", transmission_min_deg=60, **wanted))
     assert len(result) == 0
     assert result.complete
-    assert "transmission_min_deg" in result.note
-    assert " 13.4" in result.note
+    assert "transmission_min_deg 13.4 instead of 60" in result.note
     with pytest.raises(NoSolutionError) as refused:
         _ = result.best
     assert str(refused.value) == result.note
-    defects = result.nearest[0].verdict.defects
-    assert [defect.requirement for defect in defects] == ["transmission_min_deg"]
-    found = independent_judge(result.nearest[0].linkage, result.problem.task)
+    alone = {near.verdict.defects[0].requirement: near for near in result.nearest}
+    assert set(alone) == {"transmission_min_deg", "exact"}
+    nearest = alone["transmission_min_deg"]
+    assert [defect.requirement for defect in nearest.verdict.defects] == ["transmission_min_deg"]
+    found = independent_judge(nearest.linkage, result.problem.task)
     assert found.position_error < 1e-9
     assert found.in_order
     assert found.on_one_branch
@@ -145,14 +146,19 @@ def test_too_much_transmission_is_named_with_the_nearest_design(independent_judg
     assert 13.4 <= found.transmission_cycle < 13.5
 
 
-IMPOSSIBLE: dict[str, tuple[str, Problem]] = {
-    "o2 far away": ("o2", luggage_with(o2=Box((100, 101), (100, 101)))),
-    "double-crank": ("rotatability", luggage_with(rotatability="double-crank")),
-    "short links": ("link_length", luggage_with(link_length=(0.3, 1.5))),
-    "ground angle": ("ground_angle_deg", luggage_with(ground_angle_deg=0)),
-    "start angle": ("theta2_start_deg", luggage_with(theta2_start_deg=30)),
+IMPOSSIBLE: dict[str, tuple[str, str, Problem]] = {
+    "o2 far away": ("o2", "o2.x from 8 instead of 100", luggage_with(o2=Box((100, 101), (100, 101)))),
+    "double-crank": ("rotatability", 'instead of "double-crank"', luggage_with(rotatability="double-crank")),
+    "short links": (
+        "link_length",
+        "link_length up to 3.14 instead of 1.5",
+        luggage_with(link_length=(0.3, 1.5)),
+    ),
+    "ground angle": ("ground_angle_deg", "ground_angle_deg 46.5", luggage_with(ground_angle_deg=0)),
+    "start angle": ("theta2_start_deg", "theta2_start_deg ", luggage_with(theta2_start_deg=30)),
     "order": (
         "order",
+        "order = false",
         Problem(
             task=MotionTask.from_degrees([[5, 4, 0], [2, 3, -5], [1, 0, 0], [3.5, 4, -5]]),
             requirements=Requirements(**LIMITS),
@@ -164,13 +170,13 @@ IMPOSSIBLE: dict[str, tuple[str, Problem]] = {
 @pytest.mark.usefixtures("coarse_curves")
 @pytest.mark.parametrize("kind", IMPOSSIBLE)
 def test_the_requirement_in_the_way_is_named(kind: str) -> None:
-    key, problem = IMPOSSIBLE[kind]
+    key, said, problem = IMPOSSIBLE[kind]
     result = synthesize(problem, starts=16)
     assert len(result) == 0
     assert result.complete
-    assert f"misses {key}: " in result.note
-    assert ('; rotatability = "any" asks for less' in result.note) == (key == "rotatability")
-    assert {defect.requirement for defect in result.nearest[0].verdict.defects} == {key}
+    assert said in result.note
+    kinds = [{defect.requirement for defect in near.verdict.defects} for near in result.nearest]
+    assert {key} in kinds
     assert result.counts["verified and distinct"] == 0
 
 
