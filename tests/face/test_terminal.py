@@ -114,30 +114,24 @@ def test_a_long_list_is_cut_and_says_so(few: Result, capsys: pytest.CaptureFixtu
     assert "\n  13" not in out
 
 
-def in_families(few: Result) -> Result:
-    """Eight designs in five families, and what the first two are best at."""
-    told = ["least error", "smallest within 1.5 times", *[""] * 6]
-    designs = zip(few.candidates[:8], "abcdeaab", told, strict=True)
-    made = tuple(replace(each, family=name, best_at=best) for each, name, best in designs)
-    return replace(few, candidates=made)
-
-
-def test_the_best_of_each_family_stands_for_all(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
-    eight = in_families(few)
-    print_table(eight)
+def test_the_best_of_each_family_stands_for_all(alike: Result, capsys: pytest.CaptureFixture[str]) -> None:
+    print_table(alike)
     first, second, *lines = capsys.readouterr().out.splitlines()
     assert first.startswith("8 distinct verified crank-rocker designs in 5 families, ")
     assert second.endswith(" The best of each family:")
     assert "best at" in " ".join(lines[:3])
-    rows = best_rows(eight)
+    rows = best_rows(alike)
     assert [row["#"].strip("* ") for row in rows] == list("12345")
     assert [row["like this"] for row in rows] == ["2", "1", "", "", ""]
     assert [row["best at"] for row in rows] == ["least error", "smallest within 1.5 times", "", "", ""]
     assert any(line.endswith("2  least error") for line in lines)
-    print_table(eight.top(2), 8)
+    print_table(alike.top(2), 8)
     said = "8 distinct designs verified, the best 2 families, 5 designs, listed (crank-rocker), "
     assert capsys.readouterr().out.startswith(said)
-    assert set(best_rows(replace(few, candidates=few.candidates[:1]))[0]) & {"like this", "best at"} == set()
+    assert (
+        set(best_rows(replace(alike, candidates=alike.candidates[2:3]))[0]) & {"like this", "best at"}
+        == set()
+    )
 
 
 def test_progress_lines(capsys: pytest.CaptureFixture[str]) -> None:
