@@ -52,14 +52,14 @@ def to_frame(problem: Problem, candidates: tuple[Candidate, ...]) -> pd.DataFram
     return pd.DataFrame(rows, columns=list(COLUMNS))
 
 
-def labels(candidate: Candidate) -> dict[str, str]:
-    """What a design is called and what it is like, by column; empty text where there is nothing to say."""
+def labels(candidate: Candidate) -> dict[str, str | None]:
+    """What a design is called and what it is like, by column; None where there is nothing to say."""
     return {
         "id": candidate.id,
         "mechanism": "four-bar",
         "family": candidate.family or candidate.id,
-        "cognate_of": candidate.cognate_of,
-        "best_at": candidate.best_at,
+        "cognate_of": candidate.cognate_of or None,
+        "best_at": candidate.best_at or None,
     }
 
 
@@ -94,7 +94,7 @@ def _row(candidate: Candidate) -> dict[str, Any]:
             "angle_error_rms_deg": float(np.sqrt(np.nanmean(angle_error**2))),
         }
     return {
-        **{name: text or None for name, text in labels(candidate).items()},
+        **labels(candidate),
         "grashof_class": str(verdict.grashof_class),
         "direction": verdict.direction,
         "assembly": int(linkage.assembly),

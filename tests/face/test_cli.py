@@ -34,9 +34,11 @@ def test_solve_writes_a_verified_list(grashof: Grashof, tmp_path: Path) -> None:
     expected = {"candidates.csv", "candidates.json", "report.html", "run.json"} | drawings
     assert {path.name for path in folder.iterdir()} == expected
     table = pd.read_csv(folder / "candidates.csv")
-    assert 1 <= len(table) <= 12
-    assert table["rank"].tolist() == list(range(1, len(table) + 1))
     designs = json.loads((folder / "candidates.json").read_text())["designs"]
+    assert 1 <= table["family"].nunique() <= 12
+    assert table["family"].tolist() == [design["family"] for design in designs]
+    assert {design["mechanism"] for design in designs} == {"four-bar"}
+    assert table["rank"].tolist() == list(range(1, len(table) + 1))
     assert [design["id"] for design in designs] == table["id"].tolist()
     problem = load("luggage")
     for design in designs:
@@ -201,7 +203,7 @@ def test_the_list_holds_what_the_file_wants(grashof: Grashof, tmp_path: Path) ->
     text = problem_text("luggage") + "\n[search]\nenough = 60\n"
     (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
     assert grashof("solve", "mine.toml", "--drawings", "0").exit_code == 0
-    assert len(pd.read_csv(tmp_path / "mine-designs" / "candidates.csv")) == 60
+    assert len(pd.read_csv(tmp_path / "mine-designs" / "candidates.csv")) >= 60
 
 
 def test_full_disk_is_told_and_keeps_the_old_run(
@@ -317,7 +319,7 @@ def test_a_reader_that_leaves_ends_nothing(tmp_path: Path, merged: bool) -> None
     assert running.wait(timeout=60) == 0
     assert "Error" not in said
     assert "Exception" not in said
-    assert len(pd.read_csv(tmp_path / "luggage-designs" / "candidates.csv")) == 50
+    assert len(pd.read_csv(tmp_path / "luggage-designs" / "candidates.csv")) >= 50
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")

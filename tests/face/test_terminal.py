@@ -107,10 +107,31 @@ def test_heading_tells_of_designs_not_listed(few: Result, capsys: pytest.Capture
 
 
 def test_a_long_list_is_cut_and_says_so(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
-    print_table(replace(few, candidates=few.candidates * 2))
+    many = tuple(replace(each, family=f"d{k}") for k, each in enumerate(few.candidates * 2))
+    print_table(replace(few, candidates=many))
     out = capsys.readouterr().out
     assert "The best 12" in out
     assert "\n  13" not in out
+
+
+def test_the_best_of_each_family_stands_for_all(alike: Result, capsys: pytest.CaptureFixture[str]) -> None:
+    print_table(alike)
+    first, second, *lines = capsys.readouterr().out.splitlines()
+    assert first.startswith("8 distinct verified crank-rocker designs in 5 families, ")
+    assert second.endswith(" The best of each family:")
+    assert "best at" in " ".join(lines[:3])
+    rows = best_rows(alike)
+    assert [row["#"].strip("* ") for row in rows] == list("12345")
+    assert [row["like this"] for row in rows] == ["2", "1", "", "", ""]
+    assert [row["best at"] for row in rows] == ["least error", "smallest within 1.5 times", "", "", ""]
+    assert any(line.endswith("2  least error") for line in lines)
+    print_table(alike.top(2), 8)
+    said = "8 distinct designs verified, the best 2 families, 5 designs, listed (crank-rocker), "
+    assert capsys.readouterr().out.startswith(said)
+    assert (
+        set(best_rows(replace(alike, candidates=alike.candidates[2:3]))[0]) & {"like this", "best at"}
+        == set()
+    )
 
 
 def test_progress_lines(capsys: pytest.CaptureFixture[str]) -> None:

@@ -123,8 +123,8 @@ def test_noisy_poses_are_met_no_worse_than_by_the_planted_linkage(poses: int, se
     assert isinstance(task, MotionTask)
     result = synthesize(problem)
     assert result.best.verdict.square <= min(polished(problem, linkage), default=np.inf) * (1 + 1e-6)
-    squares = [candidate.verdict.square for candidate in result.candidates]
-    assert squares == sorted(squares)
+    errors = np.sqrt([family[0].verdict.square for family in result.families])
+    assert (np.maximum.accumulate(errors) <= 1.02 * errors).all()  # as near as what nobody would build counts
     for candidate in result.candidates:
         gap, turned = closest_poses(candidate, task)
         square = (weights * (gap**2 + (task.angle_length * turned) ** 2)).sum()

@@ -107,6 +107,24 @@ def test_figures_are_those_of_the_list(few: Result, tmp_path: Path) -> None:
     assert "transmission at least 15 deg over the task" in parts.text
 
 
+def test_the_best_of_each_family_is_shown_with_the_number_of_the_others(alike: Result) -> None:
+    page = page_of(alike)
+    parts = Parts(page)
+    assert "8 distinct verified designs in 5 families." in parts.text
+    rows = [attributes for tag, attributes in parts.tags if tag == "tr" and "data-index" in attributes]
+    assert ["hidden" in row for row in rows] == [False] * 5 + [True] * 3
+    told = ["2", "1", "2", "2", "1"]  # in every row, most of them hidden
+    assert re.findall(r"(\d+) like this", parts.text) == told
+    assert "smallest within 1.5 times" in parts.text
+    families = [each["figures"]["family"] for each in parts.data["designs"]]
+    assert families == [each.family for each in alike.candidates]
+    some = page_of(replace(alike.top(2), counts={"verified and distinct": 8}))
+    assert "8 distinct verified designs, the best 2 families, 5 designs, listed." in Parts(some).text
+    plain = Parts(page_of(replace(alike, candidates=alike.candidates[2:5], counts={}))).text
+    assert "like this" not in plain
+    assert "3 distinct verified designs." in plain
+
+
 def test_fifty_designs_are_small(few: Result) -> None:
     fifty = replace(few, candidates=(few.candidates * 5)[:50])
     assert len(page_of(fifty).encode()) < 500_000

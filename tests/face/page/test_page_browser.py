@@ -48,14 +48,15 @@ def browser() -> Iterator[Browser]:
 
 
 @pytest.fixture(scope="module")
-def folder(few: Result, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The pages of a search, of one that found nothing, and of a driver that cannot turn fully."""
+def folder(few: Result, alike: Result, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The pages of searches, with families and without, in vain, and of a driver that cannot turn fully."""
     path = tmp_path_factory.mktemp("pages")
     named = replace(few, problem=replace(few.problem, title=TITLE))
     frame = few.to_frame()
     missed = replace(few, candidates=(), nearest=few.candidates[:1])
     pages = {
         "search": search_page(named, frame, RECORD, "kind"),
+        "alike": search_page(alike, alike.to_frame(), RECORD),
         "missed": search_page(missed, frame.iloc[:1].assign(misses="r3"), RECORD),
         "nothing": search_page(replace(missed, nearest=()), frame.iloc[:0], RECORD),
         "rocker": analysis_page(report_on(LinkageSpec(ROCKER, "rocker", title=TITLE)), RECORD),
@@ -208,6 +209,62 @@ def test_designs_are_filtered(opened: Open, few: Result) -> None:
     page.uncheck("[name=pareto]")
     page.fill("[name=text]", frame["id"][3])
     assert state(page)["listed"] == [frame["id"][3]]
+
+
+def test_one_design_of_each_family_is_listed_until_it_is_opened(opened: Open, alike: Result) -> None:
+    page, ids = opened("alike"), [each.id for each in alike.candidates]
+    assert state(page)["listed"] == ids[:5]
+    buttons = page.locator("[data-alike]:visible")
+    assert buttons.all_inner_texts() == ["2 like this", "1 like this"]
+    assert page.locator("form output").inner_text() == "8 of 8 in 5 families"
+    assert page.locator(".point:not(.filtered)").count() == 8
+    buttons.first.click()
+    assert buttons.first.get_attribute("aria-expanded") == "true"
+    assert state(page)["design"] == ids[0]
+    assert state(page)["listed"] == [ids[k] for k in (0, 5, 6, 1, 2, 3, 4)]
+    assert page.locator("tbody tr:visible td code").all_inner_texts() == state(page)["listed"]
+    assert page.locator("tr.member:visible").count() == 2
+    buttons.first.focus()
+    page.keyboard.press("Enter")
+    assert state(page)["listed"] == ids[:5]
+    page.uncheck("[name=fold]")
+    assert state(page)["listed"] == ids
+    assert buttons.count() == 0
+
+
+def test_members_stay_with_the_best_of_their_family_however_sorted(opened: Open, alike: Result) -> None:
+    page, frame = opened("alike"), alike.to_frame()
+    page.locator("[data-alike]:visible").first.click()
+    page.locator("th[data-key=size] button").click()
+    best = frame[:5].sort_values("size")["id"].tolist()
+    members = frame.iloc[[5, 6]].sort_values("size")["id"].tolist()
+    place = best.index(frame["id"][0]) + 1
+    assert state(page)["listed"] == [*best[:place], *members, *best[place:]]
+    page.uncheck("[name=fold]")
+    assert state(page)["listed"] == frame.sort_values("size")["id"].tolist()
+
+
+def test_the_best_that_passes_the_filter_stands_for_its_family(opened: Open, alike: Result) -> None:
+    page, ids = opened("alike"), [each.id for each in alike.candidates]
+    page.fill("[name=text]", ids[6])
+    assert state(page)["listed"] == [ids[6]]
+    assert page.locator("[data-alike]:visible").count() == 0
+    page.fill("[name=text]", "least error")
+    assert state(page)["listed"] == [ids[0]]
+    page.fill("[name=text]", "")
+    page.fill("[name=size]", str(alike.to_frame()["size"].max() - 0.01))
+    shown, sizes = set(state(page)["listed"]), alike.to_frame()["size"].round(2)
+    passing = alike.to_frame()[sizes <= sizes.max() - 0.01]
+    assert shown == set(passing.groupby("family", sort=False)["id"].first())
+
+
+def test_a_design_picked_in_the_plot_opens_its_family(opened: Open, alike: Result) -> None:
+    page, ids = opened("alike", viewport={"width": 1300, "height": 1000}), [e.id for e in alike.candidates]
+    page.locator(".point[data-index='7']").focus()
+    page.keyboard.press("Enter")
+    assert state(page)["design"] == ids[7]
+    assert state(page)["listed"] == [*ids[:2], ids[7], *ids[2:5]]
+    assert page.locator("tr.chosen").is_visible()
 
 
 def test_a_filter_compares_with_the_numbers_shown(opened: Open, few: Result) -> None:

@@ -59,7 +59,8 @@ def test_the_list_is_the_csv(designs: Path, grashof: Grashof) -> None:
             assert same(value, text), (value, text)
     assert page.freeze_panes == "C2"
     assert "Lengths in m;" in page["A1"].comment.text
-    assert page.column_dimensions["D"].width > len("grashof_class")
+    assert {"mechanism", "family", "best_at"} <= set(head)
+    assert page.column_dimensions["E"].width > len("grashof_class")
 
 
 def test_a_design_has_its_targets_and_transmission(designs: Path, few: Result) -> None:
