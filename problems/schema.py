@@ -289,8 +289,9 @@ class DynamicsTable(Table):
     @field_validator("*")
     @classmethod
     def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
-        besides = {"masses": {"inertias": (1, 1, 1)}, "inertias": {"masses": (1, 1, 1)}}
-        DynamicsSpec(**besides.get(str(key.field_name), {}), **{str(key.field_name): given})
+        pair: dict[str, Any] = {"masses": (1, 1, 1), "inertias": (1, 1, 1)}
+        besides = pair if key.field_name in pair else {}
+        DynamicsSpec(**{**besides, str(key.field_name): given})
         return given
 
     def value(self) -> DynamicsSpec:

@@ -11,6 +11,7 @@ import numpy as np
 from grashof.analysis.design import Constraint, Design
 from grashof.synth.finds import GROUPS
 from grashof.synth.form import PLANES, Form, Given, Unknowns
+from grashof.synth.on_symbols import on_symbols
 
 OWN_INSET = 1e-8  # the user's constraints are tightened by so much, so that the polished design keeps them
 ANGLES = ("ground_angle_deg", "theta2_start_deg")  # equalities: fixed unknowns unless they are relaxed
@@ -143,7 +144,7 @@ def require_own(
         return
     design = symbolic_design(given, unknown, places)
     for constraint in constraints:
-        value = constraint(design)
+        value = on_symbols(constraint, design)
         for one in value if isinstance(value, (list, tuple)) else [value]:
             rows.require("constraints", -ca.vec(ca.SX(one)) - OWN_INSET)
 

@@ -14,6 +14,7 @@ from grashof.analysis.design import Constraint, Design, greatest, name_of
 from grashof.problems import ProblemError
 from grashof.problems.checks import FloatArray
 from grashof.synth.finds import GROUPS, Finds
+from grashof.synth.on_symbols import on_symbols
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
 
@@ -47,7 +48,9 @@ def screened(setup: Setup, finds: Finds) -> Finds:
     if not setup.constraints or not len(finds):
         return finds
     design, symbols = _symbols(len(setup.targets))
-    values = ca.vertcat(*(ca.vec(ca.SX(one)) for own in setup.constraints for one in _several(own(design))))
+    values = ca.vertcat(
+        *(ca.vec(ca.SX(one)) for own in setup.constraints for one in _several(on_symbols(own, design)))
+    )
     amounts = np.asarray(ca.Function("own", [symbols], [values])(_numbers(setup, finds).T))
     missed = np.nan_to_num(np.maximum(amounts, 0.0), nan=1.0, posinf=FAR).sum(axis=0)
     lacks = finds.lacks.copy()
@@ -136,7 +139,7 @@ def _several(value: Any) -> list[Any]:
 def _try_on_symbols(constraint: Constraint, targets: int) -> None:
     design, _ = _symbols(targets)
     try:
-        value = constraint(design)
+        value = on_symbols(constraint, design)
     except WRONG as error:
         reason = _PLACE.sub("", " ".join(str(error).split())).rstrip(".")
         if "truth value" in reason:

@@ -72,7 +72,7 @@ def synthesize(
     problem : Problem
     constraints : sequence of callable
         Your own: functions of a `Design`, zero or negative where met, made of arithmetic that works
-        on symbols (`**`, `casadi.sin`, not ``np.max``). With more processes, functions of a module.
+        on symbols (`**`, `np.hypot`, `casadi.fmax`). With more processes, functions of a module.
     starts, enough, seed : int, optional
     effort : float, optional
         Override the problem's own (see `Search`).

@@ -244,3 +244,34 @@ def test_a_lambda_is_refused_where_it_would_have_to_travel() -> None:
 def test_the_same_seed_gives_the_same_designs() -> None:
     one, other = (synthesize(THREE, constraints=[level], enough=3) for _ in range(2))
     assert [c.id for c in one.candidates] == [c.id for c in other.candidates]
+
+
+def near_ground(design: Design) -> Any:
+    return np.hypot(design.o2[0] - design.o4[0], design.o2[1] - design.o4[1]) - 2.0
+
+
+def slight(design: Design) -> Any:
+    return [np.sin(design.theta2[0]) - 0.9, np.sqrt(design.r2) - 1.5, np.exp(-design.r4) - 0.5]
+
+
+def test_numpy_functions_do_not_warn() -> None:
+    """Warnings are errors here."""
+    result = synthesize(THREE, constraints=[near_ground, slight], enough=4)
+    assert len(result) >= 4
+    for candidate in result.candidates:
+        linkage = candidate.linkage
+        assert linkage.r1 <= 2 + HELD
+        assert np.sin(candidate.verdict.theta2[0]) <= 0.9 + HELD
+        assert linkage.r2 <= 1.5**2 + HELD
+    assert max(float(candidate.linkage.r1) for candidate in synthesize(THREE, enough=4).candidates) > 2
+
+
+@pytest.mark.skipif(not hasattr(ca.GlobalOptions, "setNumpyMode"), reason="CasADi has one mode only")
+@pytest.mark.parametrize("mode", [0, -1])
+def test_the_mode_of_numpy_is_left_as_it_was(mode: int) -> None:
+    ca.GlobalOptions.setNumpyMode(mode)
+    try:
+        synthesize(THREE, constraints=[near_ground], enough=1, starts=2)
+        assert ca.GlobalOptions.getNumpyMode() == mode
+    finally:
+        ca.GlobalOptions.setNumpyMode(0)

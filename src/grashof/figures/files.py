@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.animation import FuncAnimation
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from grashof.figures.animation import animate
-from grashof.figures.linkage import plot_linkage
+from grashof.figures.linkage import figure_of, plot_linkage
 from grashof.figures.parts import closes, missing_glyphs_unwarned
 from grashof.figures.subject import Linkage, Subject
 from grashof.problems import Problem
@@ -33,7 +34,8 @@ STYLE: Any = {
     "grid.alpha": 0.5,
 }
 
-_TITLE_WIDTH = 80  # characters
+_TITLE_WIDTHS = (120, 110, 100, 90, 80, 70, 60, 50, 40, 30, 20)  # characters a line that are tried
+_LONGEST = 300  # characters of a problem's title that a drawing shows
 
 
 def draw_design(problem: Problem, candidate: Candidate, rank: int) -> Figure:
@@ -58,7 +60,7 @@ def draw_design(problem: Problem, candidate: Candidate, rank: int) -> Figure:
     with rc_context(STYLE):
         figure = Figure(figsize=(8.5, 7.0))
         axes = plot_linkage(candidate, problem, ax=figure.add_axes((0.08, 0.08, 0.89, 0.83)))
-        axes.set_title(_heading(problem, candidate, rank), parse_math=False)
+        fit_title(axes, _heading(problem, candidate, rank))
     return figure
 
 
@@ -69,8 +71,36 @@ def draw_motion(
     with rc_context(STYLE):
         axes = Figure(figsize=(6.0, 5.0)).add_axes((0.1, 0.1, 0.87, 0.81))
         title = Subject.of(linkage, problem).spec.title
-        axes.set_title("\n".join(wrap(title, _TITLE_WIDTH)), parse_math=False)  # its own wrap reads $ as math
+        fit_title(axes, shortened(title))
         return animate(linkage, problem, seconds=seconds, fps=fps, ax=axes)
+
+
+def fit_title(axes: Axes, text: str) -> None:
+    """Give axes a title in lines that are no wider than the figure, and room for it."""
+    figure = figure_of(axes)
+    place = axes.get_position()
+    middle = (place.x0 + place.x1) / 2
+    room = (2 * min(middle, 1 - middle) - 0.02) * figure.bbox.width
+    with missing_glyphs_unwarned():
+        lines = [_wrapped(axes, part, room) for part in text.split("\n")]
+        taken = axes.set_title("\n".join(lines), parse_math=False).get_window_extent()
+    if figure.get_layout_engine() is None:
+        top = 1 - (taken.height + 0.17 * figure.dpi) / figure.bbox.height
+        axes.set_position((place.x0, place.y0, place.width, min(place.height, top - place.y0)))
+
+
+def _wrapped(axes: Axes, text: str, room: float) -> str:
+    """Text in lines no wider than so many pixels, as a title; its own wrap reads $ as math."""
+    for width in _TITLE_WIDTHS:
+        lines = "\n".join(wrap(text, width, break_on_hyphens=False))
+        if axes.set_title(lines, parse_math=False).get_window_extent().width <= room:
+            break
+    return lines
+
+
+def shortened(title: str) -> str:
+    """A title that leaves room for the drawing below it."""
+    return title if len(title) <= _LONGEST else f"{title[:_LONGEST].rstrip()}…"
 
 
 def save(figure: Figure, paths: Iterable[Path]) -> None:
@@ -90,7 +120,7 @@ def _heading(problem: Problem, candidate: Candidate, rank: int) -> str:
     over += [f"{cycle:.1f} deg over the turn"] if verdict.full_rotation else []
     fit = "" if problem.requirements.is_exact(problem.task) else f", rms error {verdict.error_rms:.3g}"
     return (
-        f"{problem.title or problem.name}: design {rank} ({candidate.id}), "
+        f"{shortened(problem.title or problem.name)}: design {rank} ({candidate.id}), "
         f"{verdict.grashof_class}{fit}{_defect(candidate)}\n"
         f"{lengths}{unit};  worst transmission angle {', '.join(over)}"
     )

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from grashof.figures.curves import DYNAMICS, KINEMATICS, Panel, draw_curves
-from grashof.figures.files import STYLE
+from grashof.figures.files import STYLE, fit_title, shortened
 from grashof.figures.linkage import plot_linkage
 from grashof.figures.parts import COUPLER, DRIVER, GROUND, OUTPUT
 from grashof.survey.report import LinkageReport, mass_tracks
@@ -35,23 +36,23 @@ def _curves(report: LinkageReport, table: str, panels: list[Panel]) -> Figure:
         figure = Figure(figsize=(8.5, 1.6 + 2.4 * len(panels)), layout="constrained")
         rows = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
         draw_curves(report.sweep, report.tables[table], panels, rows)
-        rows[0].set_title(_title(report), parse_math=False)
+        fit_title(rows[0], _title(report))
     return figure
 
 
 def _path(report: LinkageReport) -> Figure:
     with rc_context(STYLE):
         figure = Figure(figsize=(8.5, 7.0), layout="constrained")
-        axes = plot_linkage(report.spec, ax=figure.subplots())
+        axes = plot_linkage(replace(report.spec, problem=None), ax=figure.subplots())
         halfway = "" if report.masses is not None else " (halfway)"
         for name, track in mass_tracks(report).items():
             label = f"centre of mass, {name}{'' if name == 'all links' else halfway}"
             width = 1.6 if name == "all links" else 1.0
             axes.plot(*track.T, "--", color=_TRACKS[name], linewidth=width, label=label)
         axes.legend(loc="best", fontsize="small")
-        axes.set_title(_title(report), parse_math=False)
+        fit_title(axes, _title(report))
     return figure
 
 
 def _title(report: LinkageReport) -> str:
-    return report.spec.title or report.spec.name
+    return shortened(report.spec.title or report.spec.name)

@@ -11,7 +11,10 @@ from matplotlib.colors import to_hex
 
 from grashof.figures import draw_design, save, save_animation
 from grashof.figures.files import draw_motion
-from grashof.figures.parts import BODY, DRIVER, PATH
+from grashof.figures.parts import BODY, DRIVER, PATH, missing_glyphs_unwarned
+from grashof.problems import LinkageSpec
+from grashof.survey import report_on
+from grashof.survey.plots import plots
 from grashof.synth import Result
 
 
@@ -94,7 +97,7 @@ def test_dollars_and_backslashes_are_plain_text(few: Result, tmp_path: Path) -> 
 
 
 def test_signs_that_the_font_lacks_stay_in_the_svg(few: Result, tmp_path: Path) -> None:
-    problem = replace(few.problem, title="\N{CJK UNIFIED IDEOGRAPH-4F38}\x07", dynamics=None)
+    problem = replace(few.problem, title="\N{CJK UNIFIED IDEOGRAPH-4F38}", dynamics=None)
     figure = draw_design(problem, few.candidates[0], 1)
     save(figure, [tmp_path / "d.png", tmp_path / "d.svg"])  # warnings are errors here
     assert "\N{CJK UNIFIED IDEOGRAPH-4F38}" in (tmp_path / "d.svg").read_text(encoding="utf-8")
@@ -108,3 +111,22 @@ def test_same_design_same_bytes(few: Result, tmp_path: Path) -> None:
         save(figure, [tmp_path / folder / "d.png", tmp_path / folder / "d.svg"])
     for name in ("d.png", "d.svg"):
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
+
+
+@pytest.mark.parametrize("title", ["Luggage over a staircase, carried " * 8, "W" * 500, "title", "階 " * 99])
+def test_no_title_is_cut_at_the_edge_of_the_picture(few: Result, title: str) -> None:
+    problem = replace(few.problem, title=title, dynamics=None)
+    drawn = draw_design(problem, few.candidates[0], 1)
+    spec = LinkageSpec(few.best.linkage, "mine", title=title)
+    moving = draw_motion(spec, seconds=0.2)
+    moving._draw_was_started = True  # else matplotlib warns that it was never seen
+    report = plots(report_on(spec))
+    for figure in (drawn, moving._fig, next(report)[1], next(report)[1]):
+        with missing_glyphs_unwarned():
+            figure.draw_without_rendering()
+            edges = figure.axes[0].title.get_window_extent()
+        assert 0 <= edges.x0 < edges.x1 <= figure.bbox.width
+        assert edges.y1 <= figure.bbox.height
+        assert edges.y0 >= figure.axes[0].get_window_extent().y1
+        assert figure.axes[0].get_window_extent().height > 0.25 * figure.bbox.height
+    assert "design 1" in drawn.axes[0].get_title()

@@ -32,6 +32,9 @@ UNCOVERED = """
   return document.elementFromPoint(x + width / 2, y + height / 2) === node;
 }).map((node) => Number(node.dataset.index))
 """
+# As long as a search may say it, and a word that is too long for any line.
+MISSES = "transmission_min_deg: the worst transmission angle over the cycle in deg is 13.4955, allowed is "
+MISSES += f"from 60; constraints: {'a_long_name_' * 20} is 3, allowed is up to 0"
 Open = Callable[..., Page]
 
 
@@ -53,11 +56,11 @@ def folder(few: Result, alike: Result, tmp_path_factory: pytest.TempPathFactory)
     path = tmp_path_factory.mktemp("pages")
     named = replace(few, problem=replace(few.problem, title=TITLE))
     frame = few.to_frame()
-    missed = replace(few, candidates=(), nearest=few.candidates[:1])
+    missed = replace(few, candidates=(), nearest=few.candidates[:1], note=f"no design: {MISSES}")
     pages = {
         "search": search_page(named, frame, RECORD, "kind"),
         "alike": search_page(alike, alike.to_frame(), RECORD),
-        "missed": search_page(missed, frame.iloc[:1].assign(misses="r3"), RECORD),
+        "missed": search_page(missed, frame.iloc[:1].assign(misses=MISSES), RECORD),
         "nothing": search_page(replace(missed, nearest=()), frame.iloc[:0], RECORD),
         "rocker": analysis_page(report_on(LinkageSpec(ROCKER, "rocker", title=TITLE)), RECORD),
         "swift": analysis_page(report_on(LinkageSpec(NEARLY_DEAD, "swift")), RECORD),
@@ -397,6 +400,13 @@ def test_a_phone_has_no_sideways_scroll(opened: Open, name: str) -> None:
     assert page.locator("#stage .grid").count() == 1
 
 
+@pytest.mark.parametrize("width", [800, 1400])
+@pytest.mark.parametrize("name", ["search", "missed", "nothing"])
+def test_no_window_has_sideways_scroll(opened: Open, name: str, width: int) -> None:
+    page = opened(name, viewport={"width": width, "height": 900})
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+
+
 def test_dark_and_printed(opened: Open) -> None:
     page = opened("search", color_scheme="dark")
     paper = "getComputedStyle(document.body).backgroundColor"
@@ -411,7 +421,7 @@ def test_dark_and_printed(opened: Open) -> None:
 def test_what_is_missed_is_not_called_a_design(opened: Open) -> None:
     page = opened("missed")
     assert page.locator("#chosen").inner_text() == "Closest miss 1"
-    assert page.locator("#misses").inner_text() == "r3"
+    assert page.locator("#misses").inner_text() == MISSES
     page = opened("nothing")
     assert state(page)["design"] is None
     assert page.locator("#stage .body").count() == 4
