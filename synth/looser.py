@@ -222,8 +222,8 @@ def _areas_drawn_in(problem: Problem, _: str, missed: list[Defect]) -> tuple[Req
     # Holes are closed: areas without them ask for more, which the judge then decides.
     left = shapely.get_parts(shapely.buffer(solid(problem.requirements.keep_out), -by, join_style="mitre"))
     areas = tuple(shapely.get_coordinates(part.exterior)[:-1] for part in left if not part.is_empty)
-    parts = ", ".join(defect.what.removeprefix("the depth of ").removesuffix(" inside") for defect in missed)
-    return replace(problem.requirements, keep_out=areas), f"keep_out drawn in by {by:g}, so deep lies {parts}"
+    parts = " and ".join(defect.what.removesuffix(" inside") for defect in missed)
+    return replace(problem.requirements, keep_out=areas), f"keep_out drawn in by {by:g}, {parts}"
 
 
 _Change = Callable[[Problem, str, list[Defect]], tuple[Requirements, str] | None]

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from itertools import islice
 from multiprocessing import get_context
 from signal import SIG_IGN, SIGINT, signal
 from time import perf_counter
@@ -28,7 +29,8 @@ BATCH = 16  # solves between two looks at what is verified; fixed, so that worke
 FRUITLESS = 64  # so many solves without one verified design end the search
 # So many rounds of starts on end that gain nothing, too: least squares and exact.
 STALE, STALE_EXACT = 2, 20
-NEAR = 8  # least-squares designs that are enough where there is no exact one
+# Least-squares designs that are enough where there is no exact one, and rounds of starts for them.
+NEAR, NEAR_ROUNDS = 8, 6
 GAIN = 1e-4  # of the error
 
 
@@ -164,7 +166,8 @@ def _search(
     complete, seconds = True, {"screening": 0.0, "solving": 0.0}
     with _solving(workers, executor) as solve:
         since = perf_counter()
-        for made in finder.rounds(setup, search.enough, rng):
+        most = None if explained else NEAR_ROUNDS
+        for made in islice(finder.rounds(setup, search.enough, rng), most):
             screened = perf_counter()
             seconds["screening"] += screened - since
             found.counts.update(made.counts)
