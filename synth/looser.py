@@ -137,6 +137,17 @@ def relaxation(
     return None
 
 
+def with_rounded_angle(problem: Problem, relaxation: Relaxation) -> Relaxation:
+    """The same with its angle rounded like other figures; whether a design does it has to be seen."""
+    key = relaxation.key
+    asked, needed = (
+        float(getattr(wanted, key)) for wanted in (problem.requirements, relaxation.requirements)
+    )
+    angle = _rounded(needed, asked)
+    wanted = _with(problem.requirements, {key: angle})
+    return replace(relaxation, requirements=wanted, words=f"{key} {angle:.10g} instead of {asked:g}")
+
+
 def _eased(
     problem: Problem, own: tuple[Constraint, ...], key: str, missed: list[Defect]
 ) -> list[tuple[Requirements, tuple[Constraint, ...], str]]:
@@ -208,8 +219,8 @@ def _number_changed(problem: Problem, key: str, missed: list[Defect]) -> tuple[R
 
 def _angle_changed(problem: Problem, key: str, missed: list[Defect]) -> tuple[Requirements, str] | None:
     asked, found = float(getattr(problem.requirements, key)), missed[0].found
-    found += 360 * round((asked - found) / 360)
-    return _with(problem.requirements, {key: found}), f"{key} {found:.6g} instead of {asked:g}"
+    found = float(f"{found + 360 * round((asked - found) / 360):.12g}")
+    return _with(problem.requirements, {key: found}), f"{key} {found:.12g} instead of {asked:g}"
 
 
 def _areas_drawn_in(problem: Problem, _: str, missed: list[Defect]) -> tuple[Requirements, str] | None:
@@ -222,8 +233,8 @@ def _areas_drawn_in(problem: Problem, _: str, missed: list[Defect]) -> tuple[Req
     # Holes are closed: areas without them ask for more, which the judge then decides.
     left = shapely.get_parts(shapely.buffer(solid(problem.requirements.keep_out), -by, join_style="mitre"))
     areas = tuple(shapely.get_coordinates(part.exterior)[:-1] for part in left if not part.is_empty)
-    parts = ", ".join(defect.what.removeprefix("the depth of ").removesuffix(" inside") for defect in missed)
-    return replace(problem.requirements, keep_out=areas), f"keep_out drawn in by {by:g}, so deep lies {parts}"
+    parts = " and ".join(defect.what.removesuffix(" inside") for defect in missed)
+    return replace(problem.requirements, keep_out=areas), f"keep_out drawn in by {by:g}, {parts}"
 
 
 _Change = Callable[[Problem, str, list[Defect]], tuple[Requirements, str] | None]

@@ -14,7 +14,7 @@ from grashof.synth import exact_poses, paths
 from grashof.synth.attempt import Attempt
 from grashof.synth.choose import closest_starts
 from grashof.synth.finds import GROUPS, Configurations, Finds, dyad_lacks, judge, keep_out_lack
-from grashof.synth.looser import Relaxation, limiting, loosest, relaxation
+from grashof.synth.looser import ANGLES, Relaxation, limiting, loosest, relaxation, with_rounded_angle
 from grashof.synth.own import screened
 from grashof.synth.result import Candidate
 from grashof.synth.setup import Setup
@@ -65,7 +65,7 @@ def relaxations(
         rejected = [one for one in known if {d.requirement for d in one.verdict.defects} == {key}]
         best = _least(setup, key, _candidates(setup, key, solve, rng) + rejected)
         if best is not None:
-            found.append(best if setup.exact else _closer(setup, best, solve))
+            found.append(_finished(setup, best, solve))
     return sorted(found, key=lambda one: (one.miss, one.key))
 
 
@@ -123,16 +123,24 @@ def _loose(setup: Setup, key: str) -> Setup:
     return Setup.of(problem, () if key == "constraints" else setup.constraints)
 
 
-def _closer(setup: Setup, found: Relaxation, solve: Solver) -> Relaxation:
-    """The same relaxation with a design of smaller error, solved under the relaxed requirement."""
-    problem = replace(setup.problem, requirements=found.requirements)
-    eased = Setup.of(problem, found.constraints)
-    judged = verify(found.candidate.linkage, problem.task, found.requirements, found.constraints)
-    (made,) = solve(eased, [Start.of_linkage(eased, found.candidate.linkage, judged)], 0)
+def _finished(setup: Setup, found: Relaxation, solve: Solver) -> Relaxation:
+    """The same relaxation with an angle in round figures, or a design of smaller error, if there is one.
+
+    Both are solved under the relaxed requirement, which makes sure of it.
+    """
+    if setup.exact and found.key not in ANGLES:
+        return found
+    asked = with_rounded_angle(setup.problem, found) if found.key in ANGLES else found
+    problem = replace(setup.problem, requirements=asked.requirements)
+    eased, linkage = Setup.of(problem, asked.constraints), found.candidate.linkage
+    judged = verify(linkage, problem.task, asked.requirements, asked.constraints)
+    (made,) = solve(eased, [Start.of_linkage(eased, linkage, judged)], 0)
     if made.candidate is None or not made.candidate.verdict.ok:
         return found
-    (better,) = _judged(setup, [made])
-    return replace(found, candidate=min(found.candidate, better, key=lambda one: -one.score(problem)))
+    (candidate,) = _judged(setup, [made])
+    if not setup.exact and found.key not in ANGLES:
+        candidate = max(found.candidate, candidate, key=lambda one: one.score(problem))
+    return replace(asked, candidate=candidate)
 
 
 def _finds(setup: Setup, rng: np.random.Generator) -> Finds:

@@ -175,7 +175,7 @@ def _search(setup: Setup, run: _Run, *, explained: bool = True) -> Result:
     if setup.bounded:
         first = ledger.solved
         chosen = decided(setup, ledger.verified, ledger.least, first, run.solve, run.ended)
-    elif not setup.exact and ledger.best:
+    elif not setup.exact and ledger.best and explained:
         chosen = offered(setup, ledger, run.solve, run.ended)
     run.seconds["choosing"] = perf_counter() - since
     best, said = chosen.designs, Explanation("" if chosen.designs else STOPPED)

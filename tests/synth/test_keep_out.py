@@ -130,13 +130,13 @@ def test_where_only_the_way_is_obstructed_the_closest_miss_is_shown() -> None:
     wall = [[-9, 2], [9, 2], [9, 2.4], [-9, 2.4]]
     result = synthesize(luggage(wall, keep_out_for=["p"]), starts=16)
     assert len(result) == 0
-    assert "this alone would do: keep_out drawn in by 0.2, so deep lies P" in result.note
+    assert "this alone would do: keep_out drawn in by 0.2, the depth of P" in result.note
     assert result.nearest
 
 
 def test_a_target_inside_is_named() -> None:
     result = synthesize(luggage([[1, 2], [3, 2], [3, 4.5], [1, 4.5]], keep_out_for=["p"]), starts=16)
-    assert "keep_out drawn in by 1, so deep lies P" in result.note
+    assert "keep_out drawn in by 1, the depth of P" in result.note
 
 
 def test_a_path_keeps_its_pivots_out() -> None:

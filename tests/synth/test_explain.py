@@ -1,0 +1,109 @@
+"""The note of an empty list: what it promises is so."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from grashof import load, synthesize
+from grashof.analysis import verify
+from grashof.problems import Box, MotionTask, PathTask, Problem, Requirements
+from grashof.synth import Result
+from grashof.synth.explain import _up
+
+EIGHT = [[0, 0], [4, 1], [5, 4], [3, 6], [0, 5], [-3, 6], [-4, 3], [-2, 2]]
+
+
+def least_squares(problem: Problem) -> Requirements:
+    return replace(problem.requirements, exact=False)
+
+
+def check_nearest(result: Result, said_unit: str) -> float:
+    """The nearest is an allowed least-squares design, and comes as near as the note says; that distance."""
+    problem = result.problem
+    assert len(result) == 0
+    nearest = next(one for one in result.nearest if "exact" in {d.requirement for d in one.verdict.defects})
+    loose = verify(nearest.linkage, problem.task, least_squares(problem))
+    assert loose.ok
+    said = re.search(rf"comes within (\S+){said_unit} everywhere", result.note)
+    assert said is not None
+    assert loose.error_max <= float(said[1]) <= loose.error_max * 1.02
+    return float(said[1])
+
+
+@pytest.mark.parametrize("exact", [None, True])
+def test_eight_closed_points_without_a_linkage_come_with_the_closest(exact: bool | None) -> None:
+    task = PathTask(EIGHT, closed=True)
+    problem = Problem(task=task, requirements=Requirements(exact=exact), length_unit="mm")
+    result = synthesize(problem, starts=16)
+    assert "exact = false" in result.note
+    assert check_nearest(result, " mm") < 0.2 * task.size
+
+
+def test_nine_closed_points_at_random_say_that_exactly_there_is_none() -> None:
+    turn = np.linspace(0, 2 * np.pi, 10)[:-1]
+    radius = 3 + np.random.default_rng(5).uniform(-0.3, 0.3, 9)
+    points = np.stack([radius * np.cos(turn), radius * np.sin(turn)], axis=1)
+    task = PathTask(points, closed=True)
+    wanted = Requirements(link_ratio_max=8)
+    result = synthesize(Problem(task=task, requirements=wanted), starts=8)
+    if len(result):
+        pytest.skip("these points have a linkage")
+    check_nearest(result, "")
+
+
+def test_more_poses_than_there_are_exact_ones_for() -> None:
+    draw = np.random.default_rng(8)
+    task = MotionTask(draw.normal(size=(6, 2)), np.sort(draw.uniform(-1, 1, 6)))
+    result = synthesize(Problem(task=task, requirements=Requirements(exact=True)), starts=16)
+    assert "the 6 poses have no real dyad" in result.note
+    check_nearest(result, "")
+    turned = re.search(r"and within (\S+) deg, with exact = false$", result.note)
+    assert turned is not None
+    loose = verify(result.nearest[0].linkage, task, Requirements(exact=False))
+    assert loose.angle_error is not None
+    assert np.degrees(loose.angle_error).max() <= float(turned[1])
+    squares = [verify(one.linkage, task, Requirements(exact=False)).square for one in result.nearest]
+    assert squares == sorted(squares)
+
+
+def test_where_least_squares_finds_nothing_either_it_is_not_promised() -> None:
+    """Fixed pivots 60 apart and r1 up to 50: no linkage at all, near or not."""
+    task = PathTask([[0, 0], [10, 5], [20, 7]])
+    wanted = Requirements(o2=Box((0, 0), (-30, -30)), o4=Box((60, 60), (-30, -30)), r1=(10, 50))
+    result = synthesize(Problem(task=task, requirements=wanted), starts=8)
+    assert len(result) == 0
+    assert "exact" not in result.note
+    assert result.note.startswith("no design meets all requirements; each of these alone would do: ")
+    assert "r1 up to 60 instead of 50" in result.note
+
+
+def test_areas_that_cover_everything_are_named() -> None:
+    everywhere = [[-3000, -3000], [3000, -3000], [3000, 3000], [-3000, 3000]]
+    task = load("luggage").task
+    wanted = Requirements(link_length=(0.3, 8), coupler_arms=(0.3, 8), keep_out=[everywhere])
+    result = synthesize(Problem(task=task, requirements=wanted), starts=8)
+    assert re.search(r"this alone would do: keep_out drawn in by (29|30)\d\d, the depth of O2", result.note)
+
+
+def test_a_time_limit_leaves_the_explanation_out() -> None:
+    result = synthesize(
+        replace(load("luggage"), requirements=Requirements(link_length=(0.3, 1.5))), time_limit=1e-6
+    )
+    assert result.note == "no design: the search was stopped before it found one"
+    assert result.nearest == ()
+
+
+@pytest.mark.parametrize(
+    ("value", "said"), [(0.4706, "0.471"), (0.47, "0.47"), (1234.5, "1.24e+03"), (0.0, "0"), (9.999, "10")]
+)
+def test_figures_are_rounded_up(value: float, said: str) -> None:
+    assert _up(value) == said
+    assert float(said) >= value
+
+
+def test_the_time_that_the_explanation_takes_is_told() -> None:
+    result = synthesize(replace(load("luggage"), requirements=Requirements(link_length=(0.3, 1.5))), starts=8)
+    assert "link_length up to" in repr(result)
+    assert result.seconds["explaining"] > 0
