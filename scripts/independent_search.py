@@ -20,7 +20,7 @@ from grashof.problems import Box, FourBar, MotionTask, Problem, Requirements, Ro
 from grashof.problems.checks import ComplexArray, FloatArray, IntArray
 
 TURN = 2 * np.pi
-STARTS = 200
+STARTS = 800
 POLISHED = 40
 INSIDE = 2e-7  # so far inside its limits a design is made, sizes and rad: the judge forgives 1e-9
 NUDGE = 1e-7
@@ -375,25 +375,22 @@ def search(problem: Problem, starts: int = STARTS, seed: int = 0) -> Best | None
         With ``exact = false``.
     starts, seed : int
 
-    Returns
-    -------
-    Best or None
-
     Raises
     ------
     ValueError
         The problem asks for something that this search does not know.
     """
-    aim, task = Aim.of(problem), problem.task
+    aim = Aim.of(problem)
     designs = penalised(aim, drawn(aim, starts, np.random.default_rng(seed)))
-    ways = (False, True) if slopes(aim, places(aim, designs)).size else (False,)
-    found = [polished(aim, designs[row : row + 1], way) for row in range(len(designs.x)) for way in ways]
+    found = [polished(aim, designs[row : row + 1], steady=False) for row in range(len(designs.x))]
+    if slopes(aim, places(aim, designs)).size:
+        found += [polished(aim, design, steady=True) for design, _ in found]
     best: Best | None = None
     for design, square in sorted(found, key=lambda item: item[1]):
         if square == np.inf or (best and square * aim.size**2 >= best.verdict.square):
             break
         linkage = linkage_of(aim, design)
-        verdict = verify(linkage, task, problem.requirements)
+        verdict = verify(linkage, problem.task, problem.requirements)
         if verdict.ok and (best is None or verdict.square < best.verdict.square):
-            best = Best(linkage, verdict, float(np.sqrt(verdict.square / len(task))))
+            best = Best(linkage, verdict, float(np.sqrt(verdict.square / len(problem.task))))
     return best
