@@ -1,0 +1,199 @@
+"""Measure least squares under active limits against the best designs known.
+
+`tests/data/limited.json` holds twelve tasks with the best design that three searches found of each;
+`tests/data/limited_random.json` random ones with the best of `independent_search.py`, which shares nothing
+with the package's own search. Random tasks that the file does not hold yet are searched for, which takes some
+ten seconds each, and added.
+
+Prints one line a task and a summary. An error is sqrt(weighted squares / targets), in mm; a ratio is
+ours / best known.
+"""
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+from time import perf_counter, process_time
+from typing import Any
+
+import numpy as np
+from independent_search import STARTS, Best, search
+from limited_tasks import problem_of, random_task
+
+from grashof import synthesize
+from grashof.problems import FourBar, Problem
+
+DATA = Path(__file__).parents[1] / "tests" / "data"
+ROUNDS = 6  # most of the independent search, each of STARTS starts; fewer once three agree on the best
+AGREED, NEAR = 1.002, 1.02
+ABOUT = (
+    "Random least-squares tasks with limits, made by scripts/limited_tasks.py. best: the least error, "
+    "sqrt(sum of weighted squares |dp|^2 + (angle_length * dangle)^2 / number of targets), in length units, "
+    "that scripts/independent_search.py found and the judge accepted; null where there was none. rounds: the "
+    f"same of each round of {STARTS} starts. linkage: fields of FourBar. Written by benchmark_limited.py."
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """One search of the package: error (infinite where it found nothing), and time taken, s."""
+
+    error: float
+    processor: float
+    wall: float
+
+    @classmethod
+    def of(cls, problem: Problem, seed: int, effort: int | None = None) -> "Run":
+        """Search for a problem, with an effort of its own if one is given."""
+        wanted: dict[str, Any] = {} if effort is None else {"effort": effort}
+        begun, wall = process_time(), perf_counter()
+        result = synthesize(problem, seed=seed, **wanted)
+        processor, wall = process_time() - begun, perf_counter() - wall
+        square = result.best.verdict.square if len(result) else np.inf
+        return cls(float(np.sqrt(square / len(problem.task))), processor, wall)
+
+
+def ratio_to(best: float | None, error: float) -> float:
+    """Error / best, NaN where neither search found anything, 0 where only ours did."""
+    if best is None:
+        return np.nan if np.isinf(error) else 0.0
+    return error / best
+
+
+def shown(ratio: float) -> str:
+    """A ratio as a column prints it."""
+    return "  none" if np.isinf(ratio) else "     -" if np.isnan(ratio) else f"{ratio:6.3f}"
+
+
+def known_tasks(seeds: int) -> None:
+    """The tasks with best designs known, for several seeds."""
+    ratios: list[float] = []
+    runs: list[Run] = []
+    for task in json.loads((DATA / "limited.json").read_text(encoding="utf-8"))["tasks"]:
+        problem = problem_of(task["toml"], task["name"])
+        mine = [Run.of(problem, seed) for seed in range(seeds)]
+        each = [ratio_to(task["best"], run.error) for run in mine]
+        columns = " ".join(map(shown, each))
+        print(f"{task['name']:12} best {task['best']:10.6g}  ours/best {columns}  {times(mine)}", flush=True)
+        ratios, runs = ratios + each, runs + mine
+    print(f"known tasks, {seeds} seeds: {summary(ratios)}; {times(runs)}")
+
+
+def times(runs: Sequence[Run]) -> str:
+    """Median times of searches."""
+    processor, wall = (np.median([getattr(run, name) for run in runs]) for name in ("processor", "wall"))
+    return f"median {processor:.2f} s of the processor, {wall:.2f} s in all"
+
+
+def summary(ratios: Sequence[float]) -> str:
+    """How many ratios are near 1, the worst one, and what was not found."""
+    known = np.array([ratio for ratio in ratios if np.isfinite(ratio) and ratio > 0])
+    missed, only = np.count_nonzero(np.isinf(ratios)), np.count_nonzero(np.equal(ratios, 0))
+    count, near = len(known) + missed, np.count_nonzero(known <= NEAR)
+    worst = known.max() if known.size else np.nan
+    return (
+        f"{near} of {count} within {100 * (NEAR - 1):.0f} %, worst ratio {worst:.3f}, none on {missed}; "
+        f"better on {np.count_nonzero(known < 0.999) + only} ({only} of them with no design known)"
+    )
+
+
+def random_tasks(references: Sequence[dict[str, Any]]) -> None:
+    """Random tasks, one seed each."""
+    ratios: list[float] = []
+    runs: list[Run] = []
+    for task in references:
+        run = Run.of(problem_of(task["toml"], task["name"]), 0)
+        ratio = ratio_to(task["best"], run.error)
+        best = "      none" if task["best"] is None else f"{task['best']:10.6g}"
+        print(f"{task['name']:26} best {best}  ours/best {shown(ratio)}  {run.processor:.2f} s", flush=True)
+        ratios.append(ratio)
+        runs.append(run)
+    print(f"{len(references)} random tasks: {summary(ratios)}; {times(runs)}")
+
+
+def referenced(path: Path, count: int) -> list[dict[str, Any]]:
+    """The first random tasks with the best design of the independent search, from the file or added to it."""
+    tasks = json.loads(path.read_text(encoding="utf-8"))["tasks"] if path.exists() else []
+    for number in range(len(tasks), count):
+        begun = process_time()
+        tasks.append(reference(*random_task(number)))
+        seconds = process_time() - begun
+        print("{name}: best {best}, rounds {rounds}".format(**tasks[-1]), f"{seconds:.1f} s", flush=True)
+        written = json.dumps({"about": ABOUT, "tasks": tasks}, indent=1)
+        path.write_text(written + "\n", encoding="utf-8")
+    return tasks[:count]
+
+
+def reference(name: str, text: str) -> dict[str, Any]:
+    """The best design that the independent search finds for a task, as the file holds it."""
+    problem = problem_of(text, name)
+    errors: list[float] = []
+    best: Best | None = None
+    for seed in range(ROUNDS):
+        found = search(problem, STARTS, seed)
+        errors.append(found.error if found else np.inf)
+        if found and (best is None or found.error < best.error):
+            best = found
+        if np.count_nonzero(np.less_equal(errors, min(errors) * AGREED)) == 3:
+            break
+    return {
+        "name": name,
+        "toml": text,
+        "best": best.error if best else None,
+        "rounds": [None if np.isinf(error) else error for error in errors],
+        "linkage": fields_of(best.linkage) if best else None,
+    }
+
+
+def fields_of(linkage: FourBar) -> dict[str, Any]:
+    """A linkage as numbers and lists, by the names of its fields."""
+    return {field.name: getattr(linkage, field.name).tolist() for field in fields(linkage)}
+
+
+def efforts(references: Sequence[dict[str, Any]]) -> None:
+    """Effort 1 against effort 10: what the greater one finds that the lesser one missed."""
+    ratios: list[float] = []
+    plain, hard = list[Run](), list[Run]()
+    for task in references:
+        problem = problem_of(task["toml"], task["name"])
+        plain.append(Run.of(problem, 0, effort=1))
+        hard.append(Run.of(problem, 0, effort=10))
+        least = hard[-1].error
+        ratios.append(ratio_to(least if np.isfinite(least) else None, plain[-1].error))
+        print(f"{task['name']:26} effort 1 / effort 10: {shown(ratios[-1])}", flush=True)
+    print(f"effort 1 against 10: {summary(ratios)}")
+    print(f"effort 1: {times(plain)}; effort 10: {times(hard)}")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the measurements."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--seeds", type=int, default=5, help="seeds of the known tasks; 0 leaves them out")
+    parser.add_argument("--random", type=int, default=60, metavar="N", help="random tasks")
+    parser.add_argument(
+        "--reference", type=Path, default=DATA / "limited_random.json", metavar="FILE",
+        help="best designs of the random tasks; those missing are searched for and added",
+    )  # fmt: skip
+    parser.add_argument("--only-reference", action="store_true", help="search for those missing, and end")
+    parser.add_argument("--effort", action="store_true", help="compare effort 1 with 10, and end")
+    options = parser.parse_args(argv)
+    references = referenced(options.reference, options.random)
+    if options.only_reference:
+        return 0
+    if options.effort:
+        known = json.loads((DATA / "limited.json").read_text(encoding="utf-8"))["tasks"]
+        efforts([*known, *references])
+        return 0
+    if options.seeds:
+        known_tasks(options.seeds)
+    if references:
+        random_tasks(references)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
