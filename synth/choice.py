@@ -21,9 +21,11 @@ from grashof.synth.workers import Solver
 FACTORS = (1.02, 1.2, 1.5, 2.0)  # times the least error: so much is offered for other virtues
 GOALS = {"mu": Objective(), "size": Objective(transmission=0.0, compactness=1.0)}
 NEAR = 1.6  # times the error that is allowed: least-squares designs up to there are begun from
-SEEDS, MOST_SEEDS = 3, 24  # of them, for each goal; where the problem's objective decides
+SEEDS, MOST_SEEDS = 4, 24  # of them, for each goal; where the problem's objective decides
 APART = 0.05  # share: seeds that are closer are one
 SLACK = 1e-6  # share of the error: rounding
+ALIKE = 5  # decimals up to which mirror images have the same transmission and size
+COMPROMISE = "compromise"  # best at nothing alone, but no other design is better in every goal
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,17 +63,18 @@ def offered(setup: Setup, ledger: Ledger, solve: Solver, ended: Callable[[], boo
         Of all designs those that no other one beats in every goal, up to twice the least error.
     """
     problem, least = setup.problem, max(ledger.least, same_error(setup.problem))
-    seeds = _seeds(problem, ledger.verified, NEAR * least, SEEDS)
+    seeds = _seeds(problem, ledger.verified, FACTORS[-1] * least, SEEDS)
     every, attempts = list(ledger.verified), list[Attempt]()
     latest = dict[str, list[Candidate]]({goal: [] for goal in GOALS})
     factors = FACTORS if ledger.least > same_error(problem) else FACTORS[:1]
-    for factor in factors:
+    for before, factor in zip((0.0, *factors), factors, strict=False):
         if ended():
             break
+        new = [one for one in seeds if before * least < _bounded(problem, one, least) <= factor * least]
         begun = [
             (goal, _under(setup, one, objective, most_error=factor * least))
             for goal, objective in GOALS.items()
-            for one in (*latest[goal], *seeds)
+            for one in (*latest[goal], *new)
         ]
         made = solve(setup, [start for _, start in begun], ledger.solved + len(attempts))
         attempts += made
@@ -96,6 +99,11 @@ def of_use(setup: Setup) -> float:
     turn_weights = np.zeros(zones.shape[1]) if setup.turn_weights is None else setup.turn_weights
     square = (setup.weights * zones[0] ** 2 + turn_weights * zones[1] ** 2).sum()
     return float(np.sqrt(square / len(setup.targets)))
+
+
+def _bounded(problem: Problem, candidate: Candidate, least: float) -> float:
+    """A design's error, sizes, where rounding carries none past the least."""
+    return max(_error(problem, candidate) * (1 - SLACK), least)
 
 
 def decided(
@@ -197,16 +205,17 @@ def _worth_choosing(problem: Problem, every: list[Candidate], least: float) -> t
     front = pareto_optimal(problem, distinct)
     kept = [one for one, best in zip(distinct, front, strict=True) if best]
     words: dict[int, list[str]] = {k: [] for k in range(len(kept))}
-    if kept:
-        words[0].append("least error")
+    if kept:  # the first of the list may be another one, if nobody would build it
+        words[min(words, key=lambda k: round(_error(problem, kept[k]), ALIKE + 1))].append("least error")
     over = problem.requirements.transmission_over
+    values = {
+        "best mu": [-round(one.transmission(over), ALIKE) for one in kept],
+        "smallest": [round(one.verdict.size / problem.task.size, ALIKE) for one in kept],
+    }
     for factor in FACTORS[::-1]:
         within = [k for k, one in enumerate(kept) if _error(problem, one) <= factor * least * (1 + SLACK)]
-        for goal, value in (
-            ("best mu", lambda k: -kept[k].transmission(over)),
-            ("smallest", lambda k: kept[k].verdict.size),
-        ):
-            best = min(within, key=value, default=None)
+        for goal, value in values.items():
+            best = min(within, key=value.__getitem__, default=None)
             if best is not None and not any(text.startswith(goal) for text in words[best]):
                 words[best].append(f"{goal} within {factor:g} times")
-    return tuple(replace(one, best_at="; ".join(words[k])) for k, one in enumerate(kept))
+    return tuple(replace(one, best_at="; ".join(words[k]) or COMPROMISE) for k, one in enumerate(kept))

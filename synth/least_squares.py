@@ -34,7 +34,7 @@ from grashof.synth.setup import Setup
 from grashof.synth.start import Round, Start
 
 DRAWS, TIMED_DRAWS = 2000, 600
-FEW_TARGETS = 48  # of a longer task decide which finds are worth the rest
+FEW_TARGETS = 30  # of a longer task decide which finds are worth the rest
 FOUND = 1e-5  # sizes: so small an error is none
 # Where no limit binds: how many of the best go on for how many steps.
 FREE_STAGES, TIMED_STAGES = ((200, 6), (60, 10), (20, 50)), ((60, 6), (20, 60))
