@@ -11,8 +11,7 @@ from grashof.problems import Box, Problem, Requirements
 from grashof.problems.checks import ComplexArray, FloatArray
 from grashof.synth import paths
 from grashof.synth.path_loop import Batch, PathTarget
-from grashof.synth.path_pulls import PULL
-from grashof.synth.path_search import Placed, _linearised, draw, improve
+from grashof.synth.path_search import PULL, Placed, draw, fitting, improve
 from grashof.synth.path_search import place as place_batch
 from grashof.synth.setup import Setup
 
@@ -49,7 +48,7 @@ def place(target: PathTarget, batch: Batch) -> Placed:
 
 
 def cost_of(target: PathTarget, batch: Batch) -> FloatArray:
-    return np.nan_to_num(_linearised(target, batch)[0], nan=np.inf)
+    return np.nan_to_num(fitting(target)(batch)[0], nan=np.inf)
 
 
 def draws(target: PathTarget, count: int = 60, seed: int = 1) -> Batch:
@@ -161,7 +160,7 @@ def differences(target: PathTarget, batch: Batch, of: int) -> FloatArray:
     """Central differences of part `of` of the linearisation by every unknown, unknowns last."""
     step, columns = 1e-6, []
     for change in step * np.eye(batch.unknowns.shape[1]):
-        ahead, behind = (_linearised(target, moved(batch, s * change))[of] for s in (1, -1))
+        ahead, behind = (fitting(target)(moved(batch, s * change))[of] for s in (1, -1))
         columns.append((ahead - behind) / (2 * step))
     return np.stack(columns, axis=-1)
 
@@ -172,7 +171,7 @@ def test_the_gradient_is_that_of_differences(kind: tuple[str, bool, bool, bool],
     """Kaufman's Jacobian leaves a term out that is orthogonal to the residual."""
     target = target_of(kind, rotatability_margin=margin)
     batch = draws(target, 40)
-    cost, residual, jacobian = _linearised(target, batch)
+    cost, residual, jacobian = fitting(target)(batch)
     assert (residual[:, 2 * len(target.points) :] == 0).all()  # no pull acts
     np.testing.assert_allclose(cost, (residual**2).sum(axis=1), rtol=1e-9)
     gradient = 2 * (np.swapaxes(jacobian, 1, 2) @ residual[..., None])[..., 0]
@@ -198,7 +197,7 @@ def test_pulls_have_the_derivatives_of_differences_where_the_fit_is_exact(
         wide, tight = target_of(kind, seed=seed), target_of(kind, seed=seed, **TIGHT)
         batch = draws(wide, 10, seed)[np.array([0])]
         mine = replace(tight, points=place(wide, batch).p[0])
-        cost, residual, jacobian = _linearised(mine, batch)
+        cost, residual, jacobian = fitting(mine)(batch)
         n = 2 * len(mine.points)
         assert np.abs(residual[:, :n]).max() < 1e-9
         assert (residual[:, n:] != 0).sum() >= 5
@@ -215,17 +214,18 @@ def test_pulls_count_what_oversteps() -> None:
     batch = draws(target)
     placed = place(target, batch)
     lengths = lengths_of(target, batch)
-    _, residual, _ = _linearised(target, batch)
+    _, residual, _ = fitting(target)(batch)
     pull = residual[:, 2 * len(target.points) :] / PULL
     over = np.maximum(np.log(lengths / 0.8), 0) - np.maximum(np.log(0.5 / lengths), 0)
     np.testing.assert_allclose(pull[:, :4], over.T, atol=1e-8)
     ratio = np.log(lengths.max(axis=0) / lengths.min(axis=0) / 1.2)
     np.testing.assert_allclose(pull[:, 4], np.maximum(ratio, 0), atol=1e-8)
-    arm = np.log(np.abs(placed.p[:, 0] - placed.a[:, 0]) / 0.3)
-    np.testing.assert_allclose(pull[:, 5], np.maximum(arm, 0), atol=1e-8)
+    for column, pivot in zip(pull[:, 5:7].T, (placed.a, placed.b), strict=True):
+        arm = np.abs(placed.p[:, 0] - pivot[:, 0]) - 0.3
+        np.testing.assert_allclose(column, np.maximum(arm, 0), atol=1e-8)
     o2, o4 = placed.o2, placed.o4
     sides = ((o2.real, 3, 4), (o2.imag, -9, -8), (o4.real, -4, -3), (o4.imag, 7, 8))
-    for column, (value, low, high) in zip(pull[:, 6:].T, sides, strict=True):
+    for column, (value, low, high) in zip(pull[:, 7:].T, sides, strict=True):
         np.testing.assert_allclose(
             column, np.maximum(value - high, 0) - np.maximum(low - value, 0), atol=1e-8
         )
@@ -237,7 +237,7 @@ def test_improving_never_makes_worse(kind: tuple[str, bool, bool, bool]) -> None
     batch = draw(target, 80, np.random.default_rng(2))
     begun, before = cost_of(target, batch), batch.unknowns.copy()
     for steps in (1, 5, 20):
-        after, error = improve(target, batch, steps, 0.0)
+        after, error = improve(fitting(target), batch, steps, 0.0)
         error = np.nan_to_num(error, nan=np.inf)
         assert (error <= begun).all()
         np.testing.assert_allclose(cost_of(target, after), error, rtol=1e-12)
@@ -250,8 +250,8 @@ def test_improving_never_makes_worse(kind: tuple[str, bool, bool, bool]) -> None
 def test_it_stops_when_as_many_as_wanted_are_good_enough() -> None:
     target = target_of(KINDS[0], 5)
     batch = draws(target, 40)
-    _, few = improve(target, batch, 60, 1e-3, until=5)
-    _, many = improve(target, batch, 60, 1e-3, until=20)
+    _, few = improve(fitting(target), batch, 60, 1e-3, until=5)
+    _, many = improve(fitting(target), batch, 60, 1e-3, until=20)
     assert 5 <= np.count_nonzero(few <= 1e-3) < np.count_nonzero(many <= 1e-3)
     assert np.count_nonzero(many <= 1e-3) >= 20
 

@@ -12,7 +12,7 @@ from grashof.problems import MotionTask, Problem, Requirements
 from grashof.problems.checks import FloatArray
 from grashof.synth import paths
 from grashof.synth.path_loop import Batch, Loop, PathTarget, body_turns
-from grashof.synth.path_search import _linearised, draw, improve, place
+from grashof.synth.path_search import draw, fitting, improve, place
 from grashof.synth.paths import FOUND
 from grashof.synth.setup import Setup
 
@@ -93,7 +93,7 @@ def test_the_error_is_that_of_places_and_angles_as_placed(kind: tuple[str, bool,
     off = np.abs(np.angle(np.exp(1j * (coupler + body_angle[:, None] - target.turns))))
     near = (off * (target.turn_weights > 0)).max(axis=1) < 0.7 * np.pi
     assert near.mean() > 0.3
-    cost, residual, _ = _linearised(target, batch)
+    cost, residual, _ = fitting(target)(batch)
     np.testing.assert_allclose((residual**2).sum(axis=1), cost, rtol=1e-9)
     for error in (place(target, batch).error, cost):
         assert (error >= expected * (1 - 1e-6)).all()
@@ -153,7 +153,7 @@ def differences(target: PathTarget, batch: Batch, of: int) -> FloatArray:
     """Central differences of part `of` of the linearisation by every unknown, unknowns last."""
     step, columns = 1e-6, []
     for change in step * np.eye(batch.unknowns.shape[1]):
-        ahead, behind = (_linearised(target, moved(batch, s * change))[of] for s in (1, -1))
+        ahead, behind = (fitting(target)(moved(batch, s * change))[of] for s in (1, -1))
         columns.append((ahead - behind) / (2 * step))
     return np.stack(columns, axis=-1)
 
@@ -164,7 +164,7 @@ def test_angles_have_the_derivatives_of_differences(kind: tuple[str, bool, bool]
     """The rows of the angles have no approximation in them; the gradient is that of the whole cost."""
     target = target_of(kind, free)
     batch = draws(target, 40)
-    cost, residual, jacobian = _linearised(target, batch)
+    cost, residual, jacobian = fitting(target)(batch)
     rows = slice(2 * N, 3 * N)
     expected = differences(target, batch, 1)[:, rows]
     scale = np.abs(expected).max(axis=(1, 2), keepdims=True) + 1e-3
@@ -189,10 +189,10 @@ def test_improving_never_makes_worse_and_gains() -> None:
         target = target_of(KINDS[0], free)
         batch = draws(target, 60)
         begun = place(target, batch).error
-        after, error = improve(target, batch, 25, 0.0)
+        after, error = improve(fitting(target), batch, 25, 0.0)
         assert (error <= begun).all()
         assert np.median(error / begun) < 0.3
-        np.testing.assert_allclose(_linearised(target, after)[0], error, rtol=1e-12)
+        np.testing.assert_allclose(fitting(target)(after)[0], error, rtol=1e-12)
 
 
 def test_steps_count_what_both_neighbours_give() -> None:
