@@ -95,7 +95,7 @@ def test_best_designs_known_are_accepted_and_as_good_as_said(file: str) -> None:
         problem = problem_from(document_of(task["toml"], task["name"]), task["name"])
         verdict = verify(FourBar(**task["linkage"]), problem.task, problem.requirements)
         assert verdict.ok, (task["name"], verdict.defects)
-        assert np.sqrt(verdict.square / len(problem.task)) == pytest.approx(task["best"], rel=1e-6)
+        assert np.sqrt(verdict.square / len(problem.task)) == pytest.approx(task["best"], rel=1e-6, abs=1e-8)
 
 
 def test_benchmark_measures(tmp_path: Path) -> None:
