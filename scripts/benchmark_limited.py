@@ -190,7 +190,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         help="best designs of the random tasks; those missing are searched for and added",
     )  # fmt: skip
     parser.add_argument(
-        "--agree", type=int, default=2, help="rounds of the independent search that have to agree on the best"
+        "--agree", type=int, default=1, help="rounds of the independent search that have to agree on the best"
     )
     parser.add_argument("--only-reference", action="store_true", help="search for those missing, and end")
     parser.add_argument("--effort", action="store_true", help="compare effort 1 with 10, and end")
