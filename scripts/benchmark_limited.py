@@ -19,14 +19,14 @@ from time import perf_counter, process_time
 from typing import Any
 
 import numpy as np
-from independent_search import STARTS, Best, search
+from independent_search import STARTS, search
 from limited_tasks import problem_of, random_task
 
 from grashof import synthesize
 from grashof.problems import FourBar, Problem
 
 DATA = Path(__file__).parents[1] / "tests" / "data"
-ROUNDS = 6  # most of the independent search, each of STARTS starts; fewer once three agree on the best
+ROUNDS = 6  # most of the independent search, each of STARTS starts; fewer once --agree of them agree
 AGREED, NEAR = 1.002, 1.02
 ABOUT = (
     "Random least-squares tasks with limits, made by scripts/limited_tasks.py. best: the least error, "
@@ -55,11 +55,15 @@ class Run:
         return cls(float(np.sqrt(square / len(problem.task))), processor, wall)
 
 
-def ratio_to(best: float | None, error: float) -> float:
-    """Error / best, NaN where neither search found anything, 0 where only ours did."""
+def ratio_to(best: float | None, error: float, problem: Problem) -> float:
+    """Error / best, NaN where neither search found anything, 0 where only ours did.
+
+    Errors below the tolerance of the problem count as the tolerance.
+    """
+    least = problem.requirements.tolerance * problem.task.size
     if best is None:
         return np.nan if np.isinf(error) else 0.0
-    return error / best
+    return max(error, least) / max(best, least)
 
 
 def shown(ratio: float) -> str:
@@ -74,7 +78,7 @@ def known_tasks(seeds: int) -> None:
     for task in json.loads((DATA / "limited.json").read_text(encoding="utf-8"))["tasks"]:
         problem = problem_of(task["toml"], task["name"])
         mine = [Run.of(problem, seed) for seed in range(seeds)]
-        each = [ratio_to(task["best"], run.error) for run in mine]
+        each = [ratio_to(task["best"], run.error, problem) for run in mine]
         columns = " ".join(map(shown, each))
         print(f"{task['name']:12} best {task['best']:10.6g}  ours/best {columns}  {times(mine)}", flush=True)
         ratios, runs = ratios + each, runs + mine
@@ -104,8 +108,9 @@ def random_tasks(references: Sequence[dict[str, Any]]) -> None:
     ratios: list[float] = []
     runs: list[Run] = []
     for task in references:
-        run = Run.of(problem_of(task["toml"], task["name"]), 0)
-        ratio = ratio_to(task["best"], run.error)
+        problem = problem_of(task["toml"], task["name"])
+        run = Run.of(problem, 0)
+        ratio = ratio_to(task["best"], run.error, problem)
         best = "      none" if task["best"] is None else f"{task['best']:10.6g}"
         print(f"{task['name']:26} best {best}  ours/best {shown(ratio)}  {run.processor:.2f} s", flush=True)
         ratios.append(ratio)
@@ -113,38 +118,44 @@ def random_tasks(references: Sequence[dict[str, Any]]) -> None:
     print(f"{len(references)} random tasks: {summary(ratios)}; {times(runs)}")
 
 
-def referenced(path: Path, count: int) -> list[dict[str, Any]]:
-    """The first random tasks with the best design of the independent search, from the file or added to it."""
+def referenced(path: Path, count: int, agree: int) -> list[dict[str, Any]]:
+    """The first random tasks with the best design of the independent search, from the file or added to it.
+
+    Every task gets rounds until so many agree on the best.
+    """
     tasks = json.loads(path.read_text(encoding="utf-8"))["tasks"] if path.exists() else []
     for number in range(len(tasks), count):
-        begun = process_time()
-        tasks.append(reference(*random_task(number)))
-        seconds = process_time() - begun
-        print("{name}: best {best}, rounds {rounds}".format(**tasks[-1]), f"{seconds:.1f} s", flush=True)
-        written = json.dumps({"about": ABOUT, "tasks": tasks}, indent=1)
-        path.write_text(written + "\n", encoding="utf-8")
+        name, text = random_task(number)
+        tasks.append({"name": name, "toml": text, "best": None, "rounds": [], "linkage": None})
+    for task in tasks[:count]:
+        before, begun = len(task["rounds"]), process_time()
+        while not settled(task["rounds"], agree):
+            another_round(task)
+        if len(task["rounds"]) == before:
+            continue
+        print(
+            "{name}: best {best}, rounds {rounds}".format(**task),
+            f"{process_time() - begun:.1f} s",
+            flush=True,
+        )
+        done = [task for task in tasks if task["rounds"]]
+        path.write_text(json.dumps({"about": ABOUT, "tasks": done}, indent=1) + "\n", encoding="utf-8")
     return tasks[:count]
 
 
-def reference(name: str, text: str) -> dict[str, Any]:
-    """The best design that the independent search finds for a task, as the file holds it."""
-    problem = problem_of(text, name)
-    errors: list[float] = []
-    best: Best | None = None
-    for seed in range(ROUNDS):
-        found = search(problem, STARTS, seed)
-        errors.append(found.error if found else np.inf)
-        if found and (best is None or found.error < best.error):
-            best = found
-        if np.count_nonzero(np.less_equal(errors, min(errors) * AGREED)) == 3:
-            break
-    return {
-        "name": name,
-        "toml": text,
-        "best": best.error if best else None,
-        "rounds": [None if np.isinf(error) else error for error in errors],
-        "linkage": fields_of(best.linkage) if best else None,
-    }
+def settled(found: Sequence[float | None], agree: int) -> bool:
+    """Whether so many of these rounds agree on the best, or there are too many."""
+    errors = np.array([np.inf if error is None else error for error in found])
+    agreed = np.count_nonzero(errors <= errors.min() * AGREED) if len(errors) else 0
+    return bool(agreed >= agree or len(errors) >= ROUNDS)
+
+
+def another_round(task: dict[str, Any]) -> None:
+    """Search once more for a task, as the file holds it, and note what is found."""
+    found = search(problem_of(task["toml"], task["name"]), STARTS, seed=len(task["rounds"]))
+    task["rounds"].append(found.error if found else None)
+    if found and (task["best"] is None or found.error < task["best"]):
+        task.update(best=found.error, linkage=fields_of(found.linkage))
 
 
 def fields_of(linkage: FourBar) -> dict[str, Any]:
@@ -161,7 +172,7 @@ def efforts(references: Sequence[dict[str, Any]]) -> None:
         plain.append(Run.of(problem, 0, effort=1))
         hard.append(Run.of(problem, 0, effort=10))
         least = hard[-1].error
-        ratios.append(ratio_to(least if np.isfinite(least) else None, plain[-1].error))
+        ratios.append(ratio_to(least if np.isfinite(least) else None, plain[-1].error, problem))
         print(f"{task['name']:26} effort 1 / effort 10: {shown(ratios[-1])}", flush=True)
     print(f"effort 1 against 10: {summary(ratios)}")
     print(f"effort 1: {times(plain)}; effort 10: {times(hard)}")
@@ -178,10 +189,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         "--reference", type=Path, default=DATA / "limited_random.json", metavar="FILE",
         help="best designs of the random tasks; those missing are searched for and added",
     )  # fmt: skip
+    parser.add_argument(
+        "--agree", type=int, default=1, help="rounds of the independent search that have to agree on the best"
+    )
     parser.add_argument("--only-reference", action="store_true", help="search for those missing, and end")
     parser.add_argument("--effort", action="store_true", help="compare effort 1 with 10, and end")
     options = parser.parse_args(argv)
-    references = referenced(options.reference, options.random)
+    references = referenced(options.reference, options.random, options.agree)
     if options.only_reference:
         return 0
     if options.effort:

@@ -262,10 +262,11 @@ def drawn(aim: Aim, count: int, rng: np.random.Generator) -> Designs:
     r1, r2, r3, r4 = np.exp(rng.uniform(np.log(0.1), 0, (4, count)))
     x[:, 2] = r1
     x[:, 4:7] = np.log([r2, r3, r4]).T
-    x[:, 7:9] = rng.normal(0, 0.7, (count, 2))
+    wide = rng.random((count, 1)) < 0.5  # half of them far from the usual: long arms, uneven driver angles
+    x[:, 7:9] = rng.normal(size=(count, 2)) * np.where(wide, np.exp(rng.uniform(-1, 1.1, (count, 1))), 0.7)
     x[:, 10:] = rng.uniform(-np.pi, np.pi, (count, 1))
     if aim.timing is None:
-        gaps = rng.uniform(1, 3, (count, len(aim.points)))
+        gaps = np.exp(rng.normal(size=(count, len(aim.points))) * np.where(wide, 0.6, 0.3))
         turn = TURN if aim.closed else rng.uniform(1, TURN, (count, 1))
         steps = turn * gaps / gaps.sum(axis=1, keepdims=True)
         x[:, 11:] += sense[:, None] * np.cumsum(steps[:, :-1], axis=1)
