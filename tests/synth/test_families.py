@@ -123,18 +123,17 @@ def test_designs_without_families_stand_for_themselves(luggage_result: Result) -
 def test_mirrored_designs_and_cognates_of_a_symmetric_closed_path() -> None:
     """Designs for the ellipse, their cognates and the mirror images of all, each judged anew."""
     loaded = load("path-ellipse")
-    wanted = Requirements(exact=False, link_length=(2, 120), link_ratio_max=40)
-    problem = replace(loaded, requirements=wanted)
-    some = synthesize(problem, starts=8).candidates
+    wanted = Requirements(link_length=(2, 120), link_ratio_max=40)
+    task = PathTask(loaded.task.positions, closed=True, within=0.5)  # zones keep what others dominate
+    problem = replace(loaded, task=task, requirements=wanted)
+    some = synthesize(problem, effort=0.35).candidates
     pairs = [(each, design) for each in some if (design := mirrored(each, problem)) is not None]
     result = Result(problem, listed(problem, [each for pair in pairs for each in pair]), (), {}, {})
     family_of = {each.id: each.family for each in result.candidates}
     kept = [(one, other) for one, other in pairs if {one.id, other.id} <= set(family_of)]
     assert len(kept) >= 3
     for one, other in kept:
-        assert other.verdict.error_rms == pytest.approx(
-            one.verdict.error_rms, rel=0.05
-        )  # the points are rounded
+        assert other.verdict.error_rms == pytest.approx(one.verdict.error_rms, rel=0.1)
         assert family_of[one.id] == family_of[other.id]
     named = [each for each in result.candidates if each.cognate_of in family_of]
     assert named

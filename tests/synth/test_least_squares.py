@@ -23,7 +23,8 @@ from grashof.synth.path_search import draw, standing, with_places, within_limits
 KNOWN = json.loads((Path(__file__).parents[1] / "data" / "limited.json").read_text())["tasks"]
 TIGHT: dict[str, Any] = {
     "link_length": (0.5, 0.8), "link_ratio_max": 1.2, "coupler_arms": (0.6, 0.7),
-    "o2": Box((3, 4), (-9, -8)), "o4": Box((-4, -3), (7, 8)), "a": Box((5, 6), (5, 6)), "b": Box((-6, -5), (-8, -7)),
+    "o2": Box((3, 4), (-9, -8)), "o4": Box((-4, -3), (7, 8)),
+    "a": Box((5, 6), (5, 6)), "b": Box((-6, -5), (-8, -7)),
     "ground_angle_deg": 20.0, "theta2_start_deg": 50.0, "transmission_min_deg": 80.0,
 }  # fmt: skip
 
