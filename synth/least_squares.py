@@ -143,7 +143,8 @@ class _Stage:
 
 def _limited_round(setup: Setup, rng: np.random.Generator, drawn: Batch, best: Batch, size: int) -> Round:
     """Starts of the search under every limit, from drawn linkages and those that fit best."""
-    early, late = _search(setup, drawn, best, size)
+    before_limits, found = _search(setup, drawn, best, size)
+    late = _ranked(setup, found)
     share = size * min(1.0, max(AMPLE / len(setup.targets), FEWEST))
     first, others, before = (round(share * count) for count in (BEST, OTHERS, EARLY))
     chosen = [_start(setup, late.finds, late.error, k) for k in range(min(first, len(late.error)))]
@@ -151,13 +152,14 @@ def _limited_round(setup: Setup, rng: np.random.Generator, drawn: Batch, best: B
     chosen += [_start(setup, late.finds, late.error, k) for k in _some(rng, rest, others)]
     prune = NEAR_BEST
     if _ends_bind(setup):  # the search may shift the ends of the motion, the programme may not
+        early = _ranked(setup, before_limits)
         some = _some(rng, np.arange(len(early.error)), before)
         chosen += [replace(_start(setup, early.finds, early.error, k), promise=0.0) for k in some]
         prune = NEAR_BEST_SHIFTED
     return Round(chosen, {"feasible finds": int(late.finds.feasible.sum())}, size, prune)
 
 
-def _search(setup: Setup, drawn: Batch, best: Batch, size: int) -> tuple[_Stage, _Stage]:
+def _search(setup: Setup, drawn: Batch, best: Batch, size: int) -> tuple[Batch, Batch]:
     """Linkages after the first stage, and after the last one."""
     target = path_target(setup)
     some, index = thinned(target, FEW_TARGETS)
@@ -177,7 +179,7 @@ def _search(setup: Setup, drawn: Batch, best: Batch, size: int) -> tuple[_Stage,
             batch = _with_places_refined(target, index, batch[: size * LONG])
             batch, _ = improve(within_limits(target, STAGES[-1][2]), batch, LONG_STEPS, 0.0)
             early = _with_places_refined(target, index, early)
-        return _ranked(setup, target, early), _ranked(setup, target, batch)
+        return early, batch
 
 
 def _with_places_refined(target: PathTarget, index: IntArray, batch: Batch) -> Batch:
@@ -187,7 +189,8 @@ def _with_places_refined(target: PathTarget, index: IntArray, batch: Batch) -> B
     return replace(inner, unknowns=np.concatenate([inner.unknowns, places], axis=1))
 
 
-def _ranked(setup: Setup, target: PathTarget, batch: Batch) -> _Stage:
+def _ranked(setup: Setup, batch: Batch) -> _Stage:
+    target = path_target(setup)
     placed = standing(target, batch)
     error, _, _ = within_limits(target, STAGES[-1][2])(batch)
     sound = np.flatnonzero(np.isfinite(error) & np.isfinite(placed.error))

@@ -238,8 +238,10 @@ def within_limits(target: PathTarget, weight: float) -> Model:
             for k in range(3):
                 by_z[:, k, width - PLACES + 2 * k], by_z[:, k, width - PLACES + 2 * k + 1] = 1, 1j
             residual, slope = _missed(target, loop, z, by_theta2, by_theta3)
-            spanned = np.stack([np.ones_like(loop.e2), loop.e2, loop.e3], axis=-1)
-            slope += np.sqrt(target.weights)[:, None] * (spanned @ by_z)
+            root = np.sqrt(target.weights)
+            for k, spanned in enumerate((np.ones_like(loop.e2), loop.e2, loop.e3)):
+                slope[..., width - PLACES + 2 * k] = root * spanned
+                slope[..., width - PLACES + 2 * k + 1] = 1j * root * spanned
             error = np.where(loop.closes, (np.abs(residual) ** 2).sum(axis=1), np.inf)
             return _joined(
                 target, Placement(loop, by_theta2, by_theta3, z, by_z), residual, slope, weight, error
