@@ -31,6 +31,8 @@ from grashof.synth.path_loop import (
 # So many steps on end that take less than this share of its error away end the work on a linkage.
 LOOK, STALL = 5, 1e-3
 HEAVY = 1e4  # damping under which no step is worth trying
+# Share of draws on which P makes a detour between two targets, and how much of all other gaps it takes.
+ASTRAY, DETOUR = 0.3, (0.1, 1.5)
 PULL = 0.03  # sizes of error that overstepping a limit by one unit counts as, where fit comes first
 
 # Cost (n,), residuals (n, R), and their derivative by the unknowns (n, R, M), of a batch.
@@ -72,9 +74,11 @@ def draw(target: PathTarget, count: int, rng: np.random.Generator) -> Batch:
     columns = [proportions, rng.uniform(-np.pi, np.pi, (count, 1))]
     if target.timing is None and target.wanted.order:
         steps = target.steps
-        gaps = np.log(steps / steps.sum()) * rng.uniform(0.3, 1, (count, 1)) + rng.normal(
-            0, 0.4, (count, n - 1)
-        )
+        gaps = np.log(steps / steps.sum()) * rng.uniform(0.3, 1, (count, 1))
+        gaps += rng.normal(0, 0.4, (count, n - 1))
+        astray = rng.random(count) < ASTRAY
+        at, share = rng.integers(n - 1, size=count), rng.uniform(*DETOUR, count)
+        gaps[astray, at[astray]] = np.log(share * np.exp(gaps).sum(axis=1))[astray]
         gaps -= np.log(np.exp(gaps).sum(axis=1, keepdims=True))
         low = 0.3 if rotatability is Rotatability.ANY else 0.03
         columns += [gaps, np.log(rng.uniform(low, 4, (count, 1)))]

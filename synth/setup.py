@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from grashof.analysis.design import Constraint
-from grashof.problems import FourBar, MotionTask, PathTask, Problem, Requirements
+from grashof.problems import FourBar, MotionTask, PathTask, Problem, Requirements, Rotatability
 from grashof.problems.checks import ComplexArray, FloatArray
+from grashof.problems.task import Task
 from grashof.synth.burmester import Displacements
 from grashof.synth.frame import Frame
 
@@ -85,7 +86,7 @@ class Setup:
             turn_weights=turn_weights,
             motion=motion,
             timing=task.timing if isinstance(task, PathTask) else None,
-            wanted=frame.requirements(problem.requirements),
+            wanted=_turning(frame.requirements(problem.requirements), task),
             exact=exact,
             constraints=tuple(constraints),
             zones=None if zones is None else zones / [[frame.scale], [1.0]],
@@ -157,3 +158,10 @@ class Setup:
             assembly=assembly,
             body_angle=body_angle,
         )
+
+
+def _turning(wanted: Requirements, task: Task) -> Requirements:
+    """A closed path takes a whole turn of the driver, whatever is said of its rotatability."""
+    if wanted.rotatability is not Rotatability.ANY or not isinstance(task, PathTask) or not task.closed:
+        return wanted
+    return replace(wanted, rotatability=Rotatability.FULL_CRANK, rotatability_margin=0.0)
