@@ -187,7 +187,9 @@ def _search(setup: Setup, run: _Run, *, explained: bool = True) -> Result:
     counts = {**ledger.counts, "solves for the choice": chosen.solved, "verified and distinct": len(best)}
     times = {**run.seconds, "total": perf_counter() - begun}
     why, designs = ledger.why(complete), listed(problem, best)
-    return Result(problem, designs, said.nearest, counts, times, said.note, complete, why)
+    fitted = not ledger.setup.exact and setup.zones is None and bool(ledger.best)
+    least = ledger.least * problem.task.size if fitted else np.nan
+    return Result(problem, designs, said.nearest, counts, times, said.note, complete, why, least)
 
 
 def _without_zones(setup: Setup, *, exact: bool | None = None) -> Setup:
