@@ -227,11 +227,12 @@ def _zones(targets: Targets, task: Task) -> list[Defect]:
     if task.zones is None:
         return []
     defects = []
-    misses = (targets.position_error, np.nan if targets.angle_error is None else targets.angle_error)
+    none = np.full(len(task), np.nan)
+    misses = (targets.position_error, none if targets.angle_error is None else targets.angle_error)
     for what, miss, zone, size in zip(
         ("position", "angle"), misses, task.zones, (task.size, 1.0), strict=True
     ):
-        over = np.nan_to_num((np.broadcast_to(miss, zone.shape) - zone) / size, nan=-np.inf)
+        over = np.nan_to_num((miss - zone) / size, nan=-np.inf)
         worst = int(np.argmax(over))
         if over[worst] > SLACK:
             unit = np.degrees(1.0) if what == "angle" else 1.0
