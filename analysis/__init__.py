@@ -25,6 +25,7 @@ from grashof.analysis.free_response import Ending, FreeResponse, free_response, 
 from grashof.analysis.instant_centres import InstantCentres, instant_centres
 from grashof.analysis.interpolation import NewtonPolynomial, newton_interpolation, spline
 from grashof.analysis.kinematics import Kinematics, PointMotion, solve_kinematics
+from grashof.analysis.limited import Defect
 from grashof.analysis.loads import AppliedForce, AppliedMoment, Friction, Joint, Loads, Spring, TorsionSpring
 from grashof.analysis.mass import (
     Body,
@@ -53,7 +54,7 @@ from grashof.analysis.shape import BestCircle, BestLine, best_circle, best_line,
 from grashof.analysis.stroke import OutputStroke, output_stroke
 from grashof.analysis.tolerance import Robustness, robustness, sensitivity
 from grashof.analysis.transmission import transmission_angle, worst_transmission, worst_transmission_cycle
-from grashof.analysis.verify import Defect, Verdict, verify
+from grashof.analysis.verify import Verdict, verify
 
 __all__ = [
     "AppliedForce",

@@ -9,6 +9,7 @@ import numpy as np
 
 from grashof.analysis.design import Constraint, Design, greatest, name_of
 from grashof.analysis.extent import diagonal, reach_box
+from grashof.analysis.limited import SLACK, Defect, angles, geometry, places
 from grashof.analysis.mobility import (
     GrashofClass,
     branch_index,
@@ -21,40 +22,10 @@ from grashof.analysis.mobility import (
 from grashof.analysis.motion import STEADY, Targets, Way, driver_way, nearest_to_poses
 from grashof.analysis.path import nearest_to_points
 from grashof.analysis.poses_in_order import poses_in_order
-from grashof.analysis.position import Position, solve_position
+from grashof.analysis.position import solve_position
 from grashof.analysis.transmission import worst_transmission, worst_transmission_cycle
-from grashof.problems import Box, FourBar, PathTask, Requirements, Rotatability, Task, TransmissionOver
-from grashof.problems.checks import FloatArray, IntArray, Limits
-
-# Limits are inclusive; rounding may carry a design this far past them (sizes, rad or ratio).
-SLACK = 1e-9
-
-
-@dataclass(frozen=True, slots=True)
-class Defect:
-    """One requirement that a design misses.
-
-    Parameters
-    ----------
-    requirement : str
-        Its key; "exact" for targets that are not met.
-    what : str
-        The quantity judged, such as "r3".
-    found : float
-        Its value, as tables print it (degrees for angles).
-    allowed : str
-    miss : float
-        By how much it is missed: share of the size, rad, or ratio.
-    """
-
-    requirement: str
-    what: str
-    found: float
-    allowed: str
-    miss: float
-
-    def __str__(self) -> str:
-        return f"{self.requirement}: {self.what} is {self.found:.6g}, allowed is {self.allowed}"
+from grashof.problems import FourBar, PathTask, Requirements, Rotatability, Task, TransmissionOver
+from grashof.problems.checks import FloatArray, IntArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,9 +152,9 @@ def verify(
         *_rotatability(linkage, task, wanted),
         *_covered(targets),
         *(_least_transmission(worst, wanted) if branch_ok or not wanted.same_branch else []),
-        *_geometry(linkage, task, wanted),
-        *_places(linkage, solve_position(linkage, targets.theta2, targets.assembly), task, wanted),
-        *_angles(linkage, targets, wanted),
+        *geometry(linkage, task, wanted),
+        *places(linkage, solve_position(linkage, targets.theta2, targets.assembly), task, wanted),
+        *angles(linkage, targets, wanted),
         *_own(linkage, targets, way, constraints),
         *(_kept_out(linkage, targets, way, task, wanted, joined=branch_ok) if wanted.keep_out else []),
     ]
@@ -256,11 +227,12 @@ def _zones(targets: Targets, task: Task) -> list[Defect]:
     if task.zones is None:
         return []
     defects = []
-    misses = (targets.position_error, np.nan if targets.angle_error is None else targets.angle_error)
+    none = np.full(len(task), np.nan)
+    misses = (targets.position_error, none if targets.angle_error is None else targets.angle_error)
     for what, miss, zone, size in zip(
         ("position", "angle"), misses, task.zones, (task.size, 1.0), strict=True
     ):
-        over = np.nan_to_num((np.broadcast_to(miss, zone.shape) - zone) / size, nan=-np.inf)
+        over = np.nan_to_num((miss - zone) / size, nan=-np.inf)
         worst = int(np.argmax(over))
         if over[worst] > SLACK:
             unit = np.degrees(1.0) if what == "angle" else 1.0
@@ -345,53 +317,6 @@ def _least_transmission(worst: float, wanted: Requirements) -> list[Defect]:
     return [Defect("transmission_min_deg", what, float(np.degrees(worst)), allowed, float(least - worst))]
 
 
-def _geometry(linkage: FourBar, task: Task, wanted: Requirements) -> list[Defect]:
-    defects = []
-    for name, value, limits in zip(
-        ("r1", "r2", "r3", "r4"), linkage.lengths, wanted.link_lengths, strict=True
-    ):
-        key = "link_length" if getattr(wanted, name) is None else name
-        defects += _within(key, name, float(value), limits, task.size)
-    arm = complex(*linkage.coupler_point)
-    for name, value in (("A-P", abs(arm)), ("B-P", abs(arm - complex(linkage.r3)))):
-        defects += _within("coupler_arms", name, value, wanted.coupler_arms, task.size)
-    shortest = float(linkage.lengths.min())
-    ratio = float(linkage.lengths.max()) / shortest if shortest > 0 else np.inf
-    if ratio > wanted.link_ratio_max * (1 + SLACK):
-        miss = ratio / wanted.link_ratio_max - 1
-        allowed = f"up to {wanted.link_ratio_max:g}"
-        defects.append(Defect("link_ratio_max", "longest to shortest link", ratio, allowed, miss))
-    return defects
-
-
-def _places(linkage: FourBar, state: Position, task: Task, wanted: Requirements) -> list[Defect]:
-    defects = []
-    places = {
-        "o2": linkage.o2[None], "o4": linkage.o4[None], "a": state.a, "b": state.b,
-    }  # fmt: skip
-    for name, points in places.items():
-        box: Box = getattr(wanted, name) or Box()
-        for axis, limits in enumerate((box.x, box.y)):
-            values = points[:, axis]
-            for value in (values.min(), values.max()):
-                found = _within(name, f"{name}.{'xy'[axis]}", float(value), limits, task.size)
-                if found and found[0] not in defects:
-                    defects += found
-    return defects
-
-
-def _angles(linkage: FourBar, targets: Targets, wanted: Requirements) -> list[Defect]:
-    defects = []
-    for key, angle in (("ground_angle_deg", linkage.theta1), ("theta2_start_deg", targets.theta2[0])):
-        value = getattr(wanted, key)
-        if value is not None:
-            miss = float(np.abs(np.angle(np.exp(1j * (angle - np.radians(value))))))
-            if miss > SLACK:
-                found = float(np.degrees(angle))
-                defects.append(Defect(key, "the angle in deg", found, f"{value:g}", miss))
-    return defects
-
-
 def _own(linkage: FourBar, targets: Targets, way: Way, constraints: Sequence[Constraint]) -> list[Defect]:
     if not constraints:
         return []
@@ -416,17 +341,3 @@ def _kept_out(
         for part, deep in intrusions(linkage, wanted, targets, way, joined=joined).items()
         if deep > SLACK * task.size
     ]
-
-
-def _within(key: str, what: str, value: float, limits: Limits | None, size: float) -> list[Defect]:
-    low, high = limits if limits is not None else (-np.inf, np.inf)
-    miss = max(low - value, value - high) / size
-    if not miss > SLACK:  # NaN where the linkage does not close, which "exact" tells
-        return []
-    return [Defect(key, what, value, _range(low, high), miss)]
-
-
-def _range(low: float, high: float) -> str:
-    if low == -np.inf:
-        return f"up to {high:.6g}"
-    return f"from {low:.6g}" if high == np.inf else f"{low:.6g} to {high:.6g}"

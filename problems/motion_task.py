@@ -27,7 +27,7 @@ from grashof.problems.checks import (
 )
 from grashof.problems.errors import ProblemError
 from grashof.problems.read_only import ReadOnly
-from grashof.problems.zones import LEAST_ZONE, zone_sizes
+from grashof.problems.zones import LEAST_ZONE, turn_sizes, zone_sizes
 
 _POSE = "a pose [x, y, angle in degrees]"
 _SAME = 1e-12  # rad
@@ -54,8 +54,8 @@ class MotionTask(ReadOnly):
     within : float or array_like, shape (N,), length, optional
         How far each position may be missed; the objective then decides.
     angle_within : float or array_like, shape (N,), rad, optional
-        The same of the angles. Where only one of the two is given, the other one is the same
-        through `angle_length`.
+        The same of the angles, up to half a turn. Where only one of the two is given, the other one is
+        the same through `angle_length`.
 
     Raises
     ------
@@ -120,7 +120,7 @@ class MotionTask(ReadOnly):
                 "motion.angle_length is missing: poses at a single place have no size to take it from"
             )
         zone = zone_sizes(within, len(places), "motion.within", least=LEAST_ZONE * size)
-        turn_zone = zone_sizes(angle_within, len(places), "motion.angle_within_deg", least=LEAST_ZONE)
+        turn_zone = turn_sizes(angle_within, len(places), in_degrees=False)
         object.__setattr__(self, "within", zone)
         object.__setattr__(self, "angle_within", turn_zone)
         object.__setattr__(self, "positions", frozen_array(places))
@@ -150,7 +150,6 @@ class MotionTask(ReadOnly):
                 given.append(_row(pose, f"motion.poses[{k}]"))
         refuse(wrong)
         rows = np.array(given).reshape(-1, 3)
-        turn_zone = zone_sizes(angle_within_deg, len(rows), "motion.angle_within_deg", least=LEAST_ZONE)
         return cls(
             rows[:, :2],
             np.radians(rows[:, 2]),
@@ -158,7 +157,7 @@ class MotionTask(ReadOnly):
             angle_length=angle_length,
             body=body,
             within=within,
-            angle_within=None if turn_zone is None else np.radians(turn_zone),
+            angle_within=turn_sizes(angle_within_deg, len(rows), in_degrees=True),
         )
 
     @property

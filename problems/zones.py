@@ -9,9 +9,12 @@ from grashof.problems.checks import GREATEST, FloatArray, counted, frozen_array
 from grashof.problems.errors import ProblemError
 
 LEAST_ZONE = 1e-12  # below, digits are lost
+ANGLES_DEG = (1e-10, 180.0)  # least and greatest zone of an angle
 
 
-def zone_sizes(values: npt.ArrayLike | None, count: int, where: str, *, least: float) -> FloatArray | None:
+def zone_sizes(
+    values: npt.ArrayLike | None, count: int, where: str, *, least: float, most: float = GREATEST
+) -> FloatArray | None:
     """How far each of `count` targets may be missed, shape (count,), from one number or one for each.
 
     Parameters
@@ -20,8 +23,8 @@ def zone_sizes(values: npt.ArrayLike | None, count: int, where: str, *, least: f
     count : int
     where : str
         Its key, for messages.
-    least : float
-        The smallest allowed.
+    least, most : float
+        The smallest and the greatest allowed.
 
     Raises
     ------
@@ -45,7 +48,15 @@ def zone_sizes(values: npt.ArrayLike | None, count: int, where: str, *, least: f
     if numbers.ndim == 1 and len(numbers) != count:
         raise ProblemError(f"{where} has {counted(len(numbers), 'number')} for {count} targets; {allowed}")
     for index, number in enumerate(np.atleast_1d(numbers)):
-        if not least <= number <= GREATEST:
+        if not least <= number <= most:
             name = f"{where}[{index}]" if numbers.ndim else where
-            raise ProblemError(f"{name} is {number:g}; allowed is {least:g} to {GREATEST:g}")
+            raise ProblemError(f"{name} is {number:g}; allowed is {least:g} to {most:g}")
     return frozen_array(np.broadcast_to(numbers, (count,)))
+
+
+def turn_sizes(values: npt.ArrayLike | None, count: int, *, in_degrees: bool) -> FloatArray | None:
+    """The same of angles, rad; from radians, or from degrees, as problem files write them."""
+    low, high = ANGLES_DEG if in_degrees else np.radians(ANGLES_DEG)
+    name = "motion.angle_within_deg" if in_degrees else "angle_within"
+    turns = zone_sizes(values, count, name, least=low, most=high)
+    return frozen_array(np.radians(turns)) if in_degrees and turns is not None else turns

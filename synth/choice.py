@@ -16,6 +16,7 @@ from grashof.synth.ledger import Ledger
 from grashof.synth.result import Candidate, pareto_optimal, ranked, same_error
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
+from grashof.synth.wider import shares
 from grashof.synth.workers import Solver
 
 FACTORS = (1.02, 1.2, 1.5, 2.0)  # times the least error: so much is offered for other virtues
@@ -145,6 +146,7 @@ def decided(
         for one in seeds[:count]
     ]
     attempts = [] if ended() else solve(setup, starts, first)
+    solved = len(attempts)
     again = [_judged(setup, one, most) for one in found]
     good = [one for one in again if one.verdict.ok]
     for one in attempts:
@@ -153,10 +155,13 @@ def decided(
     rejected = _rejected(attempts)
     if not good and setup.zones is not None and not ended():  # how large the zones would have to be
         relaxed = [replace(start, relaxed=("within",)) for start in starts]
-        made = solve(setup, relaxed, first + len(attempts))
+        lack = min((max(shares(problem, one.verdict)) for one in again), default=1.0)
+        larger = replace(setup, zones=setup.zones * max(1.0, lack / 2))
+        made = solve(larger, relaxed, first + solved)
+        made += [Attempt("", one) for one in again]
         good = [one.candidate for one in made if one.candidate is not None and one.candidate.verdict.ok]
-        rejected, attempts = _rejected(made) + rejected, attempts + made
-    return Chosen(ranked(problem, good), rejected, len(attempts))
+        rejected, solved = _rejected(made) + rejected, solved + len(starts)
+    return Chosen(ranked(problem, good), rejected, solved)
 
 
 def _judged(setup: Setup, candidate: Candidate, most_error: float) -> Candidate:

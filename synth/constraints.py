@@ -184,7 +184,7 @@ def _nearest(rows: Rows, form: Form, given: Given, unknown: Unknowns, places: Pl
     With d theta3 / d theta2 = N / D from the loop projected on O4B, multiplied by D.
     """
     o2, o4 = unknown["o2"], unknown["o4"]
-    for k in np.flatnonzero(form.nearest):
+    for k in np.flatnonzero(form.nearest).tolist():
         a, b, p = places.a[k], places.b[k], places.p[k]
         d, n = ca.dot(b - o4, quarter_turn(b - a)), -ca.dot(b - o4, quarter_turn(a - o2))
         row = ca.SX(0)

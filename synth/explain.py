@@ -17,6 +17,7 @@ from grashof.synth.relax import relaxations
 from grashof.synth.result import Candidate, Result
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
+from grashof.synth.wider import up, wider
 from grashof.synth.workers import Solver
 
 STOPPED = "no design: the search was stopped before it found one"
@@ -97,7 +98,8 @@ def explain(
     """
     setup = failure.setup
     known = [one.candidate for one in failure.rejected if one.candidate is not None]
-    ways = relaxations(setup, solve, known, rng, ended)
+    ways = relaxations(setup, solve, known, rng, ended) + wider(setup.problem, setup.constraints, known)
+    ways.sort(key=lambda way: (way.miss, way.key))
     near = [] if ended() else _by_least_squares(setup, search)
     designs = tuple(one.candidate for one in near if one.candidate.verdict.ok)
     if designs:
@@ -197,19 +199,11 @@ def _ways_note(setup: Setup, ways: list[Relaxation], near: list[_Near], why: str
 def _comes_within(setup: Setup, near: _Near, then: str = "") -> str:
     """How near a least-squares design comes; figures are rounded up, so that they hold."""
     unit = f" {setup.problem.length_unit}" if setup.problem.length_unit else ""
-    text = f"the closest {then}comes within {_up(near.by_squares.error_max)}{unit} everywhere"
+    text = f"the closest {then}comes within {up(near.by_squares.error_max):g}{unit} everywhere"
     turned = near.by_squares.angle_error
     if turned is None or np.isnan(turned).all():
         return text
-    return f"{text} and within {_up(float(np.degrees(np.nanmax(turned))))} deg"
-
-
-def _up(value: float) -> str:
-    """A number rounded up to three digits."""
-    if not 0 < value < np.inf:
-        return f"{value:g}"
-    step = 10.0 ** (np.floor(np.log10(value)) - 2)
-    return f"{np.ceil(value / step) * step:.3g}"
+    return f"{text} and within {up(float(np.degrees(np.nanmax(turned)))):g} deg"
 
 
 def _none_note(setup: Setup, nearest: tuple[Candidate, ...], why: str) -> str:

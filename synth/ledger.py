@@ -147,17 +147,18 @@ class Ledger:
 
     def why(self, complete: bool) -> str:
         """Why the search ended; for exact designs, only where there are fewer than enough."""
-        solves, most = counted(self.solved, "solve"), counted(self.starts, "solve")
+        solves = f"{self.solved} of {counted(self.starts, 'solve')}"
         if not complete:
-            return f"the search ended after {self.solved} of {most}: it was stopped"
+            return f"the search ended after {solves}: it was stopped"
         if not self.setup.exact:
+            solves = counted(self.solved, "solve")
             agreed = f"the best came up in {self.came_up} of {counted(self.rounds, 'round')}"
             return f"the search ended after {solves}: {agreed if self.best else 'no design came up'}"
         if len(self.best) >= self.search.enough:
             return ""
         settled = self.setup.motion is not None and len(self.setup.targets) > 4
         exhausted = "the poses leave no freedom" if settled else "there are no other starts"
-        return f"the search ended after {self.solved} of {most}: {self.no_use or exhausted}"
+        return f"the search ended after {solves}: {self.no_use or exhausted}"
 
     def _too_far(self, made: Round, start: Start) -> bool:
         return start.promise > max(made.prune * max(self.least, EXACT_ERROR), self.setup.of_use)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from grashof.problems.checks import BoolArray, FloatArray
+from grashof.problems.checks import BoolArray, FloatArray, IntArray
 from grashof.synth.finds import (
     GROUPS,
     Configurations,
@@ -51,7 +51,7 @@ def _repeats(setup: Setup) -> bool:
     return bool(same)
 
 
-def entries_of(placed: Placed, rows: BoolArray) -> Placed:
+def entries_of(placed: Placed, rows: BoolArray | IntArray) -> Placed:
     """Some linkages of a batch."""
     return Placed(*(getattr(placed, name)[rows] for name in placed.__slots__))
 

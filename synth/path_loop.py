@@ -96,7 +96,7 @@ class Batch:
     def __len__(self) -> int:
         return len(self.unknowns)
 
-    def __getitem__(self, index: IntArray | BoolArray) -> Batch:
+    def __getitem__(self, index: IntArray | BoolArray | slice) -> Batch:
         return Batch(*(getattr(self, name)[index] for name in self.__slots__))
 
 

@@ -32,6 +32,7 @@ from grashof.synth.torque import loads, torque_bound, torque_peaks
 MOST_ITERATIONS = (200, 400)  # the second where zones decide: there may be far to go
 FAR = 1e3  # sizes: stands for "no limit"
 INSET = 1e-8  # sizes, rad: limits are tightened by this much, so that the polished design keeps them
+MOST_ZONE = 0.5  # sizes, rad: greater ones leave the solver astray
 ZONE_INSET = 1e-7  # share of a zone that the programme leaves to the judge
 LEAST_STEP = 1e-4  # rad, of the driver between two targets that are both met
 LEAST_TRANSMISSION = 1e-3  # rad: keeps the motion away from dead positions
@@ -219,7 +220,7 @@ def _parameters(form: Form, setup: Setup, start: Start) -> FloatArray:
 def _zones(setup: Setup) -> FloatArray:
     """How far each target may be missed, drawn in a little: sizes, and rad; shape (2, N)."""
     zones = np.full((2, len(setup.targets)), FAR) if setup.zones is None else setup.zones
-    return zones * (1 - ZONE_INSET)
+    return np.minimum(zones, MOST_ZONE) * (1 - ZONE_INSET)
 
 
 def _planes(form: Form, setup: Setup, start: Start) -> FloatArray:

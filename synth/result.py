@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from grashof.analysis import Verdict
-from grashof.analysis.verify import SLACK
+from grashof.analysis.limited import SLACK
 from grashof.problems import FourBar, NoSolutionError, Objective, Problem, TransmissionOver
 from grashof.problems.checks import BoolArray, FloatArray, counted
 from grashof.problems.display import Displayed
@@ -149,7 +149,9 @@ class Result(Displayed):
     complete : bool
         False when the search was interrupted.
     ended : str
-        Why the search ended before it had as many designs as were asked for; empty when it had.
+        Why the search ended: of exact designs, before it had as many as were asked for; else empty.
+    least_error : float, length
+        Least squares: the least error that was found, as `Candidate.error` has it; NaN otherwise.
     """
 
     problem: Problem
@@ -160,6 +162,7 @@ class Result(Displayed):
     note: str = ""
     complete: bool = True
     ended: str = ""
+    least_error: float = np.nan
 
     def __repr__(self) -> str:
         best = f"best {self.best._words}" if self.candidates else self.note
@@ -171,6 +174,14 @@ class Result(Displayed):
         if not self.candidates:
             raise NoSolutionError(self.note)
         return self.candidates[0]
+
+    @property
+    def most_error(self) -> float:
+        """Up to which error the objective decides, length, by ``error_factor``; NaN where there is none."""
+        factor = self.problem.requirements.error_factor
+        if factor is None or np.isnan(self.least_error):
+            return np.nan
+        return factor * max(self.least_error, same_error(self.problem) * self.problem.task.size)
 
     @property
     def families(self) -> tuple[tuple[Candidate, ...], ...]:

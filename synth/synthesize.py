@@ -7,7 +7,7 @@ from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from itertools import count
 from time import perf_counter
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -110,7 +110,7 @@ def synthesize(
         raise ProblemError(f"problem is a {type(problem).__name__}; allowed is a Problem, such as load gives")
     if isinstance(constraints, str) or not isinstance(constraints, Sequence):
         raise ProblemError(f"constraints is {constraints!r}; allowed is a list of functions of a design")
-    given = {"starts": starts, "enough": enough, "seed": seed, "effort": effort}
+    given: dict[str, Any] = {"starts": starts, "enough": enough, "seed": seed, "effort": effort}
     search = replace(problem.search, **{name: n for name, n in given.items() if n is not None})
     whole_number(workers, 1, "workers")
     if time_limit is not None and finite_number(time_limit, "time_limit") <= 0:
@@ -134,6 +134,8 @@ def synthesize(
 
 def refuse_unsupported(problem: Problem) -> None:
     """Raise `ProblemError` for a problem that this version cannot search for."""
+    if problem.task.zones is not None:  # what is looked for first
+        problem = problem.without_zones(exact=problem.requirements.exact)
     task = problem.task
     if not isinstance(task, MotionTask):
         return
@@ -168,7 +170,8 @@ def _search(setup: Setup, run: _Run, *, explained: bool = True) -> Result:
     """Search, choose, or explain why there is nothing to choose from."""
     begun, problem = perf_counter(), setup.problem
     ledger, complete = _found(_without_zones(setup), run)
-    if setup.bounded and not ledger.best and ledger.setup.exact and complete:  # as near as can be will do
+    few = len(problem.task) < 3
+    if setup.bounded and not (ledger.best or few) and ledger.setup.exact and complete:  # near will do
         ledger, complete = _found(_without_zones(setup, exact=False), run)
     chosen = Chosen(ledger.best, ledger.rejected, 0)
     since = perf_counter()
@@ -181,22 +184,25 @@ def _search(setup: Setup, run: _Run, *, explained: bool = True) -> Result:
     best, said = chosen.designs, Explanation("" if chosen.designs else STOPPED)
     if not best and complete and explained:
         since = perf_counter()
-        said = _explained(setup, run, ledger, chosen)
+        said = _explained(_without_zones(setup) if few else setup, run, ledger, chosen)
         best = ranked(problem, list(said.designs))
         run.seconds["explaining"] = perf_counter() - since
     counts = {**ledger.counts, "solves for the choice": chosen.solved, "verified and distinct": len(best)}
     times = {**run.seconds, "total": perf_counter() - begun}
     why, designs = ledger.why(complete), listed(problem, best)
-    return Result(problem, designs, said.nearest, counts, times, said.note, complete, why)
+    fitted = not ledger.setup.exact and setup.zones is None and bool(ledger.best)
+    least = ledger.least * problem.task.size if fitted else np.nan
+    return Result(problem, designs, said.nearest, counts, times, said.note, complete, why, least)
 
 
-def _without_zones(setup: Setup, *, exact: bool | None = None) -> Setup:
-    """The search that comes first where targets may be missed: exact, or for the least error."""
+def _without_zones(setup: Setup, *, exact: bool = True) -> Setup:
+    """The search that comes first where targets may be missed: exact if that can be, or least squares."""
     if not setup.bounded:
         return setup
     problem = setup.problem
-    free = problem.task.zones is None  # an error factor, or a tolerance
-    without = Setup.of(problem.without_zones(exact=False if free else exact), setup.constraints)
+    zoned = problem.task.zones is not None  # otherwise there is an error factor, or a tolerance
+    first = problem.without_zones(exact=problem.requirements.exact if zoned and exact else False)
+    without = Setup.of(first, setup.constraints)
     return replace(without, of_use=of_use(setup))
 
 

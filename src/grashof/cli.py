@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
 import traceback
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from enum import IntEnum
 from importlib.metadata import version
 from pathlib import Path
-from threading import Event
-from types import FrameType
 from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
 
+from grashof import commands
+from grashof.commands import TOP, Exit, Options
 from grashof.problems import (
-    Problem,
     ProblemError,
     SolverError,
     catalogue,
@@ -30,21 +27,9 @@ from grashof.problems import (
     load_with_text,
     problem_text,
 )
-from grashof.problems.checks import counted
+from grashof.problems.problem import EFFORTS
 from grashof.streams import say
 
-
-class Exit(IntEnum):
-    """Exit codes."""
-
-    OK = 0
-    NO_DESIGN = 1
-    BAD_INPUT = 2
-    SURROUNDINGS = 3
-    INTERRUPTED = 130
-
-
-TOP = 50
 TRACEBACK = "GRASHOF_TRACEBACK"  # environment variable: unexpected errors with their traceback
 # Options of the contract that later versions bring.
 _LATER_OPTIONS = ("--resume", "--scheduler")
@@ -130,6 +115,15 @@ def solve(
         ),
     ] = None,
     drawings: Annotated[int, typer.Option(min=0, help="How many of them to draw.")] = 3,
+    effort: Annotated[
+        float | None,
+        typer.Option(
+            min=EFFORTS[0],
+            max=EFFORTS[1],
+            help="How long to look for better designs; 1 is usual.",
+            show_default=False,
+        ),
+    ] = None,
 ) -> None:
     """Find designs for PROBLEM; write the ranked list, a page to look at, the record, drawings.
 
@@ -138,7 +132,17 @@ def solve(
     """
     with _errors_told():
         loaded, text = load_with_text(problem)
-        raise typer.Exit(_solve(loaded, text, out, starts, seed, workers, time_limit, top, drawings))
+        options = Options(
+            out=out,
+            starts=starts,
+            seed=seed,
+            effort=effort,
+            workers=workers,
+            time_limit=time_limit,
+            top=top,
+            drawings=drawings,
+        )
+        raise typer.Exit(commands.solve(loaded, text, options))
 
 
 @app.command()
@@ -201,7 +205,7 @@ def analyse(
     Exit code 0: done; 2: bad input; 3: the surroundings failed.
     """
     with _errors_told():
-        _analyse(linkage, out, speed_rpm)
+        commands.analyse(linkage, out, speed_rpm)
 
 
 @app.command()
@@ -218,7 +222,7 @@ def animate(
     Exit code 0: done; 2: bad input; 3: the surroundings failed.
     """
     with _errors_told():
-        _animate(linkage, out, seconds, fps)
+        commands.animate(linkage, out, seconds, fps)
 
 
 @app.command()
@@ -285,104 +289,6 @@ def main() -> None:
     app(prog_name="grashof")
 
 
-def _solve(
-    problem: Problem,
-    text: str,
-    out: Path | None,
-    starts: int | None,
-    seed: int | None,
-    workers: int,
-    time_limit: float | None,
-    top: int | None,
-    drawings: int,
-) -> Exit:
-    from grashof.folder import PAGE, check_writable
-    from grashof.output import write_run
-    from grashof.synth import synthesize
-    from grashof.terminal import beginning, print_table, search_progress
-
-    folder = out if out is not None else Path(f"{problem.name}-designs")
-    check_writable(folder, drawings)
-    enough = max(problem.search.enough, top or 0)
-    top = top or max(TOP, enough)
-    settings = {
-        "starts": starts or problem.search.starts,
-        "seed": problem.search.seed if seed is None else seed,
-        "enough": enough,
-        "workers": workers,
-        "time_limit": time_limit,
-        "top": top,
-    }
-    with _interruptible() as interrupted:
-        with search_progress(problem.name, beginning(problem)) as progress:
-            found = synthesize(
-                problem,
-                starts=starts,
-                enough=enough,
-                seed=seed,
-                workers=workers,
-                time_limit=time_limit,
-                progress=progress,
-                stop=interrupted,
-            )
-        if found.ended:
-            say(found.ended, err=True)
-        result = found.top(top)
-        if result.candidates or result.complete:  # an interrupted search with nothing replaces nothing
-            files = write_run(folder, result, settings, drawings, stop=interrupted, problem_text=text)
-            _report(result.note, files, folder)
-        else:
-            say(result.note, err=True)
-        if result.candidates:
-            print_table(result, len(found))
-        if result.candidates or result.complete:
-            _point_to(folder / PAGE)
-    if interrupted():
-        return Exit.INTERRUPTED
-    return Exit.OK if result.candidates else Exit.NO_DESIGN
-
-
-def _analyse(linkage: str, out: Path | None, speed_rpm: float | None) -> None:
-    from grashof.folder import ANALYSIS_PAGE, ANALYSIS_RECORD, check_writable
-    from grashof.survey import report_on
-    from grashof.survey.output import print_report, write_report
-
-    spec = load_linkage_spec(linkage)
-    folder = out if out is not None else Path(f"{spec.name}-analysis")
-    check_writable(folder, record=ANALYSIS_RECORD)
-    report = report_on(spec, speed_rpm)
-    files = write_report(folder, report)
-    for note in report.notes:
-        say(note, err=True)
-    _report("", files, folder)
-    print_report(report)
-    _point_to(folder / ANALYSIS_PAGE)
-
-
-def _animate(linkage: str, out: Path | None, seconds: float, fps: float) -> None:
-    from grashof.figures.animation import check_animation, save_animation
-    from grashof.figures.files import draw_motion
-
-    spec = load_linkage_spec(linkage)
-    path = out if out is not None else Path(f"{spec.name}.gif")
-    check_animation(path)
-    save_animation(draw_motion(spec, seconds=seconds, fps=fps), path)
-    say(str(path), err=True)
-
-
-def _report(note: str, files: list[str], folder: Path) -> None:
-    if note:
-        say(note, err=True)
-    drawn = sum(name.endswith(".png") for name in files)
-    named = [name for name in files if name.endswith((".csv", ".json", ".html"))]
-    pictures = f" and {counted(drawn, 'drawing')} (PNG, SVG)" if drawn else ""
-    say(f"{folder}: {', '.join(named)}{pictures}", err=True)
-
-
-def _point_to(page: Path) -> None:
-    say(f"Open {page} in a browser to look at it.", err=True)
-
-
 def _later(given: list[str]) -> str:
     """What to say of an option that only a later version knows; empty when none is given."""
     words = [word for word in given if word.partition("=")[0] in _LATER_OPTIONS]
@@ -413,19 +319,3 @@ def _errors_told() -> Iterator[None]:
         raise typer.Exit(Exit.SURROUNDINGS) from None
     except KeyboardInterrupt:
         raise typer.Exit(Exit.INTERRUPTED) from None
-
-
-@contextmanager
-def _interruptible() -> Iterator[Callable[[], bool]]:
-    """Turn the first Ctrl-C into a request to stop between batches; the second one ends at once."""
-    asked = Event()
-
-    def ask(_signal: int, _frame: FrameType | None) -> None:
-        asked.set()
-        signal.signal(signal.SIGINT, before)
-
-    before = signal.signal(signal.SIGINT, ask)
-    try:
-        yield asked.is_set
-    finally:
-        signal.signal(signal.SIGINT, before)

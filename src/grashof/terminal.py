@@ -16,9 +16,10 @@ from rich.progress import Progress as Bar
 from rich.table import Table
 
 from grashof.problems import DynamicsSpec, MotionTask, PathTask, Problem, Task, TransmissionOver
-from grashof.problems.checks import counted
+from grashof.problems.checks import FloatArray, counted
 from grashof.streams import say
 from grashof.synth import Candidate, Progress, Result
+from grashof.synth.choice import FACTORS
 from grashof.synth.result import pareto_optimal, same_error
 
 _ROWS = 12
@@ -41,7 +42,9 @@ def console(*, stderr: bool = False) -> Console:
 
 
 @contextmanager
-def search_progress(name: str, begin: str = "searching") -> Iterator[Callable[[Progress], None]]:
+def search_progress(
+    name: str, begin: str = "searching", *, wanted: bool = True
+) -> Iterator[Callable[[Progress], None]]:
     """Something to give as `progress=`: a bar on a terminal, plain lines elsewhere; on stderr.
 
     Parameters
@@ -50,17 +53,21 @@ def search_progress(name: str, begin: str = "searching") -> Iterator[Callable[[P
         Of the problem.
     begin : str
         What the bar says until the first step is done.
+    wanted : bool
+        Whether the search ends once it has enough designs.
     """
     out = console(stderr=True)
     if not (out.is_terminal and sys.stderr.isatty()):  # the first alone can be forced by FORCE_COLOR
-        yield lambda step: say(f"{name}: {_step(step)}", err=True)
+        yield lambda step: say(f"{name}: {_step(step, wanted)}", err=True)
         return
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[step]}"))
     with Bar(*columns, TimeElapsedColumn(), console=out, transient=True) as bar:
         task = bar.add_task(name, total=None, step=begin)
 
         def show(step: Progress) -> None:
-            bar.update(task, completed=min(step.verified, step.enough), total=step.enough, step=_step(step))
+            total = step.enough if wanted else step.starts
+            done = min(step.verified, total) if wanted else step.solved
+            bar.update(task, completed=done, total=total, step=_step(step, wanted))
 
         yield show
 
@@ -68,12 +75,19 @@ def search_progress(name: str, begin: str = "searching") -> Iterator[Callable[[P
 def beginning(problem: Problem) -> str:
     """What a search begins with, in words."""
     task = problem.task
-    met = isinstance(task, MotionTask) and task.is_whole and problem.requirements.is_exact(task)
+    met = isinstance(task, MotionTask) and task.is_whole and ends_with_enough(problem)
     return "tracing dyads and judging pairs" if met else "searching"
 
 
-def _step(step: Progress) -> str:
-    verified = f"{counted(step.verified, 'design')} verified ({step.enough} wanted)"
+def ends_with_enough(problem: Problem) -> bool:
+    """Whether the search ends once it has enough designs: where it begins with exact ones."""
+    if problem.task.zones is not None:
+        return problem.task.exact_by_default
+    return problem.requirements.is_exact(problem.task) and problem.zones is None
+
+
+def _step(step: Progress, wanted: bool) -> str:
+    verified = f"{counted(step.verified, 'design')} verified{f' ({step.enough} wanted)' if wanted else ''}"
     return f"{verified}, {step.solved} of {step.starts} starts solved"
 
 
@@ -232,11 +246,10 @@ def summary(problem: Problem) -> list[str]:
         lines.append(f"  made to within {made.length_tolerance:g}{unit}, band {made.band:g}{unit}")
     if problem.dynamics is not None:
         lines.append(f"  {_driven(problem.dynamics)}")
-    search = problem.search
     return [
         *lines,
         f"  best: {_best(problem)}",
-        f"  search: up to {search.starts} starts, {search.enough} designs, seed {search.seed}",
+        f"  search: {_search(problem)}",
     ]
 
 
@@ -252,9 +265,42 @@ def _best(problem: Problem) -> str:
     best = next(iter(weights))
     if len(weights) > 1:
         best = f"a weighted sum: {', '.join(f'{word} {weight:g}' for word, weight in weights.items())}"
-    if problem.requirements.is_exact(problem.task):
-        return best
-    return f"smallest error (rms); of errors up to {same_error(problem):g} sizes, {best}"
+    missed = _missed(problem)
+    if problem.by_objective:
+        return f"{best}{missed and f', {missed}'}"
+    return (
+        f"least error (rms; errors up to {same_error(problem):g} sizes are equal, then {best}); "
+        f"the list offers more transmission or less size for up to {FACTORS[-1]:g} times of it"
+    )
+
+
+def _missed(problem: Problem) -> str:
+    """By how much targets may be missed while the objective decides; empty where they are met."""
+    factor, zones = problem.requirements.error_factor, problem.zones
+    if factor is not None:
+        return f"as long as the error (rms) is at most {factor:g} times the least"
+    if zones is None:
+        return ""
+    unit = f" {problem.length_unit}" if problem.length_unit else ""
+    said = [_span(zones[0], unit), _span(np.degrees(zones[1]), " deg")]
+    return f"as long as each target is missed by at most {' and '.join(filter(None, said))}"
+
+
+def _span(sizes: FloatArray, unit: str) -> str:
+    """A number, or the range of some, with its unit; empty where all are infinite."""
+    known = sizes[np.isfinite(sizes)]
+    if not len(known):
+        return ""
+    low, high = f"{known.min():.6g}", f"{known.max():.6g}"
+    return f"{low}{unit}" if low == high else f"{low} to {high}{unit}"
+
+
+def _search(problem: Problem) -> str:
+    """How long is searched."""
+    search = problem.search
+    enough = f", {search.enough} designs" if ends_with_enough(problem) else ""
+    effort = f", effort {search.effort:g}" if search.effort != 1 else ""
+    return f"up to {search.starts} starts{enough}, seed {search.seed}{effort}"
 
 
 def _driven(spec: DynamicsSpec) -> str:
@@ -277,6 +323,8 @@ def _task(task: Task, unit: str) -> str:
 
 
 def _exactness(problem: Problem) -> str:
+    if problem.task.zones is not None:
+        return "zones about the targets"
     if not problem.requirements.is_exact(problem.task):
         return "least squares"
     return f"every target met within {problem.requirements.tolerance:g} sizes"

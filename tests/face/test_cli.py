@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -19,7 +20,15 @@ from matplotlib.figure import Figure
 
 import grashof.figures.files as grashof_draw
 from grashof.analysis import verify
-from grashof.problems import FourBar, Problem, linkage_catalogue, linkage_text, load, problem_text
+from grashof.problems import (
+    FourBar,
+    Problem,
+    Requirements,
+    linkage_catalogue,
+    linkage_text,
+    load,
+    problem_text,
+)
 from grashof.synth import Candidate
 
 Grashof = Callable[..., Any]
@@ -160,6 +169,10 @@ def test_output_folder_that_cannot_be_written(grashof: Grashof, tmp_path: Path) 
         ("solve luggage --time-limit inf", "time_limit is inf"),
         ("solve luggage --time-limit nan", "time_limit is nan"),
         ("solve luggage --sed 1", "--seed"),
+        ("solve luggage --effort 0.1", "--effort"),
+        ("solve luggage --effort 101", "--effort"),
+        ("solve luggage --effort much", "--effort"),
+        ("solve luggage --effort nan", "--effort"),
         ("solve", "PROBLEM"),
         ("solv luggage", "solve"),
         ("solve luggage --resume", "--resume is not in this version"),
@@ -354,6 +367,49 @@ def test_a_short_list_says_why_it_is_short(grashof: Grashof, tmp_path: Path) -> 
     said = "the search ended after 3 of 3 solves: starts = 3 allows no more"
     assert done.stderr.splitlines().count(said) == 1
     assert json.loads((tmp_path / "luggage-designs/run.json").read_text())["ended"] == said
+
+
+POSES = [[0, 0, 0], [30, 10, 10], [60, 15, 25], [90, 10, 40], [120, -5, 60], [130, -30, 80]]
+MOTION = f'kind = "motion"\nlength_unit = "mm"\n[motion]\nposes = {POSES}\n'
+
+
+def test_the_record_tells_the_least_error_and_the_bound(grashof: Grashof, tmp_path: Path) -> None:
+    (tmp_path / "mine.toml").write_text(MOTION + "[requirements]\nerror_factor = 1.5\n")
+    done = grashof("solve", "mine.toml", "--effort", "0.2", "--drawings", "0")
+    assert done.exit_code == 0, done.output
+    folder = tmp_path / "mine-designs"
+    record = json.loads((folder / "run.json").read_text())
+    assert record["settings"]["effort"] == 0.2
+    assert record["most_error"] == 1.5 * record["least_error"]
+    assert "the best came up in 1 of 1 round" in record["ended"]
+    assert record["ended"] in done.stderr.splitlines()
+    assert "wanted" not in done.stderr
+    problem, wanted = load(str(tmp_path / "mine.toml")), Requirements(exact=False)
+    designs = json.loads((folder / "candidates.json").read_text())["designs"]
+    for design in designs:
+        square = verify(FourBar(**design["linkage"]), problem.task, wanted).square
+        assert (square / 6) ** 0.5 <= record["most_error"] * (1 + 1e-6)
+    assert grashof("solve", "luggage", *QUICK).exit_code == 0
+    exact = json.loads((tmp_path / "luggage-designs/run.json").read_text())
+    assert (exact["least_error"], exact["most_error"], exact["settings"]["effort"]) == (None, None, 1.0)
+
+
+def test_zones_that_are_too_small_say_how_large_would_do(grashof: Grashof, tmp_path: Path) -> None:
+    (tmp_path / "mine.toml").write_text(MOTION + "within = 0.001\n[search]\neffort = 0.2\n")
+    done = grashof("solve", "mine.toml")
+    assert done.exit_code == 1
+    said = re.search(r"this alone would do: within (\S+) instead of 0\.001$", done.stderr, re.MULTILINE)
+    assert said is not None
+    folder = tmp_path / "mine-designs"
+    assert {path.name for path in folder.iterdir()} == {"nearest.csv", "report.html", "run.json"}
+    misses = pd.read_csv(folder / "nearest.csv")["misses"][0]
+    assert re.match(r"within: the position error at target \d is \S+, allowed is up to 0\.001; ", misses)
+    assert "; angle_within_deg: the angle error in deg at target " in misses
+    page = (folder / "report.html").read_text()
+    assert f"within {said[1]} instead of 0.001" in page
+    assert "each target is missed by at most 0.001 mm and" in page
+    (tmp_path / "mine.toml").write_text(MOTION + f"within = {said[1]}\n[search]\neffort = 0.2\n")
+    assert grashof("solve", "mine.toml", "--drawings", "0").exit_code == 0
 
 
 def test_the_version(grashof: Grashof) -> None:

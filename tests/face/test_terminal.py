@@ -10,9 +10,32 @@ import pytest
 from rich.console import Console
 
 from grashof.analysis.mobility import GrashofClass
-from grashof.problems import Box, Objective, Requirements, TransmissionOver, load
+from grashof.problems import (
+    Box,
+    MotionTask,
+    Objective,
+    PathTask,
+    Problem,
+    Requirements,
+    Search,
+    TransmissionOver,
+    load,
+)
 from grashof.synth import Progress, Result
-from grashof.terminal import beginning, best_rows, heading, print_table, search_progress, summary
+from grashof.terminal import (
+    beginning,
+    best_rows,
+    ends_with_enough,
+    heading,
+    print_table,
+    search_progress,
+    summary,
+)
+
+
+def zoned(**zones: Any) -> MotionTask:
+    """Three poses, each of which may be missed."""
+    return MotionTask.from_degrees([[0, 0, 0], [1, 0, 10], [2, 1, 30]], **zones)
 
 
 def test_table_shows_what_one_decides_by(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
@@ -55,15 +78,26 @@ def test_the_torque_is_shown_where_it_is_asked_for(few: Result, capsys: pytest.C
         ({"objective": Objective(transmission=0, torque=1)}, "smallest peak torque"),
         (
             {"requirements": Requirements(exact=False)},
-            "smallest error (rms); of errors up to 1e-06 sizes, "
-            "greatest worst transmission angle over the task",
+            "least error (rms; errors up to 1e-06 sizes are equal, "
+            "then greatest worst transmission angle over the task); "
+            "the list offers more transmission or less size for up to 2 times of it",
         ),
         (
             {
-                "requirements": Requirements(exact=False, tolerance=0.01),
+                "requirements": Requirements(exact=False, error_factor=1.3),
                 "objective": Objective(transmission=0, compactness=2),
             },
-            "smallest error (rms); of errors up to 0.01 sizes, smallest size",
+            "smallest size, as long as the error (rms) is at most 1.3 times the least",
+        ),
+        (
+            {"task": zoned(within=0.06, angle_within_deg=[1, 2, 3])},
+            "greatest worst transmission angle over the task, "
+            "as long as each target is missed by at most 0.06 m and 1 to 3 deg",
+        ),
+        (
+            {"task": PathTask([[0, 0], [1, 0], [3, 3]], within=[0.1, 0.2, 0.3])},
+            "greatest worst transmission angle over the task, "
+            "as long as each target is missed by at most 0.1 to 0.3 m",
         ),
     ],
 )
@@ -132,6 +166,30 @@ def test_the_best_of_each_family_stands_for_all(alike: Result, capsys: pytest.Ca
         set(best_rows(replace(alike, candidates=alike.candidates[2:3]))[0]) & {"like this", "best at"}
         == set()
     )
+
+
+def test_only_exact_designs_are_counted_until_there_are_enough(capsys: pytest.CaptureFixture[str]) -> None:
+    with search_progress("mine", wanted=False) as show:
+        show(Progress(solved=16, starts=78, verified=9, enough=50))
+    assert capsys.readouterr().err == "mine: 9 designs verified, 16 of 78 starts solved\n"
+    problem = load("luggage")
+    path = PathTask([[k, k * k] for k in range(12)])
+    tried = [
+        (problem, True),
+        (replace(problem, task=zoned(within=1)), True),  # met exactly first
+        (Problem(task=path), False),
+        (Problem(task=path, requirements=Requirements(exact=True)), True),
+        (Problem(task=path, requirements=Requirements(exact=True, tolerance=0.01)), False),
+    ]
+    for asked, ends in tried:
+        assert ends_with_enough(asked) is ends
+        assert (f"{asked.search.enough} designs" in summary(asked)[-1]) is ends
+
+
+def test_the_summary_tells_the_effort() -> None:
+    problem = load("luggage")
+    assert "effort" not in summary(problem)[-1]
+    assert summary(replace(problem, search=Search(effort=2.5)))[-1].endswith(", effort 2.5")
 
 
 def test_progress_lines(capsys: pytest.CaptureFixture[str]) -> None:

@@ -30,8 +30,9 @@ body = [[0, 0], [1, 0], [1, 1.5]]
 outlines = [[[0, 0], [5, 0]], [[1, 1], [2, 2], [3, 1]]]
 
 [requirements]
-exact = true
+exact = false
 tolerance = 1e-7
+error_factor = 1.2
 rotatability = "crank-rocker"
 rotatability_margin = 0.01
 order = false
@@ -61,6 +62,7 @@ maximise = {{ transmission = 2, compactness = 0.5 }}
 starts = 100
 enough = 20
 seed = 4
+effort = 2.5
 """
 
 
@@ -91,8 +93,9 @@ def test_every_key_reaches_its_field() -> None:
     assert every.task.body.tolist() == [[0, 0], [1, 0], [1, 1.5]]
     assert [outline.tolist() for outline in every.outlines] == [[[0, 0], [5, 0]], [[1, 1], [2, 2], [3, 1]]]
     assert every.requirements == Requirements(
-        exact=True,
+        exact=False,
         tolerance=1e-7,
+        error_factor=1.2,
         rotatability="crank-rocker",  # type: ignore[arg-type]
         rotatability_margin=0.01,
         order=False,
@@ -116,7 +119,7 @@ def test_every_key_reaches_its_field() -> None:
         keep_out_for=("o4", "links"),
     )
     assert every.objective == Objective(2.0, 0.5)
-    assert every.search == Search(starts=100, enough=20, seed=4)
+    assert every.search == Search(starts=100, enough=20, seed=4, effort=2.5)
 
 
 def test_the_example_above_uses_every_requirement() -> None:
@@ -345,7 +348,7 @@ UNKNOWN = [
     ),
     (HEAD + "[requirements]\nO2 = [1, 2]", "requirements.O2 is unknown; did you mean o2?"),
     (HEAD + "[requirement]\nr1 = [1, 2]", "requirement is unknown; did you mean requirements?"),
-    (HEAD + "[search]\nworkers = 2", "search.workers is unknown; allowed are starts, enough, seed"),
+    (HEAD + "[search]\nworkers = 2", "search.workers is unknown; allowed are starts, enough, seed, effort"),
     (HEAD + "[requirements]\no2 = { z = [1, 2] }", "requirements.o2.z is unknown; allowed are x, y"),
     (
         HEAD + "[objective]\nmaximise = { compact = 1 }",
@@ -353,7 +356,11 @@ UNKNOWN = [
     ),
     (HEAD + "title = 'below its table'", "motion.title is unknown; did you mean title?"),
     ("link_length = [1, 2]\n" + HEAD, "link_length is unknown; did you mean requirements.link_length?"),
-    (HEAD + '"a b\\n" = 1', 'motion."a b\\n" is unknown; allowed are poses, weights, angle_length, body'),
+    (
+        HEAD + '"a b\\n" = 1',
+        'motion."a b\\n" is unknown; '
+        "allowed are poses, weights, angle_length, body, within, angle_within_deg",
+    ),
     (f'kinds = "motion"\n[motion]\n{POSES}', "kinds is unknown; did you mean kind?\nkind is missing"),
 ]
 
@@ -420,6 +427,65 @@ def test_what_keeps_out_is_one_of_a_few() -> None:
     for text, found in (("['o2', 'o3']", "[1] is 'o3'"), ("[]", " is []")):
         said = message(HEAD + f"[requirements]\nkeep_out_for = {text}")
         assert said == f"requirements.keep_out_for{found}; {allowed}"
+
+
+ZONES = HEAD + "within = [1, 2, 3, 4]\n"
+
+
+def test_zones_reach_their_fields() -> None:
+    motion = problem(ZONES + "angle_within_deg = 1.5\n[objective]\nmaximise = 'compactness'").task
+    assert isinstance(motion, MotionTask)
+    assert motion.within is not None
+    assert motion.angle_within is not None
+    assert motion.within.tolist() == [1, 2, 3, 4]
+    assert motion.angle_within.tolist() == [np.radians(1.5)] * 4
+    path = problem(LINE + "within = 2").task
+    assert isinstance(path, PathTask)
+    assert path.within is not None
+    assert path.within.tolist() == [2, 2, 2]
+
+
+NUMBER_OR_LIST = "allowed is a number, or a list of one for each target"
+BAD_ZONES = [
+    ("within = '6'", f"motion.within is '6'; {NUMBER_OR_LIST}"),
+    ("within = true", f"motion.within is true; {NUMBER_OR_LIST}"),
+    ("within = { x = 1 }", f"motion.within is a table; {NUMBER_OR_LIST}"),
+    ("within = [1, 2]", "motion.within has 2 numbers for 4 targets; "),
+    ("within = []", "motion.within has 0 numbers for "),
+    ("within = [1, true, 1, 1]", "motion.within[1] is true; allowed is a number"),
+    ("within = [1, [1], 1, 1]", "motion.within[1] is [1]; allowed is a number"),
+    ("within = 0", "motion.within is 0; allowed is "),
+    ("within = -1", "motion.within is -1; allowed is "),
+    ("within = nan", "motion.within is nan; allowed is "),
+    ("within = inf", "motion.within is inf; allowed is "),
+    ("within = 1e300", "motion.within is 1e+300; allowed is "),
+    ("within = [1, 1, 1, 1e-13]", "motion.within[3] is 1e-13; allowed is "),
+    ("angle_within_deg = 181", "motion.angle_within_deg is 181; allowed is 1e-10 to 180"),
+    ("angle_within_deg = [1, 1, 0, 1]", "motion.angle_within_deg[2] is 0; allowed is 1e-10 to 180"),
+    (
+        "within = 1\n[requirements]\nexact = true",
+        "motion.within does not go with requirements.exact = true; ",
+    ),
+    (
+        "within = 1\n[requirements]\nerror_factor = 2",
+        "requirements.error_factor does not go with motion.within; allowed is one of them",
+    ),
+    ("[requirements]\nerror_factor = 2", "requirements.error_factor needs least squares, exact = false"),
+    ("[requirements]\nerror_factor = 0.9", "requirements.error_factor is 0.9; allowed is 1 to 1e+06"),
+    ("[search]\neffort = 0.1", "search.effort is 0.1; allowed is 0.2 to 100"),
+    ("[search]\neffort = inf", "search.effort is inf; allowed is a finite number"),
+    (
+        "[requirements]\nexact = false\n[objective]\nmaximise = 'transmission'",
+        "objective is of no effect in least squares; ",
+    ),
+]
+
+
+@pytest.mark.parametrize(("text", "said"), BAD_ZONES)
+def test_bad_zones_are_one_line(text: str, said: str) -> None:
+    told = message(HEAD + text)
+    assert told.startswith(said)
+    assert "\n" not in told
 
 
 LINE = 'kind = "path"\n[path]\npoints = [[20, 20], [20, 25], [21, 30]]\n'

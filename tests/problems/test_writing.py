@@ -61,20 +61,35 @@ def test_everything_that_python_can_state_comes_back() -> None:
             task=MotionTask.from_degrees(
                 [{"x": 1, "y": 2}, {"angle": -30.1}, [3, 4, 0.3], [1e-5, 1e20, 359]],
                 weights=[1, 2, 3, 1e-9], angle_length=0.1, body=SQUARE,
+                within=[1e9 / 3, 2e8, 1e20, 4e9], angle_within_deg=0.3,
             ),
             outlines=(SQUARE, SQUARE[:2]),
             requirements=Requirements(
-                exact=False, tolerance=0.1, rotatability="any", order=False, transmission_min_deg=1 / 3,  # type: ignore[arg-type]
+                tolerance=0.1, rotatability="any", order=False, transmission_min_deg=1 / 3,  # type: ignore[arg-type]
                 r1=(0, 1e20), coupler_arms=(0.1, 0.2), o2=Box(x=(1, 2)), b=Box((-np.inf, 3), (0, 0)),
                 ground_angle_deg=-400.0, keep_out=(SQUARE + 7,), keep_out_for=("links", "p"),
             ),
             objective=Objective(0.1, 0.2, 0.0),
-            search=Search(3, 4, 2**70),
+            search=Search(3, 4, 2**70, 1 / 3),
             manufacturing=Manufacturing(0.1, 0.7),
             dynamics=DynamicsSpec(2.5, payload=1.5, speed_rpm=1 / 3, gravity=(0.1, -9.8)),
         ),
         again(made),
     )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("requirements", "objective"),
+    [
+        (Requirements(exact=True, error_factor=None, tolerance=0.1), Objective(0.1, 0.2)),
+        (Requirements(exact=False, error_factor=1 / 0.7), Objective(0.0, 1.0)),
+        (Requirements(exact=False), Objective()),
+    ],
+)
+def test_what_decides_comes_back(requirements: Requirements, objective: Objective) -> None:
+    task = PathTask([[0, 0], [1, 0], [3, 3]])
+    made = Problem(name="here", task=task, requirements=requirements, objective=objective)
+    check_same(again(made), made)
 
 
 @given(st.lists(st.floats(-1e4, 1e4), min_size=3, max_size=6))

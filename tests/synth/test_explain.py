@@ -10,7 +10,7 @@ from grashof import load, synthesize
 from grashof.analysis import verify
 from grashof.problems import Box, MotionTask, PathTask, Problem, Requirements
 from grashof.synth import Result
-from grashof.synth.explain import _up
+from grashof.synth.wider import up
 
 EIGHT = [[0, 0], [4, 1], [5, 4], [3, 6], [0, 5], [-3, 6], [-4, 3], [-2, 2]]
 
@@ -99,7 +99,7 @@ def test_a_time_limit_leaves_the_explanation_out() -> None:
     ("value", "said"), [(0.4706, "0.471"), (0.47, "0.47"), (1234.5, "1.24e+03"), (0.0, "0"), (9.999, "10")]
 )
 def test_figures_are_rounded_up(value: float, said: str) -> None:
-    assert _up(value) == said
+    assert f"{up(value):g}" == said
     assert float(said) >= value
 
 

@@ -1,0 +1,157 @@
+"""What the commands do: search, analyse, animate; what they write and say."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, replace
+from enum import IntEnum
+from pathlib import Path
+from threading import Event
+from types import FrameType
+
+from grashof.problems import Problem, load_linkage_spec
+from grashof.problems.checks import counted
+from grashof.streams import say
+
+TOP = 50  # families in a list, where nothing else is said
+
+
+class Exit(IntEnum):
+    """Exit codes."""
+
+    OK = 0
+    NO_DESIGN = 1
+    BAD_INPUT = 2
+    SURROUNDINGS = 3
+    INTERRUPTED = 130
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Options:
+    """How to search and what to write; None where the problem, or its default, says it.
+
+    Parameters
+    ----------
+    out : Path, optional
+        Folder for the results.
+    starts, seed, effort
+        See `Search`.
+    workers : int
+    time_limit : float, s, optional
+    top : int, optional
+        Most families in the list.
+    drawings : int
+    """
+
+    out: Path | None = None
+    starts: int | None = None
+    seed: int | None = None
+    effort: float | None = None
+    workers: int = 1
+    time_limit: float | None = None
+    top: int | None = None
+    drawings: int = 3
+
+
+def solve(problem: Problem, text: str, options: Options) -> Exit:
+    """Search for designs and write them; `text` is the problem file."""
+    from grashof.folder import PAGE, check_writable
+    from grashof.output import write_run
+    from grashof.synth import synthesize
+    from grashof.terminal import beginning, ends_with_enough, print_table, search_progress
+
+    given = {name: getattr(options, name) for name in ("starts", "seed", "effort")}
+    search = replace(problem.search, **{name: value for name, value in given.items() if value is not None})
+    search = replace(search, enough=max(search.enough, options.top or 0))
+    top = options.top or max(TOP, search.enough)
+    folder = options.out if options.out is not None else Path(f"{problem.name}-designs")
+    check_writable(folder, options.drawings)
+    with _interruptible() as interrupted:
+        wanted = ends_with_enough(problem)
+        with search_progress(problem.name, beginning(problem), wanted=wanted) as progress:
+            found = synthesize(
+                problem,
+                **asdict(search),
+                workers=options.workers,
+                time_limit=options.time_limit,
+                progress=progress,
+                stop=interrupted,
+            )
+        if found.ended:
+            say(found.ended, err=True)
+        result = found.top(top)
+        if result.candidates or result.complete:  # an interrupted search with nothing replaces nothing
+            run = {"workers": options.workers, "time_limit": options.time_limit, "top": top}
+            settings = {**asdict(search), **run}
+            files = write_run(folder, result, settings, options.drawings, stop=interrupted, problem_text=text)
+            _report(result.note, files, folder)
+        else:
+            say(result.note, err=True)
+        if result.candidates:
+            print_table(result, len(found))
+        if result.candidates or result.complete:
+            _point_to(folder / PAGE)
+    if interrupted():
+        return Exit.INTERRUPTED
+    return Exit.OK if result.candidates else Exit.NO_DESIGN
+
+
+def analyse(linkage: str, out: Path | None, speed_rpm: float | None) -> None:
+    """Write how a linkage moves, and print the summary."""
+    from grashof.folder import ANALYSIS_PAGE, ANALYSIS_RECORD, check_writable
+    from grashof.survey import report_on
+    from grashof.survey.output import print_report, write_report
+
+    spec = load_linkage_spec(linkage)
+    folder = out if out is not None else Path(f"{spec.name}-analysis")
+    check_writable(folder, record=ANALYSIS_RECORD)
+    report = report_on(spec, speed_rpm)
+    files = write_report(folder, report)
+    for note in report.notes:
+        say(note, err=True)
+    _report("", files, folder)
+    print_report(report)
+    _point_to(folder / ANALYSIS_PAGE)
+
+
+def animate(linkage: str, out: Path | None, seconds: float, fps: float) -> None:
+    """Write a linkage in motion."""
+    from grashof.figures.animation import check_animation, save_animation
+    from grashof.figures.files import draw_motion
+
+    spec = load_linkage_spec(linkage)
+    path = out if out is not None else Path(f"{spec.name}.gif")
+    check_animation(path)
+    save_animation(draw_motion(spec, seconds=seconds, fps=fps), path)
+    say(str(path), err=True)
+
+
+def _report(note: str, files: list[str], folder: Path) -> None:
+    if note:
+        say(note, err=True)
+    drawn = sum(name.endswith(".png") for name in files)
+    named = [name for name in files if name.endswith((".csv", ".json", ".html"))]
+    pictures = f" and {counted(drawn, 'drawing')} (PNG, SVG)" if drawn else ""
+    say(f"{folder}: {', '.join(named)}{pictures}", err=True)
+
+
+def _point_to(page: Path) -> None:
+    say(f"Open {page} in a browser to look at it.", err=True)
+
+
+@contextmanager
+def _interruptible() -> Iterator[Callable[[], bool]]:
+    """Turn the first Ctrl-C into a request to stop between batches; the second one ends at once."""
+    asked = Event()
+
+    def ask(_signal: int, _frame: FrameType | None) -> None:
+        asked.set()
+        signal.signal(signal.SIGINT, before)
+
+    before = signal.signal(signal.SIGINT, ask)
+    try:
+        yield asked.is_set
+    finally:
+        signal.signal(signal.SIGINT, before)
