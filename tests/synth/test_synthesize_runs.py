@@ -116,7 +116,7 @@ def test_enough_is_enough(luggage: Problem) -> None:
 
 
 def test_a_fruitless_search_ends(luggage: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(import_module("grashof.synth.synthesize"), "FRUITLESS", 16)
+    monkeypatch.setattr(import_module("grashof.synth.ledger"), "FRUITLESS", 16)
     seen: list[Progress] = []
     far = replace(luggage.requirements, o2=Box((100, 101), (100, 101)))
     synthesize(replace(luggage, requirements=far), progress=seen.append)
