@@ -188,7 +188,7 @@ class MotionTask(ReadOnly):
             return None
         place, turn = self.within, self.angle_within
         place = turn * self.angle_length if place is None and turn is not None else place
-        turn = place / self.angle_length if turn is None and place is not None else turn
+        turn = np.minimum(place / self.angle_length, np.pi) if turn is None and place is not None else turn
         free = ~np.stack([self.has_position, self.has_angle])
         zones: FloatArray = np.where(free, np.inf, np.stack([place, turn]))  # type: ignore[list-item]
         return zones

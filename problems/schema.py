@@ -95,7 +95,7 @@ class MotionTable(Table):
     def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
         if key.field_name == "poses":
             MotionTask.from_degrees(given, angle_length=1.0)
-        elif given is not None:
+        elif given is not None and given != []:  # how many there have to be is not known here
             each = key.field_name != "body" and isinstance(given, list)  # one for each pose
             poses = [[k, 0, 0] for k in range(max(len(given), 2) if each else 2)]
             given = given * 2 if each and len(given) == 1 else given
@@ -126,6 +126,14 @@ class PathTable(Table):
     def _by_itself(cls, points: list[list[float]]) -> list[list[float]]:
         PathTask(points)
         return points
+
+    @field_validator("within")
+    @classmethod
+    def _sized(cls, within: float | list[float] | None) -> float | list[float] | None:
+        count = len(within) if isinstance(within, list) else 3
+        if count > 2:
+            PathTask([[k, 0] for k in range(count)], within=within)
+        return within
 
     @field_validator("timing_deg")
     @classmethod

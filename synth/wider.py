@@ -93,4 +93,4 @@ def up(value: float) -> float:
     if not 0 < value < np.inf:
         return value
     step = 10.0 ** (np.floor(np.log10(value)) - 2)
-    return float(f"{np.ceil(value / step) * step:.3g}")
+    return float(f"{np.ceil(value / step * (1 - 1e-12)) * step:.3g}")

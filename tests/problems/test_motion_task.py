@@ -1,5 +1,6 @@
 """Poses with free parts, weights, and how much of them linkages can be expected to meet."""
 
+import copy
 import pickle
 from pathlib import Path
 from typing import Any
@@ -211,3 +212,29 @@ def test_a_wrong_file_is_told_by_its_key(tmp_path: Path, wrong: tuple[str, str],
     with pytest.raises(ProblemError) as refused:
         load(path)
     assert str(refused.value).endswith(message)
+
+
+def test_a_zone_that_is_not_given_follows_through_the_angle_length() -> None:
+    poses = [[0, 0, 0], [3, 4, 30], [1, 1, 60]]
+    task = MotionTask.from_degrees(poses, angle_length=2, within=[0.1, 0.2, 1e9])
+    assert task.zones is not None
+    assert task.zones.tolist() == [[0.1, 0.2, 1e9], [0.05, 0.1, np.pi]]
+    task = MotionTask.from_degrees([*poses, {"x": 7, "y": 8}], angle_length=2, angle_within_deg=90)
+    assert task.zones is not None
+    np.testing.assert_allclose(task.zones[0], np.pi)
+    np.testing.assert_allclose(task.zones[1], [np.pi / 2] * 3 + [np.inf])
+
+
+@pytest.mark.parametrize("zone", [0, -1, np.nan, np.inf, 3.2, [1, 1], "1", True, [[1, 1, 1]]])
+def test_zones_of_angles_are_up_to_half_a_turn(zone: Any) -> None:
+    with pytest.raises(ProblemError, match="angle_within "):
+        MotionTask([[0, 0], [3, 4], [1, 1]], [0, 1, 2], angle_within=zone)
+
+
+def test_zones_survive_copies() -> None:
+    task = MotionTask.from_degrees([[0, 0, 0], [3, 4, 30]], within=[0.1, 0.2], angle_within_deg=3)
+    for copied in (copy.deepcopy(task), pickle.loads(pickle.dumps(task))):
+        for name in ("within", "angle_within"):
+            np.testing.assert_array_equal(getattr(copied, name), getattr(task, name))
+            assert not getattr(copied, name).flags.writeable
+    assert task.without_zones().zones is None

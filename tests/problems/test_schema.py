@@ -451,7 +451,7 @@ BAD_ZONES = [
     ("within = true", f"motion.within is true; {NUMBER_OR_LIST}"),
     ("within = { x = 1 }", f"motion.within is a table; {NUMBER_OR_LIST}"),
     ("within = [1, 2]", "motion.within has 2 numbers for 4 targets; "),
-    ("within = []", "motion.within has 0 numbers for "),
+    ("within = []", "motion.within has 0 numbers for 4 targets; "),
     ("within = [1, true, 1, 1]", "motion.within[1] is true; allowed is a number"),
     ("within = [1, [1], 1, 1]", "motion.within[1] is [1]; allowed is a number"),
     ("within = 0", "motion.within is 0; allowed is "),
@@ -486,6 +486,12 @@ def test_bad_zones_are_one_line(text: str, said: str) -> None:
     told = message(HEAD + text)
     assert told.startswith(said)
     assert "\n" not in told
+
+
+def test_zones_of_a_path_are_told_beside_other_errors() -> None:
+    told = message('kind = "path"\n[path]\npoints = [[0, 0], [1, 0]]\nwithin = [1, 2, -3]\n').splitlines()
+    assert told[0] == "path.points has 2 points; allowed are three or more"
+    assert told[1].startswith("path.within[2] is -3; allowed is ")
 
 
 LINE = 'kind = "path"\n[path]\npoints = [[20, 20], [20, 25], [21, 30]]\n'

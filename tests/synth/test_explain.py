@@ -10,7 +10,6 @@ from grashof import load, synthesize
 from grashof.analysis import verify
 from grashof.problems import Box, MotionTask, PathTask, Problem, Requirements
 from grashof.synth import Result
-from grashof.synth.wider import up
 
 EIGHT = [[0, 0], [4, 1], [5, 4], [3, 6], [0, 5], [-3, 6], [-4, 3], [-2, 2]]
 
@@ -93,14 +92,6 @@ def test_a_time_limit_leaves_the_explanation_out() -> None:
     )
     assert result.note == "no design: the search was stopped before it found one"
     assert result.nearest == ()
-
-
-@pytest.mark.parametrize(
-    ("value", "said"), [(0.4706, "0.471"), (0.47, "0.47"), (1234.5, "1.24e+03"), (0.0, "0"), (9.999, "10")]
-)
-def test_figures_are_rounded_up(value: float, said: str) -> None:
-    assert f"{up(value):g}" == said
-    assert float(said) >= value
 
 
 def test_the_time_that_the_explanation_takes_is_told() -> None:

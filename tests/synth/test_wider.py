@@ -97,6 +97,10 @@ def test_exact_poses_that_repeat_are_left_to_least_squares() -> None:
     assert all(verify(one.linkage, problem.task, problem.requirements).ok for one in result.candidates)
 
 
-@pytest.mark.parametrize("value", [0.4706, 1234.5, 9.999, 1e-9, 0.1 + 0.2])
-def test_figures_are_rounded_up(value: float) -> None:
-    assert value <= up(value) <= value * 1.01
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [(0.4706, "0.471"), (0.47, "0.47"), (1234.5, "1240"), (0.0, "0"), (9.999, "10"), (1e-9, "1e-09")],
+)
+def test_figures_are_rounded_up(value: float, said: str) -> None:
+    assert f"{up(value):g}" == said
+    assert float(said) >= value
