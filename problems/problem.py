@@ -203,14 +203,13 @@ class Problem(ReadOnly):
     def zones(self) -> FloatArray | None:
         """How far positions (length) and angles (rad) may be missed, shape (2, N), where that is said.
 
-        Each target's own zone, or a tolerance of `LEAST_TOLERANCE` and more where there are more
-        equations than unknowns and every target has to be met.
+        Each target's own zone, or a tolerance of `LEAST_TOLERANCE` and more where every target has
+        to be met.
         """
         task, wanted = self.task, self.requirements
         if task.zones is not None:
             return task.zones
-        loose = wanted.tolerance >= LEAST_TOLERANCE and not task.exact_by_default
-        if not (loose and wanted.is_exact(task)):
+        if wanted.tolerance < LEAST_TOLERANCE or not wanted.is_exact(task):
             return None
         allowed = np.full((2, len(task)), wanted.tolerance * task.size)
         if isinstance(task, MotionTask):
@@ -221,7 +220,8 @@ class Problem(ReadOnly):
     def without_zones(self, *, exact: bool | None = False) -> Problem:
         """The same problem with no target to be missed, by least squares unless it says else."""
         task = self.task.without_zones() if self.task.zones is not None else self.task
-        wanted = replace(self.requirements, exact=exact, error_factor=None)
+        tight = min(self.requirements.tolerance, Requirements().tolerance)
+        wanted = replace(self.requirements, exact=exact, error_factor=None, tolerance=tight)
         objective = self.objective if wanted.is_exact(task) else Objective()
         return replace(self, task=task, requirements=wanted, objective=objective)
 

@@ -88,7 +88,7 @@ def offered(setup: Setup, ledger: Ledger, solve: Solver, ended: Callable[[], boo
             every += good
             valued = replace(problem, requirements=replace(problem.requirements, error_factor=factor))
             valued = replace(valued, objective=objective)
-            latest[goal] = list(ranked(valued, good)[:1]) or latest[goal]
+            latest[goal] = list(ranked(valued, [*good, *latest[goal]])[:1])
     return Chosen(_worth_choosing(problem, every, least), _rejected(attempts), len(attempts))
 
 
@@ -112,6 +112,7 @@ def decided(
     found: Sequence[Candidate],
     least: float,
     first: int,
+    effort: float,
     solve: Solver,
     ended: Callable[[], bool],
 ) -> Chosen:
@@ -127,6 +128,8 @@ def decided(
         The least error among them, sizes.
     first : int
         Number of the first solve.
+    effort : float
+        Of the search: more begins from more designs.
     solve : callable
         Attempts from starts.
     ended : callable
@@ -139,11 +142,9 @@ def decided(
     problem, factor = setup.problem, setup.problem.requirements.error_factor
     most = np.inf if factor is None else factor * max(least, same_error(problem))
     allowed = most if factor is not None else max(of_use(setup), least)
-    seeds = _seeds(problem, found, NEAR * allowed, MOST_SEEDS)
-    count = round(MOST_SEEDS * max(1.0, problem.search.effort))
+    seeds = _seeds(problem, found, NEAR * allowed, round(MOST_SEEDS * max(1.0, effort)))
     starts = [
-        _under(setup, one, problem.objective, most_error=most, zoned=setup.zones is not None)
-        for one in seeds[:count]
+        _under(setup, one, problem.objective, most_error=most, zoned=setup.zones is not None) for one in seeds
     ]
     attempts = [] if ended() else solve(setup, starts, first)
     solved = len(attempts)

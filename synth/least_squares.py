@@ -34,6 +34,7 @@ from grashof.synth.setup import Setup
 from grashof.synth.start import Round, Start
 
 DRAWS, TIMED_DRAWS = 2000, 600
+ASTRAY = 0.3  # share of them on which P makes a detour between two targets
 FEW_TARGETS = 30  # of a longer task decide which finds are worth the rest
 FOUND = 1e-5  # sizes: so small an error is none
 # Where no limit binds: how many of the best go on for how many steps.
@@ -73,7 +74,7 @@ def rounds(setup: Setup, rng: np.random.Generator, size: int = 1) -> Iterator[Ro
     target = path_target(setup)
     some, index = thinned(target, FEW_TARGETS)
     while True:
-        drawn = draw(some, size * (DRAWS if target.timing is None else TIMED_DRAWS), rng)
+        drawn = draw(some, size * (DRAWS if target.timing is None else TIMED_DRAWS), rng, ASTRAY)
         best = _best_fitting(some, drawn, size)
         free = _free_round(setup, _on_all_targets(target, index, best), size)
         yield free or _limited_round(setup, rng, drawn, best, size)

@@ -31,8 +31,7 @@ from grashof.synth.path_loop import (
 # So many steps on end that take less than this share of its error away end the work on a linkage.
 LOOK, STALL = 5, 1e-3
 HEAVY = 1e4  # damping under which no step is worth trying
-# Share of draws on which P makes a detour between two targets, and how much of all other gaps it takes.
-ASTRAY, DETOUR = 0.3, (0.1, 1.5)
+DETOUR = (0.1, 1.5)  # driver rotation of a detour, as a share of all others
 PULL = 0.03  # sizes of error that overstepping a limit by one unit counts as, where fit comes first
 
 # Cost (n,), residuals (n, R), and their derivative by the unknowns (n, R, M), of a batch.
@@ -64,8 +63,11 @@ class Placed:
     body_angle: FloatArray
 
 
-def draw(target: PathTarget, count: int, rng: np.random.Generator) -> Batch:
-    """Random linkages, feasible by construction; gaps between driver angles follow the points."""
+def draw(target: PathTarget, count: int, rng: np.random.Generator, astray: float = 0.0) -> Batch:
+    """Random linkages, feasible by construction; gaps between driver angles follow the points.
+
+    On a share of them, `astray`, P makes a detour between two targets.
+    """
     n = len(target.points)
     proportions = rng.normal(size=(count, 3)) * (1.2, 1.5, 1.0) - (0.0, 1.0, 0.0)
     rotatability = target.wanted.rotatability
@@ -76,9 +78,10 @@ def draw(target: PathTarget, count: int, rng: np.random.Generator) -> Batch:
         steps = target.steps
         gaps = np.log(steps / steps.sum()) * rng.uniform(0.3, 1, (count, 1))
         gaps += rng.normal(0, 0.4, (count, n - 1))
-        astray = rng.random(count) < ASTRAY
-        at, share = rng.integers(n - 1, size=count), rng.uniform(*DETOUR, count)
-        gaps[astray, at[astray]] = np.log(share * np.exp(gaps).sum(axis=1))[astray]
+        if astray:
+            rows, at = np.flatnonzero(rng.random(count) < astray), rng.integers(n - 1, size=count)
+            share = rng.uniform(*DETOUR, count)
+            gaps[rows, at[rows]] = np.log(share * np.exp(gaps).sum(axis=1))[rows]
         gaps -= np.log(np.exp(gaps).sum(axis=1, keepdims=True))
         low = 0.3 if rotatability is Rotatability.ANY else 0.03
         columns += [gaps, np.log(rng.uniform(low, 4, (count, 1)))]

@@ -29,7 +29,7 @@ from grashof.synth.setup import Setup
 from grashof.synth.start import LENGTHS, Start
 from grashof.synth.torque import loads, torque_bound, torque_peaks
 
-MOST_ITERATIONS = (200, 400)  # the second where zones decide: there may be far to go
+MOST_ITERATIONS = (150, 400)  # the second where the error is bounded: there may be far to go
 FAR = 1e3  # sizes: stands for "no limit"
 INSET = 1e-8  # sizes, rad: limits are tightened by this much, so that the polished design keeps them
 MOST_ZONE = 0.5  # sizes, rad: greater ones leave the solver astray
@@ -76,13 +76,13 @@ def solve(setup: Setup, start: Start, max_iter: int | None = None) -> Solve:
     setup : Setup
     start : Start
     max_iter : int, optional
-        More than usual by default where zones decide.
+        More than usual by default where the error is bounded.
 
     Returns
     -------
     Solve
     """
-    most = MOST_ITERATIONS[start.zoned] if max_iter is None else max_iter
+    most = MOST_ITERATIONS[start.bounded] if max_iter is None else max_iter
     programme = _programme(Form.of(setup, start), most, setup.constraints)
     form = programme.form
     guess = _guess(form, setup, start)

@@ -30,6 +30,7 @@ from grashof.synth.workers import Solver, solving
 # and of least squares, where every look may spare solves.
 BATCH, BATCH_LEAST_SQUARES = 16, 8
 LARGER = 2  # times the draws and starts of a usual round: rounds that more effort adds
+FEW = 8  # exact designs: with fewer, zones are filled from those of least squares, too
 NEAR_EFFORT, NEAR = 0.35, 8  # of a search for designs that come near
 
 
@@ -171,13 +172,16 @@ def _search(setup: Setup, run: _Run, *, explained: bool = True) -> Result:
     begun, problem = perf_counter(), setup.problem
     ledger, complete = _found(_without_zones(setup), run)
     few = len(problem.task) < 3
-    if setup.bounded and not (ledger.best or few) and ledger.setup.exact and complete:  # near will do
+    begin = list(ledger.verified)
+    if (
+        setup.bounded and ledger.setup.exact and len(ledger.best) < FEW and not few and complete
+    ):  # near will do
         ledger, complete = _found(_without_zones(setup, exact=False), run)
+        begin += ledger.verified
     chosen = Chosen(ledger.best, ledger.rejected, 0)
     since = perf_counter()
     if setup.bounded:
-        first = ledger.solved
-        chosen = decided(setup, ledger.verified, ledger.least, first, run.solve, run.ended)
+        chosen = decided(setup, begin, ledger.least, ledger.solved, run.search.effort, run.solve, run.ended)
     elif not setup.exact and ledger.best and explained:
         chosen = offered(setup, ledger, run.solve, run.ended)
     run.seconds["choosing"] = perf_counter() - since
@@ -200,8 +204,9 @@ def _without_zones(setup: Setup, *, exact: bool = True) -> Setup:
     if not setup.bounded:
         return setup
     problem = setup.problem
-    zoned = problem.task.zones is not None  # otherwise there is an error factor, or a tolerance
-    first = problem.without_zones(exact=problem.requirements.exact if zoned and exact else False)
+    wanted, by_default = problem.requirements, problem.task.exact_by_default
+    exact = exact and wanted.error_factor is None and wanted.exact is not False and by_default
+    first = problem.without_zones(exact=exact)
     without = Setup.of(first, setup.constraints)
     return replace(without, of_use=of_use(setup))
 

