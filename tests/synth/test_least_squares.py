@@ -194,7 +194,7 @@ def test_each_limit_is_kept_and_used_up(unlimited: Result, limit: str) -> None:
     before = least(unlimited)
     given = stricter(unlimited.problem.task, value_of(before))
     wanted = replace(unlimited.problem.requirements, **given)
-    result = solved(replace(unlimited.problem, requirements=wanted))
+    result = solved(replace(unlimited.problem, requirements=wanted), effort=0.2)
     assert result.candidates, result.note
     assert all(each.verdict.ok for each in result.candidates)
     best = least(result)

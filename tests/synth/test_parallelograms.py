@@ -202,7 +202,7 @@ def test_least_squares_of_translations_comes_as_near_as_the_best_circle() -> Non
     x = np.arange(6.0)
     y = 0.02 * x**2 + 0.005 * (-1) ** x
     task = MotionTask(np.stack([x, y], axis=1), np.zeros(6))
-    result = synthesize(problem(task, exact=False), enough=6)
+    result = synthesize(problem(task, exact=False), effort=0.35)
     at = x + 1j * y
     circle = circle_through(at)
     rms = np.sqrt(np.mean((np.abs(at - circle.centre) - circle.radius) ** 2))
