@@ -68,7 +68,8 @@ def offered(setup: Setup, ledger: Ledger, solve: Solver, ended: Callable[[], boo
     every, attempts = list(ledger.verified), list[Attempt]()
     latest = dict[str, list[Candidate]]({goal: [] for goal in GOALS})
     factors = FACTORS if ledger.least > same_error(problem) else FACTORS[:1]
-    for before, factor in zip((0.0, *factors), factors, strict=False):
+    there_and_back = (*factors, *factors[-2::-1])  # what much error allows may lead to more at little, too
+    for before, factor in zip((0.0, *there_and_back), there_and_back, strict=False):
         if ended():
             break
         new = [one for one in seeds if before * least < _bounded(problem, one, least) <= factor * least]
@@ -81,14 +82,17 @@ def offered(setup: Setup, ledger: Ledger, solve: Solver, ended: Callable[[], boo
         attempts += made
         for goal, objective in GOALS.items():
             good = [
-                one.candidate
+                each
                 for (mine, _), one in zip(begun, made, strict=True)
                 if mine == goal and one.candidate is not None and one.candidate.verdict.ok
+                for each in (one.candidate, *one.cognates)
             ]
             every += good
             valued = replace(problem, requirements=replace(problem.requirements, error_factor=factor))
             valued = replace(valued, objective=objective)
-            latest[goal] = list(ranked(valued, [*good, *latest[goal]])[:1])
+            most = factor * least * (1 + SLACK)
+            within = [one for one in (*good, *latest[goal]) if _error(problem, one) <= most]
+            latest[goal] = list(ranked(valued, within)[:1]) or latest[goal]
     return Chosen(_worth_choosing(problem, every, least), _rejected(attempts), len(attempts))
 
 
