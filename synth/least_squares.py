@@ -35,7 +35,7 @@ from grashof.synth.start import Round, Start
 
 DRAWS, TIMED_DRAWS = 2000, 600
 ASTRAY = 0.3  # share of them on which P makes a detour between two targets
-FEW_TARGETS = 30  # of a longer task decide which finds are worth the rest
+FEW_TARGETS = 40  # of a longer task decide which finds are worth the rest
 FOUND = 1e-5  # sizes: so small an error is none
 # Where no limit binds: how many of the best go on for how many steps.
 FREE_STAGES, TIMED_STAGES = ((200, 6), (60, 10), (20, 50)), ((60, 6), (20, 60))
@@ -48,7 +48,7 @@ SAME_CURVE = 0.1  # of the rms error: two finds closer at every target are one
 # Where limits bind: how many of the best distinct go on, for how many steps, at what weight of the
 # limits (in sizes).
 STAGES = ((400, 8, 0.3), (200, 10, 1.0), (80, 20, 5.0), (40, 40, 5.0))
-LONG, LONG_STEPS = 24, 10  # of a thinned task so many are improved on all targets
+LONG, LONG_STEPS = 24, 20  # of a thinned task so many are improved on all targets
 COPY = 0.01  # sizes: two linkages closer at three targets are one
 # Starts of a round: the best, some of the others, and some of before the limits bear fully; fewer on
 # tasks of more targets than `AMPLE`, whose solves take longer.

@@ -29,7 +29,8 @@ from grashof.synth.setup import Setup
 from grashof.synth.start import LENGTHS, Start
 from grashof.synth.torque import loads, torque_bound, torque_peaks
 
-MOST_ITERATIONS = (150, 400)  # the second where the error is bounded: there may be far to go
+MOST_ITERATIONS = 150
+PATIENCE = (250, 400)  # iterations where the error is bounded: of what a list offers, and where that is asked
 FAR = 1e3  # sizes: stands for "no limit"
 INSET = 1e-8  # sizes, rad: limits are tightened by this much, so that the polished design keeps them
 MOST_ZONE = 0.5  # sizes, rad: greater ones leave the solver astray
@@ -82,7 +83,8 @@ def solve(setup: Setup, start: Start, max_iter: int | None = None) -> Solve:
     -------
     Solve
     """
-    most = MOST_ITERATIONS[start.bounded] if max_iter is None else max_iter
+    patience = PATIENCE[setup.bounded] if start.bounded else MOST_ITERATIONS
+    most = patience if max_iter is None else max_iter
     programme = _programme(Form.of(setup, start), most, setup.constraints)
     form = programme.form
     guess = _guess(form, setup, start)
