@@ -18,18 +18,20 @@ from grashof.synth import exact_poses, paths
 from grashof.synth.choice import Chosen, decided, of_use, offered
 from grashof.synth.explain import STOPPED, Explanation, Failure, explain
 from grashof.synth.families import listed
-from grashof.synth.ledger import Ledger
+from grashof.synth.ledger import SAME, Ledger
 from grashof.synth.own import mended, refuse_unusable
 from grashof.synth.path_finds import path_target
+from grashof.synth.programme import MOST_ITERATIONS
 from grashof.synth.result import Result, ranked
 from grashof.synth.setup import Setup
-from grashof.synth.start import Round
+from grashof.synth.start import Round, Start
 from grashof.synth.workers import Solver, solving
 
 # Solves between two looks at what is verified, fixed, so that workers change nothing: of exact designs,
 # and of least squares, where every look may spare solves.
 BATCH, BATCH_LEAST_SQUARES = 16, 8
 LARGER = 2  # times the draws and starts of a usual round: rounds that more effort adds
+CONTINUED = 3  # times at most that the solve of the least error goes on
 FEW = 8  # exact designs: with fewer, zones are filled from those of least squares, too
 NEAR_EFFORT, NEAR = 0.35, 8  # of a search for designs that come near
 
@@ -226,7 +228,21 @@ def _found(setup: Setup, run: _Run) -> tuple[Ledger, bool]:
         if run.ended():
             complete = ledger.done or ledger.ended
             break
+    if not setup.exact:
+        _solve_to_the_end(setup, ledger, run)
     return ledger, complete
+
+
+def _solve_to_the_end(setup: Setup, ledger: Ledger, run: _Run) -> None:
+    """Go on from the least error where its solve stopped for want of iterations."""
+    for _ in range(CONTINUED):
+        best = min(ledger.verified, key=lambda one: one.error(setup.problem), default=None)
+        if best is None or best.iterations < MOST_ITERATIONS or run.ended():
+            return
+        before, start = ledger.least, Start.of_linkage(setup, best.linkage, best.verdict)
+        ledger.take(run.solve(setup, [start], ledger.solved))
+        if ledger.least > before * (1 - SAME):
+            return
 
 
 def _explained(setup: Setup, run: _Run, ledger: Ledger, chosen: Chosen) -> Explanation:
