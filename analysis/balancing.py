@@ -135,7 +135,7 @@ def balance_torque(
     if not gravity.any():
         raise ProblemError("gravity is zero, so no counterweight can work against the torque")
     if np.ndim(state.theta2) != 1 or np.any(state.alpha2 != 0):
-        raise ProblemError("state is no turn of a single linkage at steady speed")
+        raise ProblemError("state is not a turn of a single linkage at steady speed")
     before = inverse_dynamics(state, masses, loads).torque
     effects = np.stack(
         [-cross(turned(np.array(unit), state.theta2), gravity) for unit in ((1.0, 0.0), (0.0, 1.0))], axis=-1

@@ -112,7 +112,7 @@ def free_response(
     loads = Loads() if loads is None else loads
     at = np.asarray(time, dtype=np.float64)
     if at.ndim != 1 or len(at) < 2 or not (np.diff(at) > 0).all():
-        raise ProblemError("time is no rising sequence of two or more numbers")
+        raise ProblemError("time is not a rising sequence of two or more numbers")
     if loads.friction.each("radius").any():
         raise ProblemError("friction in proportion to joint forces is not possible in a free response")
     _check_start(linkage, masses, theta2)

@@ -82,5 +82,5 @@ def _polygon(values: npt.ArrayLike, where: str) -> FloatArray:
             f"{where} crosses or touches itself at ({x:.6g}, {y:.6g}); allowed is a simple polygon"
         )
     if reason != "Valid Geometry":
-        raise ProblemError(f"{where} is no simple polygon: {reason.lower()}")
+        raise ProblemError(f"{where} is not a simple polygon: {reason.lower()}")
     return corners

@@ -52,7 +52,7 @@ def load_with_text(problem: str | os.PathLike[str]) -> tuple[Problem, str]:
             return problem_of(text, f"{problem}.toml", problem), text
         if not exists(problem):
             hint = _PROBLEMS.hint(problem)
-            raise ProblemError(f"{problem!r} is no problem of the catalogue and no file; {hint}")
+            raise ProblemError(f"{problem!r} is neither a problem of the catalogue nor a file; {hint}")
     path = Path(problem)
     text = file_text(path, "a problem file", _PROBLEMS.hint(path.stem))
     return problem_of(text, str(path), readable(path.stem)), text

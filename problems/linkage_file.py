@@ -137,7 +137,9 @@ def load_linkage_spec(linkage: str | os.PathLike[str]) -> LinkageSpec:
         if not exists(text):
             if text in catalogue():
                 raise ProblemError(_problem_given(text, text))
-            raise ProblemError(f"{text!r} is no linkage of the catalogue and no file; {_LINKAGES.hint(text)}")
+            raise ProblemError(
+                f"{text!r} is neither a linkage of the catalogue nor a file; {_LINKAGES.hint(text)}"
+            )
     path = Path(linkage)
     return _parsed(file_text(path, "a linkage file"), str(path), readable(path.stem))
 
@@ -227,7 +229,7 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
 
     where = f"{path}#{which}"
     if exists(str(path)) and not (path.is_file() or path.is_dir()):  # a pipe or a device may never end
-        raise ProblemError(f"{path}: is no ordinary file; allowed is a list of designs")
+        raise ProblemError(f"{path}: is not an ordinary file; allowed is a list of designs")
     try:
         content = json.loads(file_text(path, "a list of designs"))
         designs = {int(design["rank"]): design for design in content["designs"]}
@@ -239,7 +241,7 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
         raise
     except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
         raise ProblemError(
-            f"{path}: is no list of designs; allowed is a candidates.json of grashof solve"
+            f"{path}: is not a list of designs; allowed is a candidates.json of grashof solve"
         ) from None
     if which not in ranks:
         allowed = f"a rank, 1 to {max(designs)}, or the id of a design" if designs else "none, it is empty"
@@ -273,7 +275,7 @@ def _listed_problem(content: dict[str, Any], path: Path) -> Problem | None:
     """The problem that a list was made for; None where a list, made by hand, does not state it."""
     if (text := content.get("problem_toml")) is None:
         return None
-    wrong = f"{reprlib.repr(text)} is no text"
+    wrong = f"{reprlib.repr(text)} is not text"
     if isinstance(text, str):
         try:
             return problem_of(text, "problem_toml", readable(str(content.get("problem", path.stem))))

@@ -37,7 +37,7 @@ class Catalogue:
     def text(self, name: str) -> str:
         """The file of this name; `ProblemError` when there is none."""
         if name not in self._files:
-            raise ProblemError(f"{name!r} is no {self.what} of the catalogue; {self.hint(name)}")
+            raise ProblemError(f"{name!r} is not a {self.what} of the catalogue; {self.hint(name)}")
         return self._files[name].read_text(encoding="utf-8")
 
     def hint(self, name: str) -> str:

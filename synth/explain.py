@@ -187,7 +187,7 @@ def _ways_note(setup: Setup, ways: list[Relaxation], near: list[_Near], why: str
         priced.append(
             (
                 _miss(near[0], setup.problem.task.size),
-                f"exact = false, {_comes_within(setup, near[0], then='then ')}",
+                f"exact = false ({_comes_within(setup, near[0], then='then ')})",
             )
         )
     words = [text for _, text in sorted(priced)][:ALTERNATIVES]
@@ -199,11 +199,11 @@ def _ways_note(setup: Setup, ways: list[Relaxation], near: list[_Near], why: str
 def _comes_within(setup: Setup, near: _Near, then: str = "") -> str:
     """How near a least-squares design comes; figures are rounded up, so that they hold."""
     unit = f" {setup.problem.length_unit}" if setup.problem.length_unit else ""
-    text = f"the closest {then}comes within {up(near.by_squares.error_max):g}{unit} everywhere"
+    text = f"the closest design {then}comes within {up(near.by_squares.error_max):g}{unit}"
     turned = near.by_squares.angle_error
     if turned is None or np.isnan(turned).all():
-        return text
-    return f"{text} and within {up(float(np.degrees(np.nanmax(turned)))):g} deg"
+        return f"{text} everywhere"
+    return f"{text} and {up(float(np.degrees(np.nanmax(turned)))):g} deg everywhere"
 
 
 def _none_note(setup: Setup, nearest: tuple[Candidate, ...], why: str) -> str:

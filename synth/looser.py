@@ -233,8 +233,10 @@ def _areas_drawn_in(problem: Problem, _: str, missed: list[Defect]) -> tuple[Req
     # Holes are closed: areas without them ask for more, which the judge then decides.
     left = shapely.get_parts(shapely.buffer(solid(problem.requirements.keep_out), -by, join_style="mitre"))
     areas = tuple(shapely.get_coordinates(part.exterior)[:-1] for part in left if not part.is_empty)
-    parts = " and ".join(defect.what.removesuffix(" inside") for defect in missed)
-    return replace(problem.requirements, keep_out=areas), f"keep_out drawn in by {by:g}, {parts}"
+    parts = " and ".join(
+        defect.what.removesuffix(" inside").removeprefix("the depth of ") for defect in missed
+    )
+    return replace(problem.requirements, keep_out=areas), f"keep_out drawn in by {by:g}, the depth of {parts}"
 
 
 _Change = Callable[[Problem, str, list[Defect]], tuple[Requirements, str] | None]

@@ -18,7 +18,11 @@ from grashof.synth import exact_poses, paths
 from grashof.synth.choice import Chosen, decided, of_use, offered
 from grashof.synth.explain import STOPPED, Explanation, Failure, explain
 from grashof.synth.families import listed
+<<<<<<< HEAD
 from grashof.synth.ledger import SAME, Ledger
+=======
+from grashof.synth.ledger import EXACT_ERROR, Ledger
+>>>>>>> user
 from grashof.synth.own import mended, refuse_unusable
 from grashof.synth.path_finds import path_target
 from grashof.synth.programme import MOST_ITERATIONS
@@ -198,6 +202,8 @@ def _search(setup: Setup, run: _Run, *, explained: bool = True) -> Result:
     why, designs = ledger.why(complete), listed(problem, best)
     fitted = not ledger.setup.exact and setup.zones is None and bool(ledger.best)
     least = ledger.least * problem.task.size if fitted else np.nan
+    if fitted and ledger.least <= EXACT_ERROR and problem.task.exact_by_default:
+        why += "; every target can be met, and without exact = false more such designs are looked for"
     return Result(problem, designs, said.nearest, counts, times, said.note, complete, why, least)
 
 

@@ -24,7 +24,7 @@ MANUFACTURING = (
 COLUMNS = (
     "rank", "id", "mechanism", "family", "grashof_class", "direction", "assembly", "o2_x", "o2_y", "o4_x",
     "o4_y", "r1", "r2", "r3", "r4", "p_u", "p_v", "body_angle_deg", "theta2_start_deg", "theta2_end_deg",
-    "error_max", "error_rms", "error_sse", "angle_error_max_deg", "angle_error_rms_deg",
+    "error", "error_max", "error_rms", "error_sse", "angle_error_max_deg", "angle_error_rms_deg",
     "transmission_min_task_deg", "transmission_min_cycle_deg", "circuit_ok", "branch_ok", "order_ok",
     "full_rotation", "omega4_max", "point_speed_max", "point_acceleration_max", "torque_peak",
     "torque_rms", "joint_force_peak", "coupler_fit_r2", "size", "pareto", "cognate_of", "start", "iterations",
@@ -41,6 +41,7 @@ def to_frame(problem: Problem, candidates: tuple[Candidate, ...]) -> pd.DataFram
             "rank": rank,
             "pareto": bool(front),
             **_row(candidate),
+            **_fitted(problem, candidate),
             **{name: getattr(motion, name) for name in (*MOTION, *DYNAMICS)},
             **_distances(problem, candidate),
             **_made(problem, candidate),
@@ -61,6 +62,13 @@ def labels(candidate: Candidate) -> dict[str, str | None]:
         "cognate_of": candidate.cognate_of or None,
         "best_at": candidate.best_at or None,
     }
+
+
+def _fitted(problem: Problem, candidate: Candidate) -> dict[str, float]:
+    """What least squares makes small: positions and angles together, weighted; root mean square."""
+    if problem.requirements.is_exact(problem.task):
+        return {}
+    return {"error": candidate.error(problem) * problem.task.size}
 
 
 def _distances(problem: Problem, candidate: Candidate) -> dict[str, float]:

@@ -127,7 +127,7 @@ def solve(
 ) -> None:
     """Find designs for PROBLEM; write the ranked list, a page to look at, the record, drawings.
 
-    Exit code 0: at least one verified design; 1: none; 2: bad input; 3: the surroundings failed;
+    Exit code 0: at least one verified design; 1: none; 2: bad input; 3: the environment failed;
     130: interrupted.
     """
     with _errors_told():
@@ -202,7 +202,7 @@ def analyse(
 ) -> None:
     """Say how LINKAGE moves and what it takes; write tables, a summary, a page to look at and plots.
 
-    Exit code 0: done; 2: bad input; 3: the surroundings failed.
+    Exit code 0: done; 2: bad input; 3: the environment failed.
     """
     with _errors_told():
         commands.analyse(linkage, out, speed_rpm)
@@ -219,7 +219,7 @@ def animate(
 ) -> None:
     """Write LINKAGE in motion: a turn of its driver, or from limit to limit and back.
 
-    Exit code 0: done; 2: bad input; 3: the surroundings failed.
+    Exit code 0: done; 2: bad input; 3: the environment failed.
     """
     with _errors_told():
         commands.animate(linkage, out, seconds, fps)
@@ -267,7 +267,7 @@ def export(
 ) -> None:
     """Write the parts of LINKAGE for the workshop: plates to cut, stacked so that nothing collides.
 
-    Exit code 0: done; 2: bad input; 3: the surroundings failed.
+    Exit code 0: done; 2: bad input; 3: the environment failed.
     """
     from grashof.workshop.export import Making, export_files, told
     from grashof.workshop.plates import PlateSizes
@@ -307,7 +307,7 @@ def _unexpected(error: Exception) -> str:
 
 @contextmanager
 def _errors_told() -> Iterator[None]:
-    """Bad input and failed surroundings end the program with one line, not with a traceback."""
+    """Bad input and a failed environment end the program with one line, not with a traceback."""
     try:
         yield
     except ProblemError as error:

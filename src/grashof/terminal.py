@@ -136,7 +136,7 @@ def best_rows(result: Result, digits: int = 4) -> list[dict[str, str]]:
     rows = [
         {
             "#": f"{rank}{'*' if front[rank - 1] else ' '}",
-            **_cells(family[0], digits),
+            **_cells(result.problem, family[0], digits),
             "like this": str(len(family) - 1 or ""),
             "best at": family[0].best_at,
         }
@@ -164,29 +164,38 @@ def heading(result: Result, verified: int) -> str:
     verdicts = [candidate.verdict for candidate in result.candidates]
     error = f"largest position error {max(each.error_max for each in verdicts):.1e}"
     if not exact:  # as the column says it
-        error = f"smallest error rms {min(each.error_rms for each in verdicts):.2g}"
+        least = min(each.error(result.problem) for each in result.candidates)
+        error = f"smallest error rms {least * result.problem.task.size:.2g}"
     classes = _classes(result)
     kind = f"{classes.pop()} " if len(classes) == 1 else ""
     families = len(result.families)
     found = counted(verified, f"distinct verified {kind}design")
     found += f" in {counted(families, 'family')}" if families < len(result) else ""
     if verified > len(result):  # nothing is known here of the class of the others
-        listed = (
-            f"{len(result)}"
-            if families == len(result)
-            else f"{counted(families, 'family')}, {len(result)} designs,"
-        )
-        found = f"{verified} distinct designs verified, the best {listed} listed"
+        listed = str(len(result))
+        listed += f" in {counted(families, 'family')}" if families < len(result) else ""
+        found = f"{verified} distinct designs verified, listed are the best {listed}"
         found += f" ({kind.strip()})" if kind else ""
     unit = result.problem.length_unit
     lengths = f" Lengths in {unit}." if unit else ""
     shown = f" The best {_ROWS}:" if families > _ROWS else ""
     if families < len(result):
         shown = f" The best of {f'the first {_ROWS} families' if families > _ROWS else 'each family'}:"
+    counted_so = error_meaning(result.problem)
     return (
         f"{found}, {error}.{lengths}\n"
+        f"{f'error rms: {counted_so}.' + chr(10) if counted_so else ''}"
         f"mu: worst transmission angle; *: Pareto-optimal in {goals(result.problem)}.{shown}"
     )
+
+
+def error_meaning(problem: Problem) -> str:
+    """What the error of least squares counts besides distances; empty where there is nothing else."""
+    task = problem.task
+    if not isinstance(task, MotionTask) or problem.requirements.is_exact(task) or not task.has_angle.any():
+        return ""
+    unit = f" {problem.length_unit}" if problem.length_unit else ""
+    return f"of positions and angles together, 1 rad counted as {task.angle_length:.6g}{unit}"
 
 
 def goals(problem: Problem) -> str:
@@ -200,11 +209,11 @@ def _classes(result: Result) -> set[str]:
     return {str(candidate.verdict.grashof_class) for candidate in result.candidates}
 
 
-def _cells(candidate: Candidate, digits: int) -> dict[str, str]:
+def _cells(problem: Problem, candidate: Candidate, digits: int) -> dict[str, str]:
     linkage, verdict = candidate.linkage, candidate.verdict
     task, turn = np.degrees([verdict.transmission_min_task, verdict.transmission_min_cycle])
     return {
-        "error rms": f"{verdict.error_rms:.2g}",
+        "error rms": f"{candidate.error(problem) * problem.task.size:.2g}",
         "mu task": f"{task:.1f}",
         "mu turn": f"{turn:.1f}" if verdict.full_rotation else "-",
         "torque": f"{candidate.torque_peak:.{digits}g}",
@@ -270,7 +279,7 @@ def _best(problem: Problem) -> str:
         return f"{best}{missed and f', {missed}'}"
     return (
         f"least error (rms; errors up to {same_error(problem):g} sizes are equal, then {best}); "
-        f"the list offers more transmission or less size for up to {FACTORS[-1]:g} times of it"
+        f"the list offers more transmission or less size within {FACTORS[-1]:g} times that error"
     )
 
 

@@ -118,5 +118,5 @@ def test_a_pipe_or_device_in_place_of_the_record_is_not_read(tmp_path: Path, rec
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes in folders")
 def test_a_pipe_in_place_of_a_list_is_not_read(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "candidates.json")
-    with pytest.raises(ProblemError, match=r"json: is no ordinary file; allowed is a list of designs"):
+    with pytest.raises(ProblemError, match=r"json: is not an ordinary file; allowed is a list of designs"):
         load_linkage(f"{tmp_path / 'candidates.json'}#1")

@@ -26,6 +26,7 @@ from grashof.terminal import (
     beginning,
     best_rows,
     ends_with_enough,
+    error_meaning,
     heading,
     print_table,
     search_progress,
@@ -80,7 +81,7 @@ def test_the_torque_is_shown_where_it_is_asked_for(few: Result, capsys: pytest.C
             {"requirements": Requirements(exact=False)},
             "least error (rms; errors up to 1e-06 sizes are equal, "
             "then greatest worst transmission angle over the task); "
-            "the list offers more transmission or less size for up to 2 times of it",
+            "the list offers more transmission or less size within 2 times that error",
         ),
         (
             {
@@ -136,7 +137,7 @@ def test_table_fits_the_terminal_uncut(
 
 def test_heading_tells_of_designs_not_listed(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
     print_table(few, 56)
-    said = f"56 distinct designs verified, the best {len(few)} listed (crank-rocker)"
+    said = f"56 distinct designs verified, listed are the best {len(few)} (crank-rocker)"
     assert capsys.readouterr().out.startswith(said)
 
 
@@ -160,7 +161,7 @@ def test_the_best_of_each_family_stands_for_all(alike: Result, capsys: pytest.Ca
     assert [row["best at"] for row in rows] == ["least error", "smallest within 1.5 times", "", "", ""]
     assert any(line.endswith("2  least error") for line in lines)
     print_table(alike.top(2), 8)
-    said = "8 distinct designs verified, the best 2 families, 5 designs, listed (crank-rocker), "
+    said = "8 distinct designs verified, listed are the best 5 in 2 families (crank-rocker), "
     assert capsys.readouterr().out.startswith(said)
     assert (
         set(best_rows(replace(alike, candidates=alike.candidates[2:3]))[0]) & {"like this", "best at"}
@@ -232,12 +233,21 @@ def test_summary_tells_the_task(name: str, said: str) -> None:
 def test_the_heading_tells_the_error_of_its_column(few: Result) -> None:
     fitted = replace(few, problem=replace(few.problem, requirements=Requirements(exact=False)))
     candidates = tuple(
-        replace(each, verdict=replace(each.verdict, position_error=np.array([0.0, 0.0, 0.0, 1 + 0.1 * rank])))
+        replace(each, verdict=replace(each.verdict, square=(1 + 0.1 * rank) ** 2))
         for rank, each in enumerate(few.candidates)
     )
     fitted = replace(fitted, candidates=candidates)
     assert ", smallest error rms 0.5. Lengths in m." in heading(fitted, len(few))
     assert best_rows(fitted)[0]["error rms"] == "0.5"
+
+
+def test_what_the_error_of_poses_counts_is_said(few: Result) -> None:
+    fitted = replace(few.problem, requirements=Requirements(exact=False))
+    said = "of positions and angles together, 1 rad counted as 5.65685 m"
+    assert error_meaning(fitted) == said
+    assert f"\nerror rms: {said}.\n" in heading(replace(few, problem=fitted), len(few))
+    points = replace(fitted, task=MotionTask.from_degrees([{"x": x, "y": x**2} for x in range(3)]))
+    assert [error_meaning(each) for each in (few.problem, points, load("path-ellipse"))] == ["", "", ""]
 
 
 @pytest.mark.parametrize(

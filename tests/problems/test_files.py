@@ -66,7 +66,7 @@ def test_the_text_of_a_catalogue_problem_is_a_file_to_copy(folder: Path) -> None
 
 def test_the_text_of_an_unknown_problem() -> None:
     with pytest.raises(
-        ProblemError, match=r"^'lugage' is no problem of the catalogue; did you mean luggage\?$"
+        ProblemError, match=r"^'lugage' is not a problem of the catalogue; did you mean luggage\?$"
     ):
         problem_text("lugage")
 
@@ -96,9 +96,15 @@ def test_windows_line_ends_and_byte_order_mark(folder: Path) -> None:
 
 def test_unknown_name(folder: Path) -> None:
     names = ", ".join(catalogue())
-    assert refused("lugage") == "'lugage' is no problem of the catalogue and no file; did you mean luggage?"
-    assert refused("zzzz") == f"'zzzz' is no problem of the catalogue and no file; the catalogue has {names}"
-    assert refused("").startswith("'' is no problem of the catalogue and no file;")
+    assert (
+        refused("lugage")
+        == "'lugage' is neither a problem of the catalogue nor a file; did you mean luggage?"
+    )
+    assert (
+        refused("zzzz")
+        == f"'zzzz' is neither a problem of the catalogue nor a file; the catalogue has {names}"
+    )
+    assert refused("").startswith("'' is neither a problem of the catalogue nor a file;")
 
 
 def test_missing_file(folder: Path) -> None:

@@ -140,7 +140,7 @@ def test_a_name_that_is_none() -> None:
         ("chair", "the catalogue has lufkin-c912d, pumpjack"),
         ("d/candidates.csv#3", "is a table; allowed is d/candidates.json#3$"),
         ("candidates.csv", "is a table; allowed is candidates.json#1$"),
-        ("", "no linkage of the catalogue"),
+        ("", "neither a linkage of the catalogue nor a file"),
         ("no/such.toml", "there is no such file"),
         ("./", "is a folder"),
         ("candidates.json", "allowed is candidates.json#1"),
@@ -181,8 +181,8 @@ def test_a_design_of_a_list(tmp_path: Path) -> None:
         (listed(r2=0), "3", "#3: r2 is 0"),
         (listed(r2=[1, 2]), "3", "#3: r2 is .*; allowed is a number"),
         (listed(), "9" * 5000, "has no design 9"),
-        ("[]", "3", "is no list of designs"),
-        ("{", "3", "is no list of designs"),
+        ("[]", "3", "is not a list of designs"),
+        ("{", "3", "is not a list of designs"),
     ]:
         path.write_text(text)
         with pytest.raises(ProblemError, match=message):
@@ -208,7 +208,7 @@ def edited(**changes: Any) -> str:
         ({"dynamics": {"mass_per_length": 1}, "length_unit": "ell"}, "#3: length_unit is 'ell'"),
         ({"dynamics": {"speed_rpm": 1e300}}, "#3: dynamics.speed_rpm is 1e+300; allowed is -1e+20 to 1e+20"),
         ({"length_unit": None}, "#3: length_unit is"),
-        ({"rank": float("inf")}, "is no list of designs"),
+        ({"rank": float("inf")}, "is not a list of designs"),
         ({"linkage": 5}, "states no linkage"),
     ],
 )
@@ -296,7 +296,7 @@ def test_a_design_of_a_list_knows_its_problem(tmp_path: Path) -> None:
         ('"kind = 3"', "problem_toml: kind is 3; allowed is a string"),
         ('"kind = \\"six-bar\\"\\nspeed = 3"', "problem_toml: kind is 'six-bar'; allowed is"),
         ('"["', "problem_toml: is not TOML"),
-        ("7", "7 is no text"),
+        ("7", "7 is not text"),
     ],
 )
 def test_a_list_of_another_version_is_refused_in_one_line(tmp_path: Path, text: str, said: str) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from grashof import synthesize
+from grashof import load, synthesize
 from grashof.analysis import solve_position, verify
 from grashof.problems import Objective, Problem, Requirements
 from grashof.problems.checks import FloatArray
@@ -133,7 +133,19 @@ def test_more_effort_is_never_worse_and_less_is_quick() -> None:
         for each in (little, usual, much)
     ]
     assert solves[0] < solves[1] < solves[2]
-    assert re.search(r"the best came up in 3 of \d rounds", usual.ended)
+    assert re.search(r"the best came up in 3 of \d rounds$", usual.ended)
+    frame = usual.to_frame()  # positions and angles together
+    turned = np.radians(frame["angle_error_rms_deg"]) * problem.task.angle_length
+    np.testing.assert_allclose(frame["error"], np.hypot(frame["error_rms"], turned), rtol=1e-9)
+    assert frame["error"].min() == pytest.approx(usual.least_error, rel=1e-6)
+
+
+def test_least_squares_that_meets_every_target_says_what_would_find_more() -> None:
+    luggage = load("luggage")
+    fitted = replace(luggage, requirements=replace(luggage.requirements, exact=False))
+    assert synthesize(fitted).ended.endswith(
+        "; every target can be met, and without exact = false more such designs are looked for"
+    )
 
 
 def test_workers_change_nothing_of_a_list_to_choose_from() -> None:

@@ -11,6 +11,7 @@ import pandas as pd
 
 from grashof.problems import PathTask, Problem
 from grashof.synth.table import DYNAMICS, MOTION
+from grashof.terminal import error_meaning
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +51,7 @@ class Column:
 
 # Key, label, unit (of length: "length"), significant digits of the largest, which way is better.
 _LISTED = (
-    ("error_rms", "error rms", "length", 3, -1),
+    ("error", "error rms", "length", 3, -1),
     ("transmission_min_task_deg", "μ task", "deg", 3, 1),
     ("transmission_min_cycle_deg", "μ turn", "deg", 3, 1),
     ("size", "size", "length", 4, -1),
@@ -65,13 +66,16 @@ _UNITS = {
     "move_u": "", "move_v": "",
 }  # fmt: skip
 _SIZE = "diagonal of the box around O2, O4 and all that A, B and P reach from the first target to the last"
+_FITTED = "what least squares makes small: root mean square of positions and angles together, weighted"
 # What figures are, where their names do not tell.
-_ABOUT = {"size": _SIZE, "family": "the best of the designs that are alike"} | dict.fromkeys(
-    (*MOTION, *DYNAMICS), "from the first target to the last"
-)
+_ABOUT = {
+    "size": _SIZE,
+    "error": _FITTED,
+    "family": "the best of the designs that are alike",
+} | dict.fromkeys((*MOTION, *DYNAMICS), "from the first target to the last")
 _LENGTHS = (
-    "o2_x", "o2_y", "o4_x", "o4_y", "r1", "r2", "r3", "r4", "p_u", "p_v", "error_max", "error_rms", "size",
-    "hausdorff", "frechet", "worst_move",
+    "o2_x", "o2_y", "o4_x", "o4_y", "r1", "r2", "r3", "r4", "p_u", "p_v", "error", "error_max", "error_rms",
+    "size", "hausdorff", "frechet", "worst_move",
 )  # fmt: skip
 
 
@@ -82,7 +86,7 @@ def listed(problem: Problem, frame: pd.DataFrame) -> list[Column]:
     the task is a whole turn.
     """
     exact = problem.requirements.is_exact(problem.task)
-    left_out = {"error_rms"} if exact else set()
+    left_out = {"error"} if exact else set()
     if isinstance(problem.task, PathTask) and problem.task.closed:
         left_out.add("transmission_min_task_deg")
     elif not frame["full_rotation"].any():
@@ -94,7 +98,7 @@ def listed(problem: Problem, frame: pd.DataFrame) -> list[Column]:
             in_length(unit, problem.length_unit),
             _decimals(frame[key], digits),
             better,
-            _ABOUT.get(key, ""),
+            error_meaning(problem) if key == "error" else _ABOUT.get(key, ""),
         )
         for key, label, unit, digits, better in _LISTED
         if key not in left_out and (unit == "deg" or not frame[key].isna().all())

@@ -96,10 +96,9 @@ def _headline(result: Result) -> str:
         return "No design found." if result.complete else "Interrupted before any design was found."
     verified = max(result.counts.get("verified and distinct", 0), listed)
     families = len(result.families)
-    kinds = counted(families, "family") if families < listed else ""
-    shown = f" in {kinds}" if kinds else ""
+    shown = f" in {counted(families, 'family')}" if families < listed else ""
     if verified > listed:
-        shown = f", the best {f'{kinds}, {listed} designs,' if kinds else listed} listed"
+        shown = f", listed are the best {listed}{shown}"
     cut = "" if result.complete else "; the search was interrupted"
     return f"{counted(verified, 'distinct verified design')}{shown}{cut}."
 

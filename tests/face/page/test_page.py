@@ -119,7 +119,7 @@ def test_the_best_of_each_family_is_shown_with_the_number_of_the_others(alike: R
     families = [each["figures"]["family"] for each in parts.data["designs"]]
     assert families == [each.family for each in alike.candidates]
     some = page_of(replace(alike.top(2), counts={"verified and distinct": 8}))
-    assert "8 distinct verified designs, the best 2 families, 5 designs, listed." in Parts(some).text
+    assert "8 distinct verified designs, listed are the best 5 in 2 families." in Parts(some).text
     plain = Parts(page_of(replace(alike, candidates=alike.candidates[2:5], counts={}))).text
     assert "like this" not in plain
     assert "3 distinct verified designs." in plain

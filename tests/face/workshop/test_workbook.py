@@ -135,9 +135,9 @@ def test_a_list_beside_that_is_not_its_own(designs: Path) -> None:
     text = table.read_text()
     for broken, message in [
         (text.replace(chosen[0].id, "dother"), "does not list design 1 of candidates.json"),
-        ("a,b\n1,2\n", "is no table of designs"),
+        ("a,b\n1,2\n", "is not a table of designs"),
         ("", "does not list design 1"),
-        ("rank,id\n1,d,2\n", "is no table of designs"),
+        ("rank,id\n1,d,2\n", "is not a table of designs"),
         (None, "cannot be read"),
     ]:
         table.unlink() if broken is None else table.write_text(broken)
