@@ -18,11 +18,7 @@ from grashof.synth import exact_poses, paths
 from grashof.synth.choice import Chosen, decided, of_use, offered
 from grashof.synth.explain import STOPPED, Explanation, Failure, explain
 from grashof.synth.families import listed
-<<<<<<< HEAD
-from grashof.synth.ledger import SAME, Ledger
-=======
-from grashof.synth.ledger import EXACT_ERROR, Ledger
->>>>>>> user
+from grashof.synth.ledger import EXACT_ERROR, SAME, Ledger
 from grashof.synth.own import mended, refuse_unusable
 from grashof.synth.path_finds import path_target
 from grashof.synth.programme import MOST_ITERATIONS
