@@ -149,12 +149,12 @@ def solve(
 def check(problem: ProblemArgument) -> None:
     """Read PROBLEM and say what will be asked of a design, without solving."""
     from grashof.synth.synthesize import refuse_unsupported
-    from grashof.terminal import summary
+    from grashof.terminal import folded, summary
 
     with _errors_told():
         loaded = load(problem)
         refuse_unsupported(loaded)
-        for line in summary(loaded):
+        for line in folded(summary(loaded)):
             say(line)
 
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
 from io import StringIO
+from textwrap import TextWrapper
 
 import numpy as np
 from rich import box
@@ -100,10 +101,19 @@ def print_table(result: Result, verified: int | None = None) -> None:
     verified : int, optional
         How many designs were found, where `result` lists only the best of them.
     """
-    width = console().width
-    say(heading(result, verified or len(result)))
-    for line in _fitting(result, width):
+    for line in folded(heading(result, verified or len(result)).splitlines()):
         say(line)
+    for line in _fitting(result, console().width):
+        say(line)
+
+
+def folded(lines: Sequence[str]) -> list[str]:
+    """Lines of words that no terminal breaks within a word; as they are where they are piped."""
+    out = console()
+    if not (out.is_terminal and sys.stdout.isatty()):
+        return list(lines)
+    folding = TextWrapper(out.width, subsequent_indent="    ", break_on_hyphens=False)
+    return [part for line in lines for part in folding.wrap(line)]
 
 
 def _fitting(result: Result, width: int) -> list[str]:

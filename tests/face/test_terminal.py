@@ -27,6 +27,7 @@ from grashof.terminal import (
     best_rows,
     ends_with_enough,
     error_meaning,
+    folded,
     heading,
     print_table,
     search_progress,
@@ -133,6 +134,14 @@ def test_table_fits_the_terminal_uncut(
     for candidate in few.candidates:
         lengths = [f"{length:.{4 if columns >= 100 else 3}g}" for length in candidate.linkage.lengths]
         assert any(all(length in line.split() for length in lengths) for line in lines)
+
+
+def test_a_terminal_breaks_no_word(monkeypatch: pytest.MonkeyPatch) -> None:
+    line = "  best: least error of a crank-rocker; the list offers more"
+    assert folded([line]) == [line]  # as it is where it is piped
+    monkeypatch.setattr("grashof.terminal.console", lambda: Console(width=36, force_terminal=True))
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True, raising=False)
+    assert folded([line]) == ["  best: least error of a", "    crank-rocker; the list offers", "    more"]
 
 
 def test_heading_tells_of_designs_not_listed(few: Result, capsys: pytest.CaptureFixture[str]) -> None:

@@ -195,7 +195,7 @@ def test_five_poses_that_no_linkage_meets_come_with_the_closest() -> None:
             break
     assert result.note.startswith("no design: the 5 poses have ")
     assert result.nearest
-    assert "the closest comes within " in result.note
+    assert "the closest design comes within " in result.note
     assert result.note.endswith(", with exact = false")
     assert all("exact" in {d.requirement for d in near.verdict.defects} for near in result.nearest)
     assert result.ended.endswith(": the poses leave no freedom")
