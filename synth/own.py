@@ -15,6 +15,7 @@ from grashof.problems import ProblemError
 from grashof.problems.checks import FloatArray
 from grashof.synth.finds import GROUPS, Finds
 from grashof.synth.on_symbols import on_symbols
+from grashof.synth.one_at_a_time import one_at_a_time
 from grashof.synth.setup import Setup
 from grashof.synth.start import Start
 
@@ -43,6 +44,7 @@ def refuse_unusable(setup: Setup, *, in_processes: bool) -> None:
                 ) from None
 
 
+@one_at_a_time
 def screened(setup: Setup, finds: Finds) -> Finds:
     """Finds with what they lack of the user's constraints, all evaluated at once."""
     if not setup.constraints or not len(finds):
@@ -136,6 +138,7 @@ def _several(value: Any) -> list[Any]:
     return list(value) if isinstance(value, (list, tuple)) else [value]
 
 
+@one_at_a_time
 def _try_on_symbols(constraint: Constraint, targets: int) -> None:
     design, _ = _symbols(targets)
     try:

@@ -25,6 +25,7 @@ from grashof.synth.constraints import (
 )
 from grashof.synth.finds import GROUPS
 from grashof.synth.form import ADDED, Form, Given, Unknowns
+from grashof.synth.one_at_a_time import one_at_a_time
 from grashof.synth.setup import Setup
 from grashof.synth.start import LENGTHS, Start
 from grashof.synth.torque import loads, torque_bound, torque_peaks
@@ -69,6 +70,7 @@ class Solve:
     torque: float = np.nan
 
 
+@one_at_a_time
 def solve(setup: Setup, start: Start, max_iter: int | None = None) -> Solve:
     """Run Ipopt from one start.
 

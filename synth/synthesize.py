@@ -82,7 +82,7 @@ def synthesize(
     workers : int
         Processes. The result does not depend on it; a search of a second or two gains nothing.
     executor : concurrent.futures.Executor, optional
-        Where to solve instead; not shut down.
+        Where to solve instead; not shut down. Threads gain nothing: one of them solves at a time.
     time_limit : float, s, optional
         No new batch is begun after it.
     progress : callable, optional

@@ -1,5 +1,7 @@
 """How a search runs: where, how long, in what order, with what told on the way."""
 
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future
 from concurrent.futures.process import BrokenProcessPool
@@ -45,7 +47,7 @@ def test_workers_and_repetition_change_no_byte(luggage: Problem, tmp_path: Path)
 
 
 class Inline(Executor):
-    """Runs everything at once, here, and counts; threads would crash CasADi."""
+    """Runs everything at once, here, and counts."""
 
     def __init__(self) -> None:
         self.jobs, self.closed = 0, False
@@ -174,3 +176,21 @@ def test_a_time_limit_ends_the_search(luggage: Problem) -> None:
     assert not result.complete
     assert executor.jobs == 0
     assert synthesize(luggage, starts=3, time_limit=1000).complete
+
+
+THREADS = """
+from concurrent.futures import ThreadPoolExecutor
+from grashof import load, synthesize
+
+problem = load("luggage")
+alone = [each.id for each in synthesize(problem, starts=8).candidates]
+with ThreadPoolExecutor(2) as pool:
+    solved_there = synthesize(problem, starts=8, executor=pool)
+    both = [pool.submit(synthesize, problem, starts=8) for _ in range(2)]
+    found = [solved_there, *(each.result() for each in both)]
+assert all([each.id for each in result.candidates] == alone for result in found)
+"""
+
+
+def test_threads_do_not_crash_the_interpreter() -> None:
+    subprocess.run([sys.executable, "-c", THREADS], check=True, timeout=120)
