@@ -72,7 +72,7 @@ def offered(setup: Setup, ledger: Ledger, solve: Solver, ended: Callable[[], boo
     for before, factor in zip((0.0, *there_and_back), there_and_back, strict=False):
         if ended():
             break
-        new = [one for one in seeds if before * least < _bounded(problem, one, least) <= factor * least]
+        new = [one for one in seeds if before * least < _error(problem, one) <= factor * least]
         begun = [
             (goal, _under(setup, one, objective, most_error=factor * least))
             for goal, objective in GOALS.items()
@@ -104,11 +104,6 @@ def of_use(setup: Setup) -> float:
     turn_weights = np.zeros(zones.shape[1]) if setup.turn_weights is None else setup.turn_weights
     square = (setup.weights * zones[0] ** 2 + turn_weights * zones[1] ** 2).sum()
     return float(np.sqrt(square / len(setup.targets)))
-
-
-def _bounded(problem: Problem, candidate: Candidate, least: float) -> float:
-    """A design's error, sizes, where rounding carries none past the least."""
-    return max(_error(problem, candidate) * (1 - SLACK), least)
 
 
 def decided(
@@ -186,12 +181,9 @@ def _under(
 
 
 def _seeds(problem: Problem, found: Sequence[Candidate], most: float, count: int) -> list[Candidate]:
-    """Designs up to some error that are well apart, the least error first."""
-    near = sorted(
-        (one for one in found if _error(problem, one) <= most or not len(found)),
-        key=lambda one: (_error(problem, one), one.id),
-    )
-    near = near or sorted(found, key=lambda one: (_error(problem, one), one.id))
+    """Designs up to some error, or all if none are, that are well apart, the least error first."""
+    every = sorted(found, key=lambda one: (_error(problem, one), one.id))
+    near = [one for one in every if _error(problem, one) <= most] or every
     if not near:
         return []
     origin = np.nanmean(problem.task.positions, axis=0)

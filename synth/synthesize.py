@@ -175,9 +175,8 @@ def _search(setup: Setup, run: _Run, *, explained: bool = True) -> Result:
     ledger, complete = _found(_without_zones(setup), run)
     few = len(problem.task) < 3
     begin = list(ledger.verified)
-    if (
-        setup.bounded and ledger.setup.exact and len(ledger.best) < FEW and not few and complete
-    ):  # near will do
+    near_will_do = setup.bounded and ledger.setup.exact and not few
+    if near_will_do and len(ledger.best) < FEW and complete:
         ledger, complete = _found(_without_zones(setup, exact=False), run)
         begin += ledger.verified
     chosen = Chosen(ledger.best, ledger.rejected, 0)
