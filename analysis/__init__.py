@@ -1,17 +1,10 @@
 """How a given linkage moves and how good it is: the independent judge of the synthesis, without CasADi."""
 
-from grashof.analysis.balancing import ForceBalance, TorqueBalance, balance_force, balance_torque
-from grashof.analysis.curvature import curvature, cusps
-from grashof.analysis.curve_distance import curve_distances
-from grashof.analysis.design import Constraint, Design
-from grashof.analysis.differences import Deviation, central_differences, compare_differences
-from grashof.analysis.double_points import DoublePoints, all_double_points, double_points
-from grashof.analysis.driver import DriverMotion, driver_motion
-from grashof.analysis.dwell import Dwell, dwell
-from grashof.analysis.dynamics import Dynamics, inverse_dynamics, virtual_work_torque
-from grashof.analysis.extent import reach_box
-from grashof.analysis.extremes import Extremes, extremes, extremes_of
-from grashof.analysis.fit import (
+from grashof.analysis.curves.curvature import curvature, cusps
+from grashof.analysis.curves.curve_distance import curve_distances
+from grashof.analysis.curves.double_points import DoublePoints, all_double_points, double_points
+from grashof.analysis.curves.dwell import Dwell, dwell
+from grashof.analysis.curves.fit import (
     NotAFunctionWarning,
     PolynomialFit,
     coupler_fit_r2,
@@ -19,15 +12,30 @@ from grashof.analysis.fit import (
     greatest_error,
     regression,
 )
-from grashof.analysis.flywheel import Flywheel, size_flywheel
-from grashof.analysis.fourier import FourierSeries, coupler_fourier, fourier_series
-from grashof.analysis.free_response import Ending, FreeResponse, free_response, mechanical_energy
-from grashof.analysis.instant_centres import InstantCentres, instant_centres
-from grashof.analysis.interpolation import NewtonPolynomial, newton_interpolation, spline
-from grashof.analysis.kinematics import Kinematics, PointMotion, solve_kinematics
-from grashof.analysis.limited import Defect
-from grashof.analysis.loads import AppliedForce, AppliedMoment, Friction, Joint, Loads, Spring, TorsionSpring
-from grashof.analysis.mass import (
+from grashof.analysis.curves.fourier import FourierSeries, coupler_fourier, fourier_series
+from grashof.analysis.curves.interpolation import NewtonPolynomial, newton_interpolation, spline
+from grashof.analysis.curves.line_and_circle import (
+    BestCircle,
+    BestLine,
+    best_circle,
+    best_line,
+    circularity,
+    straightness,
+)
+from grashof.analysis.forces.balancing import ForceBalance, TorqueBalance, balance_force, balance_torque
+from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics, virtual_work_torque
+from grashof.analysis.forces.flywheel import Flywheel, size_flywheel
+from grashof.analysis.forces.free_response import Ending, FreeResponse, free_response, mechanical_energy
+from grashof.analysis.forces.loads import (
+    AppliedForce,
+    AppliedMoment,
+    Friction,
+    Joint,
+    Loads,
+    Spring,
+    TorsionSpring,
+)
+from grashof.analysis.forces.mass import (
     Body,
     Masses,
     given_masses,
@@ -37,7 +45,12 @@ from grashof.analysis.mass import (
     uniform_bar,
     uniform_bars,
 )
-from grashof.analysis.mobility import (
+from grashof.analysis.four_bar.differences import Deviation, central_differences, compare_differences
+from grashof.analysis.four_bar.driver import DriverMotion, driver_motion
+from grashof.analysis.four_bar.extremes import Extremes, extremes, extremes_of
+from grashof.analysis.four_bar.instant_centres import InstantCentres, instant_centres
+from grashof.analysis.four_bar.kinematics import Kinematics, PointMotion, solve_kinematics
+from grashof.analysis.four_bar.mobility import (
     GrashofClass,
     branch_index,
     circuit_index,
@@ -47,14 +60,20 @@ from grashof.analysis.mobility import (
     rotatability,
     triple_rocker_kind,
 )
-from grashof.analysis.newton_raphson import NewtonPosition, newton_position
-from grashof.analysis.over_task import OverTask, over_task
-from grashof.analysis.position import Position, solve_position
-from grashof.analysis.shape import BestCircle, BestLine, best_circle, best_line, circularity, straightness
-from grashof.analysis.stroke import OutputStroke, output_stroke
-from grashof.analysis.tolerance import Robustness, robustness, sensitivity
-from grashof.analysis.transmission import transmission_angle, worst_transmission, worst_transmission_cycle
-from grashof.analysis.verify import Verdict, verify
+from grashof.analysis.four_bar.newton_raphson import NewtonPosition, newton_position
+from grashof.analysis.four_bar.position import Position, solve_position
+from grashof.analysis.four_bar.reach import reach_box
+from grashof.analysis.four_bar.stroke import OutputStroke, output_stroke
+from grashof.analysis.four_bar.transmission import (
+    transmission_angle,
+    worst_transmission,
+    worst_transmission_cycle,
+)
+from grashof.analysis.judge.design import Constraint, Design
+from grashof.analysis.judge.limits import Defect
+from grashof.analysis.judge.over_task import OverTask, over_task
+from grashof.analysis.judge.tolerance import Robustness, robustness, sensitivity
+from grashof.analysis.judge.verify import Verdict, verify
 
 __all__ = [
     "AppliedForce",

@@ -1,7 +1,14 @@
 """What is asked: tasks, requirements, the linkage as a value, and the catalogue of problems."""
 
-from grashof.problems.dynamics_spec import DynamicsSpec
-from grashof.problems.errors import (
+from grashof.problems.files.linkage_file import (
+    linkage_catalogue,
+    linkage_text,
+    load_linkage,
+    load_linkage_spec,
+)
+from grashof.problems.files.problem_file import catalogue, load, load_with_text, problem_text
+from grashof.problems.values.dynamics_spec import DynamicsSpec
+from grashof.problems.values.errors import (
     AssemblyError,
     DeadPositionWarning,
     GrashofError,
@@ -10,21 +17,14 @@ from grashof.problems.errors import (
     ProblemError,
     SolverError,
 )
-from grashof.problems.files import catalogue, load, load_with_text, problem_text
-from grashof.problems.linkage import FourBar
-from grashof.problems.linkage_file import (
-    LinkageSpec,
-    linkage_catalogue,
-    linkage_text,
-    load_linkage,
-    load_linkage_spec,
-)
-from grashof.problems.manufacturing import Manufacturing
-from grashof.problems.motion_task import MotionTask
-from grashof.problems.path_task import PathTask
-from grashof.problems.problem import Objective, Problem, Search
-from grashof.problems.requirements import Box, Requirements, Rotatability, TransmissionOver
-from grashof.problems.task import Task
+from grashof.problems.values.linkage import FourBar
+from grashof.problems.values.linkage_spec import LinkageSpec
+from grashof.problems.values.manufacturing import Manufacturing
+from grashof.problems.values.motion_task import MotionTask
+from grashof.problems.values.path_task import PathTask
+from grashof.problems.values.problem import Objective, Problem, Search
+from grashof.problems.values.requirements import Box, Requirements, Rotatability, TransmissionOver
+from grashof.problems.values.task import Task
 
 __all__ = [
     "AssemblyError",

@@ -12,11 +12,11 @@ from time import perf_counter
 import numpy as np
 
 from grashof import load, synthesize
-from grashof.analysis.planted import planted_motion
+from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, Problem, Requirements, Rotatability, TransmissionOver
 from grashof.synth import Progress
-from grashof.synth.burmester import Displacements
-from grashof.synth.five_poses import five_pose_dyads, five_pose_dyads_of_sets
+from grashof.synth.theory.burmester import Displacements
+from grashof.synth.theory.five_poses import five_pose_dyads, five_pose_dyads_of_sets
 
 UPPER = Box(y=(0, np.inf))
 

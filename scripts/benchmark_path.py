@@ -13,9 +13,9 @@ from scipy.optimize import least_squares
 
 from grashof import load, synthesize
 from grashof.analysis import solve_position, verify
-from grashof.analysis.planted import planted_path
+from grashof.analysis.judge.planted import planted_path
 from grashof.problems import FourBar, PathTask, Problem, Requirements, Rotatability
-from grashof.problems.checks import ComplexArray, FloatArray
+from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth import Result
 
 

@@ -12,12 +12,12 @@ import numpy as np
 
 from grashof import synthesize
 from grashof.analysis import verify, worst_transmission_cycle
-from grashof.analysis.planted import planted_motion
+from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import FourBar, MotionTask, Problem, Requirements, TransmissionOver
-from grashof.problems.checks import ComplexArray, FloatArray
-from grashof.synth.attempt import attempt
-from grashof.synth.setup import Setup
-from grashof.synth.start import Start
+from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.start import Start
+from grashof.synth.results.attempt import attempt
 
 NOISE = 0.01  # of the size in position, rad in angle
 
@@ -63,8 +63,8 @@ def noisy(poses: int, count: int) -> None:
         begun = perf_counter()
         result = synthesize(problem)
         seconds.append(perf_counter() - begun)
-        setup, verdict = Setup.of(problem), verify(linkage, task, problem.requirements)
-        polished = attempt(setup, Start.of_linkage(setup, linkage, verdict), 0).candidate
+        scaled, verdict = ScaledProblem.of(problem), verify(linkage, task, problem.requirements)
+        polished = attempt(scaled, Start.of_linkage(scaled, linkage, verdict), 0).candidate
         theirs = [found.square for found in (verdict, polished and polished.verdict) if found and found.ok]
         ours = result.best.verdict.square if len(result) else np.inf
         good += ours <= min(theirs, default=np.inf) * (1 + 1e-6)

@@ -3,7 +3,7 @@
 Everything is an unknown: pivots, lengths, coupler point, and the driver angle at every target. The loop is
 closed by the elbow formula, every limit is a residual once it is overstepped, and Levenberg-Marquardt
 improves many random starts at once, with differences for derivatives. Sequential quadratic programming
-(SLSQP of scipy) brings the best under their limits, and `grashof.analysis.verify` judges them.
+(SLSQP of scipy) brings the best under their limits, and `grashof.analysis.judge.verify` judges them.
 
 It is plain, to hold the package's own search against. It knows free and timed points met in order, and poses
 with position and angle; no areas to keep out of and no constraints of one's own.
@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 from scipy.optimize import minimize
 
-from grashof.analysis.verify import Verdict, verify
+from grashof.analysis.judge.verify import Verdict, verify
 from grashof.problems import Box, FourBar, MotionTask, Problem, Requirements, Rotatability
-from grashof.problems.checks import ComplexArray, FloatArray, IntArray
+from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 
 TURN = 2 * np.pi
 STARTS = 800

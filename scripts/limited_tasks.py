@@ -12,10 +12,10 @@ import numpy as np
 from shapely import Polygon
 
 from grashof.analysis import solve_position
-from grashof.analysis.planted import random_full_crank, uneven_driver_angles
+from grashof.analysis.judge.planted import random_full_crank, uneven_driver_angles
 from grashof.problems import Problem
-from grashof.problems.checks import ComplexArray, FloatArray
-from grashof.problems.schema import problem_from
+from grashof.problems.files.problem_schema import problem_from
+from grashof.problems.values.arrays import ComplexArray, FloatArray
 
 SERIES = 11  # of the random numbers
 _XY = np.array([1, 1j])

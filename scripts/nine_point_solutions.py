@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from grashof.synth.monodromy import collect, general_problem
+from grashof.synth.theory.monodromy import collect, general_problem
 
 
 def main(argv: Sequence[str] | None = None) -> int:

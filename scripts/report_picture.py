@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 from playwright.sync_api import sync_playwright
 
 from grashof import load, synthesize
-from grashof.output import write_run
+from grashof.output.run_files import write_run
 
 PICTURE = Path(__file__).parents[1] / "docs" / "report.png"
 

@@ -34,7 +34,7 @@ from grashof.analysis import (
     worst_transmission_cycle,
 )
 from grashof.problems import FourBar, load_linkage_spec
-from grashof.problems.checks import FloatArray
+from grashof.problems.values.arrays import FloatArray
 
 # quantity, as published, right, cause
 Row = tuple[str, str, str, str]

@@ -11,21 +11,22 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from grashof.analysis.design import Constraint
+from grashof.analysis.judge.design import Constraint
 from grashof.problems import MotionTask, Problem, ProblemError, Search
-from grashof.problems.checks import counted, finite_number, whole_number
-from grashof.synth import exact_poses, paths
-from grashof.synth.choice import Chosen, decided, of_use, offered
-from grashof.synth.explain import STOPPED, Explanation, Failure, explain
-from grashof.synth.families import listed
-from grashof.synth.ledger import EXACT_ERROR, SAME, Ledger
-from grashof.synth.own import mended, refuse_unusable
-from grashof.synth.path_finds import path_target
-from grashof.synth.programme import MOST_ITERATIONS
-from grashof.synth.result import Result, ranked
-from grashof.synth.setup import Setup
-from grashof.synth.start import Round, Start
-from grashof.synth.workers import Solver, solving
+from grashof.problems.values.checks import counted, finite_number, whole_number
+from grashof.synth.programme.nonlinear_programme import MOST_ITERATIONS
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.start import Round, Start
+from grashof.synth.programme.user_constraints import mended, refuse_unusable
+from grashof.synth.results.explain import STOPPED, Explanation, Failure, explain
+from grashof.synth.results.families import listed
+from grashof.synth.results.ledger import EXACT_ERROR, SAME, Ledger
+from grashof.synth.results.ranking import ranked
+from grashof.synth.results.result import Result
+from grashof.synth.results.trade_offs import Chosen, decided, of_use, offered
+from grashof.synth.results.workers import Solver, solving
+from grashof.synth.starts import exact_poses, paths
+from grashof.synth.starts.path_screening import path_target
 
 # Solves between two looks at what is verified, fixed, so that workers change nothing: of exact designs,
 # and of least squares, where every look may spare solves.
@@ -120,9 +121,9 @@ def synthesize(
         raise ProblemError(f"time_limit is {time_limit!r}; allowed is a time in s greater than zero")
     refuse_unsupported(problem)
     begun = perf_counter()
-    setup = Setup.of(problem, constraints)
-    refuse_unusable(setup, in_processes=workers > 1 or executor is not None)
-    reason = paths.degenerate(setup) if setup.motion is None else exact_poses.degenerate(setup)
+    scaled = ScaledProblem.of(problem, constraints)
+    refuse_unusable(scaled, in_processes=workers > 1 or executor is not None)
+    reason = paths.degenerate(scaled) if scaled.motion is None else exact_poses.degenerate(scaled)
     if reason:
         return Result(problem, (), (), {}, {"total": perf_counter() - begun}, note=f"no design: {reason}")
 
@@ -132,7 +133,7 @@ def synthesize(
 
     with solving(workers, executor) as solve:
         seconds = {"screening": 0.0, "solving": 0.0}
-        return _search(setup, _Run(search, solve, ended, progress, seconds))
+        return _search(scaled, _Run(search, solve, ended, progress, seconds))
 
 
 def refuse_unsupported(problem: Problem) -> None:
@@ -144,7 +145,7 @@ def refuse_unsupported(problem: Problem) -> None:
         return
     if problem.requirements.is_exact(task) and task.is_whole:
         exact_poses.refuse_equal_poses(task)
-    elif (count := len(path_target(Setup.of(problem)).points)) < 3:
+    elif (count := len(path_target(ScaledProblem.of(problem)).points)) < 3:
         raise ProblemError(
             f"motion.poses has {counted(count, 'distinct pose')}; allowed are three or more where parts are "
             "left free or requirements.exact is false"
@@ -154,7 +155,9 @@ def refuse_unsupported(problem: Problem) -> None:
 class Finder(Protocol):
     """A way to find starts."""
 
-    def rounds(self, setup: Setup, enough: int, rng: np.random.Generator, size: int) -> Iterator[Round]:
+    def rounds(
+        self, scaled: ScaledProblem, enough: int, rng: np.random.Generator, size: int
+    ) -> Iterator[Round]:
         """Rounds of starts, the larger the more is asked for."""
 
 
@@ -169,102 +172,102 @@ class _Run:
     seconds: dict[str, float]
 
 
-def _search(setup: Setup, run: _Run, *, explained: bool = True) -> Result:
+def _search(scaled: ScaledProblem, run: _Run, *, explained: bool = True) -> Result:
     """Search, choose, or explain why there is nothing to choose from."""
-    begun, problem = perf_counter(), setup.problem
-    ledger, complete = _found(_without_zones(setup), run)
+    begun, problem = perf_counter(), scaled.problem
+    ledger, complete = _found(_without_zones(scaled), run)
     few = len(problem.task) < 3
     begin = list(ledger.verified)
-    near_will_do = setup.bounded and ledger.setup.exact and not few
+    near_will_do = scaled.bounded and ledger.scaled.exact and not few
     if near_will_do and len(ledger.best) < FEW and complete:
-        ledger, complete = _found(_without_zones(setup, exact=False), run)
+        ledger, complete = _found(_without_zones(scaled, exact=False), run)
         begin += ledger.verified
     chosen = Chosen(ledger.best, ledger.rejected, 0)
     since = perf_counter()
-    if setup.bounded:
-        chosen = decided(setup, begin, ledger.least, ledger.solved, run.search.effort, run.solve, run.ended)
-    elif not setup.exact and ledger.best and explained:
-        chosen = offered(setup, ledger, run.solve, run.ended)
+    if scaled.bounded:
+        chosen = decided(scaled, begin, ledger.least, ledger.solved, run.search.effort, run.solve, run.ended)
+    elif not scaled.exact and ledger.best and explained:
+        chosen = offered(scaled, ledger, run.solve, run.ended)
     run.seconds["choosing"] = perf_counter() - since
     best, said = chosen.designs, Explanation("" if chosen.designs else STOPPED)
     if not best and complete and explained:
         since = perf_counter()
-        said = _explained(_without_zones(setup) if few else setup, run, ledger, chosen)
+        said = _explained(_without_zones(scaled) if few else scaled, run, ledger, chosen)
         best = ranked(problem, list(said.designs))
         run.seconds["explaining"] = perf_counter() - since
     counts = {**ledger.counts, "solves for the choice": chosen.solved, "verified and distinct": len(best)}
     times = {**run.seconds, "total": perf_counter() - begun}
     why, designs = ledger.why(complete), listed(problem, best)
-    fitted = not ledger.setup.exact and setup.zones is None and bool(ledger.best)
+    fitted = not ledger.scaled.exact and scaled.zones is None and bool(ledger.best)
     least = ledger.least * problem.task.size if fitted else np.nan
     if fitted and ledger.least <= EXACT_ERROR and problem.task.exact_by_default:
         why += "; every target can be met, and without exact = false more such designs are looked for"
     return Result(problem, designs, said.nearest, counts, times, said.note, complete, why, least)
 
 
-def _without_zones(setup: Setup, *, exact: bool = True) -> Setup:
+def _without_zones(scaled: ScaledProblem, *, exact: bool = True) -> ScaledProblem:
     """The search that comes first where targets may be missed: exact if that can be, or least squares."""
-    if not setup.bounded:
-        return setup
-    problem = setup.problem
+    if not scaled.bounded:
+        return scaled
+    problem = scaled.problem
     wanted, by_default = problem.requirements, problem.task.exact_by_default
     exact = exact and wanted.error_factor is None and wanted.exact is not False and by_default
     first = problem.without_zones(exact=exact)
-    without = Setup.of(first, setup.constraints)
-    return replace(without, of_use=of_use(setup))
+    without = ScaledProblem.of(first, scaled.constraints)
+    return replace(without, of_use=of_use(scaled))
 
 
-def _found(setup: Setup, run: _Run) -> tuple[Ledger, bool]:
+def _found(scaled: ScaledProblem, run: _Run) -> tuple[Ledger, bool]:
     """What the rounds of a search come to, and whether they were all gone through."""
-    finder = exact_poses if setup.motion is not None else paths
-    ledger, complete = Ledger(setup, run.search), True
+    finder = exact_poses if scaled.motion is not None else paths
+    ledger, complete = Ledger(scaled, run.search), True
     since = perf_counter()
-    for made in _rounds(setup, finder, ledger):
+    for made in _rounds(scaled, finder, ledger):
         screened = perf_counter()
         run.seconds["screening"] += screened - since
         ledger.begin(made)
-        _solve_round(setup, made, ledger, run)
+        _solve_round(scaled, made, ledger, run)
         since = perf_counter()
         run.seconds["solving"] += since - screened
         if run.ended():
             complete = ledger.done or ledger.ended
             break
-    if not setup.exact:
-        _solve_to_the_end(setup, ledger, run)
+    if not scaled.exact:
+        _solve_to_the_end(scaled, ledger, run)
     return ledger, complete
 
 
-def _solve_to_the_end(setup: Setup, ledger: Ledger, run: _Run) -> None:
+def _solve_to_the_end(scaled: ScaledProblem, ledger: Ledger, run: _Run) -> None:
     """Go on from the least error where its solve stopped for want of iterations."""
     for _ in range(CONTINUED):
-        best = min(ledger.verified, key=lambda one: one.error(setup.problem), default=None)
+        best = min(ledger.verified, key=lambda one: one.error(scaled.problem), default=None)
         if best is None or best.iterations < MOST_ITERATIONS or run.ended():
             return
-        before, start = ledger.least, Start.of_linkage(setup, best.linkage, best.verdict)
-        ledger.take(run.solve(setup, [start], ledger.solved))
+        before, start = ledger.least, Start.of_linkage(scaled, best.linkage, best.verdict)
+        ledger.take(run.solve(scaled, [start], ledger.solved))
         if ledger.least > before * (1 - SAME):
             return
 
 
-def _explained(setup: Setup, run: _Run, ledger: Ledger, chosen: Chosen) -> Explanation:
+def _explained(scaled: ScaledProblem, run: _Run, ledger: Ledger, chosen: Chosen) -> Explanation:
     search = run.search
 
     def near(problem: Problem) -> Result:
         few = replace(search, effort=NEAR_EFFORT, enough=min(search.enough, NEAR))
         alone = replace(run, search=few, progress=None, seconds=dict.fromkeys(run.seconds, 0.0))
-        return _search(Setup.of(problem, setup.constraints), alone, explained=False)
+        return _search(ScaledProblem.of(problem, scaled.constraints), alone, explained=False)
 
-    failure = Failure(setup, ledger.latest, chosen.rejected, ledger.counts)
+    failure = Failure(scaled, ledger.latest, chosen.rejected, ledger.counts)
     rng = np.random.default_rng(np.random.SeedSequence(search.seed, spawn_key=(0,)))
     return explain(failure, run.solve, near, rng, run.ended)
 
 
-def _rounds(setup: Setup, finder: Finder, ledger: Ledger) -> Iterator[Round]:
+def _rounds(scaled: ScaledProblem, finder: Finder, ledger: Ledger) -> Iterator[Round]:
     """Rounds until what the effort asks for is done: those of ``effort = 1`` first, then larger ones."""
     for number in count():
         seed = np.random.SeedSequence(ledger.search.seed, spawn_key=(number,) if number else ())
         rng, size, any_starts = np.random.default_rng(seed), LARGER if number else 1, False
-        for made in finder.rounds(setup, ledger.search.enough, rng, size):
+        for made in finder.rounds(scaled, ledger.search.enough, rng, size):
             any_starts = any_starts or bool(made.starts)
             yield made
             if ledger.done or (not number and ledger.ended):
@@ -275,15 +278,15 @@ def _rounds(setup: Setup, finder: Finder, ledger: Ledger) -> Iterator[Round]:
             return
 
 
-def _solve_round(setup: Setup, made: Round, ledger: Ledger, run: _Run) -> None:
+def _solve_round(scaled: ScaledProblem, made: Round, ledger: Ledger, run: _Run) -> None:
     """Solve starts batch by batch until enough is found or the search is ended."""
-    starts, enough = mended(setup, made.starts), ledger.search.enough
-    batch = min(BATCH, enough) if setup.exact else BATCH_LEAST_SQUARES
+    starts, enough = mended(scaled, made.starts), ledger.search.enough
+    batch = min(BATCH, enough) if scaled.exact else BATCH_LEAST_SQUARES
     for begin in range(0, len(starts), batch):
         if run.ended() or not ledger.within_round():
             return
         some = ledger.worthwhile(made, starts[begin : begin + batch], first=begin == 0)
         if some:
-            ledger.take(run.solve(setup, some[: ledger.starts - ledger.solved], ledger.solved))
+            ledger.take(run.solve(scaled, some[: ledger.starts - ledger.solved], ledger.solved))
         if run.progress is not None:
             run.progress(Progress(ledger.solved, ledger.starts, len(ledger.best), enough))

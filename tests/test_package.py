@@ -4,7 +4,6 @@ import ast
 import subprocess
 import sys
 import tomllib
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -15,36 +14,85 @@ FOLDERS = {"problems": "grashof.problems", "analysis": "grashof.analysis", "synt
 LAYERS = ("grashof.problems", "grashof.analysis", "grashof.synth", "grashof")
 
 
+def name_of(path: Path) -> str:
+    """Import name of a file, or of the folder of an `__init__.py`."""
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    parts = parts[1:] if parts[0] == "src" else ("grashof", *parts)
+    return ".".join(part for part in parts if part != "__init__")
+
+
+SOURCES = {name_of(path): path for folder in (*FOLDERS, "src") for path in (ROOT / folder).rglob("*.py")}
+
+
 def test_package_map_names_every_folder() -> None:
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]
-    with_code = {path.parent.relative_to(ROOT).as_posix() for path in ROOT.glob("*/__init__.py")}
-    with_code |= {path.parent.relative_to(ROOT).as_posix() for path in ROOT.glob("src/*/__init__.py")}
-    assert set(settings["package-dir"].values()) == with_code == {*FOLDERS, "src/grashof"}
-    # Packages inside the face need no place of their own in the map: they lie where their names say.
-    face = {f"grashof.{path.parent.name}" for path in (ROOT / "src" / "grashof").glob("*/__init__.py")}
-    assert {*settings["package-dir"], *face} == set(settings["packages"])
-    nested = [path for folder in FOLDERS for path in (ROOT / folder).glob("*/__init__.py")]
-    assert nested == []
+    homes = {name: folder for folder, name in FOLDERS.items()}
+    assert settings["package-dir"] == {**homes, "grashof": "src/grashof"}
+    # Packages inside need no place of their own in the map: they lie where their names say.
+    with_code = {path.parent for path in SOURCES.values()}
+    assert with_code == {SOURCES[name].parent for name in settings["packages"]}
+    assert all((folder / "__init__.py").exists() for folder in with_code)
 
 
-def imports(path: Path) -> Iterator[str]:
-    for node in ast.walk(ast.parse(path.read_text())):
+def imported(name: str) -> set[str]:
+    """Modules that a module imports, lazily or not; a package where it takes a name from it."""
+    found = set()
+    for node in ast.walk(ast.parse(SOURCES[name].read_text())):
         if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
+            found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
-            yield node.module or ""
+            module = node.module or ""
+            full = [f"{module}.{alias.name}" for alias in node.names]
+            found |= {each if each in SOURCES else module for each in full}
+    return found
 
 
-@pytest.mark.parametrize("folder", FOLDERS)
-def test_layers_import_only_from_below(folder: str) -> None:
-    mine = LAYERS.index(FOLDERS[folder])
-    for path in (ROOT / folder).glob("*.py"):
-        for name in imports(path):
-            if name == "grashof" or name.startswith("grashof."):
-                layer = ".".join(name.split(".")[:2])
-                assert layer in LAYERS[: mine + 1], f"{path.name} imports {name}"
-            if folder != "synth":
-                assert not name.startswith("casadi"), f"{path.name} imports casadi"
+@pytest.mark.parametrize("name", SOURCES)
+def test_layers_import_only_from_below(name: str) -> None:
+    mine = layer_of(name)
+    for other in imported(name):
+        if other == "grashof" or other.startswith("grashof."):
+            assert LAYERS.index(layer_of(other)) <= LAYERS.index(mine), f"{name} imports {other}"
+        if mine in LAYERS[:2]:
+            assert not other.startswith("casadi"), f"{name} imports casadi"
+
+
+def layer_of(name: str) -> str:
+    layer = ".".join(name.split(".")[:2])
+    return layer if layer in LAYERS else "grashof"
+
+
+def circle(arrows: dict[str, set[str]]) -> list[str]:
+    """Some circle of arrows, empty where there is none."""
+    left = dict(arrows)
+    while True:
+        reached = set().union(*left.values())
+        free = [name for name, others in left.items() if name not in reached or not others & left.keys()]
+        if not free:
+            return sorted(left)
+        for name in free:
+            del left[name]
+
+
+def test_no_module_imports_itself_by_way_of_others() -> None:
+    arrows = {name: imported(name) - {name} for name in SOURCES}
+    # A package takes names from its modules to pass them on.
+    passing_on = {name for name, path in SOURCES.items() if path.name == "__init__.py"}
+    assert circle({name: others - passing_on for name, others in arrows.items()}) == []
+
+
+def test_no_room_imports_from_one_that_imports_from_it() -> None:
+    def room(name: str) -> str:
+        return name if SOURCES[name].name == "__init__.py" else name.rpartition(".")[0]
+
+    arrows: dict[str, set[str]] = {}
+    for name in SOURCES:
+        if SOURCES[name].name != "__init__.py":
+            arrows.setdefault(room(name), set()).update(
+                room(other) for other in imported(name) if other in SOURCES
+            )
+    layers = set(LAYERS)
+    assert circle({name: others - {name} - layers for name, others in arrows.items()}) == []
 
 
 def modules_after(statement: str) -> set[str]:
@@ -59,7 +107,7 @@ def test_importing_grashof_loads_no_solver_and_no_plots() -> None:
 
 
 def test_a_worker_process_loads_only_what_it_solves_with() -> None:
-    loaded = modules_after("import grashof.synth.attempt")
+    loaded = modules_after("import grashof.synth.results.attempt")
     assert "casadi" in loaded
     assert not loaded & {"matplotlib", "pandas", "pydantic", "rich", "shapely"}
 

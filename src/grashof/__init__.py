@@ -3,7 +3,7 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from grashof.problems.display import Displayed
+from grashof.problems.values.display import Displayed
 
 if TYPE_CHECKING:
     from grashof.figures import (

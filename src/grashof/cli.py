@@ -16,6 +16,7 @@ from typer.core import TyperGroup
 
 from grashof import commands
 from grashof.commands import TOP, Exit, Options
+from grashof.output.streams import say
 from grashof.problems import (
     ProblemError,
     SolverError,
@@ -27,8 +28,7 @@ from grashof.problems import (
     load_with_text,
     problem_text,
 )
-from grashof.problems.problem import EFFORTS
-from grashof.streams import say
+from grashof.problems.values.problem import EFFORTS
 
 TRACEBACK = "GRASHOF_TRACEBACK"  # environment variable: unexpected errors with their traceback
 # Options of the contract that later versions bring.
@@ -148,8 +148,9 @@ def solve(
 @app.command()
 def check(problem: ProblemArgument) -> None:
     """Read PROBLEM and say what will be asked of a design, without solving."""
+    from grashof.output.terminal import folded
     from grashof.synth.synthesize import refuse_unsupported
-    from grashof.terminal import folded, summary
+    from grashof.wording.problem import summary
 
     with _errors_told():
         loaded = load(problem)

@@ -11,9 +11,9 @@ from pathlib import Path
 from threading import Event
 from types import FrameType
 
+from grashof.output.streams import say
 from grashof.problems import Problem, load_linkage_spec
-from grashof.problems.checks import counted
-from grashof.streams import say
+from grashof.problems.values.checks import counted
 
 TOP = 50  # families in a list, where nothing else is said
 
@@ -57,10 +57,11 @@ class Options:
 
 def solve(problem: Problem, text: str, options: Options) -> Exit:
     """Search for designs and write them; `text` is the problem file."""
-    from grashof.folder import PAGE, check_writable
-    from grashof.output import write_run
+    from grashof.output.folder import PAGE, check_writable
+    from grashof.output.run_files import write_run
+    from grashof.output.terminal import print_table, search_progress
     from grashof.synth import synthesize
-    from grashof.terminal import beginning, ends_with_enough, print_table, search_progress
+    from grashof.wording.problem import beginning, ends_with_enough
 
     given = {name: getattr(options, name) for name in ("starts", "seed", "effort")}
     search = replace(problem.search, **{name: value for name, value in given.items() if value is not None})
@@ -100,9 +101,9 @@ def solve(problem: Problem, text: str, options: Options) -> Exit:
 
 def analyse(linkage: str, out: Path | None, speed_rpm: float | None) -> None:
     """Write how a linkage moves, and print the summary."""
-    from grashof.folder import ANALYSIS_PAGE, ANALYSIS_RECORD, check_writable
+    from grashof.output.analysis_files import print_report, write_report
+    from grashof.output.folder import ANALYSIS_PAGE, ANALYSIS_RECORD, check_writable
     from grashof.survey import report_on
-    from grashof.survey.output import print_report, write_report
 
     spec = load_linkage_spec(linkage)
     folder = out if out is not None else Path(f"{spec.name}-analysis")

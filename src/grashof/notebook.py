@@ -15,10 +15,11 @@ from grashof.figures.files import STYLE
 from grashof.figures.linkage import plot_linkage
 from grashof.figures.parts import missing_glyphs_unwarned
 from grashof.figures.subject import Linkage
+from grashof.output.terminal import UNITS, best_rows, heading
 from grashof.problems import FourBar, LinkageSpec, Problem, ProblemError
-from grashof.problems.checks import FloatArray, counted
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.checks import counted
 from grashof.synth import Candidate, Result
-from grashof.terminal import UNITS, best_rows, heading
 
 _ROWS = 12  # of a batch
 _SMALL = {**STYLE, "font.size": 7, "axes.grid": False}

@@ -228,7 +228,7 @@ def test_full_disk_is_told_and_keeps_the_old_run(
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("grashof.output.write_json", full)
+    monkeypatch.setattr("grashof.output.run_files.write_json", full)
     done = grashof("solve", "luggage", *QUICK, "--seed", "5")
     assert done.exit_code == 3
     assert "No space left" in done.stderr
@@ -430,7 +430,7 @@ def test_what_nobody_expected_ends_with_one_line(grashof: Grashof, monkeypatch: 
     def broken(_problem: Problem) -> list[str]:
         raise ZeroDivisionError("division\nby zero")
 
-    monkeypatch.setattr("grashof.terminal.summary", broken)
+    monkeypatch.setattr("grashof.output.terminal.summary", broken)
     monkeypatch.delenv("GRASHOF_TRACEBACK", raising=False)
     done = grashof("check", "luggage")
     assert done.exit_code == 3

@@ -12,10 +12,10 @@ from typing import Any
 
 import pytest
 
-from grashof.output import write_run
+from grashof.output.run_files import write_run
 from grashof.problems import problem_text
 from grashof.synth import Result
-from grashof.synth.table import DYNAMICS, MOTION
+from grashof.synth.results.table import DYNAMICS, MOTION
 
 Grashof = Callable[..., Any]
 

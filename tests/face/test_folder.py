@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from grashof.folder import ANALYSIS_RECORD, RECORD, check_writable, own_files, replacing_own_files
+from grashof.output.folder import ANALYSIS_RECORD, RECORD, check_writable, own_files, replacing_own_files
 from grashof.problems import ProblemError, load_linkage
 
 CSV = "candidates.csv"

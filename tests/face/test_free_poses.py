@@ -10,7 +10,7 @@ import pytest
 from matplotlib.colors import to_hex
 
 from grashof import synthesize
-from grashof.analysis.planted import planted_motion
+from grashof.analysis.judge.planted import planted_motion
 from grashof.figures.files import draw_design
 from grashof.figures.parts import BODY, COUPLER, DRIVER
 from grashof.problems import MotionTask, Problem, Requirements

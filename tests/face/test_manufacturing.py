@@ -12,10 +12,10 @@ from typing import Any
 
 import pytest
 
-from grashof.output import write_run
+from grashof.output.run_files import write_run
 from grashof.problems import Manufacturing, problem_text
 from grashof.synth import Result
-from grashof.synth.table import MANUFACTURING
+from grashof.synth.results.table import MANUFACTURING
 
 Grashof = Callable[..., Any]
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from grashof import load, synthesize
 from grashof.analysis import solve_position
-from grashof.output import write_run
+from grashof.output.run_files import write_run
 from grashof.problems import FourBar
 
 

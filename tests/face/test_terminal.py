@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from grashof.analysis.mobility import GrashofClass
+from grashof.analysis.four_bar.mobility import GrashofClass
+from grashof.output.terminal import best_rows, folded, heading, print_table, search_progress
 from grashof.problems import (
     Box,
     MotionTask,
@@ -22,17 +23,7 @@ from grashof.problems import (
     load,
 )
 from grashof.synth import Progress, Result
-from grashof.terminal import (
-    beginning,
-    best_rows,
-    ends_with_enough,
-    error_meaning,
-    folded,
-    heading,
-    print_table,
-    search_progress,
-    summary,
-)
+from grashof.wording.problem import beginning, ends_with_enough, error_meaning, summary
 
 
 def zoned(**zones: Any) -> MotionTask:
@@ -117,7 +108,7 @@ def test_table_fits_the_terminal_uncut(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     terminal = Console(width=columns, highlight=False, markup=False)
-    monkeypatch.setattr("grashof.terminal.console", lambda: terminal)
+    monkeypatch.setattr("grashof.output.terminal.console", lambda: terminal)
     if mixed:
         first = few.candidates[0]
         other = replace(first, verdict=replace(first.verdict, grashof_class=GrashofClass.DOUBLE_CRANK))
@@ -139,7 +130,7 @@ def test_table_fits_the_terminal_uncut(
 def test_a_terminal_breaks_no_word(monkeypatch: pytest.MonkeyPatch) -> None:
     line = "  best: least error of a crank-rocker; the list offers more"
     assert folded([line]) == [line]  # as it is where it is piped
-    monkeypatch.setattr("grashof.terminal.console", lambda: Console(width=36, force_terminal=True))
+    monkeypatch.setattr("grashof.output.terminal.console", lambda: Console(width=36, force_terminal=True))
     monkeypatch.setattr("sys.stdout.isatty", lambda: True, raising=False)
     assert folded([line]) == ["  best: least error of a", "    crank-rocker; the list offers", "    more"]
 

@@ -15,8 +15,8 @@ import pytest
 
 from grashof.analysis import solve_position, verify
 from grashof.problems import Box, FourBar, MotionTask, PathTask, Problem, Requirements
-from grashof.problems.schema import problem_from
-from grashof.problems.toml_file import document_of
+from grashof.problems.files.problem_schema import problem_from
+from grashof.problems.files.toml_file import document_of
 
 ROOT = Path(__file__).parents[2]
 DATA = ROOT / "tests" / "data"

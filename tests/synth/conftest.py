@@ -10,14 +10,15 @@ import numpy as np
 import pytest
 
 from grashof import load, synthesize
-from grashof.analysis.planted import planted_motion, planted_path
+from grashof.analysis.judge.planted import planted_motion, planted_path
 from grashof.problems import FourBar, MotionTask, PathTask, Problem, Requirements
-from grashof.problems.checks import ComplexArray, FloatArray
-from grashof.synth import Candidate, Result, exact_poses
-from grashof.synth.burmester import trace_four_pose_curves
-from grashof.synth.finds import Finds
-from grashof.synth.screen import near_misses, screen
-from grashof.synth.setup import Setup
+from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.synth import Candidate, Result
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.screening import Screened
+from grashof.synth.starts import exact_poses
+from grashof.synth.starts.dyad_pairs import near_misses, screen
+from grashof.synth.theory.burmester import trace_four_pose_curves
 
 STEPS = 3000  # of the driver between two targets; three times as many over the turn
 
@@ -191,27 +192,27 @@ def luggage_designs(luggage_result: Result) -> tuple[Candidate, ...]:
     return luggage_result.candidates
 
 
-SetupOf: TypeAlias = Callable[..., Setup]
+SetupOf: TypeAlias = Callable[..., ScaledProblem]
 
 
 @pytest.fixture(scope="session")
-def luggage_setup(luggage: Problem) -> SetupOf:
-    """Setup of the luggage task under other requirements: links and arms 0.3 to 8 unless said otherwise."""
+def luggage_scaled(luggage: Problem) -> SetupOf:
+    """The luggage task under other requirements: links and arms 0.3 to 8 unless said otherwise."""
 
-    def of(**wanted: Any) -> Setup:
+    def of(**wanted: Any) -> ScaledProblem:
         limits = {"link_length": (0.3, 8.0), "coupler_arms": (0.3, 8.0)}
-        return Setup.of(Problem(task=luggage.task, requirements=Requirements(**(limits | wanted))))
+        return ScaledProblem.of(Problem(task=luggage.task, requirements=Requirements(**(limits | wanted))))
 
     return of
 
 
 @pytest.fixture(scope="session")
-def planted_setup() -> Callable[..., tuple[Setup, FourBar]]:
-    """Setup of a planted task, and the linkage that does it."""
+def planted_scaled() -> Callable[..., tuple[ScaledProblem, FourBar]]:
+    """ScaledProblem of a planted task, and the linkage that does it."""
 
-    def of(seed: int, **wanted: Any) -> tuple[Setup, FourBar]:
+    def of(seed: int, **wanted: Any) -> tuple[ScaledProblem, FourBar]:
         task, linkage = planted_motion(np.random.default_rng(seed), poses=4)
-        return Setup.of(Problem(task=task, requirements=Requirements(**wanted))), linkage
+        return ScaledProblem.of(Problem(task=task, requirements=Requirements(**wanted))), linkage
 
     return of
 
@@ -222,33 +223,33 @@ def path_judge() -> PathJudge:
 
 
 @pytest.fixture(scope="session")
-def path_setup() -> Callable[..., tuple[Setup, FourBar]]:
-    """Setup of a planted path task, and the linkage that does it."""
+def path_scaled() -> Callable[..., tuple[ScaledProblem, FourBar]]:
+    """ScaledProblem of a planted path task, and the linkage that does it."""
 
-    def of(seed: int, points: int, timed: bool = False, **wanted: Any) -> tuple[Setup, FourBar]:
+    def of(seed: int, points: int, timed: bool = False, **wanted: Any) -> tuple[ScaledProblem, FourBar]:
         task, linkage = planted_path(np.random.default_rng(seed), points, timed=timed)
-        return Setup.of(Problem(task=task, requirements=Requirements(**wanted))), linkage
+        return ScaledProblem.of(Problem(task=task, requirements=Requirements(**wanted))), linkage
 
     return of
 
 
-PairsOf: TypeAlias = Callable[[Setup], Finds]
+PairsOf: TypeAlias = Callable[[ScaledProblem], Screened]
 
 
 @pytest.fixture(scope="session")
 def feasible_pairs() -> PairsOf:
-    def of(setup: Setup) -> Finds:
-        dyads = trace_four_pose_curves(setup.motion, reach=6.0, lines=200, cell=0.03)
-        return screen(setup.motion, setup.targets[0], dyads, setup.wanted, pairs=60_000)
+    def of(scaled: ScaledProblem) -> Screened:
+        dyads = trace_four_pose_curves(scaled.motion, reach=6.0, lines=200, cell=0.03)
+        return screen(scaled.motion, scaled.targets[0], dyads, scaled.wanted, pairs=60_000)
 
     return of
 
 
 @pytest.fixture(scope="session")
 def all_pairs() -> PairsOf:
-    def of(setup: Setup) -> Finds:
-        dyads = trace_four_pose_curves(setup.motion, reach=5.0, lines=40, cell=0.1)
-        return near_misses(setup.motion, setup.targets[0], dyads, setup.wanted, pairs=20_000)
+    def of(scaled: ScaledProblem) -> Screened:
+        dyads = trace_four_pose_curves(scaled.motion, reach=5.0, lines=40, cell=0.1)
+        return near_misses(scaled.motion, scaled.targets[0], dyads, scaled.wanted, pairs=20_000)
 
     return of
 

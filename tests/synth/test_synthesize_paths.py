@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from grashof import synthesize
-from grashof.analysis.planted import planted_path
+from grashof.analysis.judge.planted import planted_path
 from grashof.problems import Box, FourBar, PathTask, Problem, Requirements
-from grashof.problems.checks import ComplexArray, FloatArray
-from grashof.synth import Candidate, Result, paths
+from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.synth import Candidate, Result
+from grashof.synth.starts import paths
 
 LINE = [[20.0, 20 + 5.0 * k] for k in range(6)]
 EIGHTEEN = [

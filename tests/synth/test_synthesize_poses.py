@@ -11,12 +11,12 @@ import pytest
 
 from grashof import synthesize
 from grashof.analysis import Design, verify
-from grashof.analysis.planted import planted_motion
+from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, Requirements
 from grashof.synth import Candidate, Result
-from grashof.synth.attempt import attempt
-from grashof.synth.setup import Setup
-from grashof.synth.start import Start
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.start import Start
+from grashof.synth.results.attempt import attempt
 
 Judge = Callable[[FourBar, MotionTask], Any]
 EXACT, LEAST = Requirements(exact=True), Requirements(exact=False)
@@ -94,8 +94,8 @@ def noisy(seed: int, poses: int, **rest: Any) -> tuple[Problem, FourBar]:
 
 def polished(problem: Problem, linkage: FourBar) -> list[float]:
     """Squares of a linkage and of what the programme makes of it, where they are usable."""
-    setup, verdict = Setup.of(problem), verify(linkage, problem.task, problem.requirements)
-    candidate = attempt(setup, Start.of_linkage(setup, linkage, verdict), 0).candidate
+    scaled, verdict = ScaledProblem.of(problem), verify(linkage, problem.task, problem.requirements)
+    candidate = attempt(scaled, Start.of_linkage(scaled, linkage, verdict), 0).candidate
     found = [verdict] if candidate is None else [verdict, candidate.verdict]
     return [each.square for each in found if each.ok]
 

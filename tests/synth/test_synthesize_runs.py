@@ -15,7 +15,7 @@ import pytest
 
 from grashof import synthesize
 from grashof.problems import Box, Problem, ProblemError, Search, SolverError
-from grashof.problems.checks import counted
+from grashof.problems.values.checks import counted
 from grashof.synth import Progress, Result
 
 pytestmark = pytest.mark.usefixtures("coarse_curves")
@@ -118,7 +118,7 @@ def test_enough_is_enough(luggage: Problem) -> None:
 
 
 def test_a_fruitless_search_ends(luggage: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(import_module("grashof.synth.ledger"), "FRUITLESS", 16)
+    monkeypatch.setattr(import_module("grashof.synth.results.ledger"), "FRUITLESS", 16)
     seen: list[Progress] = []
     far = replace(luggage.requirements, o2=Box((100, 101), (100, 101)))
     synthesize(replace(luggage, requirements=far), progress=seen.append)

@@ -13,7 +13,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
 from grashof.analysis import Position, solve_position
-from grashof.analysis.smooth import smooth_polygon
+from grashof.analysis.numerics.smooth_polygon import smooth_polygon
 from grashof.figures.linkage import figure_of, new_axes, plane
 from grashof.figures.parts import (
     BODY,
@@ -28,8 +28,7 @@ from grashof.figures.parts import (
 )
 from grashof.figures.subject import Linkage, Subject
 from grashof.problems import MotionTask, Problem, ProblemError
-from grashof.problems.checks import FloatArray
-from grashof.survey.sweep import TURN
+from grashof.problems.values.arrays import TURN, FloatArray
 
 _WRITERS = {".gif": "pillow", ".mp4": "ffmpeg"}
 

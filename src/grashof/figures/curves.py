@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from grashof.figures.parts import COUPLER, GROUND, OUTPUT, PATH, TARGET
 from grashof.figures.subject import Linkage, Subject
 from grashof.problems import Problem, ProblemError
-from grashof.problems.checks import FloatArray
+from grashof.problems.values.arrays import FloatArray
 from grashof.survey.quantities import dynamic_quantities, kinematic_quantities, table_of
 from grashof.survey.sweep import Sweep, dead_positions_unwarned, loads_of, masses_of
 

@@ -27,9 +27,9 @@ from grashof.figures.parts import (
 )
 from grashof.figures.subject import Linkage, Subject
 from grashof.problems import AssemblyError, Problem, ProblemError
-from grashof.problems.checks import FloatArray
+from grashof.problems.values.arrays import FloatArray
 from grashof.synth import Result
-from grashof.synth.result import pareto_optimal
+from grashof.synth.results.ranking import pareto_optimal
 
 _NUMBERED = 10  # designs that carry their rank
 

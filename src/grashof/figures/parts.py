@@ -12,10 +12,10 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Polygon
 
 from grashof.analysis import Position, solve_position
-from grashof.analysis.smooth import smooth_polygon
+from grashof.analysis.numerics.smooth_polygon import smooth_polygon
 from grashof.figures.subject import Subject
 from grashof.problems import FourBar, MotionTask, PathTask, Problem, Task
-from grashof.problems.checks import FloatArray
+from grashof.problems.values.arrays import FloatArray
 
 # Told apart by the colour-blind, too (after Okabe & Ito, *Color Universal Design*, 2008).
 DRIVER, COUPLER, OUTPUT, PATH = "#d55e00", "#0072b2", "#009e73", "#8c3f78"

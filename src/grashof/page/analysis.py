@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from grashof.output import linkage_json
 from grashof.page.render import compact, render
+from grashof.problems.files.linkage_file import linkage_json
 from grashof.survey.report import LinkageReport
-from grashof.wording import number_text, value_text
+from grashof.wording.numbers import number_text, value_text
 
 _SCRIPTS = ("linkage.js", "svg.js", "stage.js", "player.js", "curves.js", "analysis.js")
 _POINTS = ("a", "b", "p")

@@ -10,8 +10,8 @@ import numpy as np
 import pandas as pd
 
 from grashof.problems import PathTask, Problem
-from grashof.synth.table import DYNAMICS, MOTION
-from grashof.terminal import error_meaning
+from grashof.synth.results.table import DYNAMICS, MOTION
+from grashof.wording.problem import error_meaning
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,14 +17,14 @@ from grashof.analysis import (
     solve_kinematics,
     stated_masses,
 )
-from grashof.analysis.mobility import range_index
-from grashof.analysis.over_task import motion_ends
-from grashof.output import linkage_json
+from grashof.analysis.four_bar.mobility import range_index
+from grashof.analysis.judge.over_task import motion_ends
 from grashof.page.render import compact
 from grashof.problems import FourBar, Problem
-from grashof.problems.checks import FloatArray
-from grashof.problems.dynamics_spec import metres
-from grashof.survey.sweep import INSET, TURN, dead_positions_unwarned
+from grashof.problems.files.linkage_file import linkage_json
+from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.problems.values.dynamics_spec import metres
+from grashof.survey.sweep import INSET, dead_positions_unwarned
 from grashof.synth import Candidate
 
 STEPS = 180

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from grashof.analysis import driver_ranges, solve_position
-from grashof.analysis.smooth import smooth_polygon
+from grashof.analysis.numerics.smooth_polygon import smooth_polygon
 from grashof.page.render import compact
 from grashof.problems import MotionTask, PathTask, Problem, Task, catalogue, load
-from grashof.problems.checks import FloatArray
-from grashof.problems.published import published
+from grashof.problems.files.published import published
+from grashof.problems.values.arrays import FloatArray
 
 _REGIONS = ("o2", "o4", "a", "b")
 _SAMPLES = 181

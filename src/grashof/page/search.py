@@ -13,9 +13,9 @@ from grashof.page.columns import Column, figure_units, listed
 from grashof.page.designs import designs_of, driver_travel
 from grashof.page.render import render
 from grashof.page.scene import scene_of
-from grashof.problems.checks import counted
+from grashof.problems.values.checks import counted
 from grashof.synth import Result
-from grashof.terminal import goals, summary
+from grashof.wording.problem import goals, summary
 
 _SCRIPTS = (
     "linkage.js", "svg.js", "stage.js", "player.js", "curves.js", "scatter.js", "table.js", "compare.js",

@@ -19,8 +19,8 @@ from grashof.analysis import (
     transmission_angle,
 )
 from grashof.problems import LinkageSpec
-from grashof.problems.checks import FloatArray
-from grashof.problems.dynamics_spec import metres
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.dynamics_spec import metres
 
 Curve = Callable[[Kinematics], FloatArray]
 MAGNITUDES = {

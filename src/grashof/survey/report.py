@@ -9,9 +9,9 @@ import numpy as np
 import pandas as pd
 
 from grashof.analysis import GrashofClass, Masses, grashof_class, solve_position, system_centre
-from grashof.analysis.smooth import smooth_polygon
+from grashof.analysis.numerics.smooth_polygon import smooth_polygon
 from grashof.problems import LinkageSpec
-from grashof.problems.checks import FloatArray
+from grashof.problems.values.arrays import FloatArray
 from grashof.survey.extremes import extremes_table
 from grashof.survey.facts import Fact, facts_of
 from grashof.survey.quantities import dynamic_quantities, kinematic_quantities, table_of

@@ -21,10 +21,10 @@ from grashof.analysis import (
     transmission_angle,
 )
 from grashof.problems import DeadPositionWarning, FourBar, LinkageSpec, ProblemError
-from grashof.problems.checks import GREATEST, FloatArray, number_within
-from grashof.problems.dynamics_spec import metres
+from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.problems.values.checks import GREATEST, number_within
+from grashof.problems.values.dynamics_spec import metres
 
-TURN = 2 * np.pi
 INSET = 1e-6  # rad: extremes of rates are sought so far from a dead position
 _DEAD = 1e-7  # sin(theta4 - theta3), as `solve_kinematics` counts it
 _STEPS = 360

@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from grashof.problems import LinkageSpec, ProblemError, load_linkage_spec
-from grashof.problems.checks import finite_number, positive_number
-from grashof.problems.dynamics_spec import METRES
-from grashof.problems.linkage_file import ListedDesign, load_design
+from grashof.problems.files.linkage_file import load_design
+from grashof.problems.values.checks import finite_number, positive_number
+from grashof.problems.values.dynamics_spec import METRES
+from grashof.problems.values.linkage_spec import ListedDesign
 from grashof.workshop.dxf import dxf
 from grashof.workshop.files import write_whole
 from grashof.workshop.plan import Plan, plan_parts

@@ -8,7 +8,8 @@ import numpy as np
 
 from grashof.analysis import full_rotation, solve_position
 from grashof.problems import FourBar, ProblemError
-from grashof.problems.checks import FloatArray, positive_number
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.checks import positive_number
 from grashof.workshop.plates import Plate, PlateSizes, base, link_plates, spacer
 from grashof.workshop.stacking import LINKS, Pin, Stack, places, ranges_of_use, stack, sweep
 

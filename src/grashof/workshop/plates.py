@@ -9,7 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.problems import FourBar, ProblemError
-from grashof.problems.checks import FloatArray, frozen_array, number_within, positive_number
+from grashof.problems.values.arrays import FloatArray, frozen_array
+from grashof.problems.values.checks import number_within, positive_number
 
 # A link longer than so many widths is a slip in the unit, and no plate.
 _SLENDEREST = 1000

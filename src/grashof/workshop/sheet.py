@@ -8,7 +8,7 @@ from itertools import combinations
 
 import numpy as np
 
-from grashof.problems.checks import FloatArray
+from grashof.problems.values.arrays import FloatArray
 from grashof.workshop.plan import Part, Plan
 from grashof.workshop.plates import Plate
 from grashof.workshop.stacking import placed

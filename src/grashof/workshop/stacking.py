@@ -19,9 +19,9 @@ import numpy.typing as npt
 import shapely
 
 from grashof.analysis import driver_ranges, full_rotation, solve_position
-from grashof.analysis.mobility import range_index
+from grashof.analysis.four_bar.mobility import range_index
 from grashof.problems import FourBar, ProblemError
-from grashof.problems.checks import FloatArray
+from grashof.problems.values.arrays import FloatArray
 from grashof.workshop.plates import Plate, PlateSizes
 
 LINKS = ("driver", "coupler", "output")

@@ -6,7 +6,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
-from grashof.problems.checks import FloatArray
+from grashof.problems.values.arrays import FloatArray
 from grashof.workshop.sheet import CUT, ENGRAVE, NOTES, PINS, Circle, Outline, Sheet, Text
 
 _HAIRLINE, _DRAWN = 0.1, 0.4  # mm

@@ -23,9 +23,9 @@ from grashof.analysis import (
     transmission_angle,
     worst_transmission_cycle,
 )
-from grashof.analysis.transmission import quality
+from grashof.analysis.four_bar.transmission import quality
 from grashof.problems import LinkageSpec, ProblemError
-from grashof.problems.linkage_file import ListedDesign
+from grashof.problems.values.linkage_spec import ListedDesign
 from grashof.workshop.sheet import printable
 
 if TYPE_CHECKING:

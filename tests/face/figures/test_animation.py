@@ -23,7 +23,7 @@ from grashof import animate
 from grashof.analysis import driver_ranges, solve_position
 from grashof.figures import save_animation
 from grashof.figures.parts import COUPLER, DRIVER, OUTPUT, PATH
-from grashof.output import write_run
+from grashof.output.run_files import write_run
 from grashof.problems import (
     FourBar,
     MotionTask,

@@ -12,9 +12,9 @@ from matplotlib.colors import to_hex
 from grashof.figures import draw_design, save, save_animation
 from grashof.figures.files import draw_motion
 from grashof.figures.parts import BODY, DRIVER, PATH, missing_glyphs_unwarned
+from grashof.figures.survey_plots import plots
 from grashof.problems import LinkageSpec
 from grashof.survey import report_on
-from grashof.survey.plots import plots
 from grashof.synth import Result
 
 

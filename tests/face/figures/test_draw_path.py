@@ -10,11 +10,11 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 
 from grashof.analysis import solve_position, verify
-from grashof.analysis.planted import planted_path, random_full_crank
+from grashof.analysis.judge.planted import planted_path, random_full_crank
 from grashof.figures import draw_design, save
 from grashof.figures.parts import DRIVER, PATH, TARGET
 from grashof.problems import FourBar, PathTask, Problem, load
-from grashof.problems.published import published
+from grashof.problems.files.published import published
 from grashof.synth import Candidate
 
 

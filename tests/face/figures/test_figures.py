@@ -24,7 +24,7 @@ from grashof.analysis import (
     solve_position,
     virtual_work_torque,
 )
-from grashof.analysis.planted import planted_path
+from grashof.analysis.judge.planted import planted_path
 from grashof.figures import parts
 from grashof.figures.files import save
 from grashof.problems import (

@@ -14,7 +14,7 @@ import pytest
 from playwright.sync_api import Browser, Locator, Page, sync_playwright
 
 from grashof.analysis import driver_ranges, solve_position, transmission_angle
-from grashof.analysis.transmission import quality
+from grashof.analysis.four_bar.transmission import quality
 from grashof.page import analysis_page, search_page
 from grashof.problems import FourBar, LinkageSpec
 from grashof.survey import report_on

@@ -22,7 +22,7 @@ from grashof.analysis import (
     solve_kinematics,
     uniform_bars,
 )
-from grashof.output import write_run
+from grashof.output.run_files import write_run
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, MotionTask, ProblemError, load_linkage_spec
 from grashof.survey import LinkageReport, report_on
 from grashof.synth import Result, synthesize
@@ -338,7 +338,7 @@ def test_given_masses_and_payload() -> None:
 
 def test_plots_of_a_limited_range_are_made(tmp_path: Path) -> None:
     """Rates without bound are cut off, and no warning is given."""
-    from grashof.survey.plots import plots
+    from grashof.figures.survey_plots import plots
 
     made = dict(plots(report_on(LinkageSpec(DOUBLE_ROCKER, "rocker", length_unit="mm"))))
     files = [tmp_path / f"velocities.{kind}" for kind in ("png", "svg")]

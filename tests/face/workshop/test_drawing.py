@@ -21,7 +21,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from grashof.problems import FourBar, ProblemError, load_linkage
-from grashof.problems.checks import FloatArray
+from grashof.problems.values.arrays import FloatArray
 from grashof.synth import Result
 from grashof.workshop import Plan, PlateSizes, plan_parts, write_dxf, write_svg
 from grashof.workshop.dxf import dxf

@@ -12,7 +12,7 @@ import ezdxf
 import numpy as np
 import pytest
 
-from grashof.output import write_run
+from grashof.output.run_files import write_run
 from grashof.problems import FourBar, ProblemError
 from grashof.synth import Result
 from grashof.workshop import Plan, PlateSizes, plan_parts

@@ -15,9 +15,9 @@ import pandas as pd
 import pytest
 
 from grashof.analysis import driver_ranges, solve_position, transmission_angle
-from grashof.output import write_run
+from grashof.output.run_files import write_run
 from grashof.problems import FourBar, LinkageSpec, ProblemError, load_linkage_spec
-from grashof.problems.linkage_file import load_design
+from grashof.problems.files.linkage_file import load_design
 from grashof.synth import Result
 from grashof.workshop import write_xlsx
 from grashof.workshop.workbook import listed_candidates, workbook

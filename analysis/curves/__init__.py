@@ -1,0 +1,1 @@
+"""Coupler curves: their shape, their special points, what approximates them."""

@@ -1,0 +1,211 @@
+"""The coupler curve: P with its derivatives, and its samples along the motion that a driver can make."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from grashof.analysis.four_bar.mobility import driver_ranges, range_index, rotatability
+from grashof.analysis.four_bar.position import Position, solve_position
+from grashof.analysis.numerics.minimisation import Model
+from grashof.problems import FourBar
+from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
+
+PIECES = 180  # of each range of the driver, when points are sought on the curve
+ROUNDING = 1e-13  # share of the size: sums of squares that differ by less than its square are equal
+_FINE = 180  # samples of half a turn, or of a range, by which the nodes are placed
+
+
+def coupler_curve(
+    linkage: FourBar, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None
+) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    """P = x + i y and its first two derivatives by the driver angle.
+
+    Parameters
+    ----------
+    linkage : FourBar
+    theta2 : array_like, shape (...), rad
+    assembly : array_like, shape (...), optional
+        The linkage's own by default.
+
+    Returns
+    -------
+    p, rate, bend : ndarray of complex, shape (...)
+        NaN where the linkage cannot close; the derivatives are not finite in a dead position.
+
+    Notes
+    -----
+    The loop r2 e^(i theta2) + r3 e^(i theta3) = r1 e^(i theta1) + r4 e^(i theta4), differentiated
+    once and twice, each time multiplied by the conjugate of the direction that drops out.
+    """
+    state = solve_position(linkage, theta2, assembly)
+    omega3, alpha3 = coupler_rates(linkage, state)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        crank = linkage.r2 * np.exp(1j * state.theta2)
+        u, v = linkage.coupler_point[..., 0], linkage.coupler_point[..., 1]
+        arm = (u + 1j * v) * np.exp(1j * state.theta3)
+        rate = 1j * (crank + omega3 * arm)
+        bend = -crank + (1j * alpha3 - omega3**2) * arm
+    return state.p[..., 0] + 1j * state.p[..., 1], rate, bend
+
+
+def coupler_rates(linkage: FourBar, state: Position) -> tuple[FloatArray, FloatArray]:
+    """First and second derivative of theta3 by the driver angle; see `coupler_curve`."""
+    r2, r3, r4 = linkage.r2, linkage.r3, linkage.r4
+    spread = np.sin(state.theta3 - state.theta4)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        omega3 = r2 * np.sin(state.theta4 - state.theta2) / (r3 * spread)
+        omega4 = r2 * np.sin(state.theta3 - state.theta2) / (r4 * spread)
+        inward = r2 * np.cos(state.theta2 - state.theta4) + r3 * omega3**2 * np.cos(
+            state.theta3 - state.theta4
+        )
+        alpha3 = (r4 * omega4**2 - inward) / (r3 * spread)
+    return omega3, alpha3
+
+
+def squared_distance(
+    linkage: FourBar, points: ComplexArray, assembly: IntArray
+) -> Callable[[FloatArray], Model]:
+    """Squared distance from each point, as a function of its driver angle."""
+
+    def model(theta2: FloatArray) -> Model:
+        p, rate, bend = coupler_curve(linkage, theta2, assembly)
+        gap = p - points
+        with np.errstate(invalid="ignore", over="ignore"):
+            value = np.nan_to_num(gap.real**2 + gap.imag**2, nan=np.inf)
+            positive = 2 * (rate.real**2 + rate.imag**2)
+            slope = 2 * (rate.conj() * gap).real
+            return value, slope, positive + 2 * (bend.conj() * gap).real, positive
+
+    return model
+
+
+@dataclass(frozen=True, slots=True)
+class Track:
+    """A motion that the driver can make, cut into pieces on which the curve is nearly straight.
+
+    Parameters
+    ----------
+    low, high : ndarray, shape (M,), rad
+        Driver angles at the ends of each piece, increasing.
+    start, end : ndarray of complex, shape (S, M)
+        P there, on each assembly.
+    signs : ndarray of int, shape (S,)
+        The assemblies.
+    floor, ceiling : ndarray, shape (M,), rad
+        Ends of the driver's range that each piece lies in; infinite when the driver turns fully.
+    cyclic : bool
+        After the last piece comes the first.
+    """
+
+    low: FloatArray
+    high: FloatArray
+    start: ComplexArray
+    end: ComplexArray
+    signs: IntArray
+    floor: FloatArray
+    ceiling: FloatArray
+    cyclic: bool
+
+
+def tracks(linkage: FourBar, pieces: int, same_branch: bool) -> list[Track]:
+    """Every motion that the driver can make.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        A single linkage.
+    pieces : int
+        Of each range of the driver.
+    same_branch : bool
+        Motions on the linkage's own assembly without a dead position. Otherwise a single one, over
+        all ranges and both assemblies.
+
+    Returns
+    -------
+    list of Track
+        Empty when the linkage cannot be assembled.
+    """
+    own = int(linkage.assembly)
+    signs = np.array([own] if same_branch else [own, -own])
+    if (rotatability(linkage) >= 0).all():
+        return [_turn(linkage, pieces, signs)]
+    ends = driver_ranges(linkage)
+    single = [_swing(linkage, low, high, pieces, signs) for low, high in ends if high > low]
+    return single if same_branch or len(single) < 2 else [_joined(single)]
+
+
+def between(
+    linkage: FourBar, start: float, end: float, ends: tuple[float, float], pieces: int, same_branch: bool
+) -> Track:
+    """The part from `start` to `end` > `start` of the driver's range with these ends."""
+    own = int(linkage.assembly)
+    signs = np.array([own] if same_branch else [own, -own])
+    nodes = _nodes(linkage, _closer_at_ends(start, end), pieces, signs)
+    return _track(linkage, nodes, signs, *ends, cyclic=False)
+
+
+def range_around(linkage: FourBar, theta2: float) -> tuple[float, float]:
+    """Ends of the driver's range that holds an angle, counted from it; NaN when none does.
+
+    Infinite for a driver that turns fully.
+    """
+    if (rotatability(linkage) >= 0).all():
+        return -np.inf, np.inf
+    index, inside = range_index(linkage, theta2)
+    if index < 0:
+        return np.nan, np.nan
+    low, high = driver_ranges(linkage)[index] + (theta2 - inside)
+    return float(min(low, theta2)), float(max(high, theta2))
+
+
+def _turn(linkage: FourBar, pieces: int, signs: IntArray) -> Track:
+    # Closer about the ground line: there a linkage near a change point runs away from its driver.
+    half = _closer_at_ends(0.0, np.pi)
+    fine = linkage.theta1 + np.concatenate([half, half[1:] + np.pi])
+    nodes = _nodes(linkage, fine, pieces, signs)
+    nodes[-1] = nodes[0] + TURN
+    return _track(linkage, nodes, signs, -np.inf, np.inf, cyclic=True)
+
+
+def _swing(linkage: FourBar, low: float, high: float, pieces: int, signs: IntArray) -> Track:
+    nodes = _nodes(linkage, _closer_at_ends(low, high), pieces, signs)
+    return _track(linkage, nodes, signs, low, high, cyclic=False)
+
+
+def _closer_at_ends(low: float, high: float) -> FloatArray:
+    share: FloatArray = (1 - np.cos(np.linspace(0, np.pi, _FINE + 1))) / 2
+    return low + (high - low) * share
+
+
+def _nodes(linkage: FourBar, fine: FloatArray, pieces: int, signs: IntArray) -> FloatArray:
+    """`pieces` + 1 of the angles between which P and the driver, half and half, move equally far."""
+    p = solve_position(linkage, fine, signs[:, None]).p
+    step = np.hypot(*np.moveaxis(np.diff(p, axis=1), -1, 0)).max(axis=0)
+    step = np.nan_to_num(step)
+    turn = np.diff(fine)
+    moved = np.concatenate([[0.0], np.cumsum(step / max(step.sum(), 1e-300) + turn / turn.sum())])
+    nodes: FloatArray = np.interp(np.linspace(0, moved[-1], pieces + 1), moved, fine)
+    return nodes
+
+
+def _track(
+    linkage: FourBar, nodes: FloatArray, signs: IntArray, floor: float, ceiling: float, *, cyclic: bool
+) -> Track:
+    p = solve_position(linkage, nodes, signs[:, None]).p @ np.array([1, 1j])
+    low, high = nodes[:-1], nodes[1:]
+    bounds = np.full_like(low, floor), np.full_like(low, ceiling)
+    return Track(low, high, p[:, :-1], p[:, 1:], signs, *bounds, cyclic)
+
+
+def _joined(parts: list[Track]) -> Track:
+    """Parts one after the other round the turn."""
+    parts = sorted(parts, key=lambda part: part.low[0])
+    fields = [[getattr(part, name) for part in parts] for name in ("low", "high", "floor", "ceiling")]
+    low, high, floor, ceiling = (np.concatenate(field) for field in fields)
+    start = np.concatenate([part.start for part in parts], axis=1)
+    end = np.concatenate([part.end for part in parts], axis=1)
+    return Track(low, high, start, end, parts[0].signs, floor, ceiling, cyclic=True)

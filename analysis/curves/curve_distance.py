@@ -1,0 +1,115 @@
+"""How far a closed coupler curve is from a closed target: Hausdorff and Frechet distance."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from grashof.analysis.curves.coupler_curve import tracks
+from grashof.problems import FourBar
+from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
+
+_CURVE = 720
+_EVERY = 4  # of the samples of the curve, for the Frechet distance
+_TARGET = 64
+
+
+def curve_distances(linkage: FourBar, points: FloatArray, direction: int) -> tuple[float, float]:
+    """Distances between the polygon through points and the coupler curve over a turn of the driver.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        A single linkage whose driver turns fully.
+    points : ndarray, shape (N, 2), length
+        Corners of the polygon; the last may repeat the first.
+    direction : int
+        Sense of the driver in which the curve goes round as the points do.
+
+    Returns
+    -------
+    hausdorff : float, length
+        Greatest distance of a point of either from the other.
+    frechet : float, length
+        Least leash on which two walkers go round, one on each, neither going back.
+
+    Examples
+    --------
+    >>> linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)  # P is A: a circle of radius 1
+    >>> angle = np.linspace(0, 2 * np.pi, 1000)
+    >>> circle = 1.5 * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    >>> [round(distance, 3) for distance in curve_distances(linkage, circle, 1)]
+    [0.5, 0.5]
+    """
+    corners = points @ np.array([1, 1j])
+    if corners[0] == corners[-1]:
+        corners = corners[:-1]
+    (track,) = tracks(linkage, _CURVE, same_branch=True)
+    curve = track.start[0][::direction]
+    target = _even(corners, _TARGET)
+    to_curve, to_target = _distances(target, curve), _distances(curve, target)
+    hausdorff = float(max(to_curve.min(axis=1).max(), to_target.min(axis=1).max()))
+    return hausdorff, max(hausdorff, _frechet(_distances(target, curve[::_EVERY]), to_target[::_EVERY].T))
+
+
+def _even(corners: ComplexArray, count: int) -> ComplexArray:
+    """The corners of a closed polygon and points between them, about `count` in all."""
+    edges = np.roll(corners, -1) - corners
+    length = np.abs(edges)
+    pieces = np.maximum(np.ceil(length / length.sum() * count), 1).astype(np.int64)
+    first = np.repeat(np.cumsum(pieces) - pieces, pieces)
+    share = (np.arange(pieces.sum()) - first) / np.repeat(pieces, pieces)
+    result: ComplexArray = np.repeat(corners, pieces) + share * np.repeat(edges, pieces)
+    return result
+
+
+def _distances(points: ComplexArray, polygon: ComplexArray) -> FloatArray:
+    """Distance of each point from each edge of a closed polygon, shape (points, edges)."""
+    edge = np.roll(polygon, -1) - polygon
+    offset = points[:, None] - polygon
+    share = np.clip((offset * edge.conj()).real / np.maximum(np.abs(edge) ** 2, 1e-300), 0.0, 1.0)
+    result: FloatArray = np.abs(offset - share * edge)
+    return result
+
+
+def _frechet(to_edge: FloatArray, from_edge: FloatArray) -> float:
+    """Frechet distance of two closed polygons, over all pairs of points to begin with.
+
+    Parameters
+    ----------
+    to_edge : ndarray, shape (n, m), length
+        Distance of corner i of the first from edge j of the second.
+    from_edge : ndarray, shape (n, m), length
+        Distance of corner j of the second from edge i of the first.
+
+    Notes
+    -----
+    Alt & Godau (1995): where the first walker passes a corner, the second is somewhere on an edge,
+    and the other way round; between two such moments the leash is longest at either. What is left
+    out is that a walker may not go back inside an edge, which is of the order of their sagitta.
+    """
+    # All walks pass every corner of the first: begin at the one that is near the fewest edges.
+    limit = _leash(to_edge, from_edge, np.array([np.argmin(to_edge[0])]))
+    corner = int(np.argmin((to_edge < limit).sum(axis=1)))
+    to_edge, from_edge = np.roll(to_edge, -corner, axis=0), np.roll(from_edge, -corner, axis=0)
+    begin = np.flatnonzero(to_edge[0] < limit)
+    return min(limit, _leash(to_edge, from_edge, begin)) if begin.size else limit
+
+
+def _leash(to_edge: FloatArray, from_edge: FloatArray, begin: IntArray) -> float:
+    """Least leash for the walks that begin at corner 0 of the first and the given edges of the second.
+
+    Dynamic programming over pairs of edges (i, s + j), all those with the same i + j at once, for
+    all beginnings s.
+    """
+    n, m = to_edge.shape
+    row = np.arange(n + 1)
+    column = (np.arange(n + 2 * m + 1)[:, None] - row) % m
+    entered_first, entered_second = to_edge[row % n, column], from_edge[row % n, column]
+    walked = np.full((len(begin), n + 1), np.inf)
+    walked[:, 0] = to_edge[0, begin % m]
+    for k in range(1, n + m + 1):
+        onward = np.maximum(walked, entered_second[begin + k])
+        np.minimum(onward[:, 1:], np.maximum(walked[:, :-1], entered_first[begin + k, 1:]), out=onward[:, 1:])
+        onward[:, (row > k) | (row < k - m)] = np.inf
+        walked = onward
+    return float(walked[:, n].min())

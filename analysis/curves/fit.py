@@ -1,0 +1,269 @@
+"""Polynomials through a path by least squares: y on x, or both against the driver angle."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+from numpy.polynomial import Polynomial, chebyshev, legendre
+
+from grashof.analysis.four_bar.position import solve_position
+from grashof.problems import FourBar
+from grashof.problems.values.arrays import FloatArray, frozen_array
+from grashof.problems.values.checks import finite_rows, whole_number
+from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.read_only import ReadOnly
+
+_NODES = 128  # of the quadrature over a motion
+_EQUAL = 1e-14  # share of their size by which equal values may differ
+
+
+class NotAFunctionWarning(UserWarning):
+    """y is asked for as a function of x on a path along which x turns back."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PolynomialFit(ReadOnly):
+    """A polynomial fitted to samples, in one coordinate or several; call it to evaluate it.
+
+    Parameters
+    ----------
+    low, high : float
+        Range of the parameter at the samples.
+    coefficients : ndarray, shape (degree + 1,) or (degree + 1, K)
+        Of the Chebyshev polynomials in the parameter brought to [-1, 1].
+    r2 : float
+        1 - (sum of squared errors) / (sum of squared distances from the mean), all coordinates
+        together, so that turning the frame does not change it; NaN when all values are equal.
+    r2_each : ndarray, shape () or (K,)
+        The same of each coordinate by itself.
+    error_max : float
+        Greatest distance from a sample.
+    """
+
+    low: float
+    high: float
+    coefficients: FloatArray
+    r2: float
+    r2_each: FloatArray
+    error_max: float
+
+    @property
+    def degree(self) -> int:
+        """Degree of the polynomial."""
+        return len(self.coefficients) - 1
+
+    @property
+    def powers(self) -> FloatArray:
+        """Coefficients of 1, t, t^2 ... of the parameter itself, shape of `coefficients`."""
+        columns = self.coefficients.reshape(self.degree + 1, -1).T
+        plain = np.zeros(columns.shape)
+        for row, column in zip(plain, columns, strict=True):
+            power = Polynomial(chebyshev.cheb2poly(column), domain=[self.low, self.high]).convert().coef
+            row[: len(power)] = power
+        return plain.T.reshape(self.coefficients.shape)
+
+    def __call__(self, parameter: npt.ArrayLike) -> FloatArray:
+        """Value at any parameter, shape (...) or (..., K)."""
+        scaled = _scaled(np.asarray(parameter, dtype=np.float64), self.low, self.high)
+        value = np.asarray(chebyshev.chebval(scaled, self.coefficients), dtype=np.float64)
+        return np.moveaxis(value, 0, -1) if self.coefficients.ndim > 1 else value
+
+
+def fit_polynomial(parameter: npt.ArrayLike, values: npt.ArrayLike, degree: int) -> PolynomialFit:
+    """Least-squares polynomial of values against a parameter.
+
+    Parameters
+    ----------
+    parameter : array_like, shape (N,)
+        The driver angle, say, or the share of the motion done.
+    values : array_like, shape (N,) or (N, K)
+        One coordinate or several.
+    degree : int
+        From 1; more than `degree` different parameters are needed.
+
+    Returns
+    -------
+    PolynomialFit
+
+    Raises
+    ------
+    ProblemError
+        Shapes that do not fit, numbers that are not finite, or too few samples for the degree.
+
+    Examples
+    --------
+    >>> t = np.linspace(0, 2, 9)
+    >>> fit = fit_polynomial(t, np.stack([1 + t, t**2], axis=-1), degree=2)
+    >>> fit.powers.round(12).tolist(), round(fit.r2, 12)
+    ([[1.0, -0.0], [1.0, 0.0], [0.0, 1.0]], 1.0)
+    """
+    t, y = samples(parameter, values)
+    degree = whole_number(degree, 1, "degree")
+    if np.unique(t).size <= degree:
+        raise ProblemError(
+            f"there are {np.unique(t).size} different parameters; degree {degree} needs {degree + 1} or more"
+        )
+    low, high = float(t.min()), float(t.max())
+    basis = chebyshev.chebvander(_scaled(t, low, high), degree)
+    coefficients = np.linalg.lstsq(basis, y, rcond=None)[0]
+    miss = (y - basis @ coefficients).reshape(len(t), -1)
+    wrong, spread = (miss**2).sum(axis=0), ((y - y.mean(axis=0)) ** 2).reshape(len(t), -1).sum(axis=0)
+    return PolynomialFit(
+        low=low,
+        high=high,
+        coefficients=frozen_array(coefficients),
+        r2=float(_r2(wrong.sum(), spread.sum(), np.abs(y).max())),
+        r2_each=frozen_array(_r2(wrong, spread, np.abs(y).max()).reshape(y.shape[1:])),
+        error_max=float(np.sqrt((miss**2).sum(axis=-1).max())),
+    )
+
+
+def regression(points: npt.ArrayLike, degree: int) -> PolynomialFit:
+    """Least-squares polynomial y(x) through the points of a path.
+
+    Parameters
+    ----------
+    points : array_like, shape (N, 2), length
+        In sequence along the path.
+    degree : int
+
+    Returns
+    -------
+    PolynomialFit
+        Of y, with x as the parameter.
+
+    Warns
+    -----
+    NotAFunctionWarning
+        When x turns back along the path: several y then belong to one x, and no degree mends it.
+        `fit_polynomial` against the driver angle is the right tool.
+
+    Examples
+    --------
+    >>> regression([[0, 1], [1, 3], [2, 5], [3, 7]], degree=1).powers.round(12).tolist()
+    [1.0, 2.0]
+    """
+    path = finite_rows(points, 2, "points", "a point [x, y]")
+    step = np.diff(path[:, 0])
+    if not (np.all(step > 0) or np.all(step < 0)):
+        warnings.warn(
+            "x turns back along the path, so y is no function of x; fit x and y against the driver angle",
+            NotAFunctionWarning,
+            stacklevel=2,
+        )
+    return fit_polynomial(path[:, 0], path[:, 1], degree)
+
+
+def greatest_error(
+    curve: Callable[[FloatArray], FloatArray], parameter: npt.ArrayLike, values: npt.ArrayLike
+) -> float:
+    """Greatest distance of a fitted or interpolating curve from the values it stands for.
+
+    Parameters
+    ----------
+    curve : callable
+        A `PolynomialFit`, `NewtonPolynomial`, spline or any function of the parameter.
+    parameter : array_like, shape (N,)
+    values : array_like, shape (N,) or (N, K)
+        What the curve should give there; more of them than it was made from.
+
+    Returns
+    -------
+    float
+
+    Examples
+    --------
+    >>> greatest_error(lambda t: t**2, [0, 1, 2], [0, 1, 3])
+    1.0
+    """
+    t, y = samples(parameter, values)
+    miss = (np.asarray(curve(t)) - y).reshape(len(t), -1)
+    return float(np.sqrt((miss**2).sum(axis=-1).max()))
+
+
+def coupler_fit_r2(
+    linkage: FourBar, theta2_start: npt.ArrayLike, theta2_end: npt.ArrayLike, degree: int = 4
+) -> FloatArray:
+    """How well a polynomial in the driver angle stands for the path of P over a motion.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        One or a batch.
+    theta2_start, theta2_end : array_like, shape (...), rad
+        Ends of the motion, in either sense; they broadcast against the linkages.
+    degree : int
+        From 1 to 30.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        1 - (mean squared distance from the fit) / (mean squared distance from the mean point); NaN
+        where P does not move or the linkage does not close all the way.
+
+    Notes
+    -----
+    Least squares over the continuous motion, each driver angle counting the same: the means are
+    Gauss-Legendre sums, in which the Legendre polynomials are orthogonal. It is the limit of
+    `fit_polynomial` over ever more equal steps of the driver.
+
+    Examples
+    --------
+    >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, coupler_point=(2, 1))
+    >>> coupler_fit_r2(crank_rocker, [0, 0], [1, 2 * np.pi]).round(6).tolist()
+    [1.0, 0.996347]
+    """
+    degree = whole_number(degree, 1, "degree")
+    if degree > 30:
+        raise ProblemError(f"degree is {degree}; allowed is 1 to 30")
+    node, weight, basis = _quadrature(degree)
+    start, end = np.asarray(theta2_start, dtype=np.float64), np.asarray(theta2_end, dtype=np.float64)
+    theta2 = (start + end)[..., None] / 2 + (end - start)[..., None] / 2 * node
+    p = solve_position(linkage[..., None], theta2).p
+    middle = p[..., _NODES // 2, None, :]
+    p = (p - middle) * weight
+    parts = basis.T @ p
+    spread = ((p - basis[:, :1] @ parts[..., :1, :]) ** 2).sum(axis=(-2, -1))
+    wrong = ((p - basis @ parts) ** 2).sum(axis=(-2, -1))
+    return _r2(wrong, spread, np.abs(middle).max(axis=(-2, -1)))
+
+
+def samples(parameter: npt.ArrayLike, values: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
+    """Parameter, shape (N,), and values, shape (N,) or (N, K), checked."""
+    try:
+        t, y = np.asarray(parameter, dtype=np.float64), np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ProblemError(
+            "parameter and values are not all numbers; allowed are arrays of numbers"
+        ) from None
+    if t.ndim != 1 or y.ndim not in (1, 2) or len(t) != len(y) or len(t) == 0:
+        raise ProblemError(
+            f"parameter and values have shapes {t.shape} and {y.shape}; allowed are (N,) with (N,) or (N, K)"
+        )
+    if not (np.isfinite(t).all() and np.isfinite(y).all()):
+        raise ProblemError("parameter or values hold NaN or infinity; all numbers must be finite")
+    return t, y
+
+
+@cache
+def _quadrature(degree: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Gauss-Legendre nodes, roots of their weights, shape (N, 1), and Legendre polynomials, orthonormal."""
+    node, weight = legendre.leggauss(_NODES)
+    root = np.sqrt(weight)[:, None]
+    return node, root, legendre.legvander(node, degree) * np.sqrt(np.arange(degree + 1) + 0.5) * root
+
+
+def _scaled(parameter: FloatArray, low: float, high: float) -> FloatArray:
+    return (2 * parameter - low - high) / (high - low)
+
+
+def _r2(wrong: npt.ArrayLike, spread: npt.ArrayLike, reach: npt.ArrayLike) -> FloatArray:
+    """R2; NaN where the values of this greatest size differ by no more than their rounding."""
+    moves = np.greater(spread, np.square(np.multiply(_EQUAL, reach)))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(moves, 1 - np.divide(wrong, spread), np.nan)

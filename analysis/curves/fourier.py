@@ -1,0 +1,135 @@
+"""Fourier series of a closed curve: what harmonics it is made of, and how few of them do."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from grashof.analysis.four_bar.mobility import full_rotation
+from grashof.analysis.four_bar.position import solve_position
+from grashof.problems import FourBar
+from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
+from grashof.problems.values.checks import finite_rows, whole_number
+from grashof.problems.values.errors import ProblemError
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FourierSeries:
+    """A closed curve as x + i y = sum of c_k e^(i k angle); call it to evaluate it.
+
+    Parameters
+    ----------
+    harmonics : ndarray of int, shape (2 M + 1,)
+        -M to M. A negative one turns against the angle; k and -k together draw an ellipse.
+    coefficients : ndarray of complex, shape (2 M + 1,), length
+    error_max, error_rms : ndarray, shape (M + 1,), length
+        Greatest and root mean square distance from the samples when only the harmonics up to 0, 1,
+        2 ... M are kept.
+    """
+
+    harmonics: IntArray
+    coefficients: ComplexArray
+    error_max: FloatArray
+    error_rms: FloatArray
+
+    @property
+    def content(self) -> FloatArray:
+        """Share of harmonics 1 to M (both senses) in the mean squared distance from the centre, shape (M,).
+
+        NaN for a curve that is a point.
+        """
+        power = np.abs(self.coefficients) ** 2
+        middle = len(power) // 2
+        both = power[middle + 1 :] + power[:middle][::-1]
+        with np.errstate(invalid="ignore"):
+            return np.asarray(both / both.sum())
+
+    def __call__(self, angle: npt.ArrayLike, up_to: int | None = None) -> FloatArray:
+        """Points x, y at angles in rad, shape (..., 2), from the harmonics up to `up_to` (default all)."""
+        kept = slice(None) if up_to is None else np.abs(self.harmonics) <= up_to
+        turns = np.exp(1j * np.asarray(angle, dtype=np.float64)[..., None] * self.harmonics[kept])
+        z = turns @ self.coefficients[kept]
+        return np.stack([z.real, z.imag], axis=-1)
+
+
+def fourier_series(points: npt.ArrayLike) -> FourierSeries:
+    """Fourier series of a closed curve from equally spaced samples of one period.
+
+    Parameters
+    ----------
+    points : array_like, shape (N, 2), length
+        At the angles 0, 2 pi / N, 4 pi / N ...; the first one is not repeated.
+
+    Returns
+    -------
+    FourierSeries
+        With M = N // 2 harmonics: it passes through all samples.
+
+    Notes
+    -----
+    The discrete transform of x + i y; for even N the highest harmonic is shared between both senses.
+    The mean squared error of a truncated series is the sum of the |c_k|^2 left out (Parseval).
+
+    Examples
+    --------
+    >>> angle = np.arange(8) * np.pi / 4
+    >>> ellipse = fourier_series(np.stack([1 + 3 * np.cos(angle), 2 + np.sin(angle)], axis=-1))
+    >>> np.abs(ellipse.coefficients[3:6]).round(12).tolist(), ellipse.error_max[:2].round(12).tolist()
+    ([1.0, 2.2360679775, 2.0], [3.0, 0.0])
+    """
+    path = finite_rows(points, 2, "points", "a point [x, y]")
+    count = len(path)
+    if count < 3:
+        raise ProblemError(f"there are {count} points; a closed curve needs three or more")
+    top = count // 2
+    harmonics = np.arange(-top, top + 1)
+    coefficients = (np.fft.fft(path @ np.array([1, 1j])) / count)[harmonics % count]
+    if count % 2 == 0:
+        coefficients[[0, -1]] /= 2
+    waves = coefficients * np.exp(1j * TURN / count * np.outer(np.arange(count), harmonics))
+    left = waves[:, ::-1] + waves  # harmonic k and -k together, columns M..0..M
+    tail = np.cumsum(left[:, :top], axis=1)[:, ::-1]  # all above 0, above 1, ... above M - 1
+    miss = np.abs(np.column_stack([tail, np.zeros(count)]))
+    return FourierSeries(
+        harmonics=harmonics.astype(np.int64),
+        coefficients=coefficients,
+        error_max=miss.max(axis=0),
+        error_rms=np.sqrt((miss**2).mean(axis=0)),
+    )
+
+
+def coupler_fourier(linkage: FourBar, samples: int = 256) -> FourierSeries:
+    """Fourier series of the coupler curve in the driver angle.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        A single one whose driver turns fully.
+    samples : int
+        Equal steps of one turn.
+
+    Returns
+    -------
+    FourierSeries
+        In theta2: evaluate it at driver angles.
+
+    Raises
+    ------
+    ProblemError
+        A driver that does not turn fully: its coupler curve is no periodic function of theta2.
+
+    Examples
+    --------
+    >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, coupler_point=(2, 1))
+    >>> series = coupler_fourier(crank_rocker)
+    >>> bool(np.abs(series(0.7) - solve_position(crank_rocker, 0.7).p).max() < 1e-12)
+    True
+    """
+    if not full_rotation(linkage):
+        raise ProblemError(
+            "the driver does not turn fully; a Fourier series is of a closed curve over its turn"
+        )
+    count = whole_number(samples, 3, "samples")
+    return fourier_series(solve_position(linkage, np.arange(count) * TURN / count).p)

@@ -1,0 +1,289 @@
+"""What acts on a linkage: gravity, forces, moments, springs, friction; and the wrench each link feels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from enum import IntEnum
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from grashof.analysis.four_bar.kinematics import Kinematics, PointMotion
+from grashof.problems import ProblemError
+from grashof.problems.values.arrays import FloatArray
+
+Varying: TypeAlias = npt.ArrayLike | Callable[[Kinematics], npt.ArrayLike]
+Pair: TypeAlias = tuple[float, float]
+
+
+class Joint(IntEnum):
+    """The four joints, in the order of arrays that have an axis for them."""
+
+    O2 = 0
+    A = 1
+    B = 2
+    O4 = 3
+
+
+# Which links a joint joins; rotations in it are those of the second relative to the first.
+JOINED = ((1, 2), (2, 3), (3, 4), (1, 4))
+
+
+@dataclass(frozen=True, slots=True)
+class AppliedForce:
+    """A force on a point of a link.
+
+    Parameters
+    ----------
+    link : int
+        2, 3 or 4.
+    at : pair of float, length
+        (u, v) in the link's frame.
+    force : array_like, shape (..., 2), N; or callable
+        Constant, or a function of the `Kinematics`: ``lambda state: ... state.theta2 ...``.
+    turning : bool
+        The force is given in the link's frame and turns with it; else in global axes.
+    """
+
+    link: int
+    at: Pair
+    force: Varying
+    turning: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class AppliedMoment:
+    """A moment on a link, counter-clockwise.
+
+    Parameters
+    ----------
+    link : int
+        2, 3 or 4. One on link 2 adds to the drive torque.
+    moment : array_like, shape (...), N length; or callable
+    """
+
+    link: int
+    moment: Varying
+
+
+@dataclass(frozen=True, slots=True)
+class Spring:
+    """A straight spring, with a damper beside it, between points of two links.
+
+    Parameters
+    ----------
+    first_link, second_link : int
+        1 (the ground, whose frame is the global one) to 4.
+    first_at, second_at : pair of float, length
+    stiffness : float, N/length
+    free_length : float, length
+    damping : float, N s/length
+    """
+
+    first_link: int
+    first_at: Pair
+    second_link: int
+    second_at: Pair
+    stiffness: float
+    free_length: float = 0.0
+    damping: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class TorsionSpring:
+    """A spring that turns the two links of a joint towards each other.
+
+    Parameters
+    ----------
+    joint : Joint
+    stiffness : float, N length/rad
+    free_angle : float, rad
+        Angle of the second link less that of the first where it is slack (the ground's is 0: O2
+        joins links 1 and 2, A 2 and 3, B 3 and 4, O4 1 and 4). It is wound by less than half a turn.
+    """
+
+    joint: Joint
+    stiffness: float
+    free_angle: float = 0.0
+
+    def wound(self, angle: FloatArray) -> FloatArray:
+        """By how much it is wound at an angle between the links, in [-pi, pi), rad."""
+        wound: FloatArray = (angle - self.free_angle + np.pi) % (2 * np.pi) - np.pi
+        return wound
+
+
+@dataclass(frozen=True, slots=True)
+class Friction:
+    """Friction in the joints O2, A, B, O4; a single number is meant for each.
+
+    Parameters
+    ----------
+    viscous : float or sequence of 4, N length s/rad
+        Moment for each unit of relative angular velocity.
+    coulomb : float or sequence of 4, N length
+        Moment of constant size against the relative rotation.
+    radius : float or sequence of 4, length
+        Radius of the friction circle, coefficient times pin radius: moment for each unit of the
+        joint's force.
+    """
+
+    viscous: npt.ArrayLike = 0.0
+    coulomb: npt.ArrayLike = 0.0
+    radius: npt.ArrayLike = 0.0
+
+    def each(self, name: str) -> FloatArray:
+        """One of the three for every joint, shape (4,)."""
+        values = np.asarray(getattr(self, name), dtype=np.float64)
+        if values.shape not in ((), (4,)) or not np.isfinite(values).all() or np.any(values < 0):
+            raise ProblemError(f"{name} friction is {values}; allowed are one or four numbers from zero")
+        return np.broadcast_to(values, 4)
+
+
+@dataclass(frozen=True, slots=True)
+class Loads:
+    """All that acts on the links besides the drive.
+
+    Parameters
+    ----------
+    gravity : array_like, shape (2,), length/s^2
+        Its direction and size, (0, -9.80665) in metres.
+    forces : tuple of AppliedForce
+    moments : tuple of AppliedMoment
+    springs : tuple of Spring
+    torsion_springs : tuple of TorsionSpring
+    friction : Friction
+    """
+
+    gravity: npt.ArrayLike = (0.0, 0.0)
+    forces: tuple[AppliedForce, ...] = ()
+    moments: tuple[AppliedMoment, ...] = ()
+    springs: tuple[Spring, ...] = ()
+    torsion_springs: tuple[TorsionSpring, ...] = ()
+    friction: Friction = field(default_factory=Friction)
+
+    def gravity_vector(self) -> FloatArray:
+        """Gravity, shape (2,)."""
+        gravity = np.asarray(self.gravity, dtype=np.float64)
+        if gravity.shape != (2,) or not np.isfinite(gravity).all():
+            raise ProblemError(f"gravity is {self.gravity!r}; allowed is a pair of finite numbers")
+        return gravity
+
+
+@dataclass(slots=True, eq=False)
+class Wrench:
+    """What pushes and turns one link, joints and drive left out.
+
+    Parameters
+    ----------
+    force : ndarray, shape (..., 2), N
+    moment : ndarray, shape (...), N length
+        About the origin of the link's frame (O2 for the ground).
+    """
+
+    force: FloatArray
+    moment: FloatArray
+
+
+def cross(first: FloatArray, second: FloatArray) -> FloatArray:
+    """First x second in the plane, shape (...)."""
+    turning: FloatArray = first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
+    return turning
+
+
+def turned(at: FloatArray, theta: FloatArray) -> FloatArray:
+    """A vector of a link's frame in global axes, shape (..., 2)."""
+    cosine, sine = np.cos(theta), np.sin(theta)
+    x, y = at[..., 0], at[..., 1]
+    return np.stack([cosine * x - sine * y, sine * x + cosine * y], axis=-1)
+
+
+def wrenches(state: Kinematics, loads: Loads) -> dict[int, Wrench]:
+    """What every link, 1 to 4, feels from forces, moments and springs; weight is left to the masses."""
+    found = {link: Wrench(np.zeros(2), np.zeros(())) for link in (1, 2, 3, 4)}
+    for force in loads.forces:
+        value = _value(force.force, state)
+        if force.turning:
+            value = turned(value, state.angular(force.link)[0])
+        _push(found, state, force.link, state.point(force.link, force.at).position, value)
+    for moment in loads.moments:
+        state.angular(moment.link)  # names a link that is none
+        found[moment.link].moment = found[moment.link].moment + _value(moment.moment, state)
+    for spring in loads.springs:
+        first, second = spring_ends(state, spring)
+        pull = spring_pull(spring, first, second)
+        _push(found, state, spring.first_link, first.position, pull)
+        _push(found, state, spring.second_link, second.position, -pull)
+    return found
+
+
+def spring_ends(state: Kinematics, spring: Spring) -> tuple[PointMotion, PointMotion]:
+    """How the two ends of a spring move."""
+    return (
+        _carried(state, spring.first_link, spring.first_at),
+        _carried(state, spring.second_link, spring.second_at),
+    )
+
+
+def spring_pull(spring: Spring, first: PointMotion, second: PointMotion) -> FloatArray:
+    """Force on the first end, towards the second when the spring is stretched; shape (..., 2)."""
+    way, rate = second.position - first.position, second.velocity - first.velocity
+    length = np.hypot(way[..., 0], way[..., 1])[..., None]
+    if spring.free_length == 0 and spring.damping == 0:
+        return spring.stiffness * way
+    with np.errstate(invalid="ignore", divide="ignore"):
+        along = np.where(length > 0, way / length, 0.0)
+    tension = spring.stiffness * (length - spring.free_length)
+    pull: FloatArray = along * (tension + spring.damping * (along * rate).sum(axis=-1, keepdims=True))
+    return pull
+
+
+def joint_rotation(state: Kinematics, joint: int) -> tuple[FloatArray, FloatArray]:
+    """Angle and angular velocity of the second link of a joint relative to the first."""
+    first, second = JOINED[joint]
+    angle, rate = state.angular(second)[:2]
+    if first == 1:
+        return angle, rate
+    before, rate_before = state.angular(first)[:2]
+    return angle - before, rate - rate_before
+
+
+def known_joint_moments(state: Kinematics, loads: Loads) -> FloatArray:
+    """Moments that joints exert on their second link, friction that grows with the force left out.
+
+    Returns
+    -------
+    ndarray, shape (4, ...), N length
+    """
+    moments = np.zeros((4, *state.shape))
+    viscous, coulomb = loads.friction.each("viscous"), loads.friction.each("coulomb")
+    for joint in Joint:
+        if viscous[joint] or coulomb[joint]:
+            _, rate = joint_rotation(state, joint)
+            moments[joint] -= viscous[joint] * rate + coulomb[joint] * np.sign(rate)
+    for spring in loads.torsion_springs:
+        angle, _ = joint_rotation(state, spring.joint)
+        moments[spring.joint] -= spring.stiffness * spring.wound(angle)
+    return moments
+
+
+def _value(given: Varying, state: Kinematics) -> FloatArray:
+    return np.asarray(given(state) if callable(given) else given, dtype=np.float64)
+
+
+def _carried(state: Kinematics, link: int, at: Pair) -> PointMotion:
+    if link != 1:
+        return state.point(link, at)
+    place = np.asarray(at, dtype=np.float64)
+    still = np.zeros(2)
+    return PointMotion(place, still, still, still)
+
+
+def _push(found: dict[int, Wrench], state: Kinematics, link: int, at: FloatArray, force: FloatArray) -> None:
+    linkage = state.linkage
+    origin = {1: linkage.o2, 2: linkage.o2, 4: linkage.o4}.get(link)
+    arm = at - (state.a.position if origin is None else origin)
+    wrench = found[link]
+    wrench.force = wrench.force + force
+    wrench.moment = wrench.moment + cross(arm, np.asarray(force))

@@ -1,0 +1,230 @@
+"""What the moving links weigh: masses, centres, inertias, and the centre of mass of them all."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from grashof.analysis.four_bar.kinematics import Kinematics, PointMotion
+from grashof.problems import DynamicsSpec, FourBar, ProblemError
+from grashof.problems.values.arrays import FloatArray, frozen_array
+from grashof.problems.values.read_only import ReadOnly
+
+
+@dataclass(frozen=True, slots=True, init=False, eq=False)
+class Body(ReadOnly):
+    """Mass properties of a link, in the link's frame.
+
+    Parameters
+    ----------
+    mass : array_like, shape (...), kg
+    inertia : array_like, shape (...), kg length^2
+        About the centre of mass.
+    centre : array_like, shape (..., 2), length
+        Centre of mass (u, v): origin O2, A or O4, u towards A, B or B, v to its left.
+    """
+
+    mass: FloatArray
+    inertia: FloatArray
+    centre: FloatArray
+
+    def __init__(
+        self, mass: npt.ArrayLike, inertia: npt.ArrayLike = 0.0, centre: npt.ArrayLike = (0.0, 0.0)
+    ) -> None:
+        for name, value in (("mass", mass), ("inertia", inertia), ("centre", centre)):
+            array = frozen_array(value)
+            if not np.isfinite(array).all():
+                raise ProblemError(f"{name} is {value!r}; allowed are finite numbers")
+            if name != "centre" and np.any(array < 0):
+                raise ProblemError(f"{name} is {value!r}; allowed are numbers from zero")
+            if name == "centre" and np.shape(array)[-1:] != (2,):
+                raise ProblemError(f"centre has shape {np.shape(array)}; allowed is (..., 2)")
+            object.__setattr__(self, name, array)
+
+    def __add__(self, other: Body) -> Body:
+        """Two bodies fixed to the same link, as one (Steiner's theorem)."""
+        mass = np.asarray(self.mass + other.mass)
+        share = np.divide(other.mass, mass, out=np.zeros(mass.shape), where=mass > 0)
+        apart = other.centre - self.centre
+        reduced = share * self.mass
+        return Body(
+            mass,
+            self.inertia + other.inertia + reduced * (apart**2).sum(axis=-1),
+            self.centre + share[..., None] * apart,
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Masses:
+    """The moving links as bodies; what hangs at P belongs to the coupler.
+
+    Parameters
+    ----------
+    crank, coupler, output : Body
+        Links 2, 3 and 4.
+    """
+
+    crank: Body
+    coupler: Body
+    output: Body
+
+    def of(self, link: int) -> Body:
+        """The body of link 2, 3 or 4."""
+        return (self.crank, self.coupler, self.output)[link - 2]
+
+    @property
+    def total(self) -> FloatArray:
+        """Mass of all moving links, shape (...), kg."""
+        total: FloatArray = self.crank.mass + self.coupler.mass + self.output.mass
+        return total
+
+    def with_payload(self, mass: npt.ArrayLike, at: npt.ArrayLike) -> Masses:
+        """The same with a point mass on the coupler, as at ``linkage.coupler_point``."""
+        return Masses(self.crank, self.coupler + Body(mass, 0.0, at), self.output)
+
+
+def uniform_bar(length: npt.ArrayLike, mass_per_length: npt.ArrayLike, width: npt.ArrayLike = 0.0) -> Body:
+    """A straight uniform bar along its link, from joint to joint.
+
+    Parameters
+    ----------
+    length : array_like, shape (...), length
+    mass_per_length : array_like, shape (...), kg/length
+        Section times density.
+    width : array_like, shape (...), length
+        In the plane of motion; none for a slender bar.
+
+    Examples
+    --------
+    >>> crank = uniform_bar(1.1938, 0.2 * 0.2 * 7800)
+    >>> float(crank.mass.round(4)), float(crank.inertia.round(4))
+    (372.4656, 44.2352)
+    """
+    length = np.asarray(length, dtype=np.float64)
+    mass = length * mass_per_length
+    return Body(
+        mass,
+        mass * (length**2 + np.square(width)) / 12,
+        np.stack([length / 2, np.zeros_like(length)], axis=-1),
+    )
+
+
+def triangular_plate(base: npt.ArrayLike, apex: npt.ArrayLike, mass_per_area: npt.ArrayLike) -> Body:
+    """A uniform triangular plate on a link: a coupler A-B-P.
+
+    Parameters
+    ----------
+    base : array_like, shape (...), length
+        Side along the link, from its origin: r3 for a coupler.
+    apex : array_like, shape (..., 2), length
+        Third corner in the link's frame, as ``linkage.coupler_point``.
+    mass_per_area : array_like, shape (...), kg/length^2
+        Thickness times density.
+
+    Notes
+    -----
+    The inertia about the centroid is m (a^2 + b^2 + c^2) / 36.
+
+    Examples
+    --------
+    >>> plate = triangular_plate(3.0, (0.0, 3.0), 2.0)
+    >>> float(plate.mass), float(plate.inertia), plate.centre.tolist()
+    (9.0, 9.0, [1.0, 1.0])
+    """
+    base, apex = np.asarray(base, dtype=np.float64), np.asarray(apex, dtype=np.float64)
+    u, v = apex[..., 0], apex[..., 1]
+    mass = base * np.abs(v) / 2 * mass_per_area
+    squares = base**2 + u**2 + v**2 + (u - base) ** 2 + v**2
+    return Body(mass, mass * squares / 36, np.stack(np.broadcast_arrays((base + u) / 3, v / 3), axis=-1))
+
+
+def uniform_bars(linkage: FourBar, mass_per_length: npt.ArrayLike, payload: npt.ArrayLike = 0.0) -> Masses:
+    """All moving links as slender uniform bars, with a payload at P.
+
+    Parameters
+    ----------
+    linkage : FourBar
+    mass_per_length : array_like, shape () or (3,), kg/length
+        One for all, or one each for links 2, 3 and 4.
+    payload : array_like, shape (...), kg
+    """
+    each = np.broadcast_to(np.asarray(mass_per_length, dtype=np.float64), 3)
+    bars = Masses(*(uniform_bar(getattr(linkage, f"r{link}"), each[link - 2]) for link in (2, 3, 4)))
+    return bars.with_payload(payload, linkage.coupler_point) if np.any(np.asarray(payload) != 0) else bars
+
+
+def given_masses(
+    linkage: FourBar,
+    masses: Sequence[float],
+    inertias: Sequence[float],
+    centres: Sequence[Sequence[float]] | None = None,
+) -> Masses:
+    """Moving links with known masses and inertias.
+
+    Parameters
+    ----------
+    linkage : FourBar
+    masses, inertias : sequence of 3 floats, kg and kg length^2
+        For links 2, 3 and 4; inertias about the centres of mass.
+    centres : sequence of 3 pairs, length, optional
+        In the links' frames; by default halfway between the joints.
+    """
+    for name, values in (("masses", masses), ("inertias", inertias), ("centres", centres)):
+        if values is not None and len(values) != 3:
+            raise ProblemError(f"{name} has {len(values)} entries; allowed are three, for links 2, 3 and 4")
+    lengths = [getattr(linkage, f"r{link}") / 2 for link in (2, 3, 4)]
+    halfway = [np.stack([half, np.zeros_like(half)], axis=-1) for half in lengths]
+    places = halfway if centres is None else [np.asarray(centre, dtype=np.float64) for centre in centres]
+    return Masses(*(Body(*each) for each in zip(masses, inertias, places, strict=True)))
+
+
+def stated_masses(linkage: FourBar, spec: DynamicsSpec) -> Masses:
+    """Moving links as a problem states them, with the payload at P.
+
+    Parameters
+    ----------
+    linkage : FourBar
+    spec : DynamicsSpec
+    """
+    if spec.masses is None or spec.inertias is None:
+        return uniform_bars(linkage, np.float64(spec.mass_per_length or 0.0), spec.payload)
+    known = given_masses(linkage, spec.masses, spec.inertias)
+    return known.with_payload(spec.payload, linkage.coupler_point) if spec.payload else known
+
+
+def system_centre(masses: Masses, state: Kinematics) -> PointMotion:
+    """Motion of the centre of mass of all moving links.
+
+    Parameters
+    ----------
+    masses : Masses
+    state : Kinematics
+
+    Returns
+    -------
+    PointMotion
+        Its acceleration times the total mass is the force that the motion needs from outside.
+
+    Examples
+    --------
+    >>> jack = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
+    >>> bars = uniform_bars(jack, (312, 312, 314))
+    >>> from grashof.analysis.four_bar.kinematics import solve_kinematics
+    >>> system_centre(bars, solve_kinematics(jack, np.radians(90))).position.round(6).tolist()
+    [1.382152, 4.431897]
+    """
+    total = masses.total
+    if not np.all(total > 0):
+        raise ProblemError("the links have no mass, so no centre of mass")
+    moments: list[FloatArray] = []
+    for link in (2, 3, 4):
+        body = masses.of(link)
+        centre, share = state.point(link, body.centre), np.asarray(body.mass / total)[..., None]
+        parts = (centre.position, centre.velocity, centre.acceleration, centre.jerk)
+        moments = [share * part for part in parts] if not moments else [
+            known + share * part for known, part in zip(moments, parts, strict=True)
+        ]  # fmt: skip
+    return PointMotion(*moments)

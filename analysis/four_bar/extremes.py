@@ -1,0 +1,208 @@
+"""Where a quantity is largest and smallest over the motion, to rounding."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from scipy.optimize import minimize_scalar
+
+from grashof.analysis.four_bar.kinematics import Kinematics, solve_kinematics
+from grashof.analysis.four_bar.mobility import driver_ranges, full_rotation
+from grashof.problems import AssemblyError, FourBar, ProblemError
+from grashof.problems.values.arrays import TURN, FloatArray
+
+Quantity: TypeAlias = Callable[[Kinematics], FloatArray]
+Curve: TypeAlias = Callable[[FloatArray], FloatArray]
+
+_SAMPLES = 2881
+_DEGREE = 16
+_CANDIDATES = 6
+_NODES = np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
+
+
+@dataclass(frozen=True, slots=True)
+class Extremes:
+    """Least and largest value of a quantity, and where.
+
+    Parameters
+    ----------
+    low, high : float
+    at_low, at_high : float
+        Driver angle in rad, or whatever the curve runs over.
+    """
+
+    low: float
+    high: float
+    at_low: float
+    at_high: float
+
+    @property
+    def stroke(self) -> float:
+        """Largest minus least value."""
+        return self.high - self.low
+
+
+def extremes(
+    linkage: FourBar,
+    quantity: Quantity,
+    omega2: float = 1.0,
+    start: float | None = None,
+    end: float | None = None,
+    period: float | None = None,
+) -> Extremes:
+    """Least and largest value of any quantity while the driver turns steadily.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        A single linkage.
+    quantity : callable
+        From a `Kinematics` to values, such as ``lambda state: state.b.speed``.
+    omega2 : float, rad/s
+    start, end : float, rad, optional
+        Driver angles; by default the whole turn, or the first of `driver_ranges`.
+    period : float, optional
+        By which the quantity may jump: 2 pi for an angle, which is then counted on.
+
+    Returns
+    -------
+    Extremes
+
+    Raises
+    ------
+    AssemblyError
+        The linkage cannot close in between.
+
+    Notes
+    -----
+    Dense sampling, then the stationary points of Chebyshev polynomials through the quantity about
+    the outermost samples: where the quantity is smooth, value and angle are right to rounding.
+
+    Examples
+    --------
+    >>> norton = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
+    >>> swing = extremes(norton, lambda state: state.theta4)
+    >>> np.degrees([swing.stroke, swing.at_low, swing.at_high]).round(4).tolist()
+    [73.7818, 24.1468, 231.3178]
+    """
+    start, end, closed = motion_between(linkage, start, end)
+
+    def curve(theta2: FloatArray) -> FloatArray:
+        return np.asarray(quantity(solve_kinematics(linkage, theta2, omega2)), dtype=np.float64)
+
+    return extremes_of(curve, start, end, closed, period)
+
+
+def extremes_of(
+    curve: Curve, start: float, end: float, closed: bool = False, period: float | None = None
+) -> Extremes:
+    """Least and largest value of a function of one variable between two ends.
+
+    Parameters
+    ----------
+    curve : callable
+        Takes and returns arrays of shape (N,).
+    start, end : float
+    closed : bool
+        The curve goes on beyond its ends as it began.
+    period : float, optional
+        By which its values may jump; they are then counted on.
+
+    Returns
+    -------
+    Extremes
+    """
+    at, values = sampled(curve, start, end, closed, period)
+    low, at_low = _outermost(curve, at, -values, closed, period, -1.0)
+    high, at_high = _outermost(curve, at, values, closed, period, 1.0)
+    return Extremes(-low, high, at_low, at_high)
+
+
+def motion_between(linkage: FourBar, start: float | None, end: float | None) -> tuple[float, float, bool]:
+    """Ends of the motion, and whether it is a whole turn."""
+    turns = bool(full_rotation(linkage))
+    if start is None or end is None:
+        if start is not end:
+            raise ProblemError("start and end are allowed together, or neither")
+        low, high = driver_ranges(linkage)[0]
+        start, end = (0.0, TURN) if turns else (float(low), float(high))
+        if np.isnan(start):
+            raise AssemblyError("the linkage cannot close at any driver angle")
+    if not end > start:
+        raise ProblemError(f"start is {start:.6g} and end {end:.6g}; allowed is start < end")
+    return start, end, turns and abs(end - start - TURN) < 1e-12
+
+
+def sampled(
+    curve: Curve, start: float, end: float, closed: bool, period: float | None
+) -> tuple[FloatArray, FloatArray]:
+    """Where a curve is sampled, and its values there, counted on by `period`; shapes (N,)."""
+    share = np.linspace(0, 1, _SAMPLES)
+    if not closed:  # closer towards ends that may be dead positions
+        share = (1 - np.cos(np.pi * share)) / 2
+    at = start + (end - start) * share
+    at[-1] = end
+    values = np.asarray(curve(at), dtype=np.float64)
+    if values.shape != at.shape:
+        raise ProblemError(f"the quantity has shape {values.shape}; allowed is one value for each angle")
+    if np.isnan(values).any():
+        angle = np.degrees(at[np.isnan(values)][0])
+        raise AssemblyError(f"the quantity has no value at driver angle {angle:.6g} deg")
+    return at, values if period is None else np.unwrap(values, period=period)
+
+
+def _outermost(
+    curve: Curve, at: FloatArray, heights: FloatArray, closed: bool, period: float | None, sign: float
+) -> tuple[float, float]:
+    """Largest height (the curve's value times sign) and where it is."""
+    top = int(np.argmax(heights))
+    best, where = float(heights[top]), float(at[top])
+    inner = heights[1:-1]
+    peaks = np.flatnonzero((inner >= heights[:-2]) & (inner >= heights[2:])) + 1
+    if closed:
+        peaks = np.append(peaks, 0)
+    for peak in peaks[np.argsort(-heights[peaks], kind="stable")[:_CANDIDATES]]:
+        near = sign * heights[peak]
+
+        def counted(theta2: FloatArray, near: float = near) -> FloatArray:
+            values = np.asarray(curve(theta2), dtype=np.float64)
+            if period is not None:
+                values = values - period * np.round((values - near) / period)
+            return sign * values
+
+        for place in _stationary(counted, at, int(peak), closed):
+            height = float(counted(np.array([place]))[0])
+            if height >= best or (height >= best - 4e-16 * abs(best) and abs(place - where) < 1e-3):
+                best, where = max(height, best), place
+    return best, where
+
+
+def _stationary(curve: Curve, at: FloatArray, peak: int, closed: bool) -> list[float]:
+    """Stationary points about a sample, from the widest window in which a polynomial is exact."""
+    middle = at[peak]
+    step = max(at[min(peak + 1, len(at) - 1)] - middle, middle - at[max(peak - 1, 0)])
+    for width in (16.0, 4.0, 1.0):
+        low, high = middle - width * step, middle + width * step
+        if not closed:
+            low, high = max(low, at[0]), min(high, at[-1])
+        values = curve((low + high) / 2 + (high - low) / 2 * _NODES)
+        if not np.isfinite(values).all():
+            continue
+        terms = chebyshev.chebfit(_NODES, values, _DEGREE)
+        if np.abs(terms[-3:]).max() <= 1e-14 * np.abs(values).max() + 1e-9 * np.ptp(values) * (width == 1):
+            terms = chebyshev.chebtrim(terms, 1e-15 * np.abs(values).max())
+            roots = chebyshev.chebroots(chebyshev.chebder(terms))
+            roots = roots.real[(np.abs(roots.imag) < 1e-9) & (np.abs(roots.real) <= 1)]
+            return [float((low + high) / 2 + (high - low) / 2 * root) for root in roots]
+    low, high = middle - step, middle + step
+    if not closed:
+        low, high = max(low, at[0]), min(high, at[-1])
+    found = minimize_scalar(
+        lambda place: -float(curve(np.array([place]))[0]), bounds=(low, high), method="bounded",
+        options={"xatol": 1e-12},
+    )  # fmt: skip
+    return [float(found.x)]

@@ -1,0 +1,314 @@
+"""Velocities, accelerations and jerks of every link and of any point carried by one, in closed form."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from grashof.analysis.four_bar.mobility import driver_ranges
+from grashof.analysis.four_bar.position import Sides, close_loop, sides
+from grashof.analysis.numerics.blockwise import in_blocks
+from grashof.problems import AssemblyError, DeadPositionWarning, FourBar, ProblemError
+from grashof.problems.values.arrays import BoolArray, FloatArray
+
+# Below this sin(theta4 - theta3) its digits are rounding: one unit in the last place of the driver
+# angle or of a length changes the velocities by more than a tenth.
+_DEAD = 1e-7
+
+
+@dataclass(frozen=True, slots=True)
+class PointMotion:
+    """How a point moves, in global axes.
+
+    Parameters
+    ----------
+    position, velocity, acceleration, jerk : ndarray, shape (..., 2), length over s^0 to s^3
+    """
+
+    position: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    jerk: FloatArray
+
+    @property
+    def speed(self) -> FloatArray:
+        """Magnitude of the velocity, shape (...)."""
+        return np.hypot(self.velocity[..., 0], self.velocity[..., 1])
+
+    @property
+    def acceleration_magnitude(self) -> FloatArray:
+        """Magnitude of the acceleration, shape (...)."""
+        return np.hypot(self.acceleration[..., 0], self.acceleration[..., 1])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Kinematics:
+    """How every link turns, for each driver angle; NaN where the linkage cannot close.
+
+    At a dead position the rates of links 3 and 4 are infinite; NaN where even their sign is open,
+    as with a driver at rest.
+
+    Parameters
+    ----------
+    linkage : FourBar
+    theta2, theta3, theta4 : ndarray, shape (...), rad
+        Directions O2->A, A->B, O4->B; theta3 and theta4 in [-pi, pi].
+    omega2, omega3, omega4 : ndarray, shape (...), rad/s
+    alpha2, alpha3, alpha4 : ndarray, shape (...), rad/s^2
+    jerk2, jerk3, jerk4 : ndarray, shape (...), rad/s^3
+    """
+
+    linkage: FourBar
+    theta2: FloatArray
+    theta3: FloatArray
+    theta4: FloatArray
+    omega2: FloatArray
+    omega3: FloatArray
+    omega4: FloatArray
+    alpha2: FloatArray
+    alpha3: FloatArray
+    alpha4: FloatArray
+    jerk2: FloatArray
+    jerk3: FloatArray
+    jerk4: FloatArray
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Axes of the linkages and driver angles together."""
+        return np.shape(self.theta3)
+
+    @property
+    def a(self) -> PointMotion:
+        """Joint A."""
+        return self.point(2, _along(self.linkage.r2))
+
+    @property
+    def b(self) -> PointMotion:
+        """Joint B, as the end of link 4."""
+        return self.point(4, _along(self.linkage.r4))
+
+    @property
+    def p(self) -> PointMotion:
+        """Coupler point P."""
+        return self.point(3, self.linkage.coupler_point)
+
+    def angular(self, link: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Angle of link 2, 3 or 4, its velocity, acceleration and jerk, each of shape (...)."""
+        _check_link(link)
+        return (
+            getattr(self, f"theta{link}"),
+            getattr(self, f"omega{link}"),
+            getattr(self, f"alpha{link}"),
+            getattr(self, f"jerk{link}"),
+        )
+
+    def point(self, link: int, at: npt.ArrayLike) -> PointMotion:
+        """Motion of a point carried by a link.
+
+        Parameters
+        ----------
+        link : int
+            2, 3 or 4.
+        at : array_like, shape (..., 2), length
+            (u, v) in the link's frame: origin O2, A or O4, u towards A, B or B, v to its left.
+
+        Returns
+        -------
+        PointMotion
+
+        Notes
+        -----
+        r'' = alpha x r - omega^2 r, and so on, from the point that the frame starts in (Norton,
+        *Design of Machinery*, secs. 6.7 and 7.3).
+
+        Examples
+        --------
+        >>> norton = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
+        >>> state = solve_kinematics(norton, np.radians(40), omega2=25, alpha2=15)
+        >>> state.point(4, (80, 0)).velocity.round(3).tolist()
+        [-471.242, 302.243]
+        """
+        at = np.asarray(at, dtype=np.float64)
+        if at.shape[-1:] != (2,):
+            raise ProblemError(f"at has shape {at.shape}; allowed is (..., 2)")
+        carried = _carried(at, self.angular(link))
+        if link == 3:
+            carried = carried + _carried(_along(self.linkage.r2), self.angular(2))
+        carried[0] += self.linkage.o4 if link == 4 else self.linkage.o2
+        return PointMotion(*carried)
+
+
+def solve_kinematics(
+    linkage: FourBar,
+    theta2: npt.ArrayLike,
+    omega2: npt.ArrayLike = 1.0,
+    alpha2: npt.ArrayLike = 0.0,
+    jerk2: npt.ArrayLike = 0.0,
+    assembly: npt.ArrayLike | None = None,
+) -> Kinematics:
+    """Angles, velocities, accelerations and jerks of all links.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        One, or a batch whose axes broadcast against the driver's (``batch[:, None]`` for all
+        linkages at all angles).
+    theta2, omega2, alpha2, jerk2 : array_like, shape (...), rad over s^0 to s^3
+        The driver; by default it turns steadily at 1 rad/s. `driver_motion` finds all four from a
+        function of time.
+    assembly : array_like, shape (...), optional
+        +1 or -1; the linkage's own by default.
+
+    Returns
+    -------
+    Kinematics
+
+    Raises
+    ------
+    AssemblyError
+        A single linkage cannot close at the single angle asked for. (In arrays it is NaN there.)
+
+    Warns
+    -----
+    DeadPositionWarning
+        Coupler and output lie in one line at an angle named, so their rates are infinite.
+
+    Notes
+    -----
+    The loop r2 e^{i theta2} + r3 e^{i theta3} - r4 e^{i theta4} = const, differentiated, is two
+    linear equations for each derivative; crossing it with e^{i theta4} or e^{i theta3} leaves one
+    unknown each (Norton, *Design of Machinery*, secs. 6.7, 7.3). The determinant,
+    sin(theta4 - theta3), comes from the area of A-B-O4 and keeps its digits near a dead position.
+
+    Examples
+    --------
+    >>> norton = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
+    >>> state = solve_kinematics(norton, np.radians(40), omega2=25, alpha2=15)
+    >>> [float(value.round(6)) for value in (state.omega3, state.omega4, state.alpha3, state.alpha4)]
+    [-4.120914, 6.997985, 296.089193, 470.13353]
+    """
+    driver = [np.asarray(value, dtype=np.float64) for value in (theta2, omega2, alpha2, jerk2)]
+    solved = in_blocks(_solve, [*map(np.asarray, sides(linkage, assembly)), *driver], 9)
+    *rates, dead = solved
+    shape = dead.shape
+    theta2, omega2, alpha2, jerk2 = (np.broadcast_to(value, shape)[()] for value in driver)
+    if not shape and np.isnan(rates[0]):
+        raise AssemblyError(_cannot_close(linkage, float(theta2)))
+    if dead.any():
+        _warn_of(theta2, dead > 0)
+    theta3, theta4, omega3, omega4, alpha3, alpha4, jerk3, jerk4 = (rate[()] for rate in rates)
+    return Kinematics(
+        linkage, theta2, theta3, theta4, omega2, omega3, omega4, alpha2, alpha3, alpha4, jerk2, jerk3, jerk4
+    )
+
+
+def _solve(*operands: FloatArray) -> tuple[FloatArray, ...]:
+    """Angles, velocities, accelerations, jerks of links 3 and 4, and 1 where the position is dead."""
+    loop_sides, (theta2, omega2, alpha2, jerk2) = Sides(*operands[:7]), operands[7:]
+    _, _, r2, r3, r4, sign, _ = loop_sides
+    loop = close_loop(loop_sides, theta2)
+    cos2, sin2, cos3, sin3, cos4, sin4, sine, _, _ = loop
+    dead = np.abs(sine) <= _DEAD
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        inverse = 1 / (np.where(dead, np.copysign(0.0, sign), sine) if dead.any() else sine)
+        over3, over4 = inverse / r3, inverse / r4
+        # Sines and cosines of the angles between the links.
+        sine42, sine32 = cos4 * sin2 - sin4 * cos2, cos3 * sin2 - sin3 * cos2
+        cosine42, cosine32 = cos4 * cos2 + sin4 * sin2, cos3 * cos2 + sin3 * sin2
+        cosine43 = cos4 * cos3 + sin4 * sin3
+        tip2 = r2 * omega2
+        omega3, omega4 = tip2 * sine42 * over3, tip2 * sine32 * over4
+        tip3, tip4 = r3 * omega3, r4 * omega4
+        # Centripetal terms, then their rates: with zeta - omega^3 for alpha and 3 omega alpha for
+        # omega^2 the equations of the jerk are those of the acceleration.
+        pull2, pull3, pull4 = tip2 * omega2, tip3 * omega3, tip4 * omega4
+        push2 = r2 * alpha2
+        alpha3 = (push2 * sine42 + pull2 * cosine42 + pull3 * cosine43 - pull4) * over3
+        alpha4 = (push2 * sine32 + pull2 * cosine32 + pull3 - pull4 * cosine43) * over4
+        push2 = r2 * (jerk2 - omega2**2 * omega2)
+        pull2, pull3, pull4 = 3 * tip2 * alpha2, 3 * tip3 * alpha3, 3 * tip4 * alpha4
+        jerk3 = (push2 * sine42 + pull2 * cosine42 + pull3 * cosine43 - pull4) * over3 + omega3**2 * omega3
+        jerk4 = (push2 * sine32 + pull2 * cosine32 + pull3 - pull4 * cosine43) * over4 + omega4**2 * omega4
+        if dead.any():
+            rates = (omega3, omega4, alpha3, alpha4, jerk3, jerk4)
+            leading = _leading_at_dead(omega3, omega4, r3, r4, np.sign(cosine43), sign)
+            omega3, omega4, alpha3, alpha4, jerk3, jerk4 = (
+                np.where(dead, infinite, rate) for infinite, rate in zip(leading, rates, strict=True)
+            )
+    theta3, theta4 = np.arctan2(sin3, cos3), np.arctan2(sin4, cos4)
+    return theta3, theta4, omega3, omega4, alpha3, alpha4, jerk3, jerk4, dead.astype(np.float64)
+
+
+def _leading_at_dead(
+    omega3: FloatArray, omega4: FloatArray, r3: FloatArray, r4: FloatArray, same: FloatArray, sign: FloatArray
+) -> tuple[FloatArray, ...]:
+    """Infinite rates of links 3 and 4 with the sign of the term that grows fastest.
+
+    With s = sin(theta4 - theta3) and `same` = cos(theta4 - theta3) = +-1, omega goes like 1/s,
+    alpha like 1/s^3 and the jerk, its rate, like -3 s'/s^4.
+    """
+    bend3, bend4 = same / r3 - 1 / r4, 1 / r3 - same / r4
+    alpha3, alpha4 = sign * bend3 * np.abs(omega3), sign * bend4 * np.abs(omega4)
+    # r3 omega3 and r4 omega4 agree up to `same`; their difference decides the sign of s'.
+    closing = same * np.sign(omega4) * (1 / r4 - same / r3)
+    jerk3, jerk4 = -bend3 * closing * np.abs(omega3), -bend4 * closing * np.abs(omega4)
+    return omega3, omega4, alpha3, alpha4, jerk3, jerk4
+
+
+def _carried(at: FloatArray, angular: tuple[FloatArray, ...]) -> FloatArray:
+    """A vector fixed in a link, and its first three derivatives; shape (4, ..., 2)."""
+    operands = [np.asarray(operand) for operand in (at[..., 0], at[..., 1], *angular)]
+    arms = in_blocks(_turned, operands, 8)
+    return np.moveaxis(arms.reshape(4, 2, *arms.shape[1:]), 1, -1)
+
+
+def _turned(
+    u: FloatArray, v: FloatArray, theta: FloatArray, omega: FloatArray, alpha: FloatArray, jerk: FloatArray
+) -> tuple[FloatArray, ...]:
+    cosine, sine = np.cos(theta), np.sin(theta)
+    x, y = u * cosine - v * sine, u * sine + v * cosine
+    square = omega * omega
+    with np.errstate(invalid="ignore", over="ignore"):
+        turn, pull = jerk - square * omega, 3 * omega * alpha
+        arms = (
+            x, y, -omega * y, omega * x, -alpha * y - square * x, alpha * x - square * y,
+            -turn * y - pull * x, turn * x - pull * y,
+        )  # fmt: skip
+        dead = ~np.isfinite(jerk) & np.isfinite(theta)
+        if np.any(dead):  # the fastest growing terms alone, and nothing where there is no arm
+            leading = (-alpha * y, alpha * x, -jerk * y, jerk * x)
+            fastest = [np.where(dead, *pair) for pair in zip(leading, arms[4:], strict=True)]
+            return tuple(np.where((u == 0) & (v == 0), 0.0, arm) for arm in (*arms[:4], *fastest))
+    return arms
+
+
+def _along(length: FloatArray) -> FloatArray:
+    return np.stack([length, np.zeros_like(length)], axis=-1)
+
+
+def _check_link(link: int) -> None:
+    if link not in (2, 3, 4):
+        raise ProblemError(f"link is {link!r}; allowed are 2 (driver), 3 (coupler), 4 (output)")
+
+
+def _warn_of(theta2: FloatArray, dead: BoolArray) -> None:
+    angles = np.degrees(np.broadcast_to(theta2, dead.shape)[dead])
+    named = ", ".join(f"{angle:.6g}" for angle in angles[:3]) + (", ..." if len(angles) > 3 else "")
+    warnings.warn(
+        f"dead position at driver angle {named} deg: coupler and output lie in one line, "
+        "their rates are infinite",
+        DeadPositionWarning,
+        stacklevel=3,
+    )
+
+
+def _cannot_close(linkage: FourBar, theta2: float) -> str:
+    ranges = driver_ranges(linkage)
+    open_at = f"the linkage cannot close at driver angle {np.degrees(theta2):.6g} deg"
+    ends = [f"{low:.6g} to {high:.6g}" for low, high in np.degrees(ranges) if np.isfinite(low)]
+    return (
+        f"{open_at}; it closes from {' and from '.join(ends)} deg" if ends else f"{open_at} or at any other"
+    )

@@ -1,0 +1,1 @@
+"""The judge: does a linkage do a task under its requirements? From the linkage alone."""

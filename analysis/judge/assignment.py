@@ -1,0 +1,234 @@
+"""Which part of a coupler curve each target belongs to, when the targets have to be met in order."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+
+from grashof.analysis.curves.coupler_curve import Track
+from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
+
+_KEPT = 4
+_STRIDE = 5
+_SAGITTA = 5e-4  # of the length of the curve: no piece bulges farther from its chord
+_NEAR = 0.1  # rad: guesses that agree so well lead to the same place
+_ALIKE = 1e-6  # assignments whose costs differ by a smaller share are the same one
+
+
+@dataclass(frozen=True, slots=True)
+class Guess:
+    """Driver angles near the best, not going back.
+
+    Parameters
+    ----------
+    theta2, floor, ceiling : ndarray, shape (N,), rad
+        Driver angles and their bounds.
+    assembly : ndarray of int, shape (N,)
+    distance : float, length
+        Root of the sum of squared distances there, from straight pieces.
+    slack : float, length
+        By how much that may be wrong.
+    crowded : bool
+        Targets on one piece stand in the wrong order there: `distance` is too small.
+    """
+
+    theta2: FloatArray
+    floor: FloatArray
+    ceiling: FloatArray
+    assembly: IntArray
+    distance: float
+    slack: float
+    crowded: bool
+
+
+def ordered_guesses(track: Track, targets: ComplexArray, *, middles: bool = False) -> list[Guess]:
+    """The best assignments of targets to pieces of a track that never go back, within one turn.
+
+    Parameters
+    ----------
+    track : Track
+    targets : ndarray of complex, shape (N,)
+        In the order in which growing driver angles meet them.
+    middles : bool
+        Measure the distance of a target from the middle of a piece. Otherwise from the piece taken
+        as straight, which is closer, but allows targets on one piece to stand in any order.
+
+    Returns
+    -------
+    list of Guess
+        The best first.
+
+    Notes
+    -----
+    Dynamic programming over target and piece.
+    """
+    squared, share, side = _distances(track, targets, middles)
+    if not track.cyclic:
+        chosen, costs = assigned(squared[:, :, None])
+        return [_guess(track, chosen[:, 0], share, side, float(costs[0]))] if np.isfinite(costs[0]) else []
+    chosen, costs, cuts = assigned_around(squared)
+    guesses: list[Guess] = []
+    for number, cut in enumerate(cuts):
+        guess = _guess(track, chosen[:, number] + cut, share, side, float(costs[number]))
+        if not any(_alike(guess, other) for other in guesses):
+            guesses.append(guess)
+    return guesses
+
+
+def _alike(one: Guess, other: Guess) -> bool:
+    apart = np.abs(np.exp(1j * one.theta2) - np.exp(1j * other.theta2)).max()
+    return bool(apart < _NEAR and (one.assembly == other.assembly).all())
+
+
+def nearest_guess(
+    track: Track, targets: ComplexArray, valleys: int
+) -> tuple[FloatArray, FloatArray, FloatArray, IntArray]:
+    """Driver angles in the nearest valleys of each target by itself.
+
+    Returns
+    -------
+    theta2, floor, ceiling, assembly : ndarray, shape (valleys, N)
+    """
+    by_sign = [_distances(_on(track, sign), targets)[:2] for sign in range(len(track.signs))]
+    squared = np.stack([squared for squared, _ in by_sign])
+    share = np.stack([share for _, share in by_sign])
+    if track.cyclic:
+        before, after = np.roll(squared, 1, axis=2), np.roll(squared, -1, axis=2)
+    else:
+        wall = np.full_like(squared[:, :, :1], np.inf)
+        before = np.concatenate([wall, squared[:, :, :-1]], axis=2)
+        after = np.concatenate([squared[:, :, 1:], wall], axis=2)
+    depth = np.where((squared <= before) & (squared <= after), squared, np.inf)
+    depth = depth.swapaxes(1, 2).reshape(-1, len(targets))
+    lowest = np.argsort(depth, axis=0, kind="stable")[:valleys]
+    sign, piece = np.divmod(lowest, squared.shape[2])
+    part = share[sign, np.arange(len(targets)), piece]
+    theta2 = track.low[piece] + part * (track.high - track.low)[piece]
+    return theta2, track.floor[piece], track.ceiling[piece], track.signs[sign]
+
+
+def _on(track: Track, sign: int) -> Track:
+    one = slice(sign, sign + 1)
+    return Track(
+        track.low, track.high, track.start[one], track.end[one], track.signs[one],
+        track.floor, track.ceiling, track.cyclic,
+    )  # fmt: skip
+
+
+def _distances(
+    track: Track, targets: ComplexArray, middles: bool = False
+) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Squared distance from each piece, where on it, and on which assembly; each shape (N, M)."""
+    chord = track.end - track.start
+    offset = targets[:, None, None] - track.start
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = (offset * chord.conj()).real / np.abs(chord) ** 2
+    share = np.full_like(share, 0.5) if middles else np.clip(np.nan_to_num(share), 0.0, 1.0)
+    gap = offset - share * chord
+    squared = np.nan_to_num(gap.real**2 + gap.imag**2, nan=np.inf)
+    if len(track.signs) == 1:
+        return squared[:, 0], share[:, 0], np.zeros(squared[:, 0].shape, dtype=np.int64)
+    side = np.argmin(squared, axis=1)
+    taken = side[:, None]
+    return (
+        np.take_along_axis(squared, taken, axis=1)[:, 0],
+        np.take_along_axis(share, taken, axis=1)[:, 0],
+        side,
+    )
+
+
+def _least_costs(windows: FloatArray) -> FloatArray:
+    """Least sum over pieces that never go back, for windows of shape (N, L, C); shape (C,)."""
+    total = windows[0].copy()
+    for squared in windows[1:]:
+        np.minimum.accumulate(total, axis=0, out=total)
+        total += squared
+    least: FloatArray = total.min(axis=0)
+    return least
+
+
+def assigned(windows: FloatArray) -> tuple[IntArray, FloatArray]:
+    """The pieces of the least sums over pieces that never go back.
+
+    Parameters
+    ----------
+    windows : ndarray, shape (N, L, C)
+        What N targets cost on L pieces, C times.
+
+    Returns
+    -------
+    ndarray of int, shape (N, C)
+    ndarray, shape (C,)
+        The sums.
+    """
+    totals = np.empty(windows.shape)
+    totals[0] = windows[0]
+    for index, squared in enumerate(windows[1:], start=1):
+        totals[index] = np.minimum.accumulate(totals[index - 1], axis=0) + squared
+    place = np.arange(windows.shape[1])[:, None]
+    chosen = np.empty((len(windows), windows.shape[2]), dtype=np.int64)
+    last = np.full(windows.shape[2], windows.shape[1])
+    for index in range(len(windows) - 1, -1, -1):
+        last = np.argmin(np.where(place <= last, totals[index], np.inf), axis=0)
+        chosen[index] = last
+    return chosen, totals[-1].min(axis=0)
+
+
+def assigned_around(squared: FloatArray) -> tuple[IntArray, FloatArray, IntArray]:
+    """The best assignments of targets to pieces of a turn, counted from where it is cut open.
+
+    Parameters
+    ----------
+    squared : ndarray, shape (N, M)
+        What N targets cost on M pieces of a turn.
+
+    Returns
+    -------
+    ndarray of int, shape (N, C)
+        Pieces, counted from the cut on: up to M, which is the first one again.
+    ndarray, shape (C,)
+        The sums, the least first.
+    ndarray of int, shape (C,)
+        The pieces that begin at the cuts.
+
+    Notes
+    -----
+    A turn is cut open first at every few pieces, all cuts at once, and then at every piece about the
+    best of them.
+    """
+    count = squared.shape[1]
+    # One piece more than the turn has: the last target may repeat the first.
+    around = np.concatenate([squared, squared], axis=1)
+    windows = sliding_window_view(around, count + 1, axis=1)[:, :count].swapaxes(1, 2)
+    cuts = np.arange(0, count, _STRIDE)
+    cuts = _best_cuts(cuts, _least_costs(windows[:, :, cuts]))
+    cuts = np.unique((cuts[:, None] + np.arange(1 - _STRIDE, _STRIDE)) % count)
+    cuts = _best_cuts(cuts, _least_costs(windows[:, :, cuts]))
+    chosen, costs = assigned(windows[:, :, cuts])
+    return chosen, costs, cuts
+
+
+def _best_cuts(cuts: IntArray, costs: FloatArray) -> IntArray:
+    """The cuts with the least costs, one for each cost, the best first."""
+    order = np.argsort(costs, kind="stable")
+    ranked = costs[order]
+    new = np.diff(ranked, prepend=-np.inf) > _ALIKE * (ranked + ranked[0])
+    best: IntArray = cuts[order][new & np.isfinite(ranked)][:_KEPT]
+    return best
+
+
+def _guess(track: Track, chosen: IntArray, share: FloatArray, side: IntArray, cost: float) -> Guess:
+    turns, piece = np.divmod(chosen, len(track.low))
+    target = np.arange(len(chosen))
+    part = share[target, piece]
+    theta2 = track.low[piece] + part * (track.high - track.low)[piece] + TURN * turns
+    # Within a piece the targets may stand in the wrong order.
+    ordered = np.minimum(np.maximum.accumulate(theta2), theta2[0] + TURN)
+    assembly = track.signs[side[target, piece]]
+    floor, ceiling = (bound[piece] + TURN * turns for bound in (track.floor, track.ceiling))
+    length = float(np.nan_to_num(np.abs(track.end - track.start)).max(axis=0).sum())
+    slack = _SAGITTA * length * len(chosen) ** 0.5
+    crowded = bool((ordered != theta2).any())
+    return Guess(ordered, floor, ceiling, assembly, cost**0.5, slack, crowded)

@@ -1,0 +1,100 @@
+"""What a user's own constraint sees of a design: the same names on numbers and on symbols."""
+
+from __future__ import annotations
+
+import reprlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from grashof.analysis.four_bar.position import solve_position
+from grashof.problems import FourBar, ProblemError
+from grashof.problems.values.arrays import FloatArray, IntArray
+
+
+@dataclass(frozen=True, slots=True)
+class Design:
+    """A linkage at its targets, in the problem's unit; numbers, or the symbols that stand for them.
+
+    Parameters
+    ----------
+    o2, o4 : two coordinates, length
+        Ground pivots.
+    r1, r2, r3, r4 : scalar, length
+    theta1 : scalar, rad
+        Direction O2->O4.
+    coupler_point : two coordinates (u, v), length
+    theta2 : N scalars, rad
+        Driver angle at each target, in the order of visit.
+    a, b, p : N times two coordinates, length
+        Moving pivots and coupler point there.
+    """
+
+    o2: Any
+    o4: Any
+    r1: Any
+    r2: Any
+    r3: Any
+    r4: Any
+    theta1: Any
+    coupler_point: Any
+    theta2: Any
+    a: Sequence[Any]
+    b: Sequence[Any]
+    p: Sequence[Any]
+
+    @classmethod
+    def of(cls, linkage: FourBar, theta2: FloatArray, assembly: IntArray) -> Design:
+        """The numbers of a linkage at driver angles in the order of visit, shape (N,)."""
+        state = solve_position(linkage, theta2, assembly)
+        r1, r2, r3, r4 = linkage.lengths  # not Python's floats: (r1 - 5)**0.5 would be complex below 5
+        return cls(
+            o2=linkage.o2,
+            o4=linkage.o4,
+            r1=r1,
+            r2=r2,
+            r3=r3,
+            r4=r4,
+            theta1=linkage.theta1,
+            coupler_point=linkage.coupler_point,
+            theta2=np.asarray(theta2),
+            a=list(state.a),
+            b=list(state.b),
+            p=list(state.p),
+        )
+
+
+Constraint: TypeAlias = Callable[[Design], Any]  # zero or negative where it is met; a scalar or several
+
+
+def greatest(constraint: Constraint, design: Design) -> float:
+    """The greatest of the values of a constraint on the numbers of a design; NaN when one is none.
+
+    Raises
+    ------
+    ProblemError
+        The values are no numbers.
+
+    Examples
+    --------
+    >>> linkage = FourBar(o2=(0, 0), o4=(4, 1), r2=1, r3=4, r4=3, coupler_point=(2, 1))
+    >>> design = Design.of(linkage, np.array([0.3]), np.array([1]))
+    >>> greatest(lambda design: (design.o2[1] - design.o4[1]) ** 2 - 0.01, design)
+    0.99
+    """
+    with np.errstate(all="ignore"):  # where it has no value it is missed; no news to be warned of
+        values = constraint(design)
+    try:
+        return float(np.max(np.asarray(values, dtype=np.float64)))
+    except (TypeError, ValueError):
+        given = " ".join(reprlib.repr(values).split())
+        raise ProblemError(
+            f"constraint {name_of(constraint)} gives {given} on numbers; allowed is a scalar, or several"
+        ) from None
+
+
+def name_of(constraint: Constraint) -> str:
+    """What a constraint is called in messages."""
+    return getattr(constraint, "__name__", type(constraint).__name__)

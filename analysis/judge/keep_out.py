@@ -1,0 +1,219 @@
+"""How deep the parts of a linkage reach into areas that are kept out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.judge.nearest_poses import Targets, Way
+from grashof.problems import FourBar, Requirements
+from grashof.problems.values.areas import solid
+from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
+
+_SAMPLES = 541
+_ALONG = 33  # samples along the piece of a link that lies inside
+_PEAKS = 3  # of the depth over the motion that are looked at more closely
+_ROUNDS, _NEARBY = 18, np.linspace(-1, 1, 7)  # each three times as close
+_ROUGH = 5  # rounds along a link, while looking for the driver angles where it reaches deepest
+_LINKS = {
+    "link O2A": ("o2", "a"),
+    "link AB": ("a", "b"),
+    "link O4B": ("o4", "b"),
+    "line AP": ("a", "p"),
+    "line BP": ("b", "p"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Area:
+    """Polygons as one solid, and the sides of its boundary from `begin` to `end`, complex, shape (E,)."""
+
+    solid: shapely.Geometry
+    begin: ComplexArray
+    end: ComplexArray
+
+    @classmethod
+    def of(cls, polygons: Sequence[FloatArray]) -> Area:
+        """The area that polygons cover."""
+        whole = solid(polygons)
+        rings = shapely.get_rings(shapely.get_parts(whole))
+        corners, ring = shapely.get_coordinates(rings, return_index=True)
+        corner = corners @ np.array([1, 1j])
+        same = ring[:-1] == ring[1:]
+        return cls(whole, corner[:-1][same], corner[1:][same])
+
+    def from_boundary(self, points: ComplexArray) -> FloatArray:
+        """Distance of complex points, shape (...), from the boundary."""
+        along = self.end - self.begin
+        offset = points[..., None] - self.begin
+        share = np.clip((offset * along.conj()).real / np.abs(along) ** 2, 0, 1)
+        nearest: FloatArray = np.abs(offset - share * along).min(axis=-1)
+        return nearest
+
+
+def depth(area: Area, points: FloatArray) -> FloatArray:
+    """How deep points lie inside an area: the distance to its boundary.
+
+    Parameters
+    ----------
+    area : Area
+    points : ndarray, shape (..., 2), length
+
+    Returns
+    -------
+    ndarray, shape (...), length
+        Less than zero outside, by the distance from the area.
+
+    Examples
+    --------
+    >>> square = Area.of([np.array([[0, 0], [4, 0], [4, 4], [0, 4]])])
+    >>> depth(square, np.array([[1.0, 2.0], [4.0, 1.0], [7.0, 8.0]])).tolist()
+    [1.0, 0.0, -5.0]
+    """
+    x, y = points[..., 0], points[..., 1]
+    away = area.from_boundary(x + 1j * y)
+    return np.where(shapely.contains_xy(area.solid, x, y), away, 0.0 - away)
+
+
+def segment_depth(area: Area, begin: FloatArray, end: FloatArray, rounds: int = 18) -> FloatArray:
+    """How deep the deepest point of each segment lies inside an area, as `depth` gives it.
+
+    Parameters
+    ----------
+    area : Area
+    begin, end : ndarray, shape (n, 2), length
+    rounds : int
+        Of refinement along the part inside, each three times as close.
+
+    Returns
+    -------
+    ndarray, shape (n,), length
+        Less than zero where the whole segment lies outside, by its distance from the area.
+
+    Notes
+    -----
+    The part inside is cut out exactly, so that no shallow corner is overlooked; how deep it lies is
+    sampled along it and refined about the deepest sample.
+
+    Examples
+    --------
+    >>> square = Area.of([np.array([[0, 0], [4, 0], [4, 4], [0, 4]])])
+    >>> ends = np.array([[-1.0, 3.0], [0.0, 4.0]]), np.array([[5.0, 3.0], [9.0, 4.0]])
+    >>> segment_depth(square, *ends).round(9).tolist()
+    [1.0, 0.0]
+    """
+    deepest: FloatArray = np.maximum(depth(area, begin), depth(area, end))
+    long = np.flatnonzero((begin != end).any(axis=1))
+    segment = cast("NDArray[np.object_]", shapely.linestrings(np.stack([begin, end], axis=1)[long]))
+    apart = shapely.distance(area.solid, segment)
+    deepest[long] = np.where(apart > 0, -apart, np.maximum(deepest[long], 0.0))
+    crossing = apart == 0
+    part, index = shapely.get_parts(shapely.intersection(segment[crossing], area.solid), return_index=True)
+    lines = shapely.get_type_id(part) == shapely.GeometryType.LINESTRING
+    ends = shapely.get_coordinates(part[lines]).reshape(-1, 2, 2) @ np.array([1, 1j])
+    np.maximum.at(deepest, long[crossing][index[lines]], _deepest_along(area, ends, rounds))
+    return deepest
+
+
+def intrusions(
+    linkage: FourBar, wanted: Requirements, targets: Targets, way: Way, *, joined: bool
+) -> dict[str, float]:
+    """How deep the parts of a linkage that shall keep out reach into the areas kept out.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        A single linkage.
+    wanted : Requirements
+    targets : Targets
+    way : Way
+    joined : bool
+        A motion joins the targets: it is judged as a whole, otherwise the targets alone.
+
+    Returns
+    -------
+    dict of str to float, length
+        The greatest depth of each part, such as "O2" or "link AB"; zero outside and on the boundary.
+
+    Notes
+    -----
+    The motion is sampled, closer towards its ends, where near a dead position the linkage runs away
+    from the driver; ever closer samples follow the deepest ones, also where none of the first lies
+    inside.
+    """
+    area, deepest = Area.of(wanted.keep_out), dict[str, float]()
+    parts: dict[str, tuple[str, ...]] = {}
+    for name in wanted.keep_out_for:
+        parts |= _LINKS if name == "links" else {name.upper(): (name,)}
+    for part, ends in parts.items():
+        if ends in (("o2",), ("o4",)):
+            deepest[part] = float(depth(area, getattr(linkage, ends[0])))
+            continue
+        if joined:
+            at = _depth_of(area, linkage, ends, targets.assembly[:1])
+            deepest[part] = _deepest_over(at, way.start, way.end)
+        else:
+            at = _depth_of(area, linkage, ends, targets.assembly)
+            deepest[part] = float(at(targets.theta2, _ROUNDS).max())
+    return {part: max(found, 0.0) for part, found in deepest.items()}
+
+
+def _depth_of(
+    area: Area, linkage: FourBar, ends: tuple[str, ...], assembly: IntArray
+) -> Callable[[FloatArray, int], FloatArray]:
+    """Depth of a point, or of the link between two, by driver angles of shape (n,) and rounds."""
+
+    def at(theta2: FloatArray, rounds: int) -> FloatArray:
+        state = solve_position(linkage, theta2, assembly)
+        places = [
+            np.broadcast_to(getattr(linkage if end in ("o2", "o4") else state, end), state.a.shape)
+            for end in ends
+        ]
+        found = np.full(len(theta2), -np.inf)
+        closed = np.isfinite(np.concatenate(places, axis=-1)).all(axis=-1)
+        begin, end = places[0][closed], places[-1][closed]
+        one = len(places) == 1
+        found[closed] = depth(area, begin) if one else segment_depth(area, begin, end, rounds)
+        return found
+
+    return at
+
+
+def _deepest_over(at: Callable[[FloatArray, int], FloatArray], start: float, end: float) -> float:
+    """Greatest depth between two driver angles."""
+    towards_end = (1 - np.cos(np.linspace(0, np.pi, _SAMPLES))) / 2
+    angle = start + (end - start) * towards_end
+    found = at(angle, _ROUGH)
+    around = np.pad(found, 1, constant_values=-np.inf)
+    step = np.abs(np.diff(found[np.isfinite(found)])).max(initial=0.0)
+    # Between samples it is hardly deeper than by a step: the others stay outside.
+    peak = np.flatnonzero((found >= around[:-2]) & (found >= around[2:]) & (found > -2 * step))
+    peak = peak[np.argsort(-found[peak], kind="stable")[:_PEAKS]]
+    width = np.pi / 2 * abs(end - start) / _SAMPLES  # no two samples lie farther apart
+    middle = angle[peak]
+    for _ in range(_ROUNDS if len(peak) else 0):
+        tried = np.clip(middle[:, None] + width * _NEARBY, min(start, end), max(start, end))
+        chosen = np.argmax(at(tried.ravel(), _ROUGH).reshape(tried.shape), axis=1)[:, None]
+        middle = np.take_along_axis(tried, chosen, axis=1)[:, 0]
+        width /= 3
+    return float(at(middle, _ROUNDS).max(initial=-np.inf)) if len(middle) else -np.inf
+
+
+def _deepest_along(area: Area, ends: ComplexArray, rounds: int) -> FloatArray:
+    """Greatest depth along each of a number of straight lines inside an area, shape (n, 2) to (n,)."""
+    begin, along = ends[:, :1], ends[:, 1:] - ends[:, :1]
+    share = np.broadcast_to(np.linspace(0, 1, _ALONG), (len(ends), _ALONG))
+    width, best = 1 / (_ALONG - 1), np.zeros(len(ends))
+    for _ in range(1 + rounds):
+        value = area.from_boundary(begin + share * along)
+        chosen = np.argmax(value, axis=1)[:, None]
+        best = np.maximum(best, np.take_along_axis(value, chosen, axis=1)[:, 0])
+        share = np.clip(np.take_along_axis(share, chosen, axis=1) + width * _NEARBY, 0, 1)
+        width /= 3
+    return best

@@ -1,0 +1,293 @@
+"""What a linkage does on its way from the first target to the last: greatest speeds, forces and torque."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from grashof.analysis.curves.fit import coupler_fit_r2
+from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics
+from grashof.analysis.forces.loads import Joint, Loads
+from grashof.analysis.forces.mass import stated_masses
+from grashof.analysis.four_bar.kinematics import Kinematics, solve_kinematics
+from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.judge.verify import Verdict
+from grashof.problems import DeadPositionWarning, DynamicsSpec, FourBar, PathTask, Problem, Task
+from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.problems.values.dynamics_spec import metres
+
+_SAMPLES = 361
+_NEAR = np.logspace(-8, -2, 31)  # rad, about the positions that come closest to a dead one
+_PEAKS = 3
+_POINTS = 33
+_ROUNDS = 2  # each narrows the place of a peak 16 times; a parabola does the rest
+_PANEL = legendre.leggauss(16)
+_SETTLED = 1e-11
+_MOST_PANELS = 1024
+
+Curves = Callable[[FloatArray], FloatArray]
+
+
+@dataclass(frozen=True, slots=True)
+class OverTask:
+    """Figures of the motion from the first target to the last, the driver turning steadily.
+
+    NaN where no motion joins the targets; infinite where the motion touches a dead position.
+
+    Parameters
+    ----------
+    omega4_max : float, rad/s
+        Greatest magnitude of the output link's angular velocity.
+    point_speed_max, point_acceleration_max : float, length/s and length/s^2
+        Of P.
+    coupler_fit_r2 : float
+        Of a polynomial of degree 4 in the driver angle that stands for the path of P.
+    torque_peak, torque_rms : float, N m
+        Greatest magnitude of the drive torque, and its root mean square over time; NaN without
+        dynamics.
+    joint_force_peak : float, N
+        Greatest force in any joint; NaN without dynamics.
+    """
+
+    omega4_max: float
+    point_speed_max: float
+    point_acceleration_max: float
+    coupler_fit_r2: float
+    torque_peak: float = np.nan
+    torque_rms: float = np.nan
+    joint_force_peak: float = np.nan
+
+
+_NONE = OverTask(np.nan, np.nan, np.nan, np.nan)
+
+
+def over_task(linkage: FourBar, problem: Problem, verdict: Verdict) -> OverTask:
+    """Figures of a single linkage over the motion from the first target to the last.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        A single linkage.
+    problem : Problem
+        Its task; its dynamics say the driver's speed (else 1 rad/s) and the masses.
+    verdict : Verdict
+        Of `verify`: the driver angle at every target.
+
+    Returns
+    -------
+    OverTask
+
+    Notes
+    -----
+    Dense samples, densest where the linkage comes closest to a dead position, then ever closer ones
+    about the highest: the maxima are right to rounding where the quantity is smooth. The mean of
+    the squared torque is a Gauss-Legendre sum refined until it stands.
+
+    Examples
+    --------
+    >>> from grashof.analysis.judge.planted import planted_motion
+    >>> from grashof.analysis.judge.verify import verify
+    >>> task, linkage = planted_motion(np.random.default_rng(0), poses=4)
+    >>> problem = Problem(task=task, length_unit="m", dynamics=DynamicsSpec(mass_per_length=2.0))
+    >>> found = over_task(linkage, problem, verify(linkage, task, problem.requirements))
+    >>> round(found.omega4_max, 6), round(found.coupler_fit_r2, 6), round(found.torque_peak, 3)
+    (1.260659, 0.999996, 2.757)
+    """
+    linkage = _as_used(linkage, verdict)
+    start, end = motion_ends(problem.task, verdict)
+    theta2 = _sampled(linkage, start, end)
+    if not _joined(linkage, verdict, theta2):
+        return _NONE
+    spec = problem.dynamics
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeadPositionWarning)
+        if spec is None:
+            peaks = _peaks(_moving(linkage, 1.0), theta2)
+            forces: dict[str, float] = {}
+        else:
+            metre = metres(problem.length_unit)
+            peaks, square = _peaks(_driven(linkage, spec, metre), theta2), np.inf
+            if np.isfinite(peaks[3]):
+                torque = _torque(linkage, spec, metre)
+                square = mean_over(lambda angle: torque(angle) ** 2, start, end)
+            forces = {
+                "torque_peak": float(peaks[3]),
+                "torque_rms": float(np.sqrt(square)),
+                "joint_force_peak": float(peaks[4]),
+            }
+    return OverTask(
+        omega4_max=float(peaks[0]),
+        point_speed_max=float(peaks[1]),
+        point_acceleration_max=float(peaks[2]),
+        coupler_fit_r2=float(coupler_fit_r2(linkage, start, end)),
+        **forces,
+    )
+
+
+def torque_peak(linkage: FourBar, problem: Problem, verdict: Verdict) -> float:
+    """The drive torque's greatest magnitude as `over_task` has it, N m; NaN without dynamics."""
+    spec = problem.dynamics
+    if spec is None:
+        return np.nan
+    linkage = _as_used(linkage, verdict)
+    theta2 = _sampled(linkage, *motion_ends(problem.task, verdict))
+    if not _joined(linkage, verdict, theta2):
+        return np.nan
+    torque = _torque(linkage, spec, metres(problem.length_unit))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeadPositionWarning)
+        return float(_peaks(lambda angle: torque(angle)[None], theta2)[0])
+
+
+def _as_used(linkage: FourBar, verdict: Verdict) -> FourBar:
+    """The linkage on the assembly on which it meets the first target."""
+    used = np.asarray(verdict.assembly[0], dtype=np.float64)
+    return linkage if used == linkage.assembly else replace(linkage, assembly=used)
+
+
+def _joined(linkage: FourBar, verdict: Verdict, theta2: FloatArray) -> bool:
+    """Whether a motion joins the targets; at its very ends rounding may open the loop."""
+    return verdict.branch_ok and not np.isnan(solve_position(linkage, theta2[1:-1]).theta3).any()
+
+
+def motion_ends(task: Task, verdict: Verdict) -> tuple[float, float]:
+    """Driver angles at which the motion from the first target to the last begins and ends, rad."""
+    low, high = float(verdict.theta2.min()), float(verdict.theta2.max())
+    start, end = (low, high) if verdict.direction > 0 else (high, low)
+    if isinstance(task, PathTask) and task.closed:
+        end = start + verdict.direction * TURN
+    return start, end
+
+
+def mean_over(curve: Curves, start: float, end: float) -> float:
+    """Mean of a curve between two driver angles, sampled closer towards the ends.
+
+    Parameters
+    ----------
+    curve : callable
+        Takes and returns arrays of shape (N,).
+    start, end : float, rad
+
+    Returns
+    -------
+    float
+        Infinite where ever closer samples let it grow on.
+
+    Examples
+    --------
+    >>> round(mean_over(lambda angle: np.sin(angle) ** 2, 0.0, np.pi), 12)
+    0.5
+    """
+    before, panels = np.inf, 8
+    while panels <= _MOST_PANELS:
+        node, weight = _PANEL
+        phase = np.pi * (np.arange(panels)[:, None] + (node + 1) / 2).ravel() / panels
+        share = np.pi / (4 * panels) * np.tile(weight, panels) * np.sin(phase)
+        mean = float(share @ curve((start + end) / 2 - (end - start) / 2 * np.cos(phase)))
+        if abs(mean - before) <= _SETTLED * abs(mean):
+            break
+        before, panels = mean, 2 * panels
+    return mean
+
+
+def _moving(linkage: FourBar, omega2: float) -> Curves:
+    def curves(theta2: FloatArray) -> FloatArray:
+        return np.stack(_speeds(solve_kinematics(linkage, theta2, omega2)))
+
+    return curves
+
+
+def _speeds(state: Kinematics) -> list[FloatArray]:
+    point = state.p
+    return [np.abs(state.omega4), point.speed, point.acceleration_magnitude]
+
+
+def _driven(linkage: FourBar, spec: DynamicsSpec, metre: float) -> Curves:
+    """Speeds, |torque| in N m, and the greatest joint force in N, each a row."""
+    run = _run(linkage, spec, metre)
+
+    def curves(theta2: FloatArray) -> FloatArray:
+        state, found = run(theta2)
+        force = np.max([found.joint_force(joint) for joint in Joint], axis=0)
+        return np.stack([*_speeds(state), metre**2 * np.abs(found.torque), metre * force])
+
+    return curves
+
+
+def _torque(linkage: FourBar, spec: DynamicsSpec, metre: float) -> Curves:
+    """|torque| in N m."""
+    run = _run(linkage, spec, metre)
+
+    def curve(theta2: FloatArray) -> FloatArray:
+        torque: FloatArray = metre**2 * np.abs(run(theta2)[1].torque)
+        return torque
+
+    return curve
+
+
+def _run(
+    linkage: FourBar, spec: DynamicsSpec, metre: float
+) -> Callable[[FloatArray], tuple[Kinematics, Dynamics]]:
+    masses, loads = stated_masses(linkage, spec), Loads(gravity=np.array(spec.gravity) / metre)
+
+    def run(theta2: FloatArray) -> tuple[Kinematics, Dynamics]:
+        state = solve_kinematics(linkage, theta2, spec.omega2)
+        return state, inverse_dynamics(state, masses, loads)
+
+    return run
+
+
+def _sampled(linkage: FourBar, start: float, end: float) -> FloatArray:
+    """Driver angles from the lower end to the upper, close where a dead position is near."""
+    low, high = min(start, end), max(start, end)
+    spread = low + (high - low) * (1 - np.cos(np.linspace(0, np.pi, _SAMPLES))) / 2
+    spread[[0, -1]] = low, high
+    theta1 = float(linkage.theta1)
+    # With O2A along the ground line the diagonal A-O4 is shortest or longest.
+    turning = theta1 + np.pi * np.arange(
+        np.ceil((low - theta1) / np.pi), np.floor((high - theta1) / np.pi) + 1
+    )
+    near = (turning[:, None] + np.concatenate([-_NEAR, [0.0], _NEAR])).ravel()
+    return np.unique(np.concatenate([spread, near[(near > low) & (near < high)]]))
+
+
+def _peaks(curves: Curves, theta2: FloatArray) -> FloatArray:
+    """Greatest value of each row of curves; the samples hold their ends."""
+    values = _infinite_if_dead(curves(theta2))
+    best: FloatArray = values.max(axis=1)
+    padded = np.pad(values, ((0, 0), (1, 1)), constant_values=-np.inf)
+    summit = np.where((values >= padded[:, :-2]) & (values >= padded[:, 2:]), values, -np.inf)
+    top = np.argsort(-summit, axis=1, kind="stable")[:, :_PEAKS]
+    row = np.arange(len(values))[:, None, None]
+    low = theta2[np.maximum(top - 1, 0)]
+    high = theta2[np.minimum(top + 1, len(theta2) - 1)]
+    share = np.linspace(0, 1, _POINTS)
+    for _ in range(_ROUNDS):
+        angle = low[..., None] + (high - low)[..., None] * share
+        near = _infinite_if_dead(curves(angle.ravel())).reshape(len(values), *angle.shape)
+        own = near[row, row, np.arange(top.shape[1])[:, None], np.arange(_POINTS)]  # of its own curve
+        peak = own.argmax(axis=2)[..., None]
+        low = np.take_along_axis(angle, np.maximum(peak - 1, 0), axis=2)[..., 0]
+        high = np.take_along_axis(angle, np.minimum(peak + 1, _POINTS - 1), axis=2)[..., 0]
+    best = np.maximum(best, own.max(axis=(1, 2)))
+    beside = [np.take_along_axis(own, np.clip(peak + k, 0, _POINTS - 1), axis=2)[..., 0] for k in (-1, 0, 1)]
+    greatest: FloatArray = np.maximum(best, _vertex(*beside).max(axis=1))
+    return greatest
+
+
+def _vertex(before: FloatArray, middle: FloatArray, after: FloatArray) -> FloatArray:
+    """Top of the parabola through three values at equal steps, the middle one where it has none."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        bend = before - 2 * middle + after
+        top = middle - (after - before) ** 2 / (8 * bend)
+    found: FloatArray = np.where((bend < 0) & (before < middle) & (after < middle), top, middle)
+    return found
+
+
+def _infinite_if_dead(values: FloatArray) -> FloatArray:
+    """The motion closes everywhere, so what is not a number is so in a dead position alone."""
+    return np.where(np.isnan(values), np.inf, values)

@@ -1,0 +1,258 @@
+"""What becomes of a design when its dimensions are made inexactly.
+
+O2, the direction of the ground line and the driver's angle at every target are held: a motor turns the
+driver to the nominal angles, measured from the frame. The dimensions r1 (which moves O4 along the ground
+line), r2, r3, r4, u and v vary.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+import numpy.typing as npt
+
+from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.four_bar.transmission import transmission_angle
+from grashof.analysis.judge.verify import Verdict
+from grashof.problems import FourBar, Manufacturing, MotionTask, PathTask, Task
+from grashof.problems.values.arrays import BoolArray, FloatArray
+
+DIMENSIONS = ("r1", "r2", "r3", "r4", "u", "v")
+SAMPLES = 20_000  # made linkages: a share has a standard error of at most 0.0036
+_POSITIONS = 200_000  # most positions solved for a design: long paths get fewer samples, ...
+_FEWEST = 1_000  # ... but so many at least (0.016)
+_AT_ONCE = 20_000  # positions solved in one piece, which stays in the processor's cache
+
+
+@dataclass(frozen=True, slots=True)
+class Robustness:
+    """How a design takes inexact dimensions.
+
+    Parameters
+    ----------
+    moves : ndarray, shape (6,), length per length
+        How far the worst target moves per unit of change of r1, r2, r3, r4, u, v.
+    worst_move : float, length
+        How far the worst target moves, linearised, when all dimensions are off by the tolerance in
+        the worst combination of senses.
+    share_linear, share_made : float
+        Share of made linkages that stay within the band: linearised, and by exact positions.
+    """
+
+    moves: FloatArray
+    worst_move: float
+    share_linear: float
+    share_made: float
+
+
+def robustness(linkage: FourBar, task: Task, verdict: Verdict, manufacturing: Manufacturing) -> Robustness:
+    """How a single design takes inexact dimensions; the same figures whenever it is asked.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        A single linkage.
+    task : MotionTask or PathTask
+    verdict : Verdict
+        Of `verify`: the driver angle and assembly at every target.
+    manufacturing : Manufacturing
+
+    Returns
+    -------
+    Robustness
+
+    Notes
+    -----
+    The move of a target is the distance of P from where the nominal linkage has it; for a pose
+    sqrt(|dp|^2 + (angle_length * dangle)^2), the measure that the fit of poses uses too.
+
+    Examples
+    --------
+    >>> from grashof.analysis import verify
+    >>> from grashof.analysis.judge.planted import planted_motion
+    >>> from grashof.problems import Requirements
+    >>> task, linkage = planted_motion(np.random.default_rng(0), poses=4)
+    >>> verdict = verify(linkage, task, Requirements())
+    >>> made = robustness(linkage, task, verdict, Manufacturing(1e-3 * task.size))
+    >>> made.moves.round(2).tolist()
+    [3.56, 2.67, 3.59, 4.97, 1.0, 1.0]
+    """
+    samples = min(SAMPLES, max(_FEWEST, _POSITIONS // len(task)))
+    errors = dimension_errors(manufacturing, samples, np.random.default_rng(0))
+    slope = _measured_sensitivity(linkage, task, verdict)
+    corners = manufacturing.length_tolerance * np.array(list(product((1.0, -1.0), repeat=6)))
+    return Robustness(
+        moves=np.sqrt((slope**2).sum(axis=1)).max(axis=0),
+        worst_move=float(_linear_moves(slope, corners).max()),
+        share_linear=yield_linear(linkage, task, verdict, manufacturing.band, errors),
+        share_made=yield_monte_carlo(linkage, task, verdict, manufacturing.band, errors),
+    )
+
+
+def sensitivity(linkage: FourBar, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None) -> FloatArray:
+    """Derivatives of the coupler's position by the dimensions, at held driver angles.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        One, or a batch whose axes broadcast against `theta2`.
+    theta2 : array_like, shape (...), rad
+        Driver angle, global.
+    assembly : array_like, shape (...), optional
+        +1 or -1; the linkage's own by default.
+
+    Returns
+    -------
+    ndarray, shape (..., 3, 6), length/length and rad/length
+        Rows: x and y of P, theta3. Columns: r1, r2, r3, r4, u, v. NaN where the linkage cannot close,
+        without bound towards a dead position.
+
+    Notes
+    -----
+    The component along O4B of the varied loop equation r2 + r3 = r1 + r4 (as vectors) holds no dtheta4:
+
+        r3 sin(theta3 - theta4) dtheta3
+            = dr2 cos(theta2 - theta4) + dr3 cos(theta3 - theta4) - dr1 cos(theta1 - theta4) - dr4
+
+    Examples
+    --------
+    A square, P at B: a longer output link lifts P by as much, and turns the coupler.
+
+    >>> square = FourBar(o2=(0, 0), o4=(2, 0), r2=2, r3=2, r4=2, coupler_point=(2, 0), assembly=1)
+    >>> (sensitivity(square, np.pi / 2)[:, 3] + 0.0).round(9).tolist()
+    [0.0, 1.0, 0.5]
+    """
+    state = solve_position(linkage, theta2, assembly)
+    theta3, theta4 = state.theta3, state.theta4
+    with np.errstate(divide="ignore", invalid="ignore"):
+        turn = (
+            np.stack(
+                [
+                    -np.cos(linkage.theta1 - theta4),
+                    np.cos(state.theta2 - theta4),
+                    np.cos(theta3 - theta4),
+                    np.full_like(theta3, -1.0),
+                ],
+                axis=-1,
+            )
+            / (linkage.r3 * np.sin(theta3 - theta4))[..., None]
+        )
+        along, ahead = np.exp(1j * theta3), np.exp(1j * state.theta2)
+        arm = (linkage.coupler_point @ np.array([1, 1j])) * along
+        carried = 1j * arm[..., None] * turn
+    carried[..., 1] += ahead
+    none = np.zeros((*theta3.shape, 2))
+    moved = np.concatenate([carried, np.stack([along, 1j * along], axis=-1)], axis=-1)
+    turned = np.concatenate([turn, none], axis=-1)
+    return np.stack([moved.real, moved.imag, turned], axis=-2)
+
+
+def dimension_errors(manufacturing: Manufacturing, samples: int, rng: np.random.Generator) -> FloatArray:
+    """Random deviations of the dimensions r1, r2, r3, r4, u, v, shape (samples, 6), length."""
+    return manufacturing.deviation * rng.standard_normal((samples, len(DIMENSIONS)))
+
+
+def yield_linear(linkage: FourBar, task: Task, verdict: Verdict, band: float, errors: FloatArray) -> float:
+    """Share of made linkages whose worst target moves by at most `band`, linearised.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        The nominal one, single.
+    task : MotionTask or PathTask
+    verdict : Verdict
+    band : float, length
+    errors : ndarray, shape (S, 6), length
+        Deviations of the dimensions of each made linkage.
+    """
+    slope = _measured_sensitivity(linkage, task, verdict)
+    return float(np.mean(_linear_moves(slope, errors).max(axis=0) <= band))
+
+
+def yield_monte_carlo(
+    linkage: FourBar, task: Task, verdict: Verdict, band: float, errors: FloatArray
+) -> float:
+    """Share of made linkages whose worst target moves by at most `band`, by exact positions.
+
+    Those that cannot be assembled at a target count as outside, and, when the nominal linkage passes
+    from the first target to the last, those that cannot be assembled all the way.
+
+    Parameters
+    ----------
+    linkage, task, verdict, band, errors
+        As for `yield_linear`.
+    """
+    theta2, assembly = verdict.theta2[:, None], verdict.assembly[:, None]
+    nominal = solve_position(linkage, theta2, assembly)
+    between = _nearest_to_dead(linkage, task, verdict) if verdict.branch_ok else np.empty(0)
+    piece = max(1, _AT_ONCE // len(task))
+    within = 0
+    for begin in range(0, len(errors), piece):
+        made, possible = made_linkages(linkage, errors[begin : begin + piece])
+        possible &= np.isfinite(transmission_angle(made, between[:, None])).all(axis=0)
+        state = solve_position(made, theta2, assembly)
+        shift = state.p - nominal.p
+        moves2 = shift[..., 0] ** 2 + shift[..., 1] ** 2
+        if isinstance(task, MotionTask):
+            turned = (state.theta3 - nominal.theta3 + np.pi) % (2 * np.pi) - np.pi
+            moves2 += (task.angle_length * turned) ** 2
+        within += int(np.count_nonzero(possible & (moves2.max(axis=0) <= band**2)))  # NaN is not within
+    return within / len(errors)
+
+
+def made_linkages(linkage: FourBar, errors: FloatArray) -> tuple[FourBar, BoolArray]:
+    """Linkages of deviating dimensions, and which of them there can be: all lengths above zero.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        The nominal one, single.
+    errors : ndarray, shape (S, 6), length
+
+    Returns
+    -------
+    FourBar, ndarray of bool
+        Shape (S,); an impossible one is the nominal one.
+    """
+    possible: BoolArray = np.all(linkage.lengths + errors[:, :4] > 0, axis=1)
+    errors = np.where(possible[:, None], errors, 0.0)
+    ground = errors[:, :1] * [np.cos(linkage.theta1), np.sin(linkage.theta1)]
+    made = FourBar(
+        o2=linkage.o2,
+        o4=linkage.o4 + ground,
+        r2=linkage.r2 + errors[:, 1],
+        r3=linkage.r3 + errors[:, 2],
+        r4=linkage.r4 + errors[:, 3],
+        coupler_point=linkage.coupler_point + errors[:, 4:],
+        assembly=linkage.assembly,
+        body_angle=linkage.body_angle,
+    )
+    return made, possible
+
+
+def _measured_sensitivity(linkage: FourBar, task: Task, verdict: Verdict) -> FloatArray:
+    """Sensitivity at each target, shape (N, 3, 6), with angles as the lengths they count as."""
+    counts = np.array([1.0, 1.0, task.angle_length if isinstance(task, MotionTask) else 0.0])
+    return counts[:, None] * sensitivity(linkage, verdict.theta2, verdict.assembly)
+
+
+def _linear_moves(slope: FloatArray, errors: FloatArray) -> FloatArray:
+    """Moves of N targets for S deviations, shape (N, S)."""
+    with np.errstate(invalid="ignore"):
+        moved = (slope.reshape(-1, len(DIMENSIONS)) @ errors.T).reshape(len(slope), 3, -1)
+    moves: FloatArray = np.sqrt(moved[:, 0] ** 2 + moved[:, 1] ** 2 + moved[:, 2] ** 2)
+    return moves
+
+
+def _nearest_to_dead(linkage: FourBar, task: Task, verdict: Verdict) -> FloatArray:
+    """Driver angles on the way where O2A lies along the ground line, shape (0 to 2,), rad.
+
+    There, or at the ends of the way, the diagonal A-O4 is shortest and longest, whatever the lengths.
+    """
+    start, end = verdict.theta2.min(), verdict.theta2.max()
+    if isinstance(task, PathTask) and task.closed:
+        end = start + 2 * np.pi
+    first, last = np.ceil((start - linkage.theta1) / np.pi), np.floor((end - linkage.theta1) / np.pi)
+    return linkage.theta1 + np.pi * np.arange(first, last + 1)[:2]

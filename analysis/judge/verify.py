@@ -1,0 +1,343 @@
+"""The judge: does this linkage do the task under the requirements? From the linkage alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from grashof.analysis.four_bar.mobility import (
+    GrashofClass,
+    branch_index,
+    circuit_index,
+    full_rotation,
+    grashof_class,
+    passes_change_point,
+    rotatability,
+)
+from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.four_bar.reach import diagonal, reach_box
+from grashof.analysis.four_bar.transmission import worst_transmission, worst_transmission_cycle
+from grashof.analysis.judge.design import Constraint, Design, greatest, name_of
+from grashof.analysis.judge.limits import SLACK, Defect, angles, geometry, places
+from grashof.analysis.judge.nearest_points import nearest_to_points
+from grashof.analysis.judge.nearest_poses import STEADY, Targets, Way, driver_way, nearest_to_poses
+from grashof.analysis.judge.poses_in_order import poses_in_order
+from grashof.problems import FourBar, PathTask, Requirements, Rotatability, Task, TransmissionOver
+from grashof.problems.values.arrays import FloatArray, IntArray
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What a linkage does with a task, and every defect.
+
+    Parameters
+    ----------
+    theta2 : ndarray, shape (N,), rad
+        Driver angle at each target, counted on along the motion.
+    assembly : ndarray of int, shape (N,)
+        Assembly at each target.
+    position_error : ndarray, shape (N,), length
+        NaN where a pose has no position.
+    angle_error : ndarray, shape (N,), rad, or None
+        NaN where a pose has no angle; None for a path.
+    square : float, length squared
+        What least squares makes small: the weighted sum of |dp|^2 + (angle_length * dangle)^2.
+    direction : int
+        Sense of the driver, +1 counter-clockwise.
+    grashof_class : GrashofClass
+    full_rotation, circuit_ok, branch_ok, order_ok : bool
+    transmission_min_task, transmission_min_cycle : float, rad
+        Worst min(mu, pi - mu) over the motion used and over the turn.
+    size : float, length
+        Diagonal of the box around O2, O4 and all that A, B and P reach in the motion used.
+    defects : tuple of Defect
+        Empty for a design that does what is required.
+    """
+
+    theta2: FloatArray
+    assembly: IntArray
+    position_error: FloatArray
+    angle_error: FloatArray | None
+    square: float
+    direction: int
+    grashof_class: GrashofClass
+    full_rotation: bool
+    circuit_ok: bool
+    branch_ok: bool
+    order_ok: bool
+    transmission_min_task: float
+    transmission_min_cycle: float
+    size: float
+    defects: tuple[Defect, ...]
+
+    @property
+    def ok(self) -> bool:
+        """Whether the linkage has no defect."""
+        return not self.defects
+
+    @property
+    def error_max(self) -> float:
+        """Greatest distance from a target position."""
+        return float(np.nanmax(self.position_error))
+
+    @property
+    def error_sse(self) -> float:
+        """Sum of squared distances from the target positions."""
+        return float(np.nansum(self.position_error**2))
+
+    @property
+    def error_rms(self) -> float:
+        """Root mean square distance from the target positions."""
+        return float(np.sqrt(np.nanmean(self.position_error**2)))
+
+
+def verify(
+    linkage: FourBar,
+    task: Task,
+    requirements: Requirements,
+    constraints: Sequence[Constraint] = (),
+    *,
+    most_square: float = np.inf,
+) -> Verdict:
+    """Judge a single linkage.
+
+    Parameters
+    ----------
+    linkage : FourBar
+    task : MotionTask or PathTask
+    requirements : Requirements
+        Defaults that depend on the size of the task are filled in.
+    constraints : sequence of callable
+        The user's own: functions of a `Design`, zero or negative where met.
+    most_square : float, length squared
+        Up to which `Verdict.square` is allowed: what ``error_factor`` makes of the least one found.
+
+    Returns
+    -------
+    Verdict
+
+    Notes
+    -----
+    Circuit, branch and order defects as Chase & Mirth (1993) define them. With ``order = false``
+    the motion used is the shortest that holds all targets; on a closed path it is the whole turn.
+
+    Examples
+    --------
+    >>> from grashof.analysis.judge.planted import planted_motion
+    >>> task, linkage = planted_motion(np.random.default_rng(0), poses=4)
+    >>> verdict = verify(linkage, task, Requirements())
+    >>> verdict.ok, bool(verdict.error_max < 1e-12 * task.size)
+    (True, True)
+    """
+    wanted = requirements.resolved(task.size)
+    targets, way = _met(linkage, task, wanted)
+    circuits = circuit_index(linkage, targets.theta2, targets.assembly)
+    branches = branch_index(linkage, targets.theta2, targets.assembly)
+    circuit_ok = bool((circuits == circuits[0]).all() and circuits[0] >= 0)
+    branch_ok = circuit_ok and bool((branches == branches[0]).all())
+    branch_ok = branch_ok and not passes_change_point(linkage, way.start, way.end)
+    # Without a motion that joins the targets nothing is transmitted.
+    task_worst = float(worst_transmission(linkage, way.start, way.end)) if branch_ok else 0.0
+    cycle_worst = float(worst_transmission_cycle(linkage))
+    over_task = wanted.transmission_over is TransmissionOver.TASK
+    worst = task_worst if over_task else cycle_worst
+    defects = [
+        *(_exactness(targets, task, wanted) if wanted.is_exact(task) else []),
+        *_zones(targets, task),
+        *_whole_error(targets, task, most_square),
+        *_same_branch(circuit_ok, branch_ok, int(linkage.assembly), targets, wanted),
+        *_order(way, wanted),
+        *_rotatability(linkage, task, wanted),
+        *_covered(targets),
+        *(_least_transmission(worst, wanted) if branch_ok or not wanted.same_branch else []),
+        *geometry(linkage, task, wanted),
+        *places(linkage, solve_position(linkage, targets.theta2, targets.assembly), task, wanted),
+        *angles(linkage, targets, wanted),
+        *_own(linkage, targets, way, constraints),
+        *(_kept_out(linkage, targets, way, task, wanted, joined=branch_ok) if wanted.keep_out else []),
+    ]
+    return Verdict(
+        theta2=way.theta2,
+        assembly=targets.assembly,
+        position_error=targets.position_error,
+        angle_error=targets.angle_error,
+        square=_square(targets, task),
+        direction=way.direction,
+        grashof_class=grashof_class(linkage),
+        full_rotation=bool(full_rotation(linkage)),
+        circuit_ok=circuit_ok,
+        branch_ok=branch_ok,
+        order_ok=way.in_order,
+        transmission_min_task=task_worst,
+        transmission_min_cycle=cycle_worst,
+        size=diagonal(reach_box(linkage, way.start, way.end)),
+        defects=tuple(defects),
+    )
+
+
+def _met(linkage: FourBar, task: Task, wanted: Requirements) -> tuple[Targets, Way]:
+    if isinstance(task, PathTask):
+        start = None if wanted.theta2_start_deg is None else float(np.radians(wanted.theta2_start_deg))
+        return nearest_to_points(
+            linkage, task, ordered=wanted.order, same_branch=wanted.same_branch, theta2_start=start
+        )
+    targets = nearest_to_poses(linkage, task)
+    way = driver_way(linkage, targets.theta2, wanted.order)
+    if wanted.order and not (wanted.is_exact(task) and task.is_whole):
+        branch = branch_index(linkage, targets.theta2, targets.assembly)
+        joined = (branch == branch[0]).all() and targets.assembly[0] == int(linkage.assembly)
+        if not way.in_order or (wanted.same_branch and not joined):
+            return poses_in_order(linkage, task, targets, way)
+    return targets, way
+
+
+def _square(targets: Targets, task: Task) -> float:
+    if isinstance(task, PathTask) or targets.angle_error is None:
+        return float((targets.position_error**2).sum())
+    turned = task.angle_length * targets.angle_error
+    return float(np.nansum(task.weights * targets.position_error**2) + np.nansum(task.weights * turned**2))
+
+
+def _closed(task: Task) -> bool:
+    return isinstance(task, PathTask) and task.closed
+
+
+def _exactness(targets: Targets, task: Task, wanted: Requirements) -> list[Defect]:
+    worst = float(np.nanmax(targets.position_error))
+    allowed = wanted.tolerance * task.size
+    defects = []
+    if not worst <= allowed:
+        miss = worst / task.size - wanted.tolerance
+        defects.append(Defect("exact", "the largest position error", worst, f"up to {allowed:.6g}", miss))
+    if targets.angle_error is None or isinstance(task, PathTask) or not task.has_angle.any():
+        return defects
+    turned = float(np.nanmax(targets.angle_error))
+    if not turned * task.angle_length <= allowed:
+        limit = float(np.degrees(allowed / task.angle_length))
+        miss = turned - allowed / task.angle_length
+        found = float(np.degrees(turned))
+        defects.append(Defect("exact", "the largest angle error in deg", found, f"up to {limit:.6g}", miss))
+    return defects
+
+
+def _zones(targets: Targets, task: Task) -> list[Defect]:
+    """Targets that are missed by more than each of them may be."""
+    if task.zones is None:
+        return []
+    defects = []
+    none = np.full(len(task), np.nan)
+    misses = (targets.position_error, none if targets.angle_error is None else targets.angle_error)
+    for what, miss, zone, size in zip(
+        ("position", "angle"), misses, task.zones, (task.size, 1.0), strict=True
+    ):
+        over = np.nan_to_num((miss - zone) / size, nan=-np.inf)
+        worst = int(np.argmax(over))
+        if over[worst] > SLACK:
+            unit = np.degrees(1.0) if what == "angle" else 1.0
+            key, deg = ("angle_within_deg", " in deg") if what == "angle" else ("within", "")
+            found, allowed = unit * float(miss[worst]), f"up to {unit * zone[worst]:.6g}"
+            said = f"the {what} error{deg} at target {worst + 1}"
+            defects.append(Defect(key, said, found, allowed, float(over[worst])))
+    return defects
+
+
+def _whole_error(targets: Targets, task: Task, most_square: float) -> list[Defect]:
+    found, most = (float(np.sqrt(square / len(task))) for square in (_square(targets, task), most_square))
+    miss = (found - most) / task.size
+    if not miss > SLACK:
+        return []
+    return [Defect("error_factor", "the error (root mean square)", found, f"up to {most:.6g}", miss)]
+
+
+def _same_branch(
+    circuit_ok: bool, branch_ok: bool, declared: int, targets: Targets, wanted: Requirements
+) -> list[Defect]:
+    if not wanted.same_branch:
+        return []
+    if not branch_ok:
+        what = "branches used (a dead position lies between)" if circuit_ok else "circuits used"
+        return [Defect("same_branch", f"the number of {what}", 2, "1", 1.0)]
+    used = int(targets.assembly[0])
+    if used != declared:
+        allowed = f"{declared:+d}, the linkage's own"
+        return [Defect("same_branch", "the assembly at the targets", used, allowed, 1.0)]
+    return []
+
+
+def _order(way: Way, wanted: Requirements) -> list[Defect]:
+    if not wanted.order or way.in_order:
+        return []
+    turns = abs(way.end - way.start) / (2 * np.pi)
+    if turns > 1:
+        what = "turns of the driver to meet the targets in sequence"
+        return [Defect("order", what, turns, "up to 1", 1.0)]
+    step = np.diff(way.theta2)
+    reversals = int(np.count_nonzero(np.diff(np.sign(step[np.abs(step) > STEADY]))))
+    return [Defect("order", "the number of reversals of the driver between targets", reversals, "0", 1.0)]
+
+
+def _rotatability(linkage: FourBar, task: Task, wanted: Requirements) -> list[Defect]:
+    margin, why = wanted.rotatability_margin, str(wanted.rotatability)
+    if wanted.rotatability is Rotatability.ANY:
+        if not _closed(task):
+            return []
+        margin, why = 0.0, "a closed path takes a whole turn"
+    least = float(rotatability(linkage).min())
+    defects = []
+    if least < margin - SLACK:
+        miss = margin - least
+        allowed = f"from {margin:g} ({why})"
+        defects.append(Defect("rotatability", "the margin of full rotation", least, allowed, miss))
+    kind = {Rotatability.CRANK_ROCKER: 1, Rotatability.DOUBLE_CRANK: -1}.get(wanted.rotatability, 0)
+    difference = float(linkage.r1 - linkage.r2)
+    miss = -kind * difference / float(linkage.lengths.sum())
+    if miss > SLACK:
+        which = "greater" if kind > 0 else "less"
+        allowed = f"{which} than 0 ({wanted.rotatability})"
+        defects.append(Defect("rotatability", "r1 - r2", difference, allowed, miss))
+    return defects
+
+
+def _covered(targets: Targets) -> list[Defect]:
+    missed = int(np.count_nonzero(np.isinf(targets.position_error)))
+    if not missed:
+        return []
+    what = "the number of targets at which the linkage cannot be assembled"
+    return [Defect("rotatability", what, missed, "0", 1.0)]
+
+
+def _least_transmission(worst: float, wanted: Requirements) -> list[Defect]:
+    least = np.radians(wanted.transmission_min_deg)
+    if worst >= least - SLACK:
+        return []
+    what = f"the worst transmission angle over the {wanted.transmission_over} in deg"
+    allowed = f"from {wanted.transmission_min_deg:g}"
+    return [Defect("transmission_min_deg", what, float(np.degrees(worst)), allowed, float(least - worst))]
+
+
+def _own(linkage: FourBar, targets: Targets, way: Way, constraints: Sequence[Constraint]) -> list[Defect]:
+    if not constraints:
+        return []
+    visit = np.argsort(way.direction * way.theta2, kind="stable")
+    design = Design.of(linkage, way.theta2[visit], targets.assembly[visit])
+    defects = []
+    for constraint in constraints:
+        value = greatest(constraint, design)
+        if not value <= SLACK:
+            defects.append(Defect("constraints", name_of(constraint), value, "up to 0", value))
+    return defects
+
+
+def _kept_out(
+    linkage: FourBar, targets: Targets, way: Way, task: Task, wanted: Requirements, *, joined: bool
+) -> list[Defect]:
+    # Here, not above: shapely takes a while to import, and few problems have areas.
+    from grashof.analysis.judge.keep_out import intrusions
+
+    return [
+        Defect("keep_out", f"the depth of {part} inside", deep, "0", deep / task.size)
+        for part, deep in intrusions(linkage, wanted, targets, way, joined=joined).items()
+        if deep > SLACK * task.size
+    ]

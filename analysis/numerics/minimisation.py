@@ -1,0 +1,230 @@
+"""Newton's method for many small minimisations at once, each in one driver angle or several in order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeAlias
+
+import numpy as np
+from scipy.optimize import isotonic_regression
+
+from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
+
+# What is minimised: its value, first and second derivative, and a positive stand-in for the second.
+Model: TypeAlias = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
+_STEPS = 60  # enough for a way of more than half a turn at _REACH
+_REACH = 0.1  # rad: no first step is longer
+_SAME = 1e-12  # rad
+_EDGE = 3e-7  # share of a range: so near its end derivatives have no digits
+_FIXED = 1e12  # how much heavier than the others an angle is that must not move
+_LEAST_WEIGHT = 1e-12  # of the mean
+
+
+def lowest(
+    model: Callable[[FloatArray], Model], angle: FloatArray, low: FloatArray, high: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Each angle moved by itself to the bottom of its valley.
+
+    Parameters
+    ----------
+    model : callable
+        Of angles of shape (...); value inf where it is not defined.
+    angle, low, high : ndarray, shape (...), rad
+        Where to begin, and bounds: infinite, or where the driver's range ends.
+
+    Returns
+    -------
+    angle, value : ndarray, shape (...)
+    """
+    unknown = _Unknown(model, low, high)
+    angle, low, high = unknown.of(np.clip(angle, low, high)), unknown.of(low), unknown.of(high)
+    current = unknown.model(angle)
+    reach = np.full(angle.shape, _REACH)
+    for _ in range(_STEPS):
+        step = np.clip(-_quotient(current[1], _curvature(current)), -reach, reach)
+        tried = np.clip(angle + step, low, high)
+        fresh = unknown.model(tried)
+        better = _better(current, fresh)
+        moved = np.abs(tried - angle)
+        reach = np.where(better, np.maximum(reach, 2 * moved), moved / 4)
+        angle = np.where(better, tried, angle)
+        current = _chosen(better, fresh, current)
+        if not ((moved > _SAME) & (better | (moved > 1e-7))).any():
+            break
+    return unknown.found(angle, current[0])
+
+
+def lowest_in_order(
+    model: Callable[[FloatArray], Model],
+    angle: FloatArray,
+    bounds: tuple[FloatArray, FloatArray],
+    ends: tuple[FloatArray, FloatArray],
+) -> tuple[FloatArray, FloatArray]:
+    """Rows of angles moved to a least sum of their values, kept from going back within one turn.
+
+    Parameters
+    ----------
+    model : callable
+        Of angles of shape (K, N), each value depending on its own angle only.
+    angle : ndarray, shape (K, N), rad
+        Where to begin, every row in order.
+    bounds : pair of ndarray, shape (K, N), rad
+        Lowest and highest angle, in order along each row.
+    ends : pair of ndarray, shape (K, N), rad
+        Of the driver's range; infinite for a driver that turns fully.
+
+    Returns
+    -------
+    angle, value : ndarray, shape (K, N)
+
+    Notes
+    -----
+    Newton steps with the diagonal second derivative, each projected on the order by weighted isotonic
+    regression (Best & Chakravarti 1990), which is the exact solution of the quadratic step; angles
+    that stand together share their second derivative, so that they take a Newton step together.
+    """
+    unknown = _Unknown(model, *ends)
+    low, high = (np.clip(bound, *ends) for bound in bounds)
+    angle, low, high = unknown.of(np.clip(angle, low, high)), unknown.of(low), unknown.of(high)
+    current = unknown.model(angle)
+    fixed = low == high
+    damping = np.zeros((len(angle), 1))
+    for _ in range(_STEPS):
+        weight = _pooled(angle, current) * (1 + damping)
+        weight = np.maximum(weight, _LEAST_WEIGHT * weight.mean(axis=1, keepdims=True))
+        wish = np.where(fixed, angle, angle - _quotient(current[1], weight))
+        weight = np.where(fixed, weight.max(axis=1, keepdims=True) * _FIXED, weight)
+        tried = _in_order(wish, weight, low, high)
+        tried = angle + (tried - angle) * _shortened(tried - angle)
+        fresh = unknown.model(tried)
+        better = _better_rows(current, fresh, angle, tried)
+        moved = np.abs(tried - angle).max(axis=1, keepdims=True)
+        damping = np.where(better, damping / 8 * (damping > 1e-3), 4 * damping + 1)
+        angle = np.where(better, tried, angle)
+        current = _chosen(np.broadcast_to(better, angle.shape), fresh, current)
+        if not ((moved > _SAME) & (better | (moved > 1e-7))).any():
+            break
+    angle, value = unknown.found(angle, current[0])
+    return np.clip(angle, *bounds), value
+
+
+class _Unknown:
+    """What is solved for instead of an angle t of a range: x in t = low + (high - low) (1 - cos pi x) / 2.
+
+    Near the ends of its range, the dead positions, a linkage moves with the square root of the
+    driver angle, so smoothly with x. Scaled to [low, high], and t itself without a range.
+    """
+
+    def __init__(self, model: Callable[[FloatArray], Model], low: FloatArray, high: FloatArray) -> None:
+        self._given, self._low, self._high = model, low, high
+        self._span = high - low
+        self._swings = np.isfinite(self._span) & (self._span > 0)
+        self._span = np.where(self._swings, self._span, 1.0)
+        self._floor = np.where(self._swings, low, 0.0)
+
+    def of(self, angle: FloatArray) -> FloatArray:
+        share = np.clip((angle - self._floor) / self._span, 0, 1)
+        smooth = self._floor + self._span * np.arccos(1 - 2 * share) / np.pi
+        return np.where(self._swings, smooth, angle)
+
+    def model(self, unknown: FloatArray) -> Model:
+        if not self._swings.any():
+            return self._given(unknown)
+        turn = np.pi * np.clip((unknown - self._floor) / self._span, _EDGE, 1 - _EDGE)
+        angle = self._floor + self._span * np.sin(turn / 2) ** 2
+        value, slope, second, positive = self._given(np.where(self._swings, angle, unknown))
+        rate = np.where(self._swings, np.pi / 2 * np.sin(turn), 1.0)
+        bend = np.where(self._swings, np.pi**2 / 2 * np.cos(turn) / self._span, 0.0)
+        return value, slope * rate, second * rate**2 + slope * bend, positive * rate**2
+
+    def found(self, unknown: FloatArray, value: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The angles, put on the ends of their ranges where they came up against them."""
+        if not self._swings.any():
+            return unknown, value
+        share = np.clip((unknown - self._floor) / self._span, 0, 1)
+        share = np.where(share <= _EDGE, 0.0, np.where(share >= 1 - _EDGE, 1.0, share))
+        angle = self._floor + self._span * np.sin(np.pi / 2 * share) ** 2
+        angle = np.where(self._swings, np.clip(angle, self._low, self._high), unknown)
+        return angle, self._given(angle)[0]
+
+
+def _quotient(slope: FloatArray, curvature: FloatArray) -> FloatArray:
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        return np.nan_to_num(slope / curvature, nan=0.0, posinf=0.0, neginf=0.0)
+
+
+def _curvature(model: Model) -> FloatArray:
+    _, _, second, positive = model
+    with np.errstate(invalid="ignore"):
+        return np.where(second > 0.01 * positive, second, positive)
+
+
+def _better(current: Model, fresh: Model) -> BoolArray:
+    # Where the value has no digits left to fall by, the slope still tells.
+    with np.errstate(invalid="ignore"):
+        level = (fresh[0] <= current[0] * (1 + 1e-14)) & (np.abs(fresh[1]) < np.abs(current[1]))
+    return (fresh[0] < current[0]) | level
+
+
+def _better_rows(current: Model, fresh: Model, angle: FloatArray, tried: FloatArray) -> BoolArray:
+    before, after = current[0].sum(axis=1), fresh[0].sum(axis=1)
+    way = tried - angle
+    with np.errstate(invalid="ignore"):
+        falls = np.abs((fresh[1] * way).sum(axis=1)) < np.abs((current[1] * way).sum(axis=1))
+    better: BoolArray = (after < before) | ((after <= before * (1 + 1e-14)) & falls)
+    return better[:, None]
+
+
+def _chosen(better: BoolArray, fresh: Model, current: Model) -> Model:
+    value, slope, second, positive = (
+        np.where(better, new, old) for new, old in zip(fresh, current, strict=True)
+    )
+    return value, slope, second, positive
+
+
+def _shortened(step: FloatArray) -> FloatArray:
+    longest = np.abs(step).max(axis=1, keepdims=True)
+    share: FloatArray = _REACH / np.maximum(longest, _REACH)
+    return share
+
+
+def _pooled(angle: FloatArray, model: Model) -> FloatArray:
+    """Curvature of each value, so large that no step is long; angles that stand together share theirs."""
+    together = np.abs(np.diff(angle, axis=1, prepend=np.nan)) <= _SAME
+    if not together.any():
+        return np.maximum(_curvature(model), np.abs(model[1]) / _REACH)
+    first = np.flatnonzero(~together.ravel())
+    count = np.diff(np.append(first, angle.size))
+    means = [
+        np.repeat(np.add.reduceat(np.nan_to_num(part).ravel(), first) / count, count).reshape(angle.shape)
+        for part in model[1:]
+    ]
+    slope, second, positive = means
+    return np.maximum(_curvature((model[0], slope, second, positive)), np.abs(slope) / _REACH)
+
+
+def _in_order(wish: FloatArray, weight: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
+    """The nearest angles, by weight, that do not go back, within one turn and within their bounds."""
+    ordered = wish.copy()
+    for row in np.flatnonzero((np.diff(wish, axis=1) < 0).any(axis=1)):
+        ordered[row] = isotonic_regression(wish[row], weights=weight[row]).x
+    for row in np.flatnonzero(ordered[:, -1] - ordered[:, 0] > TURN):
+        ordered[row] = _within_a_turn(ordered[row], weight[row])
+    bounded: FloatArray = np.clip(ordered, low, high)
+    return bounded
+
+
+def _within_a_turn(ordered: FloatArray, weight: FloatArray) -> FloatArray:
+    """Ordered angles pressed into one turn, at the least weighted cost."""
+    first = (ordered[0] + ordered[-1] - TURN) / 2
+    for _ in range(2 * len(ordered)):
+        under, over = ordered < first, ordered > first + TURN
+        pushed = np.where(under, ordered, ordered - TURN)
+        share = weight * (under | over)
+        if not share.sum() > 0:
+            break
+        fresh = float((share * pushed).sum() / share.sum())
+        if abs(fresh - first) <= _SAME:
+            break
+        first = fresh
+    return np.clip(ordered, first, first + TURN)

@@ -1,0 +1,247 @@
+"""Linkage files: one four-bar as TOML, the catalogue of real ones, and designs out of a candidates list."""
+
+from __future__ import annotations
+
+import json
+import os
+import reprlib
+from dataclasses import replace
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from grashof.problems.files.problem_file import catalogue, problem_of
+from grashof.problems.files.toml_file import Catalogue, document_of, exists, file_text, looks_like_path
+from grashof.problems.values.checks import (
+    GREATEST,
+    finite_number,
+    located,
+    number_within,
+    readable,
+)
+from grashof.problems.values.dynamics_spec import DynamicsSpec
+from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.linkage import FourBar
+from grashof.problems.values.linkage_spec import LinkageSpec, ListedDesign
+from grashof.problems.values.problem import Problem
+
+_LINKAGES = Catalogue("linkage", "linkages")
+
+
+def load_linkage(linkage: str | os.PathLike[str]) -> FourBar:
+    """Linkage of the catalogue, of a TOML file, or of a candidates list.
+
+    Parameters
+    ----------
+    linkage : str or path-like
+        A name of `linkage_catalogue`, a linkage file, or ``DIR/candidates.json#3`` for the design of
+        rank 3 of a list; in place of the rank also the design's id.
+
+    Raises
+    ------
+    ProblemError
+        No such linkage, a file that cannot be read, or one that states no valid linkage; the
+        message begins with the name of the file.
+
+    Examples
+    --------
+    >>> pumpjack = load_linkage("pumpjack")
+    >>> float(pumpjack.r1), float(pumpjack.r2)
+    (5.0, 1.1938)
+    """
+    return load_linkage_spec(linkage).linkage
+
+
+def load_linkage_spec(linkage: str | os.PathLike[str]) -> LinkageSpec:
+    """The same as `load_linkage`, with title, source, unit, output arm and masses.
+
+    Examples
+    --------
+    >>> unit = load_linkage_spec("lufkin-c912d")
+    >>> unit.length_unit, unit.output_arm
+    ('in', 180.0)
+    """
+    text = os.fspath(linkage)
+    file, mark, which = text.rpartition("#")
+    if mark and file.endswith(".json"):
+        return _candidate(Path(file), which)[0]
+    table, row = (file, which) if mark and file.endswith(".csv") else (text, "1")
+    if table.endswith(".csv"):
+        raise ProblemError(f"{text}: is a table; allowed is {table.removesuffix('.csv')}.json#{row}")
+    if text.endswith(".json"):
+        raise ProblemError(f"{text}: is a list of designs; allowed is {text}#1 for the first of them")
+    if isinstance(linkage, str) and not looks_like_path(text):
+        if text in _LINKAGES.names:
+            return _parsed(_LINKAGES.text(text), f"{text}.toml", text)
+        if not exists(text):
+            if text in catalogue():
+                raise ProblemError(_problem_given(text, text))
+            raise ProblemError(
+                f"{text!r} is neither a linkage of the catalogue nor a file; {_LINKAGES.hint(text)}"
+            )
+    path = Path(linkage)
+    return _parsed(file_text(path, "a linkage file"), str(path), readable(path.stem))
+
+
+def load_design(path: Path, which: str) -> ListedDesign:
+    """Design of a list that `grashof solve` wrote, with its targets.
+
+    Parameters
+    ----------
+    path : Path
+        A candidates.json.
+    which : str
+        Rank or id.
+
+    Raises
+    ------
+    ProblemError
+        As for `load_linkage`, or a design without targets.
+    """
+    spec, design = _candidate(path, which)
+    try:
+        return ListedDesign(
+            spec=spec,
+            rank=int(design["rank"]),
+            id=readable(str(design["id"])),
+            theta2=tuple(number_within(angle, -GREATEST, GREATEST, "theta2") for angle in design["theta2"]),
+            assembly=tuple(design["assembly"]),
+            position_error=_errors(design["position_error"]),
+            angle_error=_errors(design.get("angle_error", [])),
+        )
+    except (KeyError, TypeError, ValueError):
+        raise ProblemError(
+            f"{path}#{which}: states no targets; allowed is a candidates.json of grashof solve"
+        ) from None
+
+
+def linkage_catalogue() -> tuple[str, ...]:
+    """Names of the linkages shipped with the package, sorted.
+
+    Examples
+    --------
+    >>> linkage_catalogue()
+    ('lufkin-c912d', 'pumpjack')
+    """
+    return _LINKAGES.names
+
+
+def linkage_text(name: str) -> str:
+    """Linkage of the catalogue as TOML, to copy and change.
+
+    Raises
+    ------
+    ProblemError
+        No linkage of the catalogue has this name.
+
+    Examples
+    --------
+    >>> print(linkage_text("pumpjack").splitlines()[3])
+    length_unit = "m"
+    """
+    return _LINKAGES.text(name)
+
+
+def _problem_given(given: str, name: str) -> str:
+    return f"{given}: is a problem; solve it, then name a design: {name}-designs/candidates.json#1"
+
+
+def _parsed(text: str, file_name: str, name: str) -> LinkageSpec:
+    # Here, not above: worker processes import this package, and need not pay for pydantic.
+    from grashof.problems.files.linkage_schema import linkage_from
+
+    document = document_of(text, file_name)
+    if "kind" in document:
+        raise ProblemError(_problem_given(file_name, name))
+    try:
+        return linkage_from(document, name)
+    except ProblemError as error:
+        raise located(error, file_name) from None
+
+
+_LINKAGE_KEYS = ("o2", "o4", "r2", "r3", "r4", "coupler_point", "assembly", "body_angle")
+
+
+def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
+    """Design of a list that `grashof solve` wrote, and all that the list says of it."""
+    from grashof.problems.files.linkage_schema import linkage_from
+
+    where = f"{path}#{which}"
+    if exists(str(path)) and not (path.is_file() or path.is_dir()):  # a pipe or a device may never end
+        raise ProblemError(f"{path}: is not an ordinary file; allowed is a list of designs")
+    try:
+        content = json.loads(file_text(path, "a list of designs"))
+        designs = {int(design["rank"]): design for design in content["designs"]}
+        ranks = {
+            str(name): rank for rank, design in designs.items() for name in (rank, design.get("id", rank))
+        }
+        heading, unit = content["title"] or content["problem"], content["length_unit"]
+    except ProblemError:
+        raise
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
+        raise ProblemError(
+            f"{path}: is not a list of designs; allowed is a candidates.json of grashof solve"
+        ) from None
+    if which not in ranks:
+        allowed = f"a rank, 1 to {max(designs)}, or the id of a design" if designs else "none, it is empty"
+        raise ProblemError(f"{where}: has no design {which or '(none named)'}; allowed is {allowed}")
+    rank = ranks[which]
+    design = designs[rank]
+    try:
+        stated = {key: design["linkage"][key] for key in _LINKAGE_KEYS}
+        turned, direction = stated.pop("body_angle"), design["direction"]
+    except (KeyError, TypeError):
+        raise ProblemError(
+            f"{where}: states no linkage and direction; allowed are the keys {', '.join(_LINKAGE_KEYS)}"
+        ) from None
+    # JSON can spell what no file can hold.
+    heading, unit = (readable(word) if isinstance(word, str) else word for word in (heading, unit))
+    document = {"title": heading, "length_unit": unit, "dynamics": content.get("dynamics", {}), **stated}
+    try:
+        spec = linkage_from(document, readable(f"{path.parent.name or path.stem}-{rank}"))
+        linkage = replace(spec.linkage, body_angle=np.asarray(finite_number(turned, "body_angle")))
+    except ProblemError as error:
+        raise located(error, where) from None
+    if direction not in (1, -1):
+        raise ProblemError(f"{where}: direction is {reprlib.repr(direction)}; allowed is +1 or -1")
+    driven = (spec.dynamics or DynamicsSpec()).turning(direction)
+    title, source = f"{spec.title}: design {rank}", readable(str(path))
+    problem = _listed_problem(content, path)
+    return LinkageSpec(linkage, spec.name, title, source, unit, dynamics=driven, problem=problem), design
+
+
+def _listed_problem(content: dict[str, Any], path: Path) -> Problem | None:
+    """The problem that a list was made for; None where a list, made by hand, does not state it."""
+    if (text := content.get("problem_toml")) is None:
+        return None
+    wrong = f"{reprlib.repr(text)} is not text"
+    if isinstance(text, str):
+        try:
+            return problem_of(text, "problem_toml", readable(str(content.get("problem", path.stem))))
+        except ProblemError as error:
+            wrong = str(error).splitlines()[0]
+    writer = content.get("grashof", "of unknown version")
+    raise ProblemError(
+        f"{path}: was written by grashof {writer}, and grashof {version('grashof')} cannot read its problem: "
+        f"{wrong}; solve it again"
+    )
+
+
+def _errors(given: list[float | None]) -> tuple[float | None, ...]:
+    return tuple(None if error is None else float(error) for error in given)
+
+
+def linkage_json(linkage: FourBar) -> dict[str, Any]:
+    """A linkage as JSON, lossless: the arguments of `FourBar`."""
+    return {
+        "o2": linkage.o2.tolist(),
+        "o4": linkage.o4.tolist(),
+        "r2": float(linkage.r2),
+        "r3": float(linkage.r3),
+        "r4": float(linkage.r4),
+        "coupler_point": linkage.coupler_point.tolist(),
+        "assembly": int(linkage.assembly),
+        "body_angle": float(linkage.body_angle),
+    }

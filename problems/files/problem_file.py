@@ -1,0 +1,97 @@
+"""Problem files: the catalogue shipped with the package, and the user's own."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from grashof.problems.files.toml_file import Catalogue, document_of, exists, file_text, looks_like_path
+from grashof.problems.values.checks import located, readable
+from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.problem import Problem
+
+_PROBLEMS = Catalogue("problem")
+
+
+def load(problem: str | os.PathLike[str]) -> Problem:
+    """Problem of the catalogue, or of a TOML file.
+
+    Parameters
+    ----------
+    problem : str or path-like
+        A string with a path separator or ending in ``.toml``, and any path object, is a file.
+        Another string is a name of the catalogue, or else a file in the current folder.
+
+    Raises
+    ------
+    ProblemError
+        No such problem, a file that cannot be read, or one that states no valid problem; the
+        message begins with the name of the file.
+
+    Examples
+    --------
+    >>> luggage = load("luggage")
+    >>> len(luggage.task), luggage.requirements.link_length
+    (4, (0.3, 8.0))
+    """
+    return load_with_text(problem)[0]
+
+
+def load_with_text(problem: str | os.PathLike[str]) -> tuple[Problem, str]:
+    """The same as `load`, with the text of the file, which is read once.
+
+    Examples
+    --------
+    >>> luggage, text = load_with_text("luggage")
+    >>> text == problem_text("luggage")
+    True
+    """
+    if isinstance(problem, str) and not looks_like_path(problem):
+        if problem in _PROBLEMS.names:
+            text = _PROBLEMS.text(problem)
+            return problem_of(text, f"{problem}.toml", problem), text
+        if not exists(problem):
+            hint = _PROBLEMS.hint(problem)
+            raise ProblemError(f"{problem!r} is neither a problem of the catalogue nor a file; {hint}")
+    path = Path(problem)
+    text = file_text(path, "a problem file", _PROBLEMS.hint(path.stem))
+    return problem_of(text, str(path), readable(path.stem)), text
+
+
+def catalogue() -> tuple[str, ...]:
+    """Names of the problems shipped with the package, sorted.
+
+    Examples
+    --------
+    >>> "luggage" in catalogue()
+    True
+    """
+    return _PROBLEMS.names
+
+
+def problem_text(name: str) -> str:
+    """Problem of the catalogue as TOML, to copy and change.
+
+    Raises
+    ------
+    ProblemError
+        No problem of the catalogue has this name.
+
+    Examples
+    --------
+    >>> print(problem_text("luggage").splitlines()[1])
+    kind = "motion"
+    """
+    return _PROBLEMS.text(name)
+
+
+def problem_of(text: str, file_name: str, name: str) -> Problem:
+    """Problem that the text of a file states; messages begin with the name of the file."""
+    # Here, not above: worker processes import this package, and need not pay for pydantic.
+    from grashof.problems.files.problem_schema import problem_from
+
+    document = document_of(text, file_name)
+    try:
+        return problem_from(document, name)
+    except ProblemError as error:
+        raise located(error, file_name) from None

@@ -1,0 +1,400 @@
+"""The problem file's structure: which keys there are and of what type.
+
+The value types check what the values mean; both kinds of error leave as one `ProblemError`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, Any, ClassVar
+
+from pydantic import AfterValidator, Discriminator, Tag, ValidationInfo, field_validator
+from pydantic_core import PydanticCustomError
+
+from grashof.problems.files.tables import (
+    LIST,
+    NUMBER,
+    TABLE,
+    WORD,
+    WRONG,
+    Table,
+    Text,
+    listed,
+    one_of,
+    stated,
+    tag,
+)
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.checks import noted, outline, refuse, refused
+from grashof.problems.values.dynamics_spec import DynamicsSpec, metres
+from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.manufacturing import Manufacturing
+from grashof.problems.values.motion_task import MotionTask
+from grashof.problems.values.path_task import PathTask
+from grashof.problems.values.problem import NO_OBJECTIVE, Objective, Problem, Search
+from grashof.problems.values.requirements import Box, Requirements
+from grashof.problems.values.task import Task
+
+
+def problem_from(document: dict[str, Any], name: str) -> Problem:
+    """Problem stated by a parsed problem file.
+
+    Parameters
+    ----------
+    document : dict
+        The file as `tomllib` gives it.
+    name : str
+        What the problem is called, `Problem.name`.
+
+    Raises
+    ------
+    ProblemError
+        All errors found, a line each, with their key paths.
+
+    Examples
+    --------
+    >>> poses = [[0, 0, 0], [3, 4, 90]]
+    >>> problem_from({"kind": "motion", "motion": {"poses": poses}}, "two poses").task.size
+    5.0
+    >>> problem_from({"kind": "motion", "motion": {"pose": poses}}, "two poses")
+    Traceback (most recent call last):
+        ...
+    grashof.problems.values.errors.ProblemError: motion.pose is unknown; did you mean poses?
+    motion.poses is missing
+    """
+    wrong: list[str] = []
+    with noted(wrong):
+        return stated(ProblemFile, document, _TABLES).problem(name)
+    raise refused([*wrong, *_ill_matched(document)])
+
+
+def _ill_matched(document: dict[str, Any]) -> Iterator[str]:
+    """What is wrong between tables, which nothing else tells as long as one of them is wrong by itself."""
+    kind, unit = document.get("kind"), document.get("length_unit", "")
+    for other in {"motion": ["path"], "path": ["motion"]}.get(kind, []) if isinstance(kind, str) else []:
+        if other in document:
+            yield f'{other} does not belong to kind = "{kind}"'
+    wrong: list[str] = []
+    if "dynamics" in document and isinstance(unit, str):
+        with noted(wrong):
+            metres(unit)
+    yield from wrong
+
+
+Corners = Annotated[
+    list[Annotated[list[float], listed("a corner [x, y]")]], listed("a list of corners [x, y]")
+]
+Pair = Annotated[list[float], listed("[lo, hi]")]
+
+
+Zone = Annotated[
+    Annotated[float, Tag(NUMBER)] | Annotated[list[float], Tag(LIST)],
+    Discriminator(
+        tag, custom_error_type=WRONG, custom_error_message="a number, or a list of one for each target"
+    ),
+]
+
+
+class MotionTable(Table):
+    poses: Annotated[list[Any], listed("a list of poses [x, y, angle in degrees]")]
+    weights: Annotated[list[float], listed("a list of numbers")] | None = None
+    angle_length: float | None = None
+    body: Corners | None = None
+    within: Zone | None = None
+    angle_within_deg: Zone | None = None
+
+    @field_validator("*")
+    @classmethod
+    def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
+        if key.field_name == "poses":
+            MotionTask.from_degrees(given, angle_length=1.0)
+        elif given is not None and given != []:  # how many there have to be is not known here
+            each = key.field_name != "body" and isinstance(given, list)  # one for each pose
+            poses = [[k, 0, 0] for k in range(max(len(given), 2) if each else 2)]
+            given = given * 2 if each and len(given) == 1 else given
+            MotionTask.from_degrees(poses, **{str(key.field_name): given})
+        return given
+
+    def value(self) -> MotionTask:
+        return MotionTask.from_degrees(
+            self.poses,
+            weights=self.weights,
+            angle_length=self.angle_length,
+            body=self.body,
+            within=self.within,
+            angle_within_deg=self.angle_within_deg,
+        )
+
+
+class PathTable(Table):
+    points: Annotated[
+        list[Annotated[list[float], listed("a point [x, y]")]], listed("a list of points [x, y]")
+    ]
+    timing_deg: Annotated[list[float], listed("a list of angles")] | None = None
+    closed: bool = False
+    within: Zone | None = None
+
+    @field_validator("points")
+    @classmethod
+    def _by_itself(cls, points: list[list[float]]) -> list[list[float]]:
+        PathTask(points)
+        return points
+
+    @field_validator("within")
+    @classmethod
+    def _sized(cls, within: float | list[float] | None) -> float | list[float] | None:
+        count = len(within) if isinstance(within, list) else 3
+        if count > 2:
+            PathTask([[k, 0] for k in range(count)], within=within)
+        return within
+
+    @field_validator("timing_deg")
+    @classmethod
+    def _in_order(cls, timing_deg: list[float] | None) -> list[float] | None:
+        if timing_deg is not None and len(timing_deg) > 2:
+            PathTask.from_degrees([[k, 0] for k in range(len(timing_deg))], timing_deg=timing_deg)
+        return timing_deg
+
+    def value(self) -> PathTask:
+        return PathTask.from_degrees(
+            self.points, timing_deg=self.timing_deg, closed=self.closed, within=self.within
+        )
+
+
+Outlines = Annotated[list[Corners], listed("a list of outlines, each a list of corners [x, y]")]
+
+
+class SceneTable(Table):
+    outlines: Outlines | None = None
+
+    def value(self) -> tuple[FloatArray, ...]:
+        drawn: list[FloatArray] = []
+        wrong: list[str] = []
+        for i, corners in enumerate(self.outlines or []):
+            with noted(wrong):
+                drawn.append(outline(corners, f"scene.outlines[{i}]"))
+        refuse(wrong)
+        return tuple(drawn)
+
+
+class BoxTable(Table):
+    telling: ClassVar[bool] = False  # x and y say nothing about where they belong
+    x: Pair | None = None
+    y: Pair | None = None
+
+    def value(self) -> Box:
+        sides: dict[str, Any] = {axis: getattr(self, axis) for axis in self.model_fields_set}
+        return Box(**sides)
+
+
+def _box(place: BoxTable | list[float]) -> Box:
+    if isinstance(place, BoxTable):
+        return place.value()
+    x, y = place
+    return Box((x, x), (y, y))
+
+
+def _point(point: list[float]) -> list[float]:
+    if len(point) != 2:
+        raise PydanticCustomError(WRONG, _PLACE_SHAPES)
+    _box(point)
+    return point
+
+
+_PLACE_SHAPES = "[x, y] or { x = [lo, hi], y = [lo, hi] }"
+Place = Annotated[
+    Annotated[BoxTable, Tag(TABLE)] | Annotated[list[float], AfterValidator(_point), Tag(LIST)],
+    Discriminator(tag, custom_error_type=WRONG, custom_error_message=_PLACE_SHAPES),
+]
+
+
+class RequirementsTable(Table):
+    exact: bool | None = None
+    tolerance: float | None = None
+    error_factor: float | None = None
+    rotatability: str | None = None
+    rotatability_margin: float | None = None
+    order: bool | None = None
+    same_branch: bool | None = None
+    transmission_min_deg: float | None = None
+    transmission_over: str | None = None
+    link_length: Pair | None = None
+    r1: Pair | None = None
+    r2: Pair | None = None
+    r3: Pair | None = None
+    r4: Pair | None = None
+    link_ratio_max: float | None = None
+    coupler_arms: Pair | None = None
+    o2: Place | None = None
+    o4: Place | None = None
+    a: Place | None = None
+    b: Place | None = None
+    ground_angle_deg: float | None = None
+    theta2_start_deg: float | None = None
+    keep_out: Annotated[list[Corners], listed("a list of polygons, each a list of corners [x, y]")] | None = (
+        None
+    )
+    keep_out_for: Annotated[list[str], listed("a list of o2, o4, a, b, p and links")] | None = None
+
+    @field_validator("*")
+    @classmethod
+    def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
+        if key.field_name not in _PLACES:
+            Requirements(**{str(key.field_name): given})
+        return given
+
+    def value(self) -> Requirements:
+        given: dict[str, Any] = {key: getattr(self, key) for key in self.model_fields_set}
+        for key in given.keys() & _PLACES:
+            given[key] = _box(given[key])
+        return Requirements(**given)
+
+
+_PLACES = {"o2", "o4", "a", "b"}
+
+
+class WeightsTable(Table):
+    transmission: float = 0.0
+    compactness: float = 0.0
+    torque: float = 0.0
+
+    @field_validator("*")
+    @classmethod
+    def _by_itself(cls, weight: float, key: ValidationInfo) -> float:
+        Objective(**{"transmission": 1.0, "compactness": 1.0, str(key.field_name): weight})
+        return weight
+
+
+Maximise = Annotated[
+    Annotated[str, one_of("transmission", "compactness", "torque"), Tag(WORD)]
+    | Annotated[WeightsTable, Tag(TABLE)],
+    Discriminator(
+        tag,
+        custom_error_type=WRONG,
+        custom_error_message="transmission, compactness, torque or a table of weights",
+    ),
+]
+
+
+class ObjectiveTable(Table):
+    maximise: Maximise = "transmission"
+
+    def value(self) -> Objective:
+        if isinstance(self.maximise, WeightsTable):
+            return Objective(**dict(self.maximise))
+        return Objective(**{name: float(name == self.maximise) for name in WeightsTable.model_fields})
+
+
+class ManufacturingTable(Table):
+    length_tolerance: float
+    band: float | None = None
+
+    @field_validator("*")
+    @classmethod
+    def _by_itself(cls, length: float | None, key: ValidationInfo) -> float | None:
+        Manufacturing(**{"length_tolerance": 1.0, str(key.field_name): length})  # type: ignore[arg-type]
+        return length
+
+    def value(self) -> Manufacturing:
+        return Manufacturing(self.length_tolerance, self.band)
+
+
+class DynamicsTable(Table):
+    speed_rpm: float | None = None
+    gravity: Annotated[list[float], listed("[x, y] in m/s2")] | None = None
+    mass_per_length: float | None = None
+    masses: Annotated[list[float], listed("[m2, m3, m4]")] | None = None
+    inertias: Annotated[list[float], listed("[I2, I3, I4]")] | None = None
+    payload: float | None = None
+
+    @field_validator("*")
+    @classmethod
+    def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
+        pair: dict[str, Any] = {"masses": (1, 1, 1), "inertias": (1, 1, 1)}
+        besides = pair if key.field_name in pair else {}
+        DynamicsSpec(**{**besides, str(key.field_name): given})
+        return given
+
+    def value(self) -> DynamicsSpec:
+        given: dict[str, Any] = {key: getattr(self, key) for key in self.model_fields_set}
+        return DynamicsSpec(**given)
+
+
+class SearchTable(Table):
+    starts: int | None = None
+    enough: int | None = None
+    seed: int | None = None
+    effort: float | None = None
+
+    @field_validator("*")
+    @classmethod
+    def _by_itself(cls, given: int, key: ValidationInfo) -> int:
+        Search(**{str(key.field_name): given})
+        return given
+
+    def value(self) -> Search:
+        given: dict[str, Any] = {key: getattr(self, key) for key in self.model_fields_set}
+        return Search(**given)
+
+
+class ProblemFile(Table):
+    kind: Annotated[str, one_of("motion", "path")]
+    title: Text = ""
+    source: Text = ""
+    length_unit: Text = ""
+    motion: MotionTable | None = None
+    path: PathTable | None = None
+    scene: SceneTable = SceneTable()
+    requirements: RequirementsTable = RequirementsTable()
+    objective: ObjectiveTable = ObjectiveTable()
+    dynamics: DynamicsTable | None = None
+    manufacturing: ManufacturingTable | None = None
+    search: SearchTable = SearchTable()
+
+    def value(self) -> Task:
+        tables = {"motion": self.motion, "path": self.path}
+        mine = tables.pop(self.kind)
+        for other, table in tables.items():
+            if table is not None:
+                raise ProblemError(f'{other} does not belong to kind = "{self.kind}"')
+        if mine is None:
+            raise ProblemError(f"{self.kind} is missing")
+        if self.dynamics is not None:
+            metres(self.length_unit)
+        return mine.value()
+
+    def problem(self, name: str) -> Problem:
+        problem = Problem(
+            name=name,
+            title=self.title,
+            source=self.source,
+            length_unit=self.length_unit,
+            task=self.value(),
+            outlines=self.scene.value(),
+            requirements=self.requirements.value(),
+            objective=self.objective.value(),
+            dynamics=None if self.dynamics is None else self.dynamics.value(),
+            manufacturing=None if self.manufacturing is None else self.manufacturing.value(),
+            search=self.search.value(),
+        )
+        if "objective" in self.model_fields_set and not problem.by_objective:
+            raise ProblemError(NO_OBJECTIVE)
+        return problem
+
+
+_TABLES: dict[str, type[Table]] = {
+    "": ProblemFile,
+    "motion": MotionTable,
+    "path": PathTable,
+    "scene": SceneTable,
+    "requirements": RequirementsTable,
+    "requirements.o2": BoxTable,
+    "requirements.o4": BoxTable,
+    "requirements.a": BoxTable,
+    "requirements.b": BoxTable,
+    "objective": ObjectiveTable,
+    "objective.maximise": WeightsTable,
+    "dynamics": DynamicsTable,
+    "manufacturing": ManufacturingTable,
+    "search": SearchTable,
+}

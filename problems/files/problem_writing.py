@@ -1,0 +1,110 @@
+"""A problem written as its file: what `load` reads back as the same problem."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, fields
+from typing import Any
+
+import numpy as np
+
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.motion_task import MotionTask
+from grashof.problems.values.path_task import PathTask
+from grashof.problems.values.problem import Problem
+from grashof.problems.values.requirements import Box, Requirements
+from grashof.problems.values.task import Task
+
+
+def problem_toml(problem: Problem) -> str:
+    """The problem as TOML, complete, with numbers in full precision.
+
+    Angles are in degrees there: what a file stated comes back to the last bit, other radians to rounding.
+
+    Examples
+    --------
+    >>> from grashof.problems import PathTask
+    >>> print(problem_toml(Problem(task=PathTask([[0, 0], [3, 0], [3, 4]]))).partition("[requirements]")[0])
+    kind = "path"
+    title = ""
+    source = ""
+    length_unit = ""
+    <BLANKLINE>
+    [path]
+    points = [[0.0, 0.0], [3.0, 0.0], [3.0, 4.0]]
+    closed = false
+    <BLANKLINE>
+    <BLANKLINE>
+    """
+    head = {"kind": problem.task.kind, **{key: getattr(problem, key) for key in _WORDS}}
+    lines = [f"{key} = {_value(value)}" for key, value in head.items()]
+    for name, table in _tables(problem):
+        lines += ["", f"[{name}]", *(f"{key} = {_value(value)}" for key, value in table.items())]
+    return "\n".join(lines) + "\n"
+
+
+_WORDS = ("title", "source", "length_unit")
+
+
+def _tables(problem: Problem) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    yield problem.task.kind, _given(_task(problem.task))
+    if problem.outlines:
+        yield "scene", {"outlines": problem.outlines}
+    wanted = problem.requirements
+    yield "requirements", _given({field.name: getattr(wanted, field.name) for field in fields(Requirements)})
+    if problem.by_objective:
+        yield "objective", {"maximise": asdict(problem.objective)}
+    if problem.dynamics is not None:
+        yield "dynamics", problem.dynamics.stated
+    if problem.manufacturing is not None:
+        yield "manufacturing", asdict(problem.manufacturing)
+    yield "search", asdict(problem.search)
+
+
+def _given(table: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in table.items() if value is not None}
+
+
+def _task(task: Task) -> dict[str, Any]:
+    if isinstance(task, PathTask):
+        timing = None if task.timing is None else _degrees(task.timing)
+        return {"points": task.points, "timing_deg": timing, "closed": task.closed, "within": task.within}
+    return {
+        "poses": _poses(task),
+        "weights": task.weights,
+        "angle_length": task.angle_length,
+        "body": task.body,
+        "within": task.within,
+        "angle_within_deg": None if task.angle_within is None else _degrees(task.angle_within),
+    }
+
+
+def _poses(task: MotionTask) -> list[Any]:
+    rows = np.column_stack([task.positions, _degrees(task.angles)]).tolist()
+    given = ({key: x for key, x in zip(("x", "y", "angle"), row, strict=True) if x == x} for row in rows)
+    return [row if task.is_whole else pose for row, pose in zip(rows, given, strict=True)]
+
+
+def _degrees(angles: FloatArray) -> FloatArray:
+    """Degrees that give these radians to the last bit, where there are such."""
+    nearest = np.degrees(angles)
+    beside = [np.nextafter(nearest, -np.inf), np.nextafter(nearest, np.inf), np.round(nearest, 9)]
+    found = nearest.copy()
+    for tried in (*beside, nearest):
+        found = np.where(np.radians(tried) == angles, tried, found)
+    return found
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, Box):
+        value = asdict(value)
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if isinstance(value, Mapping):
+        return f"{{ {', '.join(f'{key} = {_value(each)}' for key, each in value.items())} }}"
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(map(_value, value))}]"
+    if isinstance(value, (str, bool)):
+        return json.dumps(value, ensure_ascii=False)
+    return repr(int(value)) if isinstance(value, (int, np.integer)) else repr(float(value))

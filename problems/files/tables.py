@@ -1,0 +1,167 @@
+"""What the tables of TOML files share: strict types, and one line with the key path for what is wrong."""
+
+from __future__ import annotations
+
+import json
+import re
+import reprlib
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Self, TypeAlias, TypeVar
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    ValidationError,
+    ValidationInfo,
+    model_validator,
+)
+from pydantic_core import ErrorDetails, PydanticCustomError
+
+from grashof.problems.values.checks import near_miss, plain_text
+from grashof.problems.values.errors import ProblemError
+
+# What a validator says about a value: its message is what is allowed instead.
+WRONG = "wrong"
+# Tags tell the shapes of a value apart. They enter the location of an error and are left out of its path.
+TABLE, LIST, WORD, NUMBER = "<table>", "<list>", "<word>", "<number>"
+_ALLOWED = {
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "string_type": "a string",
+    "bool_type": "true or false",
+    "model_type": "a table",
+}
+
+
+class Table(BaseModel):
+    """A table of a file. Its value type is built once here, so that what it refuses is counted too."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+    # Whether one of its keys, found elsewhere, says that this table was meant.
+    telling: ClassVar[bool] = True
+
+    def value(self) -> object:
+        """What the table states, as a value type."""
+        return None
+
+    @model_validator(mode="after")
+    def _refuse_bad_values(self) -> Self:
+        self.value()
+        return self
+
+
+AnyTable = TypeVar("AnyTable", bound=Table)
+
+
+def stated(table: type[AnyTable], document: dict[str, Any], tables: Mapping[str, type[Table]]) -> AnyTable:
+    """What a parsed file states, as its table.
+
+    Parameters
+    ----------
+    table : type
+        Of the whole file.
+    document : dict
+        The file as `tomllib` gives it.
+    tables : mapping of str to type
+        All tables of such a file by their key paths.
+
+    Raises
+    ------
+    ProblemError
+        All errors found, a line each, with their key paths.
+    """
+    try:
+        return table.model_validate(document)
+    except ValidationError as refused:
+        errors = refused.errors(include_url=False)
+    # A missing key comes last: most often it stands in the file, misspelt, and that error says more.
+    errors.sort(key=lambda error: error["type"] == "missing")
+    raise ProblemError("\n".join(dict.fromkeys(_described(error, tables) for error in errors)))
+
+
+def _plain(text: str, key: ValidationInfo) -> str:
+    return plain_text(text, str(key.field_name))
+
+
+# Text for headings, axes and files.
+Text: TypeAlias = Annotated[str, AfterValidator(_plain)]
+
+
+def listed(allowed: str) -> BeforeValidator:
+    """Validator that refuses what is no list, saying what it should be a list of."""
+
+    def refuse(value: object) -> object:
+        if not isinstance(value, list):
+            raise PydanticCustomError(WRONG, allowed)
+        return value
+
+    return BeforeValidator(refuse)
+
+
+def of_length(count: int, allowed: str) -> AfterValidator:
+    """Validator of a list: so many entries."""
+
+    def refuse(values: list[float]) -> list[float]:
+        if len(values) != count:
+            raise PydanticCustomError(WRONG, allowed)
+        return values
+
+    return AfterValidator(refuse)
+
+
+def one_of(*words: str) -> AfterValidator:
+    """Validator of a word: one of those given."""
+
+    def refuse(word: str) -> str:
+        if word not in words:
+            raise PydanticCustomError(WRONG, f"{', '.join(words[:-1])} or {words[-1]}")
+        return word
+
+    return AfterValidator(refuse)
+
+
+def tag(value: object) -> str | None:
+    """The tag of a value's shape."""
+    shapes = (((dict, Table), TABLE), (list, LIST), (str, WORD), (bool, None), ((int, float), NUMBER))
+    return next((name for types, name in shapes if isinstance(value, types)), None)
+
+
+def _described(error: ErrorDetails, tables: Mapping[str, type[Table]]) -> str:
+    path, kind = _path(error["loc"]), error["type"]
+    if kind == "extra_forbidden":
+        return _unknown(error["loc"], tables)
+    if kind == "missing":
+        return f"{path} is missing"
+    if kind == "value_error":
+        lines = str(error["ctx"]["error"]).splitlines()
+        # A value type names its key from the top of the file; a box cannot know whose it is.
+        return "\n".join(line if line.startswith(path) else f"{path}.{line}" for line in lines)
+    allowed = _ALLOWED.get(kind, error["msg"])
+    return f"{path} is {_shown(error['input'])}; allowed is {allowed}"
+
+
+def _unknown(location: tuple[int | str, ...], tables: Mapping[str, type[Table]]) -> str:
+    path, table, key = _path(location), _path(location[:-1]), str(location[-1])
+    keys = list(tables[table].model_fields)
+    homes = (name for name, other in tables.items() if key in other.model_fields and other.telling)
+    meant = near_miss(key, keys) or next((f"{home}.{key}".lstrip(".") for home in homes), None)
+    return f"{path} is unknown; " + (f"did you mean {meant}?" if meant else f"allowed are {', '.join(keys)}")
+
+
+def _path(location: tuple[int | str, ...]) -> str:
+    path = ""
+    for part in location:
+        if isinstance(part, int):
+            path += f"[{part}]"
+        elif part not in (TABLE, LIST, WORD, NUMBER):
+            key = part if re.fullmatch(r"[A-Za-z0-9_-]+", part) else json.dumps(part)
+            path += f".{key}" if path else key
+    return path
+
+
+def _shown(value: object) -> str:
+    if isinstance(value, dict):
+        return "a table"
+    return str(value).lower() if isinstance(value, bool) else reprlib.repr(value)

@@ -1,0 +1,88 @@
+"""TOML files that people write, and the catalogues of those shipped with the package."""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from dataclasses import dataclass
+from importlib import resources
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import Any
+
+from grashof.problems.values.checks import near_miss
+from grashof.problems.values.errors import ProblemError
+
+
+@dataclass(frozen=True, slots=True)
+class Catalogue:
+    """Files shipped with the package, each under the name of its stem.
+
+    Parameters
+    ----------
+    what : str
+        One of them, in messages.
+    folder : str
+        Below the data of the problems; empty for these themselves.
+    """
+
+    what: str
+    folder: str = ""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All names, sorted."""
+        return tuple(sorted(self._files))
+
+    def text(self, name: str) -> str:
+        """The file of this name; `ProblemError` when there is none."""
+        if name not in self._files:
+            raise ProblemError(f"{name!r} is not a {self.what} of the catalogue; {self.hint(name)}")
+        return self._files[name].read_text(encoding="utf-8")
+
+    def hint(self, name: str) -> str:
+        """What could be meant by a name that is not there."""
+        meant = near_miss(name, self.names)
+        return f"did you mean {meant}?" if meant else f"the catalogue has {', '.join(self.names)}"
+
+    @property
+    def _files(self) -> dict[str, Traversable]:
+        folder = resources.files("grashof.problems") / "data" / self.folder
+        return {Path(file.name).stem: file for file in folder.iterdir() if file.name.endswith(".toml")}
+
+
+def looks_like_path(text: str) -> bool:
+    """Whether a string names a file, and not an entry of a catalogue."""
+    separators = {"/", os.sep, os.altsep}
+    return text.endswith(".toml") or any(sep in text for sep in separators if sep)
+
+
+def exists(text: str) -> bool:
+    """Whether there is such a file; False for names that no file can have, where Path.exists raises."""
+    return bool(text) and os.path.exists(text)  # noqa: PTH110
+
+
+def file_text(path: Path, allowed: str, hint: str = "") -> str:
+    """Text of a file that a user named; `ProblemError` says why it cannot be read, a hint what is meant."""
+    if os.path.isdir(path):  # noqa: PTH112
+        raise ProblemError(f"{path}: is a folder; allowed is {allowed}")
+    try:
+        # utf-8-sig: editors on Windows put a byte order mark first, which TOML does not know.
+        return path.read_bytes().decode("utf-8-sig")
+    except FileNotFoundError:
+        raise ProblemError(f"{path}: there is no such file{hint and '; '}{hint}") from None
+    except OSError as error:
+        raise ProblemError(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError as error:
+        raise ProblemError(f"{path}: is not UTF-8 text, at byte {error.start}") from None
+    except ValueError as error:  # no name of a file, such as one with a null character
+        raise ProblemError(f"{str(path)!r}: cannot be read: {error}") from None
+
+
+def document_of(text: str, file_name: str) -> dict[str, Any]:
+    """What TOML states; `ProblemError` where it is none."""
+    try:
+        return tomllib.loads(text)
+    # Besides its own error: an integer of thousands of digits, lists nested a thousand deep.
+    except (ValueError, RecursionError) as error:
+        raise ProblemError(f"{file_name}: is not TOML: {error}") from None

@@ -1,0 +1,87 @@
+"""Areas that parts of a linkage keep out of: polygons checked, and joined to one solid.
+
+The only module that states polygons to shapely. It is imported only where there are areas.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.checks import GREATEST, counted, finite_rows, noted, refuse
+from grashof.problems.values.errors import ProblemError
+
+_FLAT = 1e-12  # share of the square of its extent below which a polygon has no area
+
+
+def polygons(values: Iterable[npt.ArrayLike], where: str) -> tuple[FloatArray, ...]:
+    """Corners of polygons, read-only arrays of shape (M, 2); a polygon may repeat its first corner last.
+
+    Raises
+    ------
+    ProblemError
+        A polygon has fewer than three corners, no area, a number that is not finite, or crosses itself.
+
+    Examples
+    --------
+    >>> polygons([[[0, 0], [2, 2], [0, 0]]], "keep_out")
+    Traceback (most recent call last):
+        ...
+    grashof.problems.values.errors.ProblemError: keep_out[0] has 2 distinct corners; allowed are three or more
+    """
+    if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
+        raise ProblemError(f"{where} is {values!r}; allowed is a list of polygons")
+    areas: list[FloatArray] = []
+    wrong: list[str] = []
+    for index, corners in enumerate(values):
+        with noted(wrong):
+            areas.append(_polygon(corners, f"{where}[{index}]"))
+    refuse(wrong)
+    return tuple(areas)
+
+
+def solid(areas: Sequence[FloatArray]) -> shapely.Geometry:
+    """All areas as one: no gap is left where two of them share a side.
+
+    Parameters
+    ----------
+    areas : sequence of ndarray, shape (M, 2), length
+
+    Returns
+    -------
+    shapely.Geometry
+        A polygon or several, prepared for many queries.
+
+    Examples
+    --------
+    >>> halves = [np.array([[0, 0], [1, 0], [1, 2], [0, 2]]), np.array([[1, 0], [2, 0], [2, 2], [1, 2]])]
+    >>> solid(halves).area, solid(halves).contains(shapely.Point(1, 1))
+    (4.0, True)
+    """
+    joined = shapely.union_all(np.array([shapely.Polygon(corners) for corners in areas]))
+    shapely.prepare(joined)
+    return joined
+
+
+def _polygon(values: npt.ArrayLike, where: str) -> FloatArray:
+    corners = finite_rows(values, 2, where, "a corner [x, y]", GREATEST)
+    distinct = len(np.unique(corners, axis=0))
+    if distinct < 3:
+        raise ProblemError(f"{where} has {counted(distinct, 'distinct corner')}; allowed are three or more")
+    extent = float(np.hypot(*np.ptp(corners, axis=0)))
+    if shapely.MultiPoint(corners).convex_hull.area <= _FLAT * extent**2:
+        raise ProblemError(f"{where} has no area: its corners lie on a straight line")
+    found = re.search(r"\[(\S+) (\S+)\]", reason := shapely.is_valid_reason(shapely.Polygon(corners)))
+    if found:
+        x, y = (float(number) for number in found.groups())
+        raise ProblemError(
+            f"{where} crosses or touches itself at ({x:.6g}, {y:.6g}); allowed is a simple polygon"
+        )
+    if reason != "Valid Geometry":
+        raise ProblemError(f"{where} is not a simple polygon: {reason.lower()}")
+    return corners

@@ -1,0 +1,201 @@
+"""Checks at the boundary: each raises one clear `ProblemError`."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import reprlib
+import unicodedata
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from numbers import Real
+
+import numpy as np
+import numpy.typing as npt
+
+from grashof.problems.values.arrays import FloatArray, Limits, frozen_array
+from grashof.problems.values.errors import ProblemError
+
+GREATEST = 1e20  # of lengths, masses and speeds: squares of torques stay within the floats
+LEAST = 1e-20  # size of a task, for the same reason
+
+
+def finite_rows(
+    values: npt.ArrayLike, columns: int, where: str, row_means: str, greatest: float = np.inf
+) -> FloatArray:
+    """Array of shape (N, `columns`), each row checked by itself so that the message can name it."""
+    if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
+        raise ProblemError(f"{where} is {values!r}; allowed is a list, each entry {row_means}")
+    rows: list[FloatArray] = []
+    wrong: list[str] = []
+    for index, row in enumerate(values):
+        with noted(wrong):
+            rows.append(_finite_row(row, columns, f"{where}[{index}]", row_means, greatest))
+    refuse(wrong)
+    return frozen_array(np.array(rows, dtype=np.float64).reshape(-1, columns))
+
+
+def _finite_row(row: object, columns: int, name: str, row_means: str, greatest: float) -> FloatArray:
+    try:
+        numbers = np.asarray(row)
+    except ValueError:  # rows of unequal length inside
+        raise ProblemError(f"{name} is {row!r}; allowed is {row_means}") from None
+    if numbers.dtype.kind not in "iuf":
+        raise ProblemError(f"{name} is {row!r}; allowed is {row_means}")
+    if numbers.shape != (columns,):
+        count = counted(numbers.size, "number") if numbers.ndim == 1 else "no plain list of numbers"
+        raise ProblemError(f"{name} is {_plain(row)}, {count}; allowed is {row_means}")
+    if not np.isfinite(numbers).all():
+        raise ProblemError(f"{name} is {_plain(row)}; all numbers must be finite")
+    if (np.abs(numbers) > greatest).any():
+        raise ProblemError(f"{name} is {_plain(row)}; allowed are numbers up to {greatest:g}")
+    return numbers.astype(np.float64)
+
+
+@contextmanager
+def noted(wrong: list[str]) -> Iterator[None]:
+    """Note what is refused inside, and go on."""
+    try:
+        yield
+    except ProblemError as error:
+        wrong += str(error).splitlines()
+
+
+def refuse(wrong: Sequence[str]) -> None:
+    """Refuse all that was noted, if there is anything."""
+    if wrong:
+        raise refused(wrong)
+
+
+def refused(wrong: Iterable[str]) -> ProblemError:
+    """The error of all that was noted, each in a line of its own and once."""
+    return ProblemError("\n".join(dict.fromkeys(wrong)))
+
+
+def located(error: ProblemError, where: str) -> ProblemError:
+    """The same error, every line of it beginning with the place, such as the name of a file."""
+    return ProblemError("\n".join(f"{where}: {line}" for line in str(error).splitlines()))
+
+
+def outline(values: npt.ArrayLike, where: str) -> FloatArray:
+    """Array of shape (N, 2), the corners of something drawn."""
+    corners = finite_rows(values, 2, where, "a corner [x, y]", GREATEST)
+    if len(corners) < 2:
+        raise ProblemError(f"{where} has {counted(len(corners), 'corner')}; allowed are two or more")
+    return corners
+
+
+def finite_number(value: float, where: str) -> float:
+    """`value` as a float, refused when it is no finite number."""
+    if isinstance(value, Real) and not isinstance(value, bool):
+        with suppress(OverflowError):  # a whole number beyond the floats
+            if math.isfinite(value):
+                return float(value)
+    raise ProblemError(f"{where} is {reprlib.repr(value)}; allowed is a finite number")
+
+
+def positive_number(value: float, where: str) -> float:
+    """`value` as a float, refused when it is not greater than zero."""
+    number = finite_number(value, where)
+    if number <= 0:
+        raise ProblemError(f"{where} is {number:.15g}; allowed are numbers greater than zero")
+    return number
+
+
+def number_within(value: float, low: float, high: float, where: str) -> float:
+    """`value` as a float, refused outside [low, high]."""
+    number = finite_number(value, where)
+    if not low <= number <= high:
+        raise ProblemError(f"{where} is {number:.15g}; allowed is {low:g} to {high:g}")
+    return number
+
+
+def task_size(points: FloatArray, where: str) -> float:
+    """Greatest distance between two of N points (N, 2), refused where it is so small that digits are lost."""
+    size = span(points)
+    if 0 < size < LEAST:
+        raise ProblemError(f"{where} are at most {size:g} apart; allowed is a size from {LEAST:g}")
+    return size
+
+
+def whole_number(value: int, low: int, where: str) -> int:
+    """`value` as an int, refused below `low` or when it is not whole."""
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < low:
+        raise ProblemError(f"{where} is {value!r}; allowed is a whole number from {low}")
+    return int(value)
+
+
+def limits(values: Limits, where: str, *, least: float = -np.inf) -> Limits:
+    """A pair (lo, hi) with least <= lo <= hi <= `GREATEST`."""
+    try:
+        low, high = values
+    except (TypeError, ValueError):
+        raise ProblemError(f"{where} is {values!r}; allowed is [lo, hi]") from None
+    low, high = finite_number(low, f"{where}[0]"), finite_number(high, f"{where}[1]")
+    if low > high:
+        found = f"[{low:.15g}, {high:.15g}]"
+        raise ProblemError(f"{where} is {found}: lo exceeds hi; allowed is [lo, hi] with lo <= hi")
+    if high > GREATEST:
+        raise ProblemError(f"{where} is [{low:.15g}, {high:.15g}]; allowed is hi up to {GREATEST:g}")
+    if low < least:
+        raise ProblemError(f"{where} is [{low:.15g}, {high:.15g}]; allowed is lo from {least:g}")
+    return low, high
+
+
+def span(points: FloatArray) -> float:
+    """Greatest distance between two of N points (N, 2)."""
+    separation = points[:, None] - points[None]
+    return float(np.hypot(separation[..., 0], separation[..., 1]).max(initial=0.0))
+
+
+def counted(number: int, noun: str) -> str:
+    """Count with its noun: 1 corner, 2 corners, 2 families."""
+    if number == 1:
+        return f"{number} {noun}"
+    return f"{number} {noun[:-1]}ies" if noun.endswith("ly") else f"{number} {noun}s"
+
+
+def near_miss(word: str, allowed: Sequence[str]) -> str | None:
+    """The one of `allowed` that `word` may be a misspelling of, if any."""
+    by_folded = {name.casefold(): name for name in allowed}
+    close = difflib.get_close_matches(word.casefold(), by_folded, n=1)
+    return by_folded[close[0]] if close else None
+
+
+def readable(text: str) -> str:
+    r"""Text that every file and terminal can hold, such as of a file name that is not UTF-8.
+
+    Examples
+    --------
+    >>> readable("caf\udce9")
+    'caf?'
+    """
+    return "".join("?" if _unprintable(character) else character for character in text)
+
+
+def plain_text(text: str, where: str) -> str:
+    r"""`text`, refused where a terminal, SVG or HTML would stumble over it: control characters, half ones.
+
+    Examples
+    --------
+    >>> plain_text("Étage 2", "title")
+    'Étage 2'
+    >>> plain_text("two\nlines", "title")
+    Traceback (most recent call last):
+        ...
+    grashof.problems.values.errors.ProblemError: title has control character U+000A; allowed is plain text
+    """
+    if not isinstance(text, str):
+        raise ProblemError(f"{where} is {reprlib.repr(text)}; allowed is text")
+    for character in filter(_unprintable, text):
+        raise ProblemError(f"{where} has control character U+{ord(character):04X}; allowed is plain text")
+    return text
+
+
+def _unprintable(character: str) -> bool:
+    # Control characters, halves of surrogate pairs, and the two that XML does not know.
+    return unicodedata.category(character) in ("Cc", "Cs") or character in "\ufffe\uffff"
+
+
+def _plain(row: object) -> str:
+    return str(row.tolist()) if isinstance(row, np.ndarray) else str(row)

@@ -1,0 +1,77 @@
+"""A linkage with what its file, or the list it comes from, says besides."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from grashof.problems.values.checks import plain_text
+from grashof.problems.values.display import Displayed
+from grashof.problems.values.dynamics_spec import DynamicsSpec
+from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.linkage import FourBar
+from grashof.problems.values.problem import Problem
+
+
+@dataclass(frozen=True, slots=True)
+class LinkageSpec(Displayed):
+    """A linkage with what its file says besides.
+
+    Parameters
+    ----------
+    linkage : FourBar
+    name, title, source, length_unit : str
+    output_arm : float, length, optional
+        Radius about O4 of what the output link drives, such as a horsehead: its stroke and torque
+        factor are told.
+    dynamics : DynamicsSpec, optional
+        It need not say masses.
+    problem : Problem, optional
+        Of a design out of a list: what it was found for.
+    """
+
+    linkage: FourBar
+    name: str
+    title: str = ""
+    source: str = ""
+    length_unit: str = ""
+    output_arm: float | None = None
+    dynamics: DynamicsSpec | None = None
+    problem: Problem | None = field(default=None, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        for name in ("name", "title", "source", "length_unit"):
+            plain_text(getattr(self, name), name)
+
+
+@dataclass(frozen=True, slots=True)
+class ListedDesign:
+    """A design of a candidates list, with what the list says of its targets.
+
+    Parameters
+    ----------
+    spec : LinkageSpec
+    rank : int
+    id : str
+    theta2 : tuple of float, rad
+        Driver angle at each target.
+    assembly : tuple of int
+        Of the linkage at each target.
+    position_error : tuple of float or None, length
+        Distance from each target; None where it has no position.
+    angle_error : tuple of float or None, rad
+        The same of its angle; empty for a path.
+    """
+
+    spec: LinkageSpec
+    rank: int
+    id: str
+    theta2: tuple[float, ...]
+    assembly: tuple[int, ...]
+    position_error: tuple[float | None, ...]
+    angle_error: tuple[float | None, ...]
+
+    def __post_init__(self) -> None:
+        counts = {len(self.theta2), len(self.assembly), len(self.position_error)}
+        counts |= {len(self.angle_error)} if self.angle_error else set()
+        if len(counts) > 1 or 0 in counts or any(sign not in (1, -1) for sign in self.assembly):
+            raise ProblemError("theta2, assembly and errors do not say the same number of targets")

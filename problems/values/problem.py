@@ -1,0 +1,248 @@
+"""A problem: the task, the requirements, what is best, and how hard to search."""
+
+from __future__ import annotations
+
+import math
+import reprlib
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.checks import (
+    counted,
+    finite_number,
+    noted,
+    number_within,
+    outline,
+    plain_text,
+    positive_number,
+    refuse,
+    whole_number,
+)
+from grashof.problems.values.dynamics_spec import DynamicsSpec, metres
+from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.manufacturing import Manufacturing
+from grashof.problems.values.motion_task import MotionTask
+from grashof.problems.values.read_only import ReadOnly
+from grashof.problems.values.requirements import Requirements
+from grashof.problems.values.task import Task
+
+_HEAVIEST = 1e9
+LEAST_TOLERANCE = 1e-4  # sizes: from here on a tolerance is a zone about each target
+NO_OBJECTIVE = (
+    "objective is of no effect in least squares; allowed is also within (zones about the targets) or "
+    "requirements.error_factor"
+)
+EFFORTS = (0.2, 100.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Objective:
+    """What makes one design better than another; weights are relative.
+
+    Parameters
+    ----------
+    transmission : float
+        Weight of the worst transmission angle, as a share of 90 deg.
+    compactness : float
+        Weight of the (small) size of the linkage in its motion, in sizes of the task.
+    torque : float
+        Weight of the (small) peak of the drive torque over the motion used, in reference torques of
+        the problem; it needs dynamics.
+    """
+
+    transmission: float = 1.0
+    compactness: float = 0.0
+    torque: float = 0.0
+
+    def __post_init__(self) -> None:
+        weights = (self.transmission, self.compactness, self.torque)
+        for name, weight in zip(self.__slots__, weights, strict=True):
+            if not 0 <= finite_number(weight, f"objective.maximise.{name}") <= _HEAVIEST:
+                raise ProblemError(
+                    f"objective.maximise.{name} is {weight:g}; allowed is a weight from 0 to {_HEAVIEST:g}"
+                )
+        if sum(weights) <= 0:
+            raise ProblemError("objective.maximise has no weight greater than zero; one at least is needed")
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """How hard to search.
+
+    Parameters
+    ----------
+    starts : int
+        Most Ipopt solves.
+    enough : int
+        Stop between batches once so many distinct designs are verified.
+    seed : int
+        Random seed.
+    effort : float
+        How long to look for better designs before giving up, 0.2 to 100: the rounds of a search with
+        1 come first and unchanged.
+    """
+
+    starts: int = 200
+    enough: int = 50
+    seed: int = 0
+    effort: float = 1.0
+
+    def __post_init__(self) -> None:
+        whole_number(self.starts, 1, "search.starts")
+        whole_number(self.enough, 1, "search.enough")
+        whole_number(self.seed, 0, "search.seed")
+        object.__setattr__(self, "effort", number_within(self.effort, *EFFORTS, "search.effort"))
+
+
+_KINDS: dict[str, Any] = {
+    "task": Task,
+    "requirements": Requirements,
+    "objective": Objective,
+    "search": Search,
+    "name": str,
+    "title": str,
+    "source": str,
+    "length_unit": str,
+    "manufacturing": Manufacturing | None,
+}
+
+
+def _named(kind: Any) -> str:
+    return " or ".join(each.__name__ for each in getattr(kind, "__args__", (kind,))).replace("Type", "")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Problem(ReadOnly):
+    """All that is asked, as a problem file states it.
+
+    Parameters
+    ----------
+    task : MotionTask or PathTask
+    requirements : Requirements
+    objective : Objective
+    search : Search
+    name, title, source, length_unit : str
+        For people: file names, headings, axis labels.
+    outlines : sequence of array_like, shape (M, 2), length
+        The scene: drawn, no constraint.
+    manufacturing : Manufacturing, optional
+        How exactly linkages are made; without it nothing is said about made ones.
+    dynamics : DynamicsSpec, optional
+        Masses, speed and gravity; without it nothing is said about torque and forces.
+    """
+
+    task: Task
+    requirements: Requirements = field(default_factory=Requirements)
+    objective: Objective = field(default_factory=Objective)
+    search: Search = field(default_factory=Search)
+    name: str = "problem"
+    title: str = ""
+    source: str = ""
+    length_unit: str = ""
+    outlines: tuple[FloatArray, ...] = ()
+    manufacturing: Manufacturing | None = None
+    dynamics: DynamicsSpec | None = None
+
+    def __post_init__(self) -> None:
+        for name, kind in _KINDS.items():
+            if not isinstance(value := getattr(self, name), kind):
+                raise ProblemError(f"problem.{name} is {reprlib.repr(value)}; allowed is {_named(kind)}")
+        for name in ("name", "title", "source", "length_unit"):
+            plain_text(getattr(self, name), name)
+        if isinstance(self.outlines, str) or not isinstance(self.outlines, Iterable):
+            raise ProblemError(f"scene.outlines is {self.outlines!r}; allowed is a list of outlines")
+        wrong: list[str] = []
+        if self.dynamics is not None:
+            with noted(wrong):
+                metres(self.length_unit)  # refuses one that is not known
+            with noted(wrong):
+                positive_number(self.dynamics.speed_rpm, "dynamics.speed_rpm")
+            if not self.dynamics.has_masses:
+                wrong.append(
+                    "dynamics has no mass; mass_per_length is needed, masses and inertias, or payload"
+                )
+        elif self.objective.torque > 0:
+            wrong.append("dynamics is missing; objective.maximise asks for the torque")
+        if self.objective.torque > 0 and not self.requirements.same_branch:
+            wrong.append(
+                "requirements.same_branch is false; allowed is true when objective.maximise asks for torque"
+            )
+        wrong += self._undecided()
+        refuse(wrong)
+        checked = tuple(
+            outline(corners, f"scene.outlines[{index}]") for index, corners in enumerate(self.outlines)
+        )
+        object.__setattr__(self, "outlines", checked)
+
+    def _undecided(self) -> list[str]:
+        """What is contradictory about whether the error or the objective decides."""
+        wanted, kind, zones = self.requirements, self.task.kind, self.task.zones
+        wrong = []
+        if zones is not None and wanted.exact:
+            wrong.append(f"{kind}.within does not go with requirements.exact = true; it takes its place")
+        if zones is not None and wanted.error_factor is not None:
+            wrong.append(f"requirements.error_factor does not go with {kind}.within; allowed is one of them")
+        if wanted.error_factor is not None and wanted.is_exact(self.task):
+            wrong.append("requirements.error_factor needs least squares, exact = false")
+        if self.objective != Objective() and not self.by_objective:
+            wrong.append(NO_OBJECTIVE)
+        return wrong
+
+    @property
+    def by_objective(self) -> bool:
+        """Whether the objective decides which design is better; otherwise the error does."""
+        wanted = self.requirements
+        bounded = self.task.zones is not None or wanted.error_factor is not None
+        return bounded or wanted.is_exact(self.task)
+
+    @property
+    def zones(self) -> FloatArray | None:
+        """How far positions (length) and angles (rad) may be missed, shape (2, N), where that is said.
+
+        Each target's own zone, or a tolerance of `LEAST_TOLERANCE` and more where every target has
+        to be met.
+        """
+        task, wanted = self.task, self.requirements
+        if task.zones is not None:
+            return task.zones
+        if wanted.tolerance < LEAST_TOLERANCE or not wanted.is_exact(task):
+            return None
+        allowed = np.full((2, len(task)), wanted.tolerance * task.size)
+        if isinstance(task, MotionTask):
+            allowed[1] /= task.angle_length
+            return np.where(np.stack([task.has_position, task.has_angle]), allowed, np.inf)
+        return np.stack([allowed[0], np.full(len(task), np.inf)])
+
+    def without_zones(self, *, exact: bool | None = False) -> Problem:
+        """The same problem with no target to be missed, by least squares unless it says else."""
+        task = self.task.without_zones() if self.task.zones is not None else self.task
+        tight = min(self.requirements.tolerance, Requirements().tolerance)
+        wanted = replace(self.requirements, exact=exact, error_factor=None, tolerance=tight)
+        objective = self.objective if wanted.is_exact(task) else Objective()
+        return replace(self, task=task, requirements=wanted, objective=objective)
+
+    def __repr__(self) -> str:
+        return f"<Problem {self.name}: {type(self.task).__name__} of {counted(len(self.task), 'target')}>"
+
+    @property
+    def reference_torque(self) -> float:
+        """What the objective counts the torque in, N m; it depends on the problem alone.
+
+        M S (g + omega2^2 S): the mass of links and payload, held and turned at a radius of the task's
+        size S. `mass_per_length` counts as one bar of length S.
+
+        Raises
+        ------
+        ProblemError
+            The problem has no dynamics.
+        """
+        spec = self.dynamics
+        if spec is None:
+            raise ProblemError("dynamics is missing; without masses there is no torque")
+        size = self.task.size * metres(self.length_unit)
+        mass = (spec.mass_per_length or 0.0) * self.task.size + sum(spec.masses or ()) + spec.payload
+        return mass * size * (math.hypot(*spec.gravity) + spec.omega2**2 * size)

@@ -1,0 +1,253 @@
+"""Requirements on a design. Every field is spelled as its key in a problem file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from enum import StrEnum
+
+import numpy as np
+
+from grashof.problems.values.arrays import FloatArray, Limits
+from grashof.problems.values.checks import GREATEST, finite_number, limits, noted, number_within, refuse
+from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.read_only import ReadOnly
+from grashof.problems.values.task import Task
+
+
+class Rotatability(StrEnum):
+    """What the driver must be able to do."""
+
+    FULL_CRANK = "full-crank"
+    CRANK_ROCKER = "crank-rocker"
+    DOUBLE_CRANK = "double-crank"
+    ANY = "any"
+
+
+class TransmissionOver(StrEnum):
+    """The motion over which the transmission angle is judged."""
+
+    TASK = "task"
+    CYCLE = "cycle"
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """An upright rectangle x[0] <= x <= x[1], y[0] <= y <= y[1]; an infinite side is open."""
+
+    x: Limits = (-np.inf, np.inf)
+    y: Limits = (-np.inf, np.inf)
+
+    def __post_init__(self) -> None:
+        wrong: list[str] = []
+        for axis in ("x", "y"):
+            with noted(wrong):
+                object.__setattr__(self, axis, _side(getattr(self, axis), axis))
+        refuse(wrong)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Requirements(ReadOnly):
+    """What a design must satisfy besides doing the task.
+
+    Lengths are in the problem's unit; None means the default, which excludes only the absurd
+    and is taken from the size of the task (see `resolved`).
+
+    Parameters
+    ----------
+    exact : bool, optional
+        Every target is met; False: least squares. By default exact wherever linkages that meet
+        every target can be expected (see `is_exact`).
+    tolerance : float
+        A design is exact when its largest error is at most ``tolerance * size``.
+    error_factor : float, optional
+        Least squares: the objective decides among designs of up to so many times the least error found.
+    rotatability : Rotatability
+        full-crank (the driver turns fully), crank-rocker, double-crank, or any (the driver
+        covers the task).
+    rotatability_margin : float
+        r3+r4-r1-r2 and |r1-r2|-|r3-r4| are at least this share of r1+r2+r3+r4.
+    order : bool
+        The driver meets the targets in sequence, in one sense, within one turn.
+    same_branch : bool
+        One assembly and no dead position over the whole motion used.
+    transmission_min_deg : float, deg
+        Least min(mu, pi - mu) over `transmission_over`.
+    transmission_over : TransmissionOver
+        task (the motion from first to last target) or cycle (the whole turn).
+    link_length : tuple of float, optional
+        (lo, hi) for all four links; r1, r2, r3, r4 override it for single ones.
+    link_ratio_max : float
+        Longest to shortest of r1..r4.
+    coupler_arms : tuple of float, optional
+        (lo, hi) for the distances A-P and B-P.
+    o2, o4, a, b : Box, optional
+        Where the ground pivots may lie; where A and B may be at every target.
+    ground_angle_deg : float, deg, optional
+        Direction O2->O4.
+    theta2_start_deg : float, deg, optional
+        Driver angle at the first target.
+    keep_out : sequence of array_like, shape (M, 2), length
+        Polygons; their boundary may be touched. Where two overlap or share a side they are one.
+    keep_out_for : sequence of {"o2", "o4", "a", "b", "p", "links"}
+        What keeps out of them: pivots, coupler point, or all links as straight lines (O2A, AB, O4B,
+        AP, BP); all but o2 and o4 over the motion from first to last target.
+    """
+
+    exact: bool | None = None
+    tolerance: float = 1e-6
+    error_factor: float | None = None
+    rotatability: Rotatability = Rotatability.FULL_CRANK
+    rotatability_margin: float = 1e-3
+    order: bool = True
+    same_branch: bool = True
+    transmission_min_deg: float = 0.0
+    transmission_over: TransmissionOver = TransmissionOver.TASK
+    link_length: Limits | None = None
+    r1: Limits | None = None
+    r2: Limits | None = None
+    r3: Limits | None = None
+    r4: Limits | None = None
+    link_ratio_max: float = 20.0
+    coupler_arms: Limits | None = None
+    o2: Box | None = None
+    o4: Box | None = None
+    a: Box | None = None
+    b: Box | None = None
+    ground_angle_deg: float | None = None
+    theta2_start_deg: float | None = None
+    keep_out: tuple[FloatArray, ...] = ()
+    keep_out_for: tuple[str, ...] = ("o2", "o4")
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.exact, bool | None):
+            raise ProblemError(f"requirements.exact is {self.exact!r}; allowed is true or false")
+        for name in ("order", "same_branch"):
+            if not isinstance(getattr(self, name), bool):
+                raise ProblemError(
+                    f"requirements.{name} is {getattr(self, name)!r}; allowed is true or false"
+                )
+        for name, kind in (("rotatability", Rotatability), ("transmission_over", TransmissionOver)):
+            object.__setattr__(self, name, _member(kind, getattr(self, name), f"requirements.{name}"))
+        for name, (low, high) in _RANGES.items():
+            value = number_within(getattr(self, name), low, high, f"requirements.{name}")
+            object.__setattr__(self, name, value)
+        if self.error_factor is not None:
+            factor = number_within(self.error_factor, 1.0, 1e6, "requirements.error_factor")
+            object.__setattr__(self, "error_factor", factor)
+        for name in ("link_length", "r1", "r2", "r3", "r4", "coupler_arms"):
+            if getattr(self, name) is not None:
+                pair = limits(getattr(self, name), f"requirements.{name}", least=0.0)
+                object.__setattr__(self, name, pair)
+        for name in ("ground_angle_deg", "theta2_start_deg"):
+            if getattr(self, name) is not None:
+                angle = finite_number(getattr(self, name), f"requirements.{name}")
+                object.__setattr__(self, name, angle)
+        for name in ("o2", "o4", "a", "b"):
+            if not isinstance(getattr(self, name), Box | None):
+                raise ProblemError(f"requirements.{name} is {getattr(self, name)!r}; allowed is a Box")
+        object.__setattr__(self, "keep_out", _areas(self.keep_out))
+        object.__setattr__(self, "keep_out_for", _kept_out(self.keep_out_for))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Requirements):
+            return NotImplemented
+        return self._comparable() == other._comparable()
+
+    def __hash__(self) -> int:
+        return hash(self._comparable())
+
+    def _comparable(self) -> tuple[object, ...]:
+        """Every field, the arrays among them as tuples."""
+        areas = tuple(tuple(map(tuple, corners.tolist())) for corners in self.keep_out)
+        return areas, *(getattr(self, field.name) for field in fields(self) if field.name != "keep_out")
+
+    @property
+    def link_lengths(self) -> tuple[Limits, Limits, Limits, Limits]:
+        """Limits of r1, r2, r3, r4 (of resolved requirements)."""
+        every = self.link_length or (0.0, np.inf)
+        return self.r1 or every, self.r2 or every, self.r3 or every, self.r4 or every
+
+    def is_exact(self, task: Task) -> bool:
+        """Whether a design has to meet every target of the task.
+
+        Examples
+        --------
+        >>> from grashof.problems import PathTask
+        >>> line = PathTask([[0, 0], [1, 0], [2, 0]])
+        >>> Requirements().is_exact(line), Requirements(exact=False).is_exact(line)
+        (True, False)
+        """
+        if task.zones is not None:
+            return False
+        return task.exact_by_default if self.exact is None else self.exact
+
+    def resolved(self, size: float) -> Requirements:
+        """These requirements with every default that depends on the size of the task filled in.
+
+        Examples
+        --------
+        >>> Requirements().resolved(2.0).link_length
+        (0.02, 40.0)
+        """
+        return replace(
+            self,
+            link_length=self.link_length or (0.01 * size, min(20.0 * size, GREATEST)),
+            coupler_arms=self.coupler_arms or (0.0, min(30.0 * size, GREATEST)),
+            o2=self.o2 or Box(),
+            o4=self.o4 or Box(),
+            a=self.a or Box(),
+            b=self.b or Box(),
+        )
+
+
+_RANGES = {
+    "tolerance": (1e-12, 1.0),
+    "rotatability_margin": (0.0, 0.25),
+    "transmission_min_deg": (0.0, 90.0),
+    "link_ratio_max": (1.0, 1e6),
+}
+
+
+_MAY_KEEP_OUT = ("o2", "o4", "a", "b", "p", "links")
+
+
+def _areas(values: Sequence[FloatArray]) -> tuple[FloatArray, ...]:
+    if isinstance(values, Sequence) and not len(values):
+        return ()
+    # Here, not above: shapely takes a while to import, and few problems have areas.
+    from grashof.problems.values.areas import polygons
+
+    return polygons(values, "requirements.keep_out")
+
+
+def _kept_out(names: Sequence[str]) -> tuple[str, ...]:
+    allowed = f"allowed is a list of {', '.join(_MAY_KEEP_OUT[:-1])} and {_MAY_KEEP_OUT[-1]}"
+    if isinstance(names, str) or not isinstance(names, Sequence) or not len(names):
+        raise ProblemError(f"requirements.keep_out_for is {names!r}; {allowed}")
+    for index, name in enumerate(names):
+        if name not in _MAY_KEEP_OUT:
+            raise ProblemError(f"requirements.keep_out_for[{index}] is {name!r}; {allowed}")
+    return tuple(dict.fromkeys(names))
+
+
+def _side(values: Limits, name: str) -> Limits:
+    allowed = "allowed is [lo, hi] with lo <= hi"
+    try:
+        low, high = (float(value) for value in values)
+    except (TypeError, ValueError):
+        raise ProblemError(f"{name} is {values!r}; {allowed}") from None
+    if not (low <= high and low < np.inf and high > -np.inf):
+        raise ProblemError(f"{name} is [{low:.15g}, {high:.15g}]; {allowed}")
+    for side in (low, high):
+        if GREATEST < abs(side) < np.inf:
+            raise ProblemError(f"{name} is [{low:.15g}, {high:.15g}]; allowed is up to {GREATEST:g}")
+    return low, high
+
+
+def _member(kind: type[StrEnum], value: str, where: str) -> StrEnum:
+    try:
+        return kind(value)
+    except ValueError:
+        allowed = ", ".join(kind)
+        raise ProblemError(f"{where} is {value!r}; allowed is one of {allowed}") from None

@@ -1,0 +1,63 @@
+"""Zones: how far each target may be missed."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from grashof.problems.values.arrays import FloatArray, frozen_array
+from grashof.problems.values.checks import GREATEST, counted
+from grashof.problems.values.errors import ProblemError
+
+LEAST_ZONE = 1e-12  # below, digits are lost
+ANGLES_DEG = (1e-10, 180.0)  # least and greatest zone of an angle
+
+
+def zone_sizes(
+    values: npt.ArrayLike | None, count: int, where: str, *, least: float, most: float = GREATEST
+) -> FloatArray | None:
+    """How far each of `count` targets may be missed, shape (count,), from one number or one for each.
+
+    Parameters
+    ----------
+    values : array_like or None
+    count : int
+    where : str
+        Its key, for messages.
+    least, most : float
+        The smallest and the greatest allowed.
+
+    Raises
+    ------
+    ProblemError
+        Not numbers, not as many as there are targets, or out of range.
+
+    Examples
+    --------
+    >>> zone_sizes(2.0, 3, "path.within", least=1e-12)
+    array([2., 2., 2.])
+    """
+    if values is None:
+        return None
+    allowed = "allowed is a number greater than zero, or a list of one for each target"
+    try:
+        numbers = np.asarray(values)
+    except ValueError:  # lists of unequal length inside
+        numbers = np.array(None)
+    if numbers.dtype.kind not in "iuf" or numbers.ndim > 1:
+        raise ProblemError(f"{where} is {values!r}; {allowed}")
+    if numbers.ndim == 1 and len(numbers) != count:
+        raise ProblemError(f"{where} has {counted(len(numbers), 'number')} for {count} targets; {allowed}")
+    for index, number in enumerate(np.atleast_1d(numbers)):
+        if not least <= number <= most:
+            name = f"{where}[{index}]" if numbers.ndim else where
+            raise ProblemError(f"{name} is {number:g}; allowed is {least:g} to {most:g}")
+    return frozen_array(np.broadcast_to(numbers, (count,)))
+
+
+def turn_sizes(values: npt.ArrayLike | None, count: int, *, in_degrees: bool) -> FloatArray | None:
+    """The same of angles, rad; from radians, or from degrees, as problem files write them."""
+    low, high = ANGLES_DEG if in_degrees else np.radians(ANGLES_DEG)
+    name = "motion.angle_within_deg" if in_degrees else "angle_within"
+    turns = zone_sizes(values, count, name, least=low, most=high)
+    return frozen_array(np.radians(turns)) if in_degrees and turns is not None else turns

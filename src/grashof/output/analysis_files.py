@@ -1,0 +1,147 @@
+"""What `grashof analyse` writes and prints."""
+
+from __future__ import annotations
+
+import platform
+from importlib.metadata import version
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from grashof.output.folder import ANALYSIS_PAGE, ANALYSIS_RECORD, replacing_own_files
+from grashof.output.run_files import write_csv, write_json, write_page
+from grashof.output.streams import say
+from grashof.output.terminal import console
+from grashof.problems.files.linkage_file import linkage_json
+from grashof.survey.report import LinkageReport
+from grashof.wording.numbers import number_text, value_text
+
+_PACKAGES = ("grashof", "numpy", "scipy", "pandas", "matplotlib", "jinja2")
+_UNBOUNDED = 1000
+
+
+def write_report(folder: Path, report: LinkageReport) -> list[str]:
+    """Write tables, summary, the page, plots and the record of them; the names of the files, sorted.
+
+    Raises
+    ------
+    OSError
+        The disk is full or the folder is lost; it then holds what it held before.
+    """
+    from grashof.figures.files import save
+    from grashof.figures.survey_plots import plots  # matplotlib takes half a second to import
+    from grashof.page import analysis_page
+
+    about = {
+        "versions": {"python": platform.python_version(), **{name: version(name) for name in _PACKAGES}},
+        "settings": {"linkage": report.spec.name, "speed_rpm": report.speed_rpm},
+    }
+    with replacing_own_files(folder, record=ANALYSIS_RECORD) as fresh:
+        for name, table in report.tables.items():
+            write_csv(fresh / f"{name}.csv", table)
+        write_csv(fresh / "summary.csv", _summary_frame(report))
+        write_json(fresh / "summary.json", _summary(report))
+        write_page(fresh / ANALYSIS_PAGE, analysis_page(report, about))
+        for name, figure in plots(report):
+            save(figure, [fresh / f"{name}.png", fresh / f"{name}.svg"])
+        files = sorted({*(path.name for path in fresh.iterdir()), ANALYSIS_RECORD})
+        write_json(fresh / ANALYSIS_RECORD, {**about, "files": files})
+    return files
+
+
+def print_report(report: LinkageReport) -> None:
+    """Print the summary and the extremes, no wider than the terminal where that can be."""
+    spec = report.spec
+    lengths = ", ".join(f"{length:.6g}" for length in spec.linkage.lengths)
+    say(f"{spec.title or spec.name}: r1 to r4 {lengths} {spec.length_unit}".rstrip())
+    for line in _fitting(_facts_table(report)):
+        say(line)
+    for line in _fitting(_extremes_table(report, 6), _extremes_table(report, 4)):
+        say(line)
+
+
+def _fitting(*tables: Table) -> list[str]:
+    """Lines of the first table that fits, or else of the last; no number is ever cut."""
+    lines: list[str] = []
+    for table in tables:
+        page = Console(file=StringIO(), width=_UNBOUNDED, highlight=False, markup=False, color_system=None)
+        with page.capture() as captured:
+            page.print(table)
+        lines = [line.rstrip() for line in captured.get().splitlines()]
+        if max(map(len, lines)) <= console().width:
+            break
+    return lines
+
+
+def _plain_table() -> Table:
+    return Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+
+
+def _facts_table(report: LinkageReport) -> Table:
+    table = _plain_table()
+    table.add_column("summary", no_wrap=True)
+    table.add_column("value", justify="right", no_wrap=True)
+    table.add_column("unit", no_wrap=True)
+    for fact in report.facts:
+        table.add_row(fact.label, value_text(fact.value), fact.unit)
+    return table
+
+
+def _extremes_table(report: LinkageReport, digits: int) -> Table:
+    table, frame = _plain_table(), report.tables["extremes"]
+    many = "range" in frame
+    for name in (
+        *(["range"] if many else []),
+        f"extremes {report.sweep.over}",
+        "unit",
+        "least",
+        "at theta2",
+        "largest",
+        "at theta2",
+    ):
+        left = name.startswith("extremes") or name == "unit"
+        table.add_column(name, justify="left" if left else "right", no_wrap=True)
+    columns = ("min", "theta2_min_deg", "max", "theta2_max_deg")
+    for row in frame.to_dict("records"):
+        values = (number_text(row[name], digits) for name in columns)
+        table.add_row(*([str(row["range"])] if many else []), str(row["what"]), str(row["unit"]), *values)
+    return table
+
+
+def _summary_frame(report: LinkageReport) -> pd.DataFrame:
+    rows = [
+        {"quantity": fact.key, "value": fact.value, "unit": fact.unit, "what": fact.label}
+        for fact in report.facts
+    ]
+    return pd.DataFrame(rows)
+
+
+def _summary(report: LinkageReport) -> dict[str, Any]:
+    spec = report.spec
+    return {
+        "name": spec.name,
+        "title": spec.title,
+        "source": spec.source,
+        "length_unit": spec.length_unit,
+        "angle_unit": "rad",
+        "linkage": linkage_json(spec.linkage),
+        "notes": list(report.notes),
+        "facts": {fact.key: {"value": fact.value, "unit": fact.unit} for fact in report.facts},
+        "extremes": [
+            {str(key): _finite(value) for key, value in row.items()}
+            for row in report.tables["extremes"].to_dict("records")
+        ],
+    }
+
+
+def _finite(value: Any) -> Any:
+    """As JSON knows it: null for NaN, words for infinity."""
+    if not isinstance(value, float) or np.isfinite(value):
+        return value
+    return None if np.isnan(value) else "infinite" if value > 0 else "-infinite"

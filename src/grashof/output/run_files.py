@@ -1,0 +1,206 @@
+"""What a run writes: the candidates as CSV and JSON, the closest miss, the page, the record, the drawings."""
+
+from __future__ import annotations
+
+import json
+import platform
+from collections.abc import Callable, Iterable
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from grashof.output.folder import PAGE, RECORD, replacing_own_files
+from grashof.problems import Problem
+from grashof.problems.files.linkage_file import linkage_json
+from grashof.problems.files.problem_writing import problem_toml
+from grashof.problems.values.arrays import FloatArray
+from grashof.synth import Candidate, Result
+from grashof.synth.results.table import DYNAMICS, MANUFACTURING, MOTION, labels, to_frame
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_PACKAGES = ("grashof", "casadi", "numpy", "scipy", "pandas", "matplotlib", "jinja2")
+
+
+def write_run(
+    folder: Path,
+    result: Result,
+    settings: dict[str, Any],
+    drawings: int,
+    stop: Callable[[], bool] = lambda: False,
+    problem_text: str = "",
+) -> list[str]:
+    """Write all files of a run, the lists first: a drawing that fails does not cost them.
+
+    Parameters
+    ----------
+    folder : Path
+    result : Result
+    settings : dict
+        How the search was run; goes into the record.
+    drawings : int
+        How many of the best designs to draw.
+    stop : callable
+        Asked before every drawing; the others are left out when it says True.
+    problem_text : str
+        The problem file, for the page.
+
+    Returns
+    -------
+    list of str
+        Names of the files, sorted.
+
+    Raises
+    ------
+    OSError
+        The disk is full or the folder is lost; it then holds what it held before, or the lists alone.
+    """
+    from grashof.page import search_page  # only a run needs the templates
+
+    frame = result.to_frame()
+    with replacing_own_files(folder) as fresh:
+        if result.candidates:
+            write_csv(fresh / "candidates.csv", frame)
+            write_json(fresh / "candidates.json", _designs(result, frame))
+        if result.nearest:
+            misses = ["; ".join(str(d) for d in candidate.verdict.defects) for candidate in result.nearest]
+            frame = to_frame(result.problem, result.nearest).assign(misses=misses)
+            write_csv(fresh / "nearest.csv", frame)
+        write_page(fresh / PAGE, search_page(result, frame, _about(settings), problem_text))
+        files = _write_record(fresh, result, settings)
+    if drawings and result.candidates and not stop():
+        with replacing_own_files(folder, keep=files) as fresh:
+            _draw(fresh, result, drawings, stop)
+            files = _write_record(fresh, result, settings, files)
+    return files
+
+
+def _draw(folder: Path, result: Result, drawings: int, stop: Callable[[], bool]) -> None:
+    from grashof.figures.files import draw_design, save  # matplotlib takes half a second to import
+
+    for rank, candidate in enumerate(result.candidates[:drawings], start=1):
+        if stop():
+            return
+        stem = folder / f"design-{rank:02d}"
+        figure = draw_design(result.problem, candidate, rank)
+        save(figure, [stem.with_suffix(".png"), stem.with_suffix(".svg")])
+
+
+def _write_record(
+    folder: Path, result: Result, settings: dict[str, Any], others: Iterable[str] = ()
+) -> list[str]:
+    """Write the record of the files in a folder and of others, and return their names, sorted."""
+    files = sorted({*(path.name for path in folder.iterdir()), *others, RECORD})
+    write_json(folder / RECORD, _record(result, settings, files))
+    return files
+
+
+def _designs(result: Result, frame: pd.DataFrame) -> dict[str, Any]:
+    problem = result.problem
+    return {
+        "grashof": version("grashof"),
+        "problem": problem.name,
+        "problem_toml": problem_toml(problem),
+        "title": problem.title,
+        "length_unit": problem.length_unit,
+        "angle_unit": "rad",
+        **({} if problem.dynamics is None else {"dynamics": problem.dynamics.stated}),
+        "designs": [
+            {"rank": rank, **_design(candidate), "pareto": bool(best), **figures}
+            for rank, (candidate, best, figures) in enumerate(
+                zip(result.candidates, frame["pareto"], _figures(problem, frame), strict=True), start=1
+            )
+        ],
+    }
+
+
+def _given(errors: FloatArray) -> list[float | None]:
+    """Errors as JSON knows them: null where a pose leaves this part free."""
+    return [None if np.isnan(error) else float(error) for error in errors]
+
+
+def _design(candidate: Candidate) -> dict[str, Any]:
+    verdict = candidate.verdict
+    angle_error = {} if verdict.angle_error is None else {"angle_error": _given(verdict.angle_error)}
+    return {
+        **labels(candidate),
+        "linkage": linkage_json(candidate.linkage),
+        "theta2": verdict.theta2.tolist(),
+        "assembly": verdict.assembly.tolist(),
+        "position_error": _given(verdict.position_error),
+        **angle_error,
+        "grashof_class": str(verdict.grashof_class),
+        "direction": verdict.direction,
+        "circuit_ok": verdict.circuit_ok,
+        "branch_ok": verdict.branch_ok,
+        "order_ok": verdict.order_ok,
+        "full_rotation": verdict.full_rotation,
+        "transmission_min_task": verdict.transmission_min_task,
+        "transmission_min_cycle": verdict.transmission_min_cycle,
+        "size": verdict.size,
+        "start": candidate.start,
+        "iterations": candidate.iterations,
+    }
+
+
+def _figures(problem: Problem, frame: pd.DataFrame) -> list[dict[str, Any]]:
+    """The columns of each design that its problem gives a meaning, null where they are not finite."""
+    dynamics = () if problem.dynamics is None else DYNAMICS
+    columns = [*MOTION, *dynamics, *(() if problem.manufacturing is None else MANUFACTURING)]
+    rows = frame[columns].to_numpy(dtype=np.float64).tolist()
+    return [
+        {name: x if np.isfinite(x) else None for name, x in zip(columns, row, strict=True)} for row in rows
+    ]
+
+
+def _about(settings: dict[str, Any]) -> dict[str, Any]:
+    """What it takes to run the search again."""
+    versions = {"python": platform.python_version(), **{name: version(name) for name in _PACKAGES}}
+    return {"versions": versions, "settings": settings}
+
+
+def _record(result: Result, settings: dict[str, Any], files: list[str]) -> dict[str, Any]:
+    errors = {name: getattr(result, name) for name in ("least_error", "most_error")}
+    guards = {name: result.counts.get(f"solver: {name}", 0) for name in _GUARDS}
+    return {
+        "problem": result.problem.name,
+        **_about(settings),
+        "complete": result.complete,
+        "ended": result.ended,
+        **{name: None if np.isnan(error) else error for name, error in errors.items()},
+        "designs": len(result),
+        "note": result.note,
+        "counts": dict(result.counts),
+        "guards_hit": guards,
+        "seconds": {stage: round(time, 4) for stage, time in result.seconds.items()},
+        "files": files,
+    }
+
+
+# What ended solves that would otherwise have gone on.
+_GUARDS = ("Maximum_Iterations_Exceeded", "Maximum_WallTime_Exceeded")
+
+
+def write_csv(path: Path, frame: pd.DataFrame) -> None:
+    """A table with floats in full precision; no text in it is a formula to a spreadsheet."""
+    texts = frame.select_dtypes(exclude=["number", "bool"]).columns
+    frame = frame.assign(**{name: frame[name].map(_no_formula) for name in texts})
+    with path.open("w", encoding="utf-8", newline="") as file:  # pandas would read ~ as a home
+        frame.to_csv(file, index=False, lineterminator="\n")
+
+
+def _no_formula(value: Any) -> Any:
+    return f"'{value}" if isinstance(value, str) and value.startswith(("=", "+", "-", "@")) else value
+
+
+def write_json(path: Path, content: dict[str, Any]) -> None:
+    """JSON that every reader knows: no NaN."""
+    path.write_text(json.dumps(content, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def write_page(path: Path, page: str) -> None:
+    """HTML as it is, with the same line ends everywhere."""
+    path.write_text(page, encoding="utf-8", newline="\n")

@@ -1,0 +1,203 @@
+"""What the terminal shows: progress while a search works, and the list to decide by."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from io import StringIO
+from textwrap import TextWrapper
+
+import numpy as np
+from rich import box
+from rich.console import Console, JustifyMethod
+from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
+from rich.progress import Progress as Bar
+from rich.table import Table
+
+from grashof.output.streams import say
+from grashof.problems import Problem
+from grashof.problems.values.checks import counted
+from grashof.synth import Candidate, Progress, Result
+from grashof.synth.results.ranking import pareto_optimal
+from grashof.wording.problem import error_meaning, goals
+
+_ROWS = 12
+_PIPED_WIDTH = 140
+_WIDE = 100  # columns; narrower terminals get fewer digits
+_UNBOUNDED = 1000
+# Columns that a narrow terminal does without, first to last.
+UNITS = {"mu task": "deg", "mu turn": "deg", "torque": "N m"}  # of columns; lengths are in the problem's
+_DROPPED = (("class",), ("O2", "O4"), ("like this",), ("best at",), ("size",), ("mu turn",))
+_JUSTIFY: dict[str, JustifyMethod] = {"O2": "center", "O4": "center", "class": "left", "best at": "left"}
+_TWO_LINES = ("error rms", "like this")
+
+
+def console(*, stderr: bool = False) -> Console:
+    """A console that does not fold its lines when it is piped, and marks nothing up by itself."""
+    made = Console(stderr=stderr, highlight=False, markup=False)
+    if not made.is_terminal:
+        made.width = _PIPED_WIDTH
+    return made
+
+
+@contextmanager
+def search_progress(
+    name: str, begin: str = "searching", *, wanted: bool = True
+) -> Iterator[Callable[[Progress], None]]:
+    """Something to give as `progress=`: a bar on a terminal, plain lines elsewhere; on stderr.
+
+    Parameters
+    ----------
+    name : str
+        Of the problem.
+    begin : str
+        What the bar says until the first step is done.
+    wanted : bool
+        Whether the search ends once it has enough designs.
+    """
+    out = console(stderr=True)
+    if not (out.is_terminal and sys.stderr.isatty()):  # the first alone can be forced by FORCE_COLOR
+        yield lambda step: say(f"{name}: {_step(step, wanted)}", err=True)
+        return
+    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[step]}"))
+    with Bar(*columns, TimeElapsedColumn(), console=out, transient=True) as bar:
+        task = bar.add_task(name, total=None, step=begin)
+
+        def show(step: Progress) -> None:
+            total = step.enough if wanted else step.starts
+            done = min(step.verified, total) if wanted else step.solved
+            bar.update(task, completed=done, total=total, step=_step(step, wanted))
+
+        yield show
+
+
+def _step(step: Progress, wanted: bool) -> str:
+    verified = f"{counted(step.verified, 'design')} verified{f' ({step.enough} wanted)' if wanted else ''}"
+    return f"{verified}, {step.solved} of {step.starts} starts solved"
+
+
+def print_table(result: Result, verified: int | None = None) -> None:
+    """Print the best designs, with what an engineer decides by.
+
+    Parameters
+    ----------
+    result : Result
+    verified : int, optional
+        How many designs were found, where `result` lists only the best of them.
+    """
+    for line in folded(heading(result, verified or len(result)).splitlines()):
+        say(line)
+    for line in _fitting(result, console().width):
+        say(line)
+
+
+def folded(lines: Sequence[str]) -> list[str]:
+    """Lines of words that no terminal breaks within a word; as they are where they are piped."""
+    out = console()
+    if not (out.is_terminal and sys.stdout.isatty()):
+        return list(lines)
+    folding = TextWrapper(out.width, subsequent_indent="    ", break_on_hyphens=False)
+    return [part for line in lines for part in folding.wrap(line)]
+
+
+def _fitting(result: Result, width: int) -> list[str]:
+    """Lines of the table with as many columns as fit; no number is ever cut."""
+    digits = 4 if width >= _WIDE else 3
+    for dropped in range(len(_DROPPED) + 1):
+        page = Console(file=StringIO(), width=_UNBOUNDED, highlight=False, markup=False, color_system=None)
+        left_out = [name for names in _DROPPED[:dropped] for name in names]
+        with page.capture() as captured:
+            page.print(_table(result, digits, left_out))
+        lines = [line.rstrip() for line in captured.get().splitlines()]
+        if max(map(len, lines)) <= width:
+            break
+    return lines
+
+
+def best_rows(result: Result, digits: int = 4) -> list[dict[str, str]]:
+    """The best design of each family in cells, with what an engineer decides by; angles in deg.
+
+    "like this" is how many others the family has. Columns that are alike for all of them are left out.
+    """
+    front, families = pareto_optimal(result.problem, result.candidates), result.families[:_ROWS]
+    left_out = [
+        *(["error rms"] if result.problem.requirements.is_exact(result.problem.task) else []),
+        *(["class"] if len(_classes(result)) == 1 else []),
+        *([] if result.problem.objective.torque else ["torque"]),
+        *([] if any(len(family) > 1 for family in families) else ["like this"]),
+        *([] if any(family[0].best_at for family in families) else ["best at"]),
+    ]
+    rows = [
+        {
+            "#": f"{rank}{'*' if front[rank - 1] else ' '}",
+            **_cells(result.problem, family[0], digits),
+            "like this": str(len(family) - 1 or ""),
+            "best at": family[0].best_at,
+        }
+        for rank, family in enumerate(families, start=1)
+    ]
+    return [{name: cell for name, cell in row.items() if name not in left_out} for row in rows]
+
+
+def _table(result: Result, digits: int, left_out: Sequence[str]) -> Table:
+    rows = best_rows(result, digits)
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+    names = [name for name in rows[0] if name not in left_out]
+    for name in names:
+        title = name.replace(" ", "\n") if name in _TWO_LINES or digits < 4 or "size" in left_out else name
+        unit = f"\n{UNITS[name]}" if name in UNITS else ""
+        table.add_column(f"{title}{unit}", justify=_JUSTIFY.get(name, "right"), no_wrap=True)
+    for row in rows:
+        table.add_row(*(row[name] for name in names))
+    return table
+
+
+def heading(result: Result, verified: int) -> str:
+    """How many designs there are, how exact, and what the columns of `best_rows` mean."""
+    exact = result.problem.requirements.is_exact(result.problem.task)
+    verdicts = [candidate.verdict for candidate in result.candidates]
+    error = f"largest position error {max(each.error_max for each in verdicts):.1e}"
+    if not exact:  # as the column says it
+        least = min(each.error(result.problem) for each in result.candidates)
+        error = f"smallest error rms {least * result.problem.task.size:.2g}"
+    classes = _classes(result)
+    kind = f"{classes.pop()} " if len(classes) == 1 else ""
+    families = len(result.families)
+    found = counted(verified, f"distinct verified {kind}design")
+    found += f" in {counted(families, 'family')}" if families < len(result) else ""
+    if verified > len(result):  # nothing is known here of the class of the others
+        listed = str(len(result))
+        listed += f" in {counted(families, 'family')}" if families < len(result) else ""
+        found = f"{verified} distinct designs verified, listed are the best {listed}"
+        found += f" ({kind.strip()})" if kind else ""
+    unit = result.problem.length_unit
+    lengths = f" Lengths in {unit}." if unit else ""
+    shown = f" The best {_ROWS}:" if families > _ROWS else ""
+    if families < len(result):
+        shown = f" The best of {f'the first {_ROWS} families' if families > _ROWS else 'each family'}:"
+    counted_so = error_meaning(result.problem)
+    return (
+        f"{found}, {error}.{lengths}\n"
+        f"{f'error rms: {counted_so}.' + chr(10) if counted_so else ''}"
+        f"mu: worst transmission angle; *: Pareto-optimal in {goals(result.problem)}.{shown}"
+    )
+
+
+def _classes(result: Result) -> set[str]:
+    return {str(candidate.verdict.grashof_class) for candidate in result.candidates}
+
+
+def _cells(problem: Problem, candidate: Candidate, digits: int) -> dict[str, str]:
+    linkage, verdict = candidate.linkage, candidate.verdict
+    task, turn = np.degrees([verdict.transmission_min_task, verdict.transmission_min_cycle])
+    return {
+        "error rms": f"{candidate.error(problem) * problem.task.size:.2g}",
+        "mu task": f"{task:.1f}",
+        "mu turn": f"{turn:.1f}" if verdict.full_rotation else "-",
+        "torque": f"{candidate.torque_peak:.{digits}g}",
+        "size": f"{verdict.size:.{digits}g}",
+        **{f"r{i}": f"{length:.{digits}g}" for i, length in enumerate(linkage.lengths, start=1)},
+        **{name: f"{x:.3g}, {y:.3g}" for name, (x, y) in (("O2", linkage.o2), ("O4", linkage.o4))},
+        "class": str(verdict.grashof_class),
+    }

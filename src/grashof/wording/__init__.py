@@ -1,0 +1,1 @@
+"""Words for problems and numbers, for terminal and pages alike."""

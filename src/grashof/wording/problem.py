@@ -1,0 +1,162 @@
+"""A problem in words: what is asked, what decides, how long is searched."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+
+import numpy as np
+
+from grashof.problems import DynamicsSpec, MotionTask, PathTask, Problem, Task, TransmissionOver
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.checks import counted
+from grashof.synth.programme.merit import same_error
+from grashof.synth.results.trade_offs import FACTORS
+
+
+def beginning(problem: Problem) -> str:
+    """What a search begins with, in words."""
+    task = problem.task
+    met = isinstance(task, MotionTask) and task.is_whole and ends_with_enough(problem)
+    return "tracing dyads and judging pairs" if met else "searching"
+
+
+def ends_with_enough(problem: Problem) -> bool:
+    """Whether the search ends once it has enough designs: where it begins with exact ones."""
+    if problem.task.zones is not None:
+        return problem.task.exact_by_default
+    return problem.requirements.is_exact(problem.task) and problem.zones is None
+
+
+def error_meaning(problem: Problem) -> str:
+    """What the error of least squares counts besides distances; empty where there is nothing else."""
+    task = problem.task
+    if not isinstance(task, MotionTask) or problem.requirements.is_exact(task) or not task.has_angle.any():
+        return ""
+    unit = f" {problem.length_unit}" if problem.length_unit else ""
+    return f"of positions and angles together, 1 rad counted as {task.angle_length:.6g}{unit}"
+
+
+def goals(problem: Problem) -> str:
+    """What the Pareto mark is about, in words."""
+    names = [] if problem.requirements.is_exact(problem.task) else ["error"]
+    names += ["mu", "size"] if problem.dynamics is None else ["mu", "size", "torque"]
+    return f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def summary(problem: Problem) -> list[str]:
+    """A problem in a few lines, with the requirements as they will be applied."""
+    task, wanted = problem.task, problem.requirements.resolved(problem.task.size)
+    unit = f" {problem.length_unit}" if problem.length_unit else ""
+    lengths = ", ".join(
+        f"r{i} {low:g} to {high:g}" for i, (low, high) in enumerate(wanted.link_lengths, start=1)
+    )
+    arms = wanted.coupler_arms or (0.0, np.inf)
+    lines = [
+        f"{problem.name}: {problem.title}" if problem.title else problem.name,
+        f"  {_task(task, unit)}; {_exactness(problem)}",
+        f"  rotatability {wanted.rotatability}, margin {wanted.rotatability_margin:g}; "
+        f"order {_yes(wanted.order)}, same branch {_yes(wanted.same_branch)}",
+        f"  transmission at least {wanted.transmission_min_deg:g} deg over the {wanted.transmission_over}",
+        f"  links{unit and f' in{unit}'}: {lengths}; ratio up to {wanted.link_ratio_max:g}; "
+        f"coupler arms {arms[0]:g} to {arms[1]:g}",
+    ]
+    for name in ("o2", "o4", "a", "b"):
+        place = getattr(problem.requirements, name)
+        if place is not None:
+            lines.append(f"  {name}: x {place.x[0]:g} to {place.x[1]:g}, y {place.y[0]:g} to {place.y[1]:g}")
+    if wanted.keep_out:
+        names = ", ".join(wanted.keep_out_for)
+        lines.append(f"  kept out of {counted(len(wanted.keep_out), 'area')}: {names}")
+    angles = {key: getattr(wanted, key) for key in ("ground_angle_deg", "theta2_start_deg")}
+    lines += [f"  {key} {value:g}" for key, value in angles.items() if value is not None]
+    if problem.manufacturing is not None:
+        made = problem.manufacturing
+        lines.append(f"  made to within {made.length_tolerance:g}{unit}, band {made.band:g}{unit}")
+    if problem.dynamics is not None:
+        lines.append(f"  {_driven(problem.dynamics)}")
+    return [
+        *lines,
+        f"  best: {_best(problem)}",
+        f"  search: {_search(problem)}",
+    ]
+
+
+def _best(problem: Problem) -> str:
+    """What designs are ranked by, as `ranking_key` does it."""
+    over = "turn" if problem.requirements.transmission_over is TransmissionOver.CYCLE else "task"
+    words = {
+        "transmission": f"greatest worst transmission angle over the {over}",
+        "compactness": "smallest size",
+        "torque": "smallest peak torque",
+    }
+    weights = {words[name]: weight for name, weight in asdict(problem.objective).items() if weight}
+    best = next(iter(weights))
+    if len(weights) > 1:
+        best = f"a weighted sum: {', '.join(f'{word} {weight:g}' for word, weight in weights.items())}"
+    missed = _missed(problem)
+    if problem.by_objective:
+        return f"{best}{missed and f', {missed}'}"
+    return (
+        f"least error (rms; errors up to {same_error(problem):g} sizes are equal, then {best}); "
+        f"the list offers more transmission or less size within {FACTORS[-1]:g} times that error"
+    )
+
+
+def _missed(problem: Problem) -> str:
+    """By how much targets may be missed while the objective decides; empty where they are met."""
+    factor, zones = problem.requirements.error_factor, problem.zones
+    if factor is not None:
+        return f"as long as the error (rms) is at most {factor:g} times the least"
+    if zones is None:
+        return ""
+    unit = f" {problem.length_unit}" if problem.length_unit else ""
+    said = [_span(zones[0], unit), _span(np.degrees(zones[1]), " deg")]
+    return f"as long as each target is missed by at most {' and '.join(filter(None, said))}"
+
+
+def _span(sizes: FloatArray, unit: str) -> str:
+    """A number, or the range of some, with its unit; empty where all are infinite."""
+    known = sizes[np.isfinite(sizes)]
+    if not len(known):
+        return ""
+    low, high = f"{known.min():.6g}", f"{known.max():.6g}"
+    return f"{low}{unit}" if low == high else f"{low} to {high}{unit}"
+
+
+def _search(problem: Problem) -> str:
+    """How long is searched."""
+    search = problem.search
+    enough = f", {search.enough} designs" if ends_with_enough(problem) else ""
+    effort = f", effort {search.effort:g}" if search.effort != 1 else ""
+    return f"up to {search.starts} starts{enough}, seed {search.seed}{effort}"
+
+
+def _driven(spec: DynamicsSpec) -> str:
+    links = (
+        "uniform links" if spec.masses is None else f"links of {', '.join(f'{m:g}' for m in spec.masses)} kg"
+    )
+    each = "" if spec.mass_per_length is None else f" of {spec.mass_per_length:g} kg a length unit"
+    x, y = spec.gravity
+    payload = f", payload {spec.payload:g} kg" if spec.payload else ""
+    return f"dynamics: {links}{each}{payload}; driver at {spec.speed_rpm:g} rpm; gravity {x:g}, {y:g} m/s2"
+
+
+def _task(task: Task, unit: str) -> str:
+    if isinstance(task, PathTask):
+        kind = "closed path" if task.closed else "path"
+        timing = "" if task.timing is None else f" timed over {abs(np.degrees(task.timing[-1])):g} deg"
+        return f"{kind} through {len(task)} points{timing}, size {task.size:g}{unit}"
+    size = f"size {task.size:g}{unit}, angle_length {task.angle_length:g}{unit}"
+    return f"motion through {len(task)} poses, {size}"
+
+
+def _exactness(problem: Problem) -> str:
+    if problem.task.zones is not None:
+        return "zones about the targets"
+    if not problem.requirements.is_exact(problem.task):
+        return "least squares"
+    return f"every target met within {problem.requirements.tolerance:g} sizes"
+
+
+def _yes(value: bool) -> str:
+    return "yes" if value else "no"

@@ -1,0 +1,1 @@
+"""The nonlinear programme of a design: unknowns, constraints, objective."""

@@ -1,0 +1,167 @@
+"""A problem made ready for the search, and the way back from its frame to linkages."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from grashof.analysis.judge.design import Constraint
+from grashof.problems import FourBar, MotionTask, PathTask, Problem, Requirements, Rotatability
+from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.task import Task
+from grashof.synth.programme.frame import Frame
+from grashof.synth.theory.burmester import Displacements
+
+
+@dataclass(frozen=True, slots=True)
+class ScaledProblem:
+    """A problem in the frame of the search.
+
+    Parameters
+    ----------
+    problem : Problem
+    frame : Frame
+    targets : ndarray of complex, shape (N,), sizes
+        Where the coupler point P has to be, in the frame; zero where its position is free.
+    weights : ndarray, shape (N,)
+        Of the squared distances; zero where the position is free.
+    turns : ndarray, shape (N,), rad, or None
+        Angles of the body, zero where they are free; None for a path.
+    turn_weights : ndarray, shape (N,), sizes squared, or None
+        Of the squared turns from there; zero where the angle is free.
+    motion : Displacements or None
+        Of the body from the first pose to every pose, in the frame, where whole poses are met
+        exactly; None for all other tasks.
+    timing : ndarray, shape (N,), rad, or None
+        Driver rotation from the first target, where it is prescribed.
+    wanted : Requirements
+        Resolved, in the frame.
+    exact : bool
+        Every target is met; otherwise least squares.
+    constraints : tuple of callable
+        The user's own.
+    zones : ndarray, shape (2, N), sizes and rad, or None
+        How far the position and the angle of each target may be missed.
+    of_use : float, sizes
+        Least squares: designs up to this error are of use, be they far from the best.
+    """
+
+    problem: Problem
+    frame: Frame
+    targets: ComplexArray
+    weights: FloatArray
+    turns: FloatArray | None
+    turn_weights: FloatArray | None
+    motion: Displacements | None
+    timing: FloatArray | None
+    wanted: Requirements
+    exact: bool
+    constraints: tuple[Constraint, ...] = ()
+    zones: FloatArray | None = None
+    of_use: float = 0.0
+
+    @classmethod
+    def of(cls, problem: Problem, constraints: Sequence[Constraint] = ()) -> ScaledProblem:
+        """Make a problem ready."""
+        task, frame = problem.task, Frame.of(problem.task)
+        zones, targets = problem.zones, frame.inward(task.positions)
+        exact = problem.requirements.is_exact(task) and zones is None
+        weights, turns, turn_weights, motion = np.ones(len(task)), None, None, None
+        if isinstance(task, MotionTask):
+            weights = task.weights * task.has_position
+            if task.has_angle.any():
+                turns = np.nan_to_num(task.angles)
+                turn_weights = task.weights * task.has_angle * (task.angle_length / frame.scale) ** 2
+            targets = np.where(task.has_position, targets, 0.0)
+            if exact and task.is_whole and turns is not None:
+                motion = Displacements.from_poses(targets, turns)
+        return cls(
+            problem=problem,
+            frame=frame,
+            targets=targets,
+            weights=weights,
+            turns=turns,
+            turn_weights=turn_weights,
+            motion=motion,
+            timing=task.timing if isinstance(task, PathTask) else None,
+            wanted=_turning(frame.requirements(problem.requirements), task),
+            exact=exact,
+            constraints=tuple(constraints),
+            zones=None if zones is None else zones / [[frame.scale], [1.0]],
+        )
+
+    @property
+    def bounded(self) -> bool:
+        """Whether the objective decides among designs that may miss the targets."""
+        return self.zones is not None or self.problem.requirements.error_factor is not None
+
+    @property
+    def closed(self) -> bool:
+        """Whether the motion used is a whole turn."""
+        return isinstance(self.problem.task, PathTask) and self.problem.task.closed
+
+    def missed(self, p: ComplexArray, turned: FloatArray) -> FloatArray:
+        """Root mean weighted square of what targets are missed by, sizes.
+
+        Parameters
+        ----------
+        p : ndarray of complex, shape (..., N), sizes
+        turned : ndarray, shape (..., N), rad
+            Angles of the body.
+        """
+        square = (self.weights * np.abs(p - self.targets) ** 2).sum(axis=-1)
+        if self.turns is not None and self.turn_weights is not None:
+            off = np.angle(np.exp(1j * (turned - self.turns)))
+            square = square + (self.turn_weights * off**2).sum(axis=-1)
+        missed: FloatArray = np.sqrt(square / len(self.targets))
+        return missed
+
+    def linkages(
+        self, points: ComplexArray, assembly: FloatArray, body_angle: FloatArray | None = None
+    ) -> FourBar:
+        """The linkages with given pivots.
+
+        Parameters
+        ----------
+        points : ndarray of complex, shape (..., 5), sizes
+            O2, O4, and A, B, P at the first target.
+        assembly : ndarray, shape (...)
+        body_angle : ndarray, shape (...), rad, optional
+            From the coupler to the body. By default as the first of whole poses asks for it.
+
+        Returns
+        -------
+        FourBar
+            Batch of shape (...), in the problem's unit.
+
+        Raises
+        ------
+        ProblemError
+            Two pivots coincide.
+        """
+        o2, o4, a, b, p = np.moveaxis(points, -1, 0)
+        with np.errstate(invalid="ignore"):  # FourBar refuses a coupler of no length
+            coupler = (b - a) / np.abs(b - a)
+        arm = (p - a) * coupler.conj() * self.frame.scale
+        if body_angle is None:
+            first = 0.0 if self.turns is None else np.angle(np.exp(1j * self.turns[0]) * coupler.conj())
+            body_angle = np.asarray(first)
+        return FourBar(
+            o2=self.frame.outward(o2),
+            o4=self.frame.outward(o4),
+            r2=np.abs(a - o2) * self.frame.scale,
+            r3=np.abs(b - a) * self.frame.scale,
+            r4=np.abs(b - o4) * self.frame.scale,
+            coupler_point=np.stack([arm.real, arm.imag], axis=-1),
+            assembly=assembly,
+            body_angle=body_angle,
+        )
+
+
+def _turning(wanted: Requirements, task: Task) -> Requirements:
+    """A closed path takes a whole turn of the driver, whatever is said of its rotatability."""
+    if wanted.rotatability is not Rotatability.ANY or not isinstance(task, PathTask) or not task.closed:
+        return wanted
+    return replace(wanted, rotatability=Rotatability.FULL_CRANK, rotatability_margin=0.0)

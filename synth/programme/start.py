@@ -1,0 +1,200 @@
+"""A start: a linkage that nearly or fully does the task, and the discrete choices made with it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from grashof.analysis import Verdict, solve_position
+from grashof.problems import FourBar, Objective
+from grashof.problems.values.arrays import ComplexArray
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.screening import Screened
+
+LENGTHS = ("r1", "r2", "r3", "r4")
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """Where a solve begins, in the frame of the search.
+
+    What cannot be a smooth constraint is fixed here: the order of visit, the sense of the driver,
+    the assembly, which of r1 and r2 is longer, and past which positions with O2A along the ground
+    line the driver goes.
+
+    Parameters
+    ----------
+    o2, o4, a, b, p : complex, sizes
+        Pivots and coupler point, the moving ones at the first target.
+    visit : tuple of int
+        Targets in the order in which the driver meets them.
+    theta2 : tuple of float, rad
+        Driver angles in that order, counted on along the motion.
+    theta3 : tuple of float, rad
+        Coupler angles in that order, each near the last.
+    direction, assembly : int
+    objective : Objective
+        What the solve makes best.
+    body_angle : float, rad
+        From the coupler to the body, where the first pose does not say it; else zero.
+    radius : float, sizes
+        How far it may move each coordinate of the pivots.
+    stay : bool
+        Move no farther than the requirements make it, whatever the objective.
+    settled : bool
+        The targets leave no freedom: the design is there already, or nowhere near.
+    relaxed : tuple of str
+        Requirements (keys) that it may miss, coming as near as it can; all others hold. Of
+        "link_length", "o2" and "o4" parts may be named (r1, o2.x), which alone give way then.
+    torque_at : tuple of float
+        Where else the torque is bounded, as shares of the motion used.
+    promise : float, sizes
+        Root mean square error that a least-squares search came to here, with what limits add.
+    more_transmission : float, rad
+        By how much more than required the transmission is bounded.
+    loose : bool
+        Driver angles need not be where the judge will find them.
+    most_error : float, sizes
+        Root mean square error up to which the objective decides.
+    zoned : bool
+        The objective decides as long as each target is missed by no more than it may.
+    """
+
+    o2: complex
+    o4: complex
+    a: complex
+    b: complex
+    p: complex
+    visit: tuple[int, ...]
+    theta2: tuple[float, ...]
+    theta3: tuple[float, ...]
+    direction: int
+    assembly: int
+    objective: Objective = field(default_factory=Objective)
+    body_angle: float = 0.0
+    radius: float = np.inf
+    stay: bool = False
+    settled: bool = False
+    relaxed: tuple[str, ...] = ()
+    torque_at: tuple[float, ...] = ()
+    promise: float = 0.0
+    more_transmission: float = 0.0
+    loose: bool = False
+    most_error: float = np.inf
+    zoned: bool = False
+
+    @classmethod
+    def of_linkage(cls, scaled: ScaledProblem, linkage: FourBar, verdict: Verdict) -> Start:
+        """The start that a linkage makes where the judge found it nearest to the targets, in order."""
+        state = solve_position(linkage, verdict.theta2, verdict.assembly)
+        visit = np.argsort(verdict.direction * verdict.theta2, kind="stable")
+        at_first = (linkage.o2, linkage.o4, state.a[0], state.b[0], state.p[0])
+        o2, o4, a, b, p = (complex(scaled.frame.inward(point)) for point in at_first)
+        return cls(
+            o2=o2,
+            o4=o4,
+            a=a,
+            b=b,
+            p=p,
+            visit=tuple(visit.tolist()),
+            theta2=tuple(verdict.theta2[visit].tolist()),
+            theta3=tuple(np.unwrap(state.theta3[visit]).tolist()),
+            direction=verdict.direction,
+            assembly=int(linkage.assembly),
+            objective=scaled.problem.objective,
+            body_angle=float(linkage.body_angle),
+        )
+
+    @property
+    def points(self) -> ComplexArray:
+        """O2, O4, and A, B, P at the first target, shape (5,), sizes."""
+        return np.array([self.o2, self.o4, self.a, self.b, self.p])
+
+    @property
+    def bounded(self) -> bool:
+        """Whether the error is bounded, and the objective decides."""
+        return self.zoned or bool(np.isfinite(self.most_error))
+
+    @property
+    def theta1(self) -> float:
+        """Direction O2->O4, rad."""
+        return float(np.angle(self.o4 - self.o2))
+
+    @property
+    def arm(self) -> complex:
+        """The coupler point as u + iv."""
+        return (self.p - self.a) * abs(self.b - self.a) / (self.b - self.a)
+
+    @property
+    def track(self) -> ComplexArray:
+        """A, B and P at every target in the order of visit, shape (3, N), sizes."""
+        _, r2, r3, _ = self.lengths
+        a = self.o2 + r2 * np.exp(1j * np.array(self.theta2))
+        turned = np.exp(1j * np.array(self.theta3))
+        return np.stack([a, a + r3 * turned, a + self.arm * turned])
+
+    @property
+    def lengths(self) -> tuple[float, float, float, float]:
+        """r1, r2, r3, r4 in sizes."""
+        return abs(self.o4 - self.o2), abs(self.a - self.o2), abs(self.b - self.a), abs(self.b - self.o4)
+
+    def holds(self, part: str) -> bool:
+        """Whether a part (r1, o2.x) keeps its limits though the rest of its requirement may miss them."""
+        group = "link_length" if part in LENGTHS else part[:2]
+        parts = LENGTHS if part in LENGTHS else (f"{group}.x", f"{group}.y")
+        named = [name for name in parts if name in self.relaxed]
+        return group in self.relaxed and bool(named) and part not in named
+
+    @property
+    def half_turns(self) -> tuple[int, int]:
+        """In which half turn from the ground line, counted in pi, the driver starts and ends."""
+        ends = (self.theta2[0], self.theta2[-1])
+        first, last = (int(np.floor((angle - self.theta1) / np.pi)) for angle in ends)
+        return first, last
+
+    @classmethod
+    def of_find(cls, finds: Screened, index: int, objective: Objective) -> Start:
+        """The start that entry `index` of the finds of a search makes."""
+        visit = finds.visit[index]
+        o2, o4, a, b, p = (complex(point) for point in finds.points[index])
+        return cls(
+            o2=o2,
+            o4=o4,
+            a=a,
+            b=b,
+            p=p,
+            visit=tuple(int(target) for target in visit),
+            theta2=tuple(float(angle) for angle in finds.theta2[index]),
+            theta3=tuple(float(angle) for angle in np.unwrap(np.angle(finds.coupler[index][visit]))),
+            direction=int(finds.direction[index]),
+            assembly=int(finds.assembly[index]),
+            objective=objective,
+            body_angle=float(finds.body_angle[index]),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Round:
+    """What one round of a search came up with.
+
+    Parameters
+    ----------
+    starts : list of Start
+        The most promising first.
+    counts : mapping of str to int
+        Of what was looked at.
+    size : int
+        Its work, in usual rounds.
+    prune : float
+        Least squares: starts that promise more than so many times the least error found are not solved.
+    free : bool
+        No limit binds: what passes the targets by the same way is the same design or a cognate.
+    """
+
+    starts: list[Start]
+    counts: Mapping[str, int]
+    size: int = 1
+    prune: float = np.inf
+    free: bool = False

@@ -1,0 +1,180 @@
+"""The user's own constraints: are they usable, which finds miss them, which starts have to be mended."""
+
+from __future__ import annotations
+
+import pickle
+import re
+from dataclasses import replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from grashof.analysis.judge.design import Constraint, Design, greatest, name_of
+from grashof.problems import ProblemError
+from grashof.problems.values.arrays import FloatArray
+from grashof.synth.programme.on_symbols import on_symbols
+from grashof.synth.programme.one_at_a_time import one_at_a_time
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.screening import GROUPS, Screened
+from grashof.synth.programme.start import Start
+
+FAR = 1e3  # stands for an amount without bound
+NEAREST = 8  # starts that are tried for the closest miss
+# What makes an expression true or false; as a number, 1 where a condition holds.
+_TRUTHS = (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_NOT, ca.OP_AND, ca.OP_OR)
+# Where in CasADi's source an error arose, which its messages begin with.
+_PLACE = re.compile(r'^\S+\.[ch]pp:\d+: (Assertion ".*?" failed: )?')
+WRONG = (TypeError, ValueError, AttributeError, IndexError, KeyError, RuntimeError, ArithmeticError)
+
+
+def refuse_unusable(scaled: ScaledProblem, *, in_processes: bool) -> None:
+    """Raise `ProblemError` for a constraint that cannot be used on symbols, or not in other processes."""
+    for constraint in scaled.constraints:
+        if not callable(constraint) or isinstance(constraint, type):
+            raise ProblemError(f"constraints has {constraint!r}; allowed are functions of a design")
+        _try_on_symbols(constraint, len(scaled.targets))
+        if in_processes:
+            try:
+                pickle.dumps(constraint)
+            except (pickle.PicklingError, AttributeError, TypeError) as error:
+                raise ProblemError(
+                    f"constraint {name_of(constraint)} cannot be sent to other processes ({error}); allowed "
+                    "with workers are functions of a module"
+                ) from None
+
+
+@one_at_a_time
+def screened(scaled: ScaledProblem, finds: Screened) -> Screened:
+    """The same with violations of the user's constraints, all evaluated at once."""
+    if not scaled.constraints or not len(finds):
+        return finds
+    design, symbols = _symbols(len(scaled.targets))
+    values = ca.vertcat(
+        *(ca.vec(ca.SX(one)) for own in scaled.constraints for one in _several(on_symbols(own, design)))
+    )
+    amounts = np.asarray(ca.Function("own", [symbols], [values])(_numbers(scaled, finds).T))
+    missed = np.nan_to_num(np.maximum(amounts, 0.0), nan=1.0, posinf=FAR).sum(axis=0)
+    violations = finds.violations.copy()
+    violations[:, GROUPS.index("constraints")] += missed
+    return replace(finds, violations=violations)
+
+
+def _numbers(scaled: ScaledProblem, finds: Screened) -> FloatArray:
+    """The numbers of finds in the order of `_symbols`, shape (n, M)."""
+    o2, o4, a, b, p = finds.points.T
+    r3 = np.abs(b - a)
+    turned = np.take_along_axis(finds.coupler, finds.visit, axis=1) / r3[:, None]
+    arm = (p - a) * r3 / (b - a)
+    at_a = o2[:, None] + np.abs(a - o2)[:, None] * np.exp(1j * finds.theta2)
+    places = np.stack([at_a, at_a + r3[:, None] * turned, at_a + arm[:, None] * turned])
+    columns = [
+        *scaled.frame.outward(np.stack([o2, o4])).transpose(0, 2, 1).reshape(4, -1),
+        *(scaled.frame.scale * np.abs([o4 - o2, a - o2, b - a, b - o4])),
+        np.angle(o4 - o2),
+        *(scaled.frame.scale * np.stack([arm.real, arm.imag])),
+        *finds.theta2.T,
+        *scaled.frame.outward(places).transpose(0, 2, 3, 1).reshape(-1, len(finds)),
+    ]
+    return np.stack(columns, axis=1)
+
+
+def mended(scaled: ScaledProblem, starts: list[Start]) -> list[Start]:
+    """Starts, those that miss a user's constraint free to move, and no farther than it makes them."""
+    if not scaled.constraints:
+        return starts
+    return [
+        start if _met(scaled, start) else replace(start, radius=np.inf, stay=scaled.exact, settled=False)
+        for start in starts
+    ]
+
+
+def relaxed(scaled: ScaledProblem, starts: list[Start]) -> list[Start]:
+    """The first few starts, free to come as near to the user's constraints as they can."""
+    if not scaled.constraints:
+        return []
+    return [
+        replace(start, radius=np.inf, stay=False, settled=False, relaxed=("constraints",))
+        for start in starts[:NEAREST]
+    ]
+
+
+def _met(scaled: ScaledProblem, start: Start) -> bool:
+    design = _design(scaled, start)
+    return all(greatest(constraint, design) <= 0 for constraint in scaled.constraints)
+
+
+def _design(scaled: ScaledProblem, start: Start) -> Design:
+    a, b, p = (list(scaled.frame.outward(track)) for track in start.track)
+    r1, r2, r3, r4 = np.array(start.lengths) * scaled.frame.scale
+    arm = start.arm * scaled.frame.scale
+    return Design(
+        o2=scaled.frame.outward(np.array(start.o2)),
+        o4=scaled.frame.outward(np.array(start.o4)),
+        r1=r1,
+        r2=r2,
+        r3=r3,
+        r4=r4,
+        theta1=np.float64(start.theta1),
+        coupler_point=np.array([arm.real, arm.imag]),
+        theta2=np.array(start.theta2),
+        a=a,
+        b=b,
+        p=p,
+    )
+
+
+def _symbols(targets: int) -> tuple[Design, ca.SX]:
+    """A design of symbols, and all of these in one column."""
+    o2, o4, arm = (ca.SX.sym(name, 2) for name in ("o2", "o4", "coupler_point"))
+    r1, r2, r3, r4, theta1 = (ca.SX.sym(name) for name in ("r1", "r2", "r3", "r4", "theta1"))
+    theta2 = ca.SX.sym("theta2", targets)
+    a, b, p = ([ca.SX.sym(name, 2) for _ in range(targets)] for name in "abp")
+    design = Design(o2, o4, r1, r2, r3, r4, theta1, arm, theta2, a, b, p)
+    return design, ca.vertcat(o2, o4, r1, r2, r3, r4, theta1, arm, theta2, *a, *b, *p)
+
+
+def _several(value: Any) -> list[Any]:
+    return list(value) if isinstance(value, (list, tuple)) else [value]
+
+
+@one_at_a_time
+def _try_on_symbols(constraint: Constraint, targets: int) -> None:
+    design, _ = _symbols(targets)
+    try:
+        value = on_symbols(constraint, design)
+    except WRONG as error:
+        reason = _PLACE.sub("", " ".join(str(error).split())).rstrip(".")
+        if "truth value" in reason:
+            reason += " (casadi.fmax, casadi.fmin and casadi.if_else do what max, min and if cannot)"
+        raise ProblemError(
+            f"constraint {name_of(constraint)} fails on symbols: {reason}; allowed are functions of a design "
+            "made of arithmetic that works on CasADi symbols"
+        ) from error
+    _refuse_no_amounts(constraint, value)
+
+
+def _refuse_no_amounts(constraint: Constraint, value: Any) -> None:
+    """Raise `ProblemError` for what a constraint gives on symbols, if it is no scalar and not several."""
+    name = name_of(constraint)
+    several = _several(value)
+    for one in several:
+        try:
+            symbols = ca.SX(one)
+        except WRONG:
+            raise ProblemError(
+                f"constraint {name} gives {one!r}; allowed is a scalar, zero or negative where it is met, or "
+                "a list of them"
+            ) from None
+        if any(element.is_constant() and not element.is_regular() for element in symbols.nz):
+            raise ProblemError(  # such as float() of a symbol
+                f"constraint {name} fails on symbols: its value is not a number; allowed are functions of a "
+                "design made of arithmetic that works on CasADi symbols"
+            )
+        if isinstance(one, (bool, np.bool_)) or any(element.op() in _TRUTHS for element in symbols.nz):
+            raise ProblemError(
+                f"constraint {name} gives a truth value; allowed is a scalar, zero or negative where it is "
+                "met: a - b instead of a < b"
+            )
+    if not any(ca.SX(one).numel() > 0 for one in several):
+        raise ProblemError(f"constraint {name} gives nothing; allowed is a scalar or a list of them")

@@ -1,0 +1,1 @@
+"""From solves to a list: designs judged, ranked, chosen, explained."""

@@ -1,0 +1,96 @@
+"""Zones that are too small: how large they would have to be."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from grashof.analysis import Verdict, verify
+from grashof.analysis.judge.design import Constraint
+from grashof.problems import MotionTask, Problem
+from grashof.synth.results.candidate import Candidate
+from grashof.synth.results.relaxation import Relaxation
+
+MISSED = {"within", "angle_within_deg", "exact"}  # what the judge calls a target missed by too much
+
+
+def wider(
+    problem: Problem, constraints: Sequence[Constraint], known: Sequence[Candidate]
+) -> list[Relaxation]:
+    """Larger zones, or a greater tolerance, by which the nearest of some designs would do.
+
+    Parameters
+    ----------
+    problem : Problem
+    constraints : sequence of callable
+        The user's own.
+    known : sequence of Candidate
+        Judged against all requirements.
+
+    Returns
+    -------
+    list of Relaxation
+        One at most. The judge has accepted its design under the larger zones and all requirements.
+    """
+    if problem.zones is None:
+        return []
+    near = [one for one in known if {defect.requirement for defect in one.verdict.defects} <= MISSED]
+    for one in sorted(near, key=lambda one: (max(shares(problem, one.verdict)), one.id)):
+        asked, words = _enlarged(problem, shares(problem, one.verdict))
+        if verify(one.linkage, asked.task, asked.requirements, constraints).ok:
+            miss = max(defect.miss for defect in one.verdict.defects)
+            own = tuple(constraints)
+            return [Relaxation("within", words, asked.requirements, own, one, miss, words.count(" and ") + 1)]
+    return []
+
+
+def shares(problem: Problem, verdict: Verdict) -> tuple[float, float]:
+    """How many times as large as its zone a miss is at most: of positions, and of angles."""
+    place, turn = np.ones((2, len(problem.task))) if problem.zones is None else problem.zones
+    turned = 0.0 if verdict.angle_error is None else np.nanmax(verdict.angle_error / turn, initial=0.0)
+    return float(np.nanmax(verdict.position_error / place)), float(turned)
+
+
+def _enlarged(problem: Problem, times: tuple[float, float]) -> tuple[Problem, str]:
+    """The problem with zones so many times as large, and what changes in its file, in words."""
+    task, wanted = problem.task, problem.requirements
+    if task.zones is None:  # a tolerance
+        tolerance = up(wanted.tolerance * max(times))
+        said = f"tolerance {tolerance:g} instead of {wanted.tolerance:g}"
+        changed = replace(wanted, tolerance=min(tolerance, 1.0))
+        return replace(problem, requirements=changed), said
+    stated = {"within": task.within}
+    if isinstance(task, MotionTask):
+        stated["angle_within"] = task.angle_within
+    given = {name: zone for name, zone in stated.items() if zone is not None}
+    least = dict(zip(("within", "angle_within"), times, strict=True))
+    if len(given) == 1:  # it stands for both
+        (only,) = given
+        least = {only: max(times)}
+    larger, words = dict[str, Any](), list[str]()
+    for name, zone in given.items():
+        if least[name] <= 1:
+            continue
+        unit, key = (np.degrees(1.0), "angle_within_deg") if name == "angle_within" else (1.0, name)
+        if np.ptp(zone) == 0:
+            size = up(float(zone[0] * unit * least[name]))
+            larger[name] = np.full(len(zone), size / unit)
+            words.append(f"{key} {size:g} instead of {zone[0] * unit:.6g}")
+        else:
+            factor = up(least[name])
+            larger[name] = zone * factor
+            words.append(f"{key} {factor:g} times as large")
+    if "angle_within" in larger:
+        larger["angle_within"] = np.minimum(larger["angle_within"], np.pi)
+    return replace(problem, task=replace(task, **larger)), " and ".join(words)
+
+
+def up(value: float) -> float:
+    """A number rounded up to three digits."""
+    if not 0 < value < np.inf:
+        return value
+    step = 10.0 ** (np.floor(np.log10(value)) - 2)
+    return float(f"{np.ceil(value / step * (1 - 1e-12)) * step:.3g}")

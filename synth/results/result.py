@@ -1,0 +1,100 @@
+"""Results: verified designs, ranked, and what became of all the others."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from os import PathLike
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from grashof.problems import NoSolutionError, Problem
+from grashof.problems.values.checks import counted
+from grashof.problems.values.display import Displayed
+from grashof.synth.programme.merit import same_error
+from grashof.synth.results.candidate import Candidate
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Result(Displayed):
+    """A ranked list of verified, distinct designs, best first; `nearest` when there is none.
+
+    Parameters
+    ----------
+    problem : Problem
+    candidates : tuple of Candidate
+        The best design of each family, best first, then all the others, best first.
+    nearest : tuple of Candidate
+        For an empty list: designs with one requirement missed, each as little as was possible.
+    counts : mapping of str to int
+        Solves by outcome.
+    seconds : mapping of str to float
+        Time by stage.
+    note : str
+        Why the list is empty or was cut short; empty otherwise.
+    complete : bool
+        False when the search was interrupted.
+    ended : str
+        Why the search ended: of exact designs, before it had as many as were asked for; else empty.
+    least_error : float, length
+        Least squares: the least error that was found, as `Candidate.error` has it; NaN otherwise.
+    """
+
+    problem: Problem
+    candidates: tuple[Candidate, ...]
+    nearest: tuple[Candidate, ...]
+    counts: Mapping[str, int]
+    seconds: Mapping[str, float]
+    note: str = ""
+    complete: bool = True
+    ended: str = ""
+    least_error: float = np.nan
+
+    def __repr__(self) -> str:
+        best = f"best {self.best._words}" if self.candidates else self.note
+        return f"<Result of {self.problem.name}: {counted(len(self), 'design')}; {best}>"
+
+    @property
+    def best(self) -> Candidate:
+        """The first design; `NoSolutionError` says what stood in the way when there is none."""
+        if not self.candidates:
+            raise NoSolutionError(self.note)
+        return self.candidates[0]
+
+    @property
+    def most_error(self) -> float:
+        """Up to which error the objective decides, length, by ``error_factor``; NaN where there is none."""
+        factor = self.problem.requirements.error_factor
+        if factor is None or np.isnan(self.least_error):
+            return np.nan
+        return factor * max(self.least_error, same_error(self.problem) * self.problem.task.size)
+
+    @property
+    def families(self) -> tuple[tuple[Candidate, ...], ...]:
+        """Designs that are alike, best first; the families in the order of their best designs."""
+        members: dict[str, list[Candidate]] = {}
+        for candidate in self.candidates:
+            members.setdefault(candidate.family or candidate.id, []).append(candidate)
+        return tuple(tuple(family) for family in members.values())
+
+    def top(self, families: int) -> Result:
+        """The same with the first so many families only, each with all its members."""
+        kept = {each.id for family in self.families[:families] for each in family}
+        return replace(self, candidates=tuple(each for each in self.candidates if each.id in kept))
+
+    def __len__(self) -> int:
+        return len(self.candidates)
+
+    def to_frame(self) -> pd.DataFrame:
+        """One verified design a row, best first; columns as the README lists them."""
+        from grashof.synth.results.table import to_frame  # pandas takes half a second to import
+
+        return to_frame(self.problem, self.candidates)
+
+    def to_csv(self, path: str | PathLike[str]) -> None:
+        """Write `to_frame` with floats in full precision."""
+        self.to_frame().to_csv(path, index=False, lineterminator="\n")

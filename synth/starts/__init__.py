@@ -1,0 +1,1 @@
+"""Where solves begin: linkages drawn or computed, improved, screened and chosen."""

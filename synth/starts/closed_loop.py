@@ -1,0 +1,245 @@
+"""Linkages of a search as unknowns: the closed loop at every target, and its derivatives.
+
+The driver angles and proportions are such that a linkage is feasible by construction; the loop is
+taken with r1 = 1 along the real axis.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from grashof.problems import Requirements, Rotatability
+from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
+
+SHORTEST = 1e-3  # of the longest step between targets: no step counts as less
+
+
+@dataclass(frozen=True, slots=True)
+class PathTarget:
+    """What the coupler has to pass.
+
+    Parameters
+    ----------
+    points : ndarray of complex, shape (N,), sizes
+        Without a last one that repeats the first.
+    weights : ndarray, shape (N,)
+        Of the squared distances; zero where the position is free.
+    timing : ndarray, shape (N,), rad, or None
+        Driver rotation from the first point.
+    wanted : Requirements
+        In the frame of the points. Its limits draw the search inwards.
+    turns : ndarray, shape (N,), rad, or None
+        Angles of the body, for poses.
+    turn_weights : ndarray, shape (N,), sizes squared, or None
+        Of the squared turns from there; zero where the angle is free.
+    closed : bool
+        The motion used is a whole turn.
+    """
+
+    points: ComplexArray
+    weights: FloatArray
+    timing: FloatArray | None
+    wanted: Requirements
+    turns: FloatArray | None = None
+    turn_weights: FloatArray | None = None
+    closed: bool = False
+
+    @property
+    def jumbled(self) -> bool:
+        """Whether the driver may meet the targets in any order."""
+        return self.timing is None and not self.wanted.order
+
+    @property
+    def steps(self) -> FloatArray:
+        """How far it is from each target to the next, shape (N - 1,), sizes; never quite zero."""
+        given = self.weights > 0
+        step = np.abs(np.diff(self.points)) * (given[1:] & given[:-1])
+        if self.turns is not None and self.turn_weights is not None:
+            given = self.turn_weights > 0
+            turned = np.abs(np.angle(np.exp(1j * np.diff(self.turns)))) * (given[1:] & given[:-1])
+            step = np.hypot(step, np.sqrt(self.turn_weights.max()) * turned)
+        steps: FloatArray = np.maximum(step, SHORTEST * max(step.max(), SHORTEST))
+        return steps
+
+    @property
+    def unknowns(self) -> int:
+        """Proportions (3), and driver angles or what they are made of."""
+        if self.timing is not None:
+            return 4
+        return 3 + len(self.points) + self.wanted.order
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """Linkages of a search.
+
+    Parameters
+    ----------
+    unknowns : ndarray, shape (n, M)
+        Proportions, then the first driver angle and the logarithms of the gaps between the driver
+        angles and of the rest of the turn (ordered), or all driver angles.
+    longer_driver : ndarray of bool, shape (n,)
+        r2 > r1: among full cranks a double-crank.
+    assembly : ndarray, shape (n, N)
+    direction : ndarray, shape (n,)
+        Sense of the driver.
+    """
+
+    unknowns: FloatArray
+    longer_driver: BoolArray
+    assembly: FloatArray
+    direction: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.unknowns)
+
+    def __getitem__(self, index: IntArray | BoolArray | slice) -> Batch:
+        return Batch(*(getattr(self, name)[index] for name in self.__slots__))
+
+
+def joined(first: Batch, second: Batch) -> Batch:
+    """Two batches as one."""
+    return Batch(
+        *(np.concatenate([getattr(batch, name) for batch in (first, second)]) for name in Batch.__slots__)
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Loop:
+    """The closed loop with r1 = 1 along the real axis, at every point; derivatives by the unknowns."""
+
+    r2: FloatArray
+    r3: FloatArray
+    r4: FloatArray
+    by_lengths: FloatArray  # (n, 3 lengths, 3 proportions)
+    theta2: FloatArray
+    e2: ComplexArray
+    e3: ComplexArray
+    e4: ComplexArray
+    closes: BoolArray
+
+    @classmethod
+    def of(cls, target: PathTarget, batch: Batch) -> Loop:
+        """Close the loop of every linkage at every target."""
+        if target.wanted.rotatability is Rotatability.ANY:
+            lengths, by_lengths = _any_lengths(batch)
+        else:
+            lengths, by_lengths = _full_crank_lengths(batch, target.wanted.rotatability_margin)
+        r2, r3, r4 = lengths
+        theta2 = _driver_angles(target, batch)
+        e2 = np.exp(1j * theta2)
+        diagonal = 1 - r2[:, None] * e2
+        s = np.abs(diagonal)
+        along = (s**2 + (r3**2 - r4**2)[:, None]) / (2 * s)
+        beside2 = r3[:, None] ** 2 - along**2
+        closes = (beside2 > 1e-12 * r3[:, None] ** 2).all(axis=1)
+        beside = batch.assembly * np.sqrt(np.where(beside2 > 0, beside2, 1.0))
+        coupler = (along + 1j * beside) * diagonal / s
+        output = r2[:, None] * e2 + coupler - 1
+        return cls(r2, r3, r4, by_lengths, theta2, e2, coupler / r3[:, None], output / r4[:, None], closes)
+
+
+def _full_crank_lengths(
+    batch: Batch, margin: float
+) -> tuple[tuple[FloatArray, FloatArray, FloatArray], FloatArray]:
+    """r2, r3, r4 with r1 = 1: all full cranks with the margin, from three free numbers each.
+
+    r2 = sigmoid(a) or its inverse; with k = (1 + margin) / (1 - margin) and S the sum of the lengths
+    r3 + r4 = k (1 + r2) + exp(b) and r3 - r4 = (|1 - r2| - margin S) tanh(c). Where r2 is so near to 1
+    that the margin cannot be had, r3 = r4.
+    """
+    a, b, c = batch.unknowns[:, :3].T
+    sigmoid = 1 / (1 + np.exp(-a))
+    r2 = np.where(batch.longer_driver, 1 / sigmoid, sigmoid)
+    dr2 = np.where(batch.longer_driver, -(1 - sigmoid) / sigmoid, sigmoid * (1 - sigmoid))
+    k, excess, tanh = (1 + margin) / (1 - margin), np.exp(b), np.tanh(c)
+    total = k * (1 + r2) + excess
+    room = np.abs(1 - r2) - margin * (1 + r2 + total)
+    has_room = room > 0
+    room = np.where(has_room, room, 0.0)
+    total_by = np.stack([k * dr2, excess, np.zeros_like(a)], axis=-1)
+    room_by = np.stack([-np.sign(1 - r2) * dr2, *np.zeros((2, len(a)))], axis=-1)
+    room_by -= margin * (total_by + np.stack([dr2, *np.zeros((2, len(a)))], axis=-1))
+    difference, difference_by = room * tanh, room_by * (has_room * tanh)[:, None]
+    difference_by[:, 2] = room * (1 - tanh**2)
+    r2_by = np.stack([dr2, *np.zeros((2, len(a)))], axis=-1)
+    derivative = np.stack([r2_by, (total_by + difference_by) / 2, (total_by - difference_by) / 2], axis=1)
+    return (r2, (total + difference) / 2, (total - difference) / 2), derivative
+
+
+def _any_lengths(batch: Batch) -> tuple[tuple[FloatArray, FloatArray, FloatArray], FloatArray]:
+    lengths = np.exp(batch.unknowns[:, :3])
+    r2, r3, r4 = lengths.T
+    return (r2, r3, r4), lengths[:, :, None] * np.eye(3)
+
+
+def _driver_angles(target: PathTarget, batch: Batch) -> FloatArray:
+    """Driver angles (n, N)."""
+    unknowns, sense = batch.unknowns, batch.direction[:, None]
+    if target.timing is not None:
+        return unknowns[:, 3:4] + sense * target.timing
+    if target.jumbled:
+        return unknowns[:, 3:]
+    _, gone = shares_of_turn(unknowns[:, 4:])
+    return unknowns[:, 3:4] + TURN * sense * gone
+
+
+def by_unknowns(target: PathTarget, batch: Batch) -> FloatArray:
+    """Derivative of the driver angles, (n, N, M)."""
+    n = len(target.points)
+    slope = np.zeros((len(batch), n, batch.unknowns.shape[1]))
+    if target.jumbled:
+        slope[:, :, 3:] = np.eye(n)
+        return slope
+    slope[:, :, 3] = 1
+    if target.timing is None:
+        share, gone = shares_of_turn(batch.unknowns[:, 4:])
+        before = np.tril(np.ones((n, n)), -1)
+        np.subtract(before, gone[:, :, None], out=slope[:, :, 4:])
+        slope[:, :, 4:] *= (TURN * batch.direction[:, None] * share)[:, None]
+    return slope
+
+
+def shares_of_turn(log_gaps: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """What gaps between N driver angles, and the rest, have of a turn; and what is gone at each; (n, N)."""
+    share = np.exp(log_gaps - log_gaps.max(axis=1, keepdims=True))
+    share /= share.sum(axis=1, keepdims=True)
+    return share, np.concatenate([np.zeros((len(share), 1)), np.cumsum(share[:, :-1], axis=1)], axis=1)
+
+
+def body_turns(target: PathTarget, loop: Loop) -> tuple[FloatArray, FloatArray]:
+    """Angles of the body missed, weighted (n, N), and the best angle from the coupler in the loop (n,).
+
+    None are there for a path: (n, 0). How the body sits on the coupler is solved for exactly.
+    """
+    if target.turns is None or target.turn_weights is None:
+        return np.zeros((len(loop.r2), 0)), np.zeros(len(loop.r2))
+    weights = target.turn_weights
+    off = np.exp(1j * target.turns) * loop.e3.conj()
+    middle = np.angle((weights * off).sum(axis=1))
+    missed = np.angle(off * np.exp(-1j * middle)[:, None])
+    mean = (weights * missed).sum(axis=1) / weights.sum()
+    return np.sqrt(weights) * (missed - mean[:, None]), middle + mean
+
+
+def by_body_turns(target: PathTarget, by_theta3: FloatArray) -> FloatArray:
+    """Derivative of `body_turns` by the unknowns, (n, N, M) or (n, 0, M)."""
+    if target.turns is None or target.turn_weights is None:
+        return by_theta3[:, :0]
+    weights = target.turn_weights
+    mean = np.einsum("i,sim->sm", weights, by_theta3) / weights.sum()
+    slope: FloatArray = np.sqrt(weights)[:, None] * (mean[:, None] - by_theta3)
+    return slope
+
+
+def by_theta3_of(loop: Loop, by_theta2: FloatArray) -> FloatArray:
+    """Derivative of theta3 by the unknowns, (n, N, M), from the loop equation projected on O4B."""
+    driver, coupler = loop.e2 * loop.e4.conj(), loop.e3 * loop.e4.conj()
+    below = loop.r3[:, None] * coupler.imag
+    slope = (-(loop.r2[:, None] * driver.imag) / below)[..., None] * by_theta2
+    by_r2, by_r3, by_r4 = (loop.by_lengths[:, None, i] for i in range(3))
+    lengths = driver.real[..., None] * by_r2 + coupler.real[..., None] * by_r3 - by_r4
+    slope[:, :, :3] += lengths / below[..., None]
+    return slope

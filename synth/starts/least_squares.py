@@ -1,0 +1,248 @@
+"""Starts where the squared errors are made least.
+
+Linkages that are feasible by construction are placed best on the targets. Where the best of them keep
+every limit, that is all there is to it. Where they do not, their places are unknowns, too, and what
+oversteps a limit counts as an error, more so from stage to stage: so the search ends where the
+programme does, whichever limits are active.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from grashof.problems import TransmissionOver
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.screening import GROUPS, Screened
+from grashof.synth.programme.start import Round, Start
+from grashof.synth.starts.closed_loop import Batch, PathTarget, joined
+from grashof.synth.starts.loop_search import (
+    PLACES,
+    Placed,
+    draw,
+    fitting,
+    improve,
+    place,
+    standing,
+    with_places,
+    within_limits,
+)
+from grashof.synth.starts.path_screening import entries_of, judged, path_target
+from grashof.synth.starts.thinning import refined, thinned
+
+DRAWS, TIMED_DRAWS = 2000, 600
+ASTRAY = 0.3  # share of them on which P makes a detour between two targets
+FEW_TARGETS = 40  # of a longer task decide which finds are worth the rest
+FOUND = 1e-5  # sizes: so small an error is none
+# Where no limit binds: how many of the best go on for how many steps.
+FREE_STAGES, TIMED_STAGES = ((200, 6), (60, 10), (20, 50)), ((60, 6), (20, 60))
+MOST_CURVES = 6  # starts of such a round
+# Times the least error: what promises more is not solved; where the search may shift the ends of the
+# motion, its promise is a little off.
+NEAR_BEST, NEAR_BEST_SHIFTED = 1.6, 2.0
+SAME_ERROR = 1e-3  # share: a feasible find so near to the best one says that no limit binds
+SAME_CURVE = 0.1  # of the rms error: two finds closer at every target are one
+# Where limits bind: how many of the best distinct go on, for how many steps, at what weight of the
+# limits (in sizes).
+STAGES = ((400, 8, 0.3), (200, 10, 1.0), (80, 20, 5.0), (40, 40, 5.0))
+LONG, LONG_STEPS = 24, 20  # of a thinned task so many are improved on all targets
+COPY = 0.01  # sizes: two linkages closer at three targets are one
+# Starts of a round: the best, some of the others, and some of before the limits bear fully; fewer on
+# tasks of more targets than `AMPLE`, whose solves take longer.
+BEST, OTHERS, EARLY = 12, 4, 8
+AMPLE, FEWEST = 24, 0.25
+UNLIMITED = ("order", "same_branch", "keep_out", "constraints")  # no residual of the search stands for them
+
+
+def rounds(scaled: ScaledProblem, rng: np.random.Generator, size: int = 1) -> Iterator[Round]:
+    """Rounds of starts without end.
+
+    Parameters
+    ----------
+    scaled : ScaledProblem
+    rng : numpy.random.Generator
+    size : int
+        How many times the usual number of linkages to draw, and of starts to take.
+
+    Yields
+    ------
+    Round
+    """
+    target = path_target(scaled)
+    some, index = thinned(target, FEW_TARGETS)
+    while True:
+        drawn = draw(some, size * (DRAWS if target.timing is None else TIMED_DRAWS), rng, ASTRAY)
+        best = _best_fitting(some, drawn, size)
+        free = _free_round(scaled, _on_all_targets(target, index, best), size)
+        yield free or _limited_round(scaled, rng, drawn, best, size)
+
+
+def _best_fitting(some: PathTarget, drawn: Batch, size: int) -> Batch:
+    """Of some linkages those that fit best, improved, whether they keep the limits or not."""
+    batch = drawn
+    with np.errstate(all="ignore"):
+        error = place(some, batch).error
+        for keep, steps in FREE_STAGES if some.timing is None else TIMED_STAGES:
+            best = np.argsort(error, kind="stable")[: size * keep]
+            batch, error = improve(fitting(some), batch[best], steps, 0.0)
+        return batch[np.argsort(error, kind="stable")]
+
+
+def _on_all_targets(target: PathTarget, index: IntArray, batch: Batch) -> Batch:
+    """Linkages that know the targets `index` with driver angles at every one, improved there."""
+    if len(index) == len(target.points):
+        return batch
+    with np.errstate(all="ignore"):
+        return improve(fitting(target), refined(target, index, batch), LONG_STEPS, 0.0)[0]
+
+
+def _free_round(scaled: ScaledProblem, batch: Batch, size: int) -> Round | None:
+    """Starts from linkages that fit best; None where the best of them break a limit."""
+    target = path_target(scaled)
+    with np.errstate(all="ignore"):
+        placed = place(target, batch)
+    sound = np.isfinite(placed.error)
+    finds = judged(scaled, target, entries_of(placed, sound), batch.direction[sound])
+    least = finds.error.min(initial=np.inf)
+    useful = max(NEAR_BEST * least, scaled.of_use)
+    feasible = finds[finds.feasible & (finds.error <= useful)]
+    if not len(feasible) or feasible.error.min() > max(least * (1 + SAME_ERROR), FOUND):
+        return None
+    order = np.argsort(feasible.error, kind="stable")
+    starts = [_start(scaled, feasible, feasible.error, int(k)) for k in order]
+    counts = {"feasible linkages": len(feasible)}
+    most = size * MOST_CURVES * (2 if scaled.of_use else 1)
+    return Round(_other_curves(starts, most), counts, size, NEAR_BEST, free=True)
+
+
+def _other_curves(starts: list[Start], most: int) -> list[Start]:
+    """Starts that pass the targets by another way than all before.
+
+    Cognates pass them by the same way; they are added to every design afterwards.
+    """
+    chosen, curves = list[Start](), list[ComplexArray]()
+    for start in starts:
+        order = np.argsort(start.visit)
+        p = start.track[2][order]
+        near = SAME_CURVE * max(start.promise, FOUND)
+        if len(chosen) < most and all(np.abs(p - other).max() > near for other in curves):
+            chosen.append(start)
+            curves.append(p)
+    return chosen
+
+
+@dataclass(frozen=True, slots=True)
+class _Stage:
+    """Linkages of the search, best first, and their errors with what limits add (n,), sizes."""
+
+    finds: Screened
+    error: FloatArray
+
+
+def _limited_round(
+    scaled: ScaledProblem, rng: np.random.Generator, drawn: Batch, best: Batch, size: int
+) -> Round:
+    """Starts of the search under every limit, from drawn linkages and those that fit best."""
+    before_limits, found = _search(scaled, drawn, best, size)
+    late = _ranked(scaled, found)
+    share = size * min(1.0, max(AMPLE / len(scaled.targets), FEWEST))
+    first, others, before = (round(share * count) for count in (BEST, OTHERS, EARLY))
+    chosen = [_start(scaled, late.finds, late.error, k) for k in range(min(first, len(late.error)))]
+    rest = np.arange(len(chosen), len(late.error))
+    chosen += [_start(scaled, late.finds, late.error, k) for k in _some(rng, rest, others)]
+    prune = NEAR_BEST
+    if _ends_bind(scaled):  # the search may shift the ends of the motion, the programme may not
+        early = _ranked(scaled, before_limits)
+        some = _some(rng, np.arange(len(early.error)), before)
+        chosen += [replace(_start(scaled, early.finds, early.error, k), promise=0.0) for k in some]
+        prune = NEAR_BEST_SHIFTED
+    return Round(chosen, {"feasible linkages": int(late.finds.feasible.sum())}, size, prune)
+
+
+def _search(scaled: ScaledProblem, drawn: Batch, best: Batch, size: int) -> tuple[Batch, Batch]:
+    """Linkages after the first stage, and after the last one."""
+    target = path_target(scaled)
+    some, index = thinned(target, FEW_TARGETS)
+    with np.errstate(all="ignore"):
+        batch = early = with_places(some, drawn)
+        for number, (keep, steps, weight) in enumerate(STAGES):
+            model = within_limits(some, weight)
+            if number == len(STAGES) - 2:
+                batch = joined(batch, with_places(some, best))
+            error, _, _ = model(batch)
+            batch = _best_distinct(some, batch, error, size * keep, drawn=number == 0)
+            batch, error = improve(model, batch, steps, 0.0)
+            if number == 0:
+                early = batch
+        batch = _best_distinct(some, batch, error, len(batch), drawn=False)
+        if len(index) < len(target.points):
+            batch = _with_places_refined(target, index, batch[: size * LONG])
+            batch, _ = improve(within_limits(target, STAGES[-1][2]), batch, LONG_STEPS, 0.0)
+            early = _with_places_refined(target, index, early)
+        return early, batch
+
+
+def _with_places_refined(target: PathTarget, index: IntArray, batch: Batch) -> Batch:
+    """Linkages that know the targets `index` with driver angles at every one, where they stand."""
+    places = batch.unknowns[:, -PLACES:]
+    inner = refined(target, index, replace(batch, unknowns=batch.unknowns[:, :-PLACES]))
+    return replace(inner, unknowns=np.concatenate([inner.unknowns, places], axis=1))
+
+
+def _ranked(scaled: ScaledProblem, batch: Batch) -> _Stage:
+    target = path_target(scaled)
+    placed = standing(target, batch)
+    error, _, _ = within_limits(target, STAGES[-1][2])(batch)
+    sound = np.flatnonzero(np.isfinite(error) & np.isfinite(placed.error))
+    finds = judged(scaled, target, entries_of(placed, sound), batch.direction[sound])
+    unlimited = [GROUPS.index(name) for name in UNLIMITED]
+    merit = np.sqrt(error[sound] / len(scaled.targets)) + finds.violations[:, unlimited].sum(axis=1)
+    order = np.argsort(merit, kind="stable")
+    return _Stage(finds[order], merit[order])
+
+
+def _best_distinct(target: PathTarget, batch: Batch, error: FloatArray, keep: int, *, drawn: bool) -> Batch:
+    """At most `keep` linkages, least error first; of copies the better one. Draws have no copies."""
+    order = np.argsort(error, kind="stable")
+    order = order[np.isfinite(error[order])]
+    if not drawn:
+        order = order[_distinct(standing(target, batch[order]))]
+    return batch[order[:keep]]
+
+
+def _distinct(placed: Placed) -> IntArray:
+    """Which linkages, best first, no better one is a copy of; by A, B, P at three targets."""
+    count = placed.a.shape[1]
+    at = [0, count // 2, count - 1]
+    marks = np.concatenate([placed.a[:, at], placed.b[:, at], placed.p[:, at]], axis=1)
+    numbers = np.concatenate([marks.real, marks.imag], axis=1).astype(np.float32)
+    left: BoolArray = np.ones(len(numbers), dtype=bool)
+    picked = []
+    for k in range(len(numbers)):
+        if left[k]:
+            picked.append(k)
+            left[left] = np.abs(numbers[left] - numbers[k]).max(axis=1) > COPY
+    return np.array(picked, dtype=np.int64)
+
+
+def _start(scaled: ScaledProblem, finds: Screened, error: FloatArray, index: int) -> Start:
+    start = Start.of_find(finds, index, scaled.problem.objective)
+    met = bool(finds.feasible[index]) and finds.error[index] < FOUND
+    return replace(start, promise=float(error[index]), settled=met)
+
+
+def _some(rng: np.random.Generator, every: IntArray, count: int) -> list[int]:
+    """A few at random, in their order."""
+    picked = rng.permutation(len(every))[:count]
+    chosen: list[int] = every[np.sort(picked)].tolist()
+    return chosen
+
+
+def _ends_bind(scaled: ScaledProblem) -> bool:
+    """Whether a limit depends on where the driver is at single targets."""
+    wanted = scaled.wanted
+    over_task = wanted.transmission_over is TransmissionOver.TASK and not scaled.closed
+    return bool(over_task and wanted.transmission_min_deg > 0)

@@ -1,0 +1,313 @@
+"""Search for linkages whose coupler curve comes near given points: many at once, in NumPy.
+
+A linkage that is feasible by construction is described by its proportions and its driver angles at
+the points; where it stands, how large it is, how it is turned and where its coupler point lies is
+then linear: P_i = z0 + z1 exp(i theta2_i) + z2 exp(i theta3_i) with three complex numbers, solved
+exactly (variable projection, Golub & Pereyra 1973, with Kaufman's Jacobian). Levenberg-Marquardt
+improves the proportions and angles of a whole batch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+import numpy as np
+
+from grashof.problems import Rotatability
+from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.synth.starts.closed_loop import (
+    Batch,
+    Loop,
+    PathTarget,
+    body_turns,
+    by_body_turns,
+    by_theta3_of,
+    by_unknowns,
+)
+from grashof.synth.starts.limit_residuals import Placement, oversteps
+
+# So many steps on end that take less than this share of its error away end the work on a linkage.
+LOOK, STALL = 5, 1e-3
+HEAVY = 1e4  # damping under which no step is worth trying
+DETOUR = (0.1, 1.5)  # driver rotation of a detour, as a share of all others
+PULL = 0.03  # sizes of error that overstepping a limit by one unit counts as, where fit comes first
+
+# Cost (n,), residuals (n, R), and their derivative by the unknowns (n, R, M), of a batch.
+Model: TypeAlias = Callable[["Batch"], tuple[FloatArray, FloatArray, FloatArray]]
+
+
+@dataclass(frozen=True, slots=True)
+class Placed:
+    """Linkages of a batch where they fit the points best, in the frame of the points.
+
+    Parameters
+    ----------
+    error : ndarray, shape (n,)
+        Weighted sum of squared distances, sizes squared; infinite where the loop does not close.
+    o2, o4 : ndarray of complex, shape (n,)
+    a, b, p : ndarray of complex, shape (n, N)
+    theta2 : ndarray, shape (n, N), rad
+    body_angle : ndarray, shape (n,), rad
+        From the coupler to the body; zero for a path.
+    """
+
+    error: FloatArray
+    o2: ComplexArray
+    o4: ComplexArray
+    a: ComplexArray
+    b: ComplexArray
+    p: ComplexArray
+    theta2: FloatArray
+    body_angle: FloatArray
+
+
+def draw(target: PathTarget, count: int, rng: np.random.Generator, astray: float = 0.0) -> Batch:
+    """Random linkages, feasible by construction; gaps between driver angles follow the points.
+
+    On a share of them, `astray`, P makes a detour between two targets.
+    """
+    n = len(target.points)
+    proportions = rng.normal(size=(count, 3)) * (1.2, 1.5, 1.0) - (0.0, 1.0, 0.0)
+    rotatability = target.wanted.rotatability
+    if rotatability is Rotatability.ANY:
+        proportions = rng.normal(0.0, 0.7, (count, 3))
+    columns = [proportions, rng.uniform(-np.pi, np.pi, (count, 1))]
+    if target.timing is None and target.wanted.order:
+        steps = target.steps
+        gaps = np.log(steps / steps.sum()) * rng.uniform(0.3, 1, (count, 1))
+        gaps += rng.normal(0, 0.4, (count, n - 1))
+        if astray:
+            rows, at = np.flatnonzero(rng.random(count) < astray), rng.integers(n - 1, size=count)
+            share = rng.uniform(*DETOUR, count)
+            gaps[rows, at[rows]] = np.log(share * np.exp(gaps).sum(axis=1))[rows]
+        gaps -= np.log(np.exp(gaps).sum(axis=1, keepdims=True))
+        low = 0.3 if rotatability is Rotatability.ANY else 0.03
+        columns += [gaps, np.log(rng.uniform(low, 4, (count, 1)))]
+    elif target.timing is None:
+        columns.append(rng.uniform(-np.pi, np.pi, (count, n - 1)))
+    longer = {Rotatability.CRANK_ROCKER: 0.0, Rotatability.DOUBLE_CRANK: 1.0}.get(rotatability, 0.4)
+    signs = rng.choice([-1.0, 1.0], (count, 1 if target.wanted.same_branch else n))
+    return Batch(
+        unknowns=np.concatenate(columns, axis=1),
+        longer_driver=rng.random(count) < longer,
+        assembly=np.broadcast_to(signs, (count, n)),
+        direction=rng.choice([-1.0, 1.0], count),
+    )
+
+
+def place(target: PathTarget, batch: Batch) -> Placed:
+    """Where the linkages of a batch fit the points best."""
+    loop = Loop.of(target, batch)
+    z, _, _, error = _project(target, loop)
+    return _standing(target, loop, z, error)
+
+
+def _standing(target: PathTarget, loop: Loop, z: ComplexArray, error: FloatArray) -> Placed:
+    """Where linkages stand with given z0, z1, z2 (n, 3); `error` is that of the points alone."""
+    z0, z1, z2 = z.T
+    ground = z1 / loop.r2
+    o4 = z0 + ground
+    turned, in_loop = body_turns(target, loop)
+    return Placed(
+        error=error + (turned**2).sum(axis=1),
+        o2=z0,
+        o4=o4,
+        a=z0[:, None] + z1[:, None] * loop.e2,
+        b=o4[:, None] + (ground * loop.r4)[:, None] * loop.e4,
+        p=z0[:, None] + z1[:, None] * loop.e2 + z2[:, None] * loop.e3,
+        theta2=loop.theta2 + np.angle(z1)[:, None],
+        body_angle=np.zeros(len(z0)) if target.turns is None else in_loop - np.angle(z1),
+    )
+
+
+def improve(
+    model: Model, batch: Batch, steps: int, tolerance: float, until: int = 1
+) -> tuple[Batch, FloatArray]:
+    """Levenberg-Marquardt on every linkage of a batch.
+
+    Parameters
+    ----------
+    model : callable
+        What is made small: see `fitting` and `within_limits`.
+    batch : Batch
+    steps : int
+        At most.
+    tolerance : float, sizes squared
+        Stop as soon as `until` linkages have no greater error.
+
+    Returns
+    -------
+    batch : Batch
+    error : ndarray, shape (n,), sizes squared
+    """
+    result = replace(batch, unknowns=batch.unknowns.copy())
+    error, residual, jacobian = model(batch)
+    damping, marked, least = np.full(len(batch), 1e-2), error, error.copy()
+    rows = np.arange(len(batch))
+    for number in range(1, steps + 1):
+        tried = replace(batch, unknowns=batch.unknowns + _step(residual, jacobian, damping))
+        new_error, new_residual, new_jacobian = model(tried)
+        better = new_error < error
+        batch = replace(batch, unknowns=np.where(better[:, None], tried.unknowns, batch.unknowns))
+        error = np.where(better, new_error, error)
+        residual = np.where(better[:, None], new_residual, residual)
+        jacobian = np.where(better[:, None, None], new_jacobian, jacobian)
+        damping = np.clip(np.where(better, damping * 0.3, damping * 5), 1e-14, 1e6)
+        result.unknowns[rows], least[rows] = batch.unknowns, error
+        if np.count_nonzero(least <= tolerance) >= until:
+            break
+        if number % LOOK == 0:
+            untried = (error == marked) & (damping < HEAVY)  # all too far: shorter steps may do
+            going = (error < (1 - STALL) * marked) | untried
+            if not going.any():
+                break
+            rows, batch, damping, marked = rows[going], batch[going], damping[going], error[going]
+            error, residual, jacobian = error[going], residual[going], jacobian[going]
+    return result, least
+
+
+def _step(residual: FloatArray, jacobian: FloatArray, damping: FloatArray) -> FloatArray:
+    """Damped Gauss-Newton step of every linkage, (n, M); none where the numbers are not finite."""
+    transposed = np.swapaxes(jacobian, 1, 2)
+    normal, slope = transposed @ jacobian, (transposed @ residual[..., None])[..., 0]
+    one = np.eye(normal.shape[1])
+    diagonal = np.einsum("sii->si", normal)
+    ridge = damping[:, None] * (diagonal + 1e-12 * diagonal.max(axis=1, keepdims=True) + 1e-300)
+    normal = normal + ridge[..., None] * one
+    sound = np.isfinite(normal).all(axis=(1, 2)) & np.isfinite(slope).all(axis=1)
+    normal[~sound], slope[~sound] = one, 0.0
+    step: FloatArray = np.clip(-np.linalg.solve(normal, slope[..., None])[..., 0], -1.5, 1.5)
+    return step
+
+
+def _project(target: PathTarget, loop: Loop) -> tuple[ComplexArray, ComplexArray, ComplexArray, FloatArray]:
+    """Best z0, z1, z2 (n, 3), the QR factors of what they span (n, N, 3) and (n, 3, 3), and the error."""
+    root = np.sqrt(target.weights)
+    basis = np.stack([np.ones_like(loop.e2), loop.e2, loop.e3], axis=-1) * root[:, None]
+    q, r = np.linalg.qr(np.where(loop.closes[:, None, None], basis, 0.0))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.swapaxes(q.conj(), 1, 2) @ (target.points * root)
+        z = _back_substituted(r, share)
+        residual = target.points * root - (q @ share[..., None])[..., 0]
+        error = (np.abs(residual) ** 2).sum(axis=1)
+    sound = loop.closes & np.isfinite(error) & np.isfinite(z).all(axis=1)
+    return z, q, r, np.where(sound, error, np.inf)
+
+
+def _back_substituted(r: ComplexArray, right: ComplexArray) -> ComplexArray:
+    """Solution of r x = right for upper triangular r (n, 3, 3); right (n, 3) or (n, 3, M)."""
+    r = r if right.ndim == 2 else r[..., None]
+    z2 = right[:, 2] / r[:, 2, 2]
+    z1 = (right[:, 1] - r[:, 1, 2] * z2) / r[:, 1, 1]
+    z0 = (right[:, 0] - r[:, 0, 1] * z1 - r[:, 0, 2] * z2) / r[:, 0, 0]
+    return np.stack([z0, z1, z2], axis=1)
+
+
+def fitting(target: PathTarget) -> Model:
+    """The error of linkages that are placed best, with a light pull towards the limits."""
+
+    def model(batch: Batch) -> tuple[FloatArray, FloatArray, FloatArray]:
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            loop = Loop.of(target, batch)
+            z, q, r, error = _project(target, loop)
+            by_theta2 = by_unknowns(target, batch)
+            by_theta3 = by_theta3_of(loop, by_theta2)
+            residual, slope = _missed(target, loop, z, by_theta2, by_theta3)
+            share = np.swapaxes(q.conj(), 1, 2) @ slope
+            slope -= q @ share
+            at = Placement(loop, by_theta2, by_theta3, z, -_back_substituted(r, share))
+            return _joined(target, at, residual, slope, PULL, error)
+
+    return model
+
+
+def within_limits(target: PathTarget, weight: float) -> Model:
+    """The error under limits, for batches with their places among the unknowns (see `with_places`).
+
+    Parameters
+    ----------
+    target : PathTarget
+    weight : float, sizes
+        Error that overstepping a limit by one unit counts as.
+    """
+
+    def model(batch: Batch) -> tuple[FloatArray, FloatArray, FloatArray]:
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            loop, z = _loop_and_places(target, batch)
+            inner = replace(batch, unknowns=batch.unknowns[:, :-PLACES])
+            n, width = batch.unknowns.shape
+            by_theta2 = np.zeros((*loop.theta2.shape, width))
+            by_theta2[..., :-PLACES] = by_unknowns(target, inner)
+            by_theta3 = by_theta3_of(loop, by_theta2)
+            by_z = np.zeros((n, 3, width), dtype=np.complex128)
+            for k in range(3):
+                by_z[:, k, width - PLACES + 2 * k], by_z[:, k, width - PLACES + 2 * k + 1] = 1, 1j
+            residual, slope = _missed(target, loop, z, by_theta2, by_theta3)
+            root = np.sqrt(target.weights)
+            for k, spanned in enumerate((np.ones_like(loop.e2), loop.e2, loop.e3)):
+                slope[..., width - PLACES + 2 * k] = root * spanned
+                slope[..., width - PLACES + 2 * k + 1] = 1j * root * spanned
+            error = np.where(loop.closes, (np.abs(residual) ** 2).sum(axis=1), np.inf)
+            return _joined(
+                target, Placement(loop, by_theta2, by_theta3, z, by_z), residual, slope, weight, error
+            )
+
+    return model
+
+
+PLACES = 6  # unknowns that place a linkage: real and imaginary parts of z0, z1, z2
+
+
+def with_places(target: PathTarget, batch: Batch) -> Batch:
+    """A batch with z0, z1, z2 as six more unknowns, where the linkages fit the points best."""
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        z, _, _, error = _project(target, Loop.of(target, batch))
+    sound = np.isfinite(error)
+    parts = np.stack([z.real, z.imag], axis=-1).reshape(len(batch), PLACES)
+    return replace(batch, unknowns=np.concatenate([batch.unknowns, parts], axis=1))[sound]
+
+
+def standing(target: PathTarget, batch: Batch) -> Placed:
+    """Where the linkages of a batch with places stand."""
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        loop, z = _loop_and_places(target, batch)
+        fit = z[:, :1] + z[:, 1:2] * loop.e2 + z[:, 2:] * loop.e3
+        error = (target.weights * np.abs(target.points - fit) ** 2).sum(axis=1)
+        return _standing(target, loop, z, np.where(loop.closes, error, np.inf))
+
+
+def _loop_and_places(target: PathTarget, batch: Batch) -> tuple[Loop, ComplexArray]:
+    loop = Loop.of(target, replace(batch, unknowns=batch.unknowns[:, :-PLACES]))
+    parts = batch.unknowns[:, -PLACES:].reshape(len(batch), 3, 2)
+    return loop, parts[..., 0] + 1j * parts[..., 1]
+
+
+def _missed(
+    target: PathTarget, loop: Loop, z: ComplexArray, by_theta2: FloatArray, by_theta3: FloatArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """From P to the points, weighted (n, N), and the derivative of P with z held (n, N, M)."""
+    root = np.sqrt(target.weights)
+    turned2, turned3 = z[:, 1:2] * loop.e2, z[:, 2:] * loop.e3
+    residual = (target.points - z[:, :1] - turned2 - turned3) * root
+    slope = (1j * turned2)[..., None] * by_theta2 + (1j * turned3)[..., None] * by_theta3
+    return residual, slope * root[:, None]
+
+
+def _joined(
+    target: PathTarget,
+    at: Placement,
+    residual: ComplexArray,
+    slope: ComplexArray,
+    weight: float,
+    error: FloatArray,
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Points, turns of the body and limits as one model; `slope` is the derivative of P."""
+    over, by_over = oversteps(target, at)
+    turned, _ = body_turns(target, at.loop)
+    both = np.concatenate([residual.real, residual.imag, turned, weight * over], axis=1)
+    by_turned = by_body_turns(target, at.by_theta3)
+    jacobian = np.concatenate([-slope.real, -slope.imag, by_turned, weight * by_over], axis=1)
+    cost: FloatArray = error + (turned**2).sum(axis=1) + weight**2 * (over**2).sum(axis=1)
+    return cost, both, jacobian

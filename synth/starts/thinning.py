@@ -1,0 +1,68 @@
+"""Long paths searched by some of their points first."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from grashof.problems.values.arrays import IntArray
+from grashof.synth.starts.closed_loop import Batch, PathTarget, shares_of_turn
+
+SMALLEST = 1e-6  # share of a turn: gaps get no smaller
+
+
+def thinned(target: PathTarget, most: int) -> tuple[PathTarget, IntArray]:
+    """At most `most` points of a path, evenly picked, and which; the first and the last are kept.
+
+    Parameters
+    ----------
+    target : PathTarget
+    most : int
+
+    Returns
+    -------
+    PathTarget
+    index : ndarray of int
+        Of the points kept.
+    """
+    count = len(target.points)
+    index = np.arange(count)
+    if count <= most or (target.timing is None and not target.wanted.order):
+        return target, index
+    index = np.unique(np.round(np.linspace(0, count - 1, most)).astype(np.int64))
+    parts = {
+        name: getattr(target, name)[index]
+        for name in ("points", "weights", "timing", "turns", "turn_weights")
+        if getattr(target, name) is not None
+    }
+    return replace(target, **parts), index
+
+
+def refined(target: PathTarget, index: IntArray, batch: Batch) -> Batch:
+    """Linkages of a thinned path with driver angles at every point, in between by the length of the path.
+
+    Parameters
+    ----------
+    target : PathTarget
+        With all points.
+    index : ndarray of int
+        Of the points that `batch` knows.
+    batch : Batch
+
+    Returns
+    -------
+    Batch
+    """
+    count = len(target.points)
+    if len(index) == count:
+        return batch
+    assembly = np.broadcast_to(batch.assembly[:, :1], (len(batch), count))
+    unknowns = batch.unknowns
+    if target.timing is None:
+        length = np.concatenate([[0.0], np.cumsum(target.steps)])
+        _, gone = shares_of_turn(unknowns[:, 4:])
+        every = np.stack([np.interp(length, length[index], row) for row in gone])
+        gaps = np.concatenate([np.diff(every, axis=1), 1 - every[:, -1:]], axis=1)
+        unknowns = np.concatenate([unknowns[:, :4], np.log(np.maximum(gaps, SMALLEST))], axis=1)
+    return replace(batch, unknowns=unknowns, assembly=assembly)

@@ -1,0 +1,1 @@
+"""What theory gives: dyads, cognates, all linkages through nine points."""

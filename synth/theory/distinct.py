@@ -1,0 +1,67 @@
+"""Which designs are distinct, and the best distinct ones of many."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from grashof.problems import FourBar
+from grashof.problems.values.arrays import FloatArray, IntArray
+
+# Share of the largest number of two designs by which they differ at least: 1 %, and a quarter more
+# because pivots are measured from the middle of the task, where the largest number is smaller.
+DISTINCT = 0.0125
+
+
+def signature(linkage: FourBar, origin: FloatArray | None = None) -> FloatArray:
+    """The numbers that tell designs apart: O2, O4, r2, r3, r4, u, v; shape (..., 9), length.
+
+    Pivots are measured from `origin`, shape (2,), where one is given: with the middle of the task
+    there, what is distinct does not depend on where the user's own origin lies.
+    """
+    lengths = np.stack([linkage.r2, linkage.r3, linkage.r4], axis=-1)
+    middle = np.zeros(2) if origin is None else origin
+    return np.concatenate([linkage.o2 - middle, linkage.o4 - middle, lengths, linkage.coupler_point], axis=-1)
+
+
+def apart(one: FloatArray, others: FloatArray) -> FloatArray:
+    """Largest difference between signatures as a share of their largest absolute value.
+
+    Parameters
+    ----------
+    one : ndarray, shape (..., 9)
+    others : ndarray, shape (n, 9)
+
+    Returns
+    -------
+    ndarray, shape (..., n)
+        Above `DISTINCT` for distinct designs.
+    """
+    one = one[..., None, :]
+    scale = np.maximum(np.abs(one).max(axis=-1), np.abs(others).max(axis=-1))
+    difference: FloatArray = np.abs(others - one).max(axis=-1) / scale
+    return difference
+
+
+def pick_apart(signatures: FloatArray, merit: FloatArray, least: float, most: int) -> IntArray:
+    """Indices of the best entries that are pairwise more than `least` apart, best first.
+
+    Parameters
+    ----------
+    signatures : ndarray, shape (n, 9)
+    merit : ndarray, shape (n,)
+        Greater is better.
+    least : float
+        See `apart`.
+    most : int
+        Stop after so many.
+
+    Returns
+    -------
+    ndarray of int, shape (k,)
+    """
+    left = np.argsort(-merit, kind="stable")
+    picked: list[int] = []
+    while left.size and len(picked) < most:
+        picked.append(int(left[0]))
+        left = left[apart(signatures[left[0]], signatures[left]) > least]
+    return np.array(picked, dtype=np.int64)

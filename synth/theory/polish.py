@@ -1,0 +1,140 @@
+"""Designs moved by the least amount that brings the coupler onto its targets: points, angles, or both."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
+
+STEPS = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Wish:
+    """What has to be met exactly.
+
+    Parameters
+    ----------
+    points : ndarray of complex, shape (N,), sizes
+    has_point : ndarray of bool, shape (N,)
+    turns : ndarray, shape (N,), rad
+        Angles of the body.
+    has_turn : ndarray of bool, shape (N,)
+    timed : bool
+        The driver angles move together.
+    """
+
+    points: ComplexArray
+    has_point: BoolArray
+    turns: FloatArray
+    has_turn: BoolArray
+    timed: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Polished:
+    """A design on its targets.
+
+    Parameters
+    ----------
+    points : ndarray of complex, shape (5,), sizes
+        O2, O4, and A, B, P at the first target.
+    theta2 : ndarray, shape (N,), rad
+    coupler : ndarray of complex, shape (N,), sizes
+        From A to B at each target.
+    body_angle : float, rad
+    error : float, sizes or rad
+        Greatest miss of a target; NaN where the loop does not close.
+    """
+
+    points: ComplexArray
+    theta2: FloatArray
+    coupler: ComplexArray
+    body_angle: float
+    error: float
+
+
+def polish_path(
+    points: ComplexArray, theta2: FloatArray, body_angle: float, assembly: FloatArray, wish: Wish
+) -> Polished:
+    """Newton's method for the targets, each step of least norm.
+
+    Parameters
+    ----------
+    points : ndarray of complex, shape (5,), sizes
+        O2, O4, and A, B, P at the first target.
+    theta2 : ndarray, shape (N,), rad
+        Driver angle at each target, the first one first.
+    body_angle : float, rad
+    assembly : ndarray, shape (N,)
+    wish : Wish
+
+    Returns
+    -------
+    Polished
+    """
+    o2, o4, a, b, p = points
+    arm = (p - a) * abs(b - a) / (b - a)
+    unknowns = np.concatenate([
+        [o2.real, o2.imag, o4.real, o4.imag, abs(a - o2), abs(b - a), abs(b - o4), arm.real, arm.imag],
+        [body_angle], theta2[:1] if wish.timed else theta2,
+    ])  # fmt: skip
+    gaps = theta2 - theta2[0]
+    for _ in range(STEPS):
+        _, residual, jacobian = _linearised(unknowns, gaps, assembly, wish)
+        if not (np.isfinite(residual).all() and np.isfinite(jacobian).all()):
+            break
+        unknowns = unknowns - np.linalg.lstsq(jacobian, residual, rcond=1e-12)[0]
+    (moved, coupler), residual, _ = _linearised(unknowns, gaps, assembly, wish)
+    theta2 = unknowns[10] + gaps if wish.timed else unknowns[10:]
+    return Polished(moved, theta2, coupler, float(unknowns[9]), float(np.abs(residual).max(initial=0.0)))
+
+
+def _linearised(
+    unknowns: FloatArray, gaps: FloatArray, assembly: FloatArray, wish: Wish
+) -> tuple[tuple[ComplexArray, ComplexArray], FloatArray, FloatArray]:
+    """Points at the first target, coupler at all; misses (M,), and their derivative (M, unknowns)."""
+    o2, o4 = complex(*unknowns[:2]), complex(*unknowns[2:4])
+    r2, r3, r4 = unknowns[4:7]
+    arm, body_angle = complex(*unknowns[7:9]), unknowns[9]
+    theta2 = unknowns[10] + gaps if wish.timed else unknowns[10:]
+    e2 = np.exp(1j * theta2)
+    a = o2 + r2 * e2
+    diagonal = o4 - a
+    s = np.abs(diagonal)
+    along = (s**2 + r3**2 - r4**2) / (2 * s)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        coupler = (along + 1j * assembly * np.sqrt(r3**2 - along**2)) * diagonal / s
+        e3, e4 = coupler / r3, (a + coupler - o4) / r4
+        p = a + arm * e3
+        below = r3 * (e3 * e4.conj()).imag
+
+        def turn(move: ComplexArray | complex) -> FloatArray:
+            # The loop O2-A-B-O4, projected on O4B, gives the turn of the coupler (move: of A - O4).
+            turned: FloatArray = (move * e4.conj()).real / below
+            return turned
+
+        by_r4 = -1 / below
+        turns = [turn(1), turn(1j), turn(-1), turn(-1j), turn(e2), turn(e3), by_r4, 0.0, 0.0, 0.0]
+        moves = [1, 1j, 0, 0, e2, 0, 0, e3, 1j * e3, 0]
+        turns.append(turn(1j * r2 * e2))
+        moves.append(1j * r2 * e2)
+        by_turn = np.stack([np.broadcast_to(column, s.shape) for column in turns], axis=1)
+        by_move = np.stack([np.broadcast_to(column, s.shape) for column in moves], axis=1)
+        by_point = by_move + 1j * (arm * e3)[:, None] * by_turn
+        by_turn[:, 9] = 1.0
+        if not wish.timed:
+            by_turn, by_point = (
+                np.concatenate([slope[:, :10], np.diag(slope[:, 10])], axis=1)
+                for slope in (by_turn, by_point)
+            )
+    off = (p - wish.points)[wish.has_point]
+    turned = np.angle(e3 * np.exp(1j * (body_angle - wish.turns)))[wish.has_turn]
+    slope = by_point[wish.has_point]
+    return (
+        (np.array([o2, o4, a[0], a[0] + coupler[0], p[0]]), coupler),
+        np.concatenate([off.real, off.imag, turned]),
+        np.concatenate([slope.real, slope.imag, by_turn[wish.has_turn]]),
+    )

@@ -1,0 +1,125 @@
+"""Which rotations and reflections map a task onto itself: what they make of a design does the task, too."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from grashof.problems import MotionTask, PathTask, Task
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+
+EVEN = 1e-3  # sizes, rad: targets that fall so near to others fall on them
+
+
+@dataclass(frozen=True, slots=True)
+class Symmetry:
+    """A rotation about the middle of a task, after a reflection in the x axis through it if `mirrored`.
+
+    Parameters
+    ----------
+    turn : complex
+        Of absolute value 1.
+    mirrored : bool
+    """
+
+    turn: complex
+    mirrored: bool
+
+    def of(self, signatures: FloatArray) -> FloatArray:
+        """What it makes of designs.
+
+        Parameters
+        ----------
+        signatures : ndarray, shape (k, 9), length
+            With pivots measured from the middle of the task, see `grashof.synth.theory.distinct.signature`.
+
+        Returns
+        -------
+        ndarray, shape (k, 9), length
+        """
+        made = np.array(signatures)
+        pivots = made[:, [0, 2]] + 1j * made[:, [1, 3]]
+        pivots = self.turn * (pivots.conj() if self.mirrored else pivots)
+        made[:, [0, 2]], made[:, [1, 3]] = pivots.real, pivots.imag
+        if self.mirrored:
+            made[:, 8] *= -1
+        return made
+
+
+def symmetries(task: Task) -> tuple[Symmetry, ...]:
+    """All that map the targets onto themselves, in their order or the reverse.
+
+    The first one moves nothing. A closed path may begin at another point. Angles of poses, driver
+    rotations and weights have to agree as well.
+
+    Examples
+    --------
+    >>> line = PathTask([[0, 0], [1, 0], [2, 0]])
+    >>> [(each.turn.real, each.mirrored) for each in symmetries(line)]
+    [(1.0, False), (1.0, True), (-1.0, False), (-1.0, True)]
+    """
+    places = (_once(task) - middle_of(task)) @ np.array([1, 1j])
+    orders = _orders(task, len(places))
+    found = [Symmetry(1 + 0j, False)]
+    for order in orders:
+        for mirrored in (False, True):
+            turn = _turn(places, order, mirrored, EVEN * task.size)
+            if turn is None or not _agrees(task, order, mirrored):
+                continue
+            if mirrored or abs(turn - 1) > EVEN:
+                found.append(Symmetry(turn, mirrored))
+    return tuple(found)
+
+
+def middle_of(task: Task) -> FloatArray:
+    """Mean of the target positions, shape (2,), length: it stays in its place under all symmetries."""
+    middle: FloatArray = np.nanmean(_once(task), axis=0)
+    return middle
+
+
+def _once(task: Task) -> FloatArray:
+    """Target positions, without a last point of a closed path that repeats the first; shape (n, 2)."""
+    places = task.positions
+    closed = isinstance(task, PathTask) and task.closed
+    again = closed and np.hypot(*(places[-1] - places[0])) <= EVEN * task.size
+    return places[:-1] if again else places
+
+
+def _orders(task: Task, count: int) -> IntArray:
+    """Orders in which the targets may be met, shape (k, count)."""
+    closed = isinstance(task, PathTask) and task.closed
+    forth = np.arange(count)
+    first = forth[:, None] if closed else np.zeros((1, 1), dtype=np.int64)
+    return np.concatenate([(first + forth) % count, (first - 1 - forth) % count])
+
+
+def _turn(places: ComplexArray, order: IntArray, mirrored: bool, least: float) -> complex | None:
+    """The rotation after which the targets lie on those of another order; None where there is none."""
+    image, there = (places.conj() if mirrored else places), places[order]
+    if not np.array_equal(np.isnan(image), np.isnan(there)):
+        return None
+    product = complex(np.nansum(there * image.conj()))
+    if not abs(product) > 0:
+        return None
+    turn = product / abs(product)
+    return turn if np.nanmax(np.abs(there - turn * image)) <= least else None
+
+
+def _agrees(task: Task, order: IntArray, mirrored: bool) -> bool:
+    """Whether angles and weights of poses, or the timing of points, are those of the targets fallen on."""
+    if isinstance(task, MotionTask):
+        angles, sense = task.angles, -1 if mirrored else 1
+        same: BoolArray = np.isnan(angles[order]) == np.isnan(angles)
+        even = _constant(angles[order] - sense * angles)
+        return even and bool(same.all()) and np.array_equal(task.weights[order], task.weights)
+    if task.timing is None:
+        return True
+    timing = task.timing[: len(order)]
+    return any(_constant(timing[order] - sense * timing) for sense in (1, -1))
+
+
+def _constant(angles: FloatArray) -> bool:
+    """Whether angles are all the same but for whole turns; free ones are."""
+    given = angles[~np.isnan(angles)]
+    return not given.size or bool(np.abs(np.exp(1j * (given - given[0])) - 1).max() <= EVEN)

@@ -1,0 +1,77 @@
+"""The coupler curve: derivatives against differences, tracks against the driver's ranges."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grashof.analysis import GrashofClass, driver_ranges, full_rotation, solve_position
+from grashof.analysis.curves.coupler_curve import coupler_curve, tracks
+from grashof.analysis.judge.planted import random_full_crank
+from grashof.problems import FourBar
+
+FourBars = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
+CLASSES = [kind for kind in GrashofClass if kind is not GrashofClass.CHANGE_POINT]
+
+
+@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("assembly", [1, -1])
+def test_derivatives_are_those_of_the_position(seed: int, assembly: int) -> None:
+    rng = np.random.default_rng(seed)
+    linkage = random_full_crank(rng)
+    theta2, h = rng.uniform(-3, 3, 20), 1e-4
+    p, rate, bend = coupler_curve(linkage, theta2, assembly)
+    before, here, after = (
+        solve_position(linkage, theta2 + step, assembly).p @ [1, 1j] for step in (-h, 0, h)
+    )
+    np.testing.assert_array_equal(p, here)
+    near_dead = np.abs(bend) > 50 * np.abs(rate).max()  # where differences are of no use
+    scale = np.abs(bend)[~near_dead].max()
+    np.testing.assert_allclose(((after - before) / (2 * h) - rate)[~near_dead], 0, atol=1e-3 * scale)
+    np.testing.assert_allclose(((after - 2 * here + before) / h**2 - bend)[~near_dead], 0, atol=1e-2 * scale)
+
+
+def test_derivatives_converge_as_the_square_of_the_step() -> None:
+    crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, coupler_point=(2, 1))
+    theta2 = np.linspace(0, 6, 13)
+    _, rate, bend = coupler_curve(crank_rocker, theta2)
+    misses = []
+    for h in (2e-3, 1e-3):
+        before, here, after = (coupler_curve(crank_rocker, theta2 + step)[0] for step in (-h, 0, h))
+        misses.append(
+            [
+                abs((after - before) / (2 * h) - rate).max(),
+                abs((after - 2 * here + before) / h**2 - bend).max(),
+            ]
+        )
+    np.testing.assert_allclose(np.divide(*misses), 4, rtol=1e-2)
+
+
+@pytest.mark.parametrize("kind", CLASSES)
+@settings(max_examples=15)
+@given(data=st.data())
+def test_tracks_cover_every_range_and_lie_on_the_curve(
+    four_bars: FourBars, kind: GrashofClass, data: st.DataObject
+) -> None:
+    linkage = data.draw(four_bars(kind))
+    ends = driver_ranges(linkage)
+    ends = ends[np.isfinite(ends[:, 0])]
+    own = tracks(linkage, 60, same_branch=True)
+    assert len(own) == len(ends)
+    for track, (low, high) in zip(own, ends, strict=True):
+        assert track.cyclic == full_rotation(linkage)
+        assert track.high[-1] - track.low[0] == pytest.approx(high - low)
+        np.testing.assert_array_equal(track.low[1:], track.high[:-1])
+        assert (track.high > track.low).all()
+        np.testing.assert_allclose(track.start[0], solve_position(linkage, track.low).p @ [1, 1j])
+        step = np.abs(track.end - track.start)[0]
+        assert step.max() < 2.5 * (step.sum() / 60)
+    (both,) = tracks(linkage, 60, same_branch=False)
+    assert sorted(both.signs) == [-1, 1]
+    assert (both.high - both.low).sum() == pytest.approx(np.diff(ends).sum())
+
+
+def test_a_linkage_that_cannot_be_assembled_has_no_track() -> None:
+    assert tracks(FourBar(o2=(0, 0), o4=(10, 0), r2=1, r3=2, r4=3), 60, same_branch=False) == []

@@ -1,0 +1,95 @@
+"""Distances of closed curves: shapes with a known answer, and the definitions on dense samples."""
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from scipy.spatial.distance import directed_hausdorff
+
+from grashof.analysis import solve_position
+from grashof.analysis.curves.curve_distance import curve_distances
+from grashof.analysis.judge.planted import random_full_crank
+from grashof.problems import FourBar
+
+Array = npt.NDArray[np.float64]
+TURN = np.linspace(0, 2 * np.pi, 400, endpoint=False)
+CIRCLE = np.stack([np.cos(TURN), np.sin(TURN)], axis=-1)
+DISC = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)  # P is A, on a circle of radius 1
+
+
+def size(points: Array) -> float:
+    return float(np.hypot(*np.ptp(points, axis=0)))
+
+
+@pytest.mark.parametrize("radius", [0.5, 1.0, 2.0])
+def test_concentric_circles(radius: float) -> None:
+    hausdorff, frechet = curve_distances(DISC, radius * CIRCLE, 1)
+    assert hausdorff == pytest.approx(abs(radius - 1), abs=2e-4)
+    assert frechet == pytest.approx(abs(radius - 1), abs=1e-3)
+
+
+def test_a_circle_gone_round_the_wrong_way_is_near_and_yet_far() -> None:
+    hausdorff, frechet = curve_distances(DISC, CIRCLE, -1)
+    assert hausdorff < 2e-4
+    # Two walkers that go round in opposite senses are somewhere a quarter turn or more from each other.
+    assert frechet >= np.sqrt(2)
+
+
+def test_a_square_about_a_circle() -> None:
+    hausdorff, frechet = curve_distances(DISC, np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]]), 1)
+    assert hausdorff == pytest.approx(np.sqrt(2) - 1, abs=1e-3)
+    assert frechet == pytest.approx(np.sqrt(2) - 1, abs=1e-2)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_curve_is_at_no_distance_from_itself_wherever_it_begins(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    linkage = random_full_crank(rng)
+    for sense in (1, -1):
+        points = solve_position(linkage, rng.uniform(0, 6) + sense * TURN).p
+        distances = np.array(curve_distances(linkage, points, sense)) / size(points)
+        assert distances[0] < 2e-3
+        assert distances[1] < 2e-3
+        repeated = np.concatenate([points, points[:1]])
+        assert curve_distances(linkage, repeated, sense) == pytest.approx(
+            tuple(distances * size(points)), abs=1e-9
+        )
+
+
+def brute_frechet(one: Array, other: Array) -> float:
+    """Discrete Frechet distance (Eiter & Mannila 1994) by its recursion, for every shift of the second."""
+    gap = np.hypot(*np.moveaxis(one[:, None] - other, -1, 0))
+    gap = np.concatenate([gap, gap[:1]])
+    least = np.inf
+    for shift in range(len(other)):
+        turned = np.roll(gap, -shift, axis=1)
+        turned = np.concatenate([turned, turned[:, :1]], axis=1)
+        leash = np.maximum.accumulate(turned[0])
+        for row in turned[1:]:
+            best = np.minimum(leash, np.concatenate([[np.inf], leash[:-1]]))
+            fresh = np.empty_like(leash)
+            walk = np.inf
+            for column, step in enumerate(row):
+                walk = fresh[column] = max(step, min(best[column], walk))
+            leash = fresh
+        least = min(least, leash[-1])
+    return least
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_definitions_on_dense_samples(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    linkage = random_full_crank(rng)
+    curve = solve_position(linkage, np.linspace(0, 2 * np.pi, 4000)).p
+    corners = solve_position(linkage, np.linspace(0, 2 * np.pi, 9)[:-1]).p
+    corners = corners + 0.1 * size(curve) * rng.normal(size=corners.shape)
+    share = np.linspace(0, 1, 400, endpoint=False)[:, None]
+    polygon = np.concatenate(
+        [a + share * (b - a) for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)]
+    )
+    hausdorff, frechet = curve_distances(linkage, corners, 1)
+    both = max(directed_hausdorff(polygon, curve)[0], directed_hausdorff(curve, polygon)[0])
+    assert hausdorff == pytest.approx(both, abs=2e-3 * size(curve))
+    coarse = brute_frechet(polygon[::25], curve[:-1:40])
+    assert hausdorff <= frechet
+    assert frechet == pytest.approx(coarse, abs=0.04 * size(curve))
+    assert frechet <= coarse + 0.01 * size(curve)

@@ -1,0 +1,76 @@
+"""Fourier series of closed curves: known harmonics, Parseval, the coupler curve reconstructed."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grashof.analysis import solve_position
+from grashof.analysis.curves.fourier import coupler_fourier, fourier_series
+from grashof.analysis.judge.planted import random_full_crank
+from grashof.problems import FourBar
+from grashof.problems.values.errors import ProblemError
+
+
+@given(count=st.integers(3, 24), seed=st.integers(0, 2**16))
+def test_it_passes_through_its_samples(count: int, seed: int) -> None:
+    points = np.random.default_rng(seed).normal(size=(count, 2))
+    series = fourier_series(points)
+    angle = np.arange(count) * 2 * np.pi / count
+    np.testing.assert_allclose(series(angle), points, atol=1e-12)
+    assert series.harmonics.tolist() == list(range(-(count // 2), count // 2 + 1))
+    assert series.content.sum() == pytest.approx(1)
+
+
+@given(count=st.integers(3, 24), seed=st.integers(0, 2**16))
+def test_errors_are_those_of_the_truncated_series(count: int, seed: int) -> None:
+    points = np.random.default_rng(seed).normal(size=(count, 2))
+    series = fourier_series(points)
+    angle = np.arange(count) * 2 * np.pi / count
+    for up_to in range(count // 2 + 1):
+        miss = np.linalg.norm(series(angle, up_to) - points, axis=-1)
+        assert series.error_max[up_to] == pytest.approx(miss.max(), abs=1e-12)
+        assert series.error_rms[up_to] == pytest.approx(np.sqrt((miss**2).mean()), abs=1e-12)
+        left = series.coefficients[np.abs(series.harmonics) > up_to]
+        if up_to < count // 2 - 1:  # the shared highest harmonic of an even number adds up otherwise
+            top = series.coefficients[0] if count % 2 == 0 else 0.0
+            parseval = (np.abs(left) ** 2).sum() + 2 * abs(top) ** 2
+            assert series.error_rms[up_to] ** 2 == pytest.approx(parseval, abs=1e-12)
+
+
+def test_known_harmonics_are_found() -> None:
+    known = {-3: 0.2j, -1: 1.0, 0: 2 - 1j, 1: -3.0, 4: 0.5 + 0.1j}
+    angle = np.arange(11) * 2 * np.pi / 11
+    z = sum(c * np.exp(1j * k * angle) for k, c in known.items())
+    series = fourier_series(np.stack([z.real, z.imag], axis=-1))
+    for k, c in zip(series.harmonics, series.coefficients, strict=True):
+        assert c == pytest.approx(known.get(int(k), 0), abs=1e-14)
+    power = np.array([1 + 9, 0, 0.04, 0.26, 0])
+    np.testing.assert_allclose(series.content, power / power.sum(), atol=1e-14)
+
+
+def test_the_crank_pin_has_one_harmonic() -> None:
+    crank_rocker = FourBar(o2=(1, 2), o4=(5, 2), r2=1.5, r3=4, r4=3.2)
+    series = coupler_fourier(crank_rocker, samples=32)
+    kept = dict(zip(series.harmonics.tolist(), series.coefficients, strict=True))
+    assert (kept[0], kept[1]) == (pytest.approx(1 + 2j), pytest.approx(1.5))
+    np.testing.assert_allclose(series.error_max[1:], 0, atol=1e-14)
+    np.testing.assert_allclose(series.content, [1] + [0] * 15, atol=1e-14)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_coupler_curve_is_reconstructed_between_its_samples(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    linkage = random_full_crank(rng)
+    series = coupler_fourier(linkage, samples=640)
+    angle = rng.uniform(-7, 7, 40)
+    size = np.ptp(solve_position(linkage, np.linspace(0, 6, 50)).p)
+    np.testing.assert_allclose(series(angle), solve_position(linkage, angle).p, atol=1e-6 * size)
+    assert (np.diff(series.error_rms) <= 1e-15).all()
+
+
+def test_bad_input_is_named() -> None:
+    with pytest.raises(ProblemError, match="there are 2 points"):
+        fourier_series([[0, 0], [1, 1]])
+    with pytest.raises(ProblemError, match="does not turn fully"):
+        coupler_fourier(FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3))

@@ -1,0 +1,249 @@
+"""Figures of the motion used: the reports', dense sampling, units, dead positions."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grashof.analysis import (
+    Joint,
+    Kinematics,
+    Loads,
+    Verdict,
+    coupler_fit_r2,
+    inverse_dynamics,
+    over_task,
+    solve_kinematics,
+    solve_position,
+    stated_masses,
+    verify,
+)
+from grashof.analysis.judge.over_task import mean_over, motion_ends, torque_peak
+from grashof.analysis.judge.planted import planted_motion
+from grashof.problems import DynamicsSpec, FourBar, PathTask, Problem, Requirements, load
+from grashof.problems.values.arrays import FloatArray
+
+DYNAMICS = ("torque_peak", "torque_rms", "joint_force_peak")
+KINEMATICS = ("omega4_max", "point_speed_max", "point_acceleration_max", "coupler_fit_r2")
+BARS = DynamicsSpec(2.0, payload=3.0, speed_rpm=25.0, gravity=(1.0, -9.0))
+CRANK_ROCKER = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, coupler_point=(2, 1))
+ANY = Requirements(rotatability="any")
+
+
+def judged(linkage: FourBar, theta2: Any, closed: bool = False, spec: Any = BARS) -> tuple[Problem, Verdict]:
+    """A task of points that the linkage passes at these driver angles, and the verdict on it."""
+    task = PathTask(solve_position(linkage, theta2).p, closed=closed)
+    problem = Problem(task=task, requirements=ANY, length_unit="m", dynamics=spec)
+    return problem, verify(linkage, task, ANY)
+
+
+def dense(linkage: FourBar, spec: DynamicsSpec, start: float, end: float) -> dict[str, float]:
+    state = solve_kinematics(linkage, np.linspace(start, end, 20_001), spec.omega2)
+    found = inverse_dynamics(state, stated_masses(linkage, spec), Loads(gravity=spec.gravity))
+    square = found.torque**2
+    return {
+        "omega4_max": float(np.abs(state.omega4).max()),
+        "point_speed_max": float(state.p.speed.max()),
+        "point_acceleration_max": float(state.p.acceleration_magnitude.max()),
+        "torque_peak": float(np.abs(found.torque).max()),
+        "torque_rms": float(np.sqrt((square.sum() - (square[0] + square[-1]) / 2) / 20_000)),
+        "joint_force_peak": max(float(found.joint_force(joint).max()) for joint in Joint),
+    }
+
+
+def test_torque_of_the_reports_linkage_on_the_job(golden_linkages: dict[str, FourBar]) -> None:
+    """The report's masses at 1 rad/s; right figures in place of the report's, without gravity and with."""
+    luggage, bag = load("luggage"), golden_linkages["bag"]
+    assert luggage.dynamics is not None
+    verdict = verify(bag, luggage.task, luggage.requirements)
+    spec = luggage.dynamics
+    bare = DynamicsSpec(masses=spec.masses, inertias=spec.inertias, speed_rpm=spec.speed_rpm)
+    still = over_task(bag, replace(luggage, dynamics=bare), verdict)
+    assert still.torque_peak == pytest.approx(6.302, abs=5e-4)
+    assert still.torque_rms == pytest.approx(1.633, abs=2e-3)  # the report's samples count both ends fully
+    heavy = over_task(bag, luggage, verdict)
+    assert heavy.torque_peak == pytest.approx(27.69, abs=5e-3)
+    assert heavy.torque_rms == pytest.approx(19.61, abs=5e-3)
+    for name in KINEMATICS:
+        assert getattr(heavy, name) == getattr(still, name)
+    state = solve_kinematics(bag, np.linspace(*motion_ends(luggage.task, verdict), 2001))
+    torque = inverse_dynamics(state, stated_masses(bag, bare)).torque
+    assert (torque.max(), torque.min()) == pytest.approx((6.302, -1.283), abs=5e-4)
+    torque = inverse_dynamics(state, stated_masses(bag, spec), Loads(gravity=spec.gravity)).torque
+    assert (torque.max(), torque.min()) == pytest.approx((10.64, -27.69), abs=5e-3)
+
+
+@settings(max_examples=12)
+@given(st.integers(0, 10_000))
+def test_figures_are_those_of_dense_samples_and_no_less(seed: int) -> None:
+    task, linkage = planted_motion(np.random.default_rng(seed), poses=4)
+    problem = Problem(task=task, length_unit="m", dynamics=BARS)
+    verdict = verify(linkage, task, Requirements())
+    found, (start, end) = over_task(linkage, problem, verdict), motion_ends(task, verdict)
+    for name, value in dense(linkage, BARS, start, end).items():
+        # Samples miss a peak by the square of half a step.
+        assert getattr(found, name) == pytest.approx(value, rel=1e-5), name
+        if name != "torque_rms":
+            assert getattr(found, name) >= value * (1 - 1e-12), name
+    assert found.coupler_fit_r2 == coupler_fit_r2(linkage, start, end)
+    assert torque_peak(linkage, problem, verdict) == pytest.approx(found.torque_peak, rel=1e-12)
+
+
+def zoomed(curve: Callable[[FloatArray], FloatArray], low: float, high: float) -> float:
+    """Greatest value, by a hundred thousand samples and as many again about the highest one."""
+    for _ in range(3):
+        theta2 = np.linspace(low, high, 100_001)
+        values = curve(theta2)
+        top, step = theta2[np.argmax(values)], theta2[1] - theta2[0]
+        low, high = top - 30 * step, top + 30 * step
+    return float(values.max())
+
+
+def test_a_peak_beside_a_near_dead_position_is_met() -> None:
+    """|r1 - r2| and |r3 - r4| differ by 1e-5: the output jerks within some thousandths of a radian."""
+    linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=5, r4=8 - 1e-5, coupler_point=(2, 1))
+    problem, verdict = judged(linkage, [-0.5, 0.1, 0.7])
+    found = over_task(linkage, problem, verdict)
+    masses, loads = stated_masses(linkage, BARS), Loads(gravity=BARS.gravity)
+
+    def state(theta2: FloatArray) -> Kinematics:
+        return solve_kinematics(linkage, theta2, BARS.omega2)
+
+    curves: dict[str, Callable[[FloatArray], FloatArray]] = {
+        "omega4_max": lambda theta2: np.abs(state(theta2).omega4),
+        "point_speed_max": lambda theta2: state(theta2).p.speed,
+        "point_acceleration_max": lambda theta2: state(theta2).p.acceleration_magnitude,
+        "torque_peak": lambda theta2: np.abs(inverse_dynamics(state(theta2), masses, loads).torque),
+    }
+    for name, curve in curves.items():
+        assert getattr(found, name) == pytest.approx(zoomed(curve, -0.5, 0.7), rel=1e-9), name
+    assert found.torque_peak > 1e4 * found.omega4_max
+
+
+def test_the_driver_turns_at_one_radian_a_second_or_at_its_speed() -> None:
+    problem, verdict = judged(CRANK_ROCKER, [0.3, 1.0, 2.5])
+    driven = over_task(CRANK_ROCKER, problem, verdict)
+    slow = over_task(CRANK_ROCKER, replace(problem, dynamics=None), verdict)
+    speed = 25 * np.pi / 30
+    assert driven.omega4_max == pytest.approx(speed * slow.omega4_max, rel=1e-12)
+    assert driven.point_speed_max == pytest.approx(speed * slow.point_speed_max, rel=1e-12)
+    assert driven.point_acceleration_max == pytest.approx(speed**2 * slow.point_acceleration_max, rel=1e-12)
+    assert driven.coupler_fit_r2 == slow.coupler_fit_r2
+    assert np.isnan([getattr(slow, name) for name in DYNAMICS]).all()
+
+
+@pytest.mark.parametrize(("unit", "units"), [("mm", 1000.0), ("in", 1 / 0.0254), ("ft", 1 / 0.3048)])
+def test_torque_and_forces_do_not_depend_on_the_length_unit(unit: str, units: float) -> None:
+    """The same linkage in another unit: lengths, kg per length and kg length^2 change, N m and N do not."""
+    scaled = FourBar(
+        o2=(0, 0), o4=(4 * units, 0), r2=units, r3=4 * units, r4=3 * units,
+        coupler_point=(2 * units, units), assembly=CRANK_ROCKER.assembly,
+    )  # fmt: skip
+    known = {"payload": 3.0, "speed_rpm": 25.0, "gravity": (1.0, -9.0)}
+    pairs: list[tuple[Any, Any]] = [
+        ({"mass_per_length": 2.0}, {"mass_per_length": 2.0 / units}),
+        (
+            {"masses": (1, 2, 3), "inertias": (0.1, 0.3, 0.2)},
+            {"masses": (1, 2, 3), "inertias": tuple(units**2 * np.array([0.1, 0.3, 0.2]))},
+        ),
+    ]
+    for in_metres, in_units in pairs:
+        problem, verdict = judged(CRANK_ROCKER, [0.3, 1.0, 2.5], spec=DynamicsSpec(**in_metres, **known))
+        expected = over_task(CRANK_ROCKER, problem, verdict)
+        other, verdict = judged(scaled, [0.3, 1.0, 2.5], spec=DynamicsSpec(**in_units, **known))
+        found = over_task(scaled, replace(other, length_unit=unit), verdict)
+        for name in (*DYNAMICS, "omega4_max", "coupler_fit_r2"):
+            assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-9), name
+        for name in ("point_speed_max", "point_acceleration_max"):
+            assert getattr(found, name) == pytest.approx(units * getattr(expected, name), rel=1e-9), name
+
+
+def test_the_motion_is_the_one_from_first_to_last_target() -> None:
+    forwards, verdict = judged(CRANK_ROCKER, [0.3, 1.0, 2.5])
+    backwards, reverse = judged(CRANK_ROCKER, [2.5, 1.0, 0.3])
+    assert motion_ends(forwards.task, verdict) == pytest.approx((0.3, 2.5))
+    assert motion_ends(backwards.task, reverse) == pytest.approx((2.5, 0.3))
+    one, other = over_task(CRANK_ROCKER, forwards, verdict), over_task(CRANK_ROCKER, backwards, reverse)
+    for name in (*KINEMATICS, *DYNAMICS):
+        assert getattr(one, name) == pytest.approx(getattr(other, name), rel=1e-12), name
+
+
+def test_a_closed_path_takes_a_whole_turn() -> None:
+    problem, verdict = judged(CRANK_ROCKER, [0.3, 1.0, 2.5, 4.0], closed=True)
+    start, end = motion_ends(problem.task, verdict)
+    assert abs(end - start) == pytest.approx(2 * np.pi, rel=1e-15)
+    found = over_task(CRANK_ROCKER, problem, verdict)
+    for name, value in dense(CRANK_ROCKER, BARS, 0.0, 2 * np.pi).items():
+        assert getattr(found, name) == pytest.approx(value, rel=1e-6), name
+
+
+def test_the_motion_is_on_the_assembly_that_meets_the_targets() -> None:
+    """Asked for on either branch, the task is met by the linkage assembled the other way."""
+    mirrored = replace(CRANK_ROCKER, assembly=-1)
+    problem, verdict = judged(mirrored, [0.3, 1.0, 2.5])
+    free = replace(ANY, same_branch=False)
+    other = verify(CRANK_ROCKER, problem.task, free)
+    assert other.assembly.tolist() == [-1, -1, -1]
+    assert other.ok
+    found, expected = over_task(CRANK_ROCKER, problem, other), over_task(mirrored, problem, verdict)
+    for name in (*KINEMATICS, *DYNAMICS):
+        assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-9), name
+    assert torque_peak(CRANK_ROCKER, problem, other) == pytest.approx(expected.torque_peak, rel=1e-9)
+
+
+def test_no_motion_no_figures() -> None:
+    """A dead position lies between the targets."""
+    problem, verdict = judged(CRANK_ROCKER, [0.3, 1.0, 2.5])
+    found = over_task(CRANK_ROCKER, problem, replace(verdict, branch_ok=False))
+    assert np.isnan([getattr(found, name) for name in (*KINEMATICS, *DYNAMICS)]).all()
+    assert np.isnan(torque_peak(CRANK_ROCKER, problem, replace(verdict, branch_ok=False)))
+
+
+@pytest.mark.filterwarnings("error")
+def test_in_a_dead_position_rates_and_torque_are_infinite() -> None:
+    """r2 + r3 = 5 and 4 reach O4 stretched where theta2 is 60 deg: the motion ends there."""
+    rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=4, r3=1, r4=3, coupler_point=(0.5, 0.2))
+    end = float(np.arccos((16 + 16 - 16) / 32))
+    problem, verdict = judged(rocker, [end - 0.4, end - 0.2, end])
+    assert verdict.branch_ok
+    found = over_task(rocker, problem, verdict)
+    infinite = ("omega4_max", "point_speed_max", "point_acceleration_max", *DYNAMICS)
+    assert np.isinf([getattr(found, name) for name in infinite]).all()
+    assert np.isfinite(found.coupler_fit_r2)
+    assert np.isinf(torque_peak(rocker, problem, verdict))
+    # A point on the crank does not mind.
+    on_crank = FourBar(o2=(0, 0), o4=(4, 0), r2=4, r3=1, r4=3)
+    found = over_task(on_crank, replace(problem, dynamics=None), verdict)
+    assert (found.point_speed_max, found.point_acceleration_max) == pytest.approx((4, 4))
+
+
+def test_one_target_angle_is_no_motion_but_a_place() -> None:
+    problem, verdict = judged(CRANK_ROCKER, [0.3, 1.0, 2.5])
+    found = over_task(CRANK_ROCKER, problem, replace(verdict, theta2=np.full(3, 0.7)))
+    place = dense(CRANK_ROCKER, BARS, 0.7, 0.7)
+    for name, value in place.items():
+        assert getattr(found, name) == pytest.approx(value, rel=1e-9), name
+    assert np.isnan(found.coupler_fit_r2)
+
+
+def test_means_near_a_pole() -> None:
+    """1 / ((x - 0.3)^2 + h^2) has an arctangent for integral."""
+    h = 1e-3
+    exact = (np.arctan(0.7 / h) + np.arctan(0.3 / h)) / h
+    assert mean_over(lambda x: 1 / ((x - 0.3) ** 2 + h**2), 0.0, 1.0) == pytest.approx(exact, rel=1e-9)
+
+
+def test_a_payload_and_gravity_are_felt() -> None:
+    problem, verdict = judged(
+        CRANK_ROCKER,
+        [0.3, 1.0, 2.5],
+        spec=DynamicsSpec(1e-9, payload=5.0, gravity=(0, -9.81), speed_rpm=1e-3),
+    )
+    found = over_task(CRANK_ROCKER, problem, verdict)
+    theta2 = np.linspace(0.3, 2.5, 20_001)
+    height = solve_kinematics(CRANK_ROCKER, theta2).p.velocity[:, 1]  # per radian of the driver
+    assert found.torque_peak == pytest.approx(5 * 9.81 * np.abs(height).max(), rel=1e-6)

@@ -1,0 +1,200 @@
+"""Verdicts on poses with free parts, weights and least squares, and on constraints of the user's own."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from grashof.analysis import Design, verify
+from grashof.analysis.judge.planted import planted_motion
+from grashof.problems import FourBar, MotionTask, Requirements
+
+EXACT, LEAST = Requirements(exact=True), Requirements(exact=False)
+
+
+def planted(seed: int, poses: int) -> tuple[MotionTask, FourBar]:
+    """A task whose linkage meets the default requirements."""
+    rng = np.random.default_rng([31, seed])
+    while True:
+        task, linkage = planted_motion(rng, poses)
+        if verify(linkage, task, EXACT).ok:
+            return task, linkage
+
+
+def freed(task: MotionTask, places: list[int], angles: list[int], **rest: Any) -> MotionTask:
+    positions, turned = task.positions.copy(), task.angles.copy()
+    positions[places], turned[angles] = np.nan, np.nan
+    return MotionTask(positions, turned, **rest)
+
+
+def moved(task: MotionTask, rng: np.random.Generator, share: float, **rest: Any) -> MotionTask:
+    noise = rng.normal(0, share, (len(task), 3))
+    return MotionTask(task.positions + task.size * noise[:, :2], task.angles + noise[:, 2], **rest)
+
+
+@pytest.mark.parametrize(
+    ("poses", "places", "angles"),
+    [(7, [], [1, 2, 4, 5]), (6, [1, 3], []), (5, [2], []), (4, [1, 2], [0]), (9, [], list(range(1, 9)))],
+)
+def test_what_does_the_whole_task_does_it_with_parts_left_free(
+    poses: int, places: list[int], angles: list[int]
+) -> None:
+    """An angle alone is met at several driver angles, on both assemblies: one way through them will do."""
+    for seed in range(20):
+        task, linkage = planted(seed, poses)
+        free = freed(task, places, angles)
+        size = free.size / task.size  # what is judged by the size may be less now
+        wanted = Requirements(exact=True, link_length=(1e-3 * task.size, 1e3 * task.size))
+        if size < 0.1:
+            continue
+        verdict = verify(linkage, free, replace(wanted, coupler_arms=(0, 1e3 * task.size)))
+        assert verdict.defects == (), seed
+        np.testing.assert_array_equal(np.isnan(verdict.position_error), ~free.has_position)
+        assert verdict.angle_error is not None
+        np.testing.assert_array_equal(np.isnan(verdict.angle_error), ~free.has_angle)
+        assert verdict.error_max < 1e-9 * task.size
+        assert (verdict.assembly == linkage.assembly).all()
+
+
+def test_square_and_errors_are_of_what_is_given_and_weighed() -> None:
+    rng = np.random.default_rng(7)
+    task, linkage = planted(0, 6)
+    weights = np.array([1, 2, 0.5, 3, 1, 4.0])
+    free = freed(moved(task, rng, 0.01), [1], [3], weights=weights, angle_length=1.7 * task.size)
+    verdict = verify(linkage, free, LEAST)
+    assert verdict.angle_error is not None
+    gap, turn = verdict.position_error, 1.7 * task.size * verdict.angle_error
+    expected = sum(weights[k] * gap[k] ** 2 for k in (0, 2, 3, 4, 5))
+    expected += sum(weights[k] * turn[k] ** 2 for k in (0, 1, 2, 4, 5))
+    assert verdict.square == pytest.approx(expected, rel=1e-12)
+    given = gap[[0, 2, 3, 4, 5]]
+    assert verdict.error_max == given.max() > 0
+    assert verdict.error_sse == pytest.approx((given**2).sum(), rel=1e-12)
+    assert verdict.error_rms == pytest.approx(np.sqrt((given**2).mean()), rel=1e-12)
+
+
+def test_square_follows_weights_where_poses_are_met_singly() -> None:
+    rng = np.random.default_rng(8)
+    task, linkage = planted(1, 5)
+    near = moved(task, rng, 1e-3)
+    weighed = MotionTask(near.positions, near.angles, weights=[1, 1, 10, 1, 1])
+    plain, more = verify(linkage, near, LEAST), verify(linkage, weighed, LEAST)
+    np.testing.assert_array_equal(plain.theta2, more.theta2)
+    assert plain.angle_error is not None
+    third = plain.position_error[2] ** 2 + (near.angle_length * plain.angle_error[2]) ** 2
+    assert more.square == pytest.approx(plain.square + 9 * third, rel=1e-12)
+
+
+def test_a_wrong_part_is_not_exact_and_a_free_one_is_not_asked() -> None:
+    task, linkage = planted(2, 5)
+    positions, angles = task.positions.copy(), task.angles.copy()
+    angles[2] += 0.01
+    off = MotionTask(positions, angles)
+    assert [d.requirement for d in verify(linkage, off, EXACT).defects if d.requirement == "exact"]
+    free = freed(off, [], [2])
+    verdict = verify(linkage, free, EXACT)
+    assert "exact" not in [defect.requirement for defect in verdict.defects]
+    alone = freed(off, [2], [])  # an angle alone may be met elsewhere
+    assert verify(linkage, alone, EXACT).error_max < 1e-9 * task.size
+
+
+def test_poses_out_of_order_are_a_defect_when_exact_and_cost_least_squares() -> None:
+    checked = 0
+    for seed in range(12):
+        task, linkage = planted(seed, 5)
+        visit = [0, 1, 3, 2, 4]
+        swapped = MotionTask(task.positions[visit], task.angles[visit])
+        exact, least = verify(linkage, swapped, EXACT), verify(linkage, swapped, LEAST)
+        assert not exact.order_ok
+        assert "order" in [defect.requirement for defect in exact.defects]
+        assert exact.square < 1e-18 * task.size**2  # each pose by itself is met
+        any_order = verify(linkage, swapped, replace(LEAST, order=False))
+        assert any_order.square < 1e-18 * task.size**2
+        if least.order_ok:
+            assert "order" not in [defect.requirement for defect in least.defects]
+            assert least.square > 1e-12 * task.size**2
+            steps = least.direction * np.diff(least.theta2)
+            assert (steps >= -1e-9).all()
+            assert steps.sum() <= 2 * np.pi + 1e-9
+            checked += 1
+    assert checked >= 8
+
+
+def long_driver(design: Design) -> Any:
+    return 2.0 - design.r2
+
+
+def test_a_constraint_of_the_users_own_is_judged_by_its_value() -> None:
+    task, linkage = planted(3, 4)
+    verdict = verify(linkage, task, EXACT, [long_driver])
+    value = 2.0 - float(linkage.r2)
+    own = [defect for defect in verdict.defects if defect.requirement == "constraints"]
+    if value > 0:
+        assert [str(defect) for defect in own] == [
+            f"constraints: long_driver is {value:.6g}, allowed is up to 0"
+        ]
+        assert own[0].found == own[0].miss == pytest.approx(value, rel=1e-12)
+    else:
+        assert own == []
+    r2 = float(linkage.r2)
+    assert verify(linkage, task, EXACT, [lambda design: design.r2 - r2]).ok  # zero is met
+    assert verify(linkage, task, EXACT, [lambda design: design.r2 - r2 - 1e-10]).ok
+    assert not verify(linkage, task, EXACT, [lambda design: design.r2 - r2 + 1e-6]).ok
+
+
+def test_the_greatest_of_several_values_counts_and_nan_is_not_met() -> None:
+    task, linkage = planted(4, 4)
+    several = verify(linkage, task, EXACT, [lambda design: [-1.0, 0.25, -3.0]]).defects
+    assert [(defect.what, defect.found) for defect in several] == [("<lambda>", 0.25)]
+    assert not verify(linkage, task, EXACT, [lambda design: np.nan]).ok
+    assert not verify(linkage, task, EXACT, [lambda design: [-1.0, np.nan]]).ok
+    two = verify(linkage, task, EXACT, [lambda design: 1.0, long_driver, lambda design: 2.0]).defects
+    assert [defect.found for defect in two if defect.what == "<lambda>"] == [1.0, 2.0]
+
+
+def test_a_design_shows_where_everything_stands_at_the_targets() -> None:
+    task, linkage = planted(5, 5)
+    seen: list[Design] = []
+
+    def look(design: Design) -> float:
+        seen.append(design)
+        return -1.0
+
+    verdict = verify(linkage, task, EXACT, [look])
+    (design,) = seen
+    np.testing.assert_allclose(design.p, task.positions, atol=1e-9 * task.size)
+    np.testing.assert_allclose(design.theta2, verdict.theta2)
+    assert (design.r1, design.r2, design.r3, design.r4) == pytest.approx(linkage.lengths, rel=1e-12)
+    turned = np.exp(1j * (task.angles - float(linkage.body_angle)))
+    for k in range(5):
+        coupler = complex(*(design.b[k] - design.a[k]))
+        assert coupler == pytest.approx(float(linkage.r3) * turned[k], abs=1e-9 * task.size)
+        assert np.hypot(*(design.a[k] - design.o2)) == pytest.approx(float(linkage.r2), rel=1e-9)
+        assert np.hypot(*(design.b[k] - design.o4)) == pytest.approx(float(linkage.r4), rel=1e-9)
+
+
+def test_a_design_is_seen_in_the_order_of_visit() -> None:
+    task, linkage = planted(6, 5)
+    visit = [3, 0, 4, 1, 2]
+    mixed = MotionTask(task.positions[visit], task.angles[visit])
+    seen: list[Design] = []
+
+    def look(design: Design) -> float:
+        seen.append(design)
+        return -1.0
+
+    verify(linkage, mixed, replace(EXACT, order=False), [look])
+    steps = np.diff(np.array(seen[0].theta2))
+    assert (steps > 0).all() or (steps < 0).all()
+    where = [int(np.argmin(np.hypot(*(task.positions - p).T))) for p in seen[0].p]
+    ring = [*range(5), *range(5)]
+    around = ring + ring[::-1]
+    assert any(around[k : k + 5] == where for k in range(len(around) - 4))
+
+
+def test_ground_pivots_that_coincide_are_a_ratio_without_limit() -> None:
+    task, _ = planted(7, 3)
+    collapsed = FourBar(o2=(1, 2), o4=(1, 2), r2=1, r3=1.5, r4=1)
+    defects = verify(collapsed, task, EXACT).defects
+    assert [defect.found for defect in defects if defect.requirement == "link_ratio_max"] == [np.inf]

@@ -1,0 +1,163 @@
+"""Checks of numbers at the boundary."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grashof.problems import ProblemError
+from grashof.problems.values.arrays import frozen_array
+from grashof.problems.values.checks import (
+    counted,
+    finite_number,
+    finite_rows,
+    limits,
+    near_miss,
+    number_within,
+    outline,
+    plain_text,
+    positive_number,
+    readable,
+    whole_number,
+)
+
+
+def test_frozen_array_is_a_read_only_copy() -> None:
+    given_array = np.array([1, 2])
+    frozen = frozen_array(given_array)
+    given_array[0] = 7
+    assert frozen.tolist() == [1.0, 2.0]
+    with pytest.raises(ValueError, match="read-only"):
+        frozen[0] = 3.0
+
+
+def test_frozen_array_of_a_number_is_a_number() -> None:
+    assert frozen_array(3) == 3.0
+    assert hash(frozen_array(3)) == hash(3.0)
+
+
+def test_finite_rows_keeps_the_rows() -> None:
+    mixed: Any = [(1, 2), np.array([3.0, 4.0])]
+    rows = finite_rows(mixed, 2, "here", "a point")
+    assert rows.tolist() == [[1, 2], [3, 4]]
+    assert finite_rows([], 3, "here", "a point").shape == (0, 3)
+
+
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        (5, "here is 5; allowed is a list, each entry a point"),
+        ("ab", "here is 'ab'; allowed is a list, each entry a point"),
+        ([[1, 2], [3]], r"here\[1\] is \[3\], 1 number; allowed is a point"),
+        ([[1, 2, 3]], r"here\[0\] is \[1, 2, 3\], 3 numbers; allowed is a point"),
+        ([[1, 2], 3], r"here\[1\] is 3, no plain list of numbers; allowed is a point"),
+        ([[[1, 2]]], r"here\[0\] is \[\[1, 2\]\], no plain list of numbers"),
+        ([[[1, 2], [3]]], r"here\[0\] is \[\[1, 2\], \[3\]\]; allowed is a point"),
+        ([[1, "2"]], r"here\[0\] is \[1, '2'\]; allowed is a point"),
+        ([["1", "2"]], r"here\[0\] is \['1', '2'\]; allowed is a point"),
+        ([[True, False]], r"here\[0\] is \[True, False\]; allowed is a point"),
+        ([[1, None]], r"here\[0\] is \[1, None\]; allowed is a point"),
+        ([{"x": 1}], r"here\[0\] is {'x': 1}; allowed is a point"),
+        ([[1, 2], [np.nan, 0]], r"here\[1\] is \[nan, 0\]; all numbers must be finite"),
+        (np.array([[1, np.inf]]), r"here\[0\] is \[1.0, inf\]; all numbers must be finite"),
+    ],
+)
+def test_finite_rows_names_the_row(rows: Any, message: str) -> None:
+    with pytest.raises(ProblemError, match=rf"^{message}"):
+        finite_rows(rows, 2, "here", "a point")
+
+
+def test_outline_needs_two_corners() -> None:
+    assert outline([[0, 0], [1, 2]], "here").tolist() == [[0, 0], [1, 2]]
+    with pytest.raises(ProblemError, match=r"^here has 1 corner; allowed are two or more$"):
+        outline([[0, 0]], "here")
+
+
+@pytest.mark.parametrize("value", [3, 3.0, np.float64(3), np.int64(3)])
+def test_finite_number_takes_every_kind_of_number(value: float) -> None:
+    assert finite_number(value, "here") == 3.0
+
+
+@pytest.mark.parametrize("value", [True, np.True_, "3", b"3", None, [3], 3j, np.nan, -np.inf, 10**400])
+def test_finite_number_refuses(value: float) -> None:
+    with pytest.raises(ProblemError, match=r"^here is .*; allowed is a finite number$"):
+        finite_number(value, "here")
+
+
+@pytest.mark.parametrize("value", [0, -1.5, float("nan")])
+def test_positive_number_refuses(value: float) -> None:
+    with pytest.raises(ProblemError, match="width is"):
+        positive_number(value, "width")
+    assert positive_number(0.5, "width") == 0.5
+
+
+def test_number_within_allows_the_ends_and_shows_a_near_excess() -> None:
+    assert number_within(0, 0, 90, "here") == 0
+    assert number_within(90, 0, 90, "here") == 90
+    with pytest.raises(ProblemError, match=r"^here is 90.000000001; allowed is 0 to 90$"):
+        number_within(90.000000001, 0, 90, "here")
+
+
+@pytest.mark.parametrize("value", [0, -1, 1.0, True, "1", None])
+def test_whole_number_refuses(value: int) -> None:
+    with pytest.raises(ProblemError, match=r"^here is .*; allowed is a whole number from 1$"):
+        whole_number(value, 1, "here")
+
+
+def test_whole_number_takes_numpy_integers() -> None:
+    assert whole_number(np.int64(4), 1, "here") == 4  # type: ignore[arg-type]
+
+
+finite = st.floats(-1e20, 1e20)
+
+
+@given(finite, finite)
+def test_limits_pass_exactly_when_in_order(low: float, high: float) -> None:
+    if low <= high:
+        assert limits((low, high), "here") == (low, high)
+    else:
+        with pytest.raises(ProblemError, match=r"^here is .*: lo exceeds hi; allowed is"):
+            limits((low, high), "here")
+
+
+@pytest.mark.parametrize(
+    ("pair", "message"),
+    [
+        ((1,), r"here is \(1,\); allowed is \[lo, hi\]"),
+        ((1, 2, 3), r"here is \(1, 2, 3\); allowed is \[lo, hi\]"),
+        (5, r"here is 5; allowed is \[lo, hi\]"),
+        ((1, np.inf), r"here\[1\] is inf; allowed is a finite number"),
+        (("a", 1), r"here\[0\] is 'a'; allowed is a finite number"),
+        ((2, 1), r"here is \[2, 1\]: lo exceeds hi; allowed is \[lo, hi\] with lo <= hi"),
+        ((-1, 1), r"here is \[-1, 1\]; allowed is lo from 0"),
+    ],
+)
+def test_limits_say_what_is_wrong(pair: tuple[float, float], message: str) -> None:
+    with pytest.raises(ProblemError, match=rf"^{message}$"):
+        limits(pair, "here", least=0.0)
+
+
+@pytest.mark.parametrize(
+    ("word", "meant"),
+    [("lugage", "luggage"), ("LUGGAGE", "luggage"), ("R1", "r1"), ("wheelbarrow", None), ("", None)],
+)
+def test_near_miss(word: str, meant: str | None) -> None:
+    assert near_miss(word, ["luggage", "r1"]) == meant
+
+
+def test_counted() -> None:
+    assert [counted(n, "pose") for n in (0, 1, 2)] == ["0 poses", "1 pose", "2 poses"]
+
+
+@pytest.mark.parametrize("character", ["\x00", "\x1b", "\n", "\x7f", "\x9b", "\ud800", "\uffff"])
+def test_text_that_drawings_and_terminals_stumble_over(character: str) -> None:
+    with pytest.raises(ProblemError, match=rf"^title has control character U\+{ord(character):04X}; allowed"):
+        plain_text(f"a{character}b", "title")
+    assert readable(f"a{character}b") == "a?b"
+
+
+def test_text_of_all_languages_is_plain() -> None:
+    for text in ("", "Étage \u2082", '階段 <&> "$x$"', "\U0001f9f3"):
+        assert plain_text(text, "title") == readable(text) == text

@@ -1,0 +1,163 @@
+"""Families: alike are designs close to each other, mirrored ones and cognates; nothing is chained on."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from time import perf_counter
+
+import numpy as np
+import pytest
+
+from grashof import synthesize
+from grashof.analysis import verify
+from grashof.analysis.judge.planted import random_full_crank
+from grashof.problems import FourBar, MotionTask, PathTask, Problem, Requirements, load
+from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.synth import Candidate, Result
+from grashof.synth.results.families import best_alike, listed
+from grashof.synth.results.ranking import ranked
+from grashof.synth.theory.cognates import assembly_of, cognate_points, position_of
+from grashof.synth.theory.distinct import signature
+
+Designs = tuple[Candidate, ...]
+UNEVEN = PathTask([[0, 0], [1, 0.3], [2, -0.4], [4, 0.2]])  # no rotation or reflection maps it onto itself
+
+
+def share_apart(one: FloatArray, other: FloatArray) -> float:
+    largest = max(max(abs(value) for value in one), max(abs(value) for value in other))
+    return float(max(abs(x - y) for x, y in zip(one, other, strict=True)) / largest)
+
+
+def rows(*designs: tuple[float, ...]) -> FloatArray:
+    """Signatures that are those of one linkage but for a few numbers: r2, r3, ..."""
+    plain = np.array([-10.0, 0, 10, 0, 4, 5, 6, 1, 2])
+    return np.array([plain + np.array([0, 0, 0, 0, *each, *[0] * (5 - len(each))]) for each in designs])
+
+
+def of_points(points: ComplexArray) -> FourBar:
+    o2, o4, a, b, p = points
+    arm = (p - a) / (b - a) * abs(b - a)
+    return FourBar(
+        (o2.real, o2.imag), (o4.real, o4.imag), abs(a - o2), abs(b - a), abs(b - o4), (arm.real, arm.imag),
+        assembly=assembly_of(points),
+    )  # fmt: skip
+
+
+def test_designs_less_than_five_percent_apart_are_alike() -> None:
+    assert best_alike(UNEVEN, rows((0,), (0.49,), (0.51,))).tolist() == [0, 0, 2]
+    assert best_alike(UNEVEN, rows((0, 0.4, 0.4, 0.4, 0.4), (0,))).tolist() == [0, 0]
+    assert best_alike(UNEVEN, rows((0,), (0, 0.51))).tolist() == [0, 1]
+    assert best_alike(UNEVEN, np.empty((0, 9))).tolist() == []
+
+
+def test_nothing_is_chained_on() -> None:
+    """Each one is like the one before; a member has to be like the best of its family."""
+    chain = rows(*((0.3 * k,) for k in range(8)))
+    assert best_alike(UNEVEN, chain).tolist() == [0, 0, 2, 2, 4, 4, 6, 6]
+    assert best_alike(UNEVEN, chain[[1, 0, 2, 3, 4, 5, 6, 7]]).tolist() == [0, 0, 0, 3, 3, 5, 5, 7]
+
+
+def test_families_are_those_of_brute_force(luggage_result: Result, luggage: Problem) -> None:
+    """Of the luggage problem, which has no symmetry: each design with the first that is near enough."""
+    middle = np.mean(luggage.task.positions, axis=0)
+    best: list[Candidate] = []
+    for candidate in ranked(luggage, luggage_result.candidates):
+        mine = signature(candidate.linkage, middle)
+        near = [each for each in best if share_apart(mine, signature(each.linkage, middle)) < 0.05]
+        best += [] if near else [candidate]
+        assert candidate.family == (near[0] if near else candidate).id
+    assert [family[0].id for family in luggage_result.families] == [each.id for each in best]
+    assert 1 < len(best) < len(luggage_result)
+    assert sum(map(len, luggage_result.families)) == len(luggage_result)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_cognates_of_a_path_are_alike(seed: int) -> None:
+    """All six linkages of a curve, by their pivots in one position; of a timed path only two."""
+    place = position_of(random_full_crank(np.random.default_rng(seed)), 0.7)
+    every = [place, place[[1, 0, 3, 2, 4]], *cognate_points(place, timed=False)]
+    signatures = np.array([signature(of_points(points)) for points in every])
+    assert best_alike(UNEVEN, signatures).tolist() == [0] * 6
+    timed = PathTask(UNEVEN.points, timing=[0.0, 1, 2, 4])
+    assert best_alike(timed, signatures).tolist() == [0, 1, 0, 3, 3, 1]
+    motion = MotionTask(UNEVEN.points, [0.0, 0.3, 0.1, 0.2])
+    assert best_alike(motion, signatures).tolist() == list(range(6))  # a cognate turns the body otherwise
+
+
+def test_the_best_of_each_family_comes_first_then_the_others(luggage_result: Result) -> None:
+    families = luggage_result.families
+    heads = [family[0] for family in families]
+    assert [each.family for each in heads] == [each.id for each in heads]
+    others = luggage_result.candidates[len(heads) :]
+    assert list(luggage_result.candidates[: len(heads)]) == heads
+    assert others == tuple(
+        c for c in ranked(luggage_result.problem, luggage_result.candidates) if c in others
+    )
+    for family in families:
+        assert {each.family for each in family} == {family[0].id}
+
+
+def test_the_top_is_of_families_with_all_their_members(luggage_result: Result) -> None:
+    two = luggage_result.top(2)
+    assert two.families == luggage_result.families[:2]
+    assert len(two) == sum(len(family) for family in two.families) > 2
+    assert two.problem is luggage_result.problem
+    assert luggage_result.top(1000).candidates == luggage_result.candidates
+
+
+def test_ranked_otherwise_the_families_are_named_anew(luggage_result: Result, luggage: Problem) -> None:
+    small = replace(luggage, objective=replace(luggage.objective, transmission=0, compactness=1))
+    result = Result(small, listed(small, luggage_result.candidates), (), {}, {})
+    assert {each.id for each in result.candidates} == {each.id for each in luggage_result.candidates}
+    for family in result.families:
+        assert family[0].verdict.size == min(each.verdict.size for each in family)
+        assert family[0].family == family[0].id
+    assert listed(small, ()) == ()
+
+
+def test_designs_without_families_stand_for_themselves(luggage_result: Result) -> None:
+    plain = tuple(replace(each, family="") for each in luggage_result.candidates)
+    assert len(replace(luggage_result, candidates=plain).families) == len(plain)
+
+
+def test_mirrored_designs_and_cognates_of_a_symmetric_closed_path() -> None:
+    """Designs for the ellipse, their cognates and the mirror images of all, each judged anew."""
+    loaded = load("path-ellipse")
+    wanted = Requirements(link_length=(2, 120), link_ratio_max=40)
+    task = PathTask(loaded.task.positions, closed=True, within=0.5)  # zones keep what others dominate
+    problem = replace(loaded, task=task, requirements=wanted)
+    some = synthesize(problem, effort=0.35).candidates
+    pairs = [(each, design) for each in some if (design := mirrored(each, problem)) is not None]
+    result = Result(problem, listed(problem, [each for pair in pairs for each in pair]), (), {}, {})
+    family_of = {each.id: each.family for each in result.candidates}
+    kept = [(one, other) for one, other in pairs if {one.id, other.id} <= set(family_of)]
+    assert len(kept) >= 3
+    for one, other in kept:
+        assert other.verdict.error_rms == pytest.approx(one.verdict.error_rms, rel=0.1)
+        assert family_of[one.id] == family_of[other.id]
+    named = [each for each in result.candidates if each.cognate_of in family_of]
+    assert named
+    assert all(each.family == family_of[each.cognate_of] for each in named)
+    assert all(len(family) >= 2 for family in result.families if family[0].id in {a.id for a, _ in kept})
+
+
+def mirrored(design: Candidate, problem: Problem) -> Candidate | None:
+    """The design in the mirror at the ellipse's long axis, y = 10, as the judge sees it."""
+    linkage = design.linkage
+    flipped = FourBar(
+        o2=linkage.o2 * [1, -1] + [0, 20], o4=linkage.o4 * [1, -1] + [0, 20], r2=linkage.r2, r3=linkage.r3,
+        r4=linkage.r4, coupler_point=linkage.coupler_point * [1, -1], assembly=-linkage.assembly,
+    )  # fmt: skip
+    verdict = verify(flipped, problem.task, problem.requirements)
+    return replace(design, linkage=flipped, verdict=verdict) if verdict.ok else None
+
+
+def test_a_thousand_designs_take_a_moment() -> None:
+    rng = np.random.default_rng(0)
+    many = 5 * rng.normal(size=(1000, 9))
+    many[:, 4:7] = np.abs(many[:, 4:7]) + 1
+    angles = np.linspace(0, 2 * np.pi, 20, endpoint=False)
+    ring = PathTask(np.column_stack([np.cos(angles), np.sin(angles)]), closed=True)  # forty symmetries
+    since = perf_counter()
+    assert len(set(best_alike(ring, many).tolist())) > 900
+    assert perf_counter() - since < 10

@@ -1,0 +1,106 @@
+"""Zones that are too small: what the note says would do does."""
+
+import re
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from grashof import synthesize
+from grashof.analysis import verify
+from grashof.problems import MotionTask, Objective, Problem, Requirements
+from grashof.synth.results.larger_zones import up
+
+POSES = [[0, 0, 0], [30, 10, 10], [60, 15, 25], [90, 10, 40], [120, -5, 60], [130, -30, 80]]
+
+
+def task(**zones: Any) -> MotionTask:
+    return MotionTask.from_degrees(POSES, **zones)
+
+
+def test_larger_zones_that_are_named_would_do() -> None:
+    """Down to the least zone, what is named depends on the poses alone."""
+    named = []
+    for zone in (0.01, 1e-9):
+        result = synthesize(Problem(task=task(within=zone)), effort=0.2)
+        said = re.fullmatch(
+            rf"no design meets all requirements; this alone would do: within (\S+) instead of {zone:g}",
+            result.note,
+        )
+        assert said is not None
+        assert len(result) == 0
+        larger = task(within=float(said[1]))
+        assert verify(result.nearest[0].linkage, larger, Requirements()).ok
+        smaller = task(within=float(said[1]) * 0.98)
+        assert not verify(result.nearest[0].linkage, smaller, Requirements()).ok
+        named.append(float(said[1]))
+    assert named[0] == pytest.approx(named[1], rel=0.02)
+    squares = synthesize(Problem(task=task()), effort=0.2).best.verdict
+    assert squares.angle_error is not None
+    length = task().angle_length
+    assert named[0] <= max(squares.error_max, length * squares.angle_error.max())
+
+
+def test_each_zone_is_named_with_its_own_figure() -> None:
+    result = synthesize(Problem(task=task(within=1e-3, angle_within_deg=[1, 1, 1, 1, 1, 2])), effort=0.2)
+    said = re.search(r"would do: within (\S+) instead of 0\.001$", result.note)
+    assert said is not None
+    larger = task(within=float(said[1]), angle_within_deg=[1, 1, 1, 1, 1, 2])
+    assert verify(result.nearest[0].linkage, larger, Requirements()).ok
+    result = synthesize(Problem(task=task(within=[1e-3] * 5 + [0.01])), effort=0.2)
+    said = re.search(r"would do: within (\S+) times as large$", result.note)
+    assert said is not None
+    larger = task(within=np.array([1e-3] * 5 + [0.01]) * float(said[1]))
+    assert verify(result.nearest[0].linkage, larger, Requirements()).ok
+    result = synthesize(Problem(task=task(angle_within_deg=0.001)), effort=0.2)
+    said = re.search(r"would do: angle_within_deg (\S+) instead of 0\.001$", result.note)
+    assert said is not None
+    larger = task(angle_within_deg=float(said[1]))
+    assert verify(result.nearest[0].linkage, larger, Requirements()).ok
+
+
+def test_a_larger_tolerance_is_named() -> None:
+    wanted = Requirements(exact=True, tolerance=1e-4)
+    result = synthesize(Problem(task=task(), requirements=wanted), effort=0.2)
+    said = re.search(r"would do: tolerance (\S+) instead of 0\.0001$", result.note)
+    assert said is not None
+    loose = replace(wanted, tolerance=1.02 * float(said[1]))  # room for another local optimum
+    assert verify(result.nearest[0].linkage, task(), loose).ok
+    assert len(synthesize(Problem(task=task(), requirements=loose), effort=0.2)) > 0
+
+
+def test_zones_beyond_all_reason_still_leave_the_objective_a_good_design() -> None:
+    for zone in (1e3, 1e19):
+        for goal, least in ((Objective(), 0.9), (Objective(0, 1), -2.0)):
+            result = synthesize(Problem(task=task(within=zone), objective=goal), effort=0.2)
+            assert result.best.objective(result.problem) > least
+
+
+def test_two_poses_may_be_missed_too() -> None:
+    poses = [[0, 0, 0], [30, 10, 40]]
+    problem = Problem(task=MotionTask.from_degrees(poses, within=2), objective=Objective(0, 1))
+    result = synthesize(problem, enough=8)
+    exact = synthesize(replace(problem, task=problem.task.without_zones()), enough=8)
+    assert all(verify(one.linkage, problem.task, problem.requirements).ok for one in result.candidates)
+    assert result.best.verdict.size < exact.best.verdict.size
+    far = Requirements(link_length=(1, 2), coupler_arms=(0, 1))
+    result = synthesize(replace(problem, requirements=far), effort=0.2)
+    assert len(result) == 0
+    assert result.note.startswith("no design")
+
+
+def test_exact_poses_that_repeat_are_left_to_least_squares() -> None:
+    poses = [[0, 0, 0], [30, 10, 10], [60, 5, 25], [30, 10, 10.0]]
+    problem = Problem(task=MotionTask.from_degrees(poses, within=2), requirements=Requirements(exact=False))
+    result = synthesize(problem, effort=0.2)
+    assert all(verify(one.linkage, problem.task, problem.requirements).ok for one in result.candidates)
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [(0.4706, "0.471"), (0.47, "0.47"), (1234.5, "1240"), (0.0, "0"), (9.999, "10"), (1e-9, "1e-09")],
+)
+def test_figures_are_rounded_up(value: float, said: str) -> None:
+    assert f"{up(value):g}" == said
+    assert float(said) >= value

@@ -1,0 +1,169 @@
+"""Which of two designs is better: equal errors, the objective, and what nobody would build."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grashof.analysis import verify
+from grashof.problems import FourBar, Objective, PathTask, Problem, Requirements
+from grashof.synth import Candidate
+from grashof.synth.results.ranking import impractical, pareto_optimal, ranked, ranking_key
+
+POINTS = np.array([[0.0, 0], [1, 0.5], [2, 0.5], [4, 0]])  # size 4
+LEAST_SQUARES = Problem(task=PathTask(POINTS), requirements=Requirements(exact=False))
+EXACT = replace(LEAST_SQUARES, requirements=Requirements(exact=True))
+LOOSE = replace(LEAST_SQUARES, requirements=Requirements(exact=False, tolerance=0.01))
+CRANK = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
+VERDICT = verify(CRANK, LEAST_SQUARES.task, LEAST_SQUARES.requirements)
+
+
+def design(number: int, error: float = 0.0, mu: float = 40.0, size: float = 2.0, **more: Any) -> Candidate:
+    """As if the judge had found these: error and size in sizes of the task, mu and turn in deg."""
+    verdict = replace(
+        VERDICT,
+        position_error=np.full(4, 4 * error),
+        square=4 * (4 * error) ** 2,
+        transmission_min_task=np.radians(mu),
+        transmission_min_cycle=np.radians(more.pop("cycle", mu)),
+        size=4 * size,
+        theta2=np.linspace(0, np.radians(more.pop("turn", 90.0)), 4),
+        defects=(),
+    )
+    linkage = FourBar(o2=(0, 0), o4=(4 + number, 0), r2=1, r3=4, r4=3)
+    return Candidate(linkage, verdict, number, 0, **more)
+
+
+def order(problem: Problem, *designs: Candidate) -> list[int]:
+    """Numbers of the designs as ranked, whichever came first."""
+    forth, back = (ranked(problem, each) for each in (designs, designs[::-1]))
+    assert [each.start for each in forth] == [each.start for each in back]
+    return [each.start for each in forth]
+
+
+def test_errors_of_rounding_are_equal() -> None:
+    """The better transmission angle comes first, whatever the noise."""
+    assert order(LEAST_SQUARES, design(1, 1e-13, 11.8), design(2, 2e-13, 40.2)) == [2, 1]
+    assert order(LEAST_SQUARES, design(1, 0.0, 11.8), design(2, 1e-6, 40.2)) == [2, 1]
+    assert order(LEAST_SQUARES, design(1, 0.0, 11.8), design(2, 1.01e-6, 40.2)) == [1, 2]
+    assert order(LEAST_SQUARES, design(1, 0.01, 11.8), design(2, 0.010001, 40.2)) == [1, 2]
+
+
+def test_errors_alike_to_rounding_are_equal_at_any_size() -> None:
+    """As of cognates, which trace the same curve."""
+    assert order(LEAST_SQUARES, design(1, 0.02, 11.8), design(2, 0.02 * (1 + 1e-13), 40.2)) == [2, 1]
+
+
+def test_a_greater_tolerance_makes_more_errors_equal() -> None:
+    designs = design(1, 0.001, 11.8), design(2, 0.0099, 40.2), design(3, 0.0101, 60)
+    assert order(LOOSE, *designs) == [2, 1, 3]
+    assert order(LEAST_SQUARES, *designs) == [1, 2, 3]
+    finer = replace(LOOSE, requirements=Requirements(exact=False, tolerance=1e-9))
+    assert order(finer, design(1, 1e-8, 11.8), design(2, 1e-7, 40.2)) == [2, 1]
+
+
+def test_exact_designs_are_ranked_by_the_objective() -> None:
+    designs = design(1, 1e-12, 30, 3), design(2, 9e-7, 50, 5), design(3, 1e-9, 40, 1, cycle=5)
+    assert order(EXACT, *designs) == [2, 3, 1]
+    assert order(replace(EXACT, objective=Objective(0, 1)), *designs) == [3, 1, 2]
+    turn = Requirements(exact=True, transmission_over="cycle")  # type: ignore[arg-type]
+    assert order(replace(EXACT, requirements=turn), *designs) == [2, 1, 3]
+
+
+def test_of_equal_objectives_the_smaller_design_comes_first() -> None:
+    for problem in (EXACT, LEAST_SQUARES):
+        assert order(problem, design(1, 0, 40, 3), design(2, 0, 40, 2), design(3, 0, 40 + 1e-9, 4)) == [
+            2,
+            1,
+            3,
+        ]
+
+
+IMPRACTICAL = {"size": {"size": 10.1}, "turn": {"turn": 4.9}, "dead position": {"mu": 0.09}}
+
+
+@pytest.mark.parametrize("why", IMPRACTICAL)
+def test_what_nobody_would_build(why: str) -> None:
+    assert impractical(EXACT, design(1, **IMPRACTICAL[why]).verdict)
+    assert not impractical(EXACT, design(1, size=9.9, turn=5.1, mu=0.11).verdict)
+
+
+@pytest.mark.parametrize("why", ["size", "turn"])
+def test_what_nobody_would_build_gives_way_to_what_is_nearly_as_good(why: str) -> None:
+    odd: dict[str, float] = IMPRACTICAL[why]
+    for problem, error in ((EXACT, 0.0), (LEAST_SQUARES, 1e-9)):
+        assert order(problem, design(1, error, 40, **odd), design(2, error, 39.7)) == [2, 1]
+        assert order(problem, design(1, error, 40, **odd), design(2, error, 39.6)) == [2, 1]  # just 1 %
+        assert order(problem, design(1, error, 40, **odd), design(2, error, 39.5)) == [1, 2]
+    assert order(LEAST_SQUARES, design(1, 0.01, **odd), design(2, 0.0102)) == [2, 1]  # just 1.02 times
+    assert order(LEAST_SQUARES, design(1, 0.01, **odd), design(2, 0.0103)) == [1, 2]
+    assert order(LEAST_SQUARES, design(1, 1e-6, **odd), design(2, 1.01e-6)) == [2, 1]
+
+
+def test_a_dead_position_gives_way_within_the_factor() -> None:
+    assert order(LEAST_SQUARES, design(1, 0.01, 0.05), design(2, 0.0102, 30)) == [2, 1]
+    assert order(LEAST_SQUARES, design(1, 0.01, 0.05), design(2, 0.0103, 30)) == [1, 2]
+    small = replace(EXACT, objective=Objective(0, 1))
+    assert order(small, design(1, mu=0.05, size=2), design(2, size=2.02)) == [2, 1]
+    assert order(small, design(1, mu=0.05, size=2), design(2, size=2.03)) == [1, 2]
+
+
+def test_an_exact_design_that_nobody_would_build_is_still_exact() -> None:
+    assert order(EXACT, design(1, 9.99e-7, 60, size=11), design(2, 0.0, 40)) == [1, 2]
+
+
+figures = st.tuples(
+    st.sampled_from([0.0, 1e-13, 1e-6, 1.01e-6, 0.01, 0.0101, 0.02]),
+    st.sampled_from([0.05, 30.0, 39.7, 40.0]),
+    st.sampled_from([1.0, 2.0, 11.0]),
+    st.sampled_from([4.0, 90.0]),
+)
+
+
+@settings(max_examples=60)
+@given(st.lists(figures, min_size=2, max_size=8), st.permutations(range(8)), st.booleans())
+def test_the_order_is_total_and_no_odd_design_leads_where_another_is_near(
+    rows: list[tuple[float, float, float, float]], shuffled: list[int], exact: bool
+) -> None:
+    problem = EXACT if exact else LEAST_SQUARES
+    some = [design(k, e * (not exact), mu, size, turn=turn) for k, (e, mu, size, turn) in enumerate(rows)]
+    best_first = ranked(problem, some)
+    assert ranked(problem, [some[k] for k in shuffled if k < len(some)]) == best_first
+    keys = [ranking_key(problem, each) for each in best_first]
+    assert keys == sorted(keys)
+    assert len(set(keys)) == len(keys) == len(some)
+    first = best_first[0]
+    if not impractical(problem, first.verdict):
+        return
+    for other in best_first[1:]:
+        if impractical(problem, other.verdict):
+            continue
+        if exact:
+            assert other.objective(problem) < 0.99 * first.objective(problem) + 1e-9
+        elif other.error(problem) <= 1.02 * first.error(problem):
+            assert first.error(problem) <= 1e-6  # both count as none: the objective decides
+            assert other.objective(problem) < 0.99 * first.objective(problem) + 1e-9
+
+
+def test_the_pareto_mark_takes_errors_up_to_the_tolerance_as_equal() -> None:
+    some = design(1, 1e-13, 11.8, 2), design(2, 9e-7, 40.2, 2), design(3, 1.1e-6, 40.2, 2)
+    assert pareto_optimal(LEAST_SQUARES, some).tolist() == [False, True, False]
+    assert pareto_optimal(LOOSE, (*some, design(4, 0.009, 41, 2))).tolist() == [False, False, False, True]
+    assert pareto_optimal(LEAST_SQUARES, (some[0], design(4, 0.009, 11, 2))).tolist() == [True, False]
+
+
+def test_the_score_of_a_search_is_the_error_that_counts() -> None:
+    scores = [each.score(LEAST_SQUARES) for each in (design(1, 1e-13), design(2, 0.01))]
+    assert scores == [0.0, pytest.approx(-0.01)]
+    assert design(1, 0.0, 45).score(EXACT) == pytest.approx(0.5)
+
+
+def test_ranking_keeps_what_a_design_is_best_at() -> None:
+    some = design(1, 0.01, best_at="least error"), design(2, 0.011, best_at="smallest within 1.5 times")
+    told = [each.best_at for each in ranked(LEAST_SQUARES, some)]
+    assert told == ["least error", "smallest within 1.5 times"]

@@ -1,0 +1,150 @@
+"""The table: the columns of the contract, and numbers that come back from CSV as they were."""
+
+import csv
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from grashof.problems import Problem
+from grashof.synth import Result
+from grashof.synth.results.table import MANUFACTURING, to_frame
+
+# DESIGN section 4, word for word, and what has been added since.
+CONTRACT = """
+rank, id, mechanism, family, grashof_class, direction, assembly, o2_x, o2_y, o4_x, o4_y, r1, r2, r3, r4, p_u,
+p_v, body_angle_deg, theta2_start_deg, theta2_end_deg, error, error_max, error_rms, error_sse,
+angle_error_max_deg, angle_error_rms_deg, transmission_min_task_deg, transmission_min_cycle_deg, circuit_ok,
+branch_ok, order_ok, full_rotation, omega4_max, point_speed_max, point_acceleration_max, torque_peak,
+torque_rms, joint_force_peak, coupler_fit_r2, size, pareto, cognate_of, start, iterations, best_at,
+hausdorff, frechet, move_r1, move_r2, move_r3, move_r4, move_u, move_v, worst_move,
+share_within_linear, share_within_made
+"""
+COLUMNS = [name.strip() for name in CONTRACT.split(",")]
+WITHOUT_MEANING = ["error", "cognate_of", "best_at", "hausdorff", "frechet", *MANUFACTURING]
+
+
+@pytest.fixture(scope="module")
+def frame(luggage_result: Result) -> pd.DataFrame:
+    return luggage_result.to_frame()
+
+
+def test_columns_are_the_contract(frame: pd.DataFrame) -> None:
+    assert list(frame.columns) == COLUMNS
+
+
+def test_one_row_a_design_best_first(frame: pd.DataFrame, luggage_result: Result) -> None:
+    assert frame["rank"].tolist() == list(range(1, len(luggage_result) + 1))
+    assert frame["id"].tolist() == [candidate.id for candidate in luggage_result.candidates]
+    best, others = frame[frame["family"] == frame["id"]], frame[frame["family"] != frame["id"]]
+    assert best["rank"].tolist() == list(range(1, len(best) + 1))
+    assert len(others) > 1
+    assert set(others["family"]) <= set(best["id"])
+    for rows in (best, others):
+        assert rows["transmission_min_task_deg"].is_monotonic_decreasing
+    assert set(frame["mechanism"]) == {"four-bar"}
+
+
+def test_rows_describe_linkages_that_meet_the_first_and_last_pose(
+    frame: pd.DataFrame, luggage: Problem
+) -> None:
+    """From the numbers of the table alone."""
+    task = luggage.task
+    for row in frame.itertuples():
+        o2, o4 = complex(row.o2_x, row.o2_y), complex(row.o4_x, row.o4_y)
+        assert abs(o4 - o2) == pytest.approx(row.r1, rel=1e-12)
+        swept = row.theta2_end_deg - row.theta2_start_deg
+        assert 0 < row.direction * swept <= 360
+        for theta2, pose in ((row.theta2_start_deg, 0), (row.theta2_end_deg, -1)):
+            a = o2 + row.r2 * np.exp(1j * np.radians(theta2))
+            coupler = np.exp(1j * (task.angles[pose] - np.radians(row.body_angle_deg)))
+            place = a + complex(row.p_u, row.p_v) * coupler
+            assert abs(place - complex(*task.positions[pose])) < 1e-9
+            b = a + row.r3 * coupler
+            assert abs(b - o4) == pytest.approx(row.r4, rel=1e-9)
+            left = (np.conj(o4 - a) * (b - a)).imag
+            assert np.sign(left) == row.assembly
+
+
+def test_figures_are_the_verdicts(frame: pd.DataFrame, luggage_result: Result) -> None:
+    for row, candidate in zip(frame.itertuples(), luggage_result.candidates, strict=True):
+        verdict = candidate.verdict
+        assert row.grashof_class == str(verdict.grashof_class)
+        assert row.size == verdict.size
+        assert row.error_max == np.max(verdict.position_error)
+        assert row.error_sse == pytest.approx(4 * row.error_rms**2, rel=1e-12)
+        assert row.error_max < 1e-9 * np.sqrt(32)
+        assert row.angle_error_max_deg == np.degrees(np.max(verdict.angle_error))
+        assert row.angle_error_rms_deg <= row.angle_error_max_deg
+        assert row.transmission_min_cycle_deg == np.degrees(verdict.transmission_min_cycle)
+        assert row.transmission_min_cycle_deg <= row.transmission_min_task_deg
+        assert row.circuit_ok is row.branch_ok is row.order_ok is row.full_rotation is True
+        assert (row.start, row.iterations) == (candidate.start, candidate.iterations)
+
+
+def test_pareto_marks(frame: pd.DataFrame) -> None:
+    for row in frame.itertuples():
+        better = (
+            (frame["transmission_min_task_deg"] >= row.transmission_min_task_deg)
+            & (frame["size"] <= row.size)
+            & (frame["torque_peak"] <= row.torque_peak)
+            & (frame["id"] != row.id)
+        )
+        assert row.pareto == (not better.any())
+
+
+def test_what_has_no_meaning_stays_empty(frame: pd.DataFrame) -> None:
+    assert frame[WITHOUT_MEANING].isna().all(axis=None)
+    assert frame.drop(columns=WITHOUT_MEANING).notna().all(axis=None)
+
+
+def test_what_a_design_is_best_at_is_told(luggage_result: Result, luggage: Problem) -> None:
+    first, second = luggage_result.candidates[:2]
+    told = to_frame(luggage, (replace(first, best_at="least error"), second))["best_at"]
+    assert told[0] == "least error"
+    assert pd.isna(told[1])
+
+
+def test_csv_keeps_every_digit(frame: pd.DataFrame, luggage_result: Result, tmp_path: Path) -> None:
+    path = tmp_path / "candidates.csv"
+    luggage_result.to_csv(path)
+    text = path.read_bytes()
+    assert b"\r" not in text
+    rows = list(csv.DictReader(text.decode().splitlines()))
+    assert len(rows) == len(luggage_result)
+    assert list(rows[0]) == COLUMNS
+    for name in COLUMNS:
+        written, held = [row[name] for row in rows], frame[name].tolist()
+        if name in WITHOUT_MEANING:
+            assert set(written) == {""}
+        elif isinstance(held[0], float):
+            assert [float(value) for value in written] == held
+        else:
+            assert written == [str(value) for value in held]
+
+
+def test_an_empty_result_has_all_columns(luggage: Problem, tmp_path: Path) -> None:
+    empty = Result(luggage, (), (), {}, {}, note="no design")
+    assert list(empty.to_frame().columns) == COLUMNS
+    assert len(empty.to_frame()) == 0
+    empty.to_csv(tmp_path / "none.csv")
+    assert (tmp_path / "none.csv").read_text() == ",".join(COLUMNS) + "\n"
+    assert to_frame(luggage, ()).shape == (0, len(COLUMNS))
+
+
+@pytest.mark.parametrize("turns", [-2.0, 1.0, 3.0])
+def test_the_driver_starts_within_half_a_turn_and_is_never_wrapped(
+    luggage_result: Result, turns: float
+) -> None:
+    whole = [
+        replace(each, verdict=replace(each.verdict, theta2=each.verdict.theta2 + 2 * np.pi * turns))
+        for each in luggage_result.candidates
+    ]
+    frame = to_frame(luggage_result.problem, tuple(whole))
+    assert ((frame["theta2_start_deg"] > -180) & (frame["theta2_start_deg"] <= 180)).all()
+    for row, candidate in zip(frame.itertuples(), whole, strict=True):
+        first, last = np.degrees(candidate.verdict.theta2[[0, -1]])
+        assert row.theta2_end_deg - row.theta2_start_deg == pytest.approx(last - first, abs=1e-9)
+        assert np.sin(np.radians(row.theta2_start_deg - first)) == pytest.approx(0, abs=1e-9)

@@ -1,0 +1,168 @@
+"""Starts for four poses: feasible, apart, enough of them, and what stands in the way when there are none."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from grashof.analysis import verify
+from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, ProblemError, Requirements
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.screening import GROUPS
+from grashof.synth.programme.start import Start
+from grashof.synth.starts.exact_poses import degenerate, obstacle, refuse_equal_poses, relaxed_starts, rounds
+from grashof.synth.starts.selection import PEAK_SPACING, PEAKS
+from grashof.synth.theory.distinct import apart, signature
+
+pytestmark = pytest.mark.usefixtures("coarse_curves")
+
+SetupOf = Callable[..., ScaledProblem]
+
+
+def queue_of(scaled: ScaledProblem, enough: int = 50, seed: int = 0) -> tuple[list[Start], int]:
+    (queue,) = rounds(scaled, enough, np.random.default_rng(seed))
+    return queue.starts, queue.counts["feasible linkages"]
+
+
+def linkage_of(scaled: ScaledProblem, start: Start) -> FourBar:
+    return scaled.linkages(start.points, np.array(start.assembly))
+
+
+def ok(scaled: ScaledProblem, start: Start) -> bool:
+    return verify(linkage_of(scaled, start), scaled.problem.task, scaled.problem.requirements).ok
+
+
+def poses(rows: list[list[float]], **rest: Any) -> ScaledProblem:
+    return ScaledProblem.of(Problem(task=MotionTask.from_degrees(rows, **rest)))
+
+
+def test_usual_poses_are_not_degenerate(
+    luggage_scaled: SetupOf, planted_scaled: Callable[..., tuple[ScaledProblem, FourBar]]
+) -> None:
+    assert degenerate(luggage_scaled()) == ""
+    assert all(degenerate(planted_scaled(seed)[0]) == "" for seed in range(20))
+
+
+def test_pure_translation_is_told() -> None:
+    for turn in (0, 360):
+        scaled = poses([[0, 0, 10], [1, 0, 10], [2, 1, 10 + turn], [0, 3, 10]])
+        assert "pure translations" in obstacle(scaled, np.random.default_rng(0))
+        assert degenerate(scaled) == ""
+    assert degenerate(poses([[0, 0, 10], [1, 0, 10], [2, 1, 10.1], [0, 3, 10]])) == ""
+
+
+def test_pure_rotation_is_told_with_its_centre() -> None:
+    about = np.array([3.0, -1.5])
+    rows = []
+    for turn in (0, 30, 50, 120):
+        arm = 2 * np.exp(1j * np.radians(turn + 20))
+        rows.append([about[0] + arm.real, about[1] + arm.imag, float(turn)])
+    assert "pure rotation about (3, -1.5)" in degenerate(poses(rows))
+    on_the_spot = poses([[1, 2, turn] for turn in (0, 30, 50, 120)], angle_length=1)
+    assert "pure rotation about (1, 2)" in degenerate(on_the_spot)
+    rows[2][0] += 1e-3
+    assert degenerate(poses(rows)) == ""
+
+
+@pytest.mark.parametrize("again", [20.0, 380.0])
+def test_equal_poses_that_do_not_follow_each_other_are_refused(again: float) -> None:
+    task = MotionTask.from_degrees([[0, 0, 0], [1, 0, 20], [2, 1, 50], [1, 0, again]])
+    with pytest.raises(ProblemError, match=r"motion.poses\[1\] and motion.poses\[3\] are equal"):
+        refuse_equal_poses(task)
+
+
+def test_the_best_are_free_and_apart_then_all_over_the_family(luggage_scaled: SetupOf) -> None:
+    scaled = luggage_scaled()
+    queue, feasible = queue_of(scaled)
+    assert feasible > 1000
+    assert all(ok(scaled, start) for start in queue)
+    free, spread = queue[:PEAKS], queue[PEAKS:]
+    assert all(start.radius == np.inf for start in free)
+    assert len(spread) == 70  # 1.4 times enough
+    assert all(0 < start.radius < np.inf for start in spread)
+    middle = scaled.problem.task.positions.mean(axis=0)
+    signatures = np.array([signature(linkage_of(scaled, start), middle) for start in free])
+    for number in range(1, len(free)):
+        assert (apart(signatures[number], signatures[:number]) > PEAK_SPACING).all()
+
+
+def test_neighbourhoods_do_not_overlap(luggage_scaled: SetupOf) -> None:
+    """So what is polished inside them stays apart."""
+    queue, _ = queue_of(luggage_scaled())
+    spread = queue[PEAKS:]
+    for number, one in enumerate(spread):
+        for other in spread[:number]:
+            gap = one.points - other.points
+            assert max(np.abs(gap.real).max(), np.abs(gap.imag).max()) > one.radius + other.radius
+
+
+def test_the_best_start_has_the_best_transmission(luggage_scaled: SetupOf) -> None:
+    scaled = luggage_scaled()
+    queue, _ = queue_of(scaled)
+    task, wanted = scaled.problem.task, scaled.problem.requirements
+    worst = [verify(linkage_of(scaled, s), task, wanted).transmission_min_task for s in queue]
+    assert np.argmax(worst) == 0
+    assert np.degrees(worst[0]) > 26.5  # the family's best has 27.33
+
+
+def test_compactness_begins_with_small_linkages(luggage: Problem) -> None:
+    wanted = Requirements(link_length=(0.3, 8), coupler_arms=(0.3, 8))
+    sizes = []
+    for objective in (Objective(), Objective(transmission=0, compactness=1)):
+        scaled = ScaledProblem.of(Problem(task=luggage.task, requirements=wanted, objective=objective))
+        queue, _ = queue_of(scaled)
+        assert all(start.objective == objective for start in queue)
+        sizes.append(verify(linkage_of(scaled, queue[0]), luggage.task, wanted).size)
+    assert sizes[1] < 0.8 * sizes[0]
+
+
+def test_the_seed_decides(luggage_scaled: SetupOf) -> None:
+    scaled = luggage_scaled()
+    assert queue_of(scaled, seed=3) == queue_of(scaled, seed=3)
+    assert queue_of(scaled, seed=3) != queue_of(scaled, seed=4)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_planted_tasks_have_feasible_starts(
+    planted_scaled: Callable[..., tuple[ScaledProblem, FourBar]], seed: int
+) -> None:
+    scaled, _ = planted_scaled(seed)
+    queue, feasible = queue_of(scaled, enough=10)
+    assert feasible > 0
+    assert len(queue) >= 20
+    assert all(ok(scaled, start) for start in queue[:20])
+
+
+def test_an_equality_leaves_near_misses_to_start_from(luggage_scaled: SetupOf) -> None:
+    scaled = luggage_scaled(o2=Box(y=(-3.0, -3.0)))
+    queue, feasible = queue_of(scaled, enough=20)
+    assert feasible == 0
+    assert len(queue) > 40
+    assert any(start.stay for start in queue)
+    assert all(start.radius == np.inf for start in queue)
+    height = [scaled.frame.outward(np.array(start.o2))[1] for start in queue]
+    assert np.median(np.abs(np.array(height) + 3)) < 0.5
+
+
+def test_relaxed_starts_may_miss_one_requirement_where_one_is_enough(luggage_scaled: SetupOf) -> None:
+    scaled = luggage_scaled(transmission_min_deg=60, transmission_over="cycle")
+    relaxed = relaxed_starts(scaled, np.random.default_rng(0))
+    assert 1 <= len(relaxed) <= 15
+    assert {start.relaxed for start in relaxed} == {("transmission_min_deg",)}
+    for start in relaxed:
+        defects = verify(linkage_of(scaled, start), scaled.problem.task, scaled.problem.requirements).defects
+        assert {defect.requirement for defect in defects} == {"transmission_min_deg"}
+
+
+def test_relaxed_starts_miss_as_few_requirements_as_can_be(luggage_scaled: SetupOf) -> None:
+    far, high = Box((90, 91), (90, 91)), Box(y=(80, 81))
+    scaled = luggage_scaled(o2=far, o4=high, transmission_min_deg=10)
+    relaxed = relaxed_starts(scaled, np.random.default_rng(0))
+    assert relaxed
+    assert {start.relaxed for start in relaxed} == {("o2", "o4")}
+    assert set(relaxed[0].relaxed) <= set(GROUPS)
+
+
+def test_nothing_to_relax_where_pairs_are_feasible(luggage_scaled: SetupOf) -> None:
+    assert relaxed_starts(luggage_scaled(), np.random.default_rng(0)) == []

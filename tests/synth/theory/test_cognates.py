@@ -1,0 +1,157 @@
+"""Cognates: the same coupler curve from other pivots, and the timed one turns with the driver."""
+
+import numpy as np
+import pytest
+
+from grashof.analysis.judge.planted import random_full_crank
+from grashof.problems import FourBar
+from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.synth.theory.cognates import assembly_of, cognate_points, position_of, same_curve
+from grashof.synth.theory.distinct import signature
+
+
+def meeting_points(a: ComplexArray, o4: complex, r3: float, r4: float) -> ComplexArray:
+    """Both places of B for places of A, shape (2, n); NaN where the circles do not meet."""
+    distance = np.abs(o4 - a)
+    foot = (distance**2 + r3**2 - r4**2) / (2 * distance)
+    with np.errstate(invalid="ignore"):
+        height = np.sqrt(r3**2 - foot**2)
+    return a + (o4 - a) / distance * (foot + np.array([[1j], [-1j]]) * height)
+
+
+def positions(linkage: FourBar, theta2: FloatArray) -> ComplexArray:
+    """O2, O4, A, B, P at driver angles, shape (n, 5), by circle intersection."""
+    o2, o4 = complex(*linkage.o2), complex(*linkage.o4)
+    a = o2 + float(linkage.r2) * np.exp(1j * theta2)
+    b = meeting_points(a, o4, float(linkage.r3), float(linkage.r4))[0 if linkage.assembly > 0 else 1]
+    p = a + complex(*linkage.coupler_point) * (b - a) / float(linkage.r3)
+    return np.stack([np.full_like(a, o2), np.full_like(a, o4), a, b, p], axis=1)
+
+
+def swept(points: ComplexArray, count: int) -> ComplexArray:
+    """P of the linkage with pivots `points` on both assemblies over its whole driver turn, shape (2, n)."""
+    o2, o4, a, b, p = points
+    places = o2 + abs(a - o2) * np.exp(1j * np.linspace(0, 2 * np.pi, count))
+    both = meeting_points(places, complex(o4), abs(b - a), abs(b - o4))
+    traced: ComplexArray = places + (p - a) / (b - a) * (both - places)
+    return traced
+
+
+def linkages(count: int) -> list[tuple[FourBar, FloatArray]]:
+    rng = np.random.default_rng(17)
+    turn = np.linspace(0, 2 * np.pi, 60, endpoint=False)
+    return [(random_full_crank(rng), rng.uniform(-3, 3) + turn) for _ in range(count)]
+
+
+CASES = linkages(12)
+
+
+def same(one: ComplexArray, other: ComplexArray) -> bool:
+    return bool(np.abs(one - other).max() < 1e-9 * np.abs(other - other[0]).max())
+
+
+def swapped(points: ComplexArray) -> ComplexArray:
+    """The same linkage, its other link at ground driving."""
+    return points[[1, 0, 3, 2, 4]]
+
+
+@pytest.mark.parametrize("case", range(len(CASES)))
+@pytest.mark.parametrize("timed", [False, True])
+def test_a_cognate_is_one_linkage_all_the_way_and_carries_the_same_point(case: int, timed: bool) -> None:
+    """Its pivots at ground stand still and its links keep their lengths while the linkage turns."""
+    way = positions(*CASES[case])
+    each = np.array([cognate_points(place, timed) for place in way])
+    assert each.shape == (60, 1 if timed else 4, 5)
+    scale = np.abs(np.diff(each[0])).max()
+    for cognate in np.swapaxes(each, 0, 1):
+        o2, o4, a, b, p = cognate.T
+        for constant in (o2, o4, np.abs(a - o2), np.abs(b - a), np.abs(b - o4), (p - a) / (b - a)):
+            assert np.abs(constant - constant[0]).max() < 1e-9 * scale
+        np.testing.assert_array_equal(p, way[:, 4])
+
+
+@pytest.mark.parametrize("case", range(len(CASES)))
+def test_a_cognate_traces_the_whole_curve(case: int) -> None:
+    """From its numbers at one position alone, turned by itself, on either assembly where it rocks."""
+    way = positions(*CASES[case])
+    length = np.abs(np.diff(np.append(way[:, 4], way[0, 4]))).sum()
+    for cognate in cognate_points(way[0], timed=False):
+        curve = swept(cognate, 40_001).ravel()
+        gap = np.abs(way[:, 4, None] - curve[np.isfinite(curve)]).min(axis=1)
+        assert np.median(gap) < 1e-4 * length
+        assert gap.max() < 0.01 * length  # sparse where a rocker turns back
+
+
+@pytest.mark.parametrize("case", range(len(CASES)))
+def test_the_timed_cognate_turns_with_the_driver(case: int) -> None:
+    linkage, theta2 = CASES[case]
+    way = positions(linkage, theta2)
+    (first,) = cognate_points(way[0], timed=True)
+    o2, o4, a, b, p = first
+    places = o2 + (a - o2) * np.exp(1j * (theta2 - theta2[0]))
+    both = meeting_points(places, complex(o4), abs(b - a), abs(b - o4))
+    sign = ((both - places).conj() * (both - o4)).imag
+    assert (np.sign(sign) == np.array([[-1], [1]])).all() or (np.sign(sign) == np.array([[1], [-1]])).all()
+    mine = both[0 if sign[0, 0] * assembly_of(first) > 0 else 1]
+    traced = places + (p - a) / (b - a) * (mine - places)
+    np.testing.assert_allclose(traced, way[:, 4], atol=1e-8 * abs(o4 - o2) + 1e-9)
+
+
+@pytest.mark.parametrize("case", range(len(CASES)))
+def test_the_cognate_of_a_cognate_comes_back(case: int) -> None:
+    first = positions(*CASES[case])[0]
+    family = [first, swapped(first), *cognate_points(first, timed=False)]
+    for cognate in family[2:]:
+        own = [cognate, swapped(cognate), *cognate_points(cognate, timed=False)]
+        for member in family:  # three linkages, either link at ground driving
+            assert sum(same(member, other) for other in own) == 1
+    (timed,) = cognate_points(first, timed=True)
+    (back,) = cognate_points(timed, timed=True)
+    assert same(back, first)
+
+
+@pytest.mark.parametrize("case", range(len(CASES)))
+def test_positions_and_assembly_of_a_linkage(case: int) -> None:
+    linkage, theta2 = CASES[case]
+    expected = positions(linkage, theta2[:1])[0]
+    np.testing.assert_allclose(position_of(linkage, float(theta2[0])), expected, atol=1e-9)
+    assert assembly_of(expected) == linkage.assembly
+
+
+def test_a_coupler_point_on_a_joint_leaves_one_cognate() -> None:
+    """At A, the third pivot falls on O2: the other has a ground of no length, without an error."""
+    linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
+    points = position_of(linkage, 0.7)
+    right, left, *_ = cognate_points(points, timed=False)
+    np.testing.assert_allclose(np.abs(right[[1, 2, 3, 3]] - right[[0, 0, 2, 1]]), [4, 1, 3, 4], atol=1e-12)
+    assert abs(left[1] - left[0]) < 1e-12
+
+
+@pytest.mark.parametrize("case", range(len(CASES)))
+def test_linkages_of_the_same_curve_are_the_cognates_from_numbers_alone(case: int) -> None:
+    linkage, theta2 = CASES[case]
+    place = positions(linkage, theta2[:1])[0]
+    for timed in (False, True):
+        expected = [place, *([] if timed else [swapped(place)]), *cognate_points(place, timed)]
+        found = same_curve(signature(linkage), timed)
+        assert len(found) == len(expected) == (2 if timed else 6)
+        np.testing.assert_allclose(found[0], signature(linkage), rtol=1e-13)
+        for points in expected:
+            gaps = np.abs(found - numbers(points)).max(axis=1)
+            assert np.count_nonzero(gaps < 1e-9 * np.abs(numbers(points)).max()) == 1
+
+
+def numbers(points: ComplexArray) -> FloatArray:
+    """O2, O4, r2, r3, r4, u, v of a linkage that stands at these pivots."""
+    o2, o4, a, b, p = points
+    arm = (p - a) / (b - a) * abs(b - a)
+    lengths = [abs(a - o2), abs(b - a), abs(b - o4)]
+    return np.array([o2.real, o2.imag, o4.real, o4.imag, *lengths, arm.real, arm.imag])
+
+
+@pytest.mark.parametrize(("u", "count"), [(0.0, 4), (4.0, 4)])
+def test_a_linkage_with_p_on_a_joint_has_fewer_of_its_curve(u: float, count: int) -> None:
+    linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, coupler_point=(u, 0))
+    found = same_curve(signature(linkage), timed=False)
+    assert np.isfinite(found).all()
+    assert len(found) <= count

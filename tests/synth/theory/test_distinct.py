@@ -1,0 +1,64 @@
+"""Distinct designs, by the definition: largest difference above 1 % of the largest number."""
+
+from random import Random
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from grashof.problems import FourBar
+from grashof.problems.values.arrays import FloatArray
+from grashof.synth.theory.distinct import DISTINCT, apart, pick_apart, signature
+
+bounded = settings(max_examples=50)
+number = st.floats(-10, 10).filter(lambda value: value == 0 or abs(value) > 1e-3)
+signatures = arrays(np.float64, st.tuples(st.integers(2, 12), st.just(9)), elements=number).filter(
+    lambda rows: bool((np.abs(rows).max(axis=1) > 0.1).all())
+)
+
+
+def share_apart(one: FloatArray, other: FloatArray) -> float:
+    largest = max(max(abs(value) for value in one), max(abs(value) for value in other))
+    return max(abs(x - y) for x, y in zip(one, other, strict=True)) / largest
+
+
+def test_the_numbers_that_count() -> None:
+    linkage = FourBar(o2=(1, 2), o4=(4, 6), r2=1, r3=4, r4=3, coupler_point=(0.5, -2), assembly=-1)
+    assert signature(linkage).tolist() == [1, 2, 4, 6, 1, 4, 3, 0.5, -2]
+    longer = FourBar(o2=(1, 2), o4=(4, 6), r2=1, r3=4.08, r4=3, coupler_point=(0.5, -2))
+    assert apart(signature(linkage), signature(longer)[None])[0] > DISTINCT  # 0.08 of 6
+    nearly = FourBar(o2=(1, 2), o4=(4, 6), r2=1.05, r3=4.05, r4=3.05, coupler_point=(0.5, -2))
+    assert apart(signature(linkage), signature(nearly)[None])[0] < DISTINCT
+
+
+@bounded
+@given(signatures)
+def test_apart_is_the_definition_and_symmetric(rows: FloatArray) -> None:
+    expected = [share_apart(rows[0], other) for other in rows]
+    np.testing.assert_allclose(apart(rows[0], rows), expected, rtol=1e-12)
+    assert [apart(other, rows[:1])[0] for other in rows] == apart(rows[0], rows).tolist()
+    np.testing.assert_allclose(apart(1e3 * rows[0], 1e3 * rows), expected, rtol=1e-12)  # any unit
+
+
+@bounded
+@given(signatures, st.randoms(use_true_random=False), st.floats(0.01, 0.8))
+def test_picked_are_apart_best_first_and_nobody_else_fits(
+    rows: FloatArray, random: Random, least: float
+) -> None:
+    merit = np.array([random.uniform(0, 1) for _ in rows])
+    picked = pick_apart(rows, merit, least, len(rows)).tolist()
+    assert picked[0] == int(np.argmax(merit))
+    assert [merit[i] for i in picked] == sorted((merit[i] for i in picked), reverse=True)
+    for k, i in enumerate(picked):
+        assert all(share_apart(rows[i], rows[j]) > least for j in picked[:k])
+    for i in set(range(len(rows))) - set(picked):
+        better = [j for j in picked if merit[j] >= merit[i]]
+        assert any(share_apart(rows[i], rows[j]) <= least * (1 + 1e-12) for j in better)
+
+
+def test_no_more_than_asked_for_and_of_equals_the_first() -> None:
+    rows = np.eye(9)
+    assert pick_apart(rows, np.zeros(9), 0.01, 4).tolist() == [0, 1, 2, 3]
+    assert pick_apart(rows[[2, 2, 2]], np.zeros(3), 0.01, 9).tolist() == [0]
+    assert pick_apart(rows[:0], np.zeros(0), 0.01, 4).tolist() == []

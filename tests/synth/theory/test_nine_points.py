@@ -1,0 +1,108 @@
+"""All linkages through nine points: against finite differences, planted linkages and the published count."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from grashof import load, synthesize
+from grashof.analysis import verify
+from grashof.analysis.judge.planted import planted_path
+from grashof.synth.theory.monodromy import collect, general_problem
+from grashof.synth.theory.nine_points import (
+    TRIPLETS,
+    coupler_turns,
+    distinct,
+    known,
+    linkages_through,
+    system,
+    triplet_invariants,
+)
+
+
+def test_system_vanishes_on_a_planted_linkage_and_its_slopes_are_right():
+    task, linkage = planted_path(np.random.default_rng(0), 9)
+    verdict = verify(linkage, task, load("nine-points").requirements)
+    points = task.points @ [1, 1j]
+    o2, o4 = linkage.o2 @ [1, 1j], linkage.o4 @ [1, 1j]
+    a = o2 + linkage.r2 * np.exp(1j * verdict.theta2[0])
+    arm = complex(*linkage.coupler_point)
+    turned = (points[0] - a) / arm
+    b = a + linkage.r3 * turned
+    pivots = np.array([a, o2, b, o4]) - points[0]
+    unknowns = np.stack([pivots, pivots.conj()], axis=1).ravel()[None]
+    steps = points[1:] - points[0]
+    parameters = np.concatenate([steps, steps.conj()])[None]
+    residual, jacobian, _ = system(unknowns, parameters, np.zeros_like(parameters))
+    assert np.abs(residual).max() < 1e-9 * np.abs(jacobian).max()
+    for k in range(8):
+        moved = unknowns.copy()
+        moved[0, k] += 1e-6
+        ahead, _, _ = system(moved, parameters, np.zeros_like(parameters))
+        assert np.abs((ahead - residual) / 1e-6 - jacobian[:, :, k]).max() < 1e-4 * np.abs(jacobian).max()
+    change = np.random.default_rng(1).normal(size=(1, 16)) + 0j
+    ahead, _, _ = system(unknowns, parameters + 1e-6 * change, change)
+    _, _, slope = system(unknowns, parameters, change)
+    assert np.abs((ahead - residual) / 1e-6 - slope).max() < 1e-4 * np.abs(slope).max()
+
+
+def test_known_solutions_are_1442_distinct_ones():
+    displacements, solutions = known()
+    parameters = np.broadcast_to(displacements, (len(solutions), 16))
+    residual, jacobian, _ = system(solutions, parameters, np.zeros_like(parameters))
+    correction = np.linalg.solve(jacobian, residual[..., None])[..., 0]
+    assert (np.abs(correction).max(axis=1) < 1e-8 * np.abs(solutions).max(axis=1)).all()
+    assert len(distinct(solutions)) == len(solutions) == TRIPLETS
+
+
+def test_loops_from_one_solution_lead_to_known_ones():
+    displacements, solutions = known()
+    found = collect(displacements, solutions[:1], np.random.default_rng(5), most=8)
+    assert len(found) >= 8
+    every = triplet_invariants(solutions)
+    for invariant in triplet_invariants(found):
+        assert np.abs(every - invariant).max(axis=1).min() < 1e-5 * (1 + np.abs(invariant).max())
+
+
+def test_general_problem_has_its_solution():
+    displacements, solutions = general_problem(np.random.default_rng(3))
+    residual, jacobian, _ = system(solutions, displacements[None], np.zeros((1, 16), dtype=complex))
+    assert np.abs(np.linalg.solve(jacobian[0], residual[0])).max() < 1e-10
+
+
+@pytest.fixture(scope="module")
+def planted():
+    task, linkage = planted_path(np.random.default_rng([2, 8]), 9)
+    return task, linkage, linkages_through(task.points @ [1, 1j], np.random.default_rng(1))
+
+
+def test_planted_linkage_is_among_all_of_them(planted):
+    _, linkage, found = planted
+    o2, o4 = linkage.o2 @ [1, 1j], linkage.o4 @ [1, 1j]
+    o6 = o2 + (o4 - o2) * complex(*linkage.coupler_point) / linkage.r3
+    a2, a4, a, b, p = found.T
+    every = np.stack([a2, a4, a2 + (a4 - a2) * (p - a) / (b - a)])  # pivots of a triplet, in any order
+    gap = np.abs(every[:, :, None] - [o2, o4, o6]).min(axis=0).max(axis=1)
+    assert gap.min() < 1e-6
+
+
+def test_all_linkages_keep_their_lengths_at_every_point(planted):
+    task, _, found = planted
+    points = task.points @ [1, 1j]
+    o2, o4, a, b, p = found.T[..., None]
+    turn = coupler_turns(found, points)
+    assert np.abs(np.abs(turn) - 1).max() < 1e-6
+    for ground, joint in ((o2, a), (o4, b)):
+        length = np.abs(points + (joint - p) * turn - ground)
+        assert np.ptp(length, axis=1).max() < 1e-6 * np.abs(found).max()
+
+
+def test_points_near_a_circle_have_the_published_21_triplets_and_none_without_defect():
+    problem = load("nine-points")
+    result = synthesize(problem, enough=200)
+    assert result.counts["linkages through the points"] == 63  # Wampler, Morgan & Sommese 1992
+    assert len(result) >= 63
+    assert all(verify(c.linkage, problem.task, problem.requirements).ok for c in result.candidates)
+    assert max(c.verdict.error_max for c in result.candidates) < 1e-9 * problem.task.size
+    strict = replace(problem.requirements, order=True, same_branch=True, tolerance=1e-9)
+    assert not any(verify(c.linkage, problem.task, strict).ok for c in result.candidates)
