@@ -1,5 +1,10 @@
 """Settings of every test."""
 
+import os
+
+# The tests run in one process a core: threads of NumPy's own would only stand in each other's way.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 from hypothesis import settings
 
 # The same examples each time, and no limit of time: machines differ, and are busy.

@@ -167,7 +167,7 @@ IMPOSSIBLE: dict[str, tuple[str, str, Problem]] = {
 }
 
 
-@pytest.mark.usefixtures("coarse_curves")
+@pytest.mark.usefixtures("small_search")
 @pytest.mark.parametrize("kind", IMPOSSIBLE)
 def test_the_requirement_in_the_way_is_named(kind: str) -> None:
     key, said, problem = IMPOSSIBLE[kind]

@@ -18,7 +18,7 @@ from grashof.problems import Box, Problem, ProblemError, Search, SolverError
 from grashof.problems.values.checks import counted
 from grashof.synth import Progress, Result
 
-pytestmark = pytest.mark.usefixtures("coarse_curves")
+pytestmark = pytest.mark.usefixtures("small_search")
 
 OPTIONS: list[dict[str, Any]] = [
     {"starts": 0}, {"enough": 0}, {"seed": -1}, {"workers": 0}, {"time_limit": 0.0}, {"time_limit": -1.0},
