@@ -256,10 +256,12 @@ def all_pairs() -> PairsOf:
     return of
 
 
-# Several times as fast as usual: how finely curves are traced, how many pairs, draws and solves there are.
+# Several times as fast as usual: how finely curves are traced, how many pairs, rounds and solves there are.
 SMALL: dict[str, dict[str, Any]] = {
     "grashof.synth.starts.exact_poses": {"LINES": 300, "CELL": 0.02, "NEAR_PAIRS": 30_000},
+    "grashof.synth.starts.paths": {"BARREN": 2, "SEARCHES": 1},
     "grashof.synth.results.single_relaxations": {"SOLVES": 3},
+    "grashof.synth.results.trade_offs": {"MOST_SEEDS": 4},
     "grashof.synth.synthesize": {"NEAR_EFFORT": 0.2},
 }
 

@@ -124,6 +124,7 @@ def test_an_objective_of_compactness_gives_small_designs(luggage_result: Result)
     assert sizes[0] < min(candidate.verdict.size for candidate in luggage_result.candidates) * (1 + 1e-6)
 
 
+@pytest.mark.usefixtures("small_search")
 def test_too_much_transmission_is_named_with_the_nearest_design(independent_judge: Any) -> None:
     wanted: dict[str, Any] = {"link_length": (0.3, 5), "coupler_arms": (0, 5)}
     result = synthesize(luggage_with(transmission_over="cycle", transmission_min_deg=60, **wanted))

@@ -206,6 +206,7 @@ def too_long(design: Design) -> Any:
     return design.r1 + 1e3
 
 
+@pytest.mark.usefixtures("small_search")
 def test_a_constraint_that_the_only_linkage_breaks_is_named() -> None:
     task, _ = planted(1, 6)
     result = synthesize(Problem(task=task, requirements=EXACT), constraints=[too_long], starts=8)

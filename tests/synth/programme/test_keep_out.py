@@ -74,6 +74,7 @@ def test_without_the_area_the_best_pivots_lie_in_it() -> None:
     assert deeper_than(AS_GIVEN, pivots, 0.1).any()
 
 
+@pytest.mark.usefixtures("small_search")
 def test_no_crank_turns_fully_outside_a_floor_that_goes_on_and_the_note_says_so() -> None:
     result = synthesize(luggage(GOES_ON, 12.0, rotatability="full-crank"))
     assert len(result) == 0
@@ -125,6 +126,7 @@ def test_moving_parts_pass_beside_a_post(names: tuple[str, ...]) -> None:
                 assert not deeper_than(POST, one + share * (other - one), 1e-6).any()
 
 
+@pytest.mark.usefixtures("small_search")
 def test_where_only_the_way_is_obstructed_the_closest_miss_is_shown() -> None:
     """Every way of P from the upper floor to the lower one crosses the wall, though no pose lies in it."""
     wall = [[-9, 2], [9, 2], [9, 2.4], [-9, 2.4]]
@@ -134,6 +136,7 @@ def test_where_only_the_way_is_obstructed_the_closest_miss_is_shown() -> None:
     assert result.nearest
 
 
+@pytest.mark.usefixtures("small_search")
 def test_a_target_inside_is_named() -> None:
     result = synthesize(luggage([[1, 2], [3, 2], [3, 4.5], [1, 4.5]], keep_out_for=["p"]), starts=16)
     assert "keep_out drawn in by 1, the depth of P" in result.note

@@ -144,6 +144,7 @@ def test_the_search_looks_for_designs_that_hold_it() -> None:
     assert all(abs(c.linkage.o2[0] - c.linkage.o4[0]) <= 2 + HELD for c in result.candidates)
 
 
+@pytest.mark.usefixtures("small_search")
 def test_an_impossible_constraint_is_named() -> None:
     result = synthesize(THREE, constraints=[impossible], enough=2, starts=8)
     assert len(result) == 0

@@ -11,6 +11,8 @@ from grashof.analysis import verify
 from grashof.problems import Box, MotionTask, PathTask, Problem, Requirements
 from grashof.synth import Result
 
+pytestmark = pytest.mark.usefixtures("small_search")
+
 EIGHT = [[0, 0], [4, 1], [5, 4], [3, 6], [0, 5], [-3, 6], [-4, 3], [-2, 2]]
 
 
@@ -95,6 +97,6 @@ def test_a_time_limit_leaves_the_explanation_out() -> None:
 
 
 def test_the_time_that_the_explanation_takes_is_told() -> None:
-    result = synthesize(replace(load("luggage"), requirements=Requirements(link_length=(0.3, 1.5))), starts=8)
+    result = synthesize(replace(load("luggage"), requirements=Requirements(link_length=(0.3, 1.5))), starts=4)
     assert "link_length up to" in repr(result)
     assert result.seconds["explaining"] > 0

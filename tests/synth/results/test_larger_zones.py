@@ -12,6 +12,8 @@ from grashof.analysis import verify
 from grashof.problems import MotionTask, Objective, Problem, Requirements
 from grashof.synth.results.larger_zones import up
 
+pytestmark = pytest.mark.usefixtures("small_search")
+
 POSES = [[0, 0, 0], [30, 10, 10], [60, 15, 25], [90, 10, 40], [120, -5, 60], [130, -30, 80]]
 
 

@@ -19,6 +19,8 @@ from grashof.problems import (
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth import Candidate
 
+pytestmark = pytest.mark.usefixtures("small_search")
+
 POSES = [[0, 0, 0], [30, 10, 10], [60, 15, 25], [90, 10, 40], [120, -5, 60], [130, -30, 80]]
 POINTS = [pose[:2] for pose in POSES]
 TURN = np.linspace(0, 2 * np.pi, 12, endpoint=False)

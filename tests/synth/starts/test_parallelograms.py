@@ -12,6 +12,8 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth import Candidate, Result
 from grashof.synth.starts.parallelograms import circle_through
 
+pytestmark = pytest.mark.usefixtures("small_search")
+
 ANY: dict[str, Any] = {"rotatability": "any"}
 CENTRE, RADIUS = 1 + 2j, 3.0
 
