@@ -258,7 +258,7 @@ def all_pairs() -> PairsOf:
 
 # Several times as fast as usual: how finely curves are traced, how many pairs, rounds and solves there are.
 SMALL: dict[str, dict[str, Any]] = {
-    "grashof.synth.starts.exact_poses": {"LINES": 300, "CELL": 0.02, "NEAR_PAIRS": 30_000},
+    "grashof.synth.starts.exact_poses": {"LINES": 300, "CELL": 0.02, "PAIRS": 200_000, "NEAR_PAIRS": 30_000},
     "grashof.synth.starts.paths": {"BARREN": 2, "SEARCHES": 1},
     "grashof.synth.results.single_relaxations": {"SOLVES": 3},
     "grashof.synth.results.trade_offs": {"MOST_SEEDS": 4},
