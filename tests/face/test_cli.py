@@ -32,7 +32,7 @@ from grashof.problems import (
 from grashof.synth import Candidate
 
 Grashof = Callable[..., Any]
-QUICK = ("--top", "12", "--starts", "32", "--drawings", "2")
+QUICK = ("--top", "6", "--starts", "16", "--drawings", "2")
 
 
 def test_solve_writes_a_verified_list(grashof: Grashof, tmp_path: Path) -> None:
@@ -44,7 +44,7 @@ def test_solve_writes_a_verified_list(grashof: Grashof, tmp_path: Path) -> None:
     assert {path.name for path in folder.iterdir()} == expected
     table = pd.read_csv(folder / "candidates.csv")
     designs = json.loads((folder / "candidates.json").read_text())["designs"]
-    assert 1 <= table["family"].nunique() <= 12
+    assert 1 <= table["family"].nunique() <= 6
     assert table["family"].tolist() == [design["family"] for design in designs]
     assert {design["mechanism"] for design in designs} == {"four-bar"}
     assert table["rank"].tolist() == list(range(1, len(table) + 1))
@@ -70,9 +70,10 @@ def test_solve_writes_a_verified_list(grashof: Grashof, tmp_path: Path) -> None:
 def test_progress_is_plain_lines_when_piped(grashof: Grashof) -> None:
     done = grashof("solve", "luggage", *QUICK)
     assert "\x1b" not in done.output
-    assert "of 78 starts solved" in done.stderr or "of 32 starts solved" in done.stderr
+    assert "of 16 starts solved" in done.stderr
 
 
+@pytest.mark.usefixtures("small_search")
 def test_second_run_replaces_only_its_own_files(grashof: Grashof, tmp_path: Path, impossible: Path) -> None:
     out = tmp_path / "out"
     assert grashof("solve", "luggage", "--out", out, *QUICK).exit_code == 0
@@ -85,15 +86,16 @@ def test_second_run_replaces_only_its_own_files(grashof: Grashof, tmp_path: Path
     names = {path.name for path in out.iterdir()}
     assert {"notes.txt", "design-99.png", "design-01.png"} <= names
     assert "design-02.png" not in names
-    assert grashof("solve", impossible, "--out", out, "--starts", "16").exit_code == 1
+    assert grashof("solve", impossible, "--out", out, "--starts", "4").exit_code == 1
     names = {"notes.txt", "design-99.png", "nearest.csv", "report.html", "run.json"}
     assert {path.name for path in out.iterdir()} == names
 
 
+@pytest.mark.usefixtures("small_search")
 def test_impossible_problem_names_what_stands_in_the_way(
     grashof: Grashof, tmp_path: Path, impossible: Path
 ) -> None:
-    done = grashof("solve", impossible)
+    done = grashof("solve", impossible, "--starts", "16")
     assert done.exit_code == 1
     assert "transmission_min_deg 13.4 instead of 60" in done.stderr
     nearest = pd.read_csv(tmp_path / "impossible-designs" / "nearest.csv")
@@ -213,10 +215,10 @@ def test_foreign_files_are_refused_before_solving(grashof: Grashof, tmp_path: Pa
 
 
 def test_the_list_holds_what_the_file_wants(grashof: Grashof, tmp_path: Path) -> None:
-    text = problem_text("luggage") + "\n[search]\nenough = 60\n"
+    text = problem_text("luggage") + "\n[search]\nenough = 30\n"
     (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
     assert grashof("solve", "mine.toml", "--drawings", "0").exit_code == 0
-    assert len(pd.read_csv(tmp_path / "mine-designs" / "candidates.csv")) >= 60
+    assert len(pd.read_csv(tmp_path / "mine-designs" / "candidates.csv")) >= 30
 
 
 def test_full_disk_is_told_and_keeps_the_old_run(
@@ -315,7 +317,7 @@ def test_a_drawing_that_fails_does_not_cost_the_lists(
 def test_a_reader_that_leaves_ends_nothing(tmp_path: Path, merged: bool) -> None:
     # FORCE_COLOR makes rich take a pipe for a terminal.
     program = "from grashof.cli import main; main()"
-    command = [sys.executable, "-c", program, "solve", "luggage", "--drawings", "0"]
+    command = [sys.executable, "-c", program, "solve", "luggage", "--starts", "8", "--drawings", "0"]
     running = subprocess.Popen(
         command,
         cwd=tmp_path,
@@ -332,12 +334,12 @@ def test_a_reader_that_leaves_ends_nothing(tmp_path: Path, merged: bool) -> None
     assert running.wait(timeout=60) == 0
     assert "Error" not in said
     assert "Exception" not in said
-    assert len(pd.read_csv(tmp_path / "luggage-designs" / "candidates.csv")) >= 50
+    assert len(pd.read_csv(tmp_path / "luggage-designs" / "candidates.csv")) > 0
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
 def test_interrupt_writes_what_was_verified(tmp_path: Path) -> None:
-    text = problem_text("luggage") + "\n[search]\nstarts = 5000\nenough = 3000\n"
+    text = problem_text("luggage") + "\n[search]\nstarts = 5000\nenough = 300\n"
     (tmp_path / "long.toml").write_text(text, encoding="utf-8")
     command = [
         sys.executable,
@@ -394,6 +396,7 @@ def test_the_record_tells_the_least_error_and_the_bound(grashof: Grashof, tmp_pa
     assert (exact["least_error"], exact["most_error"], exact["settings"]["effort"]) == (None, None, 1.0)
 
 
+@pytest.mark.usefixtures("small_search")
 def test_zones_that_are_too_small_say_how_large_would_do(grashof: Grashof, tmp_path: Path) -> None:
     (tmp_path / "mine.toml").write_text(MOTION + "within = 0.001\n[search]\neffort = 0.2\n")
     done = grashof("solve", "mine.toml")

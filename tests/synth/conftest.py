@@ -256,24 +256,6 @@ def all_pairs() -> PairsOf:
     return of
 
 
-# Several times as fast as usual: how finely curves are traced, how many pairs, rounds and solves there are.
-SMALL: dict[str, dict[str, Any]] = {
-    "grashof.synth.starts.exact_poses": {"LINES": 300, "CELL": 0.02, "PAIRS": 200_000, "NEAR_PAIRS": 30_000},
-    "grashof.synth.starts.paths": {"BARREN": 2, "SEARCHES": 1},
-    "grashof.synth.results.single_relaxations": {"SOLVES": 3},
-    "grashof.synth.results.trade_offs": {"MOST_SEEDS": 4},
-    "grashof.synth.synthesize": {"NEAR_EFFORT": 0.2},
-}
-
-
-@pytest.fixture
-def small_search(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Small searches and explanations, for tests of anything but the best designs."""
-    for module, sizes in SMALL.items():
-        for name, size in sizes.items():
-            monkeypatch.setattr(import_module(module), name, size)
-
-
 LeastError: TypeAlias = Callable[..., Result]
 
 
