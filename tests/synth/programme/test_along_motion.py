@@ -223,6 +223,7 @@ def test_the_bound_holds_between_the_angles_of_the_grid() -> None:
     assert again.max() < 0.005
 
 
+@pytest.mark.usefixtures("small_search")
 def test_an_objective_of_least_squares_wants_a_bound_of_the_error() -> None:
     task, _ = planted_path(np.random.default_rng(3), points=10)
     loose = Requirements(exact=False)
