@@ -9,7 +9,6 @@ import numpy as np
 import pandas as pd
 
 from grashof.page.render import compact, render
-from grashof.problems.files.linkage_file import linkage_json
 from grashof.survey.report import LinkageReport
 from grashof.wording.numbers import number_text, value_text
 
@@ -40,7 +39,7 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         "scene": {"unit": spec.length_unit},
         "designs": [
             {
-                "linkage": linkage_json(spec.linkage),
+                "linkage": spec.linkage.stated,
                 "low": low,
                 "high": high,
                 "turns": report.turns,
