@@ -67,7 +67,9 @@ class FourBar(Displayed):
     )
     GROUND: ClassVar[tuple[str, ...]] = LINKS[0].points
     POINTS: ClassVar[tuple[str, ...]] = points_of(LINKS)
+    MOVING: ClassVar[tuple[str, ...]] = POINTS[len(GROUND) :]
     JOINTS: ClassVar[dict[str, tuple[int, ...]]] = joints_of(LINKS)
+    PIVOTS: ClassVar[tuple[str, ...]] = tuple(filter(JOINTS.__contains__, POINTS))
     LENGTHS: ClassVar[tuple[str, ...]] = tuple(f"r{link.number}" for link in LINKS)
     # What is made, and may come out inexactly.
     DIMENSIONS: ClassVar[tuple[str, ...]] = (*LENGTHS, "u", "v")
