@@ -105,9 +105,9 @@ class Link:
     points: tuple[str, ...]
 
     @property
-    def label(self) -> str:
-        """Its points as they are written in drawings: O2-A."""
-        return "-".join(self.points).upper()
+    def labels(self) -> tuple[str, ...]:
+        """Its points as they are written in drawings: O2, A."""
+        return tuple(point.upper() for point in self.points)
 
     @property
     def lines(self) -> tuple[tuple[str, str], ...]:

@@ -18,6 +18,7 @@ from grashof.analysis.numerics.smooth_polygon import smooth_polygon
 from grashof.figures.subject import Subject
 from grashof.problems import FourBar, MotionTask, PathTask, Problem, Task
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.linkage_parts import Link
 
 # Told apart by the colour-blind, too (after Okabe & Ito, *Color Universal Design*, 2008).
 DRIVER, COUPLER, OUTPUT, PATH = "#d55e00", "#0072b2", "#009e73", "#8c3f78"
@@ -62,7 +63,7 @@ class Links:
         for link in FourBar.LINKS:
             if len(link.points) > 2:
                 look = {"color": COLOURS[link.name], "alpha": 0.1 * shade, "linewidth": 0, "zorder": 3}
-                self._drawn.append((link.points, axes.fill(*_at(points, link.points).T, **look)[0]))
+                self._drawn.append((_sides(link), axes.fill(*_at(points, _sides(link)).T, **look)[0]))
 
     @property
     def artists(self) -> list[Artist]:
@@ -82,13 +83,18 @@ class Links:
 def _looks(named: bool) -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
     """Through which points the bars, the sides of the plate, the joints and P are drawn, and how."""
     for link in sorted(FourBar.LINKS[1:], key=lambda link: len(link.points)):
-        ends, width = (link.points, 2.4) if len(link.points) == 2 else ((*link.points, link.points[0]), 1.6)
-        label = f"{link.name} {link.label}" if named else None
-        yield ends, {"color": COLOURS[link.name], "linewidth": width, "label": label, "zorder": 4}
+        label = f"{link.name} {'-'.join(link.labels)}" if named else None
+        width = 2.4 if len(link.points) == 2 else 1.6
+        yield _sides(link), {"color": COLOURS[link.name], "linewidth": width, "label": label, "zorder": 4}
     dot: dict[str, Any] = {"marker": "o", "linestyle": "none"}
     joints = tuple(name for name in FourBar.MOVING if name in FourBar.JOINTS)
     yield joints, {**dot, "color": "white", "markeredgecolor": COUPLER, "markersize": 5, "zorder": 5}
     yield ("p",), {**dot, "color": PATH, "markersize": 4, "zorder": 6}
+
+
+def _sides(link: Link) -> tuple[str, ...]:
+    """The ends of a bar, the corners of a plate all round."""
+    return link.points if len(link.points) == 2 else (*link.points, link.points[0])
 
 
 def _at(points: Mapping[str, FloatArray], names: Sequence[str]) -> FloatArray:
