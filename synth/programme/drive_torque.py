@@ -169,7 +169,7 @@ def _curves(
     """Magnitudes in reference torques, shape (n, count)."""
     o2, o4, a, b, p = points.T
     coupler, last = b - a, theta2[:, -1]
-    if getattr(problem.task, "closed", False):
+    if problem.task.closed:
         last = theta2[:, 0] + direction * TURN
     arm = (p - a) * np.abs(coupler) / coupler
     shape = np.array([

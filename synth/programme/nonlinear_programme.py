@@ -195,8 +195,8 @@ def _parameters(form: Form, scaled: ScaledProblem, start: Start) -> FloatArray:
         _interleaved(scaled.targets[visit]),
         _turns(scaled, start),
         scaled.weights[visit],
-        none.real if scaled.turn_weights is None else scaled.turn_weights[visit],
-        none.real if scaled.timing is None else np.abs(scaled.timing[visit]),
+        scaled.turn_weights[visit],
+        scaled.timing[visit],
         [float(target == 0) for target in visit],
         _interleaved(scaled.targets[:1]),
         [start.direction, start.assembly],
@@ -273,8 +273,6 @@ def _square(scaled: ScaledProblem, start: Start) -> float:
 
 def _turns(scaled: ScaledProblem, start: Start) -> FloatArray:
     """Angles of the body in the order of visit, moved by whole turns to be nearest to the start."""
-    if scaled.turns is None:
-        return np.zeros(len(start.visit))
     turned = np.array(start.theta3) + start.body_angle
     off = scaled.turns[list(start.visit)] - turned
     nearest: FloatArray = turned + np.angle(np.exp(1j * off))

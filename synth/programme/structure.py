@@ -88,8 +88,7 @@ class Form:
     @classmethod
     def of(cls, scaled: ScaledProblem, start: Start) -> Form:
         """The form that a problem and a start call for."""
-        wanted, closed = scaled.wanted, getattr(scaled.problem.task, "closed", False)
-        turn_weights = np.zeros(len(scaled.targets)) if scaled.turn_weights is None else scaled.turn_weights
+        wanted, closed = scaled.wanted, scaled.closed
         low = min(limits[0] for limits in wanted.link_lengths)
         high = max(limits[1] for limits in wanted.link_lengths)
         plain = start.stay or bool(start.relaxed) or not (scaled.exact or start.bounded)
@@ -97,9 +96,9 @@ class Form:
             targets=len(start.visit),
             poses=scaled.motion is not None,
             positions=tuple((scaled.weights > 0)[list(start.visit)].tolist()),
-            angles=tuple((turn_weights > 0)[list(start.visit)].tolist()),
+            angles=tuple((scaled.turn_weights > 0)[list(start.visit)].tolist()),
             exact=scaled.exact,
-            timed=scaled.timing is not None,
+            timed=scaled.timed,
             crank=wanted.rotatability is not Rotatability.ANY,
             same_branch=wanted.same_branch,
             over_task=wanted.transmission_over is TransmissionOver.TASK and not closed,
@@ -131,17 +130,17 @@ def _grid_size(start: Start, closed: bool) -> int:
 def _nearest(scaled: ScaledProblem, start: Start) -> tuple[bool, ...]:
     """At which targets a limit, or the objective, depends on the driver angle that the judge finds."""
     wanted, count = scaled.wanted, len(start.visit)
-    if scaled.exact or scaled.timing is not None or start.relaxed or start.loose:
+    if scaled.exact or scaled.timed or start.relaxed or start.loose:
         return (False,) * count
     moving = set(wanted.keep_out_for) - {"o2", "o4"} if wanted.keep_out else set()
     boxed = any(box not in (None, Box()) for box in (wanted.a, wanted.b))
-    every = bool(boxed or moving or scaled.constraints or (start.zoned and scaled.turns is not None))
+    every = bool(boxed or moving or scaled.constraints or (start.zoned and scaled.has_angles))
     over_task = wanted.transmission_over is TransmissionOver.TASK and not scaled.closed
     ends = bool(over_task and (wanted.transmission_min_deg > 0 or start.bounded))
     nearest = np.full(count, every)
     nearest[[0, -1]] |= ends
     if wanted.theta2_start_deg is not None:  # a pose is met where it is nearest, a point where it is told
-        nearest[start.visit.index(0)] = scaled.turns is not None
+        nearest[start.visit.index(0)] = scaled.has_angles
     return tuple(nearest.tolist())
 
 

@@ -9,7 +9,7 @@ import pandas as pd
 
 from grashof.analysis import curve_distances, over_task, robustness
 from grashof.analysis.judge.tolerance import DIMENSIONS
-from grashof.problems import PathTask, Problem
+from grashof.problems import Problem
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.results.ranking import pareto_optimal
 
@@ -73,11 +73,11 @@ def _fitted(problem: Problem, candidate: Candidate) -> dict[str, float]:
 
 
 def _distances(problem: Problem, candidate: Candidate) -> dict[str, float]:
-    """Between the coupler curve and the polygon through the points of a closed path."""
+    """Between the coupler curve and the polygon through the points of a closed task."""
     task, verdict = problem.task, candidate.verdict
-    if not isinstance(task, PathTask) or not task.closed or not verdict.full_rotation:
+    if not task.closed or not task.has_position.all() or not verdict.full_rotation:
         return {}
-    distances = curve_distances(candidate.linkage, task.points, verdict.direction)
+    distances = curve_distances(candidate.linkage, task.positions, verdict.direction)
     return dict(zip(("hausdorff", "frechet"), distances, strict=True))
 
 
@@ -95,7 +95,7 @@ def _row(candidate: Candidate) -> dict[str, Any]:
     start, end = (driver - 360 * np.ceil((driver[0] - 180) / 360)).tolist()  # it starts in (-180, 180]
     r1, r2, r3, r4 = (float(length) for length in linkage.lengths)
     angles = {}
-    if verdict.angle_error is not None and not np.isnan(verdict.angle_error).all():
+    if not np.isnan(verdict.angle_error).all():
         angle_error = np.degrees(verdict.angle_error)
         angles = {
             "body_angle_deg": float(np.degrees(linkage.body_angle)),
