@@ -51,9 +51,9 @@ def squares(
             gap = state.p @ np.array([1, 1j]) - point
             off = wrapped(state.theta3 - angle)
             rate, bend = 1j * (crank + omega3 * turned), -crank + (1j * alpha3 - omega3**2) * turned
-            value = by_point * np.abs(gap) ** 2 + by_angle * off**2
+            value = by_point * (gap.real**2 + gap.imag**2) + by_angle * off**2
             slope = 2 * (by_point * (rate.conj() * gap).real + by_angle * omega3 * off)
-            positive = 2 * (by_point * np.abs(rate) ** 2 + by_angle * omega3**2)
+            positive = 2 * (by_point * (rate.real**2 + rate.imag**2) + by_angle * omega3**2)
             curved = 2 * (by_point * (bend.conj() * gap).real + by_angle * alpha3 * off)
             return np.nan_to_num(value, nan=np.inf), slope, positive + curved, positive
 

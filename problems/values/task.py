@@ -12,6 +12,8 @@ from grashof.problems.values.arrays import BoolArray, FloatArray
 from grashof.problems.values.checks import span
 from grashof.problems.values.read_only import ReadOnly
 
+_SAME = 1e-12  # sizes, rad
+
 
 class Task(ReadOnly, ABC):
     """N targets that a linkage has to meet in order; base of `MotionTask` and `PathTask`.
@@ -98,8 +100,8 @@ class Task(ReadOnly, ABC):
     @property
     def returns(self) -> bool:
         """Whether the last target is the first again."""
-        ends = np.column_stack([self.positions, np.exp(1j * self.angles)])[[0, -1]]
-        return np.array_equal(*ends, equal_nan=True)
+        first, last = np.column_stack([self.positions / self.size, np.exp(1j * self.angles)])[[0, -1]]
+        return np.allclose(first, last, rtol=0, atol=_SAME, equal_nan=True)
 
     @property
     def stated_zones(self) -> dict[str, FloatArray]:

@@ -181,9 +181,10 @@ def diagonal(rows: Rows, unknown: Unknowns, places: Places) -> ca.SX:
 def _nearest(rows: Rows, form: Form, given: Given, unknown: Unknowns, places: Places) -> None:
     """The derivative of a target's square by its driver angle is zero, as the judge will have it.
 
-    With d theta3 / d theta2 = N / D from the loop projected on O4B, multiplied by D.
+    With d theta3 / d theta2 = N / D from the loop projected on O4B, multiplied by D. Timed targets
+    have one driver angle: the sum of their derivatives is zero.
     """
-    o2, o4 = unknown["o2"], unknown["o4"]
+    o2, o4, total = unknown["o2"], unknown["o4"], ca.SX(0)
     for k in np.flatnonzero(form.nearest).tolist():
         a, b, p = places.a[k], places.b[k], places.p[k]
         d, n = ca.dot(b - o4, quarter_turn(b - a)), -ca.dot(b - o4, quarter_turn(a - o2))
@@ -193,7 +194,12 @@ def _nearest(rows: Rows, form: Form, given: Given, unknown: Unknowns, places: Pl
             row += d * ca.dot(missed, quarter_turn(a - o2)) + n * ca.dot(missed, quarter_turn(p - a))
         if form.angles[k]:
             row += n * given.square_weights[form.targets + k] * _off(given, unknown, k)
-        rows.add("zero", ca.sqrt(given.error_scale) * row)
+        if form.timed:
+            total += row / d
+        else:
+            rows.add("zero", ca.sqrt(given.error_scale) * row)
+    if form.timed and any(form.nearest):
+        rows.add("zero", ca.sqrt(given.error_scale) * total)
 
 
 def _error(rows: Rows, form: Form, given: Given, unknown: Unknowns, places: Places) -> None:

@@ -282,8 +282,8 @@ def _turns(scaled: ScaledProblem, start: Start) -> FloatArray:
 def _unknown_limits(form: Form, scaled: ScaledProblem, start: Start) -> tuple[FloatArray, FloatArray]:
     wanted, limits = scaled.wanted, list[Limits]()
     boxed = (
-        ("o2", start.o2, wanted.o2),
-        ("o4", start.o4, wanted.o4),
+        ("o2", start.o2, wanted.o2 or Box()),
+        ("o4", start.o4, wanted.o4 or Box()),
         ("a", start.a, None),
         ("b", start.b, None),
     )

@@ -53,7 +53,7 @@ class Form:
         Requirements may be missed; how far is the objective.
     nearest : tuple of bool
         At which targets, in the order of visit, the driver stands where the miss is least, as the
-        judge has it.
+        judge has it; of timed targets, that of all together.
     most_error, zoned : bool
         The error as a whole, or that at every target, is bounded, and the problem's objective decides.
     """
@@ -130,11 +130,14 @@ def _grid_size(start: Start, closed: bool) -> int:
 def _nearest(scaled: ScaledProblem, start: Start) -> tuple[bool, ...]:
     """At which targets a limit, or the objective, depends on the driver angle that the judge finds."""
     wanted, count = scaled.wanted, len(start.visit)
-    if scaled.exact or scaled.timed or start.relaxed or start.loose:
+    if scaled.exact or start.relaxed or start.loose:
         return (False,) * count
     moving = set(wanted.keep_out_for) - {"o2", "o4"} if wanted.keep_out else set()
     boxed = any(box not in (None, Box()) for box in (wanted.a, wanted.b))
-    every = bool(boxed or moving or scaled.constraints or (start.zoned and scaled.has_angles))
+    zoned = start.zoned and (scaled.has_angles or scaled.timed)
+    every = bool(boxed or moving or scaled.constraints or zoned)
+    if scaled.timed:
+        return (every and wanted.theta2_start_deg is None,) * count
     over_task = wanted.transmission_over is TransmissionOver.TASK and not scaled.closed
     ends = bool(over_task and (wanted.transmission_min_deg > 0 or start.bounded))
     nearest = np.full(count, every)

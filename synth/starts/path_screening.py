@@ -22,7 +22,7 @@ from grashof.synth.starts.loop_search import Placed
 
 def path_target(scaled: ScaledProblem) -> PathTarget:
     """What the search has to pass; a last point that repeats the first counts as its second half."""
-    last = -1 if _repeats(scaled) else None
+    last = -1 if scaled.problem.task.returns else None
     weights, turn_weights = scaled.weights[:last].copy(), scaled.turn_weights[:last].copy()
     if last:
         weights[0] += scaled.weights[-1]
@@ -38,13 +38,6 @@ def path_target(scaled: ScaledProblem) -> PathTarget:
     )
 
 
-def _repeats(scaled: ScaledProblem) -> bool:
-    """Whether the last target is the first one again."""
-    given = np.stack([scaled.weights, scaled.turn_weights])[:, [0, -1]] > 0
-    first, last = np.stack([scaled.targets, np.exp(1j * scaled.turns)])[:, [0, -1]].T
-    return bool((given[:, 0] == given[:, 1]).all() and (np.abs(first - last) < 1e-12).all())
-
-
 def entries_of(placed: Placed, rows: BoolArray | IntArray) -> Placed:
     """Some linkages of a batch."""
     return Placed(*(getattr(placed, name)[rows] for name in placed.__slots__))
@@ -53,7 +46,7 @@ def entries_of(placed: Placed, rows: BoolArray | IntArray) -> Placed:
 def judged(scaled: ScaledProblem, target: PathTarget, placed: Placed, direction: FloatArray) -> Screened:
     """Placed linkages and how far each violates the requirements."""
     a, b, theta2 = placed.a, placed.b, placed.theta2
-    if _repeats(scaled):
+    if scaled.problem.task.returns:
         a, b = (np.concatenate([points, points[:, :1]], axis=1) for points in (a, b))
         theta2 = np.concatenate([theta2, theta2[:, :1] + TURN * direction[:, None]], axis=1)
     visit = np.broadcast_to(np.arange(theta2.shape[1]), theta2.shape)
