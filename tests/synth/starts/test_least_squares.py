@@ -77,8 +77,8 @@ def test_oversteps_are_what_a_second_computation_says() -> None:
         r = np.abs([placed.o4[k] - placed.o2[k], a[0] - placed.o2[k], b[0] - a[0], b[0] - placed.o4[k]])
         over = [
             *(np.log(max(x / 0.8, 1)) - np.log(max(0.5 / x, 1)) for x in r),
-            np.log(max(r.max() / r.min() / 1.2, 1)),
             *(max(x - 0.7, 0) - max(0.6 - x, 0) for x in (abs(p[0] - a[0]), abs(p[0] - b[0]))),
+            np.log(max(r.max() / r.min() / 1.2, 1)),
         ]
         np.testing.assert_allclose(residual[k, 12 : 12 + len(over)], over, atol=1e-9)
         mu = np.angle((a - b) / (placed.o4[k] - b))  # at B, between coupler and output
