@@ -152,7 +152,7 @@ def draw_curves(
         if not sweep.turns and not label.startswith("angle"):
             _bound(axes, np.concatenate(list(drawn.values())))
         axes.axhline(0, color=GROUND, linewidth=0.6, zorder=0)
-        axes.set_ylabel(label.format(unit=sweep.spec.length_unit or "length"), parse_math=False)
+        axes.set_ylabel(label.format(unit=sweep.spec.unit), parse_math=False)
         if sweep.turns:
             axes.set_xlim(0, 360)
             axes.set_xticks(np.arange(0, 361, 45))

@@ -57,7 +57,7 @@ class Quantity:
 
 def kinematic_quantities(spec: LinkageSpec) -> list[Quantity]:
     """Angles, rates and points, and the torque factor of an output arm."""
-    unit = spec.length_unit or "length"
+    unit = spec.unit
     driven = {link.number: link.name for link in FourBar.LINKS[2:]}
     found = [
         Quantity(f"theta{n}_deg", f"angle of {name} {n}", "deg", _degrees(f"theta{n}"), 360.0, position=True)

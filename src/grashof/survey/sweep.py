@@ -86,12 +86,18 @@ class Sweep:
     def angles(self) -> Iterator[FloatArray]:
         """Driver angles of each range, rad."""
         for low, high in self.ranges:
-            share = np.linspace(0, 1, _STEPS + 1)
-            if not self.turns:  # closer towards dead positions, where the linkage runs away from its driver
-                share = (1 - np.cos(np.pi * share)) / 2
-            angles = low + (high - low) * share
-            angles[-1] = high
-            yield angles
+            yield driver_angles(low, high, _STEPS, even=self.turns)
+
+
+def driver_angles(low: float, high: float, steps: int, *, even: bool) -> FloatArray:
+    """Driver angles to sample a curve at, shape (steps + 1,), rad.
+
+    Closer towards dead positions where not even: there the linkage runs away from its driver.
+    """
+    share = np.linspace(0, 1, steps + 1)
+    angles = low + (high - low) * (share if even else (1 - np.cos(np.pi * share)) / 2)
+    angles[-1] = high
+    return angles
 
 
 def _between_dead_positions(linkage: FourBar) -> Iterator[tuple[float, float]]:
