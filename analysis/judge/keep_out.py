@@ -11,7 +11,7 @@ import shapely
 from numpy.typing import NDArray
 
 from grashof.analysis.four_bar.position import places, solve_position
-from grashof.analysis.judge.nearest_poses import Targets, Way
+from grashof.analysis.judge.task_motion import Targets, TaskMotion
 from grashof.problems import FourBar, Requirements
 from grashof.problems.values.areas import solid
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
@@ -115,7 +115,7 @@ def segment_depth(area: Area, begin: FloatArray, end: FloatArray, rounds: int = 
 
 
 def intrusions(
-    linkage: FourBar, wanted: Requirements, targets: Targets, way: Way, *, joined: bool
+    linkage: FourBar, wanted: Requirements, targets: Targets, motion: TaskMotion, *, joined: bool
 ) -> dict[str, float]:
     """How deep the parts of a linkage that shall keep out reach into the areas kept out.
 
@@ -125,7 +125,7 @@ def intrusions(
         A single linkage.
     wanted : Requirements
     targets : Targets
-    way : Way
+    motion : TaskMotion
     joined : bool
         A motion joins the targets: it is judged as a whole, otherwise the targets alone.
 
@@ -150,7 +150,7 @@ def intrusions(
             continue
         if joined:
             at = _depth_of(area, linkage, ends, targets.assembly[:1])
-            deepest[part] = _deepest_over(at, way.start, way.end)
+            deepest[part] = _deepest_over(at, motion.start, motion.end)
         else:
             at = _depth_of(area, linkage, ends, targets.assembly)
             deepest[part] = float(at(targets.theta2, _ROUNDS).max())

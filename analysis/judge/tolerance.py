@@ -16,7 +16,7 @@ import numpy.typing as npt
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.four_bar.transmission import transmission_angle
 from grashof.analysis.judge.verify import Verdict
-from grashof.problems import FourBar, Manufacturing, MotionTask, PathTask, Task
+from grashof.problems import FourBar, Manufacturing, Task
 from grashof.problems.values.arrays import BoolArray, FloatArray
 
 SAMPLES = 20_000  # made linkages: a share has a standard error of at most 0.0036
@@ -155,7 +155,7 @@ def dimension_errors(manufacturing: Manufacturing, samples: int, rng: np.random.
 
 def measured_sensitivity(linkage: FourBar, task: Task, verdict: Verdict) -> FloatArray:
     """Sensitivity at each target, shape (N, 3, 6), with angles as the lengths they count as."""
-    counts = np.array([1.0, 1.0, task.angle_length if isinstance(task, MotionTask) else 0.0])
+    counts = np.array([1.0, 1.0, task.angle_length if task.has_angle.any() else 0.0])
     return counts[:, None] * sensitivity(linkage, verdict.theta2, verdict.assembly)
 
 
@@ -201,7 +201,7 @@ def yield_monte_carlo(
         state = solve_position(made, theta2, assembly)
         shift = state.p - nominal.p
         moves2 = shift[..., 0] ** 2 + shift[..., 1] ** 2
-        if isinstance(task, MotionTask):
+        if task.has_angle.any():
             turned = (state.theta3 - nominal.theta3 + np.pi) % (2 * np.pi) - np.pi
             moves2 += (task.angle_length * turned) ** 2
         within += int(np.count_nonzero(possible & (moves2.max(axis=0) <= band**2)))  # NaN is not within
@@ -244,7 +244,7 @@ def _nearest_to_dead(linkage: FourBar, task: Task, verdict: Verdict) -> FloatArr
     There, or at the ends of the way, the diagonal A-O4 is shortest and longest, whatever the lengths.
     """
     start, end = verdict.theta2.min(), verdict.theta2.max()
-    if isinstance(task, PathTask) and task.closed:
+    if task.closed:
         end = start + 2 * np.pi
     first, last = np.ceil((start - linkage.theta1) / np.pi), np.floor((end - linkage.theta1) / np.pi)
     return linkage.theta1 + np.pi * np.arange(first, last + 1)[:2]

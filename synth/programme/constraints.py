@@ -117,14 +117,14 @@ def close_at_points(build: Builder, form: Form, x: Unknowns, targets: Targets) -
     a = [x.o2 + x.r[1] * unit(x.theta2[k]) for k in range(n)]
     b = [a[k] + x.r[2] * unit(x.theta3[k]) for k in range(n)]
     p = [a[k] + rotated(x.arm, x.theta3[k]) for k in range(n)]
-    timing = build.parameter(_timing, n) if form.timed else None
+    timing = build.parameter(lambda scaled, start: scaled.timing[list(start.visit)], n)
     for k in range(n):
         build.zero((ca.sumsqr(b[k] - x.o4) - x.r[3] ** 2) / 2)
         if form.exact and form.positions[k]:
             build.zero(p[k] - targets.points[k])
         if form.exact and form.angles[k]:
             build.zero(x.theta3[k] + x.body_angle - targets.turns[k])
-        if timing is not None and k:
+        if form.timed and k:
             build.zero(x.theta2[k] - x.theta2[0] - x.direction * (timing[k] - timing[0]))
     for point, at in ((x.a, a), (x.b, b)):
         build.zero(point - sum((x.at_first[k] * at[k] for k in range(n)), ca.SX.zeros(2)))
@@ -167,8 +167,10 @@ def require_modes(build: Builder, form: Form, x: Unknowns, places: Places) -> No
 def stand_nearest(build: Builder, form: Form, x: Unknowns, places: Places, targets: Targets) -> None:
     """The derivative of a target's square by its driver angle is zero, as the judge will have it.
 
-    With d theta3 / d theta2 = N / D from the loop projected on O4B, multiplied by D.
+    With d theta3 / d theta2 = N / D from the loop projected on O4B, multiplied by D. Timed targets
+    have one driver angle: the sum of their derivatives is zero.
     """
+    total = ca.SX(0)
     for k in np.flatnonzero(form.nearest).tolist():
         a, b, p = places.a[k], places.b[k], places.p[k]
         d, n = ca.dot(b - x.o4, quarter_turn(b - a)), -ca.dot(b - x.o4, quarter_turn(a - x.o2))
@@ -178,7 +180,12 @@ def stand_nearest(build: Builder, form: Form, x: Unknowns, places: Places, targe
             row += d * ca.dot(missed, quarter_turn(a - x.o2)) + n * ca.dot(missed, quarter_turn(p - a))
         if form.angles[k]:
             row += n * targets.weights[form.targets + k] * _off(x, targets, k)
-        build.zero(ca.sqrt(targets.error_scale) * row)
+        if form.timed:
+            total += row / d
+        else:
+            build.zero(ca.sqrt(targets.error_scale) * row)
+    if form.timed and any(form.nearest):
+        build.zero(ca.sqrt(targets.error_scale) * total)
 
 
 def bound_error(build: Builder, form: Form, x: Unknowns, places: Places, targets: Targets) -> None:
@@ -280,8 +287,6 @@ def _motion(scaled: ScaledProblem) -> Displacements:
 
 def _turns(scaled: ScaledProblem, start: Start) -> FloatArray:
     """Angles of the body in the order of visit, moved by whole turns to be nearest to the start."""
-    if scaled.turns is None:
-        return np.zeros(len(start.visit))
     turned = np.array(start.theta3) + start.body_angle
     off = scaled.turns[list(start.visit)] - turned
     nearest: FloatArray = turned + np.angle(np.exp(1j * off))
@@ -290,13 +295,7 @@ def _turns(scaled: ScaledProblem, start: Start) -> FloatArray:
 
 def _target_weights(scaled: ScaledProblem, start: Start) -> FloatArray:
     visit = list(start.visit)
-    turn_weights = np.zeros(len(visit)) if scaled.turn_weights is None else scaled.turn_weights
-    return np.concatenate([scaled.weights[visit], turn_weights[visit]])
-
-
-def _timing(scaled: ScaledProblem, start: Start) -> FloatArray:
-    timing = np.zeros(len(start.visit)) if scaled.timing is None else np.abs(scaled.timing)
-    return timing[list(start.visit)]
+    return np.concatenate([scaled.weights[visit], scaled.turn_weights[visit]])
 
 
 def _square(scaled: ScaledProblem, start: Start) -> float:

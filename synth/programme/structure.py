@@ -53,7 +53,7 @@ class Form:
         Requirements may be missed; how far is the objective.
     nearest : tuple of bool
         At which targets, in the order of visit, the driver stands where the miss is least, as the
-        judge has it.
+        judge has it; of timed targets, that of all together.
     most_error, zoned : bool
         The error as a whole, or that at every target, is bounded, and the problem's objective decides.
     """
@@ -93,15 +93,14 @@ class Form:
     def of(cls, scaled: ScaledProblem, start: Start) -> Form:
         """The form that a problem and a start call for."""
         wanted, closed = scaled.wanted, scaled.closed
-        turn_weights = np.zeros(len(scaled.targets)) if scaled.turn_weights is None else scaled.turn_weights
         plain = start.stay or bool(start.relaxed) or not (scaled.exact or start.bounded)
         made = cls(
             targets=len(start.visit),
             poses=scaled.motion is not None,
             positions=tuple((scaled.weights > 0)[list(start.visit)].tolist()),
-            angles=tuple((turn_weights > 0)[list(start.visit)].tolist()),
+            angles=tuple((scaled.turn_weights > 0)[list(start.visit)].tolist()),
             exact=scaled.exact,
-            timed=scaled.timing is not None,
+            timed=scaled.timed,
             crank=wanted.rotatability is not Rotatability.ANY,
             same_branch=wanted.same_branch,
             over_task=wanted.transmission_over is TransmissionOver.TASK and not closed,
@@ -142,20 +141,23 @@ def _grid_size(start: Start, closed: bool) -> int:
 def _nearest(scaled: ScaledProblem, start: Start) -> tuple[bool, ...]:
     """At which targets a limit, or the objective, depends on the driver angle that the judge finds."""
     wanted, count = scaled.wanted, len(start.visit)
-    if scaled.exact or scaled.timing is not None or start.relaxed or start.loose:
+    if scaled.exact or start.relaxed or start.loose:
         return (False,) * count
     moving = set(wanted.keep_out_for) - {"o2", "o4"} if wanted.keep_out else set()
     placed = any(
         limit.quantity.over is Over.TARGETS and name != "theta2_start_deg"
         for name, limit in wanted.limited.items()
     )
-    every = bool(placed or moving or scaled.constraints or (start.zoned and scaled.turns is not None))
+    zoned = start.zoned and (scaled.has_angles or scaled.timed)
+    every = bool(placed or moving or scaled.constraints or zoned)
+    if scaled.timed:
+        return (every and wanted.theta2_start_deg is None,) * count
     over_task = wanted.transmission_over is TransmissionOver.TASK and not scaled.closed
     ends = bool(over_task and (wanted.transmission_min_deg > 0 or start.bounded))
     nearest = np.full(count, every)
     nearest[[0, -1]] |= ends
     if wanted.theta2_start_deg is not None:  # a pose is met where it is nearest, a point where it is told
-        nearest[start.visit.index(0)] = scaled.turns is not None
+        nearest[start.visit.index(0)] = scaled.has_angles
     return tuple(nearest.tolist())
 
 

@@ -75,7 +75,7 @@ def attempt(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
     free = scaled.motion is None or len(scaled.targets) < 5  # five poses leave nothing to solve for
     if not as_it_is or (free and start.settled and (candidate is None or not candidate.verdict.ok)):
         solved, candidate = _solved_and_made(scaled, start, number)
-    if candidate is None or not candidate.verdict.ok or scaled.turns is not None:
+    if candidate is None or not candidate.verdict.ok or scaled.has_angles:
         return Attempt(solved.status, candidate)
     return Attempt(solved.status, candidate, _cognates(scaled, candidate))
 
@@ -166,13 +166,12 @@ def _on_path(
     if not scaled.exact and scaled.missed(at_p, theta3 + angles.body_angle) > CLOSE:
         return None
     assembly = np.where((turned.conj() * (at_b - o4)).imag >= 0, 1.0, -1.0)
-    none = np.zeros(len(order))
     wish = Wish(
         points=scaled.targets,
         has_point=scaled.weights > 0,
-        turns=none if scaled.turns is None else scaled.turns,
-        has_turn=none > 0 if scaled.turn_weights is None else scaled.turn_weights > 0,
-        timed=scaled.timing is not None,
+        turns=scaled.turns,
+        has_turn=scaled.turn_weights > 0,
+        timed=scaled.timed,
     )
     polished = polish_path(points, theta2, angles.body_angle, assembly, wish)
     return polished if polished.error < CLOSE and np.isfinite(polished.points).all() else None
@@ -238,7 +237,7 @@ def _cognates(scaled: ScaledProblem, candidate: Candidate) -> tuple[Candidate, .
     position = position_of(candidate.linkage, float(candidate.verdict.theta2[0]))
     points = [
         (cognate - scaled.frame.origin) / scaled.frame.scale
-        for cognate in cognate_points(position, scaled.timing is not None)
+        for cognate in cognate_points(position, scaled.timed)
     ]
     found = []
     for cognate in points:

@@ -10,7 +10,7 @@ import numpy as np
 
 from grashof.analysis import Defect, verify
 from grashof.analysis.judge.design import Constraint, Design, name_of
-from grashof.problems import Box, PathTask, Problem, Requirements, Rotatability
+from grashof.problems import Box, Problem, Requirements, Rotatability
 from grashof.problems.values.arrays import Limits
 from grashof.synth.results.candidate import Candidate
 
@@ -79,8 +79,7 @@ def limiting(problem: Problem, constraints: Sequence[Constraint]) -> list[str]:
     keys += [*ANGLES, "keep_out"]
     changed = [key for key in keys if getattr(wanted, key) != getattr(usual, key)]
     changed += ["constraints"] * bool(constraints)
-    turns = isinstance(problem.task, PathTask) and problem.task.closed
-    if wanted.rotatability is not Rotatability.ANY and not turns:
+    if wanted.rotatability is not Rotatability.ANY and not problem.task.closed:
         changed.append("rotatability")
     return changed + [key for key in ("order", "same_branch") if getattr(wanted, key)]
 

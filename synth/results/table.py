@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from grashof.analysis import curve_distances, over_task, robustness
-from grashof.problems import FourBar, PathTask, Problem
+from grashof.problems import FourBar, Problem
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.results.ranking import pareto_optimal
 
@@ -73,11 +73,11 @@ def _fitted(problem: Problem, candidate: Candidate) -> dict[str, float]:
 
 
 def _distances(problem: Problem, candidate: Candidate) -> dict[str, float]:
-    """Between the coupler curve and the polygon through the points of a closed path."""
+    """Between the coupler curve and the polygon through the points of a closed task."""
     task, verdict = problem.task, candidate.verdict
-    if not isinstance(task, PathTask) or not task.closed or not verdict.full_rotation:
+    if not task.closed or not task.has_position.all() or not verdict.full_rotation:
         return {}
-    distances = curve_distances(candidate.linkage, task.points, verdict.direction)
+    distances = curve_distances(candidate.linkage, task.positions, verdict.direction)
     return dict(zip(("hausdorff", "frechet"), distances, strict=True))
 
 
@@ -94,7 +94,7 @@ def _row(candidate: Candidate) -> dict[str, Any]:
     driver = np.degrees(verdict.theta2[[0, -1]])
     start, end = (driver - 360 * np.ceil((driver[0] - 180) / 360)).tolist()  # it starts in (-180, 180]
     angles = {"body_angle_deg": np.nan}  # of a path, where nothing is carried
-    if verdict.angle_error is not None and not np.isnan(verdict.angle_error).all():
+    if not np.isnan(verdict.angle_error).all():
         angle_error = np.degrees(verdict.angle_error)
         angles = {
             "angle_error_max_deg": float(np.nanmax(angle_error)),

@@ -28,7 +28,7 @@ from grashof.figures.parts import (
     name_points,
 )
 from grashof.figures.subject import Linkage, Subject
-from grashof.problems import MotionTask, Problem, ProblemError
+from grashof.problems import Problem, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 
 _WRITERS = {".gif": "pillow", ".mp4": "ffmpeg"}
@@ -204,9 +204,9 @@ class _Moving:
 
 def _carried(subject: Subject, state: Position) -> list[FloatArray]:
     """Corners of the body that the task has P carry, in every frame; none where it has none."""
-    task = None if subject.problem is None else subject.problem.task
-    if not isinstance(task, MotionTask):
+    if subject.problem is None:
         return []
+    task = subject.problem.task
     angles = state.theta3 + subject.linkage.body_angle
     found = (body_outline(task, place, float(angle)) for place, angle in zip(state.p, angles, strict=True))
     return [corners for corners in found if corners is not None]

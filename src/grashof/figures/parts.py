@@ -16,7 +16,7 @@ from matplotlib.patches import Polygon
 from grashof.analysis import Position, solve_position
 from grashof.analysis.numerics.smooth_polygon import smooth_polygon
 from grashof.figures.subject import Subject
-from grashof.problems import FourBar, MotionTask, PathTask, Problem, Task
+from grashof.problems import FourBar, Problem, Task
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkage_parts import Link
 
@@ -26,7 +26,7 @@ BODY = TARGET = "#e69f00"  # both are what is asked
 COLOURS = {"driver": DRIVER, "coupler": COUPLER, "output": OUTPUT}
 SCENE, GROUND, KEPT_OUT = "#5d6d7e", "#17202a", "#909497"
 # Targets up to which the linkage is drawn at each, and up to which each carries its number.
-_CROWD = {"path": 6, "motion": 8}
+_CROWD, _CROWD_OF_POINTS = 8, 6
 _NUMBERED = 24
 _SIDES = ((7, -12), (7, 6), (-20, 6), (-20, -12))  # pt: where a name may stand beside its point
 _TEXT = (16.0, 11.0)  # pt: texts of two characters so far apart do not cover each other
@@ -152,7 +152,7 @@ def draw_sense(axes: Axes, subject: Subject) -> None:
 def draw_path(axes: Axes, subject: Subject) -> None:
     """The path of P over all that the driver can do; of an open task dotted, and the part used drawn out."""
     linkage, problem, sweep = subject.linkage, subject.problem, subject.sweep
-    verdict = None if problem is None or closes(problem.task) else subject.verdict
+    verdict = None if problem is None or problem.task.closed else subject.verdict
     style: dict[str, Any] = {"color": PATH, "linewidth": 1.6, "label": "path of P", "zorder": 2}
     signs = [int(linkage.assembly)]
     if verdict is not None:
@@ -194,7 +194,7 @@ def draw_task(axes: Axes, subject: Subject) -> None:
     if subject.problem is None or subject.verdict is None:
         return
     task = subject.problem.task
-    if isinstance(task, PathTask):
+    if task.only_points:
         _draw_points(axes, task)
         return
     state = solve_position(subject.linkage, subject.verdict.theta2, subject.verdict.assembly)
@@ -204,16 +204,12 @@ def draw_task(axes: Axes, subject: Subject) -> None:
 
 def targets_shown(task: Task) -> list[int]:
     """Targets at which the linkage is drawn: all, or of many the first, the middle and the last."""
-    count = len(task) - (isinstance(task, PathTask) and _returns(task))
-    return list(range(count)) if count <= _CROWD[task.kind] else [0, count // 2, count - 1]
+    count = len(task) - task.returns
+    most = _CROWD_OF_POINTS if task.only_points else _CROWD
+    return list(range(count)) if count <= most else [0, count // 2, count - 1]
 
 
-def closes(task: Task) -> bool:
-    """Whether the task is a path that one turn of the driver closes."""
-    return isinstance(task, PathTask) and task.closed
-
-
-def body_outline(task: MotionTask, place: FloatArray, angle: float) -> FloatArray | None:
+def body_outline(task: Task, place: FloatArray, angle: float) -> FloatArray | None:
     """The body's corners, shape (M, 2), where it stands at a place and an angle (rad); None without one."""
     if task.body is None or not task.has_angle.any():  # without angles it has no orientation
         return None
@@ -221,7 +217,7 @@ def body_outline(task: MotionTask, place: FloatArray, angle: float) -> FloatArra
     return corners
 
 
-def _draw_pose(axes: Axes, task: MotionTask, linkage: FourBar, state: Position, pose: int) -> None:
+def _draw_pose(axes: Axes, task: Task, linkage: FourBar, state: Position, pose: int) -> None:
     """The body in a pose; what the pose leaves free is as the design has it, and the body then dashed."""
     placed, oriented = bool(task.has_position[pose]), bool(task.has_angle[pose])
     place = task.positions[pose] if placed else state.p[pose]
@@ -241,16 +237,16 @@ def _draw_pose(axes: Axes, task: MotionTask, linkage: FourBar, state: Position, 
     _number(axes, pose, place)
 
 
-def _draw_points(axes: Axes, task: PathTask) -> None:
+def _draw_points(axes: Axes, task: Task) -> None:
     """Target points as open circles under the path; about a dozen of many are numbered."""
-    count = len(task) - _returns(task)
+    count = len(task) - task.returns
     size = float(np.clip(200 / count, 3, 8))
     axes.plot(
-        *task.points.T, linestyle="none", marker="o", markersize=size, markerfacecolor="none",
+        *task.positions.T, linestyle="none", marker="o", markersize=size, markerfacecolor="none",
         markeredgecolor=TARGET, markeredgewidth=size / 6, label="target points", zorder=1.5,
     )  # fmt: skip
     for index in _dozen(count):
-        _number(axes, index, task.points[index])
+        _number(axes, index, task.positions[index])
 
 
 def _number(axes: Axes, index: int, place: FloatArray) -> None:
@@ -263,11 +259,6 @@ def _number(axes: Axes, index: int, place: FloatArray) -> None:
 def _dozen(count: int) -> range:
     """All of the targets, or about a dozen of many."""
     return range(0, count, 1 if count <= _NUMBERED else round(count / 12))
-
-
-def _returns(task: PathTask) -> bool:
-    """Whether the last point is the first again."""
-    return bool((task.points[0] == task.points[-1]).all())
 
 
 def _turned(angle: float) -> FloatArray:

@@ -123,7 +123,8 @@ def _given(errors: FloatArray) -> list[float | None]:
 
 def _design(candidate: Candidate) -> dict[str, Any]:
     verdict = candidate.verdict
-    angle_error = {} if verdict.angle_error is None else {"angle_error": _given(verdict.angle_error)}
+    turned = verdict.angle_error
+    angle_error = {} if np.isnan(turned).all() else {"angle_error": _given(turned)}
     return {
         **labels(candidate),
         "linkage": candidate.linkage.stated,

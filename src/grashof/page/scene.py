@@ -9,7 +9,7 @@ import numpy as np
 from grashof.analysis import driver_ranges, solve_position
 from grashof.analysis.numerics.smooth_polygon import smooth_polygon
 from grashof.page.render import compact
-from grashof.problems import FourBar, MotionTask, PathTask, Problem, Task, catalogue, load
+from grashof.problems import FourBar, Problem, Task, catalogue, load
 from grashof.problems.files.published import published
 from grashof.problems.values.arrays import FloatArray
 
@@ -39,11 +39,11 @@ def scene_of(problem: Problem) -> dict[str, Any]:
 
 
 def _targets(task: Task) -> dict[str, Any]:
-    if isinstance(task, MotionTask):
-        poses = np.column_stack([task.positions, task.angles])
-        body = None if task.body is None or not task.has_angle.any() else task.body.tolist()
-        return {"poses": [_given(pose) for pose in poses], "body": body, "closed": False}
-    return {"points": task.points.tolist(), "closed": task.closed}
+    if task.only_points:
+        return {"points": task.positions.tolist(), "closed": task.closed}
+    poses = np.column_stack([task.positions, task.angles])
+    body = None if task.body is None or not task.has_angle.any() else task.body.tolist()
+    return {"poses": [_given(pose) for pose in poses], "body": body, "closed": task.closed}
 
 
 def _given(numbers: FloatArray) -> list[float | None]:
@@ -53,9 +53,9 @@ def _given(numbers: FloatArray) -> list[float | None]:
 def _published(problem: Problem) -> dict[str, Any] | None:
     """Path of the best published design, for a path of the catalogue."""
     task, known = problem.task, published(problem.name)
-    if not known or problem.name not in catalogue() or not isinstance(task, PathTask):
+    if not known or problem.name not in catalogue():
         return None
-    if not np.array_equal(task.points, load(problem.name).task.positions):
+    if not np.array_equal(task.positions, load(problem.name).task.positions):
         return None  # another problem of the same name
     best = known[0]
     low, high = driver_ranges(best.linkage)[0]

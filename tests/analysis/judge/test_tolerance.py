@@ -307,7 +307,7 @@ def test_moves_are_those_of_the_worst_target() -> None:
     assert found.worst_move == pytest.approx(worst, rel=1e-8)
     assert found.moves.max() * 0.2 < found.worst_move <= found.moves.sum() * 0.2 * (1 + 1e-12)
     path = PathTask(task.positions)
-    of_points = robustness(linkage, path, replace(verdict, angle_error=None), Manufacturing(0.2))
+    of_points = robustness(linkage, path, verdict, Manufacturing(0.2))
     np.testing.assert_allclose(
         of_points.moves, np.sqrt((slope[:, :2] ** 2).sum(axis=1)).max(axis=0), rtol=1e-8
     )
@@ -332,9 +332,7 @@ def test_figures_do_not_depend_on_place_scale_or_call() -> None:
 def test_a_long_path() -> None:
     theta2 = np.linspace(0.2, 5.0, 600)
     task = PathTask(solve_position(CRANK_ROCKER, theta2).p)
-    verdict = replace(
-        poses_of(CRANK_ROCKER, theta2)[1], theta2=theta2, assembly=np.ones(600, dtype=int), angle_error=None
-    )
+    verdict = replace(poses_of(CRANK_ROCKER, theta2)[1], theta2=theta2, assembly=np.ones(600, dtype=int))
     found = robustness(CRANK_ROCKER, task, verdict, Manufacturing(0.05, band=0.08))
     assert found.share_made == pytest.approx(found.share_linear, abs=0.01)
     assert found.share_made * 1000 == pytest.approx(round(found.share_made * 1000))

@@ -360,7 +360,8 @@ UNKNOWN = [
     (
         HEAD + '"a b\\n" = 1',
         'motion."a b\\n" is unknown; '
-        "allowed are poses, weights, angle_length, body, within, angle_within_deg",
+        "allowed are poses, weights, angle_length, body, within, angle_within_deg, timing_deg, "
+        "closed",
     ),
     (f'kinds = "motion"\n[motion]\n{POSES}', "kinds is unknown; did you mean kind?\nkind is missing"),
 ]

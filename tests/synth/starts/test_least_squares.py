@@ -35,7 +35,8 @@ def target_of(rotatability: str, over: str, order: bool = True, **wanted: Any) -
     along = np.linspace(0, 4, 6)
     points = np.exp(0.7j * along) * (1 + 0.2 * along) + rng.normal(0, 0.1, (6, 2)) @ np.array([1, 1j])
     limits = {"rotatability": rotatability, "transmission_over": over, "order": order, **wanted}
-    return PathTarget(points, rng.uniform(0.5, 2, 6), None, Requirements(**limits))
+    free = np.zeros(6)
+    return PathTarget(points, rng.uniform(0.5, 2, 6), free, free, free, Requirements(**limits))
 
 
 def drawn(target: PathTarget, count: int) -> Batch:

@@ -37,9 +37,10 @@ def target_of(kind: tuple[str, bool, bool, bool], n: int = 7, seed: int = 0, **w
     rng = np.random.default_rng([5, seed])
     along = np.linspace(0, 4, n)
     points = np.exp(0.7j * along) * (1 + 0.2 * along) + rng.normal(0, 0.1, (n, 2)) @ np.array([1, 1j])
-    timing = np.concatenate([[0.0], np.cumsum(rng.uniform(0.2, 0.8, n - 1))]) if timed else None
+    timing = np.concatenate([[0.0], np.cumsum(rng.uniform(0.2, 0.8, n - 1))]) if timed else np.zeros(n)
     limits = GENEROUS | {"rotatability": rotatability, "order": order, "same_branch": branch} | wanted
-    return PathTarget(points, rng.uniform(0.5, 2, n), timing, Requirements(**limits))
+    free = np.zeros(n)
+    return PathTarget(points, rng.uniform(0.5, 2, n), free, free, timing, Requirements(**limits))
 
 
 def place(target: PathTarget, batch: Batch) -> Placed:
@@ -108,7 +109,6 @@ def test_draws_are_in_order_and_of_one_assembly(kind: tuple[str, bool, bool, boo
         assert (steps > 0).all()
         assert (steps.sum(axis=1) < 2 * np.pi).all()
     if timed:
-        assert target.timing is not None
         np.testing.assert_allclose(steps, np.tile(np.diff(target.timing), (60, 1)), atol=1e-12)
     if not order and not timed:
         assert (steps < 0).any(axis=1).mean() > 0.9
