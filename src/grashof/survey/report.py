@@ -15,7 +15,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.survey.extremes import extremes_table
 from grashof.survey.facts import Fact, facts_of
 from grashof.survey.quantities import dynamic_quantities, kinematic_quantities, table_of
-from grashof.survey.sweep import Sweep, dead_positions_unwarned, loads_of, masses_of
+from grashof.survey.sweep import Sweep, dead_positions_unwarned, masses_of
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,11 +63,9 @@ def report_on(spec: LinkageSpec, speed_rpm: float | None = None) -> LinkageRepor
     with dead_positions_unwarned():
         states, quantities = sweep.states(), kinematic_quantities(spec)
         tables = {"kinematics": table_of(quantities, states)}
-        if masses is not None:
-            dynamic = dynamic_quantities(spec, masses, loads_of(spec))
+        if dynamic := dynamic_quantities(spec):
             tables["dynamics"] = table_of(dynamic, states)
-            quantities = [*quantities, *dynamic]
-        tables["extremes"] = extremes_table(sweep, quantities)
+        tables["extremes"] = extremes_table(sweep, quantities + dynamic)
         facts = tuple(facts_of(sweep, masses, tables))
     return LinkageReport(sweep, masses, facts, tables, _notes(sweep))
 
