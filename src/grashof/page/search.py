@@ -53,13 +53,7 @@ def search_page(result: Result, frame: pd.DataFrame, record: Mapping[str, Any], 
         "found": bool(result.candidates),
         "scene": scene_of(problem),
         "columns": [
-            {
-                "key": each.key,
-                "label": each.label,
-                "unit": each.unit,
-                "better": each.better,
-                "about": each.about,
-            }
+            {name: getattr(each, name) for name in ("key", "label", "unit", "better", "about")}
             for each in columns
         ],
         "units": figure_units(frame, problem.length_unit) if designs else [],

@@ -236,7 +236,7 @@ def test_ranges_of_an_analysis_are_apart() -> None:
     double = FourBar((0, 0), (4, 0), 3, 1, 3, (0.5, 1))
     report = report_on(LinkageSpec(double, "double", title=HOSTILE))
     parts = Parts(analysis_page(report, RECORD))
-    assert [(each["low"], each["high"]) for each in parts.data["designs"]] == list(report.ranges)
-    for angles, (low, high) in zip(parts.data["theta2"], report.ranges, strict=True):
+    assert [(each["low"], each["high"]) for each in parts.data["designs"]] == list(report.sweep.ranges)
+    for angles, (low, high) in zip(parts.data["theta2"], report.sweep.ranges, strict=True):
         assert (angles[0], angles[-1]) == pytest.approx((np.degrees(low), np.degrees(high)))
     assert HOSTILE in parts.text
