@@ -44,7 +44,7 @@ class Form:
     torque : int
         At how many driver angles the torque is bounded; 0 where it has no part in it.
     closed : bool
-        The motion used is a whole turn.
+        The task motion is a whole turn.
     keep_out : tuple of str
         Of o2, o4, a, b, p: which are held in free regions, the moving ones at every target.
     stay : bool

@@ -210,7 +210,7 @@ def _transmission_rows(target: PathTarget, at: Placement) -> list[_Row]:
 
 
 def passed(target: PathTarget, loop: Loop) -> tuple[BoolArray, BoolArray]:
-    """Whether the motion used passes O2A folded over the ground line, and stretched along it; (n,) each."""
+    """Whether the task motion passes O2A folded over the ground line, and stretched along it; (n,) each."""
     if target.wanted.transmission_over is TransmissionOver.CYCLE or target.closed:
         return np.ones(len(loop.r2), dtype=bool), np.ones(len(loop.r2), dtype=bool)
     if target.jumbled:
