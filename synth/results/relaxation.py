@@ -12,9 +12,9 @@ from grashof.analysis import Defect, verify
 from grashof.analysis.judge.design import Constraint, Design, name_of
 from grashof.problems import Box, Problem, Requirements, Rotatability
 from grashof.problems.values.arrays import Limits
-from grashof.synth.programme.start import LENGTHS
 from grashof.synth.results.candidate import Candidate
 
+LENGTHS = ("r1", "r2", "r3", "r4")
 BOXES = ("o2", "o4", "a", "b")
 ANGLES = ("ground_angle_deg", "theta2_start_deg")
 LEAST_MARGIN = 1e-9  # of full rotation: below it lies a change point

@@ -8,7 +8,9 @@ from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 
 from grashof.analysis import Position, solve_position
@@ -16,10 +18,12 @@ from grashof.analysis.numerics.smooth_polygon import smooth_polygon
 from grashof.figures.subject import Subject
 from grashof.problems import FourBar, Problem, Task
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.linkage_parts import Link
 
 # Told apart by the colour-blind, too (after Okabe & Ito, *Color Universal Design*, 2008).
 DRIVER, COUPLER, OUTPUT, PATH = "#d55e00", "#0072b2", "#009e73", "#8c3f78"
 BODY = TARGET = "#e69f00"  # both are what is asked
+COLOURS = {"driver": DRIVER, "coupler": COUPLER, "output": OUTPUT}
 SCENE, GROUND, KEPT_OUT = "#5d6d7e", "#17202a", "#909497"
 # Targets up to which the linkage is drawn at each, and up to which each carries its number.
 _CROWD, _CROWD_OF_POINTS = 8, 6
@@ -42,9 +46,8 @@ class Links:
     Parameters
     ----------
     axes : Axes
-    linkage : FourBar
-    a, b, p : ndarray, shape (2,), length
-        Moving pivots and coupler point.
+    points : mapping of str to ndarray, shape (2,), length
+        Where the points of the linkage are.
     shade : float
         From 0, invisible, to 1.
     named : bool
@@ -52,47 +55,50 @@ class Links:
     """
 
     def __init__(
-        self,
-        axes: Axes,
-        linkage: FourBar,
-        a: FloatArray,
-        b: FloatArray,
-        p: FloatArray,
-        shade: float = 1.0,
-        *,
-        named: bool = True,
+        self, axes: Axes, points: Mapping[str, FloatArray], shade: float = 1.0, *, named: bool = True
     ) -> None:
-        self._linkage = linkage
-        corners = self._corners(a, b, p)
-        looks: tuple[dict[str, Any], ...] = (
-            {"color": DRIVER, "linewidth": 2.4, "label": "driver O2-A", "zorder": 4},
-            {"color": OUTPUT, "linewidth": 2.4, "label": "output O4-B", "zorder": 4},
-            {"color": COUPLER, "linewidth": 1.6, "label": "coupler A-B-P", "zorder": 4},
-            {"color": "white", "marker": "o", "markeredgecolor": COUPLER, "markersize": 5, "zorder": 5},
-            {"color": PATH, "marker": "o", "markersize": 4, "zorder": 6},
-        )
-        self.lines = []
-        for points, look in zip(corners, looks, strict=True):
-            label = look.pop("label", None)
-            style = "none" if "marker" in look else "-"
-            (line,) = axes.plot(
-                *points.T, alpha=shade, linestyle=style, label=label if named else None, **look
-            )
-            self.lines.append(line)
-        self.plate = Polygon(corners[2], color=COUPLER, alpha=0.1 * shade, linewidth=0, zorder=3)
-        axes.add_patch(self.plate)
+        self._drawn: list[tuple[tuple[str, ...], Line2D | Polygon]] = []
+        for names, look in _looks(named):
+            self._drawn += [(names, line) for line in axes.plot(*_at(points, names).T, alpha=shade, **look)]
+        for link in FourBar.LINKS:
+            if len(link.points) > 2:
+                look = {"color": COLOURS[link.name], "alpha": 0.1 * shade, "linewidth": 0, "zorder": 3}
+                self._drawn.append((_sides(link), axes.fill(*_at(points, _sides(link)).T, **look)[0]))
 
-    def move(self, a: FloatArray, b: FloatArray, p: FloatArray) -> None:
-        """Put the links where A, B and P now are, each of shape (2,)."""
-        corners = self._corners(a, b, p)
-        for line, points in zip(self.lines, corners, strict=True):
-            line.set_data(*points.T)
-        self.plate.set_xy(corners[2])
+    @property
+    def artists(self) -> list[Artist]:
+        """All that moves."""
+        return [artist for _, artist in self._drawn]
 
-    def _corners(self, a: FloatArray, b: FloatArray, p: FloatArray) -> list[FloatArray]:
-        """Of driver, output, coupler, the joints A and B, and P; each of shape (n, 2)."""
-        each = ((self._linkage.o2, a), (self._linkage.o4, b), (a, b, p, a), (a, b), (p,))
-        return [np.array(points) for points in each]
+    def move(self, points: Mapping[str, FloatArray]) -> None:
+        """Put the links where the points now are, each of shape (2,)."""
+        for names, artist in self._drawn:
+            corners = _at(points, names)
+            if isinstance(artist, Polygon):
+                artist.set_xy(corners)
+            else:
+                artist.set_data(*corners.T)
+
+
+def _looks(named: bool) -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
+    """Through which points the bars, the sides of the plate, the joints and P are drawn, and how."""
+    for link in sorted(FourBar.LINKS[1:], key=lambda link: len(link.points)):
+        label = f"{link.name} {'-'.join(link.labels)}" if named else None
+        width = 2.4 if len(link.points) == 2 else 1.6
+        yield _sides(link), {"color": COLOURS[link.name], "linewidth": width, "label": label, "zorder": 4}
+    dot: dict[str, Any] = {"marker": "o", "linestyle": "none"}
+    joints = tuple(name for name in FourBar.MOVING if name in FourBar.JOINTS)
+    yield joints, {**dot, "color": "white", "markeredgecolor": COUPLER, "markersize": 5, "zorder": 5}
+    yield ("p",), {**dot, "color": PATH, "markersize": 4, "zorder": 6}
+
+
+def _sides(link: Link) -> tuple[str, ...]:
+    """The ends of a bar, the corners of a plate all round."""
+    return link.points if len(link.points) == 2 else (*link.points, link.points[0])
+
+
+def _at(points: Mapping[str, FloatArray], names: Sequence[str]) -> FloatArray:
+    return np.array([points[name] for name in names])
 
 
 def name_points(axes: Axes, points: Mapping[str, FloatArray]) -> None:
@@ -123,7 +129,7 @@ def apart(place: FloatArray, others: Sequence[FloatArray]) -> bool:
 
 def draw_ground(axes: Axes, linkage: FourBar) -> None:
     """The ground pivots."""
-    for pivot in (linkage.o2, linkage.o4):
+    for pivot in (getattr(linkage, name) for name in linkage.GROUND):
         axes.plot(*pivot[:, None], marker="^", color=GROUND, markersize=11, zorder=6)
         axes.plot(*pivot[:, None], marker="o", color="white", markersize=3, zorder=7)
 

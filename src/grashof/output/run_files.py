@@ -13,7 +13,6 @@ import numpy as np
 
 from grashof.output.folder import PAGE, RECORD, replacing_own_files
 from grashof.problems import Problem
-from grashof.problems.files.linkage_file import linkage_json
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth import Candidate, Result
@@ -128,7 +127,7 @@ def _design(candidate: Candidate) -> dict[str, Any]:
     angle_error = {} if np.isnan(turned).all() else {"angle_error": _given(turned)}
     return {
         **labels(candidate),
-        "linkage": linkage_json(candidate.linkage),
+        "linkage": candidate.linkage.stated,
         "theta2": verdict.theta2.tolist(),
         "assembly": verdict.assembly.tolist(),
         "position_error": _given(verdict.position_error),

@@ -9,18 +9,17 @@ import numpy as np
 from grashof.analysis import driver_ranges, solve_position
 from grashof.analysis.numerics.smooth_polygon import smooth_polygon
 from grashof.page.render import compact
-from grashof.problems import Problem, Task, catalogue, load
+from grashof.problems import FourBar, Problem, Task, catalogue, load
 from grashof.problems.files.published import published
 from grashof.problems.values.arrays import FloatArray
 
-_REGIONS = ("o2", "o4", "a", "b")
 _SAMPLES = 181
 
 
 def scene_of(problem: Problem) -> dict[str, Any]:
     """A problem as the scripts draw it; lengths in its unit, angles in rad, null where free or open."""
     wanted = problem.requirements
-    boxes = {name: box for name in _REGIONS if (box := getattr(wanted, name)) is not None}
+    boxes = {name: box for name in FourBar.PIVOTS if (box := getattr(wanted, name)) is not None}
     return {
         **_targets(problem.task),
         "unit": problem.length_unit,

@@ -88,7 +88,7 @@ def test_planted_timing_is_found_in_its_sense(count: int) -> None:
 
 
 @pytest.mark.parametrize("kind", CLASSES)
-@settings(max_examples=25)
+@settings(max_examples=10)
 @given(data=st.data())
 def test_every_class_meets_what_it_was_taken_from(
     four_bars: FourBars, kind: GrashofClass, data: st.DataObject
@@ -294,7 +294,7 @@ def test_a_rocker_that_swings_too_little_for_the_timing_is_infinitely_far_at_som
     assert np.isinf(targets.position_error).any()
 
 
-@settings(max_examples=20)
+@settings(max_examples=10)
 @given(seed=st.integers(0, 10**6), angle=st.floats(-3, 3), scale=st.floats(0.01, 100), timed=st.booleans())
 def test_errors_move_turn_and_grow_with_task_and_linkage(
     seed: int, angle: float, scale: float, timed: bool

@@ -220,7 +220,8 @@ STRUCTURE = [
     (HEAD + "[requirements]\no2 = { x = [1, {}] }", "requirements.o2.x[1] is a table; allowed is a number"),
     (
         HEAD + "[objective]\nmaximise = 3",
-        "objective.maximise is 3; allowed is transmission, compactness, torque, another quantity or a table of weights",
+        "objective.maximise is 3; allowed is transmission, compactness, torque, another quantity or a "
+        "table of weights",
     ),
     (
         HEAD + "[objective]\nmaximise = 'speed'",

@@ -221,8 +221,8 @@ def test_pulls_count_what_oversteps() -> None:
     over = np.maximum(np.log(lengths / 0.8), 0) - np.maximum(np.log(0.5 / lengths), 0)
     np.testing.assert_allclose(pull[:, :4], over.T, atol=1e-8)
     ratio = np.log(lengths.max(axis=0) / lengths.min(axis=0) / 1.2)
-    np.testing.assert_allclose(pull[:, 4], np.maximum(ratio, 0), atol=1e-8)
-    for column, pivot in zip(pull[:, 5:7].T, (placed.a, placed.b), strict=True):
+    np.testing.assert_allclose(pull[:, 6], np.maximum(ratio, 0), atol=1e-8)
+    for column, pivot in zip(pull[:, 4:6].T, (placed.a, placed.b), strict=True):
         arm = np.abs(placed.p[:, 0] - pivot[:, 0]) - 0.3
         np.testing.assert_allclose(column, np.maximum(arm, 0), atol=1e-8)
     o2, o4 = placed.o2, placed.o4
