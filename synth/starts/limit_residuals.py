@@ -168,7 +168,7 @@ def _transmission_rows(target: PathTarget, loop: Relative) -> Iterator[Dual]:
 
 
 def passed(target: PathTarget, theta2: FloatArray) -> tuple[BoolArray, BoolArray]:
-    """Whether the motion used passes O2A folded over the ground line, and stretched along it; (n,) each."""
+    """Whether the task motion passes O2A folded over the ground line, and stretched along it; (n,) each."""
     every = np.ones(len(theta2), dtype=bool)
     if target.wanted.transmission_over is TransmissionOver.CYCLE or target.closed:
         return every, every
