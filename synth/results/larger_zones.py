@@ -12,7 +12,7 @@ from grashof.analysis import Verdict, verify
 from grashof.analysis.judge.design import Constraint
 from grashof.problems import MotionTask, Problem
 from grashof.synth.results.candidate import Candidate
-from grashof.synth.results.relaxation import Relaxation
+from grashof.synth.results.relaxed_limits import Relaxation
 
 MISSED = {"within", "angle_within_deg", "exact"}  # what the judge calls a target missed by too much
 

@@ -71,6 +71,15 @@ def ground_pivots(box: Box | None, longest: float, samples: int, rng: np.random.
     return np.where(rng.random(count) < 0.5, wide, near)
 
 
+def fixed_pivots(wanted: Requirements) -> dict[str, complex]:
+    """Ground pivots whose place is given, by name."""
+    return {
+        name: complex(box.x[0], box.y[0])
+        for name, box in (("O2", wanted.o2), ("O4", wanted.o4))
+        if box is not None and box.x[0] == box.x[1] and box.y[0] == box.y[1]
+    }
+
+
 def joined(first: Dyads, second: Dyads) -> Dyads:
     """Two lots of dyads as one."""
     return Dyads(np.concatenate([first.moving, second.moving]), np.concatenate([first.ground, second.ground]))
