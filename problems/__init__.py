@@ -21,8 +21,9 @@ from grashof.problems.values.linkage import FourBar
 from grashof.problems.values.linkage_spec import LinkageSpec
 from grashof.problems.values.manufacturing import Manufacturing
 from grashof.problems.values.motion_task import MotionTask
+from grashof.problems.values.objective import Objective
 from grashof.problems.values.path_task import PathTask
-from grashof.problems.values.problem import Objective, Problem, Search
+from grashof.problems.values.problem import Problem, Search
 from grashof.problems.values.requirements import Box, Requirements, Rotatability, TransmissionOver
 from grashof.problems.values.task import Task
 

@@ -6,9 +6,10 @@ The value types check what the values mean; both kinds of error leave as one `Pr
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import fields
 from typing import Annotated, Any, ClassVar
 
-from pydantic import AfterValidator, Discriminator, Tag, ValidationInfo, field_validator
+from pydantic import AfterValidator, Discriminator, Tag, ValidationInfo, create_model, field_validator
 from pydantic_core import PydanticCustomError
 
 from grashof.problems.files.tables import (
@@ -25,14 +26,16 @@ from grashof.problems.files.tables import (
     tag,
 )
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.checks import noted, outline, refuse, refused
+from grashof.problems.values.checks import near_miss, noted, outline, refuse, refused
 from grashof.problems.values.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.manufacturing import Manufacturing
 from grashof.problems.values.motion_task import MotionTask
+from grashof.problems.values.objective import GOALS, Objective
 from grashof.problems.values.path_task import PathTask
-from grashof.problems.values.problem import NO_OBJECTIVE, Objective, Problem, Search
-from grashof.problems.values.requirements import Box, Requirements
+from grashof.problems.values.problem import NO_OBJECTIVE, Problem, Search
+from grashof.problems.values.quantities import Kind
+from grashof.problems.values.requirements import LIMITS, MAY_KEEP_OUT, Box, Requirements
 from grashof.problems.values.task import Task
 
 
@@ -208,34 +211,29 @@ Place = Annotated[
 ]
 
 
-class RequirementsTable(Table):
-    exact: bool | None = None
-    tolerance: float | None = None
-    error_factor: float | None = None
-    rotatability: str | None = None
-    rotatability_margin: float | None = None
-    order: bool | None = None
-    same_branch: bool | None = None
-    transmission_min_deg: float | None = None
-    transmission_over: str | None = None
-    link_length: Pair | None = None
-    r1: Pair | None = None
-    r2: Pair | None = None
-    r3: Pair | None = None
-    r4: Pair | None = None
-    link_ratio_max: float | None = None
-    coupler_arms: Pair | None = None
-    o2: Place | None = None
-    o4: Place | None = None
-    a: Place | None = None
-    b: Place | None = None
-    ground_angle_deg: float | None = None
-    theta2_start_deg: float | None = None
-    keep_out: Annotated[list[Corners], listed("a list of polygons, each a list of corners [x, y]")] | None = (
-        None
-    )
-    keep_out_for: Annotated[list[str], listed("a list of o2, o4, a, b, p and links")] | None = None
+Areas = Annotated[list[Corners], listed("a list of polygons, each a list of corners [x, y]")]
+Parts = Annotated[list[str], listed(f"a list of {', '.join(MAY_KEEP_OUT[:-1])} and {MAY_KEEP_OUT[-1]}")]
+_BY_KIND = {Kind.BETWEEN: Pair, Kind.INSIDE: Place, Kind.ON_BODY: Place}
+_MODES: dict[str, Any] = {
+    **dict.fromkeys(("exact", "order", "same_branch"), bool),
+    **dict.fromkeys(("rotatability", "transmission_over"), str),
+    "keep_out": Areas,
+    "keep_out_for": Parts,
+}
+_PLACES = {name for name, limit in LIMITS.items() if _BY_KIND.get(limit.kind) is Place}
 
+
+def _type_of(name: str) -> Any:
+    """Type of a key of ``[requirements]``: by what it limits, or as a mode."""
+    return _BY_KIND.get(LIMITS[name].kind, float) if name in LIMITS else _MODES.get(name, float)
+
+
+_Requirements = create_model(
+    "_Requirements", __base__=Table, **{f.name: (_type_of(f.name) | None, None) for f in fields(Requirements)}
+)  # type: ignore[call-overload]
+
+
+class RequirementsTable(_Requirements):  # type: ignore[misc, valid-type]
     @field_validator("*")
     @classmethod
     def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
@@ -250,14 +248,10 @@ class RequirementsTable(Table):
         return Requirements(**given)
 
 
-_PLACES = {"o2", "o4", "a", "b"}
+_Weights = create_model("_Weights", __base__=Table, **dict.fromkeys(GOALS, (float, 0.0)))  # type: ignore[call-overload]
 
 
-class WeightsTable(Table):
-    transmission: float = 0.0
-    compactness: float = 0.0
-    torque: float = 0.0
-
+class WeightsTable(_Weights):  # type: ignore[misc, valid-type]
     @field_validator("*")
     @classmethod
     def _by_itself(cls, weight: float, key: ValidationInfo) -> float:
@@ -265,14 +259,18 @@ class WeightsTable(Table):
         return weight
 
 
+_GOALS = "transmission, compactness, torque, another quantity"
+
+
+def _goal(word: str) -> str:
+    if word not in GOALS:
+        raise PydanticCustomError(WRONG, f"{near_miss(word, list(GOALS)) or _GOALS}")
+    return word
+
+
 Maximise = Annotated[
-    Annotated[str, one_of("transmission", "compactness", "torque"), Tag(WORD)]
-    | Annotated[WeightsTable, Tag(TABLE)],
-    Discriminator(
-        tag,
-        custom_error_type=WRONG,
-        custom_error_message="transmission, compactness, torque or a table of weights",
-    ),
+    Annotated[str, AfterValidator(_goal), Tag(WORD)] | Annotated[WeightsTable, Tag(TABLE)],
+    Discriminator(tag, custom_error_type=WRONG, custom_error_message=f"{_GOALS} or a table of weights"),
 ]
 
 
@@ -282,7 +280,7 @@ class ObjectiveTable(Table):
     def value(self) -> Objective:
         if isinstance(self.maximise, WeightsTable):
             return Objective(**dict(self.maximise))
-        return Objective(**{name: float(name == self.maximise) for name in WeightsTable.model_fields})
+        return Objective(**{"transmission": 0.0, self.maximise: 1.0})
 
 
 class ManufacturingTable(Table):
@@ -388,10 +386,7 @@ _TABLES: dict[str, type[Table]] = {
     "path": PathTable,
     "scene": SceneTable,
     "requirements": RequirementsTable,
-    "requirements.o2": BoxTable,
-    "requirements.o4": BoxTable,
-    "requirements.a": BoxTable,
-    "requirements.b": BoxTable,
+    **{f"requirements.{name}": BoxTable for name in sorted(_PLACES)},
     "objective": ObjectiveTable,
     "objective.maximise": WeightsTable,
     "dynamics": DynamicsTable,

@@ -54,7 +54,7 @@ def _tables(problem: Problem) -> Iterator[tuple[str, Mapping[str, Any]]]:
     wanted = problem.requirements
     yield "requirements", _given({field.name: getattr(wanted, field.name) for field in fields(Requirements)})
     if problem.by_objective:
-        yield "objective", {"maximise": asdict(problem.objective)}
+        yield "objective", {"maximise": problem.objective.stated}
     if problem.dynamics is not None:
         yield "dynamics", problem.dynamics.stated
     if problem.manufacturing is not None:

@@ -125,20 +125,20 @@ def whole_number(value: int, low: int, where: str) -> int:
     return int(value)
 
 
-def limits(values: Limits, where: str, *, least: float = -np.inf) -> Limits:
-    """A pair (lo, hi) with least <= lo <= hi <= `GREATEST`."""
+def limits(values: Limits, where: str, *, least: float = -np.inf, most: float = GREATEST) -> Limits:
+    """A pair (lo, hi) with least <= lo <= hi <= most."""
     try:
         low, high = values
     except (TypeError, ValueError):
         raise ProblemError(f"{where} is {values!r}; allowed is [lo, hi]") from None
     low, high = finite_number(low, f"{where}[0]"), finite_number(high, f"{where}[1]")
+    given = f"{where} is [{low:.15g}, {high:.15g}]"
     if low > high:
-        found = f"[{low:.15g}, {high:.15g}]"
-        raise ProblemError(f"{where} is {found}: lo exceeds hi; allowed is [lo, hi] with lo <= hi")
-    if high > GREATEST:
-        raise ProblemError(f"{where} is [{low:.15g}, {high:.15g}]; allowed is hi up to {GREATEST:g}")
+        raise ProblemError(f"{given}: lo exceeds hi; allowed is [lo, hi] with lo <= hi")
+    if high > most:
+        raise ProblemError(f"{given}; allowed is hi up to {most:g}")
     if low < least:
-        raise ProblemError(f"{where} is [{low:.15g}, {high:.15g}]; allowed is lo from {least:g}")
+        raise ProblemError(f"{given}; allowed is lo from {least:g}")
     return low, high
 
 

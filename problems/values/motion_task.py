@@ -69,6 +69,7 @@ class MotionTask(ReadOnly):
     """
 
     kind: ClassVar[Literal["motion"]] = "motion"
+    closed: ClassVar[bool] = False
 
     positions: FloatArray
     angles: FloatArray

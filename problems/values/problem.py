@@ -13,7 +13,6 @@ import numpy as np
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import (
     counted,
-    finite_number,
     noted,
     number_within,
     outline,
@@ -26,47 +25,18 @@ from grashof.problems.values.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.manufacturing import Manufacturing
 from grashof.problems.values.motion_task import MotionTask
+from grashof.problems.values.objective import GOALS, Objective
+from grashof.problems.values.quantities import Needs, Quantity, Unit
 from grashof.problems.values.read_only import ReadOnly
 from grashof.problems.values.requirements import Requirements
 from grashof.problems.values.task import Task
 
-_HEAVIEST = 1e9
 LEAST_TOLERANCE = 1e-4  # sizes: from here on a tolerance is a zone about each target
 NO_OBJECTIVE = (
     "objective is of no effect in least squares; allowed is also within (zones about the targets) or "
     "requirements.error_factor"
 )
 EFFORTS = (0.2, 100.0)
-
-
-@dataclass(frozen=True, slots=True)
-class Objective:
-    """What makes one design better than another; weights are relative.
-
-    Parameters
-    ----------
-    transmission : float
-        Weight of the worst transmission angle, as a share of 90 deg.
-    compactness : float
-        Weight of the (small) size of the linkage in its motion, in sizes of the task.
-    torque : float
-        Weight of the (small) peak of the drive torque over the motion used, in reference torques of
-        the problem; it needs dynamics.
-    """
-
-    transmission: float = 1.0
-    compactness: float = 0.0
-    torque: float = 0.0
-
-    def __post_init__(self) -> None:
-        weights = (self.transmission, self.compactness, self.torque)
-        for name, weight in zip(self.__slots__, weights, strict=True):
-            if not 0 <= finite_number(weight, f"objective.maximise.{name}") <= _HEAVIEST:
-                raise ProblemError(
-                    f"objective.maximise.{name} is {weight:g}; allowed is a weight from 0 to {_HEAVIEST:g}"
-                )
-        if sum(weights) <= 0:
-            raise ProblemError("objective.maximise has no weight greater than zero; one at least is needed")
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,18 +135,31 @@ class Problem(ReadOnly):
                 wrong.append(
                     "dynamics has no mass; mass_per_length is needed, masses and inertias, or payload"
                 )
-        elif self.objective.torque > 0:
-            wrong.append("dynamics is missing; objective.maximise asks for the torque")
-        if self.objective.torque > 0 and not self.requirements.same_branch:
-            wrong.append(
-                "requirements.same_branch is false; allowed is true when objective.maximise asks for torque"
-            )
+        wrong += self._without_value()
         wrong += self._undecided()
         refuse(wrong)
         checked = tuple(
             outline(corners, f"scene.outlines[{index}]") for index, corners in enumerate(self.outlines)
         )
         object.__setattr__(self, "outlines", checked)
+
+    def _without_value(self) -> list[str]:
+        """What is weighed or limited though the problem does not state what it takes."""
+        asked = {f"objective.maximise.{name}": GOALS[name] for name, w in self.objective.stated.items() if w}
+        asked |= {f"requirements.{name}": limit.quantity for name, limit in self.requirements.limited.items()}
+        missing = {
+            Needs.DYNAMICS: self.dynamics is None and "dynamics is missing",
+            Needs.MANUFACTURING: self.manufacturing is None and "manufacturing is missing",
+            Needs.CLOSED: not self.task.closed and f"{self.task.kind}.closed is false; allowed is true",
+        }
+        wrong = [f"{why}; {where} needs it" for where, q in asked.items() if (why := missing.get(q.needs))]
+        if not self.requirements.same_branch:
+            wrong += [
+                f"requirements.same_branch is false; allowed is true when {where} is given"
+                for where, quantity in asked.items()
+                if quantity.needs is Needs.DYNAMICS
+            ]
+        return wrong
 
     def _undecided(self) -> list[str]:
         """What is contradictory about whether the error or the objective decides."""
@@ -227,6 +210,28 @@ class Problem(ReadOnly):
 
     def __repr__(self) -> str:
         return f"<Problem {self.name}: {type(self.task).__name__} of {counted(len(self.task), 'target')}>"
+
+    def scale(self, quantity: Quantity) -> float:
+        """What the objective counts a quantity in, so that weights are pure numbers.
+
+        Lengths and areas in sizes of the task, angles in 90 deg, velocities by a point one size from O2 on
+        a driver at the problem's speed (1 rad/s without dynamics), torques and forces in `reference_torque`,
+        forces at an arm of one size.
+        """
+        size, omega2 = self.task.size, 1.0 if self.dynamics is None else self.dynamics.omega2
+        by_unit = {
+            Unit.LENGTH: size,
+            Unit.AREA: size**2,
+            Unit.ANGLE: math.pi / 2,
+            Unit.ANGULAR_VELOCITY: omega2,
+            Unit.VELOCITY: omega2 * size,
+            Unit.ACCELERATION: omega2**2 * size,
+        }
+        if quantity.unit is Unit.TORQUE:
+            return self.reference_torque
+        if quantity.unit is Unit.FORCE:
+            return self.reference_torque / (size * metres(self.length_unit))
+        return by_unit.get(quantity.unit, 1.0)
 
     @property
     def reference_torque(self) -> float:

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from enum import StrEnum
+from typing import Any
 
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.checks import GREATEST, finite_number, limits, noted, number_within, refuse
 from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.quantities import MEASURED, Kind, Limit, Over, Quantity, Unit, limit
 from grashof.problems.values.read_only import ReadOnly
 from grashof.problems.values.task import Task
 
@@ -44,6 +46,13 @@ class Box:
             with noted(wrong):
                 object.__setattr__(self, axis, _side(getattr(self, axis), axis))
         refuse(wrong)
+
+
+_LENGTHS = (0.0, GREATEST)
+
+
+def _place(name: str, over: Over) -> Quantity:
+    return Quantity(name, f"place of {name.upper()}", Unit.LENGTH, over, listed=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,21 +110,43 @@ class Requirements(ReadOnly):
     rotatability_margin: float = 1e-3
     order: bool = True
     same_branch: bool = True
-    transmission_min_deg: float = 0.0
+    transmission_min_deg: float = limit(
+        Quantity("transmission", "transmission angle", Unit.ANGLE, Over.TASK, +1, listed=False),
+        Kind.AT_LEAST,
+        default=0.0,
+        allowed=(0.0, 90.0),
+    )
     transmission_over: TransmissionOver = TransmissionOver.TASK
-    link_length: Limits | None = None
-    r1: Limits | None = None
-    r2: Limits | None = None
-    r3: Limits | None = None
-    r4: Limits | None = None
-    link_ratio_max: float = 20.0
-    coupler_arms: Limits | None = None
-    o2: Box | None = None
-    o4: Box | None = None
-    a: Box | None = None
-    b: Box | None = None
-    ground_angle_deg: float | None = None
-    theta2_start_deg: float | None = None
+    link_length: Limits | None = limit(
+        Quantity("link_length", "link length", Unit.LENGTH, listed=False),
+        Kind.BETWEEN,
+        allowed=_LENGTHS,
+        usual=(0.01, 20.0),
+    )
+    r1: Limits | None = limit("r1", Kind.BETWEEN, allowed=_LENGTHS)
+    r2: Limits | None = limit("r2", Kind.BETWEEN, allowed=_LENGTHS)
+    r3: Limits | None = limit("r3", Kind.BETWEEN, allowed=_LENGTHS)
+    r4: Limits | None = limit("r4", Kind.BETWEEN, allowed=_LENGTHS)
+    link_ratio_max: float = limit(
+        Quantity("link_ratio", "longest to shortest link", Unit.RATIO, better=-1, listed=False),
+        Kind.AT_MOST,
+        default=20.0,
+        allowed=(1.0, 1e6),
+    )
+    coupler_arms: Limits | None = limit(
+        Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False),
+        Kind.BETWEEN,
+        allowed=_LENGTHS,
+        usual=(0.0, 30.0),
+    )
+    o2: Box | None = limit(_place("o2", Over.DESIGN), Kind.INSIDE)
+    o4: Box | None = limit(_place("o4", Over.DESIGN), Kind.INSIDE)
+    a: Box | None = limit(_place("a", Over.TARGETS), Kind.INSIDE)
+    b: Box | None = limit(_place("b", Over.TARGETS), Kind.INSIDE)
+    ground_angle_deg: float | None = limit(
+        Quantity("ground_angle", "direction of O2O4", Unit.ANGLE, listed=False), Kind.EQUAL
+    )
+    theta2_start_deg: float | None = limit("theta2_start", Kind.EQUAL)
     keep_out: tuple[FloatArray, ...] = ()
     keep_out_for: tuple[str, ...] = ("o2", "o4")
 
@@ -130,22 +161,13 @@ class Requirements(ReadOnly):
         for name, kind in (("rotatability", Rotatability), ("transmission_over", TransmissionOver)):
             object.__setattr__(self, name, _member(kind, getattr(self, name), f"requirements.{name}"))
         for name, (low, high) in _RANGES.items():
-            value = number_within(getattr(self, name), low, high, f"requirements.{name}")
-            object.__setattr__(self, name, value)
-        if self.error_factor is not None:
-            factor = number_within(self.error_factor, 1.0, 1e6, "requirements.error_factor")
-            object.__setattr__(self, "error_factor", factor)
-        for name in ("link_length", "r1", "r2", "r3", "r4", "coupler_arms"):
-            if getattr(self, name) is not None:
-                pair = limits(getattr(self, name), f"requirements.{name}", least=0.0)
-                object.__setattr__(self, name, pair)
-        for name in ("ground_angle_deg", "theta2_start_deg"):
-            if getattr(self, name) is not None:
-                angle = finite_number(getattr(self, name), f"requirements.{name}")
-                object.__setattr__(self, name, angle)
-        for name in ("o2", "o4", "a", "b"):
-            if not isinstance(getattr(self, name), Box | None):
-                raise ProblemError(f"requirements.{name} is {getattr(self, name)!r}; allowed is a Box")
+            value = getattr(self, name)
+            if value is not None:
+                object.__setattr__(self, name, number_within(value, low, high, f"requirements.{name}"))
+        for name, limited in LIMITS.items():
+            value = getattr(self, name)
+            if value is not None:
+                object.__setattr__(self, name, _limits(value, limited, f"requirements.{name}"))
         object.__setattr__(self, "keep_out", _areas(self.keep_out))
         object.__setattr__(self, "keep_out_for", _kept_out(self.keep_out_for))
 
@@ -190,26 +212,54 @@ class Requirements(ReadOnly):
         >>> Requirements().resolved(2.0).link_length
         (0.02, 40.0)
         """
-        return replace(
-            self,
-            link_length=self.link_length or (0.01 * size, min(20.0 * size, GREATEST)),
-            coupler_arms=self.coupler_arms or (0.0, min(30.0 * size, GREATEST)),
-            o2=self.o2 or Box(),
-            o4=self.o4 or Box(),
-            a=self.a or Box(),
-            b=self.b or Box(),
-        )
+        usual: dict[str, Any] = {
+            name: (limited.usual[0] * size, min(limited.usual[1] * size, GREATEST))
+            for name, limited in LIMITS.items()
+            if limited.usual is not None and getattr(self, name) is None
+        }
+        free = {
+            name: None
+            for name, limited in LIMITS.items()
+            if limited.kind in (Kind.INSIDE, Kind.ON_BODY) and getattr(self, name) == Box()
+        }
+        return replace(self, **usual, **free)
+
+    @property
+    def limited(self) -> dict[str, Limit]:
+        """What is limited, by field: the fields that are stated."""
+        return {name: limited for name, limited in LIMITS.items() if getattr(self, name) is not None}
+
+    def ranges(self, name: str) -> dict[str, Limits]:
+        """What a field allows (see `Limit.ranges`), anything where it is not stated."""
+        value = getattr(self, name)
+        return {} if value is None else LIMITS[name].ranges(value)
 
 
-_RANGES = {
-    "tolerance": (1e-12, 1.0),
-    "rotatability_margin": (0.0, 0.25),
-    "transmission_min_deg": (0.0, 90.0),
-    "link_ratio_max": (1.0, 1e6),
+_RANGES = {"tolerance": (1e-12, 1.0), "error_factor": (1.0, 1e6), "rotatability_margin": (0.0, 0.25)}
+
+# What the fields limit, by field.
+LIMITS: dict[str, Limit] = {
+    field.name: field.metadata["limit"] for field in fields(Requirements) if "limit" in field.metadata
 }
 
+# All that can be said of a design, by key; those that are listed in the order of the columns.
+QUANTITIES = MEASURED | {limited.quantity.key: limited.quantity for limited in LIMITS.values()}
 
-_MAY_KEEP_OUT = ("o2", "o4", "a", "b", "p", "links")
+
+def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float:
+    if limited.kind in (Kind.INSIDE, Kind.ON_BODY):
+        if not isinstance(value, Box):
+            raise ProblemError(f"{where} is {value!r}; allowed is a Box")
+        return value
+    low, high = limited.allowed
+    if limited.kind is Kind.BETWEEN:
+        return limits(value, where, least=low, most=high)
+    if limited.kind is Kind.EQUAL:
+        return finite_number(value, where)
+    return number_within(value, low, high, where)
+
+
+MAY_KEEP_OUT = ("o2", "o4", "a", "b", "p", "links")
 
 
 def _areas(values: Sequence[FloatArray]) -> tuple[FloatArray, ...]:
@@ -222,11 +272,11 @@ def _areas(values: Sequence[FloatArray]) -> tuple[FloatArray, ...]:
 
 
 def _kept_out(names: Sequence[str]) -> tuple[str, ...]:
-    allowed = f"allowed is a list of {', '.join(_MAY_KEEP_OUT[:-1])} and {_MAY_KEEP_OUT[-1]}"
+    allowed = f"allowed is a list of {', '.join(MAY_KEEP_OUT[:-1])} and {MAY_KEEP_OUT[-1]}"
     if isinstance(names, str) or not isinstance(names, Sequence) or not len(names):
         raise ProblemError(f"requirements.keep_out_for is {names!r}; {allowed}")
     for index, name in enumerate(names):
-        if name not in _MAY_KEEP_OUT:
+        if name not in MAY_KEEP_OUT:
             raise ProblemError(f"requirements.keep_out_for[{index}] is {name!r}; {allowed}")
     return tuple(dict.fromkeys(names))
 

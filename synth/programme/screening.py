@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from grashof.problems import Requirements, Rotatability, TransmissionOver
+from grashof.problems import Box, Requirements, Rotatability, TransmissionOver
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, Limits
 
 # The requirements that can stand in the way, named by their keys.
@@ -208,7 +208,7 @@ def dyad_violations(
     violations[:, GROUPS.index("link_length")] = outside(length, wanted.link_lengths[link])
     violations[:, GROUPS.index("coupler_arms")] = outside(np.abs(places[:, 0] - p), wanted.coupler_arms)
     for name, points in ((pivot, ground[:, None]), (joint, places)):
-        box = getattr(wanted, name)
+        box = getattr(wanted, name) or Box()
         missed = outside(points.real, box.x) + outside(points.imag, box.y)
         violations[:, GROUPS.index(name)] = missed.max(axis=1)
         violations[:, GROUPS.index("keep_out")] += keep_out_violation(name, points, wanted)

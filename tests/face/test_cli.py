@@ -117,7 +117,7 @@ BAD = {
     "no such objective": (
         "[requirements]",
         "[objective]\nmaximise = 'power'\n[requirements]",
-        "allowed is transmission, compactness or torque",
+        "allowed is transmission, compactness, torque, another quantity",
     ),
     "area that crosses itself": (
         "[requirements]",

@@ -220,11 +220,11 @@ STRUCTURE = [
     (HEAD + "[requirements]\no2 = { x = [1, {}] }", "requirements.o2.x[1] is a table; allowed is a number"),
     (
         HEAD + "[objective]\nmaximise = 3",
-        "objective.maximise is 3; allowed is transmission, compactness, torque or a table of weights",
+        "objective.maximise is 3; allowed is transmission, compactness, torque, another quantity or a table of weights",
     ),
     (
         HEAD + "[objective]\nmaximise = 'speed'",
-        "objective.maximise is 'speed'; allowed is transmission, compactness or torque",
+        "objective.maximise is 'speed'; allowed is transmission, compactness, torque, another quantity",
     ),
     (
         HEAD + "[objective]\nmaximise = { transmission = true }",
@@ -303,7 +303,7 @@ SENSE = [
     ),
     (
         "[objective]\nmaximise = { transmission = -1 }",
-        "objective.maximise.transmission is -1; allowed is a weight from 0 to 1e+09",
+        "objective.maximise.transmission is -1; allowed is 0 to 1e+09",
     ),
     ("[search]\nstarts = 0", "search.starts is 0; allowed is a whole number from 1"),
     (
@@ -387,7 +387,7 @@ def test_the_torque_is_an_objective(maximise: str, expected: Objective) -> None:
 
 @pytest.mark.parametrize("maximise", ["'torque'", "{ transmission = 1, torque = 0.1 }"])
 def test_the_torque_as_an_objective_needs_masses(maximise: str) -> None:
-    expected = "dynamics is missing; objective.maximise asks for the torque"
+    expected = "dynamics is missing; objective.maximise.torque needs it"
     assert message(f"{HEAD}[objective]\nmaximise = {maximise}") == expected
 
 
@@ -606,8 +606,8 @@ def test_all_errors_are_told_a_line_each() -> None:
         "requirements.o2.x is [2, 1]; allowed is [lo, hi] with lo <= hi",
         "requirements.o2.y is [4, 3]; allowed is [lo, hi] with lo <= hi",
         "requirements.keep_out_for[0] is 'o3'; allowed is a list of o2, o4, a, b, p and links",
-        "objective.maximise.compactness is 1e+10; allowed is a weight from 0 to 1e+09",
-        "objective.maximise.torque is -1; allowed is a weight from 0 to 1e+09",
+        "objective.maximise.compactness is 10000000000; allowed is 0 to 1e+09",
+        "objective.maximise.torque is -1; allowed is 0 to 1e+09",
         "dynamics.masses[1] is -2; allowed is a number from zero",
         "dynamics.payload is -1; allowed is a number from zero",
         "manufacturing.band is 0; allowed is a length greater than zero",
@@ -641,5 +641,5 @@ def test_tables_that_do_not_go_together_are_all_told() -> None:
     assert message("length_unit = 'm'\n" + text).splitlines() == [
         "dynamics.speed_rpm is -1; allowed are numbers greater than zero",
         "dynamics has no mass; mass_per_length is needed, masses and inertias, or payload",
-        "requirements.same_branch is false; allowed is true when objective.maximise asks for torque",
+        "requirements.same_branch is false; allowed is true when objective.maximise.torque is given",
     ]

@@ -1,0 +1,209 @@
+"""Quantities: what can be said of a design. Each is declared here, once, without its formula.
+
+Limited, a quantity is a requirement; weighed, an objective; listed, a column; missed, a defect. The judge
+has a measure of each by its key (`grashof.analysis.judge.measures`), the search a formula of those that it
+can steer (`grashof.synth.programme.formulas`); the two share nothing but the key.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum, StrEnum, auto
+from typing import Any
+
+import numpy as np
+
+from grashof.problems.values.arrays import Limits
+
+
+class Unit(StrEnum):
+    """What a quantity is counted in; lengths in the problem's unit, angles in rad but in deg in files."""
+
+    LENGTH = "length"
+    AREA = "length²"
+    ANGLE = "deg"
+    RATIO = ""
+    SHARE = "share"
+    TORQUE = "N m"
+    FORCE = "N"
+    ANGULAR_VELOCITY = "rad/s"
+    VELOCITY = "length/s"
+    ACCELERATION = "length/s²"
+
+    @property
+    def shown(self) -> float:
+        """Factor from values inside to those in files and tables."""
+        return float(np.degrees(1.0)) if self is Unit.ANGLE else 1.0
+
+
+class Over(StrEnum):
+    """Where a quantity is taken."""
+
+    DESIGN = "the design"
+    TARGETS = "the targets"
+    TASK = "the task motion, from the first target to the last"
+    CYCLE = "the whole turn"
+
+
+class Needs(Enum):
+    """What the problem has to state for a quantity to have a value."""
+
+    NOTHING = auto()
+    DYNAMICS = auto()
+    MANUFACTURING = auto()
+    CLOSED = auto()
+    LEAST_SQUARES = auto()
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """Something that can be said of a design.
+
+    Parameters
+    ----------
+    key : str
+    label : str
+        Heading in tables.
+    unit : Unit
+    over : Over
+    better : int
+        +1 where more is better, -1 where less is, 0 for neither.
+    needs : Needs
+    digits : int
+        Significant digits of the largest value in a table; 0 where it is listed in files only.
+    about : str
+        What it is, where its label does not say so.
+    listed : bool
+        Whether it is a column; what has several parts, such as a place, is none.
+    """
+
+    key: str
+    label: str
+    unit: Unit
+    over: Over = Over.DESIGN
+    better: int = 0
+    needs: Needs = Needs.NOTHING
+    digits: int = 0
+    about: str = ""
+    listed: bool = True
+
+    @property
+    def column(self) -> str:
+        """Its name in candidates.csv."""
+        return f"{self.key}_deg" if self.unit is Unit.ANGLE else self.key
+
+
+def _length(key: str, label: str = "", **others: Any) -> Quantity:
+    return Quantity(key, label or key, Unit.LENGTH, **others)
+
+
+_BOX = "diagonal of the box around O2, O4 and all that A, B and P reach from the first target to the last"
+_FITTED = "what least squares makes small: root mean square of positions and angles together, weighted"
+_MOVED = "how far the worst target moves per unit of change of {}"
+_MISSED: dict[str, Any] = {"over": Over.TARGETS, "better": -1}
+_OVERALL: dict[str, Any] = {"over": Over.TASK, "about": "from the first target to the last"}
+_DRIVEN: dict[str, Any] = {**_OVERALL, "better": -1, "needs": Needs.DYNAMICS}
+
+# In the order of the columns of candidates.csv; those that a field of `Requirements` declares follow.
+MEASURED: dict[str, Quantity] = {
+    quantity.key: quantity
+    for quantity in (
+        *(_length(f"{pivot}_{axis}") for pivot in ("o2", "o4") for axis in "xy"),
+        *(_length(f"r{link}", digits=4) for link in (1, 2, 3, 4)),
+        *(_length(f"p_{axis}") for axis in "uv"),
+        Quantity("body_angle", "body angle", Unit.ANGLE, about="orientation of the body minus theta3"),
+        Quantity("theta2_start", "theta2 at the first target", Unit.ANGLE, Over.TARGETS),
+        Quantity("theta2_end", "theta2 at the last target", Unit.ANGLE, Over.TARGETS),
+        _length("error", "error rms", digits=3, needs=Needs.LEAST_SQUARES, about=_FITTED, **_MISSED),
+        _length("error_max", "largest position error", over=Over.TARGETS, better=-1),
+        _length("error_rms", "position error rms", over=Over.TARGETS, better=-1),
+        Quantity("error_sse", "sum of squared position errors", Unit.AREA, Over.TARGETS, -1),
+        Quantity("angle_error_max", "largest angle error", Unit.ANGLE, Over.TARGETS, -1),
+        Quantity("angle_error_rms", "angle error rms", Unit.ANGLE, Over.TARGETS, -1),
+        Quantity("transmission_min_task", "mu task", Unit.ANGLE, Over.TASK, +1, digits=3),
+        Quantity("transmission_min_cycle", "mu turn", Unit.ANGLE, Over.CYCLE, +1, digits=3),
+        Quantity("omega4_max", "omega4", Unit.ANGULAR_VELOCITY, better=-1, **_OVERALL),
+        Quantity("point_speed_max", "speed of P", Unit.VELOCITY, better=-1, **_OVERALL),
+        Quantity("point_acceleration_max", "acceleration of P", Unit.ACCELERATION, better=-1, **_OVERALL),
+        Quantity("torque_peak", "peak torque, task", Unit.TORQUE, digits=4, **_DRIVEN),
+        Quantity("torque_rms", "rms torque, task", Unit.TORQUE, **_DRIVEN),
+        Quantity("joint_force_peak", "peak force, task", Unit.FORCE, digits=4, **_DRIVEN),
+        Quantity("coupler_fit_r2", "fit of P", Unit.SHARE, better=+1, **_OVERALL),
+        _length("size", over=Over.TASK, better=-1, digits=4, about=_BOX),
+        _length("hausdorff", "Hausdorff distance", over=Over.CYCLE, better=-1, needs=Needs.CLOSED),
+        _length("frechet", "Fréchet distance", over=Over.CYCLE, better=-1, needs=Needs.CLOSED),
+        *(
+            Quantity(
+                f"move_{name}", f"move by {name}", Unit.RATIO, Over.TARGETS, -1, Needs.MANUFACTURING,
+                about=_MOVED.format(name),
+            )
+            for name in ("r1", "r2", "r3", "r4", "u", "v")
+        ),
+        _length("worst_move", "worst move", over=Over.TARGETS, better=-1, needs=Needs.MANUFACTURING),
+        Quantity("share_within_linear", "within, linear", Unit.SHARE, Over.TARGETS, +1, Needs.MANUFACTURING),
+        Quantity(
+            "share_within_made", "made within", Unit.SHARE, Over.TARGETS, +1, Needs.MANUFACTURING, digits=3
+        ),
+    )
+}  # fmt: skip
+
+
+class Kind(Enum):
+    """How a requirement limits its quantity."""
+
+    BETWEEN = auto()  # [lo, hi]
+    AT_LEAST = auto()
+    AT_MOST = auto()
+    EQUAL = auto()  # an angle
+    INSIDE = auto()  # a box in the plane
+    ON_BODY = auto()  # a box in the body's frame
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """How a field of `Requirements` limits a quantity.
+
+    Parameters
+    ----------
+    quantity : Quantity
+    kind : Kind
+    allowed : tuple of float
+        Least and greatest number that may be asked for, as files state it.
+    usual : tuple of float, optional
+        Limits where none are given, in sizes of the task.
+    """
+
+    quantity: Quantity
+    kind: Kind
+    allowed: tuple[float, float]
+    usual: tuple[float, float] | None = None
+
+    def ranges(self, value: Any) -> dict[str, Limits]:
+        """What a value of the field allows, in rad where it is an angle: by axis of a box, else by "".
+
+        Examples
+        --------
+        >>> Limit(MEASURED["theta2_end"], Kind.AT_LEAST, (0, 360)).ranges(180.0)
+        {'': (3.141592653589793, inf)}
+        """
+        if self.kind in (Kind.INSIDE, Kind.ON_BODY):
+            return {"x": value.x, "y": value.y}
+        low, high = value if self.kind is Kind.BETWEEN else (value, value)
+        if self.kind is Kind.AT_LEAST:
+            high = np.inf
+        if self.kind is Kind.AT_MOST:
+            low = -np.inf
+        return {"": (float(low / self.quantity.unit.shown), float(high / self.quantity.unit.shown))}
+
+
+def limit(
+    quantity: str | Quantity,
+    kind: Kind,
+    *,
+    default: Any = None,
+    allowed: tuple[float, float] = (-np.inf, np.inf),
+    usual: tuple[float, float] | None = None,
+) -> Any:
+    """A field of `Requirements` that limits a quantity: one of `MEASURED`, or one declared with the field."""
+    limited = MEASURED[quantity] if isinstance(quantity, str) else quantity
+    return field(default=default, metadata={"limit": Limit(limited, kind, allowed, usual)})
