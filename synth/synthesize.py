@@ -12,11 +12,11 @@ from grashof.problems import Problem, ProblemError
 from grashof.problems.values.checks import finite_number, whole_number
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.user_constraints import refuse_unusable
-from grashof.synth.results.choice import choose, least_error, searches, why_ended
+from grashof.synth.results.choice import choose, least_error, why_ended
 from grashof.synth.results.explain import explain
 from grashof.synth.results.families import listed
 from grashof.synth.results.result import Result
-from grashof.synth.results.search import Progress, Run
+from grashof.synth.results.search import Progress, Run, searches
 from grashof.synth.results.tally import CHOICE, DISTINCT
 from grashof.synth.results.workers import solving
 from grashof.synth.starts.finder import finder_for, finder_of

@@ -14,6 +14,7 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 
 LENGTHS = ("r1", "r2", "r3", "r4")
+UNSMOOTH = ("order", "same_branch")  # requirements that no smooth constraint can relax
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,23 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from functools import partial
 
 import numpy as np
 
 from grashof.synth.programme.nonlinear_programme import Solve
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.start import Start
+from grashof.synth.programme.start import UNSMOOTH, Start
 from grashof.synth.programme.structure import Form
 from grashof.synth.programme.torque_exchange import SOLVED, begun_from, solve_for_torque
 from grashof.synth.results.candidate import Candidate
-from grashof.synth.results.cognate_designs import verified_cognates
-from grashof.synth.results.judging import judged, linkage_of
+from grashof.synth.results.judging import judged, verified_cognates
 from grashof.synth.results.polishing import polished_solve, polished_start
 from grashof.synth.starts.finder import finder_for
 
 TRANSMISSION = "transmission_min_deg"
-UNSOLVED = frozenset({"order", "same_branch"})  # no smooth constraint can relax these
 # The judge may put the ends of the motion a little farther than the programme: so many solves at most
 # ask for that much more of the transmission, unless what is missing is more than a little (rad).
 MORE, BEYOND, A_LITTLE = 5, 1.05, 0.2
@@ -69,23 +66,14 @@ class Attempt:
 def attempt(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
     """Solve from a start, polish the design, verify it.
 
-    Parameters
-    ----------
-    scaled : ScaledProblem
-    start : Start
-    number : int
-        Of the start.
-
-    Returns
-    -------
-    Attempt
+    `number` is that of the start.
     """
     finder, start = finder_for(scaled), polished_start(scaled, start)
     done = None
-    if start.settled or not UNSOLVED.isdisjoint(start.relaxed):
+    if start.settled or not set(UNSMOOTH).isdisjoint(start.relaxed):
         points = (start.o2, start.o4, start.a, start.b, start.p)
         as_it_is = Solve(points, start.theta2, start.theta3, start.body_angle, "Not_Solved", 0)
-        done = _polished_and_judged(scaled, start, as_it_is, number)
+        done = polished_and_judged(scaled, start, as_it_is, number)
     if done is None or (start.settled and finder.freedom and not done.verified):
         done = _solved(scaled, start, number)
     if done.verified and finder.cognates:
@@ -99,7 +87,7 @@ def _solved(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
     if solve.status not in SOLVED and any(Form.of(scaled, start).nearest):
         start = replace(start, loose=True)
         solve = solve_for_torque(scaled, start)
-    done = _polished_and_judged(scaled, start, solve, number)
+    done = polished_and_judged(scaled, start, solve, number)
     for _ in range(0 if scaled.exact else MORE):
         short = _short_of_transmission(done.candidate)
         if not 0 < short < A_LITTLE:
@@ -110,7 +98,7 @@ def _solved(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
         if again.status not in SOLVED:
             break
         solve = replace(again, iterations=solve.iterations + again.iterations)
-        done = _polished_and_judged(scaled, start, solve, number)
+        done = polished_and_judged(scaled, start, solve, number)
     return done
 
 
@@ -121,15 +109,15 @@ def _short_of_transmission(candidate: Candidate | None) -> float:
     return candidate.verdict.defects[0].miss
 
 
-def _polished_and_judged(scaled: ScaledProblem, start: Start, solve: Solve, number: int) -> Attempt:
+def polished_and_judged(scaled: ScaledProblem, start: Start, solve: Solve, number: int) -> Attempt:
     """The design of a solve on its targets; of least squares as it was, if it is no design there."""
     done = Attempt(solve.status, None)
     if not np.isfinite(solve.points).all():
         return done
+    about = {"start": number, "iterations": solve.iterations, "most_error": start.most_error}
     for version in (polished_solve(scaled, start, solve), solve):
-        linkage = linkage_of(scaled, np.array(version.points), start.assembly, version.body_angle)
-        judge = partial(judged, start=number, iterations=solve.iterations, most_error=start.most_error)
-        done = Attempt(solve.status, None if linkage is None else judge(scaled, linkage))
+        points = np.array(version.points)
+        done = replace(done, candidate=judged(scaled, points, start.assembly, version.body_angle, **about))
         if done.verified or scaled.exact or version is solve:
             break
     return done

@@ -17,7 +17,6 @@ from grashof.synth.results.judging import judged_again
 from grashof.synth.results.larger_zones import up, wider
 from grashof.synth.results.ledger import Ledger
 from grashof.synth.results.relaxations import relaxations
-from grashof.synth.results.relaxed_limits import Relaxation
 from grashof.synth.results.search import Run, search_designs
 from grashof.synth.results.trade_offs import Chosen
 from grashof.synth.starts.finder import finder_for
@@ -55,22 +54,7 @@ class _Near:
 
 
 def explain(scaled: ScaledProblem, ledger: Ledger, chosen: Chosen, run: Run) -> Explanation:
-    """Say why a list is empty: what would do instead, and how near designs come.
-
-    Parameters
-    ----------
-    scaled : ScaledProblem
-    ledger : Ledger
-        Of the search.
-    chosen : Chosen
-        What came of it.
-    run : Run
-
-    Returns
-    -------
-    Explanation
-        Of nothing where there are designs.
-    """
+    """Say why a list is empty: what would do instead, and how near designs come."""
     if chosen.designs:
         return Explanation("")
     if not ledger.complete:
@@ -84,19 +68,21 @@ def _explained(scaled: ScaledProblem, ledger: Ledger, rejected: list[Attempt], r
     rng = np.random.default_rng(np.random.SeedSequence(run.search.seed, spawn_key=(0,)))
     known = [one.candidate for one in rejected if one.candidate is not None]
     ways = relaxations(scaled, known, rng, run) + wider(scaled.problem, scaled.constraints, known)
-    ways.sort(key=lambda way: (way.miss, way.key))
     near = [] if run.ended() else _by_least_squares(scaled, run)
     designs = tuple(one.candidate for one in near if one.candidate.verdict.ok)
     if designs:
         return Explanation("", designs=designs)
     why = finder.obstacle(rng, ledger.tally.found)
     if ways:
-        size = scaled.problem.task.size
-        near = [one for one in near[:1] if _miss(one, size) < 1]  # farther away than the task is long
-        missed = [(way.miss, way.candidate) for way in ways]
-        missed += [(_miss(one, size), one.candidate) for one in near]
-        missed.sort(key=lambda pair: pair[0])
-        return Explanation(_ways_note(scaled, ways, near, why), tuple(one for _, one in missed))
+        alternatives = [(way.miss, way.words, way.candidate) for way in ways]
+        for one in near[:1]:
+            miss = _miss(one, scaled.problem.task.size)
+            if miss < 1:  # not farther away than the task is long
+                words = f"exact = false ({_comes_within(scaled, one, then='then ')})"
+                alternatives.append((miss, words, one.candidate))
+        alternatives.sort(key=lambda one: one[:2])
+        note = _ways_note(why, [words for _, words, _ in alternatives[:ALTERNATIVES]])
+        return Explanation(note, tuple(candidate for _, _, candidate in alternatives))
     if near:
         note = f"no design: {why or 'exact: none'}; {_comes_within(scaled, near[0])}, with exact = false"
         return Explanation(note, tuple(one.candidate for one in near))
@@ -108,21 +94,15 @@ def _explained(scaled: ScaledProblem, ledger: Ledger, rejected: list[Attempt], r
 
 def closest_misses(attempts: list[Attempt]) -> tuple[Candidate, ...]:
     """The closest miss for each set of missed requirements, fewest and smallest misses first."""
-    closest: dict[frozenset[str], tuple[float, Candidate]] = {}
-    for result in attempts:
-        if result.candidate is None or result.candidate.verdict.ok:
-            continue
-        defects = result.candidate.verdict.defects
-        kind = frozenset(defect.requirement for defect in defects)
-        miss = sum(defect.miss for defect in defects)
-        if kind not in closest or miss < closest[kind][0]:
-            closest[kind] = (miss, result.candidate)
-    if not closest:
-        return ()
-    fewest = min(len(kind) for kind in closest)
-    found = [
-        (miss, sorted(kind), candidate) for kind, (miss, candidate) in closest.items() if len(kind) == fewest
-    ]
+    closest: dict[tuple[str, ...], tuple[float, Candidate]] = {}
+    for one in attempts:
+        if one.candidate is not None and not one.verified:
+            defects = one.candidate.verdict.defects
+            kind, miss = tuple(sorted({d.requirement for d in defects})), sum(d.miss for d in defects)
+            if kind not in closest or miss < closest[kind][0]:
+                closest[kind] = (miss, one.candidate)
+    fewest = min(map(len, closest), default=0)
+    found = [(miss, kind, candidate) for kind, (miss, candidate) in closest.items() if len(kind) == fewest]
     return tuple(candidate for _, _, candidate in sorted(found, key=lambda item: item[:2]))
 
 
@@ -150,17 +130,8 @@ def _miss(near: _Near, size: float) -> float:
     return max(verdict.error_max / size, float(turned))
 
 
-def _ways_note(scaled: ScaledProblem, ways: list[Relaxation], near: list[_Near], why: str) -> str:
-    """The note that names single requirements, the smallest miss first."""
-    priced = [(way.miss, way.words) for way in ways]
-    if near:
-        priced.append(
-            (
-                _miss(near[0], scaled.problem.task.size),
-                f"exact = false ({_comes_within(scaled, near[0], then='then ')})",
-            )
-        )
-    words = [text for _, text in sorted(priced)][:ALTERNATIVES]
+def _ways_note(why: str, words: list[str]) -> str:
+    """The note that names single requirements."""
     said = f"no design: {why}" if why else "no design meets all requirements"
     alone = "this alone would do" if len(words) == 1 else "each of these alone would do"
     return f"{said}; {alone}: {'; '.join(words)}"

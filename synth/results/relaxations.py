@@ -17,13 +17,13 @@ from grashof.synth.programme.screening import (
     judge,
     keep_out_violation,
 )
-from grashof.synth.programme.start import LENGTHS, Start
+from grashof.synth.programme.start import LENGTHS, UNSMOOTH, Start
 from grashof.synth.programme.user_constraints import screened
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.results.judging import judged_again
 from grashof.synth.results.relaxed_limits import (
-    ANGLES,
     Relaxation,
+    is_angle,
     limiting,
     loosest,
     relaxation,
@@ -42,19 +42,8 @@ def relaxations(
 ) -> list[Relaxation]:
     """For each requirement that may be the only one in the way: how it would have to be relaxed.
 
-    Parameters
-    ----------
-    scaled : ScaledProblem
-    known : list of Candidate
-        Designs that were rejected.
-    rng : numpy.random.Generator
-    run : Run
-
-    Returns
-    -------
-    list of Relaxation
-        One for each requirement at most, the smallest miss first. The judge has accepted each of the
-        designs under the relaxed requirement and all others.
+    One relaxation for each requirement at most, the smallest miss first; `known` are designs that were
+    rejected. The judge has accepted each design under the relaxed requirement and all others.
 
     Notes
     -----
@@ -94,7 +83,7 @@ def _candidates(scaled: ScaledProblem, key: str, rng: np.random.Generator, run: 
     if not finder.freedom:
         return _judged(scaled, loose, as_they_are, run)
     found = _judged(scaled, loose, as_they_are[:2], run)
-    if key not in ("order", "same_branch"):  # no smooth constraint can relax these
+    if key not in UNSMOOTH:
         whole, *sides = _parts(scaled, key)
         eased = [replace(start, relaxed=whole) for start in starts]
         eased += [replace(start, relaxed=side) for side in sides for start in starts[: SOLVES // 2]]
@@ -129,9 +118,10 @@ def _finished(scaled: ScaledProblem, found: Relaxation, run: Run) -> Relaxation:
 
     Both are solved under the relaxed requirement, which makes sure of it.
     """
-    if scaled.exact and found.key not in ANGLES:
+    angle = is_angle(found.key)
+    if scaled.exact and not angle:
         return found
-    asked = with_rounded_angle(scaled.problem, found) if found.key in ANGLES else found
+    asked = with_rounded_angle(scaled.problem, found) if angle else found
     problem = replace(scaled.problem, requirements=asked.requirements)
     eased = ScaledProblem.of(problem, asked.constraints)
     under_it = judged_again(eased, found.candidate)
@@ -139,7 +129,7 @@ def _finished(scaled: ScaledProblem, found: Relaxation, run: Run) -> Relaxation:
     if not made.verified:
         return found
     candidate = judged_again(scaled, made.verified[0])
-    if not scaled.exact and found.key not in ANGLES:
+    if not angle:
         candidate = max(found.candidate, candidate, key=lambda one: one.score(problem))
     return replace(asked, candidate=candidate)
 

@@ -4,25 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import count
 from time import perf_counter
 
 import numpy as np
 
-from grashof.problems import Search
+from grashof.problems import Problem, Search
 from grashof.synth.programme.nonlinear_programme import MOST_ITERATIONS
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.programme.user_constraints import mended
 from grashof.synth.results.ledger import SAME, Ledger
 from grashof.synth.results.workers import Solver
-from grashof.synth.starts.finder import Finder, finder_for
+from grashof.synth.starts.finder import Finder, asked_first, finder_for
 
 # Solves between two looks at what is verified, fixed, so that workers change nothing: of exact designs,
 # and of least squares, where every look may spare solves.
 BATCH, BATCH_LEAST_SQUARES = 16, 8
 LARGER = 2  # times the draws and starts of a usual round: rounds that more effort adds
+FEW = 8  # exact designs: with fewer, zones are filled from those of least squares, too
 CONTINUED = 3  # times at most that the solve of the least error goes on
 
 
@@ -73,6 +74,24 @@ class Run:
         since = perf_counter()
         yield
         self.seconds[stage] = self.seconds.get(stage, 0.0) + perf_counter() - since
+
+
+def searches(scaled: ScaledProblem, run: Run) -> list[Ledger]:
+    """The search as it is asked; where targets may be missed, one or two without.
+
+    First with all of them met, where that can be expected; then by least squares, where few do. Two
+    poses leave least squares nothing to make small.
+    """
+
+    def search(problem: Problem) -> Ledger:
+        asked = ScaledProblem.of(problem, scaled.constraints)
+        return search_designs(replace(asked, of_use=error_of_use(scaled)), run)
+
+    first = search(asked_first(scaled.problem))
+    met_by_few = first.scaled.exact and len(first.best) < FEW
+    if scaled.bounded and met_by_few and first.complete and len(scaled.targets) > 2:
+        return [first, search(scaled.problem.without_zones())]
+    return [first]
 
 
 def search_designs(scaled: ScaledProblem, run: Run) -> Ledger:
@@ -144,3 +163,13 @@ def _solve(starts: list[Start], ledger: Ledger, run: Run) -> None:
     """Solve and verify, then rank what is verified."""
     ledger.take(run.solve(ledger.scaled, starts, ledger.solved))
     ledger.rank()
+
+
+def error_of_use(scaled: ScaledProblem) -> float:
+    """Up to which error a design is of use where zones are allowed, root mean square, sizes."""
+    if scaled.zones is None:
+        return 0.0
+    zones = np.where(np.isfinite(scaled.zones), scaled.zones, 0.0)
+    turn_weights = np.zeros(zones.shape[1]) if scaled.turn_weights is None else scaled.turn_weights
+    square = (scaled.weights * zones[0] ** 2 + turn_weights * zones[1] ** 2).sum()
+    return float(np.sqrt(square / len(scaled.targets)))

@@ -8,16 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.problems import Objective, Problem
-from grashof.problems.values.arrays import FloatArray
 from grashof.synth.programme.merit import same_error
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.results.attempt import Attempt
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.results.ledger import Ledger
-from grashof.synth.results.ranking import pareto_optimal, ranked
+from grashof.synth.results.ranking import distinct, pareto_optimal, ranked
 from grashof.synth.results.search import Run
-from grashof.synth.theory.distinct import pick_apart, signature
 
 FACTORS = (1.02, 1.2, 1.5, 2.0)  # times the least error: so much is offered for other virtues
 GOALS = {"mu": Objective(), "size": Objective(transmission=0.0, compactness=1.0)}
@@ -47,17 +45,7 @@ class Chosen:
 def trade_offs(scaled: ScaledProblem, ledger: Ledger, run: Run) -> Chosen:
     """Beside the least error: within some times of it the best transmission and the smallest size.
 
-    Parameters
-    ----------
-    scaled : ScaledProblem
-    ledger : Ledger
-        Of the search for the least error.
-    run : Run
-
-    Returns
-    -------
-    Chosen
-        Of all designs those that no other one beats in every goal, up to twice the least error.
+    Of all designs those that no other one beats in every goal, up to twice the least error.
     """
     problem, least = scaled.problem, max(ledger.least, same_error(scaled.problem))
     seeds = seeds_of(problem, ledger.verified, FACTORS[-1] * least, SEEDS)
@@ -102,16 +90,11 @@ def started_at(
     return replace(start, objective=objective, most_error=most_error, zoned=zoned)
 
 
-def seeds_of(problem: Problem, found: Sequence[Candidate], most: float, count: int) -> list[Candidate]:
+def seeds_of(problem: Problem, found: Sequence[Candidate], most: float, count: int) -> tuple[Candidate, ...]:
     """Designs up to some error, or all if none are, that are well apart, the least error first."""
     every = sorted(found, key=lambda one: (_error(problem, one), one.id))
     near = [one for one in every if _error(problem, one) <= most] or every
-    if not near:
-        return []
-    origin = np.nanmean(problem.task.positions, axis=0)
-    signatures: FloatArray = np.array([signature(one.linkage, origin) for one in near])
-    picked = pick_apart(signatures, -np.arange(len(near), dtype=np.float64), APART, count)
-    return [near[k] for k in picked]
+    return distinct(problem, near, APART, count)
 
 
 def _error(problem: Problem, candidate: Candidate) -> float:
@@ -121,9 +104,9 @@ def _error(problem: Problem, candidate: Candidate) -> float:
 def _worth_choosing(problem: Problem, every: list[Candidate], least: float) -> tuple[Candidate, ...]:
     """What no other design beats, up to twice the least error, each with what it is best at."""
     near = [one for one in every if _error(problem, one) <= FACTORS[-1] * least * (1 + SLACK)]
-    distinct = ranked(problem, near)
-    front = pareto_optimal(problem, distinct)
-    kept = [one for one, best in zip(distinct, front, strict=True) if best]
+    best_first = ranked(problem, near)
+    front = pareto_optimal(problem, best_first)
+    kept = [one for one, best in zip(best_first, front, strict=True) if best]
     words: dict[int, list[str]] = {k: [] for k in range(len(kept))}
     if kept:  # the first of the list may be another one, if nobody would build it
         words[min(words, key=lambda k: round(_error(problem, kept[k]), ALIKE + 1))].append("least error")

@@ -11,10 +11,8 @@ from grashof.problems import Problem
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Round, Start
-from grashof.synth.starts.few_poses import FewPoses
+from grashof.synth.starts.exact_poses import FewPoses, ManyPoses, Parallelograms
 from grashof.synth.starts.least_squares import LeastSquares
-from grashof.synth.starts.many_poses import ManyPoses
-from grashof.synth.starts.parallelograms import Parallelograms
 from grashof.synth.starts.precision_points import NinePoints, PrecisionPoints
 
 

@@ -9,7 +9,6 @@ linkage may go on as an antiparallelogram: the motion used has to lie between th
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,11 +26,10 @@ from grashof.synth.programme.screening import (
     judge,
     keep_out_violation,
 )
-from grashof.synth.programme.start import Round, Start
+from grashof.synth.programme.start import Start
 from grashof.synth.programme.user_constraints import screened
 from grashof.synth.starts.sampled_dyads import arms, ground_pivots
-from grashof.synth.starts.selection import feasible_starts, merits, relaxed_starts
-from grashof.synth.starts.whole_poses import WholePoses, translate
+from grashof.synth.starts.selection import feasible_starts, merits
 from grashof.synth.theory.distinct import pick_apart
 
 LEAST_TRANSMISSION = 1e-3  # rad: keeps the motion away from change points
@@ -88,80 +86,39 @@ def circle_through(targets: ComplexArray) -> Circle:
 
 
 def parallelogram_starts(scaled: ScaledProblem, enough: int, rng: np.random.Generator) -> list[Start]:
-    """Starts that are parallelogram linkages, the best first, then spread over all.
-
-    Parameters
-    ----------
-    scaled : ScaledProblem
-        Of poses that are pure translations.
-    enough : int
-        Distinct designs wanted.
-    rng : numpy.random.Generator
-    """
+    """Starts that are parallelogram linkages, the best first, then spread over all."""
     linkages = parallelograms(scaled, rng)
     starts = feasible_starts(scaled, linkages[linkages.feasible], enough)
     return [replace(start, settled=True) for start in starts]
 
 
-@dataclass(frozen=True, slots=True)
-class Parallelograms(WholePoses):
-    """Three poses or more that are pure translations of each other."""
-
-    @staticmethod
-    def suits(scaled: ScaledProblem) -> bool:
-        """Three whole poses or more, all of one angle."""
-        return scaled.motion is not None and len(scaled.targets) > 2 and translate(scaled.motion)
-
-    def rounds(self, enough: int, rng: np.random.Generator, size: int, /) -> Iterator[Round]:
-        """One round."""
-        if self.freedom or size == 1:
-            starts = parallelogram_starts(self.scaled, enough, rng)
-            yield Round(starts, {"feasible linkages": len(starts)})
-
-    def near(self, rng: np.random.Generator) -> Screened:
-        """Parallelogram linkages, feasible or not."""
-        return parallelograms(self.scaled, rng)
-
-    def relaxed(self, rng: np.random.Generator) -> list[Start]:
-        """Starts that may miss what stands in the way."""
-        return relaxed_starts(self.scaled, self.near(rng))
-
-    def obstacle(self, _rng: np.random.Generator, _counts: Mapping[str, int], /) -> str:
-        """Why there is no parallelogram linkage; empty where there may be one."""
-        scaled, poses = self.scaled, "the poses are pure translations of each other"
-        circle = circle_through(scaled.targets)
-        if circle.radius > STRAIGHT:
-            return f"{poses} along a straight line, and parallelogram linkages carry a body along a circle"
-        if circle.off > scaled.wanted.tolerance:
-            off = f"{circle.off * scaled.frame.scale:.3g} {scaled.problem.length_unit}".strip()
-            return f"{poses}, up to {off} off any one circle, along which parallelogram linkages carry a body"
-        if scaled.wanted.rotatability is not Rotatability.ANY:
-            return (
-                f"{poses}: only parallelogram linkages carry the body through them, and their driver cannot "
-                "turn fully without passing a change point"
-            )
-        _, half = _arc(scaled, _cranks(scaled, 1, np.random.default_rng(0)))
-        if 2 * half[0] < np.pi:
-            return ""
+def parallelogram_obstacle(scaled: ScaledProblem) -> str:
+    """Why three translated poses or more have no parallelogram linkage; empty where they may have."""
+    poses = "the poses are pure translations of each other"
+    circle = circle_through(scaled.targets)
+    if circle.radius > STRAIGHT:
+        return f"{poses} along a straight line, and parallelogram linkages carry a body along a circle"
+    if circle.off > scaled.wanted.tolerance:
+        off = f"{circle.off * scaled.frame.scale:.3g} {scaled.problem.length_unit}".strip()
+        return f"{poses}, up to {off} off any one circle, along which parallelogram linkages carry a body"
+    if scaled.wanted.rotatability is not Rotatability.ANY:
         return (
-            f"{poses}, spread over {np.degrees(2 * half[0]):.4g} deg of a circle, and parallelogram linkages "
-            "have less than 180 deg from one change point to the next"
+            f"{poses}: only parallelogram linkages carry the body through them, and their driver cannot "
+            "turn fully without passing a change point"
         )
+    _, half = _arc(scaled, _cranks(scaled, 1, np.random.default_rng(0)))
+    if 2 * half[0] < np.pi:
+        return ""
+    return (
+        f"{poses}, spread over {np.degrees(2 * half[0]):.4g} deg of a circle, and parallelogram linkages "
+        "have less than 180 deg from one change point to the next"
+    )
 
 
 def parallelograms(scaled: ScaledProblem, rng: np.random.Generator) -> Screened:
     """Parallelogram linkages through translated poses: drawn, then the best varied.
 
-    Parameters
-    ----------
-    scaled : ScaledProblem
-        Of poses that are pure translations.
-    rng : numpy.random.Generator
-
-    Returns
-    -------
-    Screened
-        None where the driver has to turn fully, or where three poses or more lie on no circle.
+    None where the driver has to turn fully, or where three poses or more do not lie on a circle.
     """
     circle = circle_through(scaled.targets) if len(scaled.targets) > 2 else Circle(0.0, 1.0, 0.0)
     off = circle.off > scaled.wanted.tolerance or circle.radius > STRAIGHT

@@ -14,12 +14,12 @@ from grashof.problems import PathTask
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import follow
-from grashof.synth.programme.start import Round, Start
+from grashof.synth.programme.start import Round
 from grashof.synth.starts.closed_loop import PathTarget
 from grashof.synth.starts.coupler_search import CouplerSearch, has_family, search
 from grashof.synth.starts.loop_search import Placed
 from grashof.synth.starts.path_screening import judged, path_target
-from grashof.synth.starts.selection import feasible_starts, mended_starts
+from grashof.synth.starts.selection import feasible_starts, mended_starts, starts_of
 from grashof.synth.theory.cognates import cognate_points
 from grashof.synth.theory.nine_points import coupler_turns, linkages_through
 
@@ -77,14 +77,14 @@ class NinePoints(PrecisionPoints):
 
     def _all_linkages(self, rng: np.random.Generator) -> Round:
         """Of every triplet of cognates through the points the first feasible one; the others follow."""
-        target, objective = path_target(self.scaled), self.scaled.problem.objective
+        target = path_target(self.scaled)
         through = linkages_through(target.points, rng)
         linkages = judged(self.scaled, target, *_at_points(_driven_from_both_sides(through), target))
         feasible = linkages.feasible.reshape(-1, 3, 2)
         usable = feasible.any(axis=2)
         first = usable & (np.cumsum(usable, axis=1) == 1)
         chosen = np.flatnonzero(feasible & first[..., None])
-        starts = [replace(Start.of_find(linkages, int(k), objective), settled=True) for k in chosen]
+        starts = [replace(start, settled=True) for start in starts_of(self.scaled, linkages, chosen)]
         return Round(starts, {"feasible linkages": int(feasible.sum()), THROUGH: 3 * len(through)})
 
     def obstacle(self, _rng: np.random.Generator, counts: Mapping[str, int], /) -> str:

@@ -22,18 +22,7 @@ def sampled_dyads(
 ) -> Dyads:
     """Random dyads of two or three poses: half of them by the joint, half by the pivot.
 
-    Parameters
-    ----------
-    motion : Displacements
-    body : complex, sizes
-        The guided point at the first pose.
-    wanted : Requirements
-        In the frame of the search.
-    rng : numpy.random.Generator
-
-    Returns
-    -------
-    Dyads
+    `body` is the guided point at the first pose, sizes.
     """
     longest = max(limits[1] for limits in wanted.link_lengths)
     moving = body + arms(wanted.coupler_arms, SAMPLES, rng)

@@ -12,7 +12,7 @@ from grashof.analysis.judge.planted import planted_path
 from grashof.problems import Box, FourBar, PathTask, Problem, Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth import Candidate, Result
-from grashof.synth.starts import paths
+from grashof.synth.starts import precision_points
 
 LINE = [[20.0, 20 + 5.0 * k] for k in range(6)]
 EIGHTEEN = [
@@ -211,7 +211,7 @@ def test_workers_change_no_byte(tmp_path: Path) -> None:
 
 
 def test_an_impossible_path_says_what_stands_in_the_way(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(paths, "BARREN", 2)
+    monkeypatch.setattr(precision_points, "BARREN", 2)
     far = Box((1000, 1001), (1000, 1001))
     result = synthesize(case1(o2=far), enough=5, starts=8)
     assert len(result) == 0
