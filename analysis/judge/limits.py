@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.analysis.four_bar.position import Position
-from grashof.analysis.judge.nearest_poses import Targets
+from grashof.analysis.judge.task_motion import Targets
 from grashof.problems import Box, FourBar, Requirements, Task
 from grashof.problems.values.arrays import Limits
 

@@ -7,11 +7,11 @@ from enum import StrEnum
 
 import numpy as np
 
+from grashof.synth.programme.exchange import SOLVED, begun_from, solve_by_exchange
 from grashof.synth.programme.nonlinear_programme import Solve
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import UNSMOOTH, Start
 from grashof.synth.programme.structure import Form
-from grashof.synth.programme.torque_exchange import SOLVED, begun_from, solve_for_torque
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.results.judging import judged, verified_cognates
 from grashof.synth.results.polishing import polished_solve, polished_start
@@ -83,10 +83,10 @@ def attempt(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
 
 def _solved(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
     """Solve; again, asking for more, as long as the transmission alone is a little short."""
-    solve = solve_for_torque(scaled, start)
+    solve = solve_by_exchange(scaled, start)
     if solve.status not in SOLVED and any(Form.of(scaled, start).nearest):
         start = replace(start, loose=True)
-        solve = solve_for_torque(scaled, start)
+        solve = solve_by_exchange(scaled, start)
     done = polished_and_judged(scaled, start, solve, number)
     for _ in range(0 if scaled.exact else MORE):
         short = _short_of_transmission(done.candidate)
@@ -94,7 +94,7 @@ def _solved(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
             break
         more = start.more_transmission + BEYOND * short
         start = replace(begun_from(start, solve), more_transmission=more)
-        again = solve_for_torque(scaled, start)
+        again = solve_by_exchange(scaled, start)
         if again.status not in SOLVED:
             break
         solve = replace(again, iterations=solve.iterations + again.iterations)

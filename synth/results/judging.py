@@ -73,7 +73,7 @@ def verified_cognates(scaled: ScaledProblem, candidate: Candidate) -> tuple[Cand
     position = position_of(candidate.linkage, float(candidate.verdict.theta2[0]))
     came_from = {"start": candidate.start, "iterations": candidate.iterations}
     found = []
-    for cognate in cognate_points(position, scaled.timing is not None):
+    for cognate in cognate_points(position, scaled.timed):
         points = (cognate - scaled.frame.origin) / scaled.frame.scale
         if np.isfinite(points).all() and _worth_judging(scaled, points):
             other = judged(scaled, points, assembly_of(points), 0.0, **came_from)

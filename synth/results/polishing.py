@@ -56,13 +56,12 @@ def _on_targets(scaled: ScaledProblem, start: Start, linkage: Start | Solve) -> 
     if not scaled.exact and scaled.missed(at_p, theta3 + linkage.body_angle) > CLOSE:
         return None
     assembly = np.where((turned.conj() * (at_b - o4)).imag >= 0, 1.0, -1.0)
-    none = np.zeros(len(order))
     wish = Wish(
         points=scaled.targets,
         has_point=scaled.weights > 0,
-        turns=none if scaled.turns is None else scaled.turns,
-        has_turn=none > 0 if scaled.turn_weights is None else scaled.turn_weights > 0,
-        timed=scaled.timing is not None,
+        turns=scaled.turns,
+        has_turn=scaled.turn_weights > 0,
+        timed=scaled.timed,
     )
     polished = polish_path(points, theta2, linkage.body_angle, assembly, wish)
     return polished if polished.error < CLOSE and np.isfinite(polished.points).all() else None

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from grashof.problems import Box
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import (
@@ -17,7 +16,7 @@ from grashof.synth.programme.screening import (
     judge,
     keep_out_violation,
 )
-from grashof.synth.programme.start import LENGTHS, UNSMOOTH, Start
+from grashof.synth.programme.start import UNSMOOTH, Start
 from grashof.synth.programme.user_constraints import screened
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.results.judging import judged_again
@@ -77,8 +76,7 @@ def _candidates(scaled: ScaledProblem, key: str, rng: np.random.Generator, run: 
     loose = _loose(scaled, key)
     finder = finder_for(loose)
     linkages = rejudged(scaled, finder.near(rng))
-    group = "link_length" if key in LENGTHS else key
-    starts = closest_starts(scaled, linkages, group, SOLVES)
+    starts = closest_starts(scaled, linkages, key, SOLVES)
     as_they_are = [replace(start, settled=True) for start in starts]
     if not finder.freedom:
         return _judged(scaled, loose, as_they_are, run)
@@ -93,13 +91,8 @@ def _candidates(scaled: ScaledProblem, key: str, rng: np.random.Generator, run: 
 
 def _parts(scaled: ScaledProblem, key: str) -> list[tuple[str, ...]]:
     """What may be missed of a requirement: all of it, and of a box one side alone."""
-    if key in LENGTHS:
-        return [("link_length", key)]
-    if key == "link_length":
-        return [(key, *(name for name in LENGTHS if getattr(scaled.wanted, name) is None))]
-    box = getattr(scaled.wanted, key) if key in ("o2", "o4") else Box()
-    closed = [axis for axis in "xy" if np.isfinite(getattr(box, axis)).any()]
-    return [(key,), *((key, f"{key}.{axis}") for axis in closed if len(closed) > 1)]
+    closed = [axis for axis, side in scaled.wanted.ranges(key).items() if axis and np.isfinite(side).any()]
+    return [(key,), *((f"{key}.{axis}",) for axis in closed if len(closed) > 1)]
 
 
 def _judged(scaled: ScaledProblem, solved: ScaledProblem, starts: list[Start], run: Run) -> list[Candidate]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from grashof.analysis import Defect, verify
 from grashof.analysis.judge.design import Constraint, Design, name_of
-from grashof.problems import Box, PathTask, Problem, Requirements, Rotatability
+from grashof.problems import Box, Problem, Requirements, Rotatability
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.quantities import Kind
 from grashof.problems.values.requirements import LIMITS
@@ -73,8 +73,7 @@ def limiting(problem: Problem, constraints: Sequence[Constraint]) -> list[str]:
     wanted, usual = problem.requirements, Requirements()
     keys = [key for key in (*LIMITS, "keep_out") if getattr(wanted, key) != getattr(usual, key)]
     keys += ["constraints"] * bool(constraints)
-    turns = isinstance(problem.task, PathTask) and problem.task.closed
-    if wanted.rotatability is not Rotatability.ANY and not turns:
+    if wanted.rotatability is not Rotatability.ANY and not problem.task.closed:
         keys.append("rotatability")
     return keys + [key for key in UNSMOOTH if getattr(wanted, key)]
 

@@ -8,8 +8,7 @@ import numpy as np
 import pandas as pd
 
 from grashof.analysis import curve_distances, over_task, robustness
-from grashof.analysis.judge.tolerance import DIMENSIONS
-from grashof.problems import PathTask, Problem
+from grashof.problems import FourBar, Problem
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.results.ranking import pareto_optimal
 
@@ -19,7 +18,8 @@ MOTION = ("omega4_max", "point_speed_max", "point_acceleration_max", "coupler_fi
 DYNAMICS = ("torque_peak", "torque_rms", "joint_force_peak")
 # Filled when the problem says how exactly linkages are made.
 MANUFACTURING = (
-    *(f"move_{name}" for name in DIMENSIONS), "worst_move", "share_within_linear", "share_within_made",
+    *(f"move_{name}" for name in FourBar.DIMENSIONS), "worst_move",
+    "share_within_linear", "share_within_made",
 )  # fmt: skip
 # Columns without a meaning for a task stay empty.
 COLUMNS = (
@@ -73,11 +73,11 @@ def _fitted(problem: Problem, candidate: Candidate) -> dict[str, float]:
 
 
 def _distances(problem: Problem, candidate: Candidate) -> dict[str, float]:
-    """Between the coupler curve and the polygon through the points of a closed path."""
+    """Between the coupler curve and the polygon through the points of a closed task."""
     task, verdict = problem.task, candidate.verdict
-    if not isinstance(task, PathTask) or not task.closed or not verdict.full_rotation:
+    if not task.closed or not task.has_position.all() or not verdict.full_rotation:
         return {}
-    distances = curve_distances(candidate.linkage, task.points, verdict.direction)
+    distances = curve_distances(candidate.linkage, task.positions, verdict.direction)
     return dict(zip(("hausdorff", "frechet"), distances, strict=True))
 
 
@@ -93,12 +93,10 @@ def _row(candidate: Candidate) -> dict[str, Any]:
     linkage, verdict = candidate.linkage, candidate.verdict
     driver = np.degrees(verdict.theta2[[0, -1]])
     start, end = (driver - 360 * np.ceil((driver[0] - 180) / 360)).tolist()  # it starts in (-180, 180]
-    r1, r2, r3, r4 = (float(length) for length in linkage.lengths)
-    angles = {}
-    if verdict.angle_error is not None and not np.isnan(verdict.angle_error).all():
+    angles = {"body_angle_deg": np.nan}  # of a path, where nothing is carried
+    if not np.isnan(verdict.angle_error).all():
         angle_error = np.degrees(verdict.angle_error)
         angles = {
-            "body_angle_deg": float(np.degrees(linkage.body_angle)),
             "angle_error_max_deg": float(np.nanmax(angle_error)),
             "angle_error_rms_deg": float(np.sqrt(np.nanmean(angle_error**2))),
         }
@@ -106,17 +104,7 @@ def _row(candidate: Candidate) -> dict[str, Any]:
         **labels(candidate),
         "grashof_class": str(verdict.grashof_class),
         "direction": verdict.direction,
-        "assembly": int(linkage.assembly),
-        "o2_x": float(linkage.o2[0]),
-        "o2_y": float(linkage.o2[1]),
-        "o4_x": float(linkage.o4[0]),
-        "o4_y": float(linkage.o4[1]),
-        "r1": r1,
-        "r2": r2,
-        "r3": r3,
-        "r4": r4,
-        "p_u": float(linkage.coupler_point[0]),
-        "p_v": float(linkage.coupler_point[1]),
+        **linkage.columns,
         "theta2_start_deg": start,
         "theta2_end_deg": end,
         "error_max": verdict.error_max,

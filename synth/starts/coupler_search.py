@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from grashof.problems import MotionTask, ProblemError, Requirements
+from grashof.problems import ProblemError, Requirements
 from grashof.problems.values.checks import counted
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
@@ -44,16 +44,17 @@ class CouplerSearch:
     def cognates(self) -> bool:
         """They trace the same path; not where angles of the body, or a pivot or start angle, are given."""
         wanted = self.scaled.wanted
-        given = self.scaled.turns is not None or wanted.theta2_start_deg is not None
+        given = self.scaled.has_angles or wanted.theta2_start_deg is not None
         return not given and not fixed_pivots(wanted)
 
     def refuse(self) -> None:
-        """Raise `ProblemError` for fewer than three distinct poses."""
-        count = len(path_target(self.scaled).points)
-        if count < 3 and isinstance(self.scaled.problem.task, MotionTask):
+        """Raise `ProblemError` for fewer than three distinct targets."""
+        task, count = self.scaled.problem.task, len(path_target(self.scaled).points)
+        if count < 3:
+            free = " where parts are left free, the driver is timed or requirements.exact is false"
             raise ProblemError(
-                f"motion.poses has {counted(count, 'distinct pose')}; allowed are three or more where parts "
-                "are left free or requirements.exact is false"
+                f"{task.kind}.{task.target}s has {counted(count, f'distinct {task.target}')}; "
+                f"allowed are three or more{'' if task.only_points else free}"
             )
 
     def degenerate(self) -> str:
@@ -105,16 +106,15 @@ def search(
 def _effort(scaled: ScaledProblem, target: PathTarget) -> tuple[int, tuple[tuple[int, int], ...]]:
     if has_family(scaled):
         return FAMILY
-    return ISOLATED if target.timing is None else TIMED
+    return TIMED if target.timed else ISOLATED
 
 
 def has_family(scaled: ScaledProblem) -> bool:
     """Whether exact designs have freedom left: more unknowns than equations."""
     target = path_target(scaled)
-    unknowns = target.unknowns + 6 - (target.wanted.order and target.timing is None)
-    equations = 2 * np.count_nonzero(target.weights) + _equalities(scaled.wanted)
-    if target.turn_weights is not None:
-        unknowns, equations = unknowns + 1, equations + np.count_nonzero(target.turn_weights)
+    unknowns = target.unknowns + 6 + target.has_angles - (target.wanted.order and not target.timed)
+    equations = 2 * np.count_nonzero(target.weights) + np.count_nonzero(target.turn_weights)
+    equations += _equalities(scaled.wanted)
     return bool(scaled.exact and unknowns > equations)
 
 

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from grashof.problems import PathTask
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import follow
@@ -63,7 +62,7 @@ class NinePoints(PrecisionPoints):
     @staticmethod
     def suits(scaled: ScaledProblem) -> bool:
         """So many points, to be met exactly."""
-        if not scaled.exact or scaled.timing is not None or not isinstance(scaled.problem.task, PathTask):
+        if not scaled.exact or scaled.timed or not scaled.problem.task.only_points:
             return False
         points = path_target(scaled).points
         apart = np.abs(points[:, None] - points) + np.eye(len(points))

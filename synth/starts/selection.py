@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray, IntArray
-from grashof.synth.programme.drive_torque import SCREENED, torque_peaks
-from grashof.synth.programme.merit import weigh
+from grashof.problems.values.requirements import QUANTITIES
+from grashof.synth.programme.along_motion import ALONG, SCREENED, magnitudes
+from grashof.synth.programme.formulas import FORMULAS
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import GROUPS, Screened
+from grashof.synth.programme.screening import GROUPS, Many, Screened
 from grashof.synth.programme.start import Start
 from grashof.synth.theory.distinct import pick_apart, signature
 
@@ -131,12 +132,24 @@ def merits(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
     """Score of each linkage; its size is that of a box around what is known of it at the first target."""
     if not scaled.exact:
         return -linkages.error
-    objective = scaled.problem.objective
-    size = np.zeros(len(linkages))
-    if objective.compactness > 0:
-        size = np.hypot(np.ptp(linkages.points.real, axis=1), np.ptp(linkages.points.imag, axis=1))
-    if not objective.torque:
-        return weigh(objective, linkages.transmission, size)
-    ways = linkages.theta2, linkages.direction, linkages.assembly
-    torque = torque_peaks(scaled.problem, linkages.points, *ways, SCREENED)
-    return weigh(objective, linkages.transmission, size, torque)
+    score = np.zeros(len(linkages))
+    for key, weight in scaled.problem.objective.weights:
+        score += weight * _worth(scaled, linkages, key)
+    return score
+
+
+def _worth(scaled: ScaledProblem, linkages: Screened, key: str) -> FloatArray:
+    """What the objective counts a quantity as, greater is better; nothing where the search has no formula."""
+    if key == "transmission":
+        return linkages.transmission / (np.pi / 2)
+    if key == "size":
+        return -np.hypot(np.ptp(linkages.points.real, axis=1), np.ptp(linkages.points.imag, axis=1))
+    if key in ALONG:
+        ways = linkages.theta2, linkages.direction, linkages.assembly
+        return -magnitudes(scaled.problem, key, linkages.points, *ways, SCREENED).max(axis=1)
+    if key in FORMULAS:
+        (part,) = FORMULAS[key]
+        o2, o4, a, b, p = linkages.points.T
+        value: FloatArray = part.of(Many(p, o2, a[:, None], o4, b[:, None]))[:, 0]
+        return QUANTITIES[key].better * value / scaled.scale(QUANTITIES[key])
+    return np.zeros(len(linkages))

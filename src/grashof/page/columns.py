@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from grashof.problems import PathTask, Problem
+from grashof.problems import Problem
 from grashof.synth.results.table import DYNAMICS, MOTION
 from grashof.wording.problem import error_meaning
 
@@ -87,7 +87,7 @@ def listed(problem: Problem, frame: pd.DataFrame) -> list[Column]:
     """
     exact = problem.requirements.is_exact(problem.task)
     left_out = {"error"} if exact else set()
-    if isinstance(problem.task, PathTask) and problem.task.closed:
+    if problem.task.closed:
         left_out.add("transmission_min_task_deg")
     elif not frame["full_rotation"].any():
         left_out.add("transmission_min_cycle_deg")

@@ -15,7 +15,7 @@ from grashof.synth.starts.finder import finder_for
 from grashof.synth.starts.selection import PEAK_SPACING, PEAKS
 from grashof.synth.theory.distinct import apart, signature
 
-pytestmark = pytest.mark.usefixtures("coarse_curves")
+pytestmark = pytest.mark.usefixtures("small_search")
 
 SetupOf = Callable[..., ScaledProblem]
 
