@@ -22,7 +22,7 @@ SMALL: dict[str, dict[str, Any]] = {
     },
     "grashof.synth.starts.precision_points": {"BARREN": 2, "SEARCHES": 1},
     "grashof.synth.results.relaxations": {"SOLVES": 2},
-    "grashof.synth.results.choice": {"MOST_SEEDS": 4},
+    "grashof.synth.results.choice": {"SEEDS": 4},
     "grashof.synth.results.explain": {"NEAR_EFFORT": 0.2},
 }  # fmt: skip
 
@@ -40,7 +40,7 @@ def relaxing_only(monkeypatch: pytest.MonkeyPatch, small_search: None) -> Callab
     """Small explanations that look at some requirements alone: each takes a search of its own."""
 
     def of(*keys: str) -> None:
-        module = import_module("grashof.synth.results.single_relaxations")
+        module = import_module("grashof.synth.results.relaxations")
         monkeypatch.setattr(module, "limiting", lambda *_: list(keys))
 
     return of
