@@ -15,7 +15,7 @@ from grashof.analysis.forces.loads import Joint, Loads
 from grashof.analysis.forces.mass import stated_masses
 from grashof.analysis.four_bar.kinematics import Kinematics, solve_kinematics
 from grashof.analysis.four_bar.position import solve_position
-from grashof.analysis.judge.verify import Verdict
+from grashof.analysis.judge.verdict import Verdict
 from grashof.problems import DeadPositionWarning, DynamicsSpec, FourBar, PathTask, Problem, Task
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics_spec import metres

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.analysis import verify
-from grashof.analysis.judge.over_task import torque_peak
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.programme.drive_torque import overlooked
@@ -221,9 +220,12 @@ def _candidate(
         problem.requirements,
         scaled.constraints,
         most_square=len(problem.task) * (most_error * scaled.frame.scale) ** 2,
+        problem=problem,
     )
-    torque = torque_peak(linkage, scaled.problem, verdict) if verdict.ok else np.nan
-    return Candidate(linkage, verdict, number, iterations, cognate_of, torque)
+    candidate = Candidate(linkage, verdict, problem, number, iterations, cognate_of)
+    if verdict.ok:
+        candidate.objective(problem)  # here, where many are judged at the same time; the values stay known
+    return candidate
 
 
 def _cognates(scaled: ScaledProblem, candidate: Candidate) -> tuple[Candidate, ...]:

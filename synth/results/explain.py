@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from grashof.analysis import Verdict, verify
+from grashof.analysis import Verdict
 from grashof.problems import Problem, Rotatability
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
@@ -145,15 +145,12 @@ def closest_misses(attempts: list[Attempt]) -> tuple[Candidate, ...]:
 
 def _by_least_squares(scaled: ScaledProblem, search: Callable[[Problem], Result]) -> list[_Near]:
     """For targets to be met exactly: designs that come as near as they can, the nearest first."""
-    problem, own = scaled.problem, scaled.constraints
-    wanted = problem.requirements
+    problem = scaled.problem
     if not scaled.exact or not _may_be_near(scaled):
         return []
-    found = search(replace(problem, requirements=replace(wanted, exact=False))).candidates[:SHOWN]
-    return [
-        _Near(one.verdict, replace(one, verdict=verify(one.linkage, problem.task, wanted, own)))
-        for one in found
-    ]
+    wanted = replace(problem.requirements, exact=False)
+    found = search(replace(problem, requirements=wanted)).candidates[:SHOWN]
+    return [_Near(one.verdict, one.judged(problem, scaled.constraints)) for one in found]
 
 
 def _may_be_near(scaled: ScaledProblem) -> bool:

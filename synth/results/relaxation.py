@@ -132,7 +132,7 @@ def relaxation(
     missed = [defect for defect in candidate.verdict.defects if defect.requirement == key]
     miss = max((defect.miss for defect in missed), default=1.0)
     for wanted, eased, words in _eased(problem, own, key, missed):
-        if verify(candidate.linkage, problem.task, wanted, eased).ok:
+        if verify(candidate.linkage, problem.task, wanted, eased, problem=problem).ok:
             return Relaxation(key, words, wanted, eased, candidate, miss, words.count(" instead of "))
     return None
 

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from grashof.analysis import verify
 from grashof.problems import Box
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
@@ -124,12 +123,8 @@ def _parts(scaled: ScaledProblem, key: str) -> list[tuple[str, ...]]:
 
 def _judged(scaled: ScaledProblem, attempts: list[Attempt]) -> list[Candidate]:
     """The designs of attempts, judged by the requirements as they were asked."""
-    task, wanted = scaled.problem.task, scaled.problem.requirements
-    return [
-        replace(one.candidate, verdict=verify(one.candidate.linkage, task, wanted, scaled.constraints))
-        for one in attempts
-        if one.candidate is not None
-    ]
+    designs = [one.candidate for one in attempts if one.candidate is not None]
+    return [one.judged(scaled.problem, scaled.constraints) for one in designs]
 
 
 def _loose(scaled: ScaledProblem, key: str) -> ScaledProblem:
@@ -146,9 +141,9 @@ def _finished(scaled: ScaledProblem, found: Relaxation, solve: Solver) -> Relaxa
         return found
     asked = with_rounded_angle(scaled.problem, found) if found.key in ANGLES else found
     problem = replace(scaled.problem, requirements=asked.requirements)
-    eased, linkage = ScaledProblem.of(problem, asked.constraints), found.candidate.linkage
-    judged = verify(linkage, problem.task, asked.requirements, asked.constraints)
-    (made,) = solve(eased, [Start.of_linkage(eased, linkage, judged)], 0)
+    eased = ScaledProblem.of(problem, asked.constraints)
+    judged = found.candidate.judged(problem, asked.constraints)
+    (made,) = solve(eased, [Start.of_linkage(eased, judged.linkage, judged.verdict)], 0)
     if made.candidate is None or not made.candidate.verdict.ok:
         return found
     (candidate,) = _judged(scaled, [made])

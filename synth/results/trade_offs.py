@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from grashof.analysis import verify
 from grashof.problems import Objective, Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.programme.merit import same_error
@@ -172,10 +171,9 @@ def decided(
 
 def _judged(scaled: ScaledProblem, candidate: Candidate, most_error: float) -> Candidate:
     """A design judged by the problem as it is asked."""
-    problem, task = scaled.problem, scaled.problem.task
+    task = scaled.problem.task
     square = len(task) * (most_error * task.size) ** 2
-    verdict = verify(candidate.linkage, task, problem.requirements, scaled.constraints, most_square=square)
-    return replace(candidate, verdict=verdict)
+    return candidate.judged(scaled.problem, scaled.constraints, most_square=square)
 
 
 def _under(
@@ -220,9 +218,8 @@ def _worth_choosing(problem: Problem, every: list[Candidate], least: float) -> t
     words: dict[int, list[str]] = {k: [] for k in range(len(kept))}
     if kept:  # the first of the list may be another one, if nobody would build it
         words[min(words, key=lambda k: round(_error(problem, kept[k]), ALIKE + 1))].append("least error")
-    over = problem.requirements.transmission_over
     values = {
-        "best mu": [-round(one.transmission(over), ALIKE) for one in kept],
+        "best mu": [-round(one.values["transmission"], ALIKE) for one in kept],
         "smallest": [round(one.verdict.size / problem.task.size, ALIKE) for one in kept],
     }
     for factor in FACTORS[::-1]:

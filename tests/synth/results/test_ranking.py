@@ -36,7 +36,7 @@ def design(number: int, error: float = 0.0, mu: float = 40.0, size: float = 2.0,
         defects=(),
     )
     linkage = FourBar(o2=(0, 0), o4=(4 + number, 0), r2=1, r3=4, r4=3)
-    return Candidate(linkage, verdict, number, 0, **more)
+    return Candidate(linkage, verdict, LEAST_SQUARES, number, 0, **more)
 
 
 def order(problem: Problem, *designs: Candidate) -> list[int]:
