@@ -16,7 +16,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from grashof.analysis.judge.verify import Verdict, verify
-from grashof.problems import Box, FourBar, MotionTask, Problem, Requirements, Rotatability
+from grashof.problems import Box, FourBar, Problem, Requirements, Rotatability
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 
 TURN = 2 * np.pi
@@ -34,10 +34,10 @@ class Aim:
     size: float
     middle: complex
     points: ComplexArray
-    angles: FloatArray | None
+    angles: FloatArray
     root_weights: FloatArray
     angle_length: float
-    timing: FloatArray | None
+    timing: FloatArray
     closed: bool
     wanted: Requirements
 
@@ -50,16 +50,21 @@ class Aim:
             raise ValueError("areas, other branches, any order and prescribed angles are not known here")
         places = task.positions @ np.array([1, 1j])
         middle, size = complex(places.mean()), task.size
-        if isinstance(task, MotionTask):
-            if not task.is_whole:
-                raise ValueError("poses with free parts are not known here")
-            length = task.angle_length / size
-            angles, timing, closed, weights = task.angles, None, False, np.sqrt(task.weights)
-        else:
-            length, angles, timing, closed = 1.0, None, task.timing, task.closed
-            weights = np.ones(len(task))
-        points = (places - middle) / size
-        return cls(size, middle, points, angles, weights, length, timing, closed, wanted)
+        if not (task.is_whole or task.only_points):
+            raise ValueError("poses with free parts are not known here")
+        points, length, weights = (places - middle) / size, task.angle_length / size, np.sqrt(task.weights)
+        timing = task.driver_turns
+        return cls(size, middle, points, task.angles, weights, length, timing, task.closed, wanted)
+
+    @property
+    def turned(self) -> bool:
+        """Whether the targets have angles."""
+        return not np.isnan(self.angles).any()
+
+    @property
+    def timed(self) -> bool:
+        """Whether the driver rotations are prescribed."""
+        return not np.isnan(self.timing).any()
 
     @property
     def whole_turn(self) -> bool:
@@ -123,8 +128,8 @@ def places(aim: Aim, designs: Designs) -> Places:
     o2, o4, coupler = (x[:, k : k + 1] + 1j * x[:, k + 1 : k + 2] for k in (0, 2, 7))
     r2, r3, r4 = (np.exp(np.clip(x[:, k : k + 1], -20, 20)) for k in (4, 5, 6))
     theta2 = x[:, 10:]
-    if aim.timing is not None:
-        theta2 = theta2 + designs.sense[:, None] * np.abs(aim.timing)
+    if aim.timed:
+        theta2 = theta2 + designs.sense[:, None] * aim.timing
     a = o2 + r2 * np.exp(1j * theta2)
     line = o4 - a
     diagonal = np.abs(line) + 1e-12
@@ -139,7 +144,7 @@ def misses(aim: Aim, at: Places) -> FloatArray:
     """What is squared: weighted distances of points, and turns of poses as lengths; shape (B, M)."""
     gap = (at.p - aim.points) * aim.root_weights
     parts = [gap.real, gap.imag]
-    if aim.angles is not None:
+    if aim.turned:
         turn = np.angle((at.b - at.a) * np.exp(1j * (at.body - aim.angles)))
         parts.append(turn * aim.angle_length * aim.root_weights)
     return np.concatenate(parts, axis=1)
@@ -166,7 +171,7 @@ def oversteps(aim: Aim, designs: Designs, at: Places) -> FloatArray:
         within(joint.real, box.x, aim.middle.real)
         within(joint.imag, box.y, aim.middle.imag)
     rows += [*turning(aim, at), *transmission(aim, at)]
-    if aim.timing is None:
+    if not aim.timed:
         step = designs.sense[:, None] * np.diff(at.theta2, axis=1)
         rows += [-step, step.sum(axis=1, keepdims=True) - TURN + INSIDE]
     return np.concatenate(rows, axis=1)
@@ -217,10 +222,10 @@ def slopes(aim: Aim, at: Places) -> FloatArray:
     rate3 = -(driver.conj() * output).imag / np.where(np.abs(down) < 1e-9, 1e-9, down)
     rate_p = 1j * (driver + (at.p - at.a) * rate3)
     slope = aim.root_weights**2 * ((at.p - aim.points).conj() * rate_p).real
-    if aim.angles is not None:
+    if aim.turned:
         turn = np.angle(coupler * np.exp(1j * (at.body - aim.angles)))
         slope = slope + (aim.root_weights * aim.angle_length) ** 2 * turn * rate3
-    if aim.timing is not None:
+    if aim.timed:
         slope = slope.sum(axis=1, keepdims=True)
     elif not boxed:
         slope = slope[:, [0, -1]]
@@ -258,14 +263,14 @@ def improved(aim: Aim, designs: Designs, weight: float, steps: int) -> tuple[Des
 def drawn(aim: Aim, count: int, rng: np.random.Generator) -> Designs:
     """Random linkages with driver angles in order, turned, scaled and moved onto the targets."""
     sense, elbow = rng.choice([-1.0, 1.0], (2, count))
-    x = np.zeros((count, 10 + (len(aim.points) if aim.timing is None else 1)))
+    x = np.zeros((count, 10 + (len(aim.points) if not aim.timed else 1)))
     r1, r2, r3, r4 = np.exp(rng.uniform(np.log(0.1), 0, (4, count)))
     x[:, 2] = r1
     x[:, 4:7] = np.log([r2, r3, r4]).T
     wide = rng.random((count, 1)) < 0.5  # half of them far from the usual: long arms, uneven driver angles
     x[:, 7:9] = rng.normal(size=(count, 2)) * np.where(wide, np.exp(rng.uniform(-1, 1.1, (count, 1))), 0.7)
     x[:, 10:] = rng.uniform(-np.pi, np.pi, (count, 1))
-    if aim.timing is None:
+    if not aim.timed:
         gaps = np.exp(rng.normal(size=(count, len(aim.points))) * np.where(wide, 0.6, 0.3))
         turn = TURN if aim.closed else rng.uniform(1, TURN, (count, 1))
         steps = turn * gaps / gaps.sum(axis=1, keepdims=True)
@@ -280,7 +285,7 @@ def drawn(aim: Aim, count: int, rng: np.random.Generator) -> Designs:
     x[:, 4:7] += np.log(np.abs(z))
     x[:, 7:9] *= np.abs(z)
     x[:, 10:] += np.angle(z)
-    if aim.angles is not None:
+    if aim.turned:
         at = places(aim, designs)
         x[:, 9] = np.angle((np.exp(1j * aim.angles) * (at.b - at.a).conj()).sum(axis=1))
     return designs
@@ -354,7 +359,7 @@ def linkage_of(aim: Aim, design: Designs) -> FourBar:
     point = at.coupler[0, 0] * aim.size
     return FourBar(
         (o2.real, o2.imag), (o4.real, o4.imag), r2, r3, r4, (point.real, point.imag),
-        int(design.elbow[0]), float(at.body[0, 0]) if aim.angles is not None else 0.0,
+        int(design.elbow[0]), float(at.body[0, 0]) if aim.turned else 0.0,
     )  # fmt: skip
 
 

@@ -12,7 +12,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from grashof.analysis.judge.design import Constraint
-from grashof.problems import MotionTask, Problem, ProblemError, Search
+from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.values.checks import counted, finite_number, whole_number
 from grashof.synth.programme.nonlinear_programme import MOST_ITERATIONS
 from grashof.synth.programme.scaled_problem import ScaledProblem
@@ -140,15 +140,14 @@ def refuse_unsupported(problem: Problem) -> None:
     """Raise `ProblemError` for a problem that this version cannot search for."""
     if problem.task.zones is not None:  # what is looked for first
         problem = problem.without_zones(exact=problem.requirements.exact)
-    task = problem.task
-    if not isinstance(task, MotionTask):
-        return
-    if problem.requirements.is_exact(task) and task.is_whole:
+    scaled, task = ScaledProblem.of(problem), problem.task
+    if scaled.motion is not None:
         exact_poses.refuse_equal_poses(task)
-    elif (count := len(path_target(ScaledProblem.of(problem)).points)) < 3:
+    elif (count := len(path_target(scaled).points)) < 3:
+        free = " where parts are left free, the driver is timed or requirements.exact is false"
         raise ProblemError(
-            f"motion.poses has {counted(count, 'distinct pose')}; allowed are three or more where parts are "
-            "left free or requirements.exact is false"
+            f"{task.kind}.{task.target}s has {counted(count, f'distinct {task.target}')}; "
+            f"allowed are three or more{'' if task.only_points else free}"
         )
 
 

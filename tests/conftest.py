@@ -1,7 +1,34 @@
-"""Settings of every test."""
+"""Settings of every test, and small searches for tests of anything but the best designs."""
 
+import os
+from importlib import import_module
+from typing import Any
+
+# The tests run in one process a core: threads of NumPy's own would only stand in each other's way.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import pytest
 from hypothesis import settings
 
 # The same examples each time, and no limit of time: machines differ, and are busy.
 settings.register_profile("here", derandomize=True, deadline=None)
 settings.load_profile("here")
+
+# How finely curves are traced, how many pairs are judged, rounds gone through, starts solved.
+SMALL: dict[str, dict[str, Any]] = {
+    "grashof.synth.starts.exact_poses": {
+        "LINES": 300, "CELL": 0.02, "PAIRS": 200_000, "SAMPLED_PAIRS": 50_000, "NEAR_PAIRS": 30_000,
+    },
+    "grashof.synth.starts.paths": {"BARREN": 2, "SEARCHES": 1},
+    "grashof.synth.results.single_relaxations": {"SOLVES": 3},
+    "grashof.synth.results.trade_offs": {"MOST_SEEDS": 4},
+    "grashof.synth.synthesize": {"NEAR_EFFORT": 0.2},
+}  # fmt: skip
+
+
+@pytest.fixture
+def small_search(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Searches and explanations several times as fast."""
+    for module, sizes in SMALL.items():
+        for name, size in sizes.items():
+            monkeypatch.setattr(import_module(module), name, size)

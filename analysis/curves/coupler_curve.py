@@ -67,18 +67,18 @@ def coupler_rates(linkage: FourBar, state: Position) -> tuple[FloatArray, FloatA
 
 
 def squared_distance(
-    linkage: FourBar, points: ComplexArray, assembly: IntArray
+    linkage: FourBar, points: ComplexArray, assembly: IntArray, weights: FloatArray | float = 1.0
 ) -> Callable[[FloatArray], Model]:
-    """Squared distance from each point, as a function of its driver angle."""
+    """Squared distance from each point, weighted, as a function of its driver angle."""
 
     def model(theta2: FloatArray) -> Model:
         p, rate, bend = coupler_curve(linkage, theta2, assembly)
         gap = p - points
         with np.errstate(invalid="ignore", over="ignore"):
-            value = np.nan_to_num(gap.real**2 + gap.imag**2, nan=np.inf)
-            positive = 2 * (rate.real**2 + rate.imag**2)
-            slope = 2 * (rate.conj() * gap).real
-            return value, slope, positive + 2 * (bend.conj() * gap).real, positive
+            value = weights * np.nan_to_num(gap.real**2 + gap.imag**2, nan=np.inf)
+            positive = 2 * weights * (rate.real**2 + rate.imag**2)
+            slope = 2 * weights * (rate.conj() * gap).real
+            return value, slope, positive + 2 * weights * (bend.conj() * gap).real, positive
 
     return model
 

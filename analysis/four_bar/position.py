@@ -78,6 +78,14 @@ def solve_position(
     )
 
 
+def places(linkage: FourBar, state: Position) -> dict[str, FloatArray]:
+    """Where the points of a linkage are in some of its positions, each of shape (..., 2), by their names."""
+    return {
+        point: np.broadcast_to(getattr(linkage if point in linkage.GROUND else state, point), state.a.shape)
+        for point in linkage.POINTS
+    }
+
+
 class Loop(NamedTuple):
     """The closed loop in components, each of shape (...); those of links 3 and 4 NaN where it is open.
 

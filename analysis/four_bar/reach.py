@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.four_bar.position import places, solve_position
 from grashof.problems import FourBar
 from grashof.problems.values.arrays import FloatArray
 
@@ -37,12 +37,12 @@ def reach_box(linkage: FourBar, start: float, end: float) -> FloatArray:
     [[-1.0, -1.0], [4.0, 3.0]]
     """
     towards_end = (1 - np.cos(np.linspace(0, np.pi, _SAMPLES))) / 2
-    state = solve_position(linkage, start + (end - start) * towards_end)
-    track = np.concatenate([state.a, state.b, state.p], axis=-1)
+    where = places(linkage, solve_position(linkage, start + (end - start) * towards_end))
+    track = np.concatenate(list(where.values()), axis=-1)
     track = track[np.isfinite(track).all(axis=-1)]
-    corners = [linkage.o2, linkage.o4]
+    corners = [getattr(linkage, pivot) for pivot in linkage.GROUND]
     if len(track):
-        corners += list(-_peaks(-track).reshape(3, 2)) + list(_peaks(track).reshape(3, 2))
+        corners += [*-_peaks(-track).reshape(-1, 2), *_peaks(track).reshape(-1, 2)]
     return np.array([np.min(corners, axis=0), np.max(corners, axis=0)])
 
 

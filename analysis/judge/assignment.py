@@ -27,7 +27,7 @@ class Guess:
         Driver angles and their bounds.
     assembly : ndarray of int, shape (N,)
     distance : float, length
-        Root of the sum of squared distances there, from straight pieces.
+        Root of the weighted sum of squared distances there, from straight pieces.
     slack : float, length
         By how much that may be wrong.
     crowded : bool
@@ -43,7 +43,9 @@ class Guess:
     crowded: bool
 
 
-def ordered_guesses(track: Track, targets: ComplexArray, *, middles: bool = False) -> list[Guess]:
+def ordered_guesses(
+    track: Track, targets: ComplexArray, weights: FloatArray, *, middles: bool = False
+) -> list[Guess]:
     """The best assignments of targets to pieces of a track that never go back, within one turn.
 
     Parameters
@@ -51,6 +53,8 @@ def ordered_guesses(track: Track, targets: ComplexArray, *, middles: bool = Fals
     track : Track
     targets : ndarray of complex, shape (N,)
         In the order in which growing driver angles meet them.
+    weights : ndarray, shape (N,)
+        Of the squared distances.
     middles : bool
         Measure the distance of a target from the middle of a piece. Otherwise from the piece taken
         as straight, which is closer, but allows targets on one piece to stand in any order.
@@ -65,6 +69,7 @@ def ordered_guesses(track: Track, targets: ComplexArray, *, middles: bool = Fals
     Dynamic programming over target and piece.
     """
     squared, share, side = _distances(track, targets, middles)
+    squared = weights[:, None] * squared
     if not track.cyclic:
         chosen, costs = assigned(squared[:, :, None])
         return [_guess(track, chosen[:, 0], share, side, float(costs[0]))] if np.isfinite(costs[0]) else []

@@ -10,8 +10,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from grashof.analysis.four_bar.position import solve_position
-from grashof.analysis.judge.nearest_poses import Targets, Way
+from grashof.analysis.four_bar.position import places, solve_position
+from grashof.analysis.judge.task_motion import Targets, TaskMotion
 from grashof.problems import FourBar, Requirements
 from grashof.problems.values.areas import solid
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
@@ -21,13 +21,6 @@ _ALONG = 33  # samples along the piece of a link that lies inside
 _PEAKS = 3  # of the depth over the motion that are looked at more closely
 _ROUNDS, _NEARBY = 18, np.linspace(-1, 1, 7)  # each three times as close
 _ROUGH = 5  # rounds along a link, while looking for the driver angles where it reaches deepest
-_LINKS = {
-    "link O2A": ("o2", "a"),
-    "link AB": ("a", "b"),
-    "link O4B": ("o4", "b"),
-    "line AP": ("a", "p"),
-    "line BP": ("b", "p"),
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +115,7 @@ def segment_depth(area: Area, begin: FloatArray, end: FloatArray, rounds: int = 
 
 
 def intrusions(
-    linkage: FourBar, wanted: Requirements, targets: Targets, way: Way, *, joined: bool
+    linkage: FourBar, wanted: Requirements, targets: Targets, motion: TaskMotion, *, joined: bool
 ) -> dict[str, float]:
     """How deep the parts of a linkage that shall keep out reach into the areas kept out.
 
@@ -132,7 +125,7 @@ def intrusions(
         A single linkage.
     wanted : Requirements
     targets : Targets
-    way : Way
+    motion : TaskMotion
     joined : bool
         A motion joins the targets: it is judged as a whole, otherwise the targets alone.
 
@@ -150,18 +143,28 @@ def intrusions(
     area, deepest = Area.of(wanted.keep_out), dict[str, float]()
     parts: dict[str, tuple[str, ...]] = {}
     for name in wanted.keep_out_for:
-        parts |= _LINKS if name == "links" else {name.upper(): (name,)}
+        parts |= _lines() if name == "links" else {name.upper(): (name,)}
     for part, ends in parts.items():
-        if ends in (("o2",), ("o4",)):
+        if set(ends) <= set(linkage.GROUND):
             deepest[part] = float(depth(area, getattr(linkage, ends[0])))
             continue
         if joined:
             at = _depth_of(area, linkage, ends, targets.assembly[:1])
-            deepest[part] = _deepest_over(at, way.start, way.end)
+            deepest[part] = _deepest_over(at, motion.start, motion.end)
         else:
             at = _depth_of(area, linkage, ends, targets.assembly)
             deepest[part] = float(at(targets.theta2, _ROUNDS).max())
     return {part: max(found, 0.0) for part, found in deepest.items()}
+
+
+def _lines() -> dict[str, tuple[str, ...]]:
+    """The links, then the lines to the coupler point, by name; the ends of each."""
+    named = {
+        f"{'link' if FourBar.JOINTS.keys() >= set(ends) else 'line'} {''.join(ends).upper()}": ends
+        for link in FourBar.LINKS[1:]
+        for ends in link.lines
+    }
+    return dict(sorted(named.items(), key=lambda part: part[0].startswith("line")))
 
 
 def _depth_of(
@@ -170,15 +173,11 @@ def _depth_of(
     """Depth of a point, or of the link between two, by driver angles of shape (n,) and rounds."""
 
     def at(theta2: FloatArray, rounds: int) -> FloatArray:
-        state = solve_position(linkage, theta2, assembly)
-        places = [
-            np.broadcast_to(getattr(linkage if end in ("o2", "o4") else state, end), state.a.shape)
-            for end in ends
-        ]
+        where = places(linkage, solve_position(linkage, theta2, assembly))
+        begin, end = where[ends[0]], where[ends[-1]]
         found = np.full(len(theta2), -np.inf)
-        closed = np.isfinite(np.concatenate(places, axis=-1)).all(axis=-1)
-        begin, end = places[0][closed], places[-1][closed]
-        one = len(places) == 1
+        closed = np.isfinite(begin + end).all(axis=-1)
+        begin, end, one = begin[closed], end[closed], len(ends) == 1
         found[closed] = depth(area, begin) if one else segment_depth(area, begin, end, rounds)
         return found
 

@@ -12,7 +12,7 @@ import numpy as np
 from grashof.analysis.curves.curve_distance import curve_distances
 from grashof.analysis.four_bar.position import Position, solve_position
 from grashof.analysis.judge.over_task import OverTask, over_task, torque_peak
-from grashof.analysis.judge.tolerance import DIMENSIONS, robustness
+from grashof.analysis.judge.tolerance import robustness
 from grashof.analysis.judge.verdict import Verdict
 from grashof.problems import FourBar, Problem
 from grashof.problems.values.arrays import TURN, FloatArray
@@ -84,14 +84,14 @@ class Values(Mapping[str, float]):
         if self.problem.manufacturing is None:
             return {}
         found = robustness(self.linkage, self.problem.task, self.verdict, self.problem.manufacturing)
-        moves = zip((f"move_{name}" for name in DIMENSIONS), found.moves.tolist(), strict=True)
+        moves = zip((f"move_{name}" for name in FourBar.DIMENSIONS), found.moves.tolist(), strict=True)
         shares = {"share_within_linear": found.share_linear, "share_within_made": found.share_made}
         return {**dict(moves), "worst_move": found.worst_move, **shares}
 
     @cached_property
     def curve_distances(self) -> tuple[float, float]:
         """Hausdorff and Fréchet distance of the coupler curve from the polygon of the targets."""
-        if not self.verdict.full_rotation:
+        if not self.verdict.full_rotation or not self.problem.task.has_position.all():
             return np.nan, np.nan
         return curve_distances(self.linkage, self.problem.task.positions, self.verdict.direction)
 
@@ -99,7 +99,11 @@ class Values(Mapping[str, float]):
 def _angle_error(number: Callable[[FloatArray], float], values: Values) -> float:
     """A number of the angle errors; NaN where no angle is asked for."""
     errors = values.verdict.angle_error
-    return np.nan if errors is None or np.isnan(errors).all() else number(errors)
+    return np.nan if np.isnan(errors).all() else number(errors)
+
+
+def _column(name: str, values: Values) -> float:
+    return values.linkage.columns[name]
 
 
 def _link_ratio(values: Values) -> float:
@@ -113,13 +117,8 @@ def _made(key: str, values: Values) -> float:
 
 # Of every quantity that is one number.
 MEASURES: dict[str, Callable[[Values], float]] = {
-    "o2_x": lambda values: values.linkage.o2[0],
-    "o2_y": lambda values: values.linkage.o2[1],
-    "o4_x": lambda values: values.linkage.o4[0],
-    "o4_y": lambda values: values.linkage.o4[1],
-    "p_u": lambda values: values.linkage.coupler_point[0],
-    "p_v": lambda values: values.linkage.coupler_point[1],
-    **{name: attrgetter(f"linkage.{name}") for name in ("r1", "r2", "r3", "r4")},
+    **{name: partial(_column, name) for name in ("o2_x", "o2_y", "o4_x", "o4_y", "p_u", "p_v")},
+    **{name: attrgetter(f"linkage.{name}") for name in FourBar.LENGTHS},
     "body_angle": lambda values: _angle_error(lambda _: float(values.linkage.body_angle), values),
     "ground_angle": attrgetter("linkage.theta1"),
     "link_ratio": _link_ratio,
@@ -150,7 +149,7 @@ def _place(point: str, values: Values) -> dict[str, FloatArray]:
 
 
 def _lengths(values: Values) -> dict[str, FloatArray]:
-    return {f"r{link}": length for link, length in enumerate(values.linkage.lengths[:, None], start=1)}
+    return dict(zip(FourBar.LENGTHS, values.linkage.lengths[:, None], strict=True))
 
 
 def _arms(values: Values) -> dict[str, FloatArray]:

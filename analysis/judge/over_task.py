@@ -16,7 +16,7 @@ from grashof.analysis.forces.mass import stated_masses
 from grashof.analysis.four_bar.kinematics import Kinematics, solve_kinematics
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.judge.verdict import Verdict
-from grashof.problems import DeadPositionWarning, DynamicsSpec, FourBar, PathTask, Problem, Task
+from grashof.problems import DeadPositionWarning, DynamicsSpec, FourBar, Problem, Task
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics_spec import metres
 
@@ -158,7 +158,7 @@ def motion_ends(task: Task, verdict: Verdict) -> tuple[float, float]:
     """Driver angles at which the motion from the first target to the last begins and ends, rad."""
     low, high = float(verdict.theta2.min()), float(verdict.theta2.max())
     start, end = (low, high) if verdict.direction > 0 else (high, low)
-    if isinstance(task, PathTask) and task.closed:
+    if task.closed:
         end = start + verdict.direction * TURN
     return start, end
 

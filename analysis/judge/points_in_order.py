@@ -19,7 +19,7 @@ from grashof.analysis.curves.coupler_curve import (
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.judge.assignment import Guess, ordered_guesses
 from grashof.analysis.numerics.minimisation import lowest, lowest_in_order
-from grashof.problems import FourBar, PathTask
+from grashof.problems import FourBar, Task
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
 
 _BASINS = 4
@@ -29,14 +29,14 @@ _LOOK = np.linspace(-1, 1, 25)
 
 @dataclass(frozen=True, slots=True)
 class Met:
-    """Where a linkage meets the points of a task.
+    """Where a linkage meets the targets of a task.
 
     Parameters
     ----------
     theta2 : ndarray, shape (N,), rad
     assembly : ndarray of int, shape (N,)
     direction : int
-        Sense of the driver from point to point, +1 or -1; 0 when the points are met in no order.
+        Sense of the driver from target to target, +1 or -1; 0 when they are met in no order.
     """
 
     theta2: FloatArray
@@ -44,10 +44,8 @@ class Met:
     direction: int
 
 
-def met_in_order(
-    linkage: FourBar, task: PathTask, same_branch: bool, theta2_start: float | None
-) -> Met | None:
-    """The least sum of squared distances over driver angles that do not go back, within one turn.
+def met_in_order(linkage: FourBar, task: Task, same_branch: bool, theta2_start: float | None) -> Met | None:
+    """The least weighted squares of distances over driver angles that do not go back, within one turn.
 
     Returns
     -------
@@ -95,7 +93,7 @@ def _beside(
     low = np.maximum.reduce([before, floor, bounds[0], theta2 - _BESIDE])
     high = np.minimum.reduce([after, ceiling, bounds[1], theta2 + _BESIDE])
     assembly = np.array([guess.assembly for guess, _ in guesses])
-    points = np.array([passage.points for _, passage in guesses])
+    points, weights = (np.array([getattr(one, name) for _, one in guesses]) for name in ("points", "weights"))
     angle = np.clip(theta2[..., None] + _BESIDE * _LOOK * np.abs(_LOOK), low[..., None], high[..., None])
     p = solve_position(linkage, angle, assembly[..., None]).p @ np.array([1, 1j])
     gap = np.nan_to_num(np.abs(p - points[..., None]), nan=np.inf)
@@ -106,7 +104,7 @@ def _beside(
         return theta2
     chosen = np.argmin(other, axis=-1)[..., None] + 1
     start = np.where(valley.any(axis=-1), np.take_along_axis(angle, chosen, axis=-1)[..., 0], theta2)
-    moved, depth = lowest(squared_distance(linkage, points, assembly), start, low, high)
+    moved, depth = lowest(squared_distance(linkage, points, assembly, weights), start, low, high)
     return np.maximum.accumulate(np.where(depth < value * (1 - 1e-6), moved, theta2), axis=1)
 
 
@@ -119,6 +117,7 @@ class _Passage:
     track : Track
     points : ndarray of complex, shape (N,)
         In the order in which growing driver angles meet them.
+    weights : ndarray, shape (N,)
     direction : int
         -1 when that is the task's order reversed.
     first : float, rad, optional
@@ -129,18 +128,19 @@ class _Passage:
 
     track: Track
     points: ComplexArray
+    weights: FloatArray
     direction: int
     first: float | None = None
     start: ComplexArray | None = None
 
     def guesses(self, *, middles: bool) -> list[Guess]:
         if self.first is None or self.start is None:
-            return ordered_guesses(self.track, self.points, middles=middles)
+            return ordered_guesses(self.track, self.points, self.weights, middles=middles)
         at = 0 if self.direction > 0 else -1
         gaps = np.abs(self.start - self.points[at])
-        sign, distance = int(self.track.signs[np.argmin(gaps)]), float(gaps.min())
-        rest = np.delete(self.points, at)
-        found = ordered_guesses(self.track, rest, middles=middles)
+        sign, distance = int(self.track.signs[np.argmin(gaps)]), float(self.weights[at] ** 0.5 * gaps.min())
+        rest, weights = np.delete(self.points, at), np.delete(self.weights, at)
+        found = ordered_guesses(self.track, rest, weights, middles=middles)
         return [_with(guess, self.first, sign, distance, at) for guess in found]
 
     def bounds(self) -> tuple[FloatArray, FloatArray]:
@@ -167,13 +167,15 @@ def _with(guess: Guess, theta2: float, assembly: int, distance: float, at: int) 
     )
 
 
-def _passages(
-    linkage: FourBar, task: PathTask, same_branch: bool, theta2_start: float | None
-) -> list[_Passage]:
-    points = task.points @ np.array([1, 1j])
+def _passages(linkage: FourBar, task: Task, same_branch: bool, theta2_start: float | None) -> list[_Passage]:
+    points = task.positions @ np.array([1, 1j])
     if theta2_start is None:
         every = tracks(linkage, PIECES, same_branch)
-        return [_Passage(track, points[::sense], sense) for track in every for sense in (1, -1)]
+        return [
+            _Passage(track, points[::sense], task.weights[::sense], sense)
+            for track in every
+            for sense in (1, -1)
+        ]
     ends = range_around(linkage, theta2_start)
     passages = []
     for sense in (1, -1):
@@ -183,7 +185,8 @@ def _passages(
         low, high = sorted((theta2_start, far))
         track = between(linkage, low, high, ends, PIECES, same_branch)
         start = coupler_curve(linkage, theta2_start, track.signs)[0]
-        passages.append(_Passage(track, points[::sense], sense, theta2_start, start))
+        ordered = points[::sense], task.weights[::sense]
+        passages.append(_Passage(track, *ordered, sense, theta2_start, start))
     return passages
 
 
@@ -192,7 +195,7 @@ def _refined(linkage: FourBar, guesses: list[tuple[Guess, _Passage]]) -> tuple[F
         np.array([getattr(guess, name) for guess, _ in guesses])
         for name in ("theta2", "floor", "ceiling", "assembly")
     )
-    points = np.array([passage.points for _, passage in guesses])
+    points, weights = (np.array([getattr(one, name) for _, one in guesses]) for name in ("points", "weights"))
     low, high = np.array([passage.bounds() for _, passage in guesses]).swapaxes(0, 1)
-    model = squared_distance(linkage, points, assembly)
+    model = squared_distance(linkage, points, assembly, weights)
     return lowest_in_order(model, theta2, (low, high), (floor, ceiling))

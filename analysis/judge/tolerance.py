@@ -7,7 +7,7 @@ line), r2, r3, r4, u and v vary.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -16,10 +16,9 @@ import numpy.typing as npt
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.four_bar.transmission import transmission_angle
 from grashof.analysis.judge.verdict import Verdict
-from grashof.problems import FourBar, Manufacturing, MotionTask, PathTask, Task
+from grashof.problems import FourBar, Manufacturing, Task
 from grashof.problems.values.arrays import BoolArray, FloatArray
 
-DIMENSIONS = ("r1", "r2", "r3", "r4", "u", "v")
 SAMPLES = 20_000  # made linkages: a share has a standard error of at most 0.0036
 _POSITIONS = 200_000  # most positions solved for a design: long paths get fewer samples, ...
 _FEWEST = 1_000  # ... but so many at least (0.016)
@@ -81,12 +80,12 @@ def robustness(linkage: FourBar, task: Task, verdict: Verdict, manufacturing: Ma
     """
     samples = min(SAMPLES, max(_FEWEST, _POSITIONS // len(task)))
     errors = dimension_errors(manufacturing, samples, np.random.default_rng(0))
-    slope = _measured_sensitivity(linkage, task, verdict)
-    corners = manufacturing.length_tolerance * np.array(list(product((1.0, -1.0), repeat=6)))
+    slope = measured_sensitivity(linkage, task, verdict)
+    senses = list(product((1.0, -1.0), repeat=len(FourBar.DIMENSIONS)))
     return Robustness(
         moves=np.sqrt((slope**2).sum(axis=1)).max(axis=0),
-        worst_move=float(_linear_moves(slope, corners).max()),
-        share_linear=yield_linear(linkage, task, verdict, manufacturing.band, errors),
+        worst_move=float(_linear_moves(slope, manufacturing.length_tolerance * np.array(senses)).max()),
+        share_linear=yield_linear(slope, manufacturing.band, errors),
         share_made=yield_monte_carlo(linkage, task, verdict, manufacturing.band, errors),
     )
 
@@ -151,23 +150,26 @@ def sensitivity(linkage: FourBar, theta2: npt.ArrayLike, assembly: npt.ArrayLike
 
 def dimension_errors(manufacturing: Manufacturing, samples: int, rng: np.random.Generator) -> FloatArray:
     """Random deviations of the dimensions r1, r2, r3, r4, u, v, shape (samples, 6), length."""
-    return manufacturing.deviation * rng.standard_normal((samples, len(DIMENSIONS)))
+    return manufacturing.deviation * rng.standard_normal((samples, len(FourBar.DIMENSIONS)))
 
 
-def yield_linear(linkage: FourBar, task: Task, verdict: Verdict, band: float, errors: FloatArray) -> float:
+def measured_sensitivity(linkage: FourBar, task: Task, verdict: Verdict) -> FloatArray:
+    """Sensitivity at each target, shape (N, 3, 6), with angles as the lengths they count as."""
+    counts = np.array([1.0, 1.0, task.angle_length if task.has_angle.any() else 0.0])
+    return counts[:, None] * sensitivity(linkage, verdict.theta2, verdict.assembly)
+
+
+def yield_linear(slope: FloatArray, band: float, errors: FloatArray) -> float:
     """Share of made linkages whose worst target moves by at most `band`, linearised.
 
     Parameters
     ----------
-    linkage : FourBar
-        The nominal one, single.
-    task : MotionTask or PathTask
-    verdict : Verdict
+    slope : ndarray, shape (N, 3, 6)
+        Of `measured_sensitivity`.
     band : float, length
     errors : ndarray, shape (S, 6), length
         Deviations of the dimensions of each made linkage.
     """
-    slope = _measured_sensitivity(linkage, task, verdict)
     return float(np.mean(_linear_moves(slope, errors).max(axis=0) <= band))
 
 
@@ -181,7 +183,11 @@ def yield_monte_carlo(
 
     Parameters
     ----------
-    linkage, task, verdict, band, errors
+    linkage : FourBar
+        The nominal one, single.
+    task : MotionTask or PathTask
+    verdict : Verdict
+    band, errors
         As for `yield_linear`.
     """
     theta2, assembly = verdict.theta2[:, None], verdict.assembly[:, None]
@@ -195,7 +201,7 @@ def yield_monte_carlo(
         state = solve_position(made, theta2, assembly)
         shift = state.p - nominal.p
         moves2 = shift[..., 0] ** 2 + shift[..., 1] ** 2
-        if isinstance(task, MotionTask):
+        if task.has_angle.any():
             turned = (state.theta3 - nominal.theta3 + np.pi) % (2 * np.pi) - np.pi
             moves2 += (task.angle_length * turned) ** 2
         within += int(np.count_nonzero(possible & (moves2.max(axis=0) <= band**2)))  # NaN is not within
@@ -219,29 +225,15 @@ def made_linkages(linkage: FourBar, errors: FloatArray) -> tuple[FourBar, BoolAr
     possible: BoolArray = np.all(linkage.lengths + errors[:, :4] > 0, axis=1)
     errors = np.where(possible[:, None], errors, 0.0)
     ground = errors[:, :1] * [np.cos(linkage.theta1), np.sin(linkage.theta1)]
-    made = FourBar(
-        o2=linkage.o2,
-        o4=linkage.o4 + ground,
-        r2=linkage.r2 + errors[:, 1],
-        r3=linkage.r3 + errors[:, 2],
-        r4=linkage.r4 + errors[:, 3],
-        coupler_point=linkage.coupler_point + errors[:, 4:],
-        assembly=linkage.assembly,
-        body_angle=linkage.body_angle,
-    )
-    return made, possible
-
-
-def _measured_sensitivity(linkage: FourBar, task: Task, verdict: Verdict) -> FloatArray:
-    """Sensitivity at each target, shape (N, 3, 6), with angles as the lengths they count as."""
-    counts = np.array([1.0, 1.0, task.angle_length if isinstance(task, MotionTask) else 0.0])
-    return counts[:, None] * sensitivity(linkage, verdict.theta2, verdict.assembly)
+    lengths = {name: getattr(linkage, name) + errors[:, i] for i, name in enumerate(linkage.LENGTHS) if i}
+    arm = linkage.coupler_point + errors[:, 4:]
+    return replace(linkage, o4=linkage.o4 + ground, **lengths, coupler_point=arm), possible
 
 
 def _linear_moves(slope: FloatArray, errors: FloatArray) -> FloatArray:
     """Moves of N targets for S deviations, shape (N, S)."""
     with np.errstate(invalid="ignore"):
-        moved = (slope.reshape(-1, len(DIMENSIONS)) @ errors.T).reshape(len(slope), 3, -1)
+        moved = (slope.reshape(-1, len(FourBar.DIMENSIONS)) @ errors.T).reshape(len(slope), 3, -1)
     moves: FloatArray = np.sqrt(moved[:, 0] ** 2 + moved[:, 1] ** 2 + moved[:, 2] ** 2)
     return moves
 
@@ -252,7 +244,7 @@ def _nearest_to_dead(linkage: FourBar, task: Task, verdict: Verdict) -> FloatArr
     There, or at the ends of the way, the diagonal A-O4 is shortest and longest, whatever the lengths.
     """
     start, end = verdict.theta2.min(), verdict.theta2.max()
-    if isinstance(task, PathTask) and task.closed:
+    if task.closed:
         end = start + 2 * np.pi
     first, last = np.ceil((start - linkage.theta1) / np.pi), np.floor((end - linkage.theta1) / np.pi)
     return linkage.theta1 + np.pi * np.arange(first, last + 1)[:2]

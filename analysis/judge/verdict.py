@@ -48,9 +48,9 @@ class Verdict:
     assembly : ndarray of int, shape (N,)
         Assembly at each target.
     position_error : ndarray, shape (N,), length
-        NaN where a pose has no position.
-    angle_error : ndarray, shape (N,), rad, or None
-        NaN where a pose has no angle; None for a path.
+        NaN where a target has no position.
+    angle_error : ndarray, shape (N,), rad
+        NaN where a target has no angle.
     square : float, length squared
         What least squares makes small: the weighted sum of |dp|^2 + (angle_length * dangle)^2.
     direction : int
@@ -68,7 +68,7 @@ class Verdict:
     theta2: FloatArray
     assembly: IntArray
     position_error: FloatArray
-    angle_error: FloatArray | None
+    angle_error: FloatArray
     square: float
     direction: int
     grashof_class: GrashofClass

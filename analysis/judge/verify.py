@@ -20,11 +20,10 @@ from grashof.analysis.four_bar.transmission import worst_transmission, worst_tra
 from grashof.analysis.judge.design import Constraint, Design, greatest, name_of
 from grashof.analysis.judge.limits import SLACK, missed
 from grashof.analysis.judge.measures import Values
-from grashof.analysis.judge.nearest_points import nearest_to_points
-from grashof.analysis.judge.nearest_poses import STEADY, Targets, Way, driver_way, nearest_to_poses
-from grashof.analysis.judge.poses_in_order import poses_in_order
+from grashof.analysis.judge.meet import meet
+from grashof.analysis.judge.task_motion import STEADY, Targets, TaskMotion
 from grashof.analysis.judge.verdict import Defect, Verdict
-from grashof.problems import FourBar, PathTask, Problem, Requirements, Rotatability, Task
+from grashof.problems import FourBar, Problem, Requirements, Rotatability, Task
 
 
 def verify(
@@ -69,30 +68,30 @@ def verify(
     (True, True)
     """
     wanted = requirements.resolved(task.size)
-    targets, way = _met(linkage, task, wanted)
+    targets, motion = meet(linkage, task, wanted)
     circuits = circuit_index(linkage, targets.theta2, targets.assembly)
     branches = branch_index(linkage, targets.theta2, targets.assembly)
     circuit_ok = bool((circuits == circuits[0]).all() and circuits[0] >= 0)
     branch_ok = circuit_ok and bool((branches == branches[0]).all())
-    branch_ok = branch_ok and not passes_change_point(linkage, way.start, way.end)
+    branch_ok = branch_ok and not passes_change_point(linkage, motion.start, motion.end)
     # Without a motion that joins the targets nothing is transmitted.
-    task_worst = float(worst_transmission(linkage, way.start, way.end)) if branch_ok else 0.0
+    task_worst = float(worst_transmission(linkage, motion.start, motion.end)) if branch_ok else 0.0
     cycle_worst = float(worst_transmission_cycle(linkage))
     verdict = Verdict(
-        theta2=way.theta2,
+        theta2=motion.theta2,
         assembly=targets.assembly,
         position_error=targets.position_error,
         angle_error=targets.angle_error,
         square=_square(targets, task),
-        direction=way.direction,
+        direction=motion.direction,
         grashof_class=grashof_class(linkage),
         full_rotation=bool(full_rotation(linkage)),
         circuit_ok=circuit_ok,
         branch_ok=branch_ok,
-        order_ok=way.in_order,
+        order_ok=motion.in_order,
         transmission_min_task=task_worst,
         transmission_min_cycle=cycle_worst,
-        size=diagonal(reach_box(linkage, way.start, way.end)),
+        size=diagonal(reach_box(linkage, motion.start, motion.end)),
         defects=(),
     )
     defects = (
@@ -100,41 +99,19 @@ def verify(
         *_zones(targets, task),
         *_whole_error(targets, task, most_square),
         *_same_branch(circuit_ok, branch_ok, int(linkage.assembly), targets, wanted),
-        *_order(way, wanted),
+        *_order(motion, wanted),
         *_rotatability(linkage, task, wanted),
         *_covered(targets),
         *missed(Values(linkage, verdict, problem or Problem(task=task)), wanted),
         *(_own(Design.judged(linkage, verdict), constraints) if constraints else []),
-        *(_kept_out(linkage, targets, way, task, wanted, joined=branch_ok) if wanted.keep_out else []),
+        *(_kept_out(linkage, targets, motion, task, wanted, joined=branch_ok) if wanted.keep_out else []),
     )
     return replace(verdict, defects=defects)
 
 
-def _met(linkage: FourBar, task: Task, wanted: Requirements) -> tuple[Targets, Way]:
-    if isinstance(task, PathTask):
-        start = None if wanted.theta2_start_deg is None else float(np.radians(wanted.theta2_start_deg))
-        return nearest_to_points(
-            linkage, task, ordered=wanted.order, same_branch=wanted.same_branch, theta2_start=start
-        )
-    targets = nearest_to_poses(linkage, task)
-    way = driver_way(linkage, targets.theta2, wanted.order)
-    if wanted.order and not (wanted.is_exact(task) and task.is_whole):
-        branch = branch_index(linkage, targets.theta2, targets.assembly)
-        joined = (branch == branch[0]).all() and targets.assembly[0] == int(linkage.assembly)
-        if not way.in_order or (wanted.same_branch and not joined):
-            return poses_in_order(linkage, task, targets, way)
-    return targets, way
-
-
 def _square(targets: Targets, task: Task) -> float:
-    if isinstance(task, PathTask) or targets.angle_error is None:
-        return float((targets.position_error**2).sum())
     turned = task.angle_length * targets.angle_error
     return float(np.nansum(task.weights * targets.position_error**2) + np.nansum(task.weights * turned**2))
-
-
-def _closed(task: Task) -> bool:
-    return isinstance(task, PathTask) and task.closed
 
 
 def _exactness(targets: Targets, task: Task, wanted: Requirements) -> list[Defect]:
@@ -144,9 +121,7 @@ def _exactness(targets: Targets, task: Task, wanted: Requirements) -> list[Defec
     if not worst <= allowed:
         miss = worst / task.size - wanted.tolerance
         defects.append(Defect("exact", "the largest position error", worst, f"up to {allowed:.6g}", miss))
-    if targets.angle_error is None or isinstance(task, PathTask) or not task.has_angle.any():
-        return defects
-    turned = float(np.nanmax(targets.angle_error))
+    turned = float(np.nanmax(targets.angle_error, initial=0.0))
     if not turned * task.angle_length <= allowed:
         limit = float(np.degrees(allowed / task.angle_length))
         miss = turned - allowed / task.angle_length
@@ -160,8 +135,7 @@ def _zones(targets: Targets, task: Task) -> list[Defect]:
     if task.zones is None:
         return []
     defects = []
-    none = np.full(len(task), np.nan)
-    misses = (targets.position_error, none if targets.angle_error is None else targets.angle_error)
+    misses = (targets.position_error, targets.angle_error)
     for what, miss, zone, size in zip(
         ("position", "angle"), misses, task.zones, (task.size, 1.0), strict=True
     ):
@@ -199,14 +173,14 @@ def _same_branch(
     return []
 
 
-def _order(way: Way, wanted: Requirements) -> list[Defect]:
-    if not wanted.order or way.in_order:
+def _order(motion: TaskMotion, wanted: Requirements) -> list[Defect]:
+    if not wanted.order or motion.in_order:
         return []
-    turns = abs(way.end - way.start) / (2 * np.pi)
+    turns = abs(motion.end - motion.start) / (2 * np.pi)
     if turns > 1:
         what = "turns of the driver to meet the targets in sequence"
         return [Defect("order", what, turns, "up to 1", 1.0)]
-    step = np.diff(way.theta2)
+    step = np.diff(motion.theta2)
     reversals = int(np.count_nonzero(np.diff(np.sign(step[np.abs(step) > STEADY]))))
     return [Defect("order", "the number of reversals of the driver between targets", reversals, "0", 1.0)]
 
@@ -214,7 +188,7 @@ def _order(way: Way, wanted: Requirements) -> list[Defect]:
 def _rotatability(linkage: FourBar, task: Task, wanted: Requirements) -> list[Defect]:
     margin, why = wanted.rotatability_margin, str(wanted.rotatability)
     if wanted.rotatability is Rotatability.ANY:
-        if not _closed(task):
+        if not task.closed:
             return []
         margin, why = 0.0, "a closed path takes a whole turn"
     least = float(rotatability(linkage).min())
@@ -249,13 +223,13 @@ def _own(design: Design, constraints: Sequence[Constraint]) -> list[Defect]:
 
 
 def _kept_out(
-    linkage: FourBar, targets: Targets, way: Way, task: Task, wanted: Requirements, *, joined: bool
+    linkage: FourBar, targets: Targets, motion: TaskMotion, task: Task, wanted: Requirements, *, joined: bool
 ) -> list[Defect]:
     # Here, not above: shapely takes a while to import, and few problems have areas.
     from grashof.analysis.judge.keep_out import intrusions
 
     return [
         Defect("keep_out", f"the depth of {part} inside", deep, "0", deep / task.size)
-        for part, deep in intrusions(linkage, wanted, targets, way, joined=joined).items()
+        for part, deep in intrusions(linkage, wanted, targets, motion, joined=joined).items()
         if deep > SLACK * task.size
     ]

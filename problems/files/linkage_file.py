@@ -161,9 +161,6 @@ def _parsed(text: str, file_name: str, name: str) -> LinkageSpec:
         raise located(error, file_name) from None
 
 
-_LINKAGE_KEYS = ("o2", "o4", "r2", "r3", "r4", "coupler_point", "assembly", "body_angle")
-
-
 def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
     """Design of a list that `grashof solve` wrote, and all that the list says of it."""
     from grashof.problems.files.linkage_schema import linkage_from
@@ -189,12 +186,13 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
         raise ProblemError(f"{where}: has no design {which or '(none named)'}; allowed is {allowed}")
     rank = ranks[which]
     design = designs[rank]
+    keys = [row.name for row in FourBar.PARAMETERS]
     try:
-        stated = {key: design["linkage"][key] for key in _LINKAGE_KEYS}
+        stated = {key: design["linkage"][key] for key in keys}
         turned, direction = stated.pop("body_angle"), design["direction"]
     except (KeyError, TypeError):
         raise ProblemError(
-            f"{where}: states no linkage and direction; allowed are the keys {', '.join(_LINKAGE_KEYS)}"
+            f"{where}: states no linkage and direction; allowed are the keys {', '.join(keys)}"
         ) from None
     # JSON can spell what no file can hold.
     heading, unit = (readable(word) if isinstance(word, str) else word for word in (heading, unit))
@@ -231,17 +229,3 @@ def _listed_problem(content: dict[str, Any], path: Path) -> Problem | None:
 
 def _errors(given: list[float | None]) -> tuple[float | None, ...]:
     return tuple(None if error is None else float(error) for error in given)
-
-
-def linkage_json(linkage: FourBar) -> dict[str, Any]:
-    """A linkage as JSON, lossless: the arguments of `FourBar`."""
-    return {
-        "o2": linkage.o2.tolist(),
-        "o4": linkage.o4.tolist(),
-        "r2": float(linkage.r2),
-        "r3": float(linkage.r3),
-        "r4": float(linkage.r4),
-        "coupler_point": linkage.coupler_point.tolist(),
-        "assembly": int(linkage.assembly),
-        "body_angle": float(linkage.body_angle),
-    }

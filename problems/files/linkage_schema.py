@@ -13,6 +13,7 @@ from grashof.problems.values.checks import GREATEST, finite_number, number_withi
 from grashof.problems.values.dynamics_spec import metres
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkage import FourBar
+from grashof.problems.values.linkage_parts import Kind
 from grashof.problems.values.linkage_spec import LinkageSpec
 
 
@@ -43,6 +44,7 @@ def linkage_from(document: dict[str, Any], name: str) -> LinkageSpec:
     return stated(LinkageTable, document, _TABLES).spec(name)
 
 
+_PARAMETERS = {row.key: row for row in FourBar.PARAMETERS}
 Point = Annotated[list[float], listed("[x, y]"), of_length(2, "[x, y]")]
 
 
@@ -65,12 +67,10 @@ class LinkageTable(Table):
     output_arm: float | None = None
     dynamics: DynamicsTable | None = None
 
-    @field_validator("o2", "o4", "r2", "r3", "r4", "coupler_point", "assembly")
+    @field_validator(*(key for key, row in _PARAMETERS.items() if row.kind is not Kind.ANGLE))
     @classmethod
     def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
-        plain = {"o2": (0, 0), "o4": (1, 0), "r2": 1, "r3": 1, "r4": 1}
-        FourBar(**{**plain, str(key.field_name): given})
-        for number in np.atleast_1d(given).tolist():
+        for number in np.ravel(_PARAMETERS[str(key.field_name)].array(given)).tolist():
             number_within(number, -GREATEST, GREATEST, str(key.field_name))
         return given
 
@@ -93,16 +93,8 @@ class LinkageTable(Table):
         """The linkage itself, checked with what belongs to it."""
         if self.dynamics is not None and self.dynamics.value().has_masses:
             metres(self.length_unit)  # refuses one that is not known
-        linkage = FourBar(
-            o2=self.o2,
-            o4=self._o4(),
-            r2=self.r2,
-            r3=self.r3,
-            r4=self.r4,
-            coupler_point=self.coupler_point,
-            assembly=self.assembly,
-            body_angle=np.radians(self.body_angle_deg),
-        )
+        given = {row.name: getattr(self, row.key) for row in FourBar.PARAMETERS}
+        linkage = FourBar(**given | {"o4": self._o4(), "body_angle": np.radians(self.body_angle_deg)})
         if not linkage.r1 > 0:
             raise ProblemError("o4 is where o2 is; allowed are two different ground pivots")
         return linkage

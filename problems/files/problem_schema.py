@@ -98,70 +98,55 @@ Zone = Annotated[
 ]
 
 
-class MotionTable(Table):
+class TargetsTable(Table):
+    """Targets, and what goes with them. Each key is tried by itself, on plain targets."""
+
+    task: ClassVar[type[MotionTask | PathTask]]
+    plain: ClassVar[list[float]]  # a target, but for its x
+    fewest: ClassVar[int]
+    besides: ClassVar[dict[str, float]] = {}  # what targets need to be a task
+
+    @field_validator("*")
+    @classmethod
+    def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
+        name, targets = str(key.field_name), next(iter(cls.model_fields))
+        one_each = isinstance(given, list) and name != "body"
+        count = len(given) if one_each else cls.fewest
+        if name == targets:
+            cls.task.from_degrees(given, **cls.besides)
+        elif given is not None and count >= cls.fewest:
+            cls.task.from_degrees([[k, *cls.plain] for k in range(count)], **{name: given})
+        return given
+
+    def value(self) -> MotionTask | PathTask:
+        return self.task.from_degrees(**dict(self))
+
+
+Angles = Annotated[list[float], listed("a list of angles")]
+
+
+class MotionTable(TargetsTable):
+    task = MotionTask
+    plain, fewest, besides = [0.0, 0.0], 2, {"angle_length": 1.0}
     poses: Annotated[list[Any], listed("a list of poses [x, y, angle in degrees]")]
     weights: Annotated[list[float], listed("a list of numbers")] | None = None
     angle_length: float | None = None
     body: Corners | None = None
     within: Zone | None = None
     angle_within_deg: Zone | None = None
-
-    @field_validator("*")
-    @classmethod
-    def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
-        if key.field_name == "poses":
-            MotionTask.from_degrees(given, angle_length=1.0)
-        elif given is not None and given != []:  # how many there have to be is not known here
-            each = key.field_name != "body" and isinstance(given, list)  # one for each pose
-            poses = [[k, 0, 0] for k in range(max(len(given), 2) if each else 2)]
-            given = given * 2 if each and len(given) == 1 else given
-            MotionTask.from_degrees(poses, **{str(key.field_name): given})
-        return given
-
-    def value(self) -> MotionTask:
-        return MotionTask.from_degrees(
-            self.poses,
-            weights=self.weights,
-            angle_length=self.angle_length,
-            body=self.body,
-            within=self.within,
-            angle_within_deg=self.angle_within_deg,
-        )
+    timing_deg: Angles | None = None
+    closed: bool = False
 
 
-class PathTable(Table):
+class PathTable(TargetsTable):
+    task = PathTask
+    plain, fewest = [0.0], 3
     points: Annotated[
         list[Annotated[list[float], listed("a point [x, y]")]], listed("a list of points [x, y]")
     ]
-    timing_deg: Annotated[list[float], listed("a list of angles")] | None = None
+    timing_deg: Angles | None = None
     closed: bool = False
     within: Zone | None = None
-
-    @field_validator("points")
-    @classmethod
-    def _by_itself(cls, points: list[list[float]]) -> list[list[float]]:
-        PathTask(points)
-        return points
-
-    @field_validator("within")
-    @classmethod
-    def _sized(cls, within: float | list[float] | None) -> float | list[float] | None:
-        count = len(within) if isinstance(within, list) else 3
-        if count > 2:
-            PathTask([[k, 0] for k in range(count)], within=within)
-        return within
-
-    @field_validator("timing_deg")
-    @classmethod
-    def _in_order(cls, timing_deg: list[float] | None) -> list[float] | None:
-        if timing_deg is not None and len(timing_deg) > 2:
-            PathTask.from_degrees([[k, 0] for k in range(len(timing_deg))], timing_deg=timing_deg)
-        return timing_deg
-
-    def value(self) -> PathTask:
-        return PathTask.from_degrees(
-            self.points, timing_deg=self.timing_deg, closed=self.closed, within=self.within
-        )
 
 
 Outlines = Annotated[list[Corners], listed("a list of outlines, each a list of corners [x, y]")]

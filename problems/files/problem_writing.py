@@ -10,8 +10,6 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.motion_task import MotionTask
-from grashof.problems.values.path_task import PathTask
 from grashof.problems.values.problem import Problem
 from grashof.problems.values.requirements import Box, Requirements
 from grashof.problems.values.task import Task
@@ -67,20 +65,18 @@ def _given(table: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _task(task: Task) -> dict[str, Any]:
-    if isinstance(task, PathTask):
-        timing = None if task.timing is None else _degrees(task.timing)
-        return {"points": task.points, "timing_deg": timing, "closed": task.closed, "within": task.within}
-    return {
-        "poses": _poses(task),
-        "weights": task.weights,
-        "angle_length": task.angle_length,
-        "body": task.body,
-        "within": task.within,
-        "angle_within_deg": None if task.angle_within is None else _degrees(task.angle_within),
-    }
+    """A task's table: its fields, angles in degrees, and poses in rows."""
+    given = {field.name: getattr(task, field.name) for field in fields(task)}  # type: ignore[arg-type]
+    if given.pop("angles", None) is not None:
+        given = {"poses": _poses(task), **given}
+        del given["positions"]
+    for name in ("angle_within", "timing"):
+        if given.get(name) is not None:
+            given[f"{name}_deg"] = _degrees(given.pop(name))
+    return given
 
 
-def _poses(task: MotionTask) -> list[Any]:
+def _poses(task: Task) -> list[Any]:
     rows = np.column_stack([task.positions, _degrees(task.angles)]).tolist()
     given = ({key: x for key, x in zip(("x", "y", "angle"), row, strict=True) if x == x} for row in rows)
     return [row if task.is_whole else pose for row, pose in zip(rows, given, strict=True)]

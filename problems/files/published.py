@@ -81,19 +81,16 @@ def _every() -> tuple[PublishedDesign, ...]:
 
 def _design(row: dict[str, str]) -> PublishedDesign:
     theta2 = np.array([float(angle) for angle in row["theta2"].split()])
+    linkage = {
+        each.name: np.squeeze([float(row[column]) for column in each.columns])
+        for each in FourBar.PARAMETERS
+        if row.keys() >= set(each.columns)
+    }
     return PublishedDesign(
         problem=row["problem"],
         method=row["method"],
         year=int(row["year"]),
-        linkage=FourBar(
-            o2=(float(row["o2_x"]), float(row["o2_y"])),
-            o4=(float(row["o4_x"]), float(row["o4_y"])),
-            r2=float(row["r2"]),
-            r3=float(row["r3"]),
-            r4=float(row["r4"]),
-            coupler_point=(float(row["p_u"]), float(row["p_v"])),
-            assembly=int(row["assembly"]),
-        ),
+        linkage=FourBar(**linkage),
         error=float(row["error"]),
         reported=float(row["reported"]) if row["reported"] else None,
         error_definition=ErrorDefinition(row["error_definition"]),

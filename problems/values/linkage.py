@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +11,7 @@ import numpy.typing as npt
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.display import Displayed
 from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.linkage_parts import Kind, Link, Parameter, joints_of, points_of
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
@@ -47,6 +48,32 @@ class FourBar(Displayed):
     (4.0, ())
     """
 
+    # What a four-bar is; files, tables, drawings and plates go through these rows.
+    PARAMETERS: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("o2", Kind.PLACE),
+        Parameter("o4", Kind.PLACE),
+        Parameter("r2", Kind.LENGTH),
+        Parameter("r3", Kind.LENGTH),
+        Parameter("r4", Kind.LENGTH),
+        Parameter("coupler_point", Kind.ARM, column="p"),
+        Parameter("assembly", Kind.SIGN),
+        Parameter("body_angle", Kind.ANGLE),
+    )
+    LINKS: ClassVar[tuple[Link, ...]] = (
+        Link(1, "ground", ("o2", "o4")),
+        Link(2, "driver", ("o2", "a")),
+        Link(3, "coupler", ("a", "b", "p")),
+        Link(4, "output", ("o4", "b")),
+    )
+    GROUND: ClassVar[tuple[str, ...]] = LINKS[0].points
+    POINTS: ClassVar[tuple[str, ...]] = points_of(LINKS)
+    MOVING: ClassVar[tuple[str, ...]] = POINTS[len(GROUND) :]
+    JOINTS: ClassVar[dict[str, tuple[int, ...]]] = joints_of(LINKS)
+    PIVOTS: ClassVar[tuple[str, ...]] = tuple(filter(JOINTS.__contains__, POINTS))
+    LENGTHS: ClassVar[tuple[str, ...]] = tuple(f"r{link.number}" for link in LINKS)
+    # What is made, and may come out inexactly.
+    DIMENSIONS: ClassVar[tuple[str, ...]] = (*LENGTHS, "u", "v")
+
     o2: FloatArray
     o4: FloatArray
     r2: FloatArray
@@ -67,29 +94,18 @@ class FourBar(Displayed):
         assembly: npt.ArrayLike = 1,
         body_angle: npt.ArrayLike = 0.0,
     ) -> None:
-        given = {
-            "o2": o2, "o4": o4, "r2": r2, "r3": r3, "r4": r4,
-            "coupler_point": coupler_point, "assembly": assembly, "body_angle": body_angle,
-        }  # fmt: skip
-        arrays = {name: _finite(name, value) for name, value in given.items()}
-        for name in _POINTS:
-            if np.shape(arrays[name])[-1:] != (2,):
-                raise ProblemError(f"{name} has shape {np.shape(arrays[name])}; allowed is (..., 2)")
-        for name in ("r2", "r3", "r4"):
-            if np.any(np.less_equal(arrays[name], 0)):
-                raise ProblemError(f"{name} is {given[name]!r}; allowed are lengths greater than zero")
-        if np.any(np.abs(arrays["assembly"]) != 1):
-            raise ProblemError(f"assembly is {assembly!r}; allowed is +1 or -1")
-        shapes = [np.shape(a)[:-1] if n in _POINTS else np.shape(a) for n, a in arrays.items()]
+        given = (o2, o4, r2, r3, r4, coupler_point, assembly, body_angle)
+        arrays = {row: row.array(value) for row, value in zip(self.PARAMETERS, given, strict=True)}
+        shapes = [array.shape[:-1] if row.paired else array.shape for row, array in arrays.items()]
         try:
             batch = np.broadcast_shapes(*shapes)
         except ValueError:
             raise ProblemError(
                 f"the fields of a batch have shapes {shapes} that do not fit together"
             ) from None
-        for name, array in arrays.items():
-            full = (*batch, 2) if name in _POINTS else batch
-            object.__setattr__(self, name, frozen_array(np.broadcast_to(array, full)))
+        for row, array in arrays.items():
+            full = (*batch, 2) if row.paired else batch
+            object.__setattr__(self, row.name, frozen_array(np.broadcast_to(array, full)))
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -111,46 +127,58 @@ class FourBar(Displayed):
     @property
     def lengths(self) -> FloatArray:
         """r1, r2, r3, r4; shape (..., 4)."""
-        return np.stack([self.r1, self.r2, self.r3, self.r4], axis=-1)
+        return np.stack([getattr(self, name) for name in self.LENGTHS], axis=-1)
+
+    @property
+    def parameters(self) -> tuple[FloatArray, ...]:
+        """The arguments that give this value, in the order of `PARAMETERS`."""
+        return tuple(getattr(self, row.name) for row in self.PARAMETERS)
+
+    @property
+    def stated(self) -> dict[str, Any]:
+        """The same by name, as plain numbers and lists: lossless JSON. Of a single linkage."""
+        plain = {row.name: getattr(self, row.name).tolist() for row in self.PARAMETERS}
+        return plain | {"assembly": int(self.assembly)}
+
+    @property
+    def columns(self) -> dict[str, float]:
+        """The lengths r1, r2, ... and all parameters by their columns in tables. Of a single linkage."""
+        found = dict(zip(self.LENGTHS, self.lengths.tolist(), strict=True))
+        for row, value in zip(self.PARAMETERS, self.parameters, strict=True):
+            numbers = np.degrees(value) if row.kind is Kind.ANGLE else value
+            found |= zip(row.columns, np.ravel(numbers).tolist(), strict=True)
+        return found | {"assembly": int(self.assembly)}
+
+    def scaled(self, factor: float, origin: FloatArray) -> FourBar:
+        """The linkage with all lengths times a factor, its places measured from `origin`, shape (2,)."""
+
+        def change(row: Parameter, value: FloatArray) -> FloatArray:
+            moved = value - origin if row.kind is Kind.PLACE else value
+            return moved * factor if row.in_length else moved
+
+        return FourBar(*map(change, self.PARAMETERS, self.parameters))
 
     def __getitem__(self, index: Any) -> FourBar:
         index = index if isinstance(index, tuple) else (index,)
-        taken = {}
-        for field in fields(self):
-            value = getattr(self, field.name)
-            taken[field.name] = value[(*index, slice(None))] if field.name in _POINTS else value[index]
-        return FourBar(**taken)
+        rows = zip(self.PARAMETERS, self.parameters, strict=True)
+        return FourBar(*(value[(*index, slice(None)) if row.paired else index] for row, value in rows))
 
     def __repr__(self) -> str:
         """Of a single linkage: Python that makes it, in full precision."""
         if self.shape:
             return f"<FourBar: batch of shape {self.shape}>"
-        values = {field.name: getattr(self, field.name).tolist() for field in fields(self)}
-        values |= {name: tuple(values[name]) for name in _POINTS} | {"assembly": int(self.assembly)}
-        return f"FourBar({', '.join(f'{name}={value!r}' for name, value in values.items())})"
+        stated = {name: tuple(x) if isinstance(x, list) else x for name, x in self.stated.items()}
+        return f"FourBar({', '.join(f'{name}={value!r}' for name, value in stated.items())})"
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, FourBar):
             return NotImplemented
-        return all(np.array_equal(getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
+        return all(map(np.array_equal, self.parameters, other.parameters))
 
     def __hash__(self) -> int:
         # Adding zero turns -0.0 into 0.0, which it equals.
-        return hash(tuple((np.asarray(getattr(self, f.name)) + 0.0).tobytes() for f in fields(self)))
+        return hash(tuple((np.asarray(value) + 0.0).tobytes() for value in self.parameters))
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Through the constructor: arrays come out of a pickle writeable.
-        return FourBar, tuple(getattr(self, f.name) for f in fields(self))
-
-
-_POINTS = frozenset({"o2", "o4", "coupler_point"})
-
-
-def _finite(name: str, value: npt.ArrayLike) -> FloatArray:
-    try:
-        array = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise ProblemError(f"{name} is {value!r}; allowed are numbers") from None
-    if not np.isfinite(array).all():
-        raise ProblemError(f"{name} is {value!r}; all numbers must be finite")
-    return array
+        return FourBar, self.parameters

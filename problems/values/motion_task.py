@@ -9,7 +9,7 @@ from typing import ClassVar, Literal
 import numpy as np
 import numpy.typing as npt
 
-from grashof.problems.values.arrays import BoolArray, FloatArray, frozen_array
+from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.checks import (
     GREATEST,
     LEAST,
@@ -20,11 +20,11 @@ from grashof.problems.values.checks import (
     number_within,
     outline,
     refuse,
-    span,
     task_size,
 )
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.read_only import ReadOnly
+from grashof.problems.values.task import Task
+from grashof.problems.values.timing import driver_timing, timing_from_degrees, whole_turn
 from grashof.problems.values.zones import LEAST_ZONE, turn_sizes, zone_sizes
 
 _POSE = "a pose [x, y, angle in degrees]"
@@ -34,7 +34,7 @@ _MOST_TURNED = 2e4 * np.pi  # rad: ten thousand turns
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
-class MotionTask(ReadOnly):
+class MotionTask(Task):
     """Motion generation: the coupler carries a body through poses, in order.
 
     Parameters
@@ -54,12 +54,18 @@ class MotionTask(ReadOnly):
     angle_within : float or array_like, shape (N,), rad, optional
         The same of the angles, up to half a turn. Where only one of the two is given, the other one is
         the same through `angle_length`.
+    timing : array_like, shape (N,), rad, optional
+        Driver rotation from the first pose, zero there, growing or falling throughout and over at
+        most one turn. Its sense is free: a design may turn the driver either way.
+    closed : bool
+        One turn of the driver takes the body through all poses and back to the first.
 
     Raises
     ------
     ProblemError
         Fewer than two poses, numbers that are infinite, lengths beyond 1e20, a size below 1e-20, a pose
-        with nothing given, no position at all, two consecutive equal poses, or weights out of range.
+        with nothing given, no position at all, two consecutive equal poses, weights out of range,
+        or a timing that is not one.
 
     Examples
     --------
@@ -69,7 +75,7 @@ class MotionTask(ReadOnly):
     """
 
     kind: ClassVar[Literal["motion"]] = "motion"
-    closed: ClassVar[bool] = False
+    target: ClassVar[Literal["pose"]] = "pose"
 
     positions: FloatArray
     angles: FloatArray
@@ -78,6 +84,8 @@ class MotionTask(ReadOnly):
     body: FloatArray | None
     within: FloatArray | None
     angle_within: FloatArray | None
+    timing: FloatArray | None
+    closed: bool
 
     def __init__(
         self,
@@ -89,6 +97,8 @@ class MotionTask(ReadOnly):
         body: npt.ArrayLike | None = None,
         within: npt.ArrayLike | None = None,
         angle_within: npt.ArrayLike | None = None,
+        timing: npt.ArrayLike | None = None,
+        closed: bool = False,
     ) -> None:
         places = _numbers(positions, "positions")
         if places.ndim != 2 or places.shape[1] != 2:
@@ -118,10 +128,12 @@ class MotionTask(ReadOnly):
             raise ProblemError(
                 "motion.angle_length is missing: poses at a single place have no size to take it from"
             )
+        object.__setattr__(self, "closed", whole_turn(closed, "motion"))
         zone = zone_sizes(within, len(places), "motion.within", least=LEAST_ZONE * size)
         turn_zone = turn_sizes(angle_within, len(places), in_degrees=False)
         object.__setattr__(self, "within", zone)
         object.__setattr__(self, "angle_within", turn_zone)
+        object.__setattr__(self, "timing", driver_timing(timing, len(places), "motion", "pose"))
         object.__setattr__(self, "positions", frozen_array(places))
         object.__setattr__(self, "angles", frozen_array(turned))
         object.__setattr__(self, "weights", _weights(weights, len(places)))
@@ -138,6 +150,8 @@ class MotionTask(ReadOnly):
         body: npt.ArrayLike | None = None,
         within: npt.ArrayLike | None = None,
         angle_within_deg: npt.ArrayLike | None = None,
+        timing_deg: npt.ArrayLike | None = None,
+        closed: bool = False,
     ) -> MotionTask:
         """Task from rows [x, y, angle in degrees], or tables of x, y, angle, as problem files write them."""
         if isinstance(poses, (str, bytes, Mapping)) or not isinstance(poses, Iterable):
@@ -157,60 +171,9 @@ class MotionTask(ReadOnly):
             body=body,
             within=within,
             angle_within=turn_sizes(angle_within_deg, len(rows), in_degrees=True),
+            timing=timing_from_degrees(timing_deg, "motion"),
+            closed=closed,
         )
-
-    @property
-    def size(self) -> float:
-        """Greatest distance between two target positions; `angle_length` for a pure rotation."""
-        return span(self.positions[self.has_position]) or self.angle_length
-
-    @property
-    def has_position(self) -> BoolArray:
-        """Which poses have a position, shape (N,)."""
-        given: BoolArray = ~np.isnan(self.positions[:, 0])
-        return given
-
-    @property
-    def has_angle(self) -> BoolArray:
-        """Which poses have an angle, shape (N,)."""
-        return ~np.isnan(self.angles)
-
-    @property
-    def is_whole(self) -> bool:
-        """Whether every pose has both position and angle."""
-        return bool((self.has_position & self.has_angle).all())
-
-    @property
-    def zones(self) -> FloatArray | None:
-        """How far positions (length) and angles (rad) may be missed, shape (2, N); infinite where free."""
-        if self.within is None and self.angle_within is None:
-            return None
-        place, turn = self.within, self.angle_within
-        place = turn * self.angle_length if place is None and turn is not None else place
-        turn = np.minimum(place / self.angle_length, np.pi) if turn is None and place is not None else turn
-        free = ~np.stack([self.has_position, self.has_angle])
-        zones: FloatArray = np.where(free, np.inf, np.stack([place, turn]))  # type: ignore[list-item]
-        return zones
-
-    def without_zones(self) -> MotionTask:
-        """The same targets, none of them to be missed."""
-        return MotionTask(
-            self.positions, self.angles, weights=self.weights, angle_length=self.angle_length, body=self.body
-        )
-
-    @property
-    def exact_by_default(self) -> bool:
-        """Whether linkages that meet every pose can be expected.
-
-        Up to five whole poses (Burmester). With parts left free (Alt-Burmester problems), as long as
-        the equations, two for a position and one for an angle, are not more than the unknowns: ten of
-        the linkage, and a driver angle for every pose.
-        """
-        equations = 2 * np.count_nonzero(self.has_position) + np.count_nonzero(self.has_angle)
-        return bool(equations <= len(self) + 9 + self.has_angle.any())
-
-    def __len__(self) -> int:
-        return len(self.positions)
 
 
 def _row(pose: object, where: str) -> tuple[float, float, float]:

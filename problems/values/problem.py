@@ -26,6 +26,7 @@ from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.manufacturing import Manufacturing
 from grashof.problems.values.motion_task import MotionTask
 from grashof.problems.values.objective import GOALS, Objective
+from grashof.problems.values.path_task import PathTask
 from grashof.problems.values.quantities import Needs, Quantity, Unit
 from grashof.problems.values.read_only import ReadOnly
 from grashof.problems.values.requirements import QUANTITIES, Requirements
@@ -69,7 +70,7 @@ class Search:
 
 
 _KINDS: dict[str, Any] = {
-    "task": Task,
+    "task": MotionTask | PathTask,
     "requirements": Requirements,
     "objective": Objective,
     "search": Search,
@@ -216,10 +217,8 @@ class Problem(ReadOnly):
         if wanted.tolerance < LEAST_TOLERANCE or not wanted.is_exact(task):
             return None
         allowed = np.full((2, len(task)), wanted.tolerance * task.size)
-        if isinstance(task, MotionTask):
-            allowed[1] /= task.angle_length
-            return np.where(np.stack([task.has_position, task.has_angle]), allowed, np.inf)
-        return np.stack([allowed[0], np.full(len(task), np.inf)])
+        allowed[1] /= task.angle_length
+        return np.where([task.has_position, task.has_angle], allowed, np.inf)
 
     def without_zones(self, *, exact: bool | None = False) -> Problem:
         """The same problem with no target to be missed, by least squares unless it says else."""

@@ -127,17 +127,17 @@ class Requirements(ReadOnly):
     r2: Limits | None = limit("r2", Kind.BETWEEN, allowed=_LENGTHS)
     r3: Limits | None = limit("r3", Kind.BETWEEN, allowed=_LENGTHS)
     r4: Limits | None = limit("r4", Kind.BETWEEN, allowed=_LENGTHS)
-    link_ratio_max: float = limit(
-        Quantity("link_ratio", "ratio of longest to shortest link", Unit.RATIO, better=-1, listed=False),
-        Kind.AT_MOST,
-        default=20.0,
-        allowed=(1.0, 1e6),
-    )
     coupler_arms: Limits | None = limit(
         Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False),
         Kind.BETWEEN,
         allowed=_LENGTHS,
         usual=(0.0, 30.0),
+    )
+    link_ratio_max: float = limit(
+        Quantity("link_ratio", "ratio of longest to shortest link", Unit.RATIO, better=-1, listed=False),
+        Kind.AT_MOST,
+        default=20.0,
+        allowed=(1.0, 1e6),
     )
     o2: Box | None = limit(_place("o2", Over.DESIGN), Kind.INSIDE)
     o4: Box | None = limit(_place("o4", Over.DESIGN), Kind.INSIDE)
@@ -235,8 +235,8 @@ class Requirements(ReadOnly):
         return MEASURED[f"transmission_min_{self.transmission_over}"] if over else quantity
 
     def ranges(self, name: str) -> dict[str, Limits]:
-        """What a field allows (see `Limit.ranges`), anything where it is not stated."""
-        value = getattr(self, name)
+        """What a field allows (see `Limit.ranges`); empty where it limits nothing."""
+        value = getattr(self, name) if name in LIMITS else None
         return {} if value is None else LIMITS[name].ranges(value)
 
 

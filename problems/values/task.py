@@ -1,10 +1,143 @@
-"""Tasks: what a linkage is asked to do."""
+"""Tasks: what a linkage is asked to do, one table of targets however they are stated."""
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from abc import ABC, abstractmethod
+from dataclasses import replace
+from typing import Any, ClassVar, Self
 
-from grashof.problems.values.motion_task import MotionTask
-from grashof.problems.values.path_task import PathTask
+import numpy as np
 
-Task: TypeAlias = MotionTask | PathTask
+from grashof.problems.values.arrays import BoolArray, FloatArray
+from grashof.problems.values.checks import span
+from grashof.problems.values.read_only import ReadOnly
+
+_SAME = 1e-12  # sizes, rad
+
+
+class Task(ReadOnly, ABC):
+    """N targets that a linkage has to meet in order; base of `MotionTask` and `PathTask`.
+
+    Each target is a row. Its columns are the position of the coupler point, the angle of the body, the
+    driver rotation from the first target, and the weight; NaN where a target leaves that part free.
+    """
+
+    __slots__ = ()
+
+    kind: ClassVar[str]  # its table in problem files
+    target: ClassVar[str]  # what a target is called in messages
+
+    timing: FloatArray | None
+    closed: bool
+    within: FloatArray | None
+
+    @property
+    @abstractmethod
+    def positions(self) -> FloatArray:
+        """Where the coupler point P has to be, shape (N, 2), length."""
+
+    @property
+    def angles(self) -> FloatArray:
+        """Angles of the body, shape (N,), rad."""
+        return np.full(len(self), np.nan)
+
+    @property
+    def driver_turns(self) -> FloatArray:
+        """Driver rotation from the first target, in either sense, shape (N,), rad."""
+        return np.full(len(self), np.nan) if self.timing is None else np.abs(self.timing)
+
+    @property
+    def weights(self) -> FloatArray:
+        """Of the squared errors, shape (N,)."""
+        return np.ones(len(self))
+
+    @property
+    def angle_length(self) -> float:
+        """Length that one radian of orientation error counts as."""
+        return span(self.positions)
+
+    @property
+    def body(self) -> FloatArray | None:
+        """Outline carried, in the body's frame, shape (M, 2), length."""
+        return None
+
+    @property
+    def angle_within(self) -> FloatArray | None:
+        """How far each angle may be missed, shape (N,), rad."""
+        return None
+
+    @property
+    def size(self) -> float:
+        """Greatest distance between two target positions; `angle_length` for a pure rotation."""
+        return span(self.positions[self.has_position]) or self.angle_length
+
+    @property
+    def has_position(self) -> BoolArray:
+        """Which targets have a position, shape (N,)."""
+        given: BoolArray = ~np.isnan(self.positions[:, 0])
+        return given
+
+    @property
+    def has_angle(self) -> BoolArray:
+        """Which targets have an angle, shape (N,)."""
+        return ~np.isnan(self.angles)
+
+    @property
+    def is_timed(self) -> bool:
+        """Whether the driver rotations are prescribed."""
+        return self.timing is not None
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether every target has both position and angle."""
+        return bool((self.has_position & self.has_angle).all())
+
+    @property
+    def only_points(self) -> bool:
+        """Whether every target is a position alone."""
+        return bool((self.has_position & ~self.has_angle).all())
+
+    @property
+    def returns(self) -> bool:
+        """Whether the last target is the first again."""
+        first, last = np.column_stack([self.positions / self.size, np.exp(1j * self.angles)])[[0, -1]]
+        return np.allclose(first, last, rtol=0, atol=_SAME, equal_nan=True)
+
+    @property
+    def stated_zones(self) -> dict[str, FloatArray]:
+        """How far targets may be missed, by the name of the argument that says it, each of shape (N,)."""
+        both = {"within": self.within, "angle_within": self.angle_within}
+        return {name: zone for name, zone in both.items() if zone is not None}
+
+    @property
+    def zones(self) -> FloatArray | None:
+        """How far positions (length) and angles (rad) may be missed, shape (2, N); infinite where free."""
+        place, turn = self.within, self.angle_within
+        if turn is not None and place is None:
+            place = turn * self.angle_length
+        if place is None:
+            return None
+        if turn is None:
+            turn = np.minimum(place / self.angle_length, np.pi)
+        return np.where([self.has_position, self.has_angle], [place, turn], np.inf)
+
+    def without_zones(self) -> Self:
+        """The same targets, none of them to be missed."""
+        none: dict[str, Any] = dict.fromkeys(self.stated_zones)
+        return replace(self, **none)  # type: ignore[type-var]
+
+    @property
+    def exact_by_default(self) -> bool:
+        """Whether linkages that meet every target can be expected.
+
+        As long as the equations, two for a position and one for an angle, are not more than the
+        unknowns: nine of the linkage, how the body sits on its coupler, and a driver angle for every
+        target, or one where they are timed. So up to nine points, five timed ones, five whole poses
+        (Burmester), three timed ones.
+        """
+        equations = 2 * np.count_nonzero(self.has_position) + np.count_nonzero(self.has_angle)
+        unknowns = 9 + self.has_angle.any() + (1 if self.is_timed else len(self))
+        return bool(equations <= unknowns)
+
+    def __len__(self) -> int:
+        return len(self.positions)

@@ -62,9 +62,8 @@ def _result(result: Result) -> str:
 
 def _linkage(linkage: FourBar) -> dict[str, str]:
     return {
-        **{f"r{i}": f"{length:.6g}" for i, length in enumerate(linkage.lengths, start=1)},
-        "O2": _pair(linkage.o2),
-        "O4": _pair(linkage.o4),
+        **{name: f"{length:.6g}" for name, length in zip(linkage.LENGTHS, linkage.lengths, strict=True)},
+        **{point.upper(): _pair(getattr(linkage, point)) for point in linkage.GROUND},
         "P (u, v)": _pair(linkage.coupler_point),
         "assembly": f"{int(linkage.assembly):+d}",
         "Grashof class": str(grashof_class(linkage)),
@@ -90,7 +89,7 @@ def _batch(linkages: FourBar) -> str:
     rows = [[f"{length:.6g}" for length in each] for each in lengths[:_ROWS]]
     first = f", the first {_ROWS}" if len(lengths) > _ROWS else ""
     told = f"batch of {counted(len(lengths), 'linkage')}, shape {linkages.shape}{first}"
-    return f"<p>{told}</p>{_table(('r1', 'r2', 'r3', 'r4'), rows)}"
+    return f"<p>{told}</p>{_table(linkages.LENGTHS, rows)}"
 
 
 def _pair(point: FloatArray) -> str:

@@ -3,252 +3,338 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
 
 from grashof.analysis.judge.design import Constraint, Design
+from grashof.problems import Rotatability
+from grashof.problems.values.arrays import TURN, FloatArray, Limits
+from grashof.synth.programme.builder import FREE, NONNEGATIVE, Builder, Fill, always
+from grashof.synth.programme.formulas import View, cos_mu, folded, stretched
 from grashof.synth.programme.on_symbols import on_symbols
-from grashof.synth.programme.screening import GROUPS
-from grashof.synth.programme.structure import PLANES, Form, Given, Unknowns
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.start import Start
+from grashof.synth.programme.structure import PLANES, Form, points_held
+from grashof.synth.programme.unknowns import FAR, INSET, Unknowns, interleaved
+from grashof.synth.programme.vector import Vector
+from grashof.synth.theory.burmester import Displacements
 
 OWN_INSET = 1e-8  # the user's constraints are tightened by so much, so that the polished design keeps them
-ANGLES = ("ground_angle_deg", "theta2_start_deg")  # equalities: fixed unknowns unless they are relaxed
-
-
-@dataclass(slots=True)
-class Rows:
-    """Constraints as they are collected: expressions, and the name that their limits go by."""
-
-    slack: ca.SX | None
-    relaxed: ca.SX
-    expressions: list[ca.SX] = field(default_factory=list)
-    names: list[str] = field(default_factory=list)
-
-    def add(self, name: str, *expressions: ca.SX) -> None:
-        """Add expressions with the limits `name`."""
-        for expression in expressions:
-            self.expressions.append(expression)
-            self.names += [name] * expression.numel()
-
-    def require(self, group: str, *expressions: ca.SX, name: str = "nonnegative") -> None:
-        """Add expressions that must not be negative, but by the slack where the group is relaxed."""
-        give = 0.0 if self.slack is None else self.slack * self.relaxed[GROUPS.index(group)]
-        self.add(name, *(expression + give for expression in expressions))
+MOST_ZONE = 0.5  # sizes, rad: greater ones leave the solver astray
+ZONE_INSET = 1e-7  # share of a zone that the programme leaves to the judge
+LEAST_STEP = 1e-4  # rad, of the driver between two targets that are both met
+LEAST_SQUARE = 1e-8  # sizes squared: scales the squared distances to about 1
 
 
 @dataclass(frozen=True, slots=True)
 class Places:
-    """A, B and P at every target, in the order of visit, and the vectors from P to A and B."""
+    """A, B and P at every target, in the order of visit, and the vectors from A and B to P in one frame."""
 
     a: list[ca.SX]
     b: list[ca.SX]
     p: list[ca.SX]
-    arms: tuple[ca.SX, ca.SX]
+    ap: ca.SX
+    bp: ca.SX
 
 
-def close_at_poses(rows: Rows, given: Given, unknown: Unknowns) -> Places:
+class Symbols(View):
+    """The design as formulas see it."""
+
+    def __init__(self, x: Unknowns, places: Places) -> None:
+        self.o2, self.o4 = vector(x.o2), vector(x.o4)
+        self.r1, self.r2, self.r3, self.r4 = ca.vertsplit(x.r)
+        self.theta1, self.theta2_start = x.theta1, x.theta2_start
+        self.ap, self.bp = vector(places.ap), vector(places.bp)
+        self.a, self.b = (_track(points) for points in (places.a, places.b))
+
+
+@dataclass(frozen=True, slots=True)
+class Targets:
+    """What the design has to meet, as parameters in the order of visit.
+
+    Parameters
+    ----------
+    points : list of SX, shape (2,), sizes
+    turns : SX, shape (N,), rad
+        Angles of the body, moved by whole turns to be nearest to the start.
+    weights : SX, shape (2 N,)
+        Of the squared distances, then of the squared turns.
+    error_scale : SX
+        One over the squares that the start misses its targets by.
+    """
+
+    points: list[ca.SX]
+    turns: ca.SX
+    weights: ca.SX
+    error_scale: ca.SX
+
+    @classmethod
+    def of(cls, build: Builder, form: Form) -> Targets:
+        """Parameters for a form."""
+        n = form.targets
+        places = build.parameter(lambda scaled, start: interleaved(scaled.targets[list(start.visit)]), 2 * n)
+        return cls(
+            points=ca.vertsplit(places, 2),
+            turns=build.parameter(_turns, n),
+            weights=build.parameter(_target_weights, 2 * n),
+            error_scale=build.parameter(
+                lambda scaled, start: 1.0 / max(_square(scaled, start), LEAST_SQUARE)
+            ),
+        )
+
+
+def close_at_poses(build: Builder, form: Form, x: Unknowns) -> Places:
     """Points of the body are displaced with it; A and B stay at their distances from O2 and O4."""
-    a, b, n = unknown["a"], unknown["b"], unknown["theta2"].numel()
-    places = Places(
-        a=[given.displaced(a, k) for k in range(n)],
-        b=[given.displaced(b, k) for k in range(n)],
-        p=[given.displaced(given.body, k) for k in range(n)],
-        arms=(a - given.body, b - given.body),
-    )
-    r, theta2 = unknown["r"], unknown["theta2"]
-    for k in range(n):
-        rows.add("zero", places.a[k] - unknown["o2"] - r[1] * unit(theta2[k]))
-        rows.add("zero", (ca.sumsqr(places.b[k] - unknown["o4"]) - r[3] ** 2) / 2)
-    rows.add("zero", (ca.sumsqr(b - a) - r[2] ** 2) / 2)
-    return places
-
-
-def close_at_points(rows: Rows, form: Form, given: Given, unknown: Unknowns) -> Places:
-    """The loop O2-A-B-O4 closes at every driver angle; P is fixed to the coupler."""
-    r, theta2, theta3, arm = (unknown[name] for name in ("r", "theta2", "theta3", "arm"))
     n = form.targets
-    a = [unknown["o2"] + r[1] * unit(theta2[k]) for k in range(n)]
-    b = [a[k] + r[2] * unit(theta3[k]) for k in range(n)]
-    p = [a[k] + rotated(arm, theta3[k]) for k in range(n)]
+    turned = build.parameter(
+        lambda scaled, start: interleaved(_motion(scaled).rotation[list(start.visit)]), 2 * n
+    )
+    moved = build.parameter(
+        lambda scaled, start: interleaved(_motion(scaled).shift[list(start.visit)]), 2 * n
+    )
+    body = build.parameter(lambda scaled, _: interleaved(scaled.targets[:1]), 2)
+
+    def displaced(point: ca.SX, k: int) -> ca.SX:
+        cos, sin = turned[2 * k], turned[2 * k + 1]
+        return (
+            ca.vertcat(cos * point[0] - sin * point[1], sin * point[0] + cos * point[1])
+            + moved[2 * k : 2 * k + 2]
+        )
+
+    a, b, p = ([displaced(point, k) for k in range(n)] for point in (x.a, x.b, body))
     for k in range(n):
-        rows.add("zero", (ca.sumsqr(b[k] - unknown["o4"]) - r[3] ** 2) / 2)
+        build.zero(a[k] - x.o2 - x.r[1] * unit(x.theta2[k]))
+        build.zero((ca.sumsqr(b[k] - x.o4) - x.r[3] ** 2) / 2)
+    build.zero((ca.sumsqr(x.b - x.a) - x.r[2] ** 2) / 2)
+    return Places(a, b, p, body - x.a, body - x.b)
+
+
+def close_at_points(build: Builder, form: Form, x: Unknowns, targets: Targets) -> Places:
+    """The loop O2-A-B-O4 closes at every driver angle; P is fixed to the coupler."""
+    n = form.targets
+    a = [x.o2 + x.r[1] * unit(x.theta2[k]) for k in range(n)]
+    b = [a[k] + x.r[2] * unit(x.theta3[k]) for k in range(n)]
+    p = [a[k] + rotated(x.arm, x.theta3[k]) for k in range(n)]
+    timing = build.parameter(lambda scaled, start: scaled.timing[list(start.visit)], n)
+    for k in range(n):
+        build.zero((ca.sumsqr(b[k] - x.o4) - x.r[3] ** 2) / 2)
         if form.exact and form.positions[k]:
-            rows.add("zero", p[k] - given.target(k))
+            build.zero(p[k] - targets.points[k])
         if form.exact and form.angles[k]:
-            rows.add("zero", theta3[k] + unknown["body_angle"] - given.turns[k])
+            build.zero(x.theta3[k] + x.body_angle - targets.turns[k])
         if form.timed and k:
-            rows.add("zero", theta2[k] - theta2[0] - given.direction * (given.timing[k] - given.timing[0]))
-    for name, at in (("a", a), ("b", b)):
-        first = sum((given.at_first[k] * at[k] for k in range(n)), ca.SX.zeros(2))
-        rows.add("zero", unknown[name] - first)
-    return Places(a, b, p, (arm, arm - ca.vertcat(r[2], 0)))
+            build.zero(x.theta2[k] - x.theta2[0] - x.direction * (timing[k] - timing[0]))
+    for point, at in ((x.a, a), (x.b, b)):
+        build.zero(point - sum((x.at_first[k] * at[k] for k in range(n)), ca.SX.zeros(2)))
+    return Places(a, b, p, x.arm, x.arm - ca.vertcat(x.r[2], 0))
 
 
-def square(form: Form, given: Given, unknown: Unknowns, places: Places) -> ca.SX:
+def square(form: Form, x: Unknowns, places: Places, targets: Targets) -> ca.SX:
     """Weighted sum of squared distances and turns from the targets."""
     cost = ca.SX(0)
     for k in range(form.targets):
         if form.positions[k]:
-            cost += given.square_weights[k] * ca.sumsqr(places.p[k] - given.target(k))
+            cost += targets.weights[k] * ca.sumsqr(places.p[k] - targets.points[k])
         if form.angles[k]:
-            cost += given.square_weights[form.targets + k] * _off(given, unknown, k) ** 2
+            cost += targets.weights[form.targets + k] * _off(x, targets, k) ** 2
     return cost
 
 
-def require_all(rows: Rows, form: Form, given: Given, unknown: Unknowns, places: Places) -> None:
-    """Every requirement that is no plain limit of an unknown."""
-    r, o4, theta2 = unknown["r"], unknown["o4"], unknown["theta2"]
-    rows.add("zero", o4 - unknown["o2"] - r[0] * unit(unknown["theta1"]))
+def require_modes(build: Builder, form: Form, x: Unknowns, places: Places) -> None:
+    """The ground line, the order of the targets, one branch, and a driver that turns fully."""
+    build.zero(x.o4 - x.o2 - x.r[0] * unit(x.theta1))
     for k in range(form.targets - 1):
-        rows.add("step", given.direction * (theta2[k + 1] - theta2[k]))
-    rows.add("turn", given.direction * (theta2[form.targets - 1] - theta2[0]))
+        least = LEAST_STEP if form.exact else 0.0
+        build.row(x.direction * (x.theta2[k + 1] - x.theta2[k]), limits=always(least, np.inf))
+    build.row(x.direction * (x.theta2[form.targets - 1] - x.theta2[0]), limits=always(0.0, TURN))
     if form.same_branch:
-        for at_a, at_b in zip(places.a, places.b, strict=True):
-            sine = cross(at_b - at_a, at_b - o4) / (r[2] * r[3])
-            rows.require("same_branch", given.assembly * sine - 1e-6)
+        for a, b in zip(places.a, places.b, strict=True):
+            sine = cross(b - a, b - x.o4) / (x.r[2] * x.r[3])
+            build.require(("same_branch",), x.assembly * sine - 1e-6)
     if form.crank:
-        _rotatability(rows, given, r)
-    _nearest(rows, form, given, unknown, places)
-    _error(rows, form, given, unknown, places)
-    _transmission(rows, form, unknown, places)
-    for arm in places.arms:
-        arm2 = ca.sumsqr(arm)
-        rows.require("coupler_arms", arm2 - given.arms[0] ** 2, given.arms[1] ** 2 - arm2)
-    if form.ratio:
-        pairs = [(i, j) for i in range(4) for j in range(4) if i != j]
-        rows.require("link_ratio_max", *(r[i] - r[j] / given.ratio for i, j in pairs))
-    for wished, name, at in ((form.box_a, "a", places.a), (form.box_b, "b", places.b)):
-        for place in at if wished else ():
-            rows.require(name, place - given.box[name][0], given.box[name][1] - place)
-    _keep_out(rows, form, given, unknown, places)
+        margin = build.parameter(lambda scaled, _: scaled.wanted.rotatability_margin + INSET)
+        longer, total = build.parameter(_longer) * (x.r[0] - x.r[1]), ca.sum1(x.r)
+        build.require(
+            ("rotatability",),
+            (x.r[2] + x.r[3] - x.r[0] - x.r[1]) / total - margin,
+            (longer - (x.r[2] - x.r[3])) / total - margin,
+            (longer + (x.r[2] - x.r[3])) / total - margin,
+        )
 
 
-def require_limits(rows: Rows, given: Given, unknown: Unknowns) -> None:
-    """The plain limits of unknowns as rows, so that they can be relaxed too."""
-    rows.require("link_length", unknown["r"] - given.lengths[:4], given.lengths[4:] - unknown["r"])
-    for name in ("o2", "o4"):
-        rows.require(name, unknown[name] - given.box[name][0], given.box[name][1] - unknown[name])
-    rows.require("transmission_min_deg", unknown["tau"] - given.least_transmission)
-    angles = (unknown["theta1"], ca.dot(given.at_first, unknown["theta2"]))
-    for i, (key, angle) in enumerate(zip(ANGLES, angles, strict=True)):
-        rows.require(key, angle - given.angles[i], given.angles[i] - angle, name=key)
-
-
-def require_own(
-    rows: Rows, given: Given, unknown: Unknowns, places: Places, constraints: Sequence[Constraint]
-) -> None:
-    """The user's own constraints, on the symbols of the design in the problem's unit."""
-    if not constraints:
-        return
-    design = symbolic_design(given, unknown, places)
-    for constraint in constraints:
-        value = on_symbols(constraint, design)
-        for one in value if isinstance(value, (list, tuple)) else [value]:
-            rows.require("constraints", -ca.vec(ca.SX(one)) - OWN_INSET)
-
-
-def symbolic_design(given: Given, unknown: Unknowns, places: Places) -> Design:
-    """What a user's constraint sees of the unknowns."""
-    scale, r = given.scale, unknown["r"]
-    coupler, arm = places.b[0] - places.a[0], places.p[0] - places.a[0]
-    along, beside = ca.dot(coupler, arm) / r[2], cross(coupler, arm) / r[2]
-    r1, r2, r3, r4 = (scale * r[i] for i in range(4))
-    return Design(
-        o2=given.outward(unknown["o2"]),
-        o4=given.outward(unknown["o4"]),
-        r1=r1,
-        r2=r2,
-        r3=r3,
-        r4=r4,
-        theta1=unknown["theta1"],
-        coupler_point=scale * ca.vertcat(along, beside),
-        theta2=unknown["theta2"],
-        a=[given.outward(point) for point in places.a],
-        b=[given.outward(point) for point in places.b],
-        p=[given.outward(point) for point in places.p],
-    )
-
-
-def diagonal(rows: Rows, unknown: Unknowns, places: Places) -> ca.SX:
-    """Diagonal of a box around the pivots at all targets."""
-    for point in (unknown["o2"], unknown["o4"], *places.a, *places.b, *places.p):
-        rows.add("nonnegative", point - unknown["low"], unknown["high"] - point)
-    return ca.sqrt(ca.sumsqr(unknown["high"] - unknown["low"]) + 1e-12)
-
-
-def _nearest(rows: Rows, form: Form, given: Given, unknown: Unknowns, places: Places) -> None:
+def stand_nearest(build: Builder, form: Form, x: Unknowns, places: Places, targets: Targets) -> None:
     """The derivative of a target's square by its driver angle is zero, as the judge will have it.
 
-    With d theta3 / d theta2 = N / D from the loop projected on O4B, multiplied by D.
+    With d theta3 / d theta2 = N / D from the loop projected on O4B, multiplied by D. Timed targets
+    have one driver angle: the sum of their derivatives is zero.
     """
-    o2, o4 = unknown["o2"], unknown["o4"]
+    total = ca.SX(0)
     for k in np.flatnonzero(form.nearest).tolist():
         a, b, p = places.a[k], places.b[k], places.p[k]
-        d, n = ca.dot(b - o4, quarter_turn(b - a)), -ca.dot(b - o4, quarter_turn(a - o2))
+        d, n = ca.dot(b - x.o4, quarter_turn(b - a)), -ca.dot(b - x.o4, quarter_turn(a - x.o2))
         row = ca.SX(0)
         if form.positions[k]:
-            missed = given.square_weights[k] * (p - given.target(k))
-            row += d * ca.dot(missed, quarter_turn(a - o2)) + n * ca.dot(missed, quarter_turn(p - a))
+            missed = targets.weights[k] * (p - targets.points[k])
+            row += d * ca.dot(missed, quarter_turn(a - x.o2)) + n * ca.dot(missed, quarter_turn(p - a))
         if form.angles[k]:
-            row += n * given.square_weights[form.targets + k] * _off(given, unknown, k)
-        rows.add("zero", ca.sqrt(given.error_scale) * row)
+            row += n * targets.weights[form.targets + k] * _off(x, targets, k)
+        if form.timed:
+            total += row / d
+        else:
+            build.zero(ca.sqrt(targets.error_scale) * row)
+    if form.timed and any(form.nearest):
+        build.zero(ca.sqrt(targets.error_scale) * total)
 
 
-def _error(rows: Rows, form: Form, given: Given, unknown: Unknowns, places: Places) -> None:
+def bound_error(build: Builder, form: Form, x: Unknowns, places: Places, targets: Targets) -> None:
     """The squares as a whole, or each target's, are bounded, as shares of what is allowed."""
     if form.most_error:
-        rows.add("nonnegative", 1 - square(form, given, unknown, places) / given.most_error)
-    for k in range(form.targets if form.zoned else 0):
+        most = build.parameter(lambda _, start: min(start.most_error, FAR) ** 2 * form.targets)
+        build.row(1 - square(form, x, places, targets) / most)
+    zones = build.parameter(_zones, 2 * form.targets) if form.zoned else None
+    for k in range(form.targets if zones is not None else 0):
         if form.positions[k]:
-            gap2 = ca.sumsqr(places.p[k] - given.target(k))
-            rows.require("within", 1 - gap2 / given.zones[k] ** 2)
+            build.require(("within",), 1 - ca.sumsqr(places.p[k] - targets.points[k]) / zones[k] ** 2)
         if form.angles[k]:
-            share = _off(given, unknown, k) / given.zones[form.targets + k]
-            rows.require("within", 1 - share**2)
+            build.require(("within",), 1 - (_off(x, targets, k) / zones[form.targets + k]) ** 2)
 
 
-def _off(given: Given, unknown: Unknowns, k: int) -> ca.SX:
-    """By how much the body is turned from where a pose has it."""
-    return unknown["theta3"][k] + unknown["body_angle"] - given.turns[k]
-
-
-def _rotatability(rows: Rows, given: Given, r: ca.SX) -> None:
-    margin, longer, total = given.margin, given.longer * (r[0] - r[1]), ca.sum1(r)
-    rows.require(
-        "rotatability",
-        (r[2] + r[3] - r[0] - r[1]) / total - margin,
-        (longer - (r[2] - r[3])) / total - margin,
-        (longer + (r[2] - r[3])) / total - margin,
-    )
-
-
-def _transmission(rows: Rows, form: Form, unknown: Unknowns, places: Places) -> None:
+def bound_transmission(build: Builder, form: Form, x: Unknowns, places: Places) -> None:
     """cos(tau) bounds |cos(mu)|, which is monotone between the ends of the way and the ground line."""
-    r, o4, tau = unknown["r"], unknown["o4"], unknown["tau"]
+    design = Symbols(x, places)
 
     def bound(diagonal2: ca.SX) -> tuple[ca.SX, ca.SX]:
-        cos_mu = (r[2] ** 2 + r[3] ** 2 - diagonal2) / (2 * r[2] * r[3])
-        return ca.cos(tau) - cos_mu, ca.cos(tau) + cos_mu
+        cosine = cos_mu(design, diagonal2)
+        return ca.cos(x.tau) - cosine, ca.cos(x.tau) + cosine
 
-    rows.add("folded", *bound((r[0] - r[1]) ** 2))
-    rows.add("stretched", *bound((r[0] + r[1]) ** 2))
+    for number, diagonal2 in enumerate((folded, stretched)):
+        build.row(*bound(diagonal2(design)), limits=_passing(form, number))
     if form.over_task:
-        for at_a in (places.a[0], places.a[-1]):
-            rows.add("nonnegative", *bound(ca.sumsqr(at_a - o4)))
-        rows.add("first", unknown["theta2"][0] - unknown["theta1"])
-        rows.add("last", unknown["theta2"][form.targets - 1] - unknown["theta1"])
+        for a in (places.a[0], places.a[-1]):
+            build.row(*bound(ca.sumsqr(a - x.o4)))
+        for end in (0, 1):
+            at = x.theta2[(0, form.targets - 1)[end]]
+            build.row(at - x.theta1, limits=_half_turn(form, end))
 
 
-def _keep_out(rows: Rows, form: Form, given: Given, unknown: Unknowns, places: Places) -> None:
+def _passing(form: Form, number: int) -> Fill:
+    """Limits of a position with O2A folded over the ground line (0), or stretched along it (1)."""
+
+    def limits(scaled: ScaledProblem, start: Start) -> Limits:
+        first, last = sorted(start.half_turns)
+        passed = any(count % 2 == number for count in range(first + 1, last + 1))
+        return NONNEGATIVE if not form.over_task or (passed and not _bare(form, scaled)) else FREE
+
+    return limits
+
+
+def _half_turn(form: Form, end: int) -> Fill:
+    """The driver starts, or ends, in the half turn in which the start has it."""
+
+    def limits(scaled: ScaledProblem, start: Start) -> Limits:
+        half = start.half_turns[end]
+        return FREE if _bare(form, scaled) else (half * np.pi, (half + 1) * np.pi)
+
+    return limits
+
+
+def _bare(form: Form, scaled: ScaledProblem) -> bool:
+    """Where only the error counts, a crank may start and end in any half turn."""
+    return form.fits and form.crank and scaled.wanted.transmission_min_deg == 0
+
+
+def keep_out(build: Builder, form: Form, x: Unknowns, places: Places) -> None:
     """Every half-plane of its free region holds each point that keeps out."""
-    where = {"o2": [unknown["o2"]], "o4": [unknown["o4"]], "a": places.a, "b": places.b, "p": places.p}
+    where = {"o2": [x.o2], "o4": [x.o4], "a": places.a, "b": places.b, "p": places.p}
     held = [place for name in form.keep_out for place in where[name]]
-    planes = ca.reshape(given.planes, 3, PLANES * len(held))
-    for k, place in enumerate(held):
-        for plane in ca.horzsplit(planes[:, PLANES * k : PLANES * (k + 1)]):
-            rows.require("keep_out", ca.dot(plane[:2], place) - plane[2])
+    planes = build.parameter(_planes, 3 * PLANES * len(held)) if held else ca.SX(0, 1)
+    for k, plane in enumerate(ca.vertsplit(planes, 3) if held else ()):
+        build.require(("keep_out",), ca.dot(plane[:2], held[k // PLANES]) - plane[2])
+
+
+def require_own(build: Builder, x: Unknowns, places: Places, constraints: Sequence[Constraint]) -> None:
+    """The user's own constraints, on the symbols of the design in the problem's unit."""
+    for constraint in constraints:
+        value = on_symbols(constraint, symbolic_design(build, x, places))
+        for one in value if isinstance(value, (list, tuple)) else [value]:
+            build.require(("constraints",), -ca.vec(ca.SX(one)) - OWN_INSET)
+
+
+def symbolic_design(build: Builder, x: Unknowns, places: Places) -> Design:
+    """What a user's function sees of the unknowns."""
+    scale = build.parameter(lambda scaled, _: scaled.frame.scale)
+    origin = build.parameter(lambda scaled, _: interleaved(scaled.frame.origin), 2)
+    coupler, arm = places.b[0] - places.a[0], places.p[0] - places.a[0]
+    along, beside = ca.dot(coupler, arm) / x.r[2], cross(coupler, arm) / x.r[2]
+    r1, r2, r3, r4 = (scale * length for length in ca.vertsplit(x.r))
+    o2, o4 = scale * x.o2 + origin, scale * x.o4 + origin
+    a, b, p = ([scale * point + origin for point in track] for track in (places.a, places.b, places.p))
+    return Design(o2, o4, r1, r2, r3, r4, x.theta1, scale * ca.vertcat(along, beside), x.theta2, a, b, p)
+
+
+def _off(x: Unknowns, targets: Targets, k: int) -> ca.SX:
+    """By how much the body is turned from where a pose has it."""
+    return x.theta3[k] + x.body_angle - targets.turns[k]
+
+
+def _motion(scaled: ScaledProblem) -> Displacements:
+    if scaled.motion is None:
+        raise TypeError("only whole poses displace the body")
+    return scaled.motion
+
+
+def _turns(scaled: ScaledProblem, start: Start) -> FloatArray:
+    """Angles of the body in the order of visit, moved by whole turns to be nearest to the start."""
+    turned = np.array(start.theta3) + start.body_angle
+    off = scaled.turns[list(start.visit)] - turned
+    nearest: FloatArray = turned + np.angle(np.exp(1j * off))
+    return nearest
+
+
+def _target_weights(scaled: ScaledProblem, start: Start) -> FloatArray:
+    visit = list(start.visit)
+    return np.concatenate([scaled.weights[visit], scaled.turn_weights[visit]])
+
+
+def _square(scaled: ScaledProblem, start: Start) -> float:
+    """Weighted squares that the start misses its targets by."""
+    order = np.argsort(start.visit)
+    turned = np.array(start.theta3)[order] + start.body_angle
+    return float(scaled.missed(start.track[2][order], turned)) ** 2 * len(order)
+
+
+def _longer(scaled: ScaledProblem, start: Start) -> float:
+    """Whether r1 is longer than r2 (1) or shorter (-1)."""
+    r1, r2, _, _ = start.lengths
+    asked = {Rotatability.CRANK_ROCKER: 1.0, Rotatability.DOUBLE_CRANK: -1.0}
+    return asked.get(scaled.wanted.rotatability, 1.0 if r1 > r2 else -1.0)
+
+
+def _zones(scaled: ScaledProblem, start: Start) -> FloatArray:
+    """How far each target may be missed, drawn in a little: sizes, then rad."""
+    zones = np.full((2, len(scaled.targets)), FAR) if scaled.zones is None else scaled.zones
+    return (np.minimum(zones, MOST_ZONE) * (1 - ZONE_INSET))[:, list(start.visit)].ravel()
+
+
+def _planes(scaled: ScaledProblem, start: Start) -> FloatArray:
+    """Half-planes of the free regions about the points that keep out of areas."""
+    from grashof.synth.programme.free_region import free_regions
+
+    planes = free_regions(scaled.wanted, start, points_held(scaled))
+    planes[..., 2] += INSET
+    return planes.ravel()
+
+
+def vector(point: ca.SX) -> Vector:
+    """A point, shape (2,), as a plane vector."""
+    return Vector(point[0], point[1])
+
+
+def _track(points: list[ca.SX]) -> Vector:
+    """Points, each of shape (2,), as one plane vector of columns."""
+    return Vector(*(ca.vertcat(*(point[axis] for point in points)) for axis in (0, 1)))
 
 
 def unit(angle: ca.SX) -> ca.SX:
@@ -256,15 +342,15 @@ def unit(angle: ca.SX) -> ca.SX:
     return ca.vertcat(ca.cos(angle), ca.sin(angle))
 
 
-def rotated(vector: ca.SX, angle: ca.SX) -> ca.SX:
+def rotated(point: ca.SX, angle: ca.SX) -> ca.SX:
     """A vector turned by an angle."""
     cos, sin = ca.cos(angle), ca.sin(angle)
-    return ca.vertcat(cos * vector[0] - sin * vector[1], sin * vector[0] + cos * vector[1])
+    return ca.vertcat(cos * point[0] - sin * point[1], sin * point[0] + cos * point[1])
 
 
-def quarter_turn(vector: ca.SX) -> ca.SX:
+def quarter_turn(point: ca.SX) -> ca.SX:
     """A vector turned by 90 degrees, counter-clockwise."""
-    return ca.vertcat(-vector[1], vector[0])
+    return ca.vertcat(-point[1], point[0])
 
 
 def cross(first: ca.SX, second: ca.SX) -> ca.SX:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import shapely
 
-from grashof.problems import Requirements
+from grashof.problems import FourBar, Requirements
 from grashof.problems.values.areas import solid
 from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.synth.theory.closure import coupler_of
 
 TOUCHING = 1e-10  # sizes: a point no deeper inside counts as on the boundary
 _SAMPLES = 13  # driver angles, the targets' ends among them
@@ -35,7 +36,7 @@ def depth_on_the_way(
     ndarray, shape (n,), sizes
         Zero where no sample lies inside: the judge looks closer.
     """
-    names = [name for name in points_kept_out(wanted) if name not in ("o2", "o4")]
+    names = [name for name in points_kept_out(wanted) if name in FourBar.MOVING]
     links = "links" in wanted.keep_out_for
     deepest = np.zeros(len(points))
     for begin in range(0, len(points) if names else 0, _ROWS):
@@ -43,7 +44,7 @@ def depth_on_the_way(
         places = _places(points[rows], assembly[rows], theta2[rows])
         tracks = [places[name] for name in names]
         if links:
-            for one, other in (("o2", "a"), ("a", "b"), ("o4", "b"), ("a", "p"), ("b", "p")):
+            for one, other in (line for link in FourBar.LINKS[1:] for line in link.lines):
                 tracks += [places[one] + share * (places[other] - places[one]) for share in _ALONG]
         track = np.concatenate(tracks, axis=1)
         closed = np.isfinite(track)
@@ -55,17 +56,11 @@ def depth_on_the_way(
 def _places(points: ComplexArray, assembly: FloatArray, theta2: FloatArray) -> dict[str, ComplexArray]:
     """Pivots and coupler point at sampled driver angles, each shape (n, samples)."""
     o2, o4, a, b, p = (column[:, None] for column in points.T)
-    r3, r4 = np.abs(b - a), np.abs(b - o4)
-    share = np.linspace(0, 1, _SAMPLES)
-    angle = theta2[:, :1] + (theta2[:, -1:] - theta2[:, :1]) * share
+    angle = theta2[:, :1] + (theta2[:, -1:] - theta2[:, :1]) * np.linspace(0, 1, _SAMPLES)
     at_a = o2 + np.abs(a - o2) * np.exp(1j * angle)
-    across = o4 - at_a
-    square = np.abs(across) ** 2
     with np.errstate(all="ignore"):
-        # AB by its shares along and left of A-O4.
-        along = (square + r3**2 - r4**2) / (2 * square)
-        left = assembly[:, None] * np.sqrt(r3**2 / square - along**2)
-        coupler = across * (along + 1j * left)
+        coupler, beside2 = coupler_of(o4 - at_a, np.abs(b - a), np.abs(b - o4), assembly[:, None])
+        coupler[beside2 <= 0] = np.nan
         arm = coupler * ((p - a) / (b - a))
     fixed = np.ones_like(at_a)
     return {"o2": o2 * fixed, "o4": o4 * fixed, "a": at_a, "b": at_a + coupler, "p": at_a + arm}
@@ -75,8 +70,7 @@ def points_kept_out(wanted: Requirements) -> tuple[str, ...]:
     """Which of o2, o4, a, b, p must keep out of areas: those named, and the ends of links."""
     if not wanted.keep_out:
         return ()
-    every = ("o2", "o4", "a", "b", "p")
-    return tuple(name for name in every if {name, "links"} & set(wanted.keep_out_for))
+    return tuple(name for name in FourBar.POINTS if {name, "links"} & set(wanted.keep_out_for))
 
 
 def depth(wanted: Requirements, name: str, points: ComplexArray) -> FloatArray:

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.analysis.judge.design import Constraint
-from grashof.problems import FourBar, MotionTask, PathTask, Problem, Requirements, Rotatability
+from grashof.problems import FourBar, Problem, Requirements, Rotatability, Task
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.problems.values.task import Task
+from grashof.problems.values.quantities import Quantity, Unit
 from grashof.synth.programme.frame import Frame
 from grashof.synth.theory.burmester import Displacements
 
@@ -27,15 +27,15 @@ class ScaledProblem:
         Where the coupler point P has to be, in the frame; zero where its position is free.
     weights : ndarray, shape (N,)
         Of the squared distances; zero where the position is free.
-    turns : ndarray, shape (N,), rad, or None
-        Angles of the body, zero where they are free; None for a path.
-    turn_weights : ndarray, shape (N,), sizes squared, or None
+    turns : ndarray, shape (N,), rad
+        Angles of the body; zero where they are free.
+    turn_weights : ndarray, shape (N,), sizes squared
         Of the squared turns from there; zero where the angle is free.
     motion : Displacements or None
         Of the body from the first pose to every pose, in the frame, where whole poses are met
-        exactly; None for all other tasks.
-    timing : ndarray, shape (N,), rad, or None
-        Driver rotation from the first target, where it is prescribed.
+        exactly, untimed; None for all other tasks.
+    timing : ndarray, shape (N,), rad
+        Driver rotation from the first target, in either sense; all zero where it is free.
     wanted : Requirements
         Resolved, in the frame.
     exact : bool
@@ -52,10 +52,10 @@ class ScaledProblem:
     frame: Frame
     targets: ComplexArray
     weights: FloatArray
-    turns: FloatArray | None
-    turn_weights: FloatArray | None
+    turns: FloatArray
+    turn_weights: FloatArray
     motion: Displacements | None
-    timing: FloatArray | None
+    timing: FloatArray
     wanted: Requirements
     exact: bool
     constraints: tuple[Constraint, ...] = ()
@@ -66,26 +66,20 @@ class ScaledProblem:
     def of(cls, problem: Problem, constraints: Sequence[Constraint] = ()) -> ScaledProblem:
         """Make a problem ready."""
         task, frame = problem.task, Frame.of(problem.task)
-        zones, targets = problem.zones, frame.inward(task.positions)
+        zones = problem.zones
         exact = problem.requirements.is_exact(task) and zones is None
-        weights, turns, turn_weights, motion = np.ones(len(task)), None, None, None
-        if isinstance(task, MotionTask):
-            weights = task.weights * task.has_position
-            if task.has_angle.any():
-                turns = np.nan_to_num(task.angles)
-                turn_weights = task.weights * task.has_angle * (task.angle_length / frame.scale) ** 2
-            targets = np.where(task.has_position, targets, 0.0)
-            if exact and task.is_whole and turns is not None:
-                motion = Displacements.from_poses(targets, turns)
+        targets = np.where(task.has_position, frame.inward(task.positions), 0.0)
+        turns = np.nan_to_num(task.angles)
+        by_dyads = exact and task.is_whole and not task.is_timed and not (task.closed and task.returns)
         return cls(
             problem=problem,
             frame=frame,
             targets=targets,
-            weights=weights,
+            weights=task.weights * task.has_position,
             turns=turns,
-            turn_weights=turn_weights,
-            motion=motion,
-            timing=task.timing if isinstance(task, PathTask) else None,
+            turn_weights=task.weights * task.has_angle * (task.angle_length / frame.scale) ** 2,
+            motion=Displacements.from_poses(targets, turns) if by_dyads else None,
+            timing=np.nan_to_num(task.driver_turns),
             wanted=_turning(frame.requirements(problem.requirements), task),
             exact=exact,
             constraints=tuple(constraints),
@@ -98,9 +92,24 @@ class ScaledProblem:
         return self.zones is not None or self.problem.requirements.error_factor is not None
 
     @property
+    def has_angles(self) -> bool:
+        """Whether any target has an angle."""
+        return bool(self.turn_weights.any())
+
+    @property
+    def timed(self) -> bool:
+        """Whether the driver rotations are prescribed."""
+        return bool(self.timing.any())
+
+    @property
     def closed(self) -> bool:
-        """Whether the motion used is a whole turn."""
-        return isinstance(self.problem.task, PathTask) and self.problem.task.closed
+        """Whether the task motion is a whole turn."""
+        return self.problem.task.closed
+
+    def scale(self, quantity: Quantity) -> float:
+        """What the objective counts a quantity in, in the units of the frame."""
+        lengths = {Unit.LENGTH: 1, Unit.AREA: 2, Unit.VELOCITY: 1, Unit.ACCELERATION: 1}
+        return self.problem.scale(quantity) / self.frame.scale ** lengths.get(quantity.unit, 0)
 
     def missed(self, p: ComplexArray, turned: FloatArray) -> FloatArray:
         """Root mean weighted square of what targets are missed by, sizes.
@@ -111,10 +120,9 @@ class ScaledProblem:
         turned : ndarray, shape (..., N), rad
             Angles of the body.
         """
+        off = np.angle(np.exp(1j * (turned - self.turns)))
         square = (self.weights * np.abs(p - self.targets) ** 2).sum(axis=-1)
-        if self.turns is not None and self.turn_weights is not None:
-            off = np.angle(np.exp(1j * (turned - self.turns)))
-            square = square + (self.turn_weights * off**2).sum(axis=-1)
+        square = square + (self.turn_weights * off**2).sum(axis=-1)
         missed: FloatArray = np.sqrt(square / len(self.targets))
         return missed
 
@@ -146,8 +154,7 @@ class ScaledProblem:
             coupler = (b - a) / np.abs(b - a)
         arm = (p - a) * coupler.conj() * self.frame.scale
         if body_angle is None:
-            first = 0.0 if self.turns is None else np.angle(np.exp(1j * self.turns[0]) * coupler.conj())
-            body_angle = np.asarray(first)
+            body_angle = np.angle(np.exp(1j * self.turns[0]) * coupler.conj())
         return FourBar(
             o2=self.frame.outward(o2),
             o4=self.frame.outward(o4),
@@ -161,7 +168,7 @@ class ScaledProblem:
 
 
 def _turning(wanted: Requirements, task: Task) -> Requirements:
-    """A closed path takes a whole turn of the driver, whatever is said of its rotatability."""
-    if wanted.rotatability is not Rotatability.ANY or not isinstance(task, PathTask) or not task.closed:
+    """A closed task takes a whole turn of the driver, whatever is said of its rotatability."""
+    if wanted.rotatability is not Rotatability.ANY or not task.closed:
         return wanted
     return replace(wanted, rotatability=Rotatability.FULL_CRANK, rotatability_margin=0.0)

@@ -2,32 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from grashof.problems import Box, Requirements, Rotatability, TransmissionOver
-from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, Limits
-
-# The requirements that can stand in the way, named by their keys.
-GROUPS = (
-    "order",
-    "same_branch",
-    "rotatability",
-    "transmission_min_deg",
-    "link_length",
-    "link_ratio_max",
-    "coupler_arms",
-    "o2",
-    "o4",
-    "a",
-    "b",
-    "ground_angle_deg",
-    "theta2_start_deg",
-    "constraints",
-    "keep_out",
-    "within",
+from grashof.problems import Requirements, Rotatability, TransmissionOver
+from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.problems.values.requirements import LIMITS
+from grashof.synth.programme.formulas import (
+    Part,
+    View,
+    at_angle,
+    cos_mu,
+    folded,
+    parts_of,
+    range_of,
+    stretched,
 )
+from grashof.synth.programme.vector import Vector
+
+# The requirements that can stand in the way, named by their fields.
+GROUPS = ("order", "same_branch", "rotatability", *LIMITS, "constraints", "keep_out", "within")
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +99,63 @@ class Configurations:
     direction: FloatArray
 
 
+def _vector(points: ComplexArray) -> Vector:
+    return Vector(points.real, points.imag)
+
+
+class Many(View):
+    """Many linkages as formulas see them, or of each the dyad O2A or O4B alone.
+
+    Parameters
+    ----------
+    o2, o4 : ndarray of complex, shape (n,), sizes, optional
+    a, b : ndarray of complex, shape (n, N), sizes, optional
+    p : ndarray of complex, shape (n,), sizes
+        The coupler point at the first target.
+    """
+
+    def __init__(
+        self,
+        p: ComplexArray,
+        o2: ComplexArray | None = None,
+        a: ComplexArray | None = None,
+        o4: ComplexArray | None = None,
+        b: ComplexArray | None = None,
+    ) -> None:
+        if o2 is not None and a is not None:
+            crank = a - o2[:, None]
+            self.o2, self.a, self.ap = _vector(o2[:, None]), _vector(a), _vector((p - a[:, 0])[:, None])
+            self.r2, self.theta2_start = np.abs(crank[:, :1]), np.angle(crank[:, :1])
+        if o4 is not None and b is not None:
+            self.o4, self.b, self.bp = _vector(o4[:, None]), _vector(b), _vector((p - b[:, 0])[:, None])
+            self.r4 = np.abs(b[:, :1] - o4[:, None])
+        if o2 is not None and o4 is not None and a is not None and b is not None:
+            ground = (o4 - o2)[:, None]
+            self.r1, self.r3, self.theta1 = np.abs(ground), np.abs(b[:, :1] - a[:, :1]), np.angle(ground)
+
+
+def _oversteps(view: View, wanted: Requirements, dyad: int | None) -> Iterator[tuple[str, FloatArray]]:
+    """How far each limit is overstepped, shape (n,), by what one dyad decides, or two together (None).
+
+    The parts of a quantity add up at every target; the worst target counts.
+    """
+    missed: dict[str, FloatArray] = {}
+    for name, part in parts_of(wanted.limited):
+        if part.dyad == dyad:
+            missed[name] = missed.get(name, 0.0) + _overstep(view, part, *range_of(wanted, name, part))
+    yield from ((name, amount.max(axis=1)) for name, amount in missed.items())
+
+
+def _overstep(view: View, part: Part, low: float, high: float) -> FloatArray:
+    value = part.of(view)
+    if low == high and part.axis == "":  # an angle
+        return np.abs(np.angle(np.exp(1j * (value - low))))
+    if part.per is not None:
+        return np.maximum(value / high - part.per(view), 0.0)
+    value = np.sqrt(value) if part.squared else value
+    return np.maximum(np.maximum(low - value, value - high), 0.0)
+
+
 def judge(
     found: Configurations,
     p: ComplexArray,
@@ -130,14 +183,12 @@ def judge(
     -------
     Screened
     """
-    ground, coupler = found.o4 - found.o2, found.b - found.a
-    output = found.b - found.o4[:, None]
-    r1, r3 = np.abs(ground), np.abs(coupler[:, 0])
-    r2, r4 = np.abs(found.a[:, 0] - found.o2), np.abs(output[:, 0])
+    view = Many(p, found.o2, found.a, found.o4, found.b)
+    coupler, output = found.b - found.a, found.b - found.o4[:, None]
     with np.errstate(divide="ignore", invalid="ignore"):
-        sine = (coupler.conj() * output).imag / (r3 * r4)[:, None]
+        sine = (coupler.conj() * output).imag / (view.r3 * view.r4)
         assembly = np.where(np.sum(np.sign(sine), axis=1) >= 0, 1.0, -1.0)
-        found, violations, span, cycle = _ways(found, violations, wanted.order)
+        found, violations, span, cycle = _ways(found, view, violations, wanted.order)
 
     def violate(group: str, amount: FloatArray) -> None:
         violations[:, GROUPS.index(group)] += np.maximum(amount, 0.0)
@@ -153,14 +204,10 @@ def judge(
     # Where the targets are not joined but have to be, that alone is what is missing.
     judged = joined if wanted.same_branch else np.ones_like(joined)
     violate("transmission_min_deg", judged * (np.radians(wanted.transmission_min_deg) - transmission))
-    violate("rotatability", _rotatability_violation(r1, r2, r3, r4, wanted))
-    for length, limits in ((r1, wanted.link_lengths[0]), (r3, wanted.link_lengths[2])):
-        violate("link_length", outside(length, (max(limits[0], 1e-9), limits[1])))
-    longest, shortest = np.maximum.reduce([r1, r2, r3, r4]), np.minimum.reduce([r1, r2, r3, r4])
-    violate("link_ratio_max", longest / wanted.link_ratio_max - shortest)
-    if wanted.ground_angle_deg is not None:
-        turned = ground * np.exp(-1j * np.radians(wanted.ground_angle_deg))
-        violate("ground_angle_deg", np.abs(np.angle(turned)))
+    violate("rotatability", _rotatability_violation(view, wanted))
+    for name, amount in _oversteps(view, wanted, None):
+        violate(name, amount)
+    violate("link_length", 1e-9 - np.minimum(view.r1, view.r3)[:, 0])
     points = np.stack([found.o2, found.o4, found.a[:, 0], found.b[:, 0], p], axis=1)
     if wanted.keep_out:
         from grashof.synth.programme.keep_out_depth import depth_on_the_way
@@ -185,7 +232,7 @@ def judge(
 def dyad_violations(
     pivot: str, ground: ComplexArray, places: ComplexArray, p: ComplexArray, wanted: Requirements
 ) -> FloatArray:
-    """What dyads lack by themselves: length, coupler arm, place of the ground pivot and of the joint.
+    """What dyads violate by themselves, such as length, coupler arm, places of ground pivot and joint.
 
     Parameters
     ----------
@@ -202,19 +249,13 @@ def dyad_violations(
     -------
     ndarray, shape (n, len(GROUPS))
     """
-    joint, link = ("a", 1) if pivot == "o2" else ("b", 3)
+    joint, dyad = ("a", 2) if pivot == "o2" else ("b", 4)
     violations = np.zeros((len(ground), len(GROUPS)))
-    length = np.abs(places - ground[:, None]).mean(axis=1)
-    violations[:, GROUPS.index("link_length")] = outside(length, wanted.link_lengths[link])
-    violations[:, GROUPS.index("coupler_arms")] = outside(np.abs(places[:, 0] - p), wanted.coupler_arms)
+    view = Many(p, ground, places) if dyad == 2 else Many(p, o4=ground, b=places)
+    for name, amount in _oversteps(view, wanted, dyad):
+        violations[:, GROUPS.index(name)] = amount
     for name, points in ((pivot, ground[:, None]), (joint, places)):
-        box = getattr(wanted, name) or Box()
-        missed = outside(points.real, box.x) + outside(points.imag, box.y)
-        violations[:, GROUPS.index(name)] = missed.max(axis=1)
         violations[:, GROUPS.index("keep_out")] += keep_out_violation(name, points, wanted)
-    if pivot == "o2" and wanted.theta2_start_deg is not None:
-        off = np.angle(places[:, 0] - ground) - np.radians(wanted.theta2_start_deg)
-        violations[:, GROUPS.index("theta2_start_deg")] = np.abs(np.angle(np.exp(1j * off)))
     return violations
 
 
@@ -259,13 +300,6 @@ def follow(angle: FloatArray, direction: FloatArray) -> FloatArray:
     return np.concatenate([angle[:, :1], angle[:, :1] + np.cumsum(steps, axis=1)], axis=1)
 
 
-def outside(values: FloatArray, limits: Limits | None) -> FloatArray:
-    """By how much values lie outside limits."""
-    low, high = limits if limits is not None else (-np.inf, np.inf)
-    missed: FloatArray = np.maximum(np.maximum(low - values, values - high), 0.0)
-    return missed
-
-
 def met(violations: FloatArray) -> BoolArray:
     """Which rows of violations, shape (n, len(GROUPS)), are all zero."""
     nothing: BoolArray = violations.max(axis=1, initial=0.0) <= 0
@@ -273,37 +307,29 @@ def met(violations: FloatArray) -> BoolArray:
 
 
 def _ways(
-    found: Configurations, violations: FloatArray, ordered: bool
+    found: Configurations, view: View, violations: FloatArray, ordered: bool
 ) -> tuple[Configurations, FloatArray, FloatArray, FloatArray]:
     """The way that each linkage lets its driver go, violations, greatest |cos mu| over it and over a turn.
 
     Above 1 the linkage does not close. A driver that cannot turn, with all targets in one of its
     ranges, has no way around.
     """
-    ground = found.o4 - found.o2
-    r1, r2 = np.abs(ground), np.abs(found.a[:, 0] - found.o2)
-    r3, r4 = np.abs(found.b[:, 0] - found.a[:, 0]), np.abs(found.b[:, 0] - found.o4)
-
-    def cos_mu(diagonal2: FloatArray) -> FloatArray:
-        cosine: FloatArray = np.abs((r3**2 + r4**2 - diagonal2) / (2 * r3 * r4))
-        return cosine
-
-    folded, stretched, theta1 = cos_mu((r1 - r2) ** 2), cos_mu((r1 + r2) ** 2), np.angle(ground)[:, None]
-    ends = found.theta2[:, [0, -1]] - theta1
-    inside = found.theta2 - theta1
-    inside = np.where((stretched > 1)[:, None], (inside + np.pi) % TURN - np.pi, inside % TURN)
-    one_side = (folded <= 1) | (stretched <= 1) | (np.ptp(np.sign(inside), axis=1) == 0)
-    rows = np.flatnonzero(one_side & ((folded > 1) | (stretched > 1)))
+    fold, stretch = (np.abs(cos_mu(view, diagonal2(view)))[:, 0] for diagonal2 in (folded, stretched))
+    ends = found.theta2[:, [0, -1]] - view.theta1
+    inside = found.theta2 - view.theta1
+    inside = np.where((stretch > 1)[:, None], (inside + np.pi) % TURN - np.pi, inside % TURN)
+    one_side = (fold <= 1) | (stretch <= 1) | (np.ptp(np.sign(inside), axis=1) == 0)
+    rows = np.flatnonzero(one_side & ((fold > 1) | (stretch > 1)))
     ends[rows] = np.stack([inside[rows].min(axis=1), inside[rows].max(axis=1)], axis=1)
-    found, violations = _kept_inside(found, violations, rows, (inside + theta1)[rows], ordered)
+    found, violations = _kept_inside(found, violations, rows, (inside + view.theta1)[rows], ordered)
     crossed = np.floor(np.sort(ends, axis=1) / np.pi)
     count = crossed[:, 1] - crossed[:, 0]
     even = (count >= 2) | ((count == 1) & (crossed[:, 1] % 2 == 0))
     odd = (count >= 2) | ((count == 1) & (crossed[:, 1] % 2 == 1))
-    span = np.maximum(np.where(even, folded, 0.0), np.where(odd, stretched, 0.0))
-    for end in ends.T:
-        span = np.maximum(span, cos_mu((r1 - r2) ** 2 + 4 * r1 * r2 * np.sin(end / 2) ** 2))
-    return found, violations, span, np.maximum(folded, stretched)
+    span = np.maximum(np.where(even, fold, 0.0), np.where(odd, stretch, 0.0))
+    at_ends = cos_mu(view, at_angle(view, ends))
+    span = np.maximum(span, np.abs(at_ends).max(axis=1))
+    return found, violations, span, np.maximum(fold, stretch)
 
 
 def _kept_inside(
@@ -323,9 +349,8 @@ def _kept_inside(
     return replace(found, visit=visit, theta2=theta2), violations
 
 
-def _rotatability_violation(
-    r1: FloatArray, r2: FloatArray, r3: FloatArray, r4: FloatArray, wanted: Requirements
-) -> FloatArray:
+def _rotatability_violation(view: View, wanted: Requirements) -> FloatArray:
+    r1, r2, r3, r4 = (length[:, 0] for length in (view.r1, view.r2, view.r3, view.r4))
     if wanted.rotatability is Rotatability.ANY:
         return np.zeros(len(r1))
     difference = {
@@ -334,5 +359,5 @@ def _rotatability_violation(
         Rotatability.DOUBLE_CRANK: r2 - r1,
     }[wanted.rotatability]
     least = np.minimum(r3 + r4 - r1 - r2, difference - np.abs(r3 - r4)) / (r1 + r2 + r3 + r4)
-    lack: FloatArray = wanted.rotatability_margin - least
-    return lack
+    violation: FloatArray = wanted.rotatability_margin - least
+    return violation

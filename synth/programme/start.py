@@ -13,8 +13,6 @@ from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 
-LENGTHS = ("r1", "r2", "r3", "r4")
-
 
 @dataclass(frozen=True, slots=True)
 class Start:
@@ -46,10 +44,10 @@ class Start:
     settled : bool
         The targets leave no freedom: the design is there already, or nowhere near.
     relaxed : tuple of str
-        Requirements (keys) that it may miss, coming as near as it can; all others hold. Of
-        "link_length", "o2" and "o4" parts may be named (r1, o2.x), which alone give way then.
-    torque_at : tuple of float
-        Where else the torque is bounded, as shares of the motion used.
+        Requirements (fields), or parts of them ("o2.x"), that it may miss, coming as near as it can; all
+        others hold.
+    peaks_at : mapping of str to tuple of float
+        Where else what varies along the motion is bounded, as shares of it, by the key of the quantity.
     promise : float, sizes
         Root mean square error that a least-squares search came to here, with what limits add.
     more_transmission : float, rad
@@ -78,7 +76,7 @@ class Start:
     stay: bool = False
     settled: bool = False
     relaxed: tuple[str, ...] = ()
-    torque_at: tuple[float, ...] = ()
+    peaks_at: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     promise: float = 0.0
     more_transmission: float = 0.0
     loose: bool = False
@@ -140,12 +138,9 @@ class Start:
         """r1, r2, r3, r4 in sizes."""
         return abs(self.o4 - self.o2), abs(self.a - self.o2), abs(self.b - self.a), abs(self.b - self.o4)
 
-    def holds(self, part: str) -> bool:
-        """Whether a part (r1, o2.x) keeps its limits though the rest of its requirement may miss them."""
-        group = "link_length" if part in LENGTHS else part[:2]
-        parts = LENGTHS if part in LENGTHS else (f"{group}.x", f"{group}.y")
-        named = [name for name in parts if name in self.relaxed]
-        return group in self.relaxed and bool(named) and part not in named
+    def gives(self, *parts: str) -> bool:
+        """Whether a requirement, or a part of it, may be missed."""
+        return any(part in self.relaxed for part in parts)
 
     @property
     def half_turns(self) -> tuple[int, int]:

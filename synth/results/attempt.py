@@ -9,12 +9,13 @@ import numpy as np
 from grashof.analysis import verify
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import ComplexArray
-from grashof.synth.programme.drive_torque import overlooked
+from grashof.synth.programme.along_motion import overlooked
+from grashof.synth.programme.limits import ADDED
 from grashof.synth.programme.nonlinear_programme import Solve, solve
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Configurations, dyad_violations, judge, met
 from grashof.synth.programme.start import Start
-from grashof.synth.programme.structure import ADDED, Form
+from grashof.synth.programme.structure import Form
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.theory.burmester import Dyads, polish
 from grashof.synth.theory.cognates import assembly_of, cognate_points, position_of
@@ -24,7 +25,7 @@ TRANSMISSION = "transmission_min_deg"
 UNSOLVED = frozenset({"order", "same_branch"})  # no smooth constraint can relax these
 NUDGE = 0.1  # sizes: a polish that moves a start farther has lost it
 SOLVED = ("Solve_Succeeded", "Solved_To_Acceptable_Level")
-EXCHANGES = 4  # times at most that a solve is repeated for its torque
+EXCHANGES = 4  # times at most that a solve is repeated for what is bounded along the motion
 CLOSE = 1e-4  # sizes: a least-squares design so near to its targets can be made exact
 # The judge may put the ends of the motion a little farther than the programme: so many solves at most
 # ask for that much more of the transmission, unless what is missing is more than a little (rad).
@@ -73,7 +74,7 @@ def attempt(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
     free = scaled.motion is None or len(scaled.targets) < 5  # five poses leave nothing to solve for
     if not as_it_is or (free and start.settled and (candidate is None or not candidate.verdict.ok)):
         solved, candidate = _solved_and_made(scaled, start, number)
-    if candidate is None or not candidate.verdict.ok or scaled.turns is not None:
+    if candidate is None or not candidate.verdict.ok or scaled.has_angles:
         return Attempt(solved.status, candidate)
     return Attempt(solved.status, candidate, _cognates(scaled, candidate))
 
@@ -113,19 +114,21 @@ def begun_from(start: Start, solved: Solve) -> Start:
 
 
 def _solved(scaled: ScaledProblem, start: Start) -> Solve:
-    """Solve; again from there with other driver angles added, as long as the torque exceeds its bound there.
+    """Solve; again from there with other driver angles added, as long as a bound is exceeded there.
 
     An exchange method for a bound that holds over an interval (Hettich & Kortanek 1993, section 7).
     """
     solved = solve(scaled, start)
     for _ in range(EXCHANGES):
-        if np.isnan(solved.torque) or solved.status not in SOLVED:
+        if solved.status not in SOLVED:
             break
         points, theta2 = np.array(solved.points), np.array(solved.theta2)
-        peaks = overlooked(scaled.problem, points, theta2, start.direction, start.assembly, solved.torque)
-        if not peaks:
+        ways = points, theta2, start.direction, start.assembly
+        found = {key: overlooked(scaled.problem, key, *ways, bound) for key, bound in solved.peaks.items()}
+        if not any(found.values()):
             break
-        start = replace(begun_from(start, solved), torque_at=(*peaks, *start.torque_at)[:ADDED])
+        added = {key: (*peaks, *start.peaks_at.get(key, ()))[:ADDED] for key, peaks in found.items()}
+        start = replace(begun_from(start, solved), peaks_at=added)
         again = solve(scaled, start)
         if again.status not in SOLVED:
             break
@@ -162,13 +165,12 @@ def _on_path(
     if not scaled.exact and scaled.missed(at_p, theta3 + angles.body_angle) > CLOSE:
         return None
     assembly = np.where((turned.conj() * (at_b - o4)).imag >= 0, 1.0, -1.0)
-    none = np.zeros(len(order))
     wish = Wish(
         points=scaled.targets,
         has_point=scaled.weights > 0,
-        turns=none if scaled.turns is None else scaled.turns,
-        has_turn=none > 0 if scaled.turn_weights is None else scaled.turn_weights > 0,
-        timed=scaled.timing is not None,
+        turns=scaled.turns,
+        has_turn=scaled.turn_weights > 0,
+        timed=scaled.timed,
     )
     polished = polish_path(points, theta2, angles.body_angle, assembly, wish)
     return polished if polished.error < CLOSE and np.isfinite(polished.points).all() else None
@@ -237,7 +239,7 @@ def _cognates(scaled: ScaledProblem, candidate: Candidate) -> tuple[Candidate, .
     position = position_of(candidate.linkage, float(candidate.verdict.theta2[0]))
     points = [
         (cognate - scaled.frame.origin) / scaled.frame.scale
-        for cognate in cognate_points(position, scaled.timing is not None)
+        for cognate in cognate_points(position, scaled.timed)
     ]
     found = []
     for cognate in points:

@@ -168,7 +168,7 @@ def _relaxed_starts(failure: Failure, rng: np.random.Generator) -> list[Start]:
 def _miss(near: _Near, size: float) -> float:
     """By how much a least-squares design misses its targets: sizes or rad."""
     verdict = near.by_squares
-    turned = 0.0 if verdict.angle_error is None else np.nanmax(verdict.angle_error, initial=0.0)
+    turned = np.nanmax(verdict.angle_error, initial=0.0)
     return max(verdict.error_max / size, float(turned))
 
 
@@ -199,7 +199,7 @@ def _comes_within(scaled: ScaledProblem, near: _Near, then: str = "") -> str:
     unit = f" {scaled.problem.length_unit}" if scaled.problem.length_unit else ""
     text = f"the closest design {then}comes within {up(near.by_squares.error_max):g}{unit}"
     turned = near.by_squares.angle_error
-    if turned is None or np.isnan(turned).all():
+    if np.isnan(turned).all():
         return f"{text} everywhere"
     return f"{text} and {up(float(np.degrees(np.nanmax(turned)))):g} deg everywhere"
 

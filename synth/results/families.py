@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from grashof.problems import MotionTask, Problem, Task
+from grashof.problems import Problem, Task
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.results.ranking import ranked
@@ -51,7 +51,7 @@ def best_alike(task: Task, signatures: FloatArray) -> IntArray:
 
     Parameters
     ----------
-    task : MotionTask or PathTask
+    task : Task
     signatures : ndarray, shape (n, 9), length
         Of the designs, best first, with pivots measured from the middle of the task.
 
@@ -66,7 +66,7 @@ def best_alike(task: Task, signatures: FloatArray) -> IntArray:
     while left.size:
         first, left = left[0], left[1:]
         one = signatures[first]
-        curves = one[None] if isinstance(task, MotionTask) else same_curve(one, task.timing is not None)
+        curves = one[None] if task.has_angle.any() else same_curve(one, task.is_timed)
         near = left[_alike_in_shape(curves, signatures[left])]
         images = np.concatenate([each.of(curves) for each in maps])
         best[near[(apart(images, signatures[near]) < ALIKE).any(axis=0)]] = first

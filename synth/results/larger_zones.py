@@ -10,7 +10,7 @@ import numpy as np
 
 from grashof.analysis import Verdict
 from grashof.analysis.judge.design import Constraint
-from grashof.problems import MotionTask, Problem
+from grashof.problems import Problem
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.results.relaxation import Relaxation
 
@@ -50,7 +50,7 @@ def wider(
 def shares(problem: Problem, verdict: Verdict) -> tuple[float, float]:
     """How many times as large as its zone a miss is at most: of positions, and of angles."""
     place, turn = np.ones((2, len(problem.task))) if problem.zones is None else problem.zones
-    turned = 0.0 if verdict.angle_error is None else np.nanmax(verdict.angle_error / turn, initial=0.0)
+    turned = np.nanmax(verdict.angle_error / turn, initial=0.0)
     return float(np.nanmax(verdict.position_error / place)), float(turned)
 
 
@@ -62,10 +62,7 @@ def _enlarged(problem: Problem, times: tuple[float, float]) -> tuple[Problem, st
         said = f"tolerance {tolerance:g} instead of {wanted.tolerance:g}"
         changed = replace(wanted, tolerance=min(tolerance, 1.0))
         return replace(problem, requirements=changed), said
-    stated = {"within": task.within}
-    if isinstance(task, MotionTask):
-        stated["angle_within"] = task.angle_within
-    given = {name: zone for name, zone in stated.items() if zone is not None}
+    given = task.stated_zones
     least = dict(zip(("within", "angle_within"), times, strict=True))
     if len(given) == 1:  # it stands for both
         (only,) = given

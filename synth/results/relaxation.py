@@ -10,11 +10,11 @@ import numpy as np
 
 from grashof.analysis import Defect, verify
 from grashof.analysis.judge.design import Constraint, Design, name_of
-from grashof.problems import Box, PathTask, Problem, Requirements, Rotatability
+from grashof.problems import Box, Problem, Requirements, Rotatability
 from grashof.problems.values.arrays import Limits
-from grashof.synth.programme.start import LENGTHS
 from grashof.synth.results.candidate import Candidate
 
+LENGTHS = ("r1", "r2", "r3", "r4")
 BOXES = ("o2", "o4", "a", "b")
 ANGLES = ("ground_angle_deg", "theta2_start_deg")
 LEAST_MARGIN = 1e-9  # of full rotation: below it lies a change point
@@ -79,8 +79,7 @@ def limiting(problem: Problem, constraints: Sequence[Constraint]) -> list[str]:
     keys += [*ANGLES, "keep_out"]
     changed = [key for key in keys if getattr(wanted, key) != getattr(usual, key)]
     changed += ["constraints"] * bool(constraints)
-    turns = isinstance(problem.task, PathTask) and problem.task.closed
-    if wanted.rotatability is not Rotatability.ANY and not turns:
+    if wanted.rotatability is not Rotatability.ANY and not problem.task.closed:
         changed.append("rotatability")
     return changed + [key for key in ("order", "same_branch") if getattr(wanted, key)]
 

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from grashof.problems import Box
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import (
@@ -18,7 +17,7 @@ from grashof.synth.programme.screening import (
     judge,
     keep_out_violation,
 )
-from grashof.synth.programme.start import LENGTHS, Start
+from grashof.synth.programme.start import Start
 from grashof.synth.programme.user_constraints import screened
 from grashof.synth.results.attempt import Attempt
 from grashof.synth.results.candidate import Candidate
@@ -96,8 +95,7 @@ def _candidates(scaled: ScaledProblem, key: str, solve: Solver, rng: np.random.G
     """Designs that miss a requirement by little, and others by nothing if that can be."""
     loose = _loose(scaled, key)
     finds = rejudged(scaled, _finds(loose, rng))
-    group = "link_length" if key in LENGTHS else key
-    starts = closest_starts(scaled, finds, group, SOLVES)
+    starts = closest_starts(scaled, finds, key, SOLVES)
     settled = scaled.motion is not None and len(scaled.targets) > 4
     if settled:
         return _judged(scaled, solve(loose, [replace(start, settled=True) for start in starts], 0))
@@ -112,13 +110,8 @@ def _candidates(scaled: ScaledProblem, key: str, solve: Solver, rng: np.random.G
 
 def _parts(scaled: ScaledProblem, key: str) -> list[tuple[str, ...]]:
     """What may be missed of a requirement: all of it, and of a box one side alone."""
-    if key in LENGTHS:
-        return [("link_length", key)]
-    if key == "link_length":
-        return [(key, *(name for name in LENGTHS if getattr(scaled.wanted, name) is None))]
-    box = getattr(scaled.wanted, key) if key in ("o2", "o4") else Box()
-    closed = [axis for axis in "xy" if np.isfinite(getattr(box, axis)).any()]
-    return [(key,), *((key, f"{key}.{axis}") for axis in closed if len(closed) > 1)]
+    closed = [axis for axis, side in scaled.wanted.ranges(key).items() if axis and np.isfinite(side).any()]
+    return [(key,), *((f"{key}.{axis}",) for axis in closed if len(closed) > 1)]
 
 
 def _judged(scaled: ScaledProblem, attempts: list[Attempt]) -> list[Candidate]:

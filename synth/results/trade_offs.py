@@ -102,8 +102,7 @@ def of_use(scaled: ScaledProblem) -> float:
     if scaled.zones is None:
         return 0.0
     zones = np.where(np.isfinite(scaled.zones), scaled.zones, 0.0)
-    turn_weights = np.zeros(zones.shape[1]) if scaled.turn_weights is None else scaled.turn_weights
-    square = (scaled.weights * zones[0] ** 2 + turn_weights * zones[1] ** 2).sum()
+    square = (scaled.weights * zones[0] ** 2 + scaled.turn_weights * zones[1] ** 2).sum()
     return float(np.sqrt(square / len(scaled.targets)))
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from grashof.problems import Requirements, Rotatability
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.synth.theory.closure import coupler_of
 
 SHORTEST = 1e-3  # of the longest step between targets: no step counts as less
 
@@ -26,47 +27,56 @@ class PathTarget:
         Without a last one that repeats the first.
     weights : ndarray, shape (N,)
         Of the squared distances; zero where the position is free.
-    timing : ndarray, shape (N,), rad, or None
-        Driver rotation from the first point.
+    turns : ndarray, shape (N,), rad
+        Angles of the body.
+    turn_weights : ndarray, shape (N,), sizes squared
+        Of the squared turns from there; zero where the angle is free.
+    timing : ndarray, shape (N,), rad
+        Driver rotation from the first point; all zero where it is free.
     wanted : Requirements
         In the frame of the points. Its limits draw the search inwards.
-    turns : ndarray, shape (N,), rad, or None
-        Angles of the body, for poses.
-    turn_weights : ndarray, shape (N,), sizes squared, or None
-        Of the squared turns from there; zero where the angle is free.
     closed : bool
         The motion used is a whole turn.
     """
 
     points: ComplexArray
     weights: FloatArray
-    timing: FloatArray | None
+    turns: FloatArray
+    turn_weights: FloatArray
+    timing: FloatArray
     wanted: Requirements
-    turns: FloatArray | None = None
-    turn_weights: FloatArray | None = None
     closed: bool = False
+
+    @property
+    def timed(self) -> bool:
+        """Whether the driver rotations are prescribed."""
+        return bool(self.timing.any())
+
+    @property
+    def has_angles(self) -> bool:
+        """Whether any target has an angle."""
+        return bool(self.turn_weights.any())
 
     @property
     def jumbled(self) -> bool:
         """Whether the driver may meet the targets in any order."""
-        return self.timing is None and not self.wanted.order
+        return not self.timed and not self.wanted.order
 
     @property
     def steps(self) -> FloatArray:
         """How far it is from each target to the next, shape (N - 1,), sizes; never quite zero."""
         given = self.weights > 0
         step = np.abs(np.diff(self.points)) * (given[1:] & given[:-1])
-        if self.turns is not None and self.turn_weights is not None:
-            given = self.turn_weights > 0
-            turned = np.abs(np.angle(np.exp(1j * np.diff(self.turns)))) * (given[1:] & given[:-1])
-            step = np.hypot(step, np.sqrt(self.turn_weights.max()) * turned)
+        given = self.turn_weights > 0
+        turned = np.abs(np.angle(np.exp(1j * np.diff(self.turns)))) * (given[1:] & given[:-1])
+        step = np.hypot(step, np.sqrt(self.turn_weights.max()) * turned)
         steps: FloatArray = np.maximum(step, SHORTEST * max(step.max(), SHORTEST))
         return steps
 
     @property
     def unknowns(self) -> int:
         """Proportions (3), and driver angles or what they are made of."""
-        if self.timing is not None:
+        if self.timed:
             return 4
         return 3 + len(self.points) + self.wanted.order
 
@@ -130,13 +140,8 @@ class Loop:
         r2, r3, r4 = lengths
         theta2 = _driver_angles(target, batch)
         e2 = np.exp(1j * theta2)
-        diagonal = 1 - r2[:, None] * e2
-        s = np.abs(diagonal)
-        along = (s**2 + (r3**2 - r4**2)[:, None]) / (2 * s)
-        beside2 = r3[:, None] ** 2 - along**2
+        coupler, beside2 = coupler_of(1 - r2[:, None] * e2, r3[:, None], r4[:, None], batch.assembly)
         closes = (beside2 > 1e-12 * r3[:, None] ** 2).all(axis=1)
-        beside = batch.assembly * np.sqrt(np.where(beside2 > 0, beside2, 1.0))
-        coupler = (along + 1j * beside) * diagonal / s
         output = r2[:, None] * e2 + coupler - 1
         return cls(r2, r3, r4, by_lengths, theta2, e2, coupler / r3[:, None], output / r4[:, None], closes)
 
@@ -178,7 +183,7 @@ def _any_lengths(batch: Batch) -> tuple[tuple[FloatArray, FloatArray, FloatArray
 def _driver_angles(target: PathTarget, batch: Batch) -> FloatArray:
     """Driver angles (n, N)."""
     unknowns, sense = batch.unknowns, batch.direction[:, None]
-    if target.timing is not None:
+    if target.timed:
         return unknowns[:, 3:4] + sense * target.timing
     if target.jumbled:
         return unknowns[:, 3:]
@@ -194,7 +199,7 @@ def by_unknowns(target: PathTarget, batch: Batch) -> FloatArray:
         slope[:, :, 3:] = np.eye(n)
         return slope
     slope[:, :, 3] = 1
-    if target.timing is None:
+    if not target.timed:
         share, gone = shares_of_turn(batch.unknowns[:, 4:])
         before = np.tril(np.ones((n, n)), -1)
         np.subtract(before, gone[:, :, None], out=slope[:, :, 4:])
@@ -212,9 +217,9 @@ def shares_of_turn(log_gaps: FloatArray) -> tuple[FloatArray, FloatArray]:
 def body_turns(target: PathTarget, loop: Loop) -> tuple[FloatArray, FloatArray]:
     """Angles of the body missed, weighted (n, N), and the best angle from the coupler in the loop (n,).
 
-    None are there for a path: (n, 0). How the body sits on the coupler is solved for exactly.
+    None where no target has an angle: (n, 0). How the body sits on the coupler is solved for exactly.
     """
-    if target.turns is None or target.turn_weights is None:
+    if not target.has_angles:
         return np.zeros((len(loop.r2), 0)), np.zeros(len(loop.r2))
     weights = target.turn_weights
     off = np.exp(1j * target.turns) * loop.e3.conj()
@@ -226,7 +231,7 @@ def body_turns(target: PathTarget, loop: Loop) -> tuple[FloatArray, FloatArray]:
 
 def by_body_turns(target: PathTarget, by_theta3: FloatArray) -> FloatArray:
     """Derivative of `body_turns` by the unknowns, (n, N, M) or (n, 0, M)."""
-    if target.turns is None or target.turn_weights is None:
+    if not target.has_angles:
         return by_theta3[:, :0]
     weights = target.turn_weights
     mean = np.einsum("i,sim->sm", weights, by_theta3) / weights.sum()

@@ -13,7 +13,7 @@ from itertools import combinations, zip_longest
 
 import numpy as np
 
-from grashof.problems import MotionTask, ProblemError
+from grashof.problems import ProblemError, Task
 from grashof.problems.values.checks import counted
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
@@ -34,7 +34,7 @@ SUBSETS = 6  # fives of many poses that are tried
 NEARLY, EXACT = 1e-4, 1e-9  # radius error in sizes: before and after polishing
 
 
-def refuse_equal_poses(task: MotionTask) -> None:
+def refuse_equal_poses(task: Task) -> None:
     """Raise `ProblemError` when two of the poses are equal: fewer are asked for then."""
     turned = np.exp(1j * task.angles)
     for i, j in combinations(range(len(task)), 2):

@@ -74,7 +74,7 @@ def rounds(scaled: ScaledProblem, rng: np.random.Generator, size: int = 1) -> It
     target = path_target(scaled)
     some, index = thinned(target, FEW_TARGETS)
     while True:
-        drawn = draw(some, size * (DRAWS if target.timing is None else TIMED_DRAWS), rng, ASTRAY)
+        drawn = draw(some, size * (TIMED_DRAWS if target.timed else DRAWS), rng, ASTRAY)
         best = _best_fitting(some, drawn, size)
         free = _free_round(scaled, _on_all_targets(target, index, best), size)
         yield free or _limited_round(scaled, rng, drawn, best, size)
@@ -85,7 +85,7 @@ def _best_fitting(some: PathTarget, drawn: Batch, size: int) -> Batch:
     batch = drawn
     with np.errstate(all="ignore"):
         error = place(some, batch).error
-        for keep, steps in FREE_STAGES if some.timing is None else TIMED_STAGES:
+        for keep, steps in TIMED_STAGES if some.timed else FREE_STAGES:
             best = np.argsort(error, kind="stable")[: size * keep]
             batch, error = improve(fitting(some), batch[best], steps, 0.0)
         return batch[np.argsort(error, kind="stable")]

@@ -2,19 +2,47 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from functools import cached_property
 
 import numpy as np
 
-from grashof.problems import Box, Requirements, Rotatability, TransmissionOver
+from grashof.problems import Rotatability, TransmissionOver
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, Limits
+from grashof.problems.values.quantities import Kind
+from grashof.problems.values.requirements import LIMITS
+from grashof.synth.programme.dual import Dual
+from grashof.synth.programme.formulas import (
+    LOGARITHMIC,
+    View,
+    at_angle,
+    cos_mu,
+    folded,
+    parts_of,
+    range_of,
+    stretched,
+)
+from grashof.synth.programme.vector import Vector
 from grashof.synth.starts.closed_loop import Loop, PathTarget
 
 LEAST_TRANSMISSION = 1e-3  # rad: keeps the motion away from dead positions
+LEAST_LENGTH = 1e-9  # sizes
 
 
-@dataclass(frozen=True, slots=True)
-class Placement:
+class Relative(View):
+    """Linkages of a batch with r1 = 1, their lengths and driver angles with derivatives."""
+
+    def __init__(self, loop: Loop, by_theta2: FloatArray) -> None:
+        self.r1, self.theta2 = 1.0, Dual(loop.theta2, by_theta2)
+        lengths = []
+        for number, length in enumerate((loop.r2, loop.r3, loop.r4)):
+            slope = np.zeros((len(length), 1, by_theta2.shape[2]))
+            slope[:, 0, :3] = loop.by_lengths[:, number]
+            lengths.append(Dual(length[:, None], slope))
+        self.r2, self.r3, self.r4 = lengths
+
+
+class Placement(View):
     """Linkages of a batch where they stand, with derivatives by the M unknowns.
 
     A = z0 + z1 e2, B = z0 + g (r2 e2 + r3 e3), O4 = z0 + g, P = A + z2 e3 with the ground g = z1 / r2.
@@ -27,44 +55,37 @@ class Placement:
     by_z : ndarray of complex, shape (n, 3, M)
     """
 
-    loop: Loop
-    by_theta2: FloatArray
-    by_theta3: FloatArray
-    z: ComplexArray
-    by_z: ComplexArray
+    def __init__(
+        self, loop: Loop, by_theta2: FloatArray, by_theta3: FloatArray, z: ComplexArray, by_z: ComplexArray
+    ) -> None:
+        self.loop, self.by_theta3 = loop, by_theta3
+        self.relative = Relative(loop, by_theta2)
+        self.o2, self._crank, self.ap = (
+            Vector(Dual(place.real, slope.real), Dual(place.imag, slope.imag))
+            for place, slope in ((z[:, k, None], by_z[:, k, None]) for k in range(3))
+        )
+        ground = self._ground = self._crank / self.relative.r2
+        self.o4, self.bp = self.o2 + ground, self.ap - self.relative.r3 * ground
+        self.r1 = np.hypot(ground.x, ground.y)
+        self.r2, self.r3, self.r4 = (self.r1 * getattr(self.relative, name) for name in ("r2", "r3", "r4"))
+        self.theta1 = np.arctan2(ground.y, ground.x)
+        theta2 = self.relative.theta2
+        self.theta2_start = self.theta1 + Dual(theta2.value[:, :1], theta2.slope[:, :1])
+
+    @cached_property
+    def a(self) -> Vector:  # type: ignore[override]
+        """A at every target."""
+        return self.o2 + _turned(self._crank, self.relative.theta2)
+
+    @cached_property
+    def b(self) -> Vector:  # type: ignore[override]
+        """B at every target."""
+        theta3 = Dual(np.angle(self.loop.e3), self.by_theta3)
+        return self.a + self.relative.r3 * _turned(self._ground, theta3)
 
 
-@dataclass(frozen=True, slots=True)
-class _Row:
-    """A quantity of every linkage (n, ...), and its derivative by the unknowns (n, ..., M)."""
-
-    value: FloatArray
-    slope: FloatArray
-
-    def outside(self, limits: Limits) -> _Row:
-        """Signed amount by which the values lie above (positive) or below (negative) limits."""
-        low, high = limits
-        over = np.maximum(self.value - high, 0.0) - np.maximum(low - self.value, 0.0)
-        return _Row(over, np.where((over != 0)[..., None], self.slope, 0.0))
-
-
-@dataclass(frozen=True, slots=True)
-class _ComplexRow:
-    value: ComplexArray
-    slope: ComplexArray
-
-    @property
-    def real(self) -> _Row:
-        return _Row(self.value.real, self.slope.real)
-
-    @property
-    def imag(self) -> _Row:
-        return _Row(self.value.imag, self.slope.imag)
-
-    @property
-    def length(self) -> _Row:
-        size = np.maximum(np.abs(self.value), 1e-12)
-        return _Row(size, ((self.value.conj() / size)[..., None] * self.slope).real)
+def _turned(vector: Vector, angle: Dual) -> Vector:
+    return np.cos(angle) * vector + np.sin(angle) * vector.left
 
 
 def oversteps(target: PathTarget, at: Placement) -> tuple[FloatArray, FloatArray]:
@@ -82,160 +103,58 @@ def oversteps(target: PathTarget, at: Placement) -> tuple[FloatArray, FloatArray
         in rad, the transmission by |cos mu|.
     ndarray, shape (n, L, M)
     """
-    wanted, ground = target.wanted, _ground(at)
-    rows = [
-        *_length_rows(wanted, at, ground),
-        *_arm_rows(wanted, at, ground),
-        *_place_rows(wanted, at, ground),
-        *_angle_rows(wanted, at, ground),
-        *_transmission_rows(target, at),
-    ]
-    count, unknowns = at.by_z.shape[0], at.by_z.shape[2]
+    rows = [*_limit_rows(target, at), *_transmission_rows(target, at.relative)]
     return (
-        np.concatenate([row.value.reshape(count, -1) for row in rows], axis=1),
-        np.concatenate([row.slope.reshape(count, -1, unknowns) for row in rows], axis=1),
+        np.concatenate([row.value for row in rows], axis=1),
+        np.concatenate([row.slope for row in rows], axis=1),
     )
 
 
-def _ground(at: Placement) -> _ComplexRow:
-    """From O2 to O4."""
-    r2, z1 = at.loop.r2, at.z[:, 1]
-    by_r2 = np.zeros_like(at.by_z[:, 1])
-    by_r2[:, :3] = at.loop.by_lengths[:, 0]
-    value = z1 / r2
-    return _ComplexRow(value, at.by_z[:, 1] / r2[:, None] - (value / r2)[:, None] * by_r2)
+def _limit_rows(target: PathTarget, at: Placement) -> Iterator[Dual]:
+    for name, part in parts_of(target.wanted.limited):
+        low, high = range_of(target.wanted, name, part)
+        value = np.sqrt(part.of(at)) if part.squared else part.of(at)
+        if LIMITS[name].kind is Kind.EQUAL:
+            yield Dual(np.angle(np.exp(1j * (value.value - low))), value.slope)
+        elif LIMITS[name].quantity.key in LOGARITHMIC:
+            value = np.log(value if part.per is None else value / part.per(at))
+            least = LEAST_LENGTH if part.per is None else 1.0
+            yield _outside(value, (np.log(max(low, least)), np.log(high)))
+        elif (low, high) != (-np.inf, np.inf):
+            yield _outside(value, (low, high))
 
 
-def _length_rows(wanted: Requirements, at: Placement, ground: _ComplexRow) -> list[_Row]:
-    loop, scale = at.loop, np.maximum(np.abs(ground.value), 1e-12)
-    by_scale = (ground.slope / ground.value[:, None]).real
-    relative = np.stack([np.ones_like(loop.r2), loop.r2, loop.r3, loop.r4], axis=1)
-    by_log = np.repeat(by_scale[:, None], 4, axis=1)
-    by_log[:, 1:, :3] += loop.by_lengths / relative[:, 1:, None]
-    log = np.log(relative * scale[:, None])
-    low, high = np.array(wanted.link_lengths).T
-    every = [
-        _Row(log[:, i], by_log[:, i]).outside((np.log(max(low[i], 1e-9)), np.log(high[i]))) for i in range(4)
-    ]
-    rows, longest, shortest = np.arange(len(log)), np.argmax(log, axis=1), np.argmin(log, axis=1)
-    ratio = _Row(log[rows, longest] - log[rows, shortest], by_log[rows, longest] - by_log[rows, shortest])
-    return [*every, ratio.outside((0.0, np.log(wanted.link_ratio_max)))]
+def _outside(row: Dual, limits: Limits) -> Dual:
+    """Signed amount by which values lie above (positive) or below (negative) limits."""
+    low, high = limits
+    over = np.maximum(row.value - high, 0.0) - np.maximum(low - row.value, 0.0)
+    return Dual(over, np.where((over != 0)[..., None], row.slope, 0.0))
 
 
-def _arm_rows(wanted: Requirements, at: Placement, ground: _ComplexRow) -> list[_Row]:
-    limits, r3 = wanted.coupler_arms or (0.0, np.inf), at.loop.r3
-    a_p = _ComplexRow(at.z[:, 2], at.by_z[:, 2])
-    by_r3 = np.zeros_like(ground.slope)
-    by_r3[:, :3] = at.loop.by_lengths[:, 1]
-    a_b = _ComplexRow(
-        ground.value * r3, ground.slope * r3[:, None] + ground.value[:, None] * by_r3
-    )  # both arms in the coupler's frame
-    b_p = _ComplexRow(a_p.value - a_b.value, a_p.slope - a_b.slope)
-    return [arm.length.outside(limits) for arm in (a_p, b_p)]
-
-
-def _place_rows(wanted: Requirements, at: Placement, ground: _ComplexRow) -> list[_Row]:
-    """How far the pivots lie outside their boxes: O2 and O4, A and B at every target."""
-    rows = []
-    for name in ("o2", "o4", "a", "b"):
-        box = getattr(wanted, name) or Box()
-        if box == Box():
-            continue
-        place = _pivot(name, at, ground)
-        rows += [
-            part.outside(side)
-            for side, part in ((box.x, place.real), (box.y, place.imag))
-            if side != (-np.inf, np.inf)
-        ]
-    return rows
-
-
-def _pivot(name: str, at: Placement, ground: _ComplexRow) -> _ComplexRow:
-    loop = at.loop
-    o2 = _ComplexRow(at.z[:, 0], at.by_z[:, 0])
-    if name == "o2":
-        return o2
-    if name == "o4":
-        return _ComplexRow(o2.value + ground.value, o2.slope + ground.slope)
-    z1, by_z1 = at.z[:, 1:2], at.by_z[:, 1:2]
-    a = _ComplexRow(
-        o2.value[:, None] + z1 * loop.e2,
-        o2.slope[:, None] + by_z1 * loop.e2[..., None] + (1j * z1 * loop.e2)[..., None] * at.by_theta2,
-    )
-    if name == "a":
-        return a
-    by_r3 = np.zeros_like(ground.slope)
-    by_r3[:, :3] = loop.by_lengths[:, 1]
-    coupler = loop.r3[:, None] * loop.e3
-    by_coupler = by_r3[:, None] * loop.e3[..., None] + (1j * coupler)[..., None] * at.by_theta3
-    return _ComplexRow(
-        a.value + ground.value[:, None] * coupler,
-        a.slope + ground.slope[:, None] * coupler[..., None] + ground.value[:, None, None] * by_coupler,
-    )
-
-
-def _angle_rows(wanted: Requirements, at: Placement, ground: _ComplexRow) -> list[_Row]:
-    """How far ground line and driver at the first target are turned from where they are wanted."""
-    rows = []
-    line = _Row(np.angle(ground.value), (ground.slope / ground.value[:, None]).imag)
-    driver = _Row(line.value + at.loop.theta2[:, 0], line.slope + at.by_theta2[:, 0])
-    for wish, angle in ((wanted.ground_angle_deg, line), (wanted.theta2_start_deg, driver)):
-        if wish is not None:
-            off = np.angle(np.exp(1j * (angle.value - np.radians(wish))))
-            rows.append(_Row(off, angle.slope))
-    return rows
-
-
-def _transmission_rows(target: PathTarget, at: Placement) -> list[_Row]:
+def _transmission_rows(target: PathTarget, loop: Relative) -> Iterator[Dual]:
     """How far |cos mu| exceeds what is allowed: with O2A along the ground line, and at the ends."""
-    wanted, loop = target.wanted, at.loop
+    wanted, theta2 = target.wanted, loop.theta2
     least = np.radians(wanted.transmission_min_deg)
     if least <= 0 and wanted.rotatability is not Rotatability.ANY:
-        return []  # a full crank has no dead position
+        return  # a full crank has no dead position
     most = np.cos(max(least, LEAST_TRANSMISSION))
-    limits = (-most, most)
-    folded, stretched = passed(target, loop)
-    rows = [
-        _masked(_cos_mu(at, (1 - loop.r2) ** 2, -2 * (1 - loop.r2), None).outside(limits), folded),
-        _masked(_cos_mu(at, (1 + loop.r2) ** 2, 2 * (1 + loop.r2), None).outside(limits), stretched),
-    ]
+    for diagonal2, passes in zip((folded, stretched), passed(target, theta2.value), strict=True):
+        row, rows = _outside(cos_mu(loop, diagonal2(loop)), (-most, most)), passes[:, None]
+        yield Dual(np.where(rows, row.value, 0.0), np.where(rows[..., None], row.slope, 0.0))
     if wanted.transmission_over is TransmissionOver.TASK and not target.closed:
-        every = range(loop.theta2.shape[1]) if target.jumbled else (0, -1)
-        for k in every:
-            cos, sin = np.cos(loop.theta2[:, k]), np.sin(loop.theta2[:, k])
-            by_theta2 = (2 * loop.r2 * sin)[:, None] * at.by_theta2[:, k]
-            diagonal2 = 1 + loop.r2**2 - 2 * loop.r2 * cos
-            rows.append(_cos_mu(at, diagonal2, 2 * (loop.r2 - cos), by_theta2).outside(limits))
-    return rows
+        ends = slice(None) if target.jumbled else [0, -1]
+        angle = Dual(theta2.value[:, ends], theta2.slope[:, ends])
+        yield _outside(cos_mu(loop, at_angle(loop, angle)), (-most, most))
 
 
-def passed(target: PathTarget, loop: Loop) -> tuple[BoolArray, BoolArray]:
+def passed(target: PathTarget, theta2: FloatArray) -> tuple[BoolArray, BoolArray]:
     """Whether the motion used passes O2A folded over the ground line, and stretched along it; (n,) each."""
+    every = np.ones(len(theta2), dtype=bool)
     if target.wanted.transmission_over is TransmissionOver.CYCLE or target.closed:
-        return np.ones(len(loop.r2), dtype=bool), np.ones(len(loop.r2), dtype=bool)
+        return every, every
     if target.jumbled:
-        return np.zeros(len(loop.r2), dtype=bool), np.zeros(len(loop.r2), dtype=bool)
-    half = np.floor(np.sort(loop.theta2[:, [0, -1]], axis=1) / np.pi)
+        return ~every, ~every
+    half = np.floor(np.sort(theta2[:, [0, -1]], axis=1) / np.pi)
     low, high = half[:, 0] + 1, half[:, 1]  # multiples of pi in between
     count = high - low + 1
     return (count > 1) | ((count == 1) & (low % 2 == 0)), (count > 1) | ((count == 1) & (low % 2 == 1))
-
-
-def _cos_mu(at: Placement, diagonal2: FloatArray, by_r2: FloatArray, by_theta2: FloatArray | None) -> _Row:
-    """Law of cosines in A-B-O4: cos mu = (r3^2 + r4^2 - AO4^2) / (2 r3 r4), with r1 = 1."""
-    r3, r4 = at.loop.r3, at.loop.r4
-    cosine = (r3**2 + r4**2 - diagonal2) / (2 * r3 * r4)
-    by_lengths = at.loop.by_lengths
-    slope = np.zeros_like(at.by_theta2[:, 0])
-    slope[:, :3] = (
-        (1 / r4 - cosine / r3)[:, None] * by_lengths[:, 1]
-        + (1 / r3 - cosine / r4)[:, None] * by_lengths[:, 2]
-        - (by_r2 / (2 * r3 * r4))[:, None] * by_lengths[:, 0]
-    )
-    if by_theta2 is not None:
-        slope -= by_theta2 / (2 * r3 * r4)[:, None]
-    return _Row(cosine, slope)
-
-
-def _masked(row: _Row, rows: BoolArray) -> _Row:
-    return _Row(np.where(rows, row.value, 0.0), np.where(rows[:, None], row.slope, 0.0))

@@ -74,7 +74,7 @@ def draw(target: PathTarget, count: int, rng: np.random.Generator, astray: float
     if rotatability is Rotatability.ANY:
         proportions = rng.normal(0.0, 0.7, (count, 3))
     columns = [proportions, rng.uniform(-np.pi, np.pi, (count, 1))]
-    if target.timing is None and target.wanted.order:
+    if not target.timed and target.wanted.order:
         steps = target.steps
         gaps = np.log(steps / steps.sum()) * rng.uniform(0.3, 1, (count, 1))
         gaps += rng.normal(0, 0.4, (count, n - 1))
@@ -85,7 +85,7 @@ def draw(target: PathTarget, count: int, rng: np.random.Generator, astray: float
         gaps -= np.log(np.exp(gaps).sum(axis=1, keepdims=True))
         low = 0.3 if rotatability is Rotatability.ANY else 0.03
         columns += [gaps, np.log(rng.uniform(low, 4, (count, 1)))]
-    elif target.timing is None:
+    elif not target.timed:
         columns.append(rng.uniform(-np.pi, np.pi, (count, n - 1)))
     longer = {Rotatability.CRANK_ROCKER: 0.0, Rotatability.DOUBLE_CRANK: 1.0}.get(rotatability, 0.4)
     signs = rng.choice([-1.0, 1.0], (count, 1 if target.wanted.same_branch else n))
@@ -118,7 +118,7 @@ def _standing(target: PathTarget, loop: Loop, z: ComplexArray, error: FloatArray
         b=o4[:, None] + (ground * loop.r4)[:, None] * loop.e4,
         p=z0[:, None] + z1[:, None] * loop.e2 + z2[:, None] * loop.e3,
         theta2=loop.theta2 + np.angle(z1)[:, None],
-        body_angle=np.zeros(len(z0)) if target.turns is None else in_loop - np.angle(z1),
+        body_angle=in_loop - np.angle(z1) if target.has_angles else in_loop,
     )
 
 

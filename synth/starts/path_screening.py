@@ -22,33 +22,20 @@ from grashof.synth.starts.loop_search import Placed
 
 def path_target(scaled: ScaledProblem) -> PathTarget:
     """What the search has to pass; a last point that repeats the first counts as its second half."""
-    last = -1 if _repeats(scaled) else None
-    weights, turn_weights = scaled.weights[:last].copy(), scaled.turn_weights
+    last = -1 if scaled.problem.task.returns else None
+    weights, turn_weights = scaled.weights[:last].copy(), scaled.turn_weights[:last].copy()
     if last:
         weights[0] += scaled.weights[-1]
-    if turn_weights is not None:
-        added = turn_weights[-1] if last else 0.0
-        turn_weights = turn_weights[:last] + np.eye(1, len(weights))[0] * added
+        turn_weights[0] += scaled.turn_weights[-1]
     return PathTarget(
         points=scaled.targets[:last],
         weights=weights,
-        timing=None if scaled.timing is None else np.abs(scaled.timing[:last]),
-        wanted=scaled.wanted,
-        turns=None if scaled.turns is None else scaled.turns[:last],
+        turns=scaled.turns[:last],
         turn_weights=turn_weights,
+        timing=scaled.timing[:last],
+        wanted=scaled.wanted,
         closed=scaled.closed,
     )
-
-
-def _repeats(scaled: ScaledProblem) -> bool:
-    """Whether the last target is the first one again."""
-    given, apart = scaled.weights[[0, -1]] > 0, abs(scaled.targets[0] - scaled.targets[-1])
-    same = given[0] == given[1] and apart < 1e-12
-    if scaled.turns is not None and scaled.turn_weights is not None:
-        given = scaled.turn_weights[[0, -1]] > 0
-        apart = abs(np.exp(1j * scaled.turns[0]) - np.exp(1j * scaled.turns[-1]))
-        same = same and given[0] == given[1] and apart < 1e-12
-    return bool(same)
 
 
 def entries_of(placed: Placed, rows: BoolArray | IntArray) -> Placed:
@@ -59,7 +46,7 @@ def entries_of(placed: Placed, rows: BoolArray | IntArray) -> Placed:
 def judged(scaled: ScaledProblem, target: PathTarget, placed: Placed, direction: FloatArray) -> Screened:
     """Placed linkages and how far each violates the requirements."""
     a, b, theta2 = placed.a, placed.b, placed.theta2
-    if _repeats(scaled):
+    if scaled.problem.task.returns:
         a, b = (np.concatenate([points, points[:, :1]], axis=1) for points in (a, b))
         theta2 = np.concatenate([theta2, theta2[:, :1] + TURN * direction[:, None]], axis=1)
     visit = np.broadcast_to(np.arange(theta2.shape[1]), theta2.shape)

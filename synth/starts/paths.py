@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from grashof.problems import PathTask, Requirements
+from grashof.problems import Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened, follow
@@ -163,17 +163,16 @@ def search(
 def _effort(scaled: ScaledProblem, target: PathTarget) -> tuple[int, tuple[tuple[int, int], ...]]:
     if _family(scaled, target):
         return FAMILY
-    if target.timing is not None:
+    if target.timed:
         return TIMED
     return ISOLATED
 
 
 def _family(scaled: ScaledProblem, target: PathTarget) -> bool:
     """Whether exact designs have freedom left: more unknowns than equations."""
-    unknowns = target.unknowns + 6 - (target.wanted.order and target.timing is None)
-    equations = 2 * np.count_nonzero(target.weights) + _equalities(scaled.wanted)
-    if target.turn_weights is not None:
-        unknowns, equations = unknowns + 1, equations + np.count_nonzero(target.turn_weights)
+    unknowns = target.unknowns + 6 + target.has_angles - (target.wanted.order and not target.timed)
+    equations = 2 * np.count_nonzero(target.weights) + np.count_nonzero(target.turn_weights)
+    equations += _equalities(scaled.wanted)
     return bool(scaled.exact and unknowns > equations)
 
 
@@ -186,8 +185,8 @@ def _equalities(wanted: Requirements) -> int:
 
 def _has_nine_points(scaled: ScaledProblem) -> bool:
     """Whether the task is exact passage of nine distinct points without timing: finitely many linkages."""
-    if not isinstance(scaled.problem.task, PathTask):
+    if not scaled.problem.task.only_points:
         return False
     points = path_target(scaled).points
     apart = np.abs(points[:, None] - points) + np.eye(len(points))
-    return scaled.exact and scaled.timing is None and len(points) == 9 and bool(apart.min() > 1e-9)
+    return scaled.exact and not scaled.timed and len(points) == 9 and bool(apart.min() > 1e-9)

@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
-from grashof.synth.programme.drive_torque import SCREENED, torque_peaks
-from grashof.synth.programme.merit import weigh
+from grashof.problems.values.requirements import QUANTITIES
+from grashof.synth.programme.along_motion import ALONG, SCREENED, magnitudes
+from grashof.synth.programme.formulas import FORMULAS
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import GROUPS, Screened
+from grashof.synth.programme.screening import GROUPS, Many, Screened
 from grashof.synth.programme.start import Start
 from grashof.synth.theory.distinct import pick_apart, signature
 
@@ -130,15 +131,27 @@ def merits(scaled: ScaledProblem, finds: Screened) -> FloatArray:
     """Score of each find; its size is that of a box around what is known of it at the first target."""
     if not scaled.exact:
         return -finds.error
-    objective = scaled.problem.objective
-    size = np.zeros(len(finds))
-    if objective.compactness > 0:
-        size = np.hypot(np.ptp(finds.points.real, axis=1), np.ptp(finds.points.imag, axis=1))
-    if not objective.torque:
-        return weigh(objective, finds.transmission, size)
-    ways = finds.theta2, finds.direction, finds.assembly
-    torque = torque_peaks(scaled.problem, finds.points, *ways, SCREENED)
-    return weigh(objective, finds.transmission, size, torque)
+    score = np.zeros(len(finds))
+    for key, weight in scaled.problem.objective.weights:
+        score += weight * _worth(scaled, finds, key)
+    return score
+
+
+def _worth(scaled: ScaledProblem, finds: Screened, key: str) -> FloatArray:
+    """What the objective counts a quantity as, greater is better; nothing where the search has no formula."""
+    if key == "transmission":
+        return finds.transmission / (np.pi / 2)
+    if key == "size":
+        return -np.hypot(np.ptp(finds.points.real, axis=1), np.ptp(finds.points.imag, axis=1))
+    if key in ALONG:
+        ways = finds.theta2, finds.direction, finds.assembly
+        return -magnitudes(scaled.problem, key, finds.points, *ways, SCREENED).max(axis=1)
+    if key in FORMULAS:
+        (part,) = FORMULAS[key]
+        o2, o4, a, b, p = finds.points.T
+        value: FloatArray = part.of(Many(p, o2, a[:, None], o4, b[:, None]))[:, 0]
+        return QUANTITIES[key].better * value / scaled.scale(QUANTITIES[key])
+    return np.zeros(len(finds))
 
 
 def closest_starts(scaled: ScaledProblem, finds: Screened, group: str, most: int) -> list[Start]:

@@ -28,15 +28,11 @@ def thinned(target: PathTarget, most: int) -> tuple[PathTarget, IntArray]:
     """
     count = len(target.points)
     index = np.arange(count)
-    if count <= most or (target.timing is None and not target.wanted.order):
+    if count <= most or (target.jumbled):
         return target, index
     index = np.unique(np.round(np.linspace(0, count - 1, most)).astype(np.int64))
-    parts = {
-        name: getattr(target, name)[index]
-        for name in ("points", "weights", "timing", "turns", "turn_weights")
-        if getattr(target, name) is not None
-    }
-    return replace(target, **parts), index
+    names = ("points", "weights", "turns", "turn_weights", "timing")
+    return replace(target, **{name: getattr(target, name)[index] for name in names}), index
 
 
 def refined(target: PathTarget, index: IntArray, batch: Batch) -> Batch:
@@ -59,7 +55,7 @@ def refined(target: PathTarget, index: IntArray, batch: Batch) -> Batch:
         return batch
     assembly = np.broadcast_to(batch.assembly[:, :1], (len(batch), count))
     unknowns = batch.unknowns
-    if target.timing is None:
+    if not target.timed:
         length = np.concatenate([[0.0], np.cumsum(target.steps)])
         _, gone = shares_of_turn(unknowns[:, 4:])
         every = np.stack([np.interp(length, length[index], row) for row in gone])

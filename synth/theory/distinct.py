@@ -6,6 +6,7 @@ import numpy as np
 
 from grashof.problems import FourBar
 from grashof.problems.values.arrays import FloatArray, IntArray
+from grashof.problems.values.linkage_parts import Kind
 
 # Share of the largest number of two designs by which they differ at least: 1 %, and a quarter more
 # because pivots are measured from the middle of the task, where the largest number is smaller.
@@ -13,14 +14,18 @@ DISTINCT = 0.0125
 
 
 def signature(linkage: FourBar, origin: FloatArray | None = None) -> FloatArray:
-    """The numbers that tell designs apart: O2, O4, r2, r3, r4, u, v; shape (..., 9), length.
+    """The numbers that tell designs apart, all in length: O2, O4, r2, r3, r4, u, v; shape (..., 9).
 
     Pivots are measured from `origin`, shape (2,), where one is given: with the middle of the task
     there, what is distinct does not depend on where the user's own origin lies.
     """
-    lengths = np.stack([linkage.r2, linkage.r3, linkage.r4], axis=-1)
     middle = np.zeros(2) if origin is None else origin
-    return np.concatenate([linkage.o2 - middle, linkage.o4 - middle, lengths, linkage.coupler_point], axis=-1)
+    numbers = [
+        (value - middle if row.kind is Kind.PLACE else value) if row.paired else value[..., None]
+        for row, value in zip(linkage.PARAMETERS, linkage.parameters, strict=True)
+        if row.in_length
+    ]
+    return np.concatenate(numbers, axis=-1)
 
 
 def apart(one: FloatArray, others: FloatArray) -> FloatArray:

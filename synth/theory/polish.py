@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
+from grashof.synth.theory.closure import coupler_of
 
 STEPS = 4
 
@@ -102,11 +103,9 @@ def _linearised(
     theta2 = unknowns[10] + gaps if wish.timed else unknowns[10:]
     e2 = np.exp(1j * theta2)
     a = o2 + r2 * e2
-    diagonal = o4 - a
-    s = np.abs(diagonal)
-    along = (s**2 + r3**2 - r4**2) / (2 * s)
     with np.errstate(invalid="ignore", divide="ignore"):
-        coupler = (along + 1j * assembly * np.sqrt(r3**2 - along**2)) * diagonal / s
+        coupler, beside2 = coupler_of(o4 - a, r3, r4, assembly)
+        coupler[beside2 <= 0] = np.nan
         e3, e4 = coupler / r3, (a + coupler - o4) / r4
         p = a + arm * e3
         below = r3 * (e3 * e4.conj()).imag
@@ -121,8 +120,8 @@ def _linearised(
         moves = [1, 1j, 0, 0, e2, 0, 0, e3, 1j * e3, 0]
         turns.append(turn(1j * r2 * e2))
         moves.append(1j * r2 * e2)
-        by_turn = np.stack([np.broadcast_to(column, s.shape) for column in turns], axis=1)
-        by_move = np.stack([np.broadcast_to(column, s.shape) for column in moves], axis=1)
+        by_turn = np.stack([np.broadcast_to(column, a.shape) for column in turns], axis=1)
+        by_move = np.stack([np.broadcast_to(column, a.shape) for column in moves], axis=1)
         by_point = by_move + 1j * (arm * e3)[:, None] * by_turn
         by_turn[:, 9] = 1.0
         if not wish.timed:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.problems import MotionTask, PathTask, Task
-from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.problems import Task
+from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 
 EVEN = 1e-3  # sizes, rad: targets that fall so near to others fall on them
 
@@ -55,6 +55,7 @@ def symmetries(task: Task) -> tuple[Symmetry, ...]:
 
     Examples
     --------
+    >>> from grashof.problems import PathTask
     >>> line = PathTask([[0, 0], [1, 0], [2, 0]])
     >>> [(each.turn.real, each.mirrored) for each in symmetries(line)]
     [(1.0, False), (1.0, True), (-1.0, False), (-1.0, True)]
@@ -81,16 +82,14 @@ def middle_of(task: Task) -> FloatArray:
 def _once(task: Task) -> FloatArray:
     """Target positions, without a last point of a closed path that repeats the first; shape (n, 2)."""
     places = task.positions
-    closed = isinstance(task, PathTask) and task.closed
-    again = closed and np.hypot(*(places[-1] - places[0])) <= EVEN * task.size
+    again = task.closed and np.hypot(*(places[-1] - places[0])) <= EVEN * task.size
     return places[:-1] if again else places
 
 
 def _orders(task: Task, count: int) -> IntArray:
     """Orders in which the targets may be met, shape (k, count)."""
-    closed = isinstance(task, PathTask) and task.closed
     forth = np.arange(count)
-    first = forth[:, None] if closed else np.zeros((1, 1), dtype=np.int64)
+    first = forth[:, None] if task.closed else np.zeros((1, 1), dtype=np.int64)
     return np.concatenate([(first + forth) % count, (first - 1 - forth) % count])
 
 
@@ -107,16 +106,17 @@ def _turn(places: ComplexArray, order: IntArray, mirrored: bool, least: float) -
 
 
 def _agrees(task: Task, order: IntArray, mirrored: bool) -> bool:
-    """Whether angles and weights of poses, or the timing of points, are those of the targets fallen on."""
-    if isinstance(task, MotionTask):
-        angles, sense = task.angles, -1 if mirrored else 1
-        same: BoolArray = np.isnan(angles[order]) == np.isnan(angles)
-        even = _constant(angles[order] - sense * angles)
-        return even and bool(same.all()) and np.array_equal(task.weights[order], task.weights)
-    if task.timing is None:
-        return True
-    timing = task.timing[: len(order)]
-    return any(_constant(timing[order] - sense * timing) for sense in (1, -1))
+    """Whether angles, weights and timing are those of the targets fallen on."""
+    angles, weights, timing = (
+        column[: len(order)] for column in (task.angles, task.weights, task.driver_turns)
+    )
+    if not np.array_equal(np.isnan(angles[order]), np.isnan(angles)):
+        return False
+    return (
+        _constant(angles[order] - (-1 if mirrored else 1) * angles)
+        and np.array_equal(weights[order], weights)
+        and any(_constant(timing[order] - sense * timing) for sense in (1, -1))
+    )
 
 
 def _constant(angles: FloatArray) -> bool:

@@ -20,6 +20,7 @@ from matplotlib.figure import Figure
 
 import grashof.figures.files as grashof_draw
 from grashof.analysis import verify
+from grashof.output.run_files import write_run
 from grashof.problems import (
     FourBar,
     Problem,
@@ -29,10 +30,10 @@ from grashof.problems import (
     load,
     problem_text,
 )
-from grashof.synth import Candidate
+from grashof.synth import Candidate, Result
 
 Grashof = Callable[..., Any]
-QUICK = ("--top", "12", "--starts", "32", "--drawings", "2")
+QUICK = ("--top", "6", "--starts", "16", "--drawings", "2")
 
 
 def test_solve_writes_a_verified_list(grashof: Grashof, tmp_path: Path) -> None:
@@ -44,7 +45,7 @@ def test_solve_writes_a_verified_list(grashof: Grashof, tmp_path: Path) -> None:
     assert {path.name for path in folder.iterdir()} == expected
     table = pd.read_csv(folder / "candidates.csv")
     designs = json.loads((folder / "candidates.json").read_text())["designs"]
-    assert 1 <= table["family"].nunique() <= 12
+    assert 1 <= table["family"].nunique() <= 6
     assert table["family"].tolist() == [design["family"] for design in designs]
     assert {design["mechanism"] for design in designs} == {"four-bar"}
     assert table["rank"].tolist() == list(range(1, len(table) + 1))
@@ -65,14 +66,12 @@ def test_solve_writes_a_verified_list(grashof: Grashof, tmp_path: Path) -> None:
         for key in ("circuit_ok", "branch_ok", "order_ok", "full_rotation", "pareto"):
             assert design[key] is bool(getattr(row, key))
         assert design["assembly"] == [row.assembly] * 4
-
-
-def test_progress_is_plain_lines_when_piped(grashof: Grashof) -> None:
-    done = grashof("solve", "luggage", *QUICK)
+    # Where it is no terminal, progress is plain lines.
     assert "\x1b" not in done.output
-    assert "of 78 starts solved" in done.stderr or "of 32 starts solved" in done.stderr
+    assert "of 16 starts solved" in done.stderr
 
 
+@pytest.mark.usefixtures("small_search")
 def test_second_run_replaces_only_its_own_files(grashof: Grashof, tmp_path: Path, impossible: Path) -> None:
     out = tmp_path / "out"
     assert grashof("solve", "luggage", "--out", out, *QUICK).exit_code == 0
@@ -85,15 +84,16 @@ def test_second_run_replaces_only_its_own_files(grashof: Grashof, tmp_path: Path
     names = {path.name for path in out.iterdir()}
     assert {"notes.txt", "design-99.png", "design-01.png"} <= names
     assert "design-02.png" not in names
-    assert grashof("solve", impossible, "--out", out, "--starts", "16").exit_code == 1
+    assert grashof("solve", impossible, "--out", out, "--starts", "4").exit_code == 1
     names = {"notes.txt", "design-99.png", "nearest.csv", "report.html", "run.json"}
     assert {path.name for path in out.iterdir()} == names
 
 
+@pytest.mark.usefixtures("small_search")
 def test_impossible_problem_names_what_stands_in_the_way(
     grashof: Grashof, tmp_path: Path, impossible: Path
 ) -> None:
-    done = grashof("solve", impossible)
+    done = grashof("solve", impossible, "--starts", "16")
     assert done.exit_code == 1
     assert "transmission_min_deg 13.4 instead of 60" in done.stderr
     nearest = pd.read_csv(tmp_path / "impossible-designs" / "nearest.csv")
@@ -197,7 +197,7 @@ def test_help_is_no_error(grashof: Grashof) -> None:
 
 def test_a_tilde_is_a_name(grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
-    assert grashof("solve", "luggage", "--out", "~", "--starts", "8", "--drawings", "1").exit_code == 0
+    assert grashof("solve", "luggage", "--out", "~", "--starts", "2", "--drawings", "1").exit_code == 0
     names = {"candidates.csv", "candidates.json", "report.html", "run.json", "design-01.png", "design-01.svg"}
     assert {path.name for path in (tmp_path / "~").iterdir()} == names
     assert [path.name for path in tmp_path.iterdir()] == ["~"]
@@ -213,23 +213,23 @@ def test_foreign_files_are_refused_before_solving(grashof: Grashof, tmp_path: Pa
 
 
 def test_the_list_holds_what_the_file_wants(grashof: Grashof, tmp_path: Path) -> None:
-    text = problem_text("luggage") + "\n[search]\nenough = 60\n"
+    text = problem_text("luggage") + "\n[search]\nenough = 30\n"
     (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
     assert grashof("solve", "mine.toml", "--drawings", "0").exit_code == 0
-    assert len(pd.read_csv(tmp_path / "mine-designs" / "candidates.csv")) >= 60
+    assert len(pd.read_csv(tmp_path / "mine-designs" / "candidates.csv")) >= 30
 
 
 def test_full_disk_is_told_and_keeps_the_old_run(
-    grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    grashof: Grashof, few: Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert grashof("solve", "luggage", *QUICK).exit_code == 0
+    write_run(tmp_path / "luggage-designs", few, {}, 1)
     before = {path: path.read_bytes() for path in (tmp_path / "luggage-designs").iterdir()}
 
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("grashof.output.run_files.write_json", full)
-    done = grashof("solve", "luggage", *QUICK, "--seed", "5")
+    done = grashof("solve", "luggage", *QUICK, "--starts", "2")
     assert done.exit_code == 3
     assert "No space left" in done.stderr
     assert {path: path.read_bytes() for path in (tmp_path / "luggage-designs").iterdir()} == before
@@ -292,7 +292,7 @@ def test_interrupt_while_drawing_leaves_drawings_out(
         return draw(problem, candidate, rank)
 
     monkeypatch.setattr(grashof_draw, "draw_design", interrupted)
-    done = grashof("solve", "luggage", "--starts", "16")
+    done = grashof("solve", "luggage", "--starts", "8")
     assert done.exit_code == 130
     names = {"candidates.csv", "candidates.json", "report.html", "run.json"}
     names |= {f"design-0{rank}.{kind}" for rank in (1, 2) for kind in ("png", "svg")}
@@ -309,7 +309,7 @@ def test_a_drawing_that_fails_does_not_cost_the_lists(
         raise error
 
     monkeypatch.setattr(grashof_draw, "save", fail)
-    assert grashof("solve", "luggage", "--starts", "16").exit_code == code
+    assert grashof("solve", "luggage", "--starts", "4").exit_code == code
     folder = tmp_path / "luggage-designs"
     names = {"candidates.csv", "candidates.json", "report.html", "run.json"}
     assert {path.name for path in folder.iterdir()} == names
@@ -321,7 +321,7 @@ def test_a_drawing_that_fails_does_not_cost_the_lists(
 def test_a_reader_that_leaves_ends_nothing(tmp_path: Path, merged: bool) -> None:
     # FORCE_COLOR makes rich take a pipe for a terminal.
     program = "from grashof.cli import main; main()"
-    command = [sys.executable, "-c", program, "solve", "luggage", "--drawings", "0"]
+    command = [sys.executable, "-c", program, "solve", "luggage", "--starts", "8", "--drawings", "0"]
     running = subprocess.Popen(
         command,
         cwd=tmp_path,
@@ -338,12 +338,12 @@ def test_a_reader_that_leaves_ends_nothing(tmp_path: Path, merged: bool) -> None
     assert running.wait(timeout=60) == 0
     assert "Error" not in said
     assert "Exception" not in said
-    assert len(pd.read_csv(tmp_path / "luggage-designs" / "candidates.csv")) >= 50
+    assert len(pd.read_csv(tmp_path / "luggage-designs" / "candidates.csv")) > 0
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
 def test_interrupt_writes_what_was_verified(tmp_path: Path) -> None:
-    text = problem_text("luggage") + "\n[search]\nstarts = 5000\nenough = 3000\n"
+    text = problem_text("luggage") + "\n[search]\nstarts = 5000\nenough = 300\n"
     (tmp_path / "long.toml").write_text(text, encoding="utf-8")
     command = [
         sys.executable,
@@ -395,11 +395,12 @@ def test_the_record_tells_the_least_error_and_the_bound(grashof: Grashof, tmp_pa
     for design in designs:
         square = verify(FourBar(**design["linkage"]), problem.task, wanted).square
         assert (square / 6) ** 0.5 <= record["most_error"] * (1 + 1e-6)
-    assert grashof("solve", "luggage", *QUICK).exit_code == 0
+    assert grashof("solve", "luggage", "--starts", "2", "--drawings", "0").exit_code == 0
     exact = json.loads((tmp_path / "luggage-designs/run.json").read_text())
     assert (exact["least_error"], exact["most_error"], exact["settings"]["effort"]) == (None, None, 1.0)
 
 
+@pytest.mark.usefixtures("small_search")
 def test_zones_that_are_too_small_say_how_large_would_do(grashof: Grashof, tmp_path: Path) -> None:
     (tmp_path / "mine.toml").write_text(MOTION + "within = 0.001\n[search]\neffort = 0.2\n")
     done = grashof("solve", "mine.toml")

@@ -1,8 +1,11 @@
 """Shared by the tests of the synthesis: luggage problems, and a judge that shares no code with Grashof."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, ProcessPoolExecutor
 from dataclasses import dataclass
+from importlib import import_module
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -16,7 +19,6 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth import Candidate, Result
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
-from grashof.synth.starts import exact_poses
 from grashof.synth.starts.dyad_pairs import near_misses, screen
 from grashof.synth.theory.burmester import trace_four_pose_curves
 
@@ -254,8 +256,23 @@ def all_pairs() -> PairsOf:
     return of
 
 
-@pytest.fixture
-def coarse_curves(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Dyad curves traced coarsely: several times as fast, for tests of anything but the best designs."""
-    monkeypatch.setattr(exact_poses, "LINES", 300)
-    monkeypatch.setattr(exact_poses, "CELL", 0.02)
+LeastError: TypeAlias = Callable[..., Result]
+
+
+@pytest.fixture(scope="session")
+def least_error() -> LeastError:
+    """`synthesize` for the least error alone: what more error buys takes most of the time."""
+
+    def of(problem: Problem, **options: Any) -> Result:
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(import_module("grashof.synth.results.trade_offs"), "SEEDS", 0)
+            return synthesize(problem, **options)
+
+    return of
+
+
+@pytest.fixture(scope="session")
+def two_processes() -> Iterator[Executor]:
+    """Two worker processes that all tests share: to start them takes longer than a small search."""
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        yield pool

@@ -13,6 +13,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
 from grashof.analysis import Position, solve_position
+from grashof.analysis.four_bar.position import places
 from grashof.analysis.numerics.smooth_polygon import smooth_polygon
 from grashof.figures.linkage import figure_of, new_axes, plane
 from grashof.figures.parts import (
@@ -27,7 +28,7 @@ from grashof.figures.parts import (
     name_points,
 )
 from grashof.figures.subject import Linkage, Subject
-from grashof.problems import MotionTask, Problem, ProblemError
+from grashof.problems import Problem, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 
 _WRITERS = {".gif": "pillow", ".mp4": "ffmpeg"}
@@ -169,10 +170,10 @@ class _Moving:
         self, axes: Axes, subject: Subject, state: Position, turns: FloatArray, path: FloatArray
     ) -> None:
         linkage, problem = subject.linkage, subject.problem
-        self._state, self._path = state, path
+        self._points, self._path = places(linkage, state), path
         frames = len(state.p)
         self._drawn = np.searchsorted(turns, np.arange(frames) / frames, side="right")
-        self._links = Links(axes, linkage, state.a[0], state.b[0], state.p[0], named=False)
+        self._links = Links(axes, self._points_in(0), named=False)
         axes.plot(*path.T, color=PATH, linewidth=0.8, linestyle=":", zorder=2)
         (self._trace,) = axes.plot([], [], color=PATH, linewidth=1.8, zorder=3)
         self._corners = _carried(subject, state)
@@ -185,24 +186,27 @@ class _Moving:
         ]
         draw_ground(axes, linkage)
         plane(axes, subject)
-        axes.update_datalim(np.concatenate([state.a, state.b, path, *self._corners]))
-        name_points(axes, {"O2": linkage.o2, "O4": linkage.o4})
+        joints = [self._points[name] for name in linkage.PIVOTS]
+        axes.update_datalim(np.concatenate([*joints, path, *self._corners]))
+        name_points(axes, {name.upper(): getattr(linkage, name) for name in linkage.GROUND})
 
     def show(self, frame: int) -> list[Artist]:
         """Put everything where it is in a frame; what has moved."""
-        state = self._state
-        self._links.move(state.a[frame], state.b[frame], state.p[frame])
+        self._links.move(self._points_in(frame))
         self._trace.set_data(*self._path[: self._drawn[frame]].T)
         for body in self._bodies:
             body.set_xy(self._corners[frame])
-        return [*self._links.lines, self._links.plate, self._trace, *self._bodies]
+        return [*self._links.artists, self._trace, *self._bodies]
+
+    def _points_in(self, frame: int) -> dict[str, FloatArray]:
+        return {name: place[frame] for name, place in self._points.items()}
 
 
 def _carried(subject: Subject, state: Position) -> list[FloatArray]:
     """Corners of the body that the task has P carry, in every frame; none where it has none."""
-    task = None if subject.problem is None else subject.problem.task
-    if not isinstance(task, MotionTask):
+    if subject.problem is None:
         return []
+    task = subject.problem.task
     angles = state.theta3 + subject.linkage.body_angle
     found = (body_outline(task, place, float(angle)) for place, angle in zip(state.p, angles, strict=True))
     return [corners for corners in found if corners is not None]

@@ -11,9 +11,9 @@ from matplotlib.axes import Axes
 
 from grashof.figures.parts import COUPLER, GROUND, OUTPUT, PATH, TARGET
 from grashof.figures.subject import Linkage, Subject
-from grashof.problems import Problem, ProblemError
+from grashof.problems import FourBar, Problem, ProblemError
 from grashof.problems.values.arrays import FloatArray
-from grashof.survey.quantities import dynamic_quantities, kinematic_quantities, table_of
+from grashof.survey.quantities import FORCES, dynamic_quantities, kinematic_quantities, table_of
 from grashof.survey.sweep import Sweep, dead_positions_unwarned, loads_of, masses_of
 
 AxesArray = npt.NDArray[np.object_]
@@ -25,16 +25,16 @@ KINEMATICS: Mapping[str, Panel] = {
         {"theta3_deg": "theta3", "theta4_deg": "theta4", "mu_deg": "transmission angle mu"},
     ),
     "angular velocity": ("angular velocity (rad/s)", {"omega3": "omega3", "omega4": "omega4"}),
-    "speed": ("speed ({unit}/s)", {"a_speed": "A", "b_speed": "B", "p_speed": "P"}),
+    "speed": ("speed ({unit}/s)", {f"{name}_speed": name.upper() for name in FourBar.MOVING}),
     "angular acceleration": ("angular acceleration (rad/s²)", {"alpha3": "alpha3", "alpha4": "alpha4"}),
     "acceleration": (
         "acceleration ({unit}/s²)",
-        {"a_acceleration": "A", "b_acceleration": "B", "p_acceleration": "P"},
+        {f"{name}_acceleration": name.upper() for name in FourBar.MOVING},
     ),
 }
 DYNAMICS: Mapping[str, Panel] = {
     "torque": ("drive torque (N m)", {"torque": "torque"}),
-    "joint force": ("joint force (N)", {"f12": "O2", "f32": "A", "f43": "B", "f14": "O4"}),
+    "joint force": ("joint force (N)", FORCES),
     "shaking force": (
         "shaking force (N)",
         {"shaking_force_x": "x", "shaking_force_y": "y", "shaking_force": "size"},

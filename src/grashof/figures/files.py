@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 
 from grashof.figures.animation import animate
 from grashof.figures.linkage import figure_of, plot_linkage
-from grashof.figures.parts import closes, missing_glyphs_unwarned
+from grashof.figures.parts import missing_glyphs_unwarned
 from grashof.figures.subject import Linkage, Subject
 from grashof.problems import Problem
 from grashof.synth import Candidate
@@ -116,7 +116,7 @@ def _heading(problem: Problem, candidate: Candidate, rank: int) -> str:
     unit = f" ({problem.length_unit})" if problem.length_unit else ""
     lengths = "  ".join(f"r{i} {length:.4g}" for i, length in enumerate(linkage.lengths, start=1))
     task, cycle = np.degrees([verdict.transmission_min_task, verdict.transmission_min_cycle])
-    over = [f"{task:.1f} deg over the task"] if not closes(problem.task) else []
+    over = [f"{task:.1f} deg over the task"] if not problem.task.closed else []
     over += [f"{cycle:.1f} deg over the turn"] if verdict.full_rotation else []
     fit = "" if problem.requirements.is_exact(problem.task) else f", rms error {verdict.error_rms:.3g}"
     return (

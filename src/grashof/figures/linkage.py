@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from grashof.analysis import solve_position
+from grashof.analysis.four_bar.position import places
 from grashof.figures.parts import (
     COUPLER,
     GROUND,
@@ -80,15 +81,16 @@ def plot_linkage(
         draw_scene(ax, subject.problem)
     draw_path(ax, subject)
     shades = np.linspace(0.3, 1, len(positions)) if len(positions) > 1 else [1.0]
-    for index, ((a, b, p), shade) in enumerate(zip(positions, shades, strict=True), start=1):
-        Links(ax, subject.linkage, a, b, p, shade, named=index == len(positions))
+    for points, shade in zip(positions, shades, strict=True):
+        Links(ax, points, shade, named=points is positions[-1])
     draw_task(ax, subject)
     draw_ground(ax, subject.linkage)
     draw_sense(ax, subject)
     plane(ax, subject)
-    names = {"O2": subject.linkage.o2, "O4": subject.linkage.o4, "A": a, "B": b}
-    in_joint = min(np.hypot(*(p - a)), np.hypot(*(p - b))) == 0
-    name_points(ax, names if in_joint else {**names, "P": p})
+    names: dict[tuple[float, ...], str] = {}
+    for name, place in positions[-1].items():
+        names.setdefault(tuple(place), name.upper())  # P may lie in a joint
+    name_points(ax, {name: np.array(place) for place, name in names.items()})
     last = "target" if subject.problem is not None and theta2 is None else "position"
     heading = f"light to dark: first to last {last}" if len(positions) > 1 else None
     ax.legend(loc="best", title=heading, title_fontsize="small", fontsize="small")
@@ -235,10 +237,8 @@ def figure_of(ax: Axes) -> Figure:
     return figure
 
 
-def _positions(
-    subject: Subject, theta2: npt.ArrayLike | None
-) -> list[tuple[FloatArray, FloatArray, FloatArray]]:
-    """A, B and P wherever the linkage is drawn, each of shape (2,)."""
+def _positions(subject: Subject, theta2: npt.ArrayLike | None) -> list[dict[str, FloatArray]]:
+    """The points of the linkage wherever it is drawn, each of shape (2,)."""
     assembly: npt.ArrayLike = subject.linkage.assembly
     if theta2 is not None:
         angles = np.ravel(np.asarray(theta2, dtype=np.float64))
@@ -254,7 +254,8 @@ def _positions(
     if theta2 is not None and np.isnan(state.theta3).any():
         open_at = np.degrees(angles[np.isnan(state.theta3)][0])
         raise AssemblyError(f"{subject.spec.name} cannot close at theta2 = {open_at:.6g} deg")
-    return list(zip(state.a, state.b, state.p, strict=True))
+    found = places(subject.linkage, state)
+    return [{name: place[k] for name, place in found.items()} for k in range(len(angles))]
 
 
 def plane(ax: Axes, subject: Subject) -> None:

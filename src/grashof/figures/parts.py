@@ -8,21 +8,25 @@ from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 
 from grashof.analysis import Position, solve_position
 from grashof.analysis.numerics.smooth_polygon import smooth_polygon
 from grashof.figures.subject import Subject
-from grashof.problems import FourBar, MotionTask, PathTask, Problem, Task
+from grashof.problems import FourBar, Problem, Task
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.linkage_parts import Link
 
 # Told apart by the colour-blind, too (after Okabe & Ito, *Color Universal Design*, 2008).
 DRIVER, COUPLER, OUTPUT, PATH = "#d55e00", "#0072b2", "#009e73", "#8c3f78"
 BODY = TARGET = "#e69f00"  # both are what is asked
+COLOURS = {"driver": DRIVER, "coupler": COUPLER, "output": OUTPUT}
 SCENE, GROUND, KEPT_OUT = "#5d6d7e", "#17202a", "#909497"
 # Targets up to which the linkage is drawn at each, and up to which each carries its number.
-_CROWD = {"path": 6, "motion": 8}
+_CROWD, _CROWD_OF_POINTS = 8, 6
 _NUMBERED = 24
 _SIDES = ((7, -12), (7, 6), (-20, 6), (-20, -12))  # pt: where a name may stand beside its point
 _TEXT = (16.0, 11.0)  # pt: texts of two characters so far apart do not cover each other
@@ -42,9 +46,8 @@ class Links:
     Parameters
     ----------
     axes : Axes
-    linkage : FourBar
-    a, b, p : ndarray, shape (2,), length
-        Moving pivots and coupler point.
+    points : mapping of str to ndarray, shape (2,), length
+        Where the points of the linkage are.
     shade : float
         From 0, invisible, to 1.
     named : bool
@@ -52,47 +55,50 @@ class Links:
     """
 
     def __init__(
-        self,
-        axes: Axes,
-        linkage: FourBar,
-        a: FloatArray,
-        b: FloatArray,
-        p: FloatArray,
-        shade: float = 1.0,
-        *,
-        named: bool = True,
+        self, axes: Axes, points: Mapping[str, FloatArray], shade: float = 1.0, *, named: bool = True
     ) -> None:
-        self._linkage = linkage
-        corners = self._corners(a, b, p)
-        looks: tuple[dict[str, Any], ...] = (
-            {"color": DRIVER, "linewidth": 2.4, "label": "driver O2-A", "zorder": 4},
-            {"color": OUTPUT, "linewidth": 2.4, "label": "output O4-B", "zorder": 4},
-            {"color": COUPLER, "linewidth": 1.6, "label": "coupler A-B-P", "zorder": 4},
-            {"color": "white", "marker": "o", "markeredgecolor": COUPLER, "markersize": 5, "zorder": 5},
-            {"color": PATH, "marker": "o", "markersize": 4, "zorder": 6},
-        )
-        self.lines = []
-        for points, look in zip(corners, looks, strict=True):
-            label = look.pop("label", None)
-            style = "none" if "marker" in look else "-"
-            (line,) = axes.plot(
-                *points.T, alpha=shade, linestyle=style, label=label if named else None, **look
-            )
-            self.lines.append(line)
-        self.plate = Polygon(corners[2], color=COUPLER, alpha=0.1 * shade, linewidth=0, zorder=3)
-        axes.add_patch(self.plate)
+        self._drawn: list[tuple[tuple[str, ...], Line2D | Polygon]] = []
+        for names, look in _looks(named):
+            self._drawn += [(names, line) for line in axes.plot(*_at(points, names).T, alpha=shade, **look)]
+        for link in FourBar.LINKS:
+            if len(link.points) > 2:
+                look = {"color": COLOURS[link.name], "alpha": 0.1 * shade, "linewidth": 0, "zorder": 3}
+                self._drawn.append((_sides(link), axes.fill(*_at(points, _sides(link)).T, **look)[0]))
 
-    def move(self, a: FloatArray, b: FloatArray, p: FloatArray) -> None:
-        """Put the links where A, B and P now are, each of shape (2,)."""
-        corners = self._corners(a, b, p)
-        for line, points in zip(self.lines, corners, strict=True):
-            line.set_data(*points.T)
-        self.plate.set_xy(corners[2])
+    @property
+    def artists(self) -> list[Artist]:
+        """All that moves."""
+        return [artist for _, artist in self._drawn]
 
-    def _corners(self, a: FloatArray, b: FloatArray, p: FloatArray) -> list[FloatArray]:
-        """Of driver, output, coupler, the joints A and B, and P; each of shape (n, 2)."""
-        each = ((self._linkage.o2, a), (self._linkage.o4, b), (a, b, p, a), (a, b), (p,))
-        return [np.array(points) for points in each]
+    def move(self, points: Mapping[str, FloatArray]) -> None:
+        """Put the links where the points now are, each of shape (2,)."""
+        for names, artist in self._drawn:
+            corners = _at(points, names)
+            if isinstance(artist, Polygon):
+                artist.set_xy(corners)
+            else:
+                artist.set_data(*corners.T)
+
+
+def _looks(named: bool) -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
+    """Through which points the bars, the sides of the plate, the joints and P are drawn, and how."""
+    for link in sorted(FourBar.LINKS[1:], key=lambda link: len(link.points)):
+        label = f"{link.name} {'-'.join(link.labels)}" if named else None
+        width = 2.4 if len(link.points) == 2 else 1.6
+        yield _sides(link), {"color": COLOURS[link.name], "linewidth": width, "label": label, "zorder": 4}
+    dot: dict[str, Any] = {"marker": "o", "linestyle": "none"}
+    joints = tuple(name for name in FourBar.MOVING if name in FourBar.JOINTS)
+    yield joints, {**dot, "color": "white", "markeredgecolor": COUPLER, "markersize": 5, "zorder": 5}
+    yield ("p",), {**dot, "color": PATH, "markersize": 4, "zorder": 6}
+
+
+def _sides(link: Link) -> tuple[str, ...]:
+    """The ends of a bar, the corners of a plate all round."""
+    return link.points if len(link.points) == 2 else (*link.points, link.points[0])
+
+
+def _at(points: Mapping[str, FloatArray], names: Sequence[str]) -> FloatArray:
+    return np.array([points[name] for name in names])
 
 
 def name_points(axes: Axes, points: Mapping[str, FloatArray]) -> None:
@@ -123,7 +129,7 @@ def apart(place: FloatArray, others: Sequence[FloatArray]) -> bool:
 
 def draw_ground(axes: Axes, linkage: FourBar) -> None:
     """The ground pivots."""
-    for pivot in (linkage.o2, linkage.o4):
+    for pivot in (getattr(linkage, name) for name in linkage.GROUND):
         axes.plot(*pivot[:, None], marker="^", color=GROUND, markersize=11, zorder=6)
         axes.plot(*pivot[:, None], marker="o", color="white", markersize=3, zorder=7)
 
@@ -146,7 +152,7 @@ def draw_sense(axes: Axes, subject: Subject) -> None:
 def draw_path(axes: Axes, subject: Subject) -> None:
     """The path of P over all that the driver can do; of an open task dotted, and the part used drawn out."""
     linkage, problem, sweep = subject.linkage, subject.problem, subject.sweep
-    verdict = None if problem is None or closes(problem.task) else subject.verdict
+    verdict = None if problem is None or problem.task.closed else subject.verdict
     style: dict[str, Any] = {"color": PATH, "linewidth": 1.6, "label": "path of P", "zorder": 2}
     signs = [int(linkage.assembly)]
     if verdict is not None:
@@ -188,7 +194,7 @@ def draw_task(axes: Axes, subject: Subject) -> None:
     if subject.problem is None or subject.verdict is None:
         return
     task = subject.problem.task
-    if isinstance(task, PathTask):
+    if task.only_points:
         _draw_points(axes, task)
         return
     state = solve_position(subject.linkage, subject.verdict.theta2, subject.verdict.assembly)
@@ -198,16 +204,12 @@ def draw_task(axes: Axes, subject: Subject) -> None:
 
 def targets_shown(task: Task) -> list[int]:
     """Targets at which the linkage is drawn: all, or of many the first, the middle and the last."""
-    count = len(task) - (isinstance(task, PathTask) and _returns(task))
-    return list(range(count)) if count <= _CROWD[task.kind] else [0, count // 2, count - 1]
+    count = len(task) - task.returns
+    most = _CROWD_OF_POINTS if task.only_points else _CROWD
+    return list(range(count)) if count <= most else [0, count // 2, count - 1]
 
 
-def closes(task: Task) -> bool:
-    """Whether the task is a path that one turn of the driver closes."""
-    return isinstance(task, PathTask) and task.closed
-
-
-def body_outline(task: MotionTask, place: FloatArray, angle: float) -> FloatArray | None:
+def body_outline(task: Task, place: FloatArray, angle: float) -> FloatArray | None:
     """The body's corners, shape (M, 2), where it stands at a place and an angle (rad); None without one."""
     if task.body is None or not task.has_angle.any():  # without angles it has no orientation
         return None
@@ -215,7 +217,7 @@ def body_outline(task: MotionTask, place: FloatArray, angle: float) -> FloatArra
     return corners
 
 
-def _draw_pose(axes: Axes, task: MotionTask, linkage: FourBar, state: Position, pose: int) -> None:
+def _draw_pose(axes: Axes, task: Task, linkage: FourBar, state: Position, pose: int) -> None:
     """The body in a pose; what the pose leaves free is as the design has it, and the body then dashed."""
     placed, oriented = bool(task.has_position[pose]), bool(task.has_angle[pose])
     place = task.positions[pose] if placed else state.p[pose]
@@ -235,16 +237,16 @@ def _draw_pose(axes: Axes, task: MotionTask, linkage: FourBar, state: Position, 
     _number(axes, pose, place)
 
 
-def _draw_points(axes: Axes, task: PathTask) -> None:
+def _draw_points(axes: Axes, task: Task) -> None:
     """Target points as open circles under the path; about a dozen of many are numbered."""
-    count = len(task) - _returns(task)
+    count = len(task) - task.returns
     size = float(np.clip(200 / count, 3, 8))
     axes.plot(
-        *task.points.T, linestyle="none", marker="o", markersize=size, markerfacecolor="none",
+        *task.positions.T, linestyle="none", marker="o", markersize=size, markerfacecolor="none",
         markeredgecolor=TARGET, markeredgewidth=size / 6, label="target points", zorder=1.5,
     )  # fmt: skip
     for index in _dozen(count):
-        _number(axes, index, task.points[index])
+        _number(axes, index, task.positions[index])
 
 
 def _number(axes: Axes, index: int, place: FloatArray) -> None:
@@ -257,11 +259,6 @@ def _number(axes: Axes, index: int, place: FloatArray) -> None:
 def _dozen(count: int) -> range:
     """All of the targets, or about a dozen of many."""
     return range(0, count, 1 if count <= _NUMBERED else round(count / 12))
-
-
-def _returns(task: PathTask) -> bool:
-    """Whether the last point is the first again."""
-    return bool((task.points[0] == task.points[-1]).all())
 
 
 def _turned(angle: float) -> FloatArray:

@@ -11,10 +11,11 @@ from matplotlib.figure import Figure
 from grashof.figures.curves import DYNAMICS, KINEMATICS, Panel, draw_curves
 from grashof.figures.files import STYLE, fit_title, shortened
 from grashof.figures.linkage import plot_linkage
-from grashof.figures.parts import COUPLER, DRIVER, GROUND, OUTPUT
+from grashof.figures.parts import COLOURS, GROUND
+from grashof.problems import FourBar
 from grashof.survey.report import LinkageReport, mass_tracks
 
-_TRACKS = {"link 2": DRIVER, "link 3": COUPLER, "link 4": OUTPUT, "all links": GROUND}
+_TRACKS = {f"link {link.number}": COLOURS[link.name] for link in FourBar.LINKS[1:]} | {"all links": GROUND}
 _KINEMATIC = {
     "angles": ("angle",),
     "velocities": ("angular velocity", "speed"),

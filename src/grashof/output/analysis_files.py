@@ -18,7 +18,6 @@ from grashof.output.folder import ANALYSIS_PAGE, ANALYSIS_RECORD, replacing_own_
 from grashof.output.run_files import write_csv, write_json, write_page
 from grashof.output.streams import say
 from grashof.output.terminal import console
-from grashof.problems.files.linkage_file import linkage_json
 from grashof.survey.report import LinkageReport
 from grashof.wording.numbers import number_text, value_text
 
@@ -130,7 +129,7 @@ def _summary(report: LinkageReport) -> dict[str, Any]:
         "source": spec.source,
         "length_unit": spec.length_unit,
         "angle_unit": "rad",
-        "linkage": linkage_json(spec.linkage),
+        "linkage": spec.linkage.stated,
         "notes": list(report.notes),
         "facts": {fact.key: {"value": fact.value, "unit": fact.unit} for fact in report.facts},
         "extremes": [

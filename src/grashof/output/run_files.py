@@ -13,7 +13,6 @@ import numpy as np
 
 from grashof.output.folder import PAGE, RECORD, replacing_own_files
 from grashof.problems import Problem
-from grashof.problems.files.linkage_file import linkage_json
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.quantities import Needs, Over
@@ -126,10 +125,11 @@ def _given(errors: FloatArray) -> list[float | None]:
 
 def _design(candidate: Candidate, keys: Sequence[str]) -> dict[str, Any]:
     verdict = candidate.verdict
-    angle_error = {} if verdict.angle_error is None else {"angle_error": _given(verdict.angle_error)}
+    turned = verdict.angle_error
+    angle_error = {} if np.isnan(turned).all() else {"angle_error": _given(turned)}
     return {
         **facts(candidate),
-        "linkage": linkage_json(candidate.linkage),
+        "linkage": candidate.linkage.stated,
         "theta2": verdict.theta2.tolist(),
         "assembly": verdict.assembly.tolist(),
         "position_error": _given(verdict.position_error),

@@ -9,13 +9,12 @@ import numpy as np
 import pandas as pd
 
 from grashof.page.render import compact, render
-from grashof.problems.files.linkage_file import linkage_json
+from grashof.problems import FourBar
+from grashof.survey.quantities import FORCES
 from grashof.survey.report import LinkageReport
 from grashof.wording.numbers import number_text, value_text
 
 _SCRIPTS = ("linkage.js", "svg.js", "stage.js", "player.js", "curves.js", "analysis.js")
-_POINTS = ("a", "b", "p")
-_JOINTS = {"f12": "O2", "f32": "A", "f43": "B", "f14": "O4"}
 _EXTREMES = (("min", "least"), ("theta2_min_deg", "at θ2"), ("max", "largest"), ("theta2_max_deg", "at θ2"))
 
 
@@ -40,7 +39,7 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         "scene": {"unit": spec.length_unit},
         "designs": [
             {
-                "linkage": linkage_json(spec.linkage),
+                "linkage": spec.linkage.stated,
                 "low": low,
                 "high": high,
                 "turns": report.turns,
@@ -93,20 +92,23 @@ def panels(unit: str) -> list[tuple[str, str, dict[str, str]]]:
     ('speed of A, B, P', 'mm/s', {'a_speed': 'A', 'b_speed': 'B', 'p_speed': 'P'})
     """
     places = [
-        (f"place of {name.upper()}", unit, {f"{name}_x": "x", f"{name}_y": "y"}) for name in reversed(_POINTS)
+        (f"place of {name.upper()}", unit, {f"{name}_x": "x", f"{name}_y": "y"})
+        for name in reversed(FourBar.MOVING)
     ]
     rates = [
         (
             f"{what} of {name.upper()}", f"{unit}/{per}", {f"{name}_{what}_{axis}": axis for axis in "xy"},
         )
-        for name in reversed(_POINTS)
+        for name in reversed(FourBar.MOVING)
         for what, per in (("velocity", "s"), ("acceleration", "s²"))
     ]  # fmt: skip
     forces = [
         (f"force {name.upper()} in {place}", "N", {f"{name}_{axis}": axis for axis in "xy"})
-        for name, place in _JOINTS.items()
+        for name, place in FORCES.items()
     ]
-    sizes = {key: {f"{name}_{key}": name.upper() for name in _POINTS} for key in ("speed", "acceleration")}
+    sizes = {
+        key: {f"{name}_{key}": name.upper() for name in FourBar.MOVING} for key in ("speed", "acceleration")
+    }
     return [
         ("angles", "deg", {"theta3_deg": "θ3", "theta4_deg": "θ4", "mu_deg": "μ"}),
         ("angular velocity", "rad/s", {"omega3": "ω3", "omega4": "ω4"}),
@@ -116,7 +118,7 @@ def panels(unit: str) -> list[tuple[str, str, dict[str, str]]]:
         ("torque factor of the output arm", unit, {"torque_factor": "factor"}),
         ("drive torque", "N m", {"torque": "torque"}),
         ("drive power", "W", {"power": "power"}),
-        ("joint forces", "N", _JOINTS),
+        ("joint forces", "N", FORCES),
         (
             "shaking force", "N",
             {"shaking_force_x": "x", "shaking_force_y": "y", "shaking_force": "size"},

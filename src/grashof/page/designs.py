@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,7 +21,6 @@ from grashof.analysis.four_bar.mobility import range_index
 from grashof.analysis.judge.over_task import motion_ends
 from grashof.page.render import compact
 from grashof.problems import FourBar, Problem
-from grashof.problems.files.linkage_file import linkage_json
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics_spec import metres
 from grashof.survey.sweep import INSET, dead_positions_unwarned
@@ -115,7 +114,7 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], frame: pd.DataFra
     return [
         {
             "id": design.id,
-            "linkage": linkage_json(linkage),
+            "linkage": linkage.stated,
             **travel._asdict(),
             "direction": design.verdict.direction,
             "theta2": design.verdict.theta2.tolist(),
@@ -137,8 +136,7 @@ def _torques(
     if problem.dynamics is None or not linkages:
         return [None] * len(linkages)
     spec, metre = problem.dynamics, metres(problem.length_unit)
-    names = [field.name for field in fields(FourBar)]
-    batch = FourBar(**{name: np.stack([getattr(each, name) for each in linkages]) for name in names})[:, None]
+    batch = FourBar(*map(np.stack, zip(*(each.parameters for each in linkages), strict=True)))[:, None]
     theta2 = np.stack([travel.angles(INSET) for travel in travels])
     with dead_positions_unwarned():
         state = solve_kinematics(batch, theta2, spec.omega2)

@@ -9,18 +9,17 @@ import numpy as np
 from grashof.analysis import driver_ranges, solve_position
 from grashof.analysis.numerics.smooth_polygon import smooth_polygon
 from grashof.page.render import compact
-from grashof.problems import MotionTask, PathTask, Problem, Task, catalogue, load
+from grashof.problems import FourBar, Problem, Task, catalogue, load
 from grashof.problems.files.published import published
 from grashof.problems.values.arrays import FloatArray
 
-_REGIONS = ("o2", "o4", "a", "b")
 _SAMPLES = 181
 
 
 def scene_of(problem: Problem) -> dict[str, Any]:
     """A problem as the scripts draw it; lengths in its unit, angles in rad, null where free or open."""
     wanted = problem.requirements
-    boxes = {name: box for name in _REGIONS if (box := getattr(wanted, name)) is not None}
+    boxes = {name: box for name in FourBar.PIVOTS if (box := getattr(wanted, name)) is not None}
     return {
         **_targets(problem.task),
         "unit": problem.length_unit,
@@ -40,11 +39,11 @@ def scene_of(problem: Problem) -> dict[str, Any]:
 
 
 def _targets(task: Task) -> dict[str, Any]:
-    if isinstance(task, MotionTask):
-        poses = np.column_stack([task.positions, task.angles])
-        body = None if task.body is None or not task.has_angle.any() else task.body.tolist()
-        return {"poses": [_given(pose) for pose in poses], "body": body, "closed": False}
-    return {"points": task.points.tolist(), "closed": task.closed}
+    if task.only_points:
+        return {"points": task.positions.tolist(), "closed": task.closed}
+    poses = np.column_stack([task.positions, task.angles])
+    body = None if task.body is None or not task.has_angle.any() else task.body.tolist()
+    return {"poses": [_given(pose) for pose in poses], "body": body, "closed": task.closed}
 
 
 def _given(numbers: FloatArray) -> list[float | None]:
@@ -54,9 +53,9 @@ def _given(numbers: FloatArray) -> list[float | None]:
 def _published(problem: Problem) -> dict[str, Any] | None:
     """Path of the best published design, for a path of the catalogue."""
     task, known = problem.task, published(problem.name)
-    if not known or problem.name not in catalogue() or not isinstance(task, PathTask):
+    if not known or problem.name not in catalogue():
         return None
-    if not np.array_equal(task.points, load(problem.name).task.positions):
+    if not np.array_equal(task.positions, load(problem.name).task.positions):
         return None  # another problem of the same name
     best = known[0]
     low, high = driver_ranges(best.linkage)[0]

@@ -8,7 +8,7 @@ import pandas as pd
 from grashof.analysis import extremes_of, transmission_angle
 from grashof.problems import AssemblyError, FourBar
 from grashof.problems.values.arrays import TURN, FloatArray
-from grashof.survey.quantities import MAGNITUDES, POSITIONS, Quantity
+from grashof.survey.quantities import Quantity
 from grashof.survey.sweep import INSET, Sweep
 
 _WIDE_INSET = 1e-4  # rad: extremes of rates are sought so far from a dead position of a change point
@@ -17,7 +17,7 @@ _CONSTANT = 1e-12  # least and largest values apart, as a share: the quantity is
 
 def _listed(quantity: Quantity) -> bool:
     """Extremes are told of every quantity but the components of vectors that have a size."""
-    return quantity.key in POSITIONS | MAGNITUDES or not quantity.key.endswith(("_x", "_y"))
+    return quantity.position or not quantity.key.endswith(("_x", "_y"))
 
 
 def extremes_table(sweep: Sweep, quantities: list[Quantity]) -> pd.DataFrame:
@@ -43,7 +43,7 @@ def _extreme(sweep: Sweep, quantity: Quantity, low: float, high: float) -> dict[
 
     # A rate tends to infinity towards a dead position; at a change point, which is left as it is
     # entered, to a finite value that rounding hides.
-    still = sweep.turns or quantity.key in POSITIONS
+    still = sweep.turns or quantity.position
     passes = [_passes(sweep.spec.linkage, limit, sense) for limit, sense in ((low, 1), (high, -1))]
     insets = [0.0 if still else _WIDE_INSET if through else INSET for through in passes]
     start, end = low + insets[0], high - insets[1]

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from operator import attrgetter
 
 import numpy as np
 import pandas as pd
 
 from grashof.analysis import (
-    Dynamics,
-    Joint,
     Kinematics,
     Loads,
     Masses,
@@ -18,16 +17,16 @@ from grashof.analysis import (
     solve_kinematics,
     transmission_angle,
 )
-from grashof.problems import LinkageSpec
+from grashof.problems import FourBar, LinkageSpec
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.dynamics_spec import metres
 
 Curve = Callable[[Kinematics], FloatArray]
-MAGNITUDES = {
-    *(f"{point}_{what}" for point in "abp" for what in ("speed", "acceleration")),
-    *("torque_factor", "f12", "f32", "f43", "f14", "shaking_force"),
+# Keys of the joint forces (f32: on link 2 by link 3), and the joints that they act in.
+FORCES = {
+    f"f1{other}" if one == 1 else f"f{other}{one}": joint.upper()
+    for joint, (one, other) in FourBar.JOINTS.items()
 }
-POSITIONS = {"theta3_deg", "theta4_deg", "mu_deg", "a_x", "a_y", "b_x", "b_y", "p_x", "p_y"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +40,10 @@ class Quantity:
         From a `Kinematics` to its values, in `unit`.
     period : float, optional
         By which it may jump.
+    position : bool
+        It follows from the position alone, and stays finite towards a dead position.
+    never_negative : bool
+        It is the size of something.
     """
 
     key: str
@@ -48,53 +51,80 @@ class Quantity:
     unit: str
     of: Curve
     period: float | None = None
-
-    @property
-    def never_negative(self) -> bool:
-        """Whether it is the size of something."""
-        return self.key in MAGNITUDES
+    position: bool = False
+    never_negative: bool = False
 
 
 def kinematic_quantities(spec: LinkageSpec) -> list[Quantity]:
     """Angles, rates and points, and the torque factor of an output arm."""
     unit = spec.length_unit or "length"
+    driven = {link.number: link.name for link in FourBar.LINKS[2:]}
     found = [
-        Quantity("theta3_deg", "angle of coupler 3", "deg", lambda s: np.degrees(s.theta3), 360.0),
-        Quantity("theta4_deg", "angle of output 4", "deg", lambda s: np.degrees(s.theta4), 360.0),
-        Quantity("mu_deg", "transmission angle mu", "deg", _mu),
-        Quantity("omega3", "angular velocity of 3", "rad/s", lambda s: s.omega3),
-        Quantity("omega4", "angular velocity of 4", "rad/s", lambda s: s.omega4),
-        Quantity("alpha3", "angular acceleration of 3", "rad/s2", lambda s: s.alpha3),
-        Quantity("alpha4", "angular acceleration of 4", "rad/s2", lambda s: s.alpha4),
+        Quantity(f"theta{n}_deg", f"angle of {name} {n}", "deg", _degrees(f"theta{n}"), 360.0, position=True)
+        for n, name in driven.items()
     ]
-    for name in ("a", "b", "p"):
-        points: tuple[tuple[str, Curve], ...] = (
-            ("x", lambda s, n=name: getattr(s, n).position[..., 0]),  # type: ignore[misc]
-            ("y", lambda s, n=name: getattr(s, n).position[..., 1]),  # type: ignore[misc]
-        )
-        found += [Quantity(f"{name}_{key}", f"{name.upper()} {key}", unit, of) for key, of in points]
-        for order, (key, per) in enumerate((("velocity", "s"), ("acceleration", "s2"))):
-            for axis, label in enumerate(("x", "y")):
-                found.append(
-                    Quantity(
-                        f"{name}_{key}_{label}", f"{key} of {name.upper()}, {label}", f"{unit}/{per}",
-                        lambda s, n=name, k=key, i=axis: getattr(getattr(s, n), k)[..., i],  # type: ignore[misc]
-                    )
-                )  # fmt: skip
-            measure = ("speed", "acceleration_magnitude")[order]
-            found.append(
-                Quantity(
-                    f"{name}_{('speed', 'acceleration')[order]}",
-                    f"{('speed', 'acceleration')[order]} of {name.upper()}", f"{unit}/{per}",
-                    lambda s, n=name, m=measure: getattr(getattr(s, n), m),  # type: ignore[misc]
-                )
-            )  # fmt: skip
+    found.append(Quantity("mu_deg", "transmission angle mu", "deg", _mu, position=True))
+    found += [
+        Quantity(f"{key}{n}", f"angular {rate} of {n}", per, attrgetter(f"{key}{n}"))
+        for key, rate, per in (("omega", "velocity", "rad/s"), ("alpha", "acceleration", "rad/s2"))
+        for n in driven
+    ]
+    for name in FourBar.MOVING:
+        point, place = name.upper(), attrgetter(f"{name}.position")
+        found += [
+            Quantity(f"{name}_{axis}", f"{point} {axis}", unit, _component(place, axis), position=True)
+            for axis in "xy"
+        ]
+        for rate, size, per in (("velocity", "speed", "s"), ("acceleration", "acceleration", "s2")):
+            vector, keys = attrgetter(f"{name}.{rate}"), (f"{name}_{rate}", f"{name}_{size}")
+            found += _vector(keys, (f"{rate} of {point}", f"{size} of {point}"), f"{unit}/{per}", vector)
     if spec.output_arm is not None:
-        arm = spec.output_arm
-        found.append(
-            Quantity("torque_factor", "torque factor of the output arm", unit, lambda s: arm * _ratio(s))
-        )
+        arm, label = spec.output_arm, "torque factor of the output arm"
+        factor = Quantity("torque_factor", label, unit, lambda s: arm * _ratio(s), never_negative=True)
+        found.append(factor)
     return found
+
+
+def dynamic_quantities(spec: LinkageSpec, masses: Masses, loads: Loads) -> list[Quantity]:
+    """Torque, power and forces in N, N m and W, whatever the length unit."""
+    metre = metres(spec.length_unit)
+
+    def of(name: str) -> Curve:
+        return lambda s: getattr(inverse_dynamics(s, masses, loads), name)
+
+    def moment(key: str, label: str, unit: str) -> Quantity:
+        return Quantity(key, label, unit, lambda s: of(key)(s) * metre**2)
+
+    found = [moment("torque", "drive torque", "N m"), moment("power", "drive power", "W")]
+    for key, joint in FORCES.items():
+        labels = (f"force {key.upper()} in {joint}", f"joint force in {joint}")
+        found += _vector((key, key), labels, "N", of(key), metre)
+    keys, labels = ("shaking_force", "shaking_force"), ("shaking force", "shaking force")
+    found += _vector(keys, labels, "N", of("shaking_force"), metre)
+    return [*found, moment("shaking_moment", "shaking moment about O2", "N m")]
+
+
+def _vector(
+    keys: tuple[str, str], labels: tuple[str, str], unit: str, of: Curve, factor: float = 1.0
+) -> list[Quantity]:
+    """Components and size of a vector; keys and labels of both."""
+    components = [
+        Quantity(f"{keys[0]}_{axis}", f"{labels[0]}, {axis}", unit, _component(of, axis, factor))
+        for axis in "xy"
+    ]
+
+    def size(state: Kinematics) -> FloatArray:
+        return np.hypot(*np.moveaxis(of(state), -1, 0)) * factor
+
+    return [*components, Quantity(keys[1], labels[1], unit, size, never_negative=True)]
+
+
+def _component(of: Curve, axis: str, factor: float = 1.0) -> Curve:
+    return lambda s: of(s)[..., "xy".index(axis)] * factor
+
+
+def _degrees(angle: str) -> Curve:
+    return lambda s: np.degrees(getattr(s, angle))
 
 
 def _mu(state: Kinematics) -> FloatArray:
@@ -104,47 +134,6 @@ def _mu(state: Kinematics) -> FloatArray:
 def _ratio(state: Kinematics) -> FloatArray:
     """Size of d theta4 / d theta2."""
     return np.abs(solve_kinematics(state.linkage, state.theta2, 1.0).omega4)
-
-
-def dynamic_quantities(spec: LinkageSpec, masses: Masses, loads: Loads) -> list[Quantity]:
-    """Torque, power and forces in N, N m and W, whatever the length unit."""
-    metre = metres(spec.length_unit)
-
-    def quantity(
-        key: str, label: str, unit: str, of: Callable[[Dynamics], FloatArray], power: int
-    ) -> Quantity:
-        return Quantity(key, label, unit, lambda s: of(inverse_dynamics(s, masses, loads)) * metre**power)
-
-    found = [
-        quantity("torque", "drive torque", "N m", lambda d: d.torque, 2),
-        quantity("power", "drive power", "W", lambda d: d.power, 2),
-    ]
-    pairs = (("O2", "f12"), ("A", "f32"), ("B", "f43"), ("O4", "f14"))
-    for joint, (place, name) in zip(Joint, pairs, strict=True):
-        for axis, label in enumerate(("x", "y")):
-            found.append(
-                quantity(
-                    f"{name}_{label}", f"force {name.upper()} in {place}, {label}", "N",
-                    lambda d, n=name, i=axis: getattr(d, n)[..., i], 1,  # type: ignore[misc]
-                )
-            )  # fmt: skip
-        found.append(
-            quantity(name, f"joint force in {place}", "N", lambda d, j=joint: d.joint_force(j), 1)  # type: ignore[misc]
-        )
-    for axis, label in enumerate(("x", "y")):
-        found.append(
-            quantity(
-                f"shaking_force_{label}", f"shaking force, {label}", "N",
-                lambda d, i=axis: d.shaking_force[..., i], 1,  # type: ignore[misc]
-            )
-        )  # fmt: skip
-    return [
-        *found,
-        quantity(
-            "shaking_force", "shaking force", "N", lambda d: np.hypot(*np.moveaxis(d.shaking_force, -1, 0)), 1
-        ),
-        quantity("shaking_moment", "shaking moment about O2", "N m", lambda d: d.shaking_moment, 2),
-    ]
 
 
 def table_of(quantities: list[Quantity], states: list[Kinematics]) -> pd.DataFrame:

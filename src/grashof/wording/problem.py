@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from grashof.problems import DynamicsSpec, MotionTask, PathTask, Problem, Requirements, Task
+from grashof.problems import DynamicsSpec, Problem, Requirements, Task
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.problems.values.quantities import Unit
@@ -16,7 +16,7 @@ from grashof.synth.results.trade_offs import FACTORS
 def beginning(problem: Problem) -> str:
     """What a search begins with, in words."""
     task = problem.task
-    met = isinstance(task, MotionTask) and task.is_whole and ends_with_enough(problem)
+    met = task.is_whole and not task.is_timed and ends_with_enough(problem)
     return "tracing dyads and judging pairs" if met else "searching"
 
 
@@ -30,7 +30,7 @@ def ends_with_enough(problem: Problem) -> bool:
 def error_meaning(problem: Problem) -> str:
     """What the error of least squares counts besides distances; empty where there is nothing else."""
     task = problem.task
-    if not isinstance(task, MotionTask) or problem.requirements.is_exact(task) or not task.has_angle.any():
+    if problem.requirements.is_exact(task) or not task.has_angle.any():
         return ""
     unit = f" {problem.length_unit}" if problem.length_unit else ""
     return f"of positions and angles together, 1 rad counted as {task.angle_length:.6g}{unit}"
@@ -134,12 +134,10 @@ def _driven(spec: DynamicsSpec) -> str:
 
 
 def _task(task: Task, unit: str) -> str:
-    if isinstance(task, PathTask):
-        kind = "closed path" if task.closed else "path"
-        timing = "" if task.timing is None else f" timed over {abs(np.degrees(task.timing[-1])):g} deg"
-        return f"{kind} through {len(task)} points{timing}, size {task.size:g}{unit}"
-    size = f"size {task.size:g}{unit}, angle_length {task.angle_length:g}{unit}"
-    return f"motion through {len(task)} poses, {size}"
+    kind = f"closed {task.kind}" if task.closed else task.kind
+    timing = f" timed over {np.degrees(task.driver_turns[-1]):g} deg" if task.is_timed else ""
+    length = f", angle_length {task.angle_length:g}{unit}" if task.kind == "motion" else ""
+    return f"{kind} through {len(task)} {task.target}s{timing}, size {task.size:g}{unit}{length}"
 
 
 def _exactness(problem: Problem) -> str:

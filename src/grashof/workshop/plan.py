@@ -7,11 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.analysis import full_rotation, solve_position
+from grashof.analysis.four_bar.position import places
 from grashof.problems import FourBar, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import positive_number
 from grashof.workshop.plates import Plate, PlateSizes, base, link_plates, spacer
-from grashof.workshop.stacking import LINKS, Pin, Stack, places, ranges_of_use, stack, sweep
+from grashof.workshop.stacking import LINKS, Pin, Stack, poses, ranges_of_use, stack, sweep
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -147,22 +148,13 @@ def _in_millimetres(linkage: FourBar, mm_per_unit: float) -> FourBar:
     """The linkage in mm, with O2 at the origin."""
     if linkage.shape:
         raise ProblemError(f"linkage is a batch of shape {linkage.shape}; allowed is one linkage")
-    scale = positive_number(mm_per_unit, "mm_per_unit")
-    return FourBar(
-        o2=(0, 0),
-        o4=(linkage.o4 - linkage.o2) * scale,
-        r2=linkage.r2 * scale,
-        r3=linkage.r3 * scale,
-        r4=linkage.r4 * scale,
-        coupler_point=linkage.coupler_point * scale,
-        assembly=linkage.assembly,
-    )
+    return linkage.scaled(positive_number(mm_per_unit, "mm_per_unit"), linkage.o2)
 
 
 def _parts(
     plates: dict[str, Plate], order: Stack, linkage: FourBar, sizes: PlateSizes, theta2: float
 ) -> tuple[Part, ...]:
-    where = {name: place[0] for name, place in places(linkage, np.array([theta2])).items()}
+    where = {name: place[0] for name, place in poses(linkage, np.array([theta2])).items()}
     on_base = np.array([0.0, 0.0, float(linkage.theta1)])
     holes = {"O2": 0.0, "O4": float(linkage.r1)}
     if order.posts:
@@ -179,9 +171,9 @@ def _parts(
 
 
 def _joints(linkage: FourBar, theta2: float) -> dict[str, tuple[float, float]]:
-    state = solve_position(linkage, theta2)
-    points = {"O2": linkage.o2, "A": state.a, "B": state.b, "O4": linkage.o4, "P": state.p}
-    return {name: (float(point[0]), float(point[1])) for name, point in points.items()}
+    points = places(linkage, solve_position(linkage, theta2))
+    order = dict.fromkeys((*linkage.JOINTS, *linkage.POINTS))
+    return {name.upper(): (float(points[name][0]), float(points[name][1])) for name in order}
 
 
 def _use(

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from grashof.problems import FourBar, ProblemError
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.checks import number_within, positive_number
+from grashof.problems.values.linkage_parts import Link
 
 # A link longer than so many widths is a slip in the unit, and no plate.
 _SLENDEREST = 1000
@@ -163,16 +164,17 @@ def link_plates(linkage: FourBar, sizes: PlateSizes) -> tuple[dict[str, Plate], 
         A link too short or too long for its width.
     """
     u, v = linkage.coupler_point.tolist()
-    r2, r3, r4 = float(linkage.r2), float(linkage.r3), float(linkage.r4)
-    reach = max(abs(u), abs(u - r3), abs(v))
-    for name, length in (("r1", float(linkage.r1)), ("r2", r2), ("r3", r3), ("r4", r4), ("A-P", reach)):
+    lengths = dict(zip(linkage.LENGTHS, linkage.lengths.tolist(), strict=True))
+    reach = max(abs(u), abs(u - lengths["r3"]), abs(v))
+    for name, length in (lengths | {"A-P": reach}).items():
         _refuse_length(name, length, sizes)
-    coupler, note = _coupler(r3, u, v, sizes)
-    plates = {
-        "driver": bar("driver", ("O2", "A"), (0.0, r2), sizes),
-        "coupler": coupler,
-        "output": bar("output", ("O4", "B"), (0.0, r4), sizes),
-    }
+    plates, note = dict[str, Plate](), ""
+    for link in linkage.LINKS[1:]:
+        length = lengths[f"r{link.number}"]
+        if len(link.points) == 2:
+            plates[link.name] = bar(link.name, link.labels, (0.0, length), sizes)
+        else:
+            plates[link.name], note = _with_point(link, length, u, v, sizes)
     return plates, note
 
 
@@ -195,18 +197,18 @@ def spacer(sizes: PlateSizes) -> Plate:
     return _plate("spacer", ("pin",), centre, centre, sizes)
 
 
-def _coupler(r3: float, u: float, v: float, sizes: PlateSizes) -> tuple[Plate, str]:
-    """Plate of the coupler: a triangle, or a bar where P is too near to A or B or on their line."""
-    for joint, distance in (("A", np.hypot(u, v)), ("B", np.hypot(u - r3, v))):
+def _with_point(link: Link, length: float, u: float, v: float, sizes: PlateSizes) -> tuple[Plate, str]:
+    """Plate of a link with a point: a triangle, or a bar where it is too near to a joint or on their line."""
+    *joints, point = link.labels
+    for joint, distance in zip(joints, (np.hypot(u, v), np.hypot(u - length, v)), strict=True):
         if distance < sizes.least_spacing:
             where = f"it lies {distance:.4g} mm from {joint}, and holes are at least"
-            note = f"the coupler has no hole for P: {where} {sizes.least_spacing:g} mm apart"
-            return bar("coupler", ("A", "B"), (0.0, r3), sizes), note
-    joints = ("A", "B", "P")
-    if abs(v) <= 1e-9 * max(r3, abs(u)):
-        return bar("coupler", joints, (0.0, r3, u), sizes), ""
-    holes = np.array([(0.0, 0.0), (r3, 0.0), (u, v)])
-    return _plate("coupler", joints, holes, holes if v > 0 else holes[[0, 2, 1]], sizes), ""
+            note = f"the {link.name} has no hole for {point}: {where} {sizes.least_spacing:g} mm apart"
+            return bar(link.name, tuple(joints), (0.0, length), sizes), note
+    if abs(v) <= 1e-9 * max(length, abs(u)):
+        return bar(link.name, link.labels, (0.0, length, u), sizes), ""
+    holes = np.array([(0.0, 0.0), (length, 0.0), (u, v)])
+    return _plate(link.name, link.labels, holes, holes if v > 0 else holes[[0, 2, 1]], sizes), ""
 
 
 def _plate(

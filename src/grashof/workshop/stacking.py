@@ -20,17 +20,16 @@ import shapely
 
 from grashof.analysis import driver_ranges, full_rotation, solve_position
 from grashof.analysis.four_bar.mobility import range_index
+from grashof.analysis.four_bar.position import places
 from grashof.problems import FourBar, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.workshop.plates import Plate, PlateSizes
 
-LINKS = ("driver", "coupler", "output")
-# What each pin joins, beginning on the base where it stands on it.
+LINKS = tuple(link.name for link in FourBar.LINKS[1:])
+# What each pin joins; what is no link is the base.
 JOINTS = {
-    "O2": ("base", "driver"),
-    "A": ("driver", "coupler"),
-    "B": ("coupler", "output"),
-    "O4": ("base", "output"),
+    joint.upper(): tuple(FourBar.LINKS[number - 1].name for number in numbers)
+    for joint, numbers in FourBar.JOINTS.items()
 }
 GeometryArray: TypeAlias = npt.NDArray[np.object_]
 _SAMPLES = 721
@@ -148,19 +147,18 @@ def sweep(linkage: FourBar, ranges: tuple[tuple[float, float], ...], step: float
     # Closer towards the ends, where at a dead position the links run away from their driver.
     share = (1 - np.cos(np.linspace(0, np.pi, _SAMPLES))) / 2
     theta2 = np.concatenate([_fine(linkage, low + (high - low) * share, step) for low, high in ranges])
-    return Motion(theta2, places(linkage, theta2))
+    return Motion(theta2, poses(linkage, theta2))
 
 
-def places(linkage: FourBar, theta2: FloatArray) -> dict[str, FloatArray]:
+def poses(linkage: FourBar, theta2: FloatArray) -> dict[str, FloatArray]:
     """Origin (mm) and angle (rad) of each link's plate, and of each pin, shape (n, 3)."""
     state = solve_position(linkage, theta2)
-    o2, o4 = (np.broadcast_to(pivot, state.a.shape) for pivot in (linkage.o2, linkage.o4))
-    still = np.zeros_like(theta2)
+    points, still = places(linkage, state), np.zeros_like(theta2)
     placed = {
-        "driver": (o2, state.theta2), "coupler": (state.a, state.theta3), "output": (o4, state.theta4),
-        "O2": (o2, still), "A": (state.a, still), "B": (state.b, still), "O4": (o4, still),
-    }  # fmt: skip
-    return {name: np.column_stack([*origin.T, angle]) for name, (origin, angle) in placed.items()}
+        link.name: (link.points[0], getattr(state, f"theta{link.number}")) for link in linkage.LINKS[1:]
+    }
+    placed |= {joint.upper(): (joint, still) for joint in linkage.JOINTS}
+    return {name: np.column_stack([points[at], angle]) for name, (at, angle) in placed.items()}
 
 
 def placed(points: FloatArray, place: FloatArray) -> FloatArray:
@@ -210,7 +208,7 @@ def stack(plates: Mapping[str, Plate], linkage: FourBar, motion: Motion, sizes: 
         if pair is None:
             return Stack(layers, pins, met=tuple(met))
         met[_meeting(*pair, *gap(*pair))] = None
-    layers = {"driver": 1, "coupler": 2, "output": 3}
+    layers = {name: level for level, name in enumerate(LINKS, start=1)}
     posts = _posts(plates, linkage, motion, sizes)
     pins = (*(_pin(name, layers) for name in ("O2", "A", "B")), Pin("O4", 3, 4))
     pins += tuple(Pin(f"post {i}", 0, 4) for i in range(1, len(posts) + 1))
@@ -219,17 +217,19 @@ def stack(plates: Mapping[str, Plate], linkage: FourBar, motion: Motion, sizes: 
 
 def _orders() -> list[dict[str, int]]:
     """The ways to lay the links in layers: fewest layers first, fewest spacers, the driver lowest."""
-    orders = [
-        dict(zip(LINKS, levels, strict=True))
-        for levels in product((1, 2, 3), repeat=3)
-        if levels[1] not in (levels[0], levels[2]) and set(levels) == set(range(1, max(levels) + 1))
-    ]
+    levels = range(1, len(LINKS) + 1)
+    orders = (dict(zip(LINKS, each, strict=True)) for each in product(levels, repeat=len(LINKS)))
+
+    def possible(layers: dict[str, int]) -> bool:
+        """Whether no pin joins two parts on one layer, and no layer is empty."""
+        apart = all(pin.low < pin.high for pin in (_pin(name, layers) for name in JOINTS))
+        return apart and set(layers.values()) == set(range(1, max(layers.values()) + 1))
 
     def cost(layers: dict[str, int]) -> tuple[int, int, int]:
         spacers = sum(len(_pin(name, layers).passed) for name in JOINTS)
         return max(layers.values()), spacers, layers["driver"]
 
-    return sorted(orders, key=cost)
+    return sorted(filter(possible, orders), key=cost)
 
 
 def _pin(name: str, layers: Mapping[str, int]) -> Pin:
@@ -273,13 +273,12 @@ def _posts(
 
 
 def _fine(linkage: FourBar, theta2: FloatArray, step: float) -> FloatArray:
-    """Driver angles with others between them, until A, B and P make no longer step."""
+    """Driver angles with others between them, until no point makes a longer step."""
     while True:
-        state = solve_position(linkage, theta2)
-        joints = np.stack([state.a, state.b, state.p], axis=1)
-        moved = np.diff(joints, axis=0)  # NaN, and so never too long, beside a place where the loop is open
+        points = np.stack(list(places(linkage, solve_position(linkage, theta2)).values()), axis=1)
+        moved = np.diff(points, axis=0)  # NaN, and so never too long, beside a place where the loop is open
         too_far = np.hypot(moved[..., 0], moved[..., 1]).max(axis=1) > step
         long = np.flatnonzero(too_far & (np.diff(theta2) > _SHORTEST_STEP))
         if not long.size:
-            return theta2[np.isfinite(joints).all(axis=(1, 2))]
+            return theta2[np.isfinite(points).all(axis=(1, 2))]
         theta2 = np.insert(theta2, long + 1, (theta2[long] + theta2[long + 1]) / 2)

@@ -151,19 +151,11 @@ def _linkage_sheet(page: Worksheet, one: LinkageSpec | ListedDesign) -> None:
 def _facts(spec: LinkageSpec) -> list[tuple[str, Any, str]]:
     """What there is to say of a linkage: name, value, unit."""
     linkage, unit = spec.linkage, spec.length_unit
-    points = {"o2": linkage.o2, "o4": linkage.o4, "p": linkage.coupler_point}
-    names = {"o2": ("o2_x", "o2_y"), "o4": ("o4_x", "o4_y"), "p": ("p_u", "p_v")}
+    units = {"assembly": "", "body_angle_deg": "deg"}
     return [
         ("title", spec.title or spec.name, ""),
         ("source", spec.source, ""),
-        *((f"r{i}", float(length), unit) for i, length in enumerate(linkage.lengths, start=1)),
-        *(
-            (name, float(part), unit)
-            for key, point in points.items()
-            for name, part in zip(names[key], point, strict=True)
-        ),
-        ("assembly", int(linkage.assembly), ""),
-        ("body_angle_deg", float(np.degrees(linkage.body_angle)), "deg"),
+        *((name, value, units.get(name, unit)) for name, value in linkage.columns.items()),
         ("grashof_class", str(grashof_class(linkage)), ""),
         ("full_rotation", bool(full_rotation(linkage)), ""),
         ("transmission_min_cycle_deg", float(np.degrees(worst_transmission_cycle(linkage))), "deg"),
@@ -172,10 +164,12 @@ def _facts(spec: LinkageSpec) -> list[tuple[str, Any, str]]:
 
 def _targets(design: ListedDesign) -> list[Sequence[Any]]:
     """Where the linkage stands at each target, under a heading."""
-    state = solve_position(design.spec.linkage, design.theta2, design.assembly)
-    heading = ("target", "theta2_deg", "assembly", "a_x", "a_y", "b_x", "b_y", "p_x", "p_y", "position_error")
-    rows: list[Sequence[Any]] = [heading + (("angle_error_deg",) if design.angle_error else ())]
-    numbers = np.column_stack([state.a, state.b, state.p]).tolist()
+    linkage = design.spec.linkage
+    state = solve_position(linkage, design.theta2, design.assembly)
+    places = [f"{name}_{axis}" for name in linkage.MOVING for axis in "xy"]
+    heading = ["target", "theta2_deg", "assembly", *places, "position_error"]
+    rows: list[Sequence[Any]] = [heading + ["angle_error_deg"] * bool(design.angle_error)]
+    numbers = np.column_stack([getattr(state, name) for name in linkage.MOVING]).tolist()
     for i, (angle, joints) in enumerate(zip(np.degrees(design.theta2).tolist(), numbers, strict=True)):
         row = [i + 1, angle, design.assembly[i], *joints, design.position_error[i]]
         if design.angle_error:

@@ -67,7 +67,7 @@ def with_cusp(linkage: FourBar, theta2: float) -> FourBar:
 
 
 @pytest.mark.parametrize("kind", [kind for kind in GrashofClass if kind is not GrashofClass.CHANGE_POINT])
-@settings(max_examples=20)
+@settings(max_examples=8)
 @given(data=st.data())
 def test_planted_cusps_are_found(four_bars: FourBars, kind: GrashofClass, data: st.DataObject) -> None:
     linkage = data.draw(four_bars(kind))

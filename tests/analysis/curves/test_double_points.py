@@ -59,7 +59,7 @@ def test_the_sampled_curves_above_have_double_points() -> None:
 
 
 @pytest.mark.parametrize("kind", CLASSES)
-@settings(max_examples=20)
+@settings(max_examples=10)
 @given(data=st.data())
 def test_every_range_of_every_class(four_bars: FourBars, kind: GrashofClass, data: st.DataObject) -> None:
     linkage = data.draw(four_bars(kind))
@@ -81,7 +81,7 @@ def test_every_range_of_every_class(four_bars: FourBars, kind: GrashofClass, dat
 
 
 @pytest.mark.parametrize("kind", CLASSES)
-@settings(max_examples=20)
+@settings(max_examples=10)
 @given(data=st.data())
 def test_o2_o4_is_seen_from_them_as_a_b_from_p(
     four_bars: FourBars, kind: GrashofClass, data: st.DataObject

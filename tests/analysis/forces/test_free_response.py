@@ -32,11 +32,11 @@ SPRUNG = Loads(
 )
 
 
-@pytest.mark.parametrize("loads", [Loads(), SPRUNG])
-def test_free_motion_keeps_its_energy_over_ten_turns(loads: Loads) -> None:
-    free = free_response(JACK, BARS, np.linspace(0, 7, 100), 0.3, 10.0, loads=loads)
+@pytest.mark.parametrize(("loads", "turns"), [(Loads(), 2), (SPRUNG, 10)])
+def test_free_motion_keeps_its_energy(loads: Loads, turns: int) -> None:
+    free = free_response(JACK, BARS, np.linspace(0, 0.7 * turns, 100), 0.3, 10.0, loads=loads)
     assert free.ending is Ending.TIME
-    assert free.state.theta2[-1] - free.state.theta2[0] > 10 * TURN
+    assert free.state.theta2[-1] - free.state.theta2[0] > turns * TURN
     kinetic = mechanical_energy(free.state, BARS)
     assert np.ptp(kinetic) > 0 if loads is SPRUNG else True
     assert np.ptp(free.energy) <= 1e-6 * kinetic.max()

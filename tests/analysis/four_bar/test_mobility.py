@@ -24,7 +24,7 @@ from grashof.analysis.four_bar.mobility import range_index
 from grashof.problems import FourBar
 
 CHECKED = settings(max_examples=25)
-MARCHED = settings(CHECKED, max_examples=30)
+MARCHED = settings(CHECKED, max_examples=8)
 TURN = 2 * math.pi
 STEP = 0.01  # rad along the curve of closed loops
 Brute = Callable[..., tuple[npt.NDArray[np.complex128], ...]]

@@ -13,7 +13,7 @@ from grashof.analysis import GrashofClass, transmission_angle, worst_transmissio
 from grashof.analysis.four_bar.transmission import quality
 from grashof.problems import FourBar
 
-CHECKED = settings(max_examples=40)
+CHECKED = settings(max_examples=20)
 TURN = 2 * np.pi
 Brute = Callable[..., tuple[npt.NDArray[np.complex128], ...]]
 Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]

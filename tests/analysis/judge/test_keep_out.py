@@ -24,21 +24,24 @@ TASK = MotionTask(STATE.p, STATE.theta3 + 0.3)
 WAY = solve_position(LINKAGE, np.radians(np.linspace(20, 150, 20001)))
 
 
-def inside(polygon: Points, point: Points) -> bool:
-    """Whether the polygon winds about a point."""
-    towards = polygon - point
-    turn = np.arctan2(*np.roll(towards, -1, axis=0).T[::-1]) - np.arctan2(*towards.T[::-1])
-    return bool(abs(((turn + np.pi) % (2 * np.pi) - np.pi).sum()) > np.pi)
+def inside(polygon: Points, points: Points) -> npt.NDArray[np.bool_]:
+    """Whether the polygon winds about points (..., 2)."""
+    towards = (polygon - points[..., None, :]) @ np.array([1, 1j])
+    with np.errstate(invalid="ignore"):  # a point may be a corner
+        turns = np.angle(np.roll(towards, -1, axis=-1) * towards.conj())
+    return np.asarray(np.abs(turns.sum(axis=-1)) > np.pi)
 
 
-def from_sides(polygon: Points, point: Points) -> float:
+def from_sides(polygon: Points, points: Points) -> Points:
     along = np.roll(polygon, -1, axis=0) - polygon
-    share = np.clip(((point - polygon) * along).sum(1) / (along**2).sum(1), 0, 1)
-    return float(np.hypot(*(point - polygon - share[:, None] * along).T).min())
+    off = points[..., None, :] - polygon
+    share = np.clip((off * along).sum(-1) / (along**2).sum(-1), 0, 1)
+    gap = off - share[..., None] * along
+    return np.asarray(np.hypot(gap[..., 0], gap[..., 1]).min(axis=-1))
 
 
-def signed(polygon: Points, point: Points) -> float:
-    return from_sides(polygon, point) * (1 if inside(polygon, point) else -1)
+def signed(polygon: Points, points: Points) -> Points:
+    return from_sides(polygon, points) * np.where(inside(polygon, points), 1, -1)
 
 
 def box(x: float, y: float, half: float = 0.2) -> list[list[float]]:
@@ -59,8 +62,8 @@ def depths(verdict: Verdict) -> dict[str, float]:
 @pytest.mark.parametrize("polygon", [STAIRS, SPIRAL])
 def test_depth_of_points(polygon: Points) -> None:
     points = np.random.default_rng(1).uniform(-2, 10, (400, 2))
-    expected = [signed(polygon, point) for point in points]
-    assert min(expected) < 0 < max(expected)
+    expected = signed(polygon, points)
+    assert expected.min() < 0 < expected.max()
     np.testing.assert_allclose(depth(Area.of([polygon]), points), expected, atol=1e-12)
     np.testing.assert_allclose(depth(Area.of([polygon]), polygon), 0, atol=1e-15)
 
@@ -69,12 +72,10 @@ def test_depth_of_points(polygon: Points) -> None:
 def test_depth_of_segments(polygon: Points) -> None:
     begin, end = np.random.default_rng(2).uniform(-2, 10, (2, 60, 2))
     end[:5] = begin[:5]
-    shares = np.linspace(0, 1, 1001)[:, None]
-    expected = [
-        max(signed(polygon, point) for point in b + shares * (e - b)) for b, e in zip(begin, end, strict=True)
-    ]
+    shares = np.linspace(0, 1, 1001)[:, None, None]
+    expected = signed(polygon, begin + shares * (end - begin)).max(axis=0)
     found = segment_depth(Area.of([polygon]), begin, end)
-    assert (found >= np.array(expected) - 1e-9).all()
+    assert (found >= expected - 1e-9).all()
     np.testing.assert_allclose(found, expected, atol=0.02)
 
 
@@ -103,10 +104,10 @@ def test_ground_pivots(name: str) -> None:
 def test_moving_points_between_the_targets(name: str) -> None:
     track = getattr(WAY, name)
     polygon = np.array(box(*track[9000], half=0.05))
-    expected = max(signed(polygon, point) for point in track[8000:10000])
+    expected = signed(polygon, track[8000:10000]).max()
     assert expected > 0.03
     targets = getattr(STATE, name)
-    assert not any(inside(polygon, point) for point in targets)
+    assert not inside(polygon, targets).any()
     assert depths(judged([polygon], name)) == {name.upper(): pytest.approx(expected, abs=1e-5)}
     assert judged([polygon], *({"a", "b", "p"} - {name})).ok
 
@@ -164,8 +165,7 @@ def test_links_against_brute_force() -> None:
         ("line BP", "B", "P"),
     ):
         shares = np.linspace(0, 1, 61)[:, None, None]
-        every = (places[one] + shares * (places[other] - places[one])).reshape(-1, 2)
-        deep = max(signed(polygon, point) for point in every)
+        deep = signed(polygon, places[one] + shares * (places[other] - places[one])).max()
         if deep > 0.01:
             expected[link] = deep
     found = depths(judged([polygon], "links"))

@@ -9,8 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grashof.analysis import GrashofClass
-from grashof.analysis.judge.nearest_poses import at_poses, nearest_to_poses
+from grashof.analysis.judge.nearest_poses import nearest_to_poses
 from grashof.analysis.judge.planted import planted_motion
+from grashof.analysis.judge.task_motion import Targets
 from grashof.problems import FourBar, MotionTask
 
 CHECKED = settings(max_examples=40)
@@ -122,7 +123,7 @@ def test_what_is_missed_at_given_angles(close_loop: Brute) -> None:
     exact, linkage = planted_motion(np.random.default_rng(5), 4)
     task, signs = freed(exact, ["whole", "place", "turned", "whole"]), np.array([1, -1, 1, -1])
     theta2 = np.array([0.3, 1.0, -2.0, 4.0])
-    found = at_poses(linkage, task, theta2, signs)
+    found = Targets.of(linkage, task, theta2, signs)
     for k in range(4):
         a, b, p = close_loop(linkage, theta2[k], signs[k])
         gap = abs(p - complex(*exact.positions[k]))

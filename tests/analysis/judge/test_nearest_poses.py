@@ -9,8 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grashof.analysis import GrashofClass
-from grashof.analysis.judge.nearest_poses import driver_way, nearest_to_poses
+from grashof.analysis.judge.nearest_poses import nearest_to_poses
 from grashof.analysis.judge.planted import planted_motion
+from grashof.analysis.judge.task_motion import task_motion
 from grashof.problems import FourBar, MotionTask
 
 CHECKED = settings(max_examples=25)
@@ -115,7 +116,7 @@ def test_a_linkage_that_cannot_close_meets_nothing() -> None:
 
 def way_deg(linkage: FourBar, degrees: list[float], ordered: bool = True) -> tuple[list[float], int, bool]:
     """Start and end in degrees, sense, and whether in order."""
-    way = driver_way(linkage, np.radians(degrees), ordered)
+    way = task_motion(linkage, np.radians(degrees), ordered)
     assert np.exp(1j * way.theta2) == pytest.approx(np.exp(1j * np.radians(degrees)), abs=1e-12)
     return np.degrees([way.start, way.end]).round(9).tolist(), way.direction, way.in_order
 
@@ -151,9 +152,9 @@ def test_way_of_a_crank_that_meets_targets_in_sequence(
 
 
 def test_angles_along_the_way_are_counted_on() -> None:
-    way = driver_way(CRANK_ROCKER, np.radians([300.0, 350.0, 20.0, 40.0]), True)
+    way = task_motion(CRANK_ROCKER, np.radians([300.0, 350.0, 20.0, 40.0]), True)
     assert np.degrees(way.theta2) == pytest.approx([300, 350, 380, 400])
-    way = driver_way(CRANK_ROCKER, np.radians([20.0, 350.0, 300.0]), True)
+    way = task_motion(CRANK_ROCKER, np.radians([20.0, 350.0, 300.0]), True)
     assert np.degrees(way.theta2) == pytest.approx([20, -10, -60])
 
 
@@ -177,7 +178,7 @@ def test_rounding_does_not_add_a_turn() -> None:
     ],
 )
 def test_without_order_the_shortest_arc_is_used(degrees: list[float], span: float) -> None:
-    way = driver_way(CRANK_ROCKER, np.radians(degrees), False)
+    way = task_motion(CRANK_ROCKER, np.radians(degrees), False)
     assert np.degrees(way.end - way.start) == pytest.approx(span)
     assert (way.theta2 >= way.start - 1e-9).all()
     assert (way.theta2 <= way.end + 1e-9).all()
@@ -204,7 +205,7 @@ def test_way_of_a_rocker_stays_inside_its_range(
 
 @pytest.mark.parametrize("degrees", [[0.0, 60.0, 30.0], [0.0, 60.0, 0.0], [-20.0, 80.0, -60.0]])
 def test_a_rocker_that_turns_back_is_out_of_order(degrees: list[float]) -> None:
-    way = driver_way(ABOUT_GROUND, np.radians(degrees), True)
+    way = task_motion(ABOUT_GROUND, np.radians(degrees), True)
     assert not way.in_order
     assert np.degrees([way.start, way.end]) == pytest.approx([min(degrees), max(degrees)])
     assert np.degrees(way.theta2) == pytest.approx(degrees)

@@ -7,9 +7,10 @@ import numpy.typing as npt
 import pytest
 from scipy.optimize import LinearConstraint, minimize
 
-from grashof.analysis.judge.nearest_poses import Targets, Way, driver_way, nearest_to_poses
+from grashof.analysis.judge.nearest_poses import nearest_to_poses
 from grashof.analysis.judge.planted import planted_motion
 from grashof.analysis.judge.poses_in_order import poses_in_order
+from grashof.analysis.judge.task_motion import Targets, TaskMotion, task_motion
 from grashof.problems import FourBar, MotionTask
 
 TURN = 2 * np.pi
@@ -40,10 +41,10 @@ def out_of_order(seed: int, poses: int = 5, free: bool = False) -> tuple[MotionT
     return MotionTask(positions, angles, weights=rng.uniform(0.3, 3, poses)), linkage
 
 
-def in_order(linkage: FourBar, task: MotionTask) -> tuple[Targets, Way] | None:
+def in_order(linkage: FourBar, task: MotionTask) -> tuple[Targets, TaskMotion] | None:
     """What is judged; None where the nearest places are in order, or not on the linkage's assembly."""
     nearest = nearest_to_poses(linkage, task)
-    way = driver_way(linkage, nearest.theta2, True)
+    way = task_motion(linkage, nearest.theta2, True)
     if way.in_order or (nearest.assembly != int(linkage.assembly)).any():
         return None
     return poses_in_order(linkage, task, nearest, way)
@@ -68,7 +69,6 @@ CASES = [(seed, free) for seed in range(25) for free in (False, True)]
 
 
 def square_of(task: MotionTask, found: Targets) -> float:
-    assert found.angle_error is not None
     turn = task.angle_length * np.nan_to_num(found.angle_error)
     return float((task.weights * (np.nan_to_num(found.position_error) ** 2 + turn**2)).sum())
 
@@ -165,7 +165,7 @@ def test_every_pose_is_met_on_the_assembly_of_the_linkage() -> None:
     task, linkage = planted_motion(np.random.default_rng(2), 4)
     nearest = nearest_to_poses(linkage, task)
     mixed = Targets(nearest.theta2, np.array([1, -1, 1, 1]), nearest.position_error, nearest.angle_error)
-    targets, way = poses_in_order(linkage, task, mixed, driver_way(linkage, nearest.theta2, True))
+    targets, way = poses_in_order(linkage, task, mixed, task_motion(linkage, nearest.theta2, True))
     assert (targets.assembly == int(linkage.assembly)).all()
     np.testing.assert_allclose(way.theta2, nearest.theta2, atol=1e-9)
 
@@ -174,7 +174,7 @@ def test_a_linkage_that_cannot_close_stays_as_it_is() -> None:
     apart = FourBar(o2=(0, 0), o4=(9, 0), r2=1, r3=2, r4=2)
     task = MotionTask([[0, 0], [1, 0], [2, 3]], [0.0, 0.2, 0.1])
     nearest = nearest_to_poses(apart, task)
-    way = driver_way(apart, nearest.theta2, True)
+    way = task_motion(apart, nearest.theta2, True)
     targets, same = poses_in_order(apart, task, nearest, way)
     assert targets is nearest
     assert same is way

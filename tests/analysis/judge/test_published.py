@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from grashof.analysis import solve_position, verify
-from grashof.analysis.judge.nearest_points import nearest_to_points
-from grashof.problems import PathTask, catalogue, load
+from grashof.analysis.judge.meet import meet
+from grashof.problems import PathTask, Requirements, catalogue, load
 from grashof.problems.files.published import ErrorDefinition, PublishedDesign, published
 
 DESIGNS = [design for name in catalogue() for design in published(name)]
@@ -48,7 +48,7 @@ def test_the_judge_finds_no_greater_error_in_order(design: PublishedDesign) -> N
     assert verdict.order_ok
     assert verdict.circuit_ok
     assert verdict.branch_ok
-    targets, _ = nearest_to_points(design.linkage, problem.task, ordered=False, same_branch=True)  # type: ignore[arg-type]
+    targets, _ = meet(design.linkage, problem.task, Requirements(order=False))
     assert (targets.position_error**2).sum() <= verdict.error_sse * (1 + 1e-9)
 
 

@@ -17,10 +17,10 @@ from grashof.analysis.judge.planted import (
     uneven_driver_angles,
 )
 from grashof.analysis.judge.tolerance import (
-    DIMENSIONS,
     SAMPLES,
     dimension_errors,
     made_linkages,
+    measured_sensitivity,
     robustness,
     sensitivity,
     yield_linear,
@@ -137,7 +137,7 @@ def test_towards_a_dead_position_moves_have_no_bound() -> None:
 
 def test_errors_have_three_deviations_in_the_tolerance() -> None:
     errors = dimension_errors(Manufacturing(0.3), 200_000, np.random.default_rng(5))
-    assert errors.shape == (200_000, len(DIMENSIONS))
+    assert errors.shape == (200_000, len(FourBar.DIMENSIONS))
     np.testing.assert_allclose(np.cov(errors.T), 0.01 * np.eye(6), atol=2e-4)
     np.testing.assert_allclose(errors.mean(axis=0), 0, atol=1e-3)
     np.testing.assert_allclose((np.abs(errors) <= 0.3).mean(axis=0), 0.9973, atol=5e-4)
@@ -165,7 +165,7 @@ def test_a_misplaced_coupler_point_alone_moves_as_far_as_it_is_misplaced(band: f
     errors = dimension_errors(Manufacturing(0.15), SAMPLES, np.random.default_rng(7))
     errors[:, :4] = 0
     share = 1 - np.exp(-(band**2) / (2 * 0.05**2))
-    linear = yield_linear(CRANK_ROCKER, task, verdict, band, errors)
+    linear = yield_linear(measured_sensitivity(CRANK_ROCKER, task, verdict), band, errors)
     assert linear == pytest.approx(share, abs=4 * standard_error(share))
     assert yield_monte_carlo(CRANK_ROCKER, task, verdict, band, errors) == pytest.approx(linear, abs=1e-4)
 
@@ -181,7 +181,7 @@ def test_one_inexact_dimension(index: int) -> None:
     band = 1.2 * manufacturing.deviation * float(moves[index])
     share = normal_share(1.2, 1.0)
     for found in (
-        yield_linear(CRANK_ROCKER, task, verdict, band, errors),
+        yield_linear(measured_sensitivity(CRANK_ROCKER, task, verdict), band, errors),
         yield_monte_carlo(CRANK_ROCKER, task, verdict, band, errors),
     ):
         assert found == pytest.approx(share, abs=4 * standard_error(share))
@@ -225,7 +225,7 @@ def test_the_difference_vanishes_with_the_tolerance() -> None:
     unit = dimension_errors(Manufacturing(1.0), SAMPLES, np.random.default_rng(0))
     differing = [
         abs(
-            yield_linear(CRANK_ROCKER, task, verdict, tolerance, tolerance * unit)
+            yield_linear(measured_sensitivity(CRANK_ROCKER, task, verdict), tolerance, tolerance * unit)
             - yield_monte_carlo(CRANK_ROCKER, task, verdict, tolerance, tolerance * unit)
         )
         for tolerance in (1.0, 1e-1, 1e-3, 1e-5)
@@ -252,7 +252,7 @@ def test_linkages_that_cannot_be_assembled_are_outside(theta2: list[float]) -> N
     share = 0.5 * (1 + erf(0.01 / 0.02 / sqrt(2))) if passes else 1.0
     found = yield_monte_carlo(linkage, task, verdict, 1e3, errors)
     assert found == pytest.approx(share, abs=4 * standard_error(share))
-    assert yield_linear(linkage, task, verdict, 1e3, errors) == 1.0
+    assert yield_linear(measured_sensitivity(linkage, task, verdict), 1e3, errors) == 1.0
 
 
 def test_a_closed_path_is_a_whole_turn() -> None:
@@ -307,7 +307,7 @@ def test_moves_are_those_of_the_worst_target() -> None:
     assert found.worst_move == pytest.approx(worst, rel=1e-8)
     assert found.moves.max() * 0.2 < found.worst_move <= found.moves.sum() * 0.2 * (1 + 1e-12)
     path = PathTask(task.positions)
-    of_points = robustness(linkage, path, replace(verdict, angle_error=None), Manufacturing(0.2))
+    of_points = robustness(linkage, path, verdict, Manufacturing(0.2))
     np.testing.assert_allclose(
         of_points.moves, np.sqrt((slope[:, :2] ** 2).sum(axis=1)).max(axis=0), rtol=1e-8
     )
@@ -332,9 +332,7 @@ def test_figures_do_not_depend_on_place_scale_or_call() -> None:
 def test_a_long_path() -> None:
     theta2 = np.linspace(0.2, 5.0, 600)
     task = PathTask(solve_position(CRANK_ROCKER, theta2).p)
-    verdict = replace(
-        poses_of(CRANK_ROCKER, theta2)[1], theta2=theta2, assembly=np.ones(600, dtype=int), angle_error=None
-    )
+    verdict = replace(poses_of(CRANK_ROCKER, theta2)[1], theta2=theta2, assembly=np.ones(600, dtype=int))
     found = robustness(CRANK_ROCKER, task, verdict, Manufacturing(0.05, band=0.08))
     assert found.share_made == pytest.approx(found.share_linear, abs=0.01)
     assert found.share_made * 1000 == pytest.approx(round(found.share_made * 1000))

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from grashof.analysis import GrashofClass, driver_ranges, solve_position, verify
 from grashof.problems import FourBar, MotionTask, Requirements
 
-CHECKED = settings(max_examples=25)
+CHECKED = settings(max_examples=10)
 Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
 
 

@@ -36,6 +36,7 @@ UNCOVERED = """
 MISSES = "transmission_min_deg: the worst transmission angle over the turn in deg is 13.4955, allowed is "
 MISSES += f"from 60; constraints: {'a_long_name_' * 20} is 3, allowed is up to 0"
 Open = Callable[..., Page]
+QUIET = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +46,7 @@ def browser() -> Iterator[Browser]:
     if path is None:
         pytest.skip("no Chromium on this machine: the page is not tested in a browser")
     with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        started = playwright.chromium.launch(executable_path=path, args=QUIET)
         yield started
         started.close()
 

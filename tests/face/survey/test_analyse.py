@@ -363,6 +363,7 @@ def test_a_driver_at_rest_and_backwards(speed: float) -> None:
     assert table.loc["f12", "min"] > 0
 
 
+@pytest.mark.usefixtures("unsaved")
 @pytest.mark.parametrize("unit", ["=1+1", "@SUM(A1)", "+1", "-1"])
 def test_no_unit_is_a_formula_to_a_spreadsheet(grashof: Grashof, tmp_path: Path, unit: str) -> None:
     text = f'length_unit = "{unit}"\no4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n'

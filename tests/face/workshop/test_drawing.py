@@ -272,7 +272,7 @@ def test_all_joints_of_luggage_designs(few: Result) -> None:
 lengths = st.floats(15, 300)
 
 
-@settings(max_examples=30)
+@settings(max_examples=15)
 @given(r=st.tuples(lengths, lengths, lengths, lengths), u=st.floats(-200, 300), v=st.floats(-200, 200),
        assembly=st.sampled_from([1, -1]), ground=st.floats(0, 6.28))  # fmt: skip
 def test_any_linkage_moves_freely_or_is_refused(

@@ -220,7 +220,8 @@ STRUCTURE = [
     (HEAD + "[requirements]\no2 = { x = [1, {}] }", "requirements.o2.x[1] is a table; allowed is a number"),
     (
         HEAD + "[objective]\nmaximise = 3",
-        "objective.maximise is 3; allowed is transmission, compactness, torque, another quantity or a table of weights",
+        "objective.maximise is 3; allowed is transmission, compactness, torque, another quantity or a "
+        "table of weights",
     ),
     (
         HEAD + "[objective]\nmaximise = 'speed'",
@@ -359,7 +360,8 @@ UNKNOWN = [
     (
         HEAD + '"a b\\n" = 1',
         'motion."a b\\n" is unknown; '
-        "allowed are poses, weights, angle_length, body, within, angle_within_deg",
+        "allowed are poses, weights, angle_length, body, within, angle_within_deg, timing_deg, "
+        "closed",
     ),
     (f'kinds = "motion"\n[motion]\n{POSES}', "kinds is unknown; did you mean kind?\nkind is missing"),
 ]

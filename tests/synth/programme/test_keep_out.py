@@ -74,8 +74,9 @@ def test_without_the_area_the_best_pivots_lie_in_it() -> None:
     assert deeper_than(AS_GIVEN, pivots, 0.1).any()
 
 
+@pytest.mark.usefixtures("small_search")
 def test_no_crank_turns_fully_outside_a_floor_that_goes_on_and_the_note_says_so() -> None:
-    result = synthesize(luggage(GOES_ON, 12.0, rotatability="full-crank"))
+    result = synthesize(luggage(GOES_ON, 12.0, rotatability="full-crank"), starts=16)
     assert len(result) == 0
     assert result.complete
     assert "rotatability" in result.note or "keep_out" in result.note
@@ -98,10 +99,11 @@ def test_behind_a_floor_that_ends_at_9_a_crank_turns_fully(
         assert candidate.linkage.o2[0] >= 9 - 1e-7
 
 
+@pytest.mark.usefixtures("small_search")
 @pytest.mark.parametrize("names", [("a", "b", "p"), ("links",)])
 def test_moving_parts_pass_beside_a_post(names: tuple[str, ...]) -> None:
-    result = synthesize(luggage(POST, keep_out_for=names), enough=12)
-    assert len(result) >= 12
+    result = synthesize(luggage(POST, keep_out_for=names), enough=6)
+    assert len(result) >= 6
     for candidate in result.candidates:
         linkage, verdict = candidate.linkage, candidate.verdict
         theta2 = np.linspace(verdict.theta2[0], verdict.theta2[-1], 400)
@@ -125,17 +127,19 @@ def test_moving_parts_pass_beside_a_post(names: tuple[str, ...]) -> None:
                 assert not deeper_than(POST, one + share * (other - one), 1e-6).any()
 
 
+@pytest.mark.usefixtures("small_search")
 def test_where_only_the_way_is_obstructed_the_closest_miss_is_shown() -> None:
     """Every way of P from the upper floor to the lower one crosses the wall, though no pose lies in it."""
     wall = [[-9, 2], [9, 2], [9, 2.4], [-9, 2.4]]
-    result = synthesize(luggage(wall, keep_out_for=["p"]), starts=16)
+    result = synthesize(luggage(wall, keep_out_for=["p"]), starts=4)
     assert len(result) == 0
     assert "this alone would do: keep_out drawn in by 0.2, the depth of P" in result.note
     assert result.nearest
 
 
+@pytest.mark.usefixtures("small_search")
 def test_a_target_inside_is_named() -> None:
-    result = synthesize(luggage([[1, 2], [3, 2], [3, 4.5], [1, 4.5]], keep_out_for=["p"]), starts=16)
+    result = synthesize(luggage([[1, 2], [3, 2], [3, 4.5], [1, 4.5]], keep_out_for=["p"]), starts=4)
     assert "keep_out drawn in by 1, the depth of P" in result.note
 
 
@@ -152,6 +156,7 @@ def test_a_path_keeps_its_pivots_out() -> None:
         check_pivots(result, area)
 
 
+@pytest.mark.usefixtures("small_search")
 def test_a_look_at_the_way_agrees_with_the_judge(luggage_scaled: Callable[..., ScaledProblem]) -> None:
     scaled = luggage_scaled(rotatability="any")
     made = next(rounds(scaled, 40, np.random.default_rng(0)))

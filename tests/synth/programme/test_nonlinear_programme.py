@@ -308,7 +308,7 @@ def test_no_success_going_back(
     pairs = out_of_order(scaled)
     pairs = pairs[np.ptp(np.sign(np.diff(np.unwrap(pairs.theta2), axis=1)), axis=1) > 0]
     assert len(pairs) > 10
-    for index in range(0, len(pairs), len(pairs) // 5):
+    for index in range(0, len(pairs), len(pairs) // 3):
         start = Start.of_find(pairs, index, Objective())
         theta2 = np.unwrap(start.theta2)
         sense = 1 if theta2[-1] > theta2[0] else -1
@@ -341,7 +341,7 @@ def test_success_means_that_the_judge_agrees(luggage_scaled: SetupOf, all_pairs:
     pairs = pairs[~pairs.feasible & (np.abs(o4 - o2) > np.abs(a - o2))]
     least_first = np.argsort(pairs.violations.sum(axis=1), kind="stable")
     succeeded = 0
-    for index in least_first[: len(pairs) // 20 : len(pairs) // 160]:
+    for index in least_first[: len(pairs) // 20 : len(pairs) // 80]:
         start = replace(Start.of_find(pairs, int(index), Objective()), stay=True)
         result = attempt(scaled, start, 0)
         if result.status == "Solve_Succeeded":

@@ -83,7 +83,7 @@ def rival_from(begin: Floats, problem: Problem, side: float) -> Verdict | None:
 def test_no_worse_than_least_squares_by_another_method(poses: int) -> None:
     """From the same start, and there is nothing to gain from where it ends."""
     usable = 0
-    for seed in range(6):
+    for seed in range(3):
         weights = np.random.default_rng(seed).uniform(0.5, 2, poses)
         problem, linkage, verdict = noisy(seed, poses, weights=weights)
         assert isinstance(problem.task, MotionTask)
@@ -99,7 +99,7 @@ def test_no_worse_than_least_squares_by_another_method(poses: int) -> None:
             if other is not None:
                 assert found.square <= other.square * (1 + 1e-6), seed
                 usable += 1
-    assert usable >= 4
+    assert usable >= 2
 
 
 def test_the_planted_rivals_are_mostly_usable() -> None:
@@ -123,7 +123,6 @@ def test_a_heavy_pose_is_met_more_closely(seed: int) -> None:
         heavy = replace(problem, task=MotionTask(task.positions, task.angles, weights=weights))
         found = solved(heavy, linkage, verify(linkage, heavy.task, heavy.requirements)).verdict
         assert found.ok
-        assert found.angle_error is not None
         misses.append(np.hypot(found.position_error[3], task.angle_length * found.angle_error[3]))
     assert misses[2] < 0.3 * misses[0]
     assert misses[1] <= misses[0] * (1 + 1e-6)
@@ -140,8 +139,6 @@ def test_the_length_of_an_angle_weighs_angles_against_places() -> None:
         mine = replace(problem, task=other)
         found.append(solved(mine, linkage, verify(linkage, other, mine.requirements)).verdict)
     places, angles = found
-    assert places.angle_error is not None
-    assert angles.angle_error is not None
     assert places.error_rms < angles.error_rms
     assert (angles.angle_error**2).sum() < (places.angle_error**2).sum()
 
@@ -172,7 +169,6 @@ def test_exact_tasks_with_free_parts_keep_their_targets(
         found = solved(Problem(task=task, requirements=wanted), off, verdict).verdict
         if found.defects == ():
             assert found.error_max < 1e-9 * task.size
-            assert found.angle_error is not None
             assert np.nanmax(found.angle_error) < 1e-9
             assert found.transmission_min_task >= verdict.transmission_min_task - 1e-3
             met += 1

@@ -11,6 +11,8 @@ from grashof.analysis import verify
 from grashof.problems import Box, MotionTask, PathTask, Problem, Requirements
 from grashof.synth import Result
 
+pytestmark = pytest.mark.usefixtures("small_search")
+
 EIGHT = [[0, 0], [4, 1], [5, 4], [3, 6], [0, 5], [-3, 6], [-4, 3], [-2, 2]]
 
 
@@ -31,25 +33,11 @@ def check_nearest(result: Result, said_unit: str) -> float:
     return float(said[1])
 
 
-@pytest.mark.parametrize("exact", [None, True])
-def test_eight_closed_points_without_a_linkage_come_with_the_closest(exact: bool | None) -> None:
+def test_eight_closed_points_without_a_linkage_come_with_the_closest() -> None:
     task = PathTask(EIGHT, closed=True)
-    problem = Problem(task=task, requirements=Requirements(exact=exact), length_unit="mm")
-    result = synthesize(problem, starts=16)
+    result = synthesize(Problem(task=task, length_unit="mm"), starts=16)
     assert "exact = false" in result.note
     assert check_nearest(result, " mm") < 0.2 * task.size
-
-
-def test_nine_closed_points_at_random_say_that_exactly_there_is_none() -> None:
-    turn = np.linspace(0, 2 * np.pi, 10)[:-1]
-    radius = 3 + np.random.default_rng(5).uniform(-0.3, 0.3, 9)
-    points = np.stack([radius * np.cos(turn), radius * np.sin(turn)], axis=1)
-    task = PathTask(points, closed=True)
-    wanted = Requirements(link_ratio_max=8)
-    result = synthesize(Problem(task=task, requirements=wanted), starts=8)
-    if len(result):
-        pytest.skip("these points have a linkage")
-    check_nearest(result, "")
 
 
 def test_more_poses_than_there_are_exact_ones_for() -> None:
@@ -61,7 +49,6 @@ def test_more_poses_than_there_are_exact_ones_for() -> None:
     turned = re.search(r"and (\S+) deg everywhere, with exact = false$", result.note)
     assert turned is not None
     loose = verify(result.nearest[0].linkage, task, Requirements(exact=False))
-    assert loose.angle_error is not None
     assert np.degrees(loose.angle_error).max() <= float(turned[1])
     squares = [verify(one.linkage, task, Requirements(exact=False)).square for one in result.nearest]
     assert squares == sorted(squares)
@@ -95,6 +82,6 @@ def test_a_time_limit_leaves_the_explanation_out() -> None:
 
 
 def test_the_time_that_the_explanation_takes_is_told() -> None:
-    result = synthesize(replace(load("luggage"), requirements=Requirements(link_length=(0.3, 1.5))), starts=8)
+    result = synthesize(replace(load("luggage"), requirements=Requirements(link_length=(0.3, 1.5))), starts=4)
     assert "link_length up to" in repr(result)
     assert result.seconds["explaining"] > 0

@@ -1,5 +1,6 @@
 """What alone has to be relaxed: problems made infeasible by a known amount, and hints that are true."""
 
+from concurrent.futures import Executor
 from dataclasses import replace
 from typing import Any
 
@@ -17,6 +18,8 @@ from grashof.synth.results.attempt import attempt
 from grashof.synth.results.explain import Failure, explain
 from grashof.synth.results.relaxation import Relaxation, limiting, loosest, relaxation
 from grashof.synth.results.single_relaxations import relaxations
+
+pytestmark = pytest.mark.usefixtures("small_search")
 
 BY = 0.1  # sizes or shares that a limit is moved by
 
@@ -165,16 +168,10 @@ def test_either_of_two_contradictory_limits_would_do_for_least_squares() -> None
     assert found["link_length"].words.startswith("link_length up to 39")
 
 
-def test_the_seed_decides() -> None:
+def test_neither_workers_nor_repetition_change_an_explanation(two_processes: Executor) -> None:
     problem = replace(load("luggage"), requirements=Requirements(link_length=(0.3, 1.5)))
-    one, other = (synthesize(problem, starts=8, seed=3) for _ in range(2))
-    assert one.note == other.note
-    assert [near.id for near in one.nearest] == [near.id for near in other.nearest]
-
-
-def test_workers_change_no_explanation() -> None:
-    problem = replace(load("luggage"), requirements=Requirements(link_length=(0.3, 1.5)))
-    one, two = (synthesize(problem, starts=8, workers=workers) for workers in (1, 2))
+    one, two = (synthesize(problem, starts=4, seed=3, executor=other) for other in (None, two_processes))
+    assert "link_length up to" in one.note
     assert one.note == two.note
     assert [near.id for near in one.nearest] == [near.id for near in two.nearest]
 

@@ -15,7 +15,7 @@ from grashof.synth.starts.exact_poses import degenerate, obstacle, refuse_equal_
 from grashof.synth.starts.selection import PEAK_SPACING, PEAKS
 from grashof.synth.theory.distinct import apart, signature
 
-pytestmark = pytest.mark.usefixtures("coarse_curves")
+pytestmark = pytest.mark.usefixtures("small_search")
 
 SetupOf = Callable[..., ScaledProblem]
 

@@ -37,9 +37,10 @@ def target_of(kind: tuple[str, bool, bool, bool], n: int = 7, seed: int = 0, **w
     rng = np.random.default_rng([5, seed])
     along = np.linspace(0, 4, n)
     points = np.exp(0.7j * along) * (1 + 0.2 * along) + rng.normal(0, 0.1, (n, 2)) @ np.array([1, 1j])
-    timing = np.concatenate([[0.0], np.cumsum(rng.uniform(0.2, 0.8, n - 1))]) if timed else None
+    timing = np.concatenate([[0.0], np.cumsum(rng.uniform(0.2, 0.8, n - 1))]) if timed else np.zeros(n)
     limits = GENEROUS | {"rotatability": rotatability, "order": order, "same_branch": branch} | wanted
-    return PathTarget(points, rng.uniform(0.5, 2, n), timing, Requirements(**limits))
+    free = np.zeros(n)
+    return PathTarget(points, rng.uniform(0.5, 2, n), free, free, timing, Requirements(**limits))
 
 
 def place(target: PathTarget, batch: Batch) -> Placed:
@@ -108,7 +109,6 @@ def test_draws_are_in_order_and_of_one_assembly(kind: tuple[str, bool, bool, boo
         assert (steps > 0).all()
         assert (steps.sum(axis=1) < 2 * np.pi).all()
     if timed:
-        assert target.timing is not None
         np.testing.assert_allclose(steps, np.tile(np.diff(target.timing), (60, 1)), atol=1e-12)
     if not order and not timed:
         assert (steps < 0).any(axis=1).mean() > 0.9
@@ -221,8 +221,8 @@ def test_pulls_count_what_oversteps() -> None:
     over = np.maximum(np.log(lengths / 0.8), 0) - np.maximum(np.log(0.5 / lengths), 0)
     np.testing.assert_allclose(pull[:, :4], over.T, atol=1e-8)
     ratio = np.log(lengths.max(axis=0) / lengths.min(axis=0) / 1.2)
-    np.testing.assert_allclose(pull[:, 4], np.maximum(ratio, 0), atol=1e-8)
-    for column, pivot in zip(pull[:, 5:7].T, (placed.a, placed.b), strict=True):
+    np.testing.assert_allclose(pull[:, 6], np.maximum(ratio, 0), atol=1e-8)
+    for column, pivot in zip(pull[:, 4:6].T, (placed.a, placed.b), strict=True):
         arm = np.abs(placed.p[:, 0] - pivot[:, 0]) - 0.3
         np.testing.assert_allclose(column, np.maximum(arm, 0), atol=1e-8)
     o2, o4 = placed.o2, placed.o4

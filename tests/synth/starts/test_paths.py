@@ -97,7 +97,6 @@ def test_prescribed_rotations_are_kept(path_scaled: PathSetup, points: int, any_
     scaled, _ = path_scaled(3, points, timed=True, **wanted)
     finds = finds_of(scaled)
     assert len(finds)
-    assert scaled.timing is not None
     turned = finds.direction[:, None] * (finds.theta2 - finds.theta2[:, :1])
     np.testing.assert_allclose(turned, np.tile(scaled.timing, (len(finds), 1)), atol=1e-9)
     check_tracks(scaled, first_rounds(scaled, 1)[0].starts[:10], 1e-5 if scaled.exact else 1.0)
@@ -122,9 +121,8 @@ def test_a_last_point_that_repeats_the_first_is_met_after_a_turn(exact: bool) ->
 def test_an_unrepeated_path_is_taken_as_it_is() -> None:
     target = path_target(setup_of(ELLIPSE))
     assert target.weights.tolist() == [1.0] * 9
-    assert target.timing is None
+    assert not target.timed
     timed = path_target(setup_of(LINE, timing=[0, -10, -20, -30, -40, -50]))
-    assert timed.timing is not None
     np.testing.assert_allclose(np.degrees(timed.timing), [0, 10, 20, 30, 40, 50])
 
 

@@ -46,10 +46,10 @@ def target_of(kind: tuple[str, bool, bool], free: str, seed: int = 0) -> PathTar
     return PathTarget(
         np.where(weights > 0, points, 0),
         weights,
-        None,
-        Requirements(**limits),
         np.where(turn_weights > 0, turns, 0),
         turn_weights,
+        np.zeros(N),
+        Requirements(**limits),
     )
 
 
@@ -70,8 +70,6 @@ def turned_of(target: PathTarget, batch: Batch) -> tuple[FloatArray, FloatArray,
 
 
 def missed(target: PathTarget, coupler: FloatArray, body_angle: FloatArray) -> FloatArray:
-    assert target.turns is not None
-    assert target.turn_weights is not None
     off = np.angle(np.exp(1j * (coupler + body_angle - target.turns)))
     square: FloatArray = (target.turn_weights * off**2).sum(axis=-1)
     return square
@@ -86,8 +84,6 @@ def test_the_error_is_that_of_places_and_angles_as_placed(kind: tuple[str, bool,
     target = target_of(kind, free)
     batch = draws(target, 40)
     coupler, body_angle, gap = turned_of(target, batch)
-    assert target.turns is not None
-    assert target.turn_weights is not None
     expected = gap + missed(target, coupler, body_angle[:, None])
     # Turned by nearly half a turn, an angle may be counted the longer way round.
     off = np.abs(np.angle(np.exp(1j * (coupler + body_angle[:, None] - target.turns))))
@@ -105,8 +101,6 @@ def test_the_error_is_that_of_places_and_angles_as_placed(kind: tuple[str, bool,
 def test_no_other_body_angle_is_better(kind: tuple[str, bool, bool], free: str) -> None:
     """Where angles are missed by less than a quarter turn, the only least one; brute force about it."""
     target = target_of(kind, free)
-    assert target.turns is not None
-    assert target.turn_weights is not None
     batch = draws(target, 300)
     coupler, body_angle, _ = turned_of(target, batch)
     scan = np.linspace(-np.pi, np.pi, 721)
@@ -138,7 +132,6 @@ def test_the_weighted_mean_is_taken_across_the_half_turn() -> None:
     turns = np.angle(np.exp(1j * (about + 0.02 * np.arange(N))))
     residual, body_angle = body_turns(replace(target, turns=turns), loop)
     weights = target.turn_weights
-    assert weights is not None
     mean = 0.02 * (weights * np.arange(N)).sum() / weights.sum()
     np.testing.assert_allclose(np.exp(1j * body_angle[0]), -np.exp(1j * mean), atol=1e-12)
     expected = np.sqrt(weights) * (0.02 * np.arange(N) - mean)
@@ -178,10 +171,9 @@ def test_angles_have_the_derivatives_of_differences(kind: tuple[str, bool, bool]
     size = np.abs(by_difference).max(axis=1, keepdims=True) + cost[:, None]
     near = (np.abs(gradient - by_difference) < 1e-4 * size).all(axis=1)
     assert near[smooth].mean() > 0.9
-    if target.turn_weights is not None:
-        none = np.flatnonzero(target.turn_weights == 0)
-        assert (residual[:, 2 * N + none] == 0).all()
-        assert (jacobian[:, 2 * N + none] == 0).all()
+    none = np.flatnonzero(target.turn_weights == 0)
+    assert (residual[:, 2 * N + none] == 0).all()
+    assert (jacobian[:, 2 * N + none] == 0).all()
 
 
 def test_improving_never_makes_worse_and_gains() -> None:
@@ -197,8 +189,6 @@ def test_improving_never_makes_worse_and_gains() -> None:
 
 def test_steps_count_what_both_neighbours_give() -> None:
     target = target_of(KINDS[0], "both")
-    assert target.turns is not None
-    assert target.turn_weights is not None
     heaviest = np.sqrt(target.turn_weights.max())
     for k, step in enumerate(target.steps):
         square = 0.0

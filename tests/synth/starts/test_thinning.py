@@ -13,7 +13,9 @@ def target_of(count: int, timed: bool = False, **wanted: object) -> PathTarget:
     return PathTarget(
         points=np.exp(1j * angle) + 0.2 * np.exp(-2j * angle),
         weights=np.ones(count),
-        timing=angle if timed else None,
+        turns=np.zeros(count),
+        turn_weights=np.zeros(count),
+        timing=angle if timed else np.zeros(count),
         wanted=Requirements(**wanted).resolved(1.0),
     )
 
@@ -44,8 +46,6 @@ def test_refined_angles_pass_the_kept_points_and_stay_in_order() -> None:
 def test_timing_is_thinned_with_its_points() -> None:
     target = target_of(90, timed=True)
     some, index = thinned(target, 30)
-    assert some.timing is not None
-    assert target.timing is not None
     np.testing.assert_array_equal(some.timing, target.timing[index])
     batch = refined(target, index, draw(some, 5, np.random.default_rng(0)))
     assert place(target, batch).theta2.shape == (5, 90)

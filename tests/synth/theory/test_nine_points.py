@@ -1,5 +1,6 @@
 """All linkages through nine points: against finite differences, planted linkages and the published count."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -8,6 +9,8 @@ import pytest
 from grashof import load, synthesize
 from grashof.analysis import verify
 from grashof.analysis.judge.planted import planted_path
+from grashof.problems import Requirements
+from grashof.synth.starts import paths
 from grashof.synth.theory.monodromy import collect, general_problem
 from grashof.synth.theory.nine_points import (
     TRIPLETS,
@@ -97,6 +100,23 @@ def test_all_linkages_keep_their_lengths_at_every_point(planted):
         assert np.ptp(length, axis=1).max() < 1e-6 * np.abs(found).max()
 
 
+@pytest.fixture(scope="module")
+def computed_once():
+    """All linkages through the same points are computed but once."""
+    computed = {}
+
+    def linkages(points, rng):
+        key = np.round(points, 9).tobytes()
+        if key not in computed:
+            computed[key] = linkages_through(points, rng)
+        return computed[key]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(paths, "linkages_through", linkages)
+        yield
+
+
+@pytest.mark.usefixtures("computed_once")
 def test_points_near_a_circle_have_the_published_21_triplets_and_none_without_defect():
     problem = load("nine-points")
     result = synthesize(problem, enough=200)
@@ -106,3 +126,15 @@ def test_points_near_a_circle_have_the_published_21_triplets_and_none_without_de
     assert max(c.verdict.error_max for c in result.candidates) < 1e-9 * problem.task.size
     strict = replace(problem.requirements, order=True, same_branch=True, tolerance=1e-9)
     assert not any(verify(c.linkage, problem.task, strict).ok for c in result.candidates)
+
+
+@pytest.mark.usefixtures("computed_once", "small_search")
+def test_where_every_linkage_has_a_defect_the_note_says_so_and_the_closest_comes_as_near_as_it_says():
+    problem = replace(load("nine-points"), requirements=Requirements(same_branch=True, order=True))
+    result = synthesize(problem, starts=40)
+    assert "none of the 63 linkages through the points meets all requirements" in result.note
+    nearest = next(one for one in result.nearest if "exact" in {d.requirement for d in one.verdict.defects})
+    loose = verify(nearest.linkage, problem.task, replace(problem.requirements, exact=False))
+    assert loose.ok
+    said = re.search(r"comes within (\S+)(?: \w+)? everywhere", result.note)
+    assert loose.error_max <= float(said[1]) <= loose.error_max * 1.02

@@ -1,0 +1,79 @@
+"""How a linkage does a task: where it meets each target, and the motion between them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from grashof.analysis.four_bar.mobility import branch_index
+from grashof.analysis.judge.nearest_points import met_singly
+from grashof.analysis.judge.nearest_poses import nearest_to_poses
+from grashof.analysis.judge.points_in_order import Met, met_in_order
+from grashof.analysis.judge.poses_in_order import poses_in_order
+from grashof.analysis.judge.task_motion import Targets, TaskMotion, task_motion
+from grashof.analysis.judge.timed_targets import met_in_time
+from grashof.problems import FourBar, Requirements, Task
+from grashof.problems.values.arrays import TURN
+
+
+def meet(linkage: FourBar, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
+    """Driver angle, assembly and error at each target, and the motion between them, from the linkage alone.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        A single linkage.
+    task : Task
+    wanted : Requirements
+        With `order` free targets are met in sequence, in either sense of the driver, within one turn;
+        otherwise each by itself as near as possible. With `same_branch` points stay on the linkage's
+        own assembly, within one range of the driver. Points and timed targets are met from the
+        driver angle `theta2_start_deg` on, where it is given.
+
+    Returns
+    -------
+    Targets, TaskMotion
+        Of the least weighted squares of distances and angles; of equal ones the shortest motion.
+
+    Examples
+    --------
+    >>> from grashof.analysis import solve_position
+    >>> from grashof.problems import PathTask
+    >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, coupler_point=(2, 1))
+    >>> task = PathTask(solve_position(crank_rocker, [0.3, 0.2, 6.0]).p)
+    >>> targets, motion = meet(crank_rocker, task, Requirements())
+    >>> motion.theta2.round(6).tolist(), motion.direction, bool(targets.position_error.max() < 1e-13)
+    ([0.3, 0.2, -0.283185], -1, True)
+    """
+    if task.is_timed or task.only_points:
+        targets, motion = _points_or_timed(linkage, task, wanted)
+    else:
+        targets, motion = _poses(linkage, task, wanted)
+    return targets, motion.closed() if task.closed else motion
+
+
+def _points_or_timed(linkage: FourBar, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
+    start = None if wanted.theta2_start_deg is None else float(np.radians(wanted.theta2_start_deg))
+    method = met_in_time if task.is_timed else met_in_order if wanted.order else met_singly
+    met = method(linkage, task, wanted.same_branch, start)
+    if met is None:
+        turns = np.nan_to_num(task.driver_turns)
+        met = Met((start or 0.0) + turns, np.full(len(task), int(linkage.assembly)), 1)
+    theta2 = met.theta2
+    if start is None:
+        theta2 = theta2 - TURN * np.round(theta2[0] / TURN)
+    if met.direction:
+        motion = TaskMotion.ordered(theta2, met.direction)
+    else:
+        motion = task_motion(linkage, theta2, False)
+    return Targets.of(linkage, task, theta2, met.assembly), motion
+
+
+def _poses(linkage: FourBar, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
+    targets = nearest_to_poses(linkage, task)
+    motion = task_motion(linkage, targets.theta2, wanted.order)
+    if wanted.order and not (wanted.is_exact(task) and task.is_whole):
+        branch = branch_index(linkage, targets.theta2, targets.assembly)
+        joined = (branch == branch[0]).all() and targets.assembly[0] == int(linkage.assembly)
+        if not motion.in_order or (wanted.same_branch and not joined):
+            return poses_in_order(linkage, task, targets, motion)
+    return targets, motion

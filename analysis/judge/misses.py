@@ -1,0 +1,65 @@
+"""How far a linkage is off its targets at given driver angles: squares, and their derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from grashof.analysis.curves.coupler_curve import coupler_rates
+from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.numerics.minimisation import Model
+from grashof.problems import FourBar, Task
+from grashof.problems.values.arrays import TURN, FloatArray, IntArray
+
+
+def misses(linkage: FourBar, task: Task, theta2: FloatArray, assembly: IntArray) -> FloatArray:
+    """|dp|^2 + (angle_length * dangle)^2 of what targets have, shape (..., N); inf where it cannot close."""
+    state = solve_position(linkage, theta2, assembly)
+    gap = np.where(task.has_position, ((state.p - task.positions) ** 2).sum(axis=-1), 0.0)
+    off = wrapped(state.theta3 - (task.angles - linkage.body_angle))
+    turn = np.where(task.has_angle, task.angle_length * off, 0.0)
+    miss: FloatArray = np.nan_to_num(gap + turn**2, nan=np.inf, posinf=np.inf)
+    return miss
+
+
+def squares(
+    linkage: FourBar, task: Task, assembly: IntArray, order: slice = slice(None)
+) -> Callable[[FloatArray], Model]:
+    """The misses, weighted, as functions of the driver angles, shape (..., N).
+
+    Parameters
+    ----------
+    linkage : FourBar
+        A single linkage.
+    task : Task
+    assembly : ndarray of int, shape (..., N)
+    order : slice
+        Of the targets.
+    """
+    point = np.nan_to_num(task.positions[order] @ np.array([1, 1j]))
+    angle = np.nan_to_num(task.angles[order] - linkage.body_angle)
+    by_point = (task.weights * task.has_position)[order]
+    by_angle = (task.weights * task.has_angle)[order] * task.angle_length**2
+    arm = complex(*linkage.coupler_point)
+
+    def model(theta2: FloatArray) -> Model:
+        state = solve_position(linkage, theta2, assembly)
+        omega3, alpha3 = coupler_rates(linkage, state)
+        with np.errstate(invalid="ignore", over="ignore"):
+            crank, turned = linkage.r2 * np.exp(1j * theta2), arm * np.exp(1j * state.theta3)
+            gap = state.p @ np.array([1, 1j]) - point
+            off = wrapped(state.theta3 - angle)
+            rate, bend = 1j * (crank + omega3 * turned), -crank + (1j * alpha3 - omega3**2) * turned
+            value = by_point * (gap.real**2 + gap.imag**2) + by_angle * off**2
+            slope = 2 * (by_point * (rate.conj() * gap).real + by_angle * omega3 * off)
+            positive = 2 * (by_point * (rate.real**2 + rate.imag**2) + by_angle * omega3**2)
+            curved = 2 * (by_point * (bend.conj() * gap).real + by_angle * alpha3 * off)
+            return np.nan_to_num(value, nan=np.inf), slope, positive + curved, positive
+
+    return model
+
+
+def wrapped(angle: FloatArray) -> FloatArray:
+    """Angles moved by whole turns into [-pi, pi)."""
+    return (angle + np.pi) % TURN - np.pi

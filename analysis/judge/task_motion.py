@@ -1,0 +1,128 @@
+"""Where a linkage meets its targets, and the motion of its driver between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from grashof.analysis.four_bar.mobility import range_index, rotatability
+from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.judge.misses import wrapped
+from grashof.problems import FourBar, Task
+from grashof.problems.values.arrays import TURN, FloatArray, IntArray
+
+STEADY = 1e-9  # rad: a driver step so small counts as none
+
+
+@dataclass(frozen=True, slots=True)
+class Targets:
+    """The linkage at each target, as near as it comes.
+
+    Parameters
+    ----------
+    theta2 : ndarray, shape (N,), rad
+        Driver angle.
+    assembly : ndarray of int, shape (N,)
+        Assembly on which it is nearest.
+    position_error : ndarray, shape (N,), length
+        Distance from the target position, NaN where none is given; inf where it cannot be assembled.
+    angle_error : ndarray, shape (N,), rad
+        Turn from the target angle, NaN where none is given.
+    """
+
+    theta2: FloatArray
+    assembly: IntArray
+    position_error: FloatArray
+    angle_error: FloatArray
+
+    @classmethod
+    def of(cls, linkage: FourBar, task: Task, theta2: FloatArray, assembly: IntArray) -> Targets:
+        """The errors at given driver angles and assemblies, each of shape (N,)."""
+        state = solve_position(linkage, theta2, assembly)
+        gap = state.p - task.positions
+        distance = np.nan_to_num(np.hypot(gap[:, 0], gap[:, 1]), nan=np.inf)
+        turned = np.abs(wrapped(state.theta3 + linkage.body_angle - task.angles))
+        return cls(
+            theta2,
+            assembly,
+            np.where(task.has_position, distance, np.nan),
+            np.where(task.has_angle, np.nan_to_num(turned, nan=np.pi), np.nan),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class TaskMotion:
+    """The motion of the driver from the first target to the last.
+
+    Parameters
+    ----------
+    theta2 : ndarray, shape (N,), rad
+        Driver angles at the targets, unwrapped along the motion.
+    start, end : float, rad
+        Ends of the motion.
+    direction : int
+        Sense of the driver: +1 counter-clockwise, -1 clockwise.
+    in_order : bool
+        The driver meets the targets in sequence, in one sense, within one turn.
+    """
+
+    theta2: FloatArray
+    start: float
+    end: float
+    direction: int
+    in_order: bool
+
+    @classmethod
+    def ordered(cls, theta2: FloatArray, direction: int) -> TaskMotion:
+        """The motion through driver angles that are in order already."""
+        return cls(theta2, float(theta2[0]), float(theta2[-1]), direction, True)
+
+    def closed(self) -> TaskMotion:
+        """The same, gone on to a whole turn."""
+        return replace(self, end=self.start + self.direction * TURN)
+
+
+def task_motion(linkage: FourBar, theta2: FloatArray, ordered: bool) -> TaskMotion:
+    """The motion of the driver through given angles.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        A single linkage.
+    theta2 : ndarray, shape (N,), rad
+        Driver angle at each target.
+    ordered : bool
+        Meet the targets in sequence. Otherwise in any: the shortest motion that holds them all.
+
+    Returns
+    -------
+    TaskMotion
+    """
+    turns = bool((rotatability(linkage) >= 0).all())  # through a change point too, as circuits count it
+    index, inside = range_index(linkage, theta2)
+    if not turns and (index >= 0).all() and np.ptp(index) == 0:  # one range: no way around
+        step = np.diff(inside)
+        direction = 1 if inside[-1] >= inside[0] else -1
+        in_order = bool((direction * step >= -STEADY).all())
+        if ordered and in_order:
+            return TaskMotion.ordered(inside, direction)
+        return TaskMotion(inside, float(inside.min()), float(inside.max()), direction, in_order)
+    motions = [_turning(theta2, direction) for direction in (1, -1)]
+    best = min(motions, key=lambda motion: abs(motion.end - motion.start))
+    return best if ordered else _shortest_arc(theta2, best)
+
+
+def _turning(theta2: FloatArray, direction: int) -> TaskMotion:
+    step = (direction * np.diff(theta2) + STEADY) % TURN - STEADY
+    unwrapped = theta2[0] + direction * np.concatenate([[0.0], np.cumsum(step)])
+    in_order = bool(step.sum() <= TURN + STEADY)
+    return replace(TaskMotion.ordered(unwrapped, direction), in_order=in_order)
+
+
+def _shortest_arc(theta2: FloatArray, ordered: TaskMotion) -> TaskMotion:
+    around = np.sort(theta2 % TURN)
+    gap = np.diff(around, append=around[0] + TURN)
+    start = around[(np.argmax(gap) + 1) % len(around)]
+    unwrapped = start + (theta2 - start + STEADY) % TURN - STEADY
+    return TaskMotion(unwrapped, float(start), float(start + TURN - gap.max()), 1, ordered.in_order)

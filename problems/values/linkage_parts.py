@@ -1,0 +1,128 @@
+"""What a kind of linkage is stated by: the parameters that it is given by, and the points on its links."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum, auto
+from itertools import combinations
+
+import numpy as np
+import numpy.typing as npt
+
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.errors import ProblemError
+
+
+class Kind(Enum):
+    """What the numbers of a parameter are."""
+
+    PLACE = auto()  # x and y, length
+    ARM = auto()  # u and v in the frame of a link, length
+    LENGTH = auto()
+    SIGN = auto()
+    ANGLE = auto()  # rad, in files and tables degrees
+
+
+_ENDINGS = {Kind.PLACE: ("_x", "_y"), Kind.ARM: ("_u", "_v"), Kind.ANGLE: ("_deg",)}
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One of the parameters that a linkage is given by.
+
+    Parameters
+    ----------
+    name : str
+        In Python and JSON.
+    kind : Kind
+    column : str
+        What its columns in tables begin with, where that is not the name.
+    """
+
+    name: str
+    kind: Kind
+    column: str = ""
+
+    @property
+    def paired(self) -> bool:
+        """Whether it is two numbers, on a last axis."""
+        return self.kind in (Kind.PLACE, Kind.ARM)
+
+    @property
+    def in_length(self) -> bool:
+        """Whether its numbers are in the unit of length."""
+        return self.kind in (Kind.PLACE, Kind.ARM, Kind.LENGTH)
+
+    @property
+    def key(self) -> str:
+        """Its key in linkage files."""
+        return f"{self.name}_deg" if self.kind is Kind.ANGLE else self.name
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Its columns in tables, one a number."""
+        return tuple((self.column or self.name) + ending for ending in _ENDINGS.get(self.kind, ("",)))
+
+    def array(self, value: npt.ArrayLike) -> FloatArray:
+        """A value of the parameter as an array.
+
+        Raises
+        ------
+        ProblemError
+            It is not a number, not finite, not a pair, not a length or not a sign.
+        """
+        try:
+            array = np.asarray(value, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise ProblemError(f"{self.name} is {value!r}; allowed are numbers") from None
+        if not np.isfinite(array).all():
+            raise ProblemError(f"{self.name} is {value!r}; all numbers must be finite")
+        if self.paired and array.shape[-1:] != (2,):
+            raise ProblemError(f"{self.name} has shape {array.shape}; allowed is (..., 2)")
+        if self.kind is Kind.LENGTH and np.any(array <= 0):
+            raise ProblemError(f"{self.name} is {value!r}; allowed are lengths greater than zero")
+        if self.kind is Kind.SIGN and np.any(np.abs(array) != 1):
+            raise ProblemError(f"{self.name} is {value!r}; allowed is +1 or -1")
+        return array
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """A link and the points on it.
+
+    Parameters
+    ----------
+    number : int
+        1 is the ground, 2 the driver. Its length is r1, r2, ..., its direction theta1, theta2, ...
+    name : str
+    points : tuple of str
+        The first is the origin of its frame, the second lies on its u-axis.
+    """
+
+    number: int
+    name: str
+    points: tuple[str, ...]
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Its points as they are written in drawings: O2, A."""
+        return tuple(point.upper() for point in self.points)
+
+    @property
+    def lines(self) -> tuple[tuple[str, str], ...]:
+        """Its points, each joined with every other one."""
+        return tuple(combinations(self.points, 2))
+
+
+def points_of(links: Sequence[Link]) -> tuple[str, ...]:
+    """All points on some links, each once."""
+    return tuple(dict.fromkeys(point for link in links for point in link.points))
+
+
+def joints_of(links: Sequence[Link]) -> dict[str, tuple[int, ...]]:
+    """The points where links are joined, in their order round the loop, with the numbers of these links."""
+    joined = {
+        point: tuple(link.number for link in links if point in link.points) for point in points_of(links[1:])
+    }
+    return {point: numbers for point, numbers in joined.items() if len(numbers) > 1}

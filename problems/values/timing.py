@@ -1,0 +1,80 @@
+"""Timing: the driver rotations at which targets are met, and whether the motion is a whole turn."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from grashof.problems.values.arrays import TURN, FloatArray, frozen_array
+from grashof.problems.values.checks import counted
+from grashof.problems.values.errors import ProblemError
+
+
+def driver_timing(values: npt.ArrayLike | None, count: int, kind: str, target: str) -> FloatArray | None:
+    """Driver rotations from the first of `count` targets, shape (count,), rad.
+
+    Parameters
+    ----------
+    values : array_like or None
+        Zero at the first target, then growing or falling throughout, over at most one turn.
+    count : int
+    kind, target : str
+        The table in problem files and what it calls a target, for messages; these are in degrees.
+
+    Raises
+    ------
+    ProblemError
+        Not such numbers.
+
+    Examples
+    --------
+    >>> driver_timing([0, -1, -2], 3, "path", "point")
+    array([ 0., -1., -2.])
+    """
+    if values is None:
+        return None
+    timing, where = finite_angles(values, kind), f"{kind}.timing_deg"
+    if len(timing) != count:
+        raise ProblemError(f"{where} has {counted(len(timing), 'angle')} for {count} {target}s")
+    if timing[0] != 0:
+        raise ProblemError(f"{where}[0] is {_degrees(timing[0])}; allowed is 0, at the first {target}")
+    sense = np.sign(timing[1])
+    for index in np.flatnonzero(sense * np.diff(timing) <= 0) + 1:
+        raise ProblemError(
+            f"{where}[{index}] is {_degrees(timing[index])} after {_degrees(timing[index - 1])}; "
+            "allowed are angles that only grow, or only fall"
+        )
+    if abs(timing[-1]) > TURN * (1 + 1e-12):
+        last = f"{where}[{count - 1}] is {_degrees(timing[-1])}"
+        raise ProblemError(f"{last}; allowed is up to one turn, 360")
+    return frozen_array(timing)
+
+
+def timing_from_degrees(values: npt.ArrayLike | None, kind: str) -> FloatArray | None:
+    """The same as problem files write them, not checked yet but for being finite numbers."""
+    return None if values is None else np.radians(finite_angles(values, kind))
+
+
+def finite_angles(values: npt.ArrayLike, kind: str) -> FloatArray:
+    """A list of finite numbers, as an array."""
+    where = f"{kind}.timing_deg"
+    try:
+        numbers = np.asarray(values)
+    except ValueError:  # lists of unequal length inside
+        raise ProblemError(f"{where} is {values!r}; allowed is a list of angles") from None
+    if numbers.ndim != 1 or numbers.dtype.kind not in "iuf":
+        raise ProblemError(f"{where} is {values!r}; allowed is a list of angles")
+    for index in np.flatnonzero(~np.isfinite(numbers)):
+        raise ProblemError(f"{where}[{index}] is {numbers[index]}; all numbers must be finite")
+    return numbers.astype(np.float64)
+
+
+def whole_turn(closed: bool, kind: str) -> bool:
+    """Whether the motion is a whole turn of the driver, refused when it is not true or false."""
+    if not isinstance(closed, (bool, np.bool_)):
+        raise ProblemError(f"{kind}.closed is {closed!r}; allowed is true or false")
+    return bool(closed)
+
+
+def _degrees(angle: float) -> str:
+    return f"{np.degrees(angle):.6g}"

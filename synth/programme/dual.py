@@ -1,0 +1,65 @@
+"""Numbers with their derivatives by the unknowns of a search, for functions written with NumPy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.lib.mixins import NDArrayOperatorsMixin
+
+from grashof.problems.values.arrays import FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Dual(NDArrayOperatorsMixin):
+    """Values (n, K) and their slopes (n, K, M) by M unknowns; K may be 1 in either where it is broadcast.
+
+    Forward differentiation (Griewank & Walther, *Evaluating Derivatives*, 2008, chapter 3).
+
+    Examples
+    --------
+    >>> x = Dual(np.array([[3.0]]), np.array([[[1.0, 0.0]]]))
+    >>> y = Dual(np.array([[4.0]]), np.array([[[0.0, 1.0]]]))
+    >>> np.hypot(x, 2 * y - 4).slope.tolist()
+    [[[0.6, 1.6]]]
+    """
+
+    value: FloatArray
+    slope: FloatArray
+
+    def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **others: Any) -> Any:
+        if method != "__call__" or others or ufunc not in _SLOPES:
+            return NotImplemented
+        values = [each.value if isinstance(each, Dual) else each for each in inputs]
+        value = ufunc(*values)
+        slopes = [
+            each.slope if by_it is ONE else np.asarray(by_it)[..., None] * each.slope
+            for each, by_it in zip(inputs, _SLOPES[ufunc](value, *values), strict=True)
+            if isinstance(each, Dual)
+        ]
+        return Dual(value, slopes[0] if len(slopes) == 1 else slopes[0] + slopes[1])
+
+
+ONE = 1.0  # its product with a slope is that slope
+# Derivatives of functions by each argument, from their value and arguments.
+_SLOPES: dict[np.ufunc, Callable[..., tuple[Any, ...]]] = {
+    np.add: lambda f, x, y: (ONE, ONE),
+    np.subtract: lambda f, x, y: (ONE, -1.0),
+    np.multiply: lambda f, x, y: (y, x),
+    np.true_divide: lambda f, x, y: (1 / y, -f / y),
+    np.negative: lambda f, x: (-1.0,),
+    np.power: lambda f, x, y: (y * x ** (y - 1), 0.0),  # exponents are numbers
+    np.square: lambda f, x: (2 * x,),
+    np.sqrt: lambda f, x: (0.5 / f,),
+    np.absolute: lambda f, x: (np.sign(x),),
+    np.exp: lambda f, x: (f,),
+    np.log: lambda f, x: (1 / x,),
+    np.sin: lambda f, x: (np.cos(x),),
+    np.cos: lambda f, x: (-np.sin(x),),
+    np.arctan2: lambda f, y, x: (x / (x**2 + y**2), -y / (x**2 + y**2)),
+    np.hypot: lambda f, x, y: (x / f, y / f),
+    np.maximum: lambda f, x, y: (np.where(x >= y, 1.0, 0.0), np.where(x >= y, 0.0, 1.0)),
+    np.minimum: lambda f, x, y: (np.where(x <= y, 1.0, 0.0), np.where(x <= y, 0.0, 1.0)),
+}

@@ -1,0 +1,165 @@
+"""Formulas of the search: what designs are worth, written once with NumPy functions.
+
+On the arrays of many designs a formula is the screen, on numbers with derivatives (`Dual`) a residual of the
+batched search, on CasADi symbols a row or a limit of the nonlinear programme. The judge has a measure of the
+same key, which shares nothing with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator
+from dataclasses import dataclass
+from itertools import permutations
+from typing import Any
+
+import numpy as np
+
+from grashof.problems import Requirements
+from grashof.problems.values.arrays import Limits
+from grashof.problems.values.requirements import LIMITS
+from grashof.synth.programme.vector import Vector
+
+
+class View:
+    """A design, or many, at their targets; lengths in sizes, angles in rad.
+
+    Scalars are arrays (n, 1), `Dual`, or symbols; what belongs to targets has N columns, or is a symbol of N
+    rows.
+
+    Attributes
+    ----------
+    o2, o4 : Vector
+    r1, r2, r3, r4, theta1 : scalar
+    ap, bp : Vector
+        From A and B to the coupler point, in any frame.
+    a, b : Vector, at the targets
+    theta2_start : scalar
+        Driver angle at the first target.
+    """
+
+    o2: Vector
+    o4: Vector
+    r1: Any
+    r2: Any
+    r3: Any
+    r4: Any
+    theta1: Any
+    theta2_start: Any
+    ap: Vector
+    bp: Vector
+    a: Vector
+    b: Vector
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """One number of a quantity, or one at every target.
+
+    Parameters
+    ----------
+    name : str
+        Such as "r3" or "o2.x".
+    of : callable
+        From a `View`.
+    axis : str
+        Of the box that limits it; empty for other limits.
+    dyad : int, optional
+        2 or 4 for what the driver's dyad (O2, A) or the driven one (O4, B) decides by itself.
+    squared : bool
+        `of` gives the square, which has no kink at zero.
+    per : callable, optional
+        What `of` is divided by, so that a limit can be a product.
+    """
+
+    name: str
+    of: Callable[[Any], Any]
+    axis: str = ""
+    dyad: int | None = None
+    squared: bool = False
+    per: Callable[[Any], Any] | None = None
+
+
+def _place(name: str, dyad: int) -> tuple[Part, ...]:
+    return tuple(
+        Part(f"{name}.{axis}", lambda d, axis=axis: getattr(getattr(d, name), axis), axis, dyad)
+        for axis in "xy"
+    )
+
+
+_LINKS = (
+    Part("r1", lambda d: d.r1),
+    Part("r2", lambda d: d.r2, dyad=2),
+    Part("r3", lambda d: d.r3),
+    Part("r4", lambda d: d.r4, dyad=4),
+)
+_EXTREMES = Part(
+    "longest to shortest",
+    lambda d: np.maximum(np.maximum(d.r1, d.r2), np.maximum(d.r3, d.r4)),
+    per=lambda d: np.minimum(np.minimum(d.r1, d.r2), np.minimum(d.r3, d.r4)),
+)
+# Between any two links: what stands for the extremes where no kink is wanted.
+_PAIRS = tuple(
+    Part(f"{long.name} to {short.name}", long.of, per=short.of) for short, long in permutations(_LINKS, 2)
+)
+
+# By the key of the quantity.
+FORMULAS: dict[str, tuple[Part, ...]] = {
+    "link_length": _LINKS,
+    **{link.name: (link,) for link in _LINKS},
+    "link_ratio": (_EXTREMES,),
+    "coupler_arms": (
+        Part("A-P", lambda d: d.ap.square, dyad=2, squared=True),
+        Part("B-P", lambda d: d.bp.square, dyad=4, squared=True),
+    ),
+    "o2": _place("o2", 2),
+    "o4": _place("o4", 4),
+    "a": _place("a", 2),
+    "b": _place("b", 4),
+    "ground_angle": (Part("theta1", lambda d: d.theta1),),
+    "theta2_start": (Part("theta2", lambda d: d.theta2_start, dyad=2),),
+}
+_SMOOTH = {"link_ratio": _PAIRS}
+LOGARITHMIC = {"link_length", "r1", "r2", "r3", "r4", "link_ratio"}  # ratios count, not differences
+
+
+def parts_of(limited: Collection[str], *, smooth: bool = False) -> Iterator[tuple[str, Part]]:
+    """Parts of all that is limited, each with its field of `Requirements`.
+
+    Parameters
+    ----------
+    limited : collection of str
+        Fields.
+    smooth : bool
+        Formulas without a kink are asked for.
+    """
+    for name in limited:
+        key = LIMITS[name].quantity.key
+        for part in (_SMOOTH if smooth else {}).get(key, FORMULAS.get(key, ())):
+            if key != "link_length" or part.name not in limited:  # a limit of its own overrides it
+                yield name, part
+
+
+def range_of(wanted: Requirements, name: str, part: Part) -> Limits:
+    """What a field of `wanted` allows for a part."""
+    low, high = wanted.ranges(name)[part.axis]
+    return low, high
+
+
+def cos_mu(d: View, diagonal2: Any) -> Any:
+    """Cosine of the transmission angle by the law of cosines in A-B-O4, from the square of A-O4."""
+    return (d.r3**2 + d.r4**2 - diagonal2) / (2 * d.r3 * d.r4)
+
+
+def folded(d: View) -> Any:
+    """Square of A-O4 with O2A folded over the ground line."""
+    return (d.r1 - d.r2) ** 2
+
+
+def stretched(d: View) -> Any:
+    """Square of A-O4 with O2A stretched along the ground line."""
+    return (d.r1 + d.r2) ** 2
+
+
+def at_angle(d: View, angle: Any) -> Any:
+    """Square of A-O4 with O2A turned by an angle from the ground line."""
+    return folded(d) + 4 * d.r1 * d.r2 * np.sin(angle / 2) ** 2

@@ -1,0 +1,171 @@
+"""Limits and goals of quantities in the programme: as bounds of unknowns, as rows, as the objective."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import casadi as ca
+import numpy as np
+
+from grashof.problems.values.arrays import TURN, FloatArray, Limits
+from grashof.problems.values.quantities import Kind
+from grashof.problems.values.requirements import LIMITS, QUANTITIES
+from grashof.synth.programme.along_motion import AGREES, ALONG, LOADS, MOST_PEAKS, Instant, loads, magnitudes
+from grashof.synth.programme.builder import Builder, Fill, always
+from grashof.synth.programme.constraints import Places, Symbols, cross, vector
+from grashof.synth.programme.formulas import FORMULAS, Part, parts_of, range_of
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.start import Start
+from grashof.synth.programme.structure import Form
+from grashof.synth.programme.unknowns import FAR, Unknowns, inset, lifted, near
+from grashof.synth.programme.vector import Vector
+
+ADDED = 2 * MOST_PEAKS  # driver angles, at most, that are added to the grid
+
+
+def require_limits(build: Builder, form: Form, x: Unknowns, places: Places) -> None:
+    """Every limit of a quantity: of a plain unknown by its bounds, of anything else by rows.
+
+    Where a start gives a bound up, rows with slack stand for it.
+    """
+    design = Symbols(x, places)
+    for name, part in parts_of(form.limited, smooth=True):
+        value, angle = ca.SX(part.of(design)), LIMITS[name].kind is Kind.EQUAL
+        allowed = _angle(name, part) if angle else _range(name, part)
+        leaf = value.is_scalar() and value.is_leaf() and part.per is None and not part.squared
+        if leaf:
+            build.bound(value, allowed if angle else _inset(allowed), gives=(name, part.name))
+        if leaf or angle:
+            build.require_if_given_up((name, part.name), *_rows(build, design, part, value, allowed))
+        else:
+            build.require((name, part.name), *_rows(build, design, part, value, allowed))
+    if build.slack is not None:
+        least = build.parameter(lambda scaled, _: np.radians(scaled.wanted.transmission_min_deg))
+        build.require(("transmission_min_deg",), x.tau - least)
+
+
+def _range(name: str, part: Part) -> Fill:
+    def limits(scaled: ScaledProblem, _: Start) -> Limits:
+        return near(range_of(scaled.wanted, name, part))
+
+    return limits
+
+
+def _angle(name: str, part: Part) -> Fill:
+    def limits(scaled: ScaledProblem, start: Start) -> Limits:
+        now = start.theta1 if name == "ground_angle_deg" else start.theta2[start.visit.index(0)]
+        angle = lifted(range_of(scaled.wanted, name, part)[0], now)
+        return angle, angle
+
+    return limits
+
+
+def _inset(allowed: Fill) -> Fill:
+    return lambda scaled, start: inset(allowed(scaled, start))
+
+
+def _rows(build: Builder, design: Symbols, part: Part, value: ca.SX, allowed: Fill) -> list[ca.SX]:
+    """Rows that are not negative where a value lies within its limits."""
+    if part.per is not None:
+        return [part.per(design) - value / build.parameter(lambda scaled, start: allowed(scaled, start)[1])]
+    squared: Fill = lambda scaled, start: np.square(inset(allowed(scaled, start)))  # noqa: E731
+    low, high = ca.vertsplit(build.parameter(squared if part.squared else allowed, 2))
+    return [value - low, high - value]
+
+
+def cost_of_goals(build: Builder, form: Form, x: Unknowns, places: Places) -> ca.SX:
+    """What is made least: the goals by their weights. What is limited along the motion is bounded, too."""
+    weights = {key: build.parameter(_share(form, key)) for key in form.goals}
+    cost, design = ca.SX(0), Symbols(x, places)
+    for key, weight in weights.items():
+        if key == "transmission":
+            cost -= weight * x.tau / (np.pi / 2)
+        elif key == "size":
+            cost += weight * diagonal(build, x, places)
+        elif key in FORMULAS:
+            (part,) = FORMULAS[key]
+            cost -= weight * QUANTITIES[key].better * ca.SX(part.of(design))
+    for key in form.along:
+        cost += weights.get(key, 0.0) * _peak(build, form, x, places, key)
+    return cost
+
+
+def diagonal(build: Builder, x: Unknowns, places: Places) -> ca.SX:
+    """Diagonal of a box around the pivots at all targets."""
+
+    def corner(pick: Callable[[FloatArray], FloatArray]) -> Fill:
+        def guess(scaled: ScaledProblem, start: Start) -> FloatArray:
+            every = np.concatenate([start.points, start.track.ravel(), scaled.targets])
+            return np.array([pick(every.real), pick(every.imag)])
+
+        return guess
+
+    low, high = (build.unknown(name, 2, corner(pick), always(-FAR, FAR)) for name, pick in _CORNERS.items())
+    for point in (x.o2, x.o4, *places.a, *places.b, *places.p):
+        build.row(point - low, high - point)
+    return ca.sqrt(ca.sumsqr(high - low) + 1e-12)
+
+
+_CORNERS: dict[str, Callable[[FloatArray], FloatArray]] = {"low": np.min, "high": np.max}
+
+
+def _peak(build: Builder, form: Form, x: Unknowns, places: Places, key: str) -> ca.SX:
+    """What a magnitude does not exceed at any driver angle of an even grid, and at those added to it.
+
+    In units of its peak at the start.
+    """
+    arm, coupler = places.p[0] - places.a[0], places.b[0] - places.a[0]
+    on_coupler = Vector(ca.dot(coupler, arm) / x.r[2], cross(coupler, arm) / x.r[2])
+    ground, lengths = vector(x.o4 - x.o2), ca.vertsplit(x.r)
+    unit = build.parameter(lambda scaled, start: peak_unit(form, scaled, start, key))
+    load = ca.vertsplit(build.parameter(lambda scaled, _: loads(scaled.problem), LOADS))
+    added = ca.vertsplit(build.parameter(lambda _, start: _padded(start.peaks_at.get(key, ())), ADDED))
+    peak = build.unknown(key, 1, lambda *_: 1.0, _most(form, key))
+    last = x.theta2[0] + x.direction * TURN if form.closed else x.theta2[form.targets - 1]
+    for share in (*np.linspace(0, 1, form.grid), *added):
+        at = Instant.of(
+            ground, lengths, on_coupler, x.assembly, x.theta2[0] + share * (last - x.theta2[0]), load
+        )
+        for value in ALONG[key](at):
+            if isinstance(value, Vector):
+                build.row(peak**2 - (value / unit).square)
+            else:
+                build.row(peak - value / unit, peak + value / unit)
+    return peak
+
+
+def _padded(shares: Sequence[float]) -> FloatArray:
+    return np.pad(np.array(shares, dtype=np.float64), (0, ADDED - len(shares)))
+
+
+def peak_unit(form: Form, scaled: ScaledProblem, start: Start, key: str) -> float:
+    """The greatest magnitude of a quantity at the start, in `Problem.scale`."""
+    ways = np.array([start.theta2]), np.array([start.direction]), np.array([start.assembly])
+    peak = float(magnitudes(scaled.problem, key, start.points[None], *ways, form.grid).max())
+    return peak if 1e-9 < peak < np.inf else 1.0
+
+
+def _most(form: Form, key: str) -> Fill:
+    """Limits of a peak, in units of that at the start."""
+
+    def limits(scaled: ScaledProblem, start: Start) -> Limits:
+        fields = [name for name, limit in scaled.wanted.limited.items() if limit.quantity.key == key]
+        most = min((scaled.wanted.ranges(name)[""][1] for name in fields), default=np.inf)
+        return 0.0, most / (scaled.scale(QUANTITIES[key]) * peak_unit(form, scaled, start, key)) * (
+            1 - AGREES
+        )
+
+    return limits
+
+
+def _share(form: Form, key: str) -> Fill:
+    """Weight of a goal; those of all add up to 1."""
+
+    def counted(scaled: ScaledProblem, start: Start, key: str) -> float:
+        unit = peak_unit(form, scaled, start, key) if key in ALONG else 1.0
+        return start.objective.goals[key] * unit / (scaled.scale(QUANTITIES[key]) if key in FORMULAS else 1.0)
+
+    def share(scaled: ScaledProblem, start: Start) -> float:
+        return counted(scaled, start, key) / sum(counted(scaled, start, each) for each in form.goals)
+
+    return share

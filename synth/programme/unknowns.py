@@ -1,0 +1,140 @@
+"""The unknowns of the programme: pivots at the first target, lengths, angles, and what is worst."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+
+from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
+from grashof.synth.programme.builder import Builder, always
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.start import Start
+from grashof.synth.programme.structure import Form
+
+FAR = 1e3  # sizes: stands for "no limit"
+INSET = 1e-8  # sizes, rad: limits are tightened by this much, so that the polished design keeps them
+SHORTEST = 1e-6  # sizes, of a link
+LEAST_TRANSMISSION = 1e-3  # rad: keeps the motion away from dead positions
+LIFTED = 10 * np.pi  # rad: angles are counted on along the motion
+
+
+@dataclass(frozen=True, slots=True)
+class Unknowns:
+    """Symbols of a design: the unknowns, and the choices that a start makes once for all.
+
+    Angles are lifted, so that order is a linear constraint and no arc function is differentiated.
+    `theta3` and `arm` (u, v) follow where whole poses are met exactly; `body_angle` is there for others.
+
+    Parameters
+    ----------
+    o2, o4, a, b : SX, shape (2,), sizes
+        The moving pivots at the first target.
+    r : SX, shape (4,), sizes
+    theta1, tau : SX, rad
+        Direction of the ground line; the worst transmission angle.
+    theta2, theta3 : SX, shape (N,), rad
+        In the order of visit.
+    arm : SX, shape (2,), sizes
+    body_angle : SX, rad
+    direction, assembly : SX
+        Sense of the driver and assembly, +1 or -1.
+    at_first : SX, shape (N,)
+        1 at the first target, else 0.
+    """
+
+    o2: ca.SX
+    o4: ca.SX
+    a: ca.SX
+    b: ca.SX
+    r: ca.SX
+    theta1: ca.SX
+    theta2: ca.SX
+    tau: ca.SX
+    theta3: ca.SX
+    arm: ca.SX
+    body_angle: ca.SX
+    direction: ca.SX
+    assembly: ca.SX
+    at_first: ca.SX
+
+    @classmethod
+    def of(cls, build: Builder, form: Form) -> Unknowns:
+        """The unknowns of a form, in their order."""
+        n, none = form.targets, ca.SX(0, 1)
+        wide, turns = always(-FAR, FAR), always(-100.0, 100.0)
+        pivots = {name: build.unknown(name, 2, *_pivot(name)) for name in ("o2", "o4", "a", "b")}
+        return cls(
+            **pivots,
+            r=build.unknown("r", 4, lambda _, start: start.lengths, always(SHORTEST, FAR)),
+            theta1=build.unknown("theta1", 1, lambda _, start: start.theta1, always(-LIFTED, LIFTED)),
+            theta2=build.unknown("theta2", n, lambda _, start: start.theta2, _first_fixed),
+            tau=build.unknown("tau", 1, lambda *_: 0.0, _least_transmission),
+            theta3=none if form.poses else build.unknown("theta3", n, lambda _, start: start.theta3, turns),
+            arm=none
+            if form.poses
+            else build.unknown("arm", 2, lambda _, start: interleaved(start.arm), wide),
+            body_angle=build.unknown("body_angle", 1, lambda _, start: start.body_angle, turns)
+            if any(form.angles) and not form.poses
+            else none,
+            direction=build.parameter(lambda _, start: start.direction),
+            assembly=build.parameter(lambda _, start: start.assembly),
+            at_first=build.parameter(lambda _, start: [float(target == 0) for target in start.visit], n),
+        )
+
+    @property
+    def theta2_start(self) -> ca.SX:
+        """Driver angle at the first target."""
+        return ca.dot(self.at_first, self.theta2)
+
+
+def _pivot(name: str) -> tuple[object, object]:
+    """Guess and limits of a pivot, which may move by the radius of a start."""
+    far = (-FAR, FAR) if name in ("o2", "o4") else inset((-FAR, FAR))
+
+    def guess(_: ScaledProblem, start: Start) -> FloatArray:
+        return interleaved(getattr(start, name))
+
+    def limits(_: ScaledProblem, start: Start) -> tuple[FloatArray, FloatArray]:
+        middle = interleaved(getattr(start, name))
+        return np.maximum(far[0], middle - start.radius), np.minimum(far[1], middle + start.radius)
+
+    return guess, limits
+
+
+def _first_fixed(scaled: ScaledProblem, start: Start) -> tuple[FloatArray, FloatArray]:
+    """Driver angles are free, but at the first target where it is required."""
+    low, high = np.full(len(start.visit), -LIFTED), np.full(len(start.visit), LIFTED)
+    required = scaled.wanted.theta2_start_deg
+    if required is not None and not start.gives("theta2_start_deg"):
+        first = start.visit.index(0)
+        low[first] = high[first] = lifted(np.radians(required), start.theta2[first])
+    return low, high
+
+
+def _least_transmission(scaled: ScaledProblem, start: Start) -> Limits:
+    least = np.radians(scaled.wanted.transmission_min_deg) + INSET + start.more_transmission
+    least = 0.0 if start.gives("transmission_min_deg") else min(least, np.pi / 2 - INSET)
+    return max(LEAST_TRANSMISSION, least), np.pi / 2
+
+
+def inset(limits: Limits) -> Limits:
+    """Limits drawn in a little, where there is room between them."""
+    low, high = limits
+    return (low + INSET, high - INSET) if high - low > 4 * INSET else limits
+
+
+def near(limits: Limits) -> Limits:
+    """Limits that are finite."""
+    return max(limits[0], -FAR), min(limits[1], FAR)
+
+
+def lifted(required: float, start: float) -> float:
+    """A required angle moved by whole turns to be nearest to that of a start; rad."""
+    return start + float((required - start + np.pi) % (2 * np.pi) - np.pi)
+
+
+def interleaved(points: ComplexArray | complex) -> FloatArray:
+    """Real and imaginary parts of points, one after the other."""
+    return np.stack([np.real(points), np.imag(points)], axis=-1).ravel()
