@@ -44,7 +44,7 @@ def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
             if part in limited:  # r1 and link_length: its own limits take their place
                 continue
             allowed = ranges[part if part in ranges else ""]
-            for value in dict.fromkeys((float(numbers.min()), float(numbers.max()))):
+            for value in np.unique([numbers.min(), numbers.max()]).tolist():
                 miss = _miss(value, allowed, limit, values.problem)
                 if miss > SLACK:
                     found = value * quantity.unit.shown
