@@ -33,7 +33,7 @@ UNCOVERED = """
 }).map((node) => Number(node.dataset.index))
 """
 # As long as a search may say it, and a word that is too long for any line.
-MISSES = "transmission_min_deg: the worst transmission angle over the cycle in deg is 13.4955, allowed is "
+MISSES = "transmission_min_deg: the worst transmission angle over the turn in deg is 13.4955, allowed is "
 MISSES += f"from 60; constraints: {'a_long_name_' * 20} is 3, allowed is up to 0"
 Open = Callable[..., Page]
 AS_USUAL: dict[str, Any] = {"media": "screen", "color_scheme": "light", "reduced_motion": "no-preference"}
