@@ -62,6 +62,7 @@ class Needs(Enum):
     MANUFACTURING = "manufacturing"
     CLOSED = "a closed path"
     LEAST_SQUARES = "exact = false"
+    ANGLES = "targets with angles"
 
 
 @dataclass(frozen=True, slots=True)

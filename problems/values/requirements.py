@@ -48,7 +48,7 @@ class Box:
         refuse(wrong)
 
 
-_LENGTHS = (0.0, GREATEST)
+_FROM_ZERO = (0.0, GREATEST)
 
 
 def _place(name: str, over: Over) -> Quantity:
@@ -120,17 +120,17 @@ class Requirements(ReadOnly):
     link_length: Limits | None = limit(
         Quantity("link_length", "link length", Unit.LENGTH, listed=False),
         Kind.BETWEEN,
-        allowed=_LENGTHS,
+        allowed=_FROM_ZERO,
         usual=(0.01, 20.0),
     )
-    r1: Limits | None = limit("r1", Kind.BETWEEN, allowed=_LENGTHS)
-    r2: Limits | None = limit("r2", Kind.BETWEEN, allowed=_LENGTHS)
-    r3: Limits | None = limit("r3", Kind.BETWEEN, allowed=_LENGTHS)
-    r4: Limits | None = limit("r4", Kind.BETWEEN, allowed=_LENGTHS)
+    r1: Limits | None = limit("r1", Kind.BETWEEN, allowed=_FROM_ZERO)
+    r2: Limits | None = limit("r2", Kind.BETWEEN, allowed=_FROM_ZERO)
+    r3: Limits | None = limit("r3", Kind.BETWEEN, allowed=_FROM_ZERO)
+    r4: Limits | None = limit("r4", Kind.BETWEEN, allowed=_FROM_ZERO)
     coupler_arms: Limits | None = limit(
         Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False),
         Kind.BETWEEN,
-        allowed=_LENGTHS,
+        allowed=_FROM_ZERO,
         usual=(0.0, 30.0),
     )
     link_ratio_max: float = limit(
@@ -147,6 +147,18 @@ class Requirements(ReadOnly):
         Quantity("ground_angle", "direction of O2O4", Unit.ANGLE, listed=False), Kind.EQUAL
     )
     theta2_start_deg: float | None = limit("theta2_start", Kind.EQUAL)
+    size: Limits | None = limit("size", Kind.BETWEEN, allowed=_FROM_ZERO)
+    omega4_max: Limits | None = limit("omega4_max", Kind.BETWEEN, allowed=_FROM_ZERO)
+    point_speed_max: Limits | None = limit("point_speed_max", Kind.BETWEEN, allowed=_FROM_ZERO)
+    point_acceleration_max: Limits | None = limit("point_acceleration_max", Kind.BETWEEN, allowed=_FROM_ZERO)
+    torque_peak: Limits | None = limit("torque_peak", Kind.BETWEEN, allowed=_FROM_ZERO)
+    torque_rms: Limits | None = limit("torque_rms", Kind.BETWEEN, allowed=_FROM_ZERO)
+    joint_force_peak: Limits | None = limit("joint_force_peak", Kind.BETWEEN, allowed=_FROM_ZERO)
+    coupler_fit_r2: Limits | None = limit("coupler_fit_r2", Kind.BETWEEN, allowed=(-GREATEST, 1.0))
+    hausdorff: Limits | None = limit("hausdorff", Kind.BETWEEN, allowed=_FROM_ZERO)
+    frechet: Limits | None = limit("frechet", Kind.BETWEEN, allowed=_FROM_ZERO)
+    worst_move: Limits | None = limit("worst_move", Kind.BETWEEN, allowed=_FROM_ZERO)
+    share_within_made: Limits | None = limit("share_within_made", Kind.BETWEEN, allowed=(0.0, 1.0))
     keep_out: tuple[FloatArray, ...] = ()
     keep_out_for: tuple[str, ...] = ("o2", "o4")
 

@@ -86,6 +86,8 @@ class Part:
         `of` gives the square, which has no kink at zero.
     per : callable, optional
         What `of` is divided by, so that a limit can be a product.
+    fixed : bool
+        The start decides it: no solve can change it.
     """
 
     name: str
@@ -94,6 +96,7 @@ class Part:
     dyad: int | None = None
     squared: bool = False
     per: Callable[[Any], Any] | None = None
+    fixed: bool = False
 
 
 def _place(name: str, dyad: int) -> tuple[Part, ...]:

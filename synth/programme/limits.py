@@ -30,6 +30,8 @@ def require_limits(build: Builder, form: Form, x: Unknowns, places: Places) -> N
     """
     design = Symbols(form, x, places)
     for name, part in parts_of(form.limited, smooth=True):
+        if part.fixed:
+            continue
         value, angle = ca.SX(part.of(design)), LIMITS[name].kind is Kind.EQUAL
         allowed = _angle(name, part) if angle else _range(name, part)
         leaf = value.is_scalar() and value.is_leaf() and part.per is None and not part.squared
@@ -77,14 +79,19 @@ def cost_of_goals(build: Builder, form: Form, x: Unknowns, places: Places) -> ca
     """What is made least: the goals by their weights. What is limited along the motion is bounded, too."""
     weights = {key: build.parameter(_share(form, key)) for key in form.goals}
     cost, design = ca.SX(0), Symbols(form, x, places)
+    size = diagonal(build, x, places) if "size" in (*form.goals, *form.limited) else None
     for key, weight in weights.items():
         if key == "transmission":
             cost -= weight * x.tau / (np.pi / 2)
         elif key == "size":
-            cost += weight * diagonal(build, x, places)
+            cost += weight * size
         elif key in FORMULAS:
             (part,) = FORMULAS[key]
             cost -= weight * QUANTITIES[key].better * ca.SX(part.of(design))
+    if "size" in form.limited and size is not None:
+        build.require(
+            ("size",), build.parameter(lambda scaled, _: scaled.wanted.ranges("size")[""][1]) - size
+        )
     for key in form.along:
         cost += weights.get(key, 0.0) * _peak(build, form, x, places, key)
     return cost

@@ -16,7 +16,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.synth.programme.on_symbols import on_symbols
 from grashof.synth.programme.one_at_a_time import one_at_a_time
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import GROUPS, Screened
+from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Start
 
 FAR = 1e3  # stands for an amount without bound
@@ -45,19 +45,15 @@ def refuse_unusable(scaled: ScaledProblem, *, in_processes: bool) -> None:
 
 
 @one_at_a_time
-def screened(scaled: ScaledProblem, finds: Screened) -> Screened:
-    """The same with violations of the user's constraints, all evaluated at once."""
-    if not scaled.constraints or not len(finds):
-        return finds
+def own_violations(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
+    """By how much linkages violate the user's constraints, all evaluated at once; shape (n,)."""
     design, symbols = _symbols(len(scaled.targets))
     values = ca.vertcat(
         *(ca.vec(ca.SX(one)) for own in scaled.constraints for one in _several(on_symbols(own, design)))
     )
-    amounts = np.asarray(ca.Function("own", [symbols], [values])(_numbers(scaled, finds).T))
-    missed = np.nan_to_num(np.maximum(amounts, 0.0), nan=1.0, posinf=FAR).sum(axis=0)
-    violations = finds.violations.copy()
-    violations[:, GROUPS.index("constraints")] += missed
-    return replace(finds, violations=violations)
+    amounts = np.asarray(ca.Function("own", [symbols], [values])(_numbers(scaled, linkages).T))
+    missed: FloatArray = np.nan_to_num(np.maximum(amounts, 0.0), nan=1.0, posinf=FAR).sum(axis=0)
+    return missed
 
 
 def _numbers(scaled: ScaledProblem, finds: Screened) -> FloatArray:

@@ -17,7 +17,7 @@ from grashof.synth.programme.screening import (
     keep_out_violation,
 )
 from grashof.synth.programme.start import UNSMOOTH, Start
-from grashof.synth.programme.user_constraints import screened
+from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.results.judging import judged_again
 from grashof.synth.results.relaxed_limits import (
@@ -141,7 +141,8 @@ def rejudged(scaled: ScaledProblem, finds: Screened) -> Screened:
     )
     violations[:, GROUPS.index("keep_out")] += keep_out_violation("p", at_p, scaled.wanted)
     found = Configurations(o2, o4, at_a, at_b, finds.visit, finds.theta2, finds.direction)
-    judged = judge(found, p, finds.error, violations, scaled.wanted, finds.body_angle)
+    first_turn = None if scaled.motion is None else np.full(len(finds), scaled.motion.first_turn)
+    judged = judge(found, p, finds.error, violations, scaled.wanted, finds.body_angle, first_turn)
     if scaled.wanted.same_branch:  # at a dead position rounding decides what else is lacking
         judged.violations[judged.transmission < DEAD, GROUPS.index("same_branch")] += 1.0
-    return screened(scaled, judged)
+    return fully_screened(scaled, judged)

@@ -10,7 +10,7 @@ import numpy as np
 
 from grashof.analysis import Defect, verify
 from grashof.analysis.judge.design import Constraint, Design, name_of
-from grashof.problems import Box, Problem, Requirements, Rotatability
+from grashof.problems import Box, FourBar, Problem, Requirements, Rotatability
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.quantities import Kind
 from grashof.problems.values.requirements import LIMITS
@@ -89,9 +89,9 @@ def loosest(problem: Problem, key: str) -> Requirements:
     if key == "constraints":
         return wanted
     given, loose = getattr(wanted, key), None
-    if key in LIMITS and LIMITS[key].kind is Kind.BETWEEN:
-        usual = Requirements().resolved(problem.task.size)
-        low, high = usual.link_length if key != "coupler_arms" else usual.coupler_arms  # type: ignore[misc]
+    usual = LIMITS["link_length" if key in FourBar.LENGTHS else key].usual if key in LIMITS else None
+    if usual is not None:
+        low, high = (problem.task.size * share for share in usual)
         loose = (min(low, given[0]), max(high, given[1]))
     others = {
         "rotatability": Rotatability.ANY,
@@ -168,7 +168,7 @@ def _eased(
     elif kind is Kind.BETWEEN:
         reached = _reaching(asked, found)
         yield {key: reached}, _range_words(key, asked, reached)
-    elif kind is Kind.INSIDE:
+    elif kind in (Kind.INSIDE, Kind.ON_BODY):
         yield _box_enlarged(key, asked or Box(), missed)
     elif kind is Kind.EQUAL:
         angle = float(f"{found[0] + 360 * round((asked - found[0]) / 360):.12g}")

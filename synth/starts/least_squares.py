@@ -15,6 +15,8 @@ import numpy as np
 
 from grashof.problems import TransmissionOver
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.problems.values.requirements import LIMITS
+from grashof.synth.programme.formulas import FORMULAS
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS, Screened
 from grashof.synth.programme.start import Round, Start
@@ -54,7 +56,16 @@ COPY = 0.01  # sizes: two linkages closer at three targets are one
 # tasks of more targets than `AMPLE`, whose solves take longer.
 BEST, OTHERS, EARLY = 12, 4, 8
 AMPLE, FEWEST = 24, 0.25
-UNLIMITED = ("order", "same_branch", "keep_out", "constraints")  # no residual of the search stands for them
+# No residual of the search stands for these.
+UNLIMITED = (
+    *("order", "same_branch", "keep_out", "constraints"),
+    *(
+        name
+        for name, limit in LIMITS.items()
+        if all(part.fixed for part in FORMULAS.get(limit.quantity.key, ()))
+        and limit.quantity.key != "transmission"
+    ),
+)
 
 
 @dataclass(frozen=True, slots=True)

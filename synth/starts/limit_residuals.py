@@ -132,6 +132,8 @@ def oversteps(target: PathTarget, at: Placement) -> tuple[FloatArray, FloatArray
 
 def _limit_rows(target: PathTarget, at: Placement) -> Iterator[Dual]:
     for name, part in parts_of(target.wanted.limited):
+        if part.fixed:
+            continue
         low, high = range_of(target.wanted, name, part)
         value = np.sqrt(part.of(at)) if part.squared else part.of(at)
         if LIMITS[name].kind is Kind.EQUAL:

@@ -27,7 +27,7 @@ from grashof.synth.programme.screening import (
     keep_out_violation,
 )
 from grashof.synth.programme.start import Start
-from grashof.synth.programme.user_constraints import screened
+from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.starts.sampled_dyads import arms, ground_pivots
 from grashof.synth.starts.selection import feasible_starts, merits
 from grashof.synth.theory.distinct import pick_apart
@@ -260,13 +260,18 @@ def _judged(scaled: ScaledProblem, drawn: _Drawn) -> Screened:
     )
     violations[:, GROUPS.index("order")] += np.maximum(np.ptp(theta2, axis=1) - TURN, 0)
     found = judge(
-        Configurations(o2, o4, a, b, visit, theta2, direction), p, np.zeros(count), violations, wanted
+        Configurations(o2, o4, a, b, visit, theta2, direction),
+        p,
+        np.zeros(count),
+        violations,
+        wanted,
+        first_turn=np.full(count, scaled.turns[0]),
     )
     if wanted.same_branch:
         near = np.maximum(LEAST_TRANSMISSION - found.transmission, 0.0)
         found.violations[:, GROUPS.index("same_branch")] += near
     found.violations[found.violations < ROUNDING] = 0.0
-    return screened(scaled, found)
+    return fully_screened(scaled, found)
 
 
 def _distinct_best(scaled: ScaledProblem, drawn: _Drawn, found: Screened) -> tuple[_Drawn, FloatArray]:

@@ -15,7 +15,7 @@ from grashof.synth.programme.screening import (
     judge,
     keep_out_violation,
 )
-from grashof.synth.programme.user_constraints import screened
+from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.starts.closed_loop import PathTarget
 from grashof.synth.starts.loop_search import Placed
 
@@ -59,4 +59,4 @@ def judged(scaled: ScaledProblem, target: PathTarget, placed: Placed, direction:
     violations[:, GROUPS.index("keep_out")] += keep_out_violation("p", placed.p, scaled.wanted)
     found = Configurations(placed.o2, placed.o4, a, b, visit, theta2, direction)
     error = np.sqrt(placed.error / len(scaled.targets))
-    return screened(scaled, judge(found, p, error, violations, scaled.wanted, placed.body_angle))
+    return fully_screened(scaled, judge(found, p, error, violations, scaled.wanted, placed.body_angle))
