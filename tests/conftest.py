@@ -20,10 +20,10 @@ SMALL: dict[str, dict[str, Any]] = {
     "grashof.synth.starts.exact_poses": {
         "LINES": 300, "CELL": 0.02, "PAIRS": 200_000, "SAMPLED_PAIRS": 50_000, "NEAR_PAIRS": 30_000,
     },
-    "grashof.synth.starts.paths": {"BARREN": 2, "SEARCHES": 1},
-    "grashof.synth.results.single_relaxations": {"SOLVES": 2},
-    "grashof.synth.results.trade_offs": {"MOST_SEEDS": 4},
-    "grashof.synth.synthesize": {"NEAR_EFFORT": 0.2},
+    "grashof.synth.starts.precision_points": {"BARREN": 2, "SEARCHES": 1},
+    "grashof.synth.results.relaxations": {"SOLVES": 2},
+    "grashof.synth.results.choice": {"SEEDS": 4},
+    "grashof.synth.results.explain": {"NEAR_EFFORT": 0.2},
 }  # fmt: skip
 
 
@@ -40,7 +40,7 @@ def relaxing_only(monkeypatch: pytest.MonkeyPatch, small_search: None) -> Callab
     """Small explanations that look at some requirements alone: each takes a search of its own."""
 
     def of(*keys: str) -> None:
-        module = import_module("grashof.synth.results.single_relaxations")
+        module = import_module("grashof.synth.results.relaxations")
         monkeypatch.setattr(module, "limiting", lambda *_: list(keys))
 
     return of

@@ -34,7 +34,7 @@ class Verdict:
     Parameters
     ----------
     theta2 : ndarray, shape (N,), rad
-        Driver angle at each target, counted on along the motion.
+        Driver angle at each target, unwrapped along the task motion.
     assembly : ndarray of int, shape (N,)
         Assembly at each target.
     position_error : ndarray, shape (N,), length
@@ -48,9 +48,9 @@ class Verdict:
     grashof_class : GrashofClass
     full_rotation, circuit_ok, branch_ok, order_ok : bool
     transmission_min_task, transmission_min_cycle : float, rad
-        Worst min(mu, pi - mu) over the motion used and over the turn.
+        Worst min(mu, pi - mu) over the task motion and over the turn.
     size : float, length
-        Diagonal of the box around O2, O4 and all that A, B and P reach in the motion used.
+        Diagonal of the box around O2, O4 and all that A, B and P reach in the task motion.
     defects : tuple of Defect
         Empty for a design that does what is required.
     """
@@ -105,7 +105,7 @@ def verify(
     Parameters
     ----------
     linkage : FourBar
-    task : MotionTask or PathTask
+    task : Task
     requirements : Requirements
         Defaults that depend on the size of the task are filled in.
     constraints : sequence of callable
@@ -120,7 +120,7 @@ def verify(
     Notes
     -----
     Circuit, branch and order defects as Chase & Mirth (1993) define them. With ``order = false``
-    the motion used is the shortest that holds all targets; on a closed path it is the whole turn.
+    the task motion is the shortest that holds all targets; of a closed task it is the whole turn.
 
     Examples
     --------

@@ -14,7 +14,7 @@ from grashof.problems import FourBar, MotionTask, Problem, Requirements
 from grashof.synth import Result
 from grashof.synth.programme.keep_out_depth import depth_on_the_way
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.starts.exact_poses import rounds
+from grashof.synth.starts.finder import finder_for
 
 AS_GIVEN = [[0, -9], [0, 0], [5, 0], [5, 4], [9, 4], [9, -9]]
 GOES_ON = [[0, -30], [0, 0], [5, 0], [5, 4], [30, 4], [30, -30]]  # the upper floor does not end at x = 9
@@ -161,7 +161,7 @@ def test_a_path_keeps_its_pivots_out() -> None:
 @pytest.mark.usefixtures("small_search")
 def test_a_look_at_the_way_agrees_with_the_judge(luggage_scaled: Callable[..., ScaledProblem]) -> None:
     scaled = luggage_scaled(rotatability="any")
-    made = next(rounds(scaled, 40, np.random.default_rng(0)))
+    made = next(finder_for(scaled).rounds(40, np.random.default_rng(0), 1))
     points = np.array([start.points for start in made.starts])
     assembly = np.array([float(start.assembly) for start in made.starts])
     theta2 = np.array([start.theta2 for start in made.starts])

@@ -16,7 +16,7 @@ from grashof.problems import MotionTask, PathTask, Problem, ProblemError, Requir
 from grashof.synth import Result
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS
-from grashof.synth.starts.paths import search
+from grashof.synth.starts.coupler_search import search
 
 LIMITS: dict[str, Any] = {"link_length": (0.2, 10), "transmission_min_deg": 20}
 THREE = Problem(

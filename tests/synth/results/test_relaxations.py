@@ -16,9 +16,12 @@ from grashof.synth import Result
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.results.attempt import attempt
-from grashof.synth.results.explain import Failure, explain
-from grashof.synth.results.relaxation import Relaxation, limiting, loosest, relaxation
-from grashof.synth.results.single_relaxations import relaxations
+from grashof.synth.results.explain import explain
+from grashof.synth.results.ledger import Ledger
+from grashof.synth.results.relaxations import relaxations
+from grashof.synth.results.relaxed_limits import Relaxation, limiting, loosest, relaxation
+from grashof.synth.results.search import Run
+from grashof.synth.results.trade_offs import Chosen
 
 pytestmark = pytest.mark.usefixtures("small_search")
 
@@ -32,7 +35,8 @@ def ways(problem: Problem, constraints: tuple[Any, ...] = ()) -> dict[str, Relax
     def solve(scaled: ScaledProblem, starts: list[Start], first: int) -> list[Any]:
         return [attempt(scaled, start, first + k) for k, start in enumerate(starts)]
 
-    found = relaxations(scaled, solve, [], np.random.default_rng(0), lambda: False)
+    run = Run(problem.search, solve, lambda: False)
+    found = relaxations(scaled, [], np.random.default_rng(0), run)
     assert [way.miss for way in found] == sorted(way.miss for way in found)
     for way in found:
         linkage = way.candidate.linkage
@@ -212,7 +216,8 @@ def test_it_can_be_stopped() -> None:
     def none(*_: Any) -> Any:
         raise AssertionError("asked although stopped")
 
-    said = explain(Failure(scaled, [], [], {}), none, none, np.random.default_rng(0), lambda: True)
+    run = Run(problem.search, none, lambda: True)
+    said = explain(scaled, Ledger(scaled, problem.search, ""), Chosen((), [], 0), run)
     assert said.note.startswith("no design")
     assert said.nearest == ()
 
