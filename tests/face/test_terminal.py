@@ -23,7 +23,8 @@ from grashof.problems import (
     load,
 )
 from grashof.synth import Progress, Result
-from grashof.wording.problem import beginning, ends_with_enough, error_meaning, summary
+from grashof.synth.starts.finder import finder_of
+from grashof.wording.problem import ends_with_enough, error_meaning, summary
 
 
 def zoned(**zones: Any) -> MotionTask:
@@ -55,7 +56,7 @@ def test_the_torque_is_shown_where_it_is_asked_for(few: Result, capsys: pytest.C
     print_table(replace(few, problem=driven))
     lines = capsys.readouterr().out.splitlines()
     row = next(line for line in lines if line.lstrip().startswith("1"))
-    assert f" {few.candidates[0].torque_peak:.4g} " in row
+    assert f" {few.candidates[0].values['torque_peak']:.4g} " in row
     assert any("N m" in line for line in lines)
 
 
@@ -209,11 +210,11 @@ def test_summary_names_every_requirement_given() -> None:
     )
     text = "\n".join(summary(replace(load("luggage"), requirements=wanted)))
     for said in (
-        "o2: x 0 to 1",
-        "b: x -inf to inf, y 2 to 3",
-        "ground_angle_deg 30",
-        "theta2_start_deg -20",
-        "r3 1 to 2",
+        "place of O2: x 0 to 1 m",
+        "place of B: y 2 to 3 m",
+        "direction of O2O4: 30 deg",
+        "driver angle at the first target: -20 deg",
+        "r3: 1 to 2 m",
     ):
         assert said in text
 
@@ -260,4 +261,5 @@ def test_what_the_error_of_poses_counts_is_said(few: Result) -> None:
 )
 def test_the_search_begins_with_what_it_does(name: str, exact: bool | None, said: str) -> None:
     problem = load(name)
-    assert beginning(replace(problem, requirements=replace(problem.requirements, exact=exact))) == said
+    asked = replace(problem, requirements=replace(problem.requirements, exact=exact))
+    assert finder_of(asked).beginning == said

@@ -130,14 +130,15 @@ def test_pareto_marks_with_the_torque(luggage_designs: Designs, luggage: Problem
     assert marks[without].all()  # one more goal takes no mark away
     assert marks[int(np.argmin(peaks))]
     assert without.sum() < marks.sum() < len(marks)
-    assert [c.torque_peak for c in luggage_designs] == peaks
+    assert [c.values["torque_peak"] for c in luggage_designs] == peaks
 
 
 def test_an_unknown_torque_counts_as_infinite(luggage_designs: Designs, luggage: Problem) -> None:
     """As of a design without a motion that joins its targets."""
-    unknown, endless, known = (
-        replace(luggage_designs[0], torque_peak=peak) for peak in (np.nan, np.inf, 1.0)
-    )
+    one = luggage_designs[0]
+    unknown, endless, known = (replace(one, values=None) for _ in range(3))
+    for each, peak in ((unknown, np.nan), (endless, np.inf), (known, 1.0)):
+        each.values._known["torque_peak"] = peak
     assert pareto_optimal(luggage, (known, unknown)).tolist() == [True, False]
     assert pareto_optimal(luggage, (endless, unknown)).tolist() == [True, True]
     driven = replace(luggage, objective=Objective(0, 0, 1))
@@ -178,7 +179,7 @@ def test_an_id_is_the_same_in_every_process(luggage_designs: Designs) -> None:
 
 
 def test_an_empty_result_says_why(luggage: Problem) -> None:
-    empty = Result(luggage, (), (), {}, {}, note="no design: nothing fits")
+    empty = Result(luggage, note="no design: nothing fits")
     assert len(empty) == 0
     with pytest.raises(NoSolutionError, match=r"^no design: nothing fits$"):
         _ = empty.best
@@ -199,6 +200,6 @@ def test_values_show_themselves_in_one_line(luggage_result: Result) -> None:
     assert repr(best).startswith(f"<Candidate {best.id}: crank-rocker, r1 to r4 ")
     assert f"mu {mu:.1f} deg over the task" in repr(best)
     assert f"<Result of luggage: {len(luggage_result)} designs; best {best.id}" in repr(luggage_result)
-    assert repr(Result(problem, (), (), {}, {}, note="nothing")) == "<Result of luggage: 0 designs; nothing>"
+    assert repr(Result(problem, note="nothing")) == "<Result of luggage: 0 designs; nothing>"
     assert repr(problem) == "<Problem luggage: MotionTask of 4 targets>"
     assert max(len(repr(value)) for value in (best, problem, luggage_result)) < 160
