@@ -141,7 +141,7 @@ class Loop:
         theta2 = _driver_angles(target, batch)
         e2 = np.exp(1j * theta2)
         coupler, beside2 = coupler_of(1 - r2[:, None] * e2, r3[:, None], r4[:, None], batch.assembly)
-        closes = (beside2 > 1e-12 * r3[:, None] ** 2).all(axis=1)
+        closes: BoolArray = np.all(beside2 > 1e-12 * r3[:, None] ** 2, axis=1)
         output = r2[:, None] * e2 + coupler - 1
         return cls(r2, r3, r4, by_lengths, theta2, e2, coupler / r3[:, None], output / r4[:, None], closes)
 
