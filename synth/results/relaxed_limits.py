@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -150,7 +150,7 @@ def _eased(
 ) -> Iterator[tuple[dict[str, Any], str]]:
     """What asks for less, by key, the least change first, in the order to be tried; with words."""
     wanted = problem.requirements.resolved(problem.task.size)
-    found, asked = [defect.found for defect in missed], getattr(wanted, key, None)
+    found, asked = [defect.found for defect in missed], cast(Any, getattr(wanted, key, None))
     kind = LIMITS[key].kind if key in LIMITS else None
     if key == "rotatability":
         yield from _turning_less(wanted, missed)

@@ -15,7 +15,7 @@ from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Start
 from grashof.synth.starts.closed_loop import PathTarget
 from grashof.synth.starts.loop_search import draw, fitting, improve, place
-from grashof.synth.starts.path_screening import entries_of, judged, path_target
+from grashof.synth.starts.path_screening import judged, path_target
 from grashof.synth.starts.sampled_dyads import fixed_pivots
 from grashof.synth.starts.selection import relaxed_starts
 from grashof.synth.starts.thinning import refined, thinned
@@ -100,7 +100,7 @@ def search(
     sound = np.isfinite(placed.error)
     if scaled.exact:
         sound &= placed.error <= len(target.points) * FOUND**2
-    return judged(scaled, target, entries_of(placed, sound), batch.direction[sound])
+    return judged(scaled, target, placed[sound], batch.direction[sound])
 
 
 def _effort(scaled: ScaledProblem, target: PathTarget) -> tuple[int, tuple[tuple[int, int], ...]]:

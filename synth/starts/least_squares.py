@@ -31,12 +31,12 @@ from grashof.synth.starts.loop_search import (
     with_places,
     within_limits,
 )
-from grashof.synth.starts.path_screening import entries_of, judged, path_target
+from grashof.synth.starts.path_screening import judged, path_target
 from grashof.synth.starts.thinning import refined, thinned
 
 DRAWS, TIMED_DRAWS = 2000, 600
 ASTRAY = 0.3  # share of them on which P makes a detour between two targets
-FEW_TARGETS = 40  # of a longer task decide which finds are worth the rest
+FEW_TARGETS = 40  # of a longer task decide which linkages are worth the rest
 # Where no limit binds: how many of the best go on for how many steps.
 FREE_STAGES, TIMED_STAGES = ((200, 6), (60, 10), (20, 50)), ((60, 6), (20, 60))
 MOST_CURVES = 6  # starts of such a round
@@ -44,7 +44,7 @@ MOST_CURVES = 6  # starts of such a round
 # motion, its promise is a little off.
 NEAR_BEST, NEAR_BEST_SHIFTED = 1.6, 2.0
 SAME_ERROR = 1e-3  # share: a feasible find so near to the best one says that no limit binds
-SAME_CURVE = 0.1  # of the rms error: two finds closer at every target are one
+SAME_CURVE = 0.1  # of the rms error: two linkages closer at every target are one
 # Where limits bind: how many of the best distinct go on, for how many steps, at what weight of the
 # limits (in sizes).
 STAGES = ((400, 8, 0.3), (200, 10, 1.0), (80, 20, 5.0), (40, 40, 5.0))
@@ -97,10 +97,10 @@ def _free_round(scaled: ScaledProblem, batch: Batch, size: int) -> Round | None:
     with np.errstate(all="ignore"):
         placed = place(target, batch)
     sound = np.isfinite(placed.error)
-    finds = judged(scaled, target, entries_of(placed, sound), batch.direction[sound])
-    least = finds.error.min(initial=np.inf)
+    linkages = judged(scaled, target, placed[sound], batch.direction[sound])
+    least = linkages.error.min(initial=np.inf)
     useful = max(NEAR_BEST * least, scaled.of_use)
-    feasible = finds[finds.feasible & (finds.error <= useful)]
+    feasible = linkages[linkages.feasible & (linkages.error <= useful)]
     if not len(feasible) or feasible.error.min() > max(least * (1 + SAME_ERROR), FOUND):
         return None
     order = np.argsort(feasible.error, kind="stable")
@@ -130,7 +130,7 @@ def _other_curves(starts: list[Start], most: int) -> list[Start]:
 class _Stage:
     """Linkages of the search, best first, and their errors with what limits add (n,), sizes."""
 
-    finds: Screened
+    linkages: Screened
     error: FloatArray
 
 
@@ -142,16 +142,16 @@ def _limited_round(
     late = _ranked(scaled, found)
     share = size * min(1.0, max(AMPLE / len(scaled.targets), FEWEST))
     first, others, before = (round(share * count) for count in (BEST, OTHERS, EARLY))
-    chosen = [_start(scaled, late.finds, late.error, k) for k in range(min(first, len(late.error)))]
+    chosen = [_start(scaled, late.linkages, late.error, k) for k in range(min(first, len(late.error)))]
     rest = np.arange(len(chosen), len(late.error))
-    chosen += [_start(scaled, late.finds, late.error, k) for k in _some(rng, rest, others)]
+    chosen += [_start(scaled, late.linkages, late.error, k) for k in _some(rng, rest, others)]
     prune = NEAR_BEST
     if _ends_bind(scaled):  # the search may shift the ends of the motion, the programme may not
         early = _ranked(scaled, before_limits)
         some = _some(rng, np.arange(len(early.error)), before)
-        chosen += [replace(_start(scaled, early.finds, early.error, k), promise=0.0) for k in some]
+        chosen += [replace(_start(scaled, early.linkages, early.error, k), promise=0.0) for k in some]
         prune = NEAR_BEST_SHIFTED
-    return Round(chosen, {"feasible linkages": int(late.finds.feasible.sum())}, size, prune)
+    return Round(chosen, {"feasible linkages": int(late.linkages.feasible.sum())}, size, prune)
 
 
 def _search(scaled: ScaledProblem, drawn: Batch, best: Batch, size: int) -> tuple[Batch, Batch]:
@@ -189,11 +189,11 @@ def _ranked(scaled: ScaledProblem, batch: Batch) -> _Stage:
     placed = standing(target, batch)
     error, _, _ = within_limits(target, STAGES[-1][2])(batch)
     sound = np.flatnonzero(np.isfinite(error) & np.isfinite(placed.error))
-    finds = judged(scaled, target, entries_of(placed, sound), batch.direction[sound])
+    linkages = judged(scaled, target, placed[sound], batch.direction[sound])
     unlimited = [GROUPS.index(name) for name in UNLIMITED]
-    merit = np.sqrt(error[sound] / len(scaled.targets)) + finds.violations[:, unlimited].sum(axis=1)
+    merit = np.sqrt(error[sound] / len(scaled.targets)) + linkages.violations[:, unlimited].sum(axis=1)
     order = np.argsort(merit, kind="stable")
-    return _Stage(finds[order], merit[order])
+    return _Stage(linkages[order], merit[order])
 
 
 def _best_distinct(target: PathTarget, batch: Batch, error: FloatArray, keep: int, *, drawn: bool) -> Batch:
@@ -220,9 +220,9 @@ def _distinct(placed: Placed) -> IntArray:
     return np.array(picked, dtype=np.int64)
 
 
-def _start(scaled: ScaledProblem, finds: Screened, error: FloatArray, index: int) -> Start:
-    start = Start.of_find(finds, index, scaled.problem.objective)
-    met = bool(finds.feasible[index]) and finds.error[index] < FOUND
+def _start(scaled: ScaledProblem, linkages: Screened, error: FloatArray, index: int) -> Start:
+    start = Start.of_screened(linkages, index, scaled.problem.objective)
+    met = bool(linkages.feasible[index]) and linkages.error[index] < FOUND
     return replace(start, promise=float(error[index]), settled=met)
 
 

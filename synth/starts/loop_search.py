@@ -16,7 +16,7 @@ from typing import TypeAlias
 import numpy as np
 
 from grashof.problems import Rotatability
-from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.synth.starts.closed_loop import (
     Batch,
     Loop,
@@ -61,6 +61,9 @@ class Placed:
     p: ComplexArray
     theta2: FloatArray
     body_angle: FloatArray
+
+    def __getitem__(self, index: BoolArray | IntArray) -> Placed:
+        return Placed(*(getattr(self, name)[index] for name in self.__slots__))
 
 
 def draw(target: PathTarget, count: int, rng: np.random.Generator, astray: float = 0.0) -> Batch:

@@ -12,7 +12,7 @@ import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import follow
+from grashof.synth.programme.screening import shorter_way
 from grashof.synth.programme.start import Round
 from grashof.synth.starts.closed_loop import PathTarget
 from grashof.synth.starts.coupler_search import CouplerSearch, has_family, search
@@ -106,11 +106,6 @@ def _at_points(points: ComplexArray, target: PathTarget) -> tuple[Placed, FloatA
     o2, _, a, b, p = (column[:, None] for column in points.T)
     turns = coupler_turns(points, target.points)
     a, b = target.points + (a - p) * turns, target.points + (b - p) * turns
-    theta2 = np.angle(a - o2)
-    forth, back = (follow(theta2, np.full(len(points), sense)) for sense in (1.0, -1.0))
-    shorter = np.abs(forth[:, -1] - theta2[:, 0]) <= np.abs(back[:, -1] - theta2[:, 0])
-    theta2 = np.where(shorter[:, None], forth, back)
-    p = np.broadcast_to(target.points, a.shape)
-    none = np.zeros(len(points))
-    placed = Placed(none, points[:, 0], points[:, 1], a, b, p, theta2, body_angle=none)
-    return placed, np.where(shorter, 1.0, -1.0)
+    theta2, direction = shorter_way(np.angle(a - o2))
+    none, p = np.zeros(len(points)), np.broadcast_to(target.points, a.shape)
+    return Placed(none, points[:, 0], points[:, 1], a, b, p, theta2, body_angle=none), direction
