@@ -31,9 +31,18 @@ class Unit(StrEnum):
     ACCELERATION = "length/s²"
 
     @property
+    def lengths(self) -> int:
+        """Power of the length in it; torques and forces come in metres."""
+        return {"length²": 2}.get(self, int(self.startswith("length")))
+
+    @property
     def shown(self) -> float:
         """Factor from values inside to those in files and tables."""
         return float(np.degrees(1.0)) if self is Unit.ANGLE else 1.0
+
+    def of(self, length_unit: str) -> str:
+        """The unit with the problem's own unit of length in it, where that has a name."""
+        return self.replace("length", length_unit or "length")
 
 
 class Over(StrEnum):
@@ -48,11 +57,11 @@ class Over(StrEnum):
 class Needs(Enum):
     """What the problem has to state for a quantity to have a value."""
 
-    NOTHING = auto()
-    DYNAMICS = auto()
-    MANUFACTURING = auto()
-    CLOSED = auto()
-    LEAST_SQUARES = auto()
+    NOTHING = "nothing"
+    DYNAMICS = "dynamics"
+    MANUFACTURING = "manufacturing"
+    CLOSED = "a closed path"
+    LEAST_SQUARES = "exact = false"
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +83,11 @@ class Quantity:
     about : str
         What it is, where its label does not say so.
     listed : bool
-        Whether it is a column; what has several parts, such as a place, is none.
+        Whether it is a column; what has several parts, such as a place, is not.
+    words : str
+        What it is called in a sentence, where that is not its label.
+    short : str
+        Heading where there is little room, where that is not its label.
     """
 
     key: str
@@ -86,6 +99,21 @@ class Quantity:
     digits: int = 0
     about: str = ""
     listed: bool = True
+    words: str = ""
+    short: str = ""
+
+    def __post_init__(self) -> None:
+        for name in ("words", "short"):
+            object.__setattr__(self, name, getattr(self, name) or self.label)
+
+    def range_text(self, limits: Limits) -> str:
+        """Limits as files state them: "0.3 to 8", "from 15", "up to 20", "30"; empty where none are."""
+        low, high = (f"{side * self.unit.shown:.6g}" for side in limits)
+        if np.isinf(limits[0]):
+            return "" if np.isinf(limits[1]) else f"up to {high}"
+        if np.isinf(limits[1]):
+            return f"from {low}"
+        return low if low == high else f"{low} to {high}"
 
     @property
     def column(self) -> str:
@@ -99,6 +127,7 @@ def _length(key: str, label: str = "", **others: Any) -> Quantity:
 
 _BOX = "diagonal of the box around O2, O4 and all that A, B and P reach from the first target to the last"
 _FITTED = "what least squares makes small: root mean square of positions and angles together, weighted"
+_WORST = "worst transmission angle over the"
 _MOVED = "how far the worst target moves per unit of change of {}"
 _MISSED: dict[str, Any] = {"over": Over.TARGETS, "better": -1}
 _OVERALL: dict[str, Any] = {"over": Over.TASK, "about": "from the first target to the last"}
@@ -112,23 +141,33 @@ MEASURED: dict[str, Quantity] = {
         *(_length(f"r{link}", digits=4) for link in (1, 2, 3, 4)),
         *(_length(f"p_{axis}") for axis in "uv"),
         Quantity("body_angle", "body angle", Unit.ANGLE, about="orientation of the body minus theta3"),
-        Quantity("theta2_start", "theta2 at the first target", Unit.ANGLE, Over.TARGETS),
-        Quantity("theta2_end", "theta2 at the last target", Unit.ANGLE, Over.TARGETS),
+        Quantity("theta2_start", "driver angle at the first target", Unit.ANGLE, Over.TARGETS),
+        Quantity("theta2_end", "driver angle at the last target", Unit.ANGLE, Over.TARGETS),
         _length("error", "error rms", digits=3, needs=Needs.LEAST_SQUARES, about=_FITTED, **_MISSED),
         _length("error_max", "largest position error", over=Over.TARGETS, better=-1),
         _length("error_rms", "position error rms", over=Over.TARGETS, better=-1),
         Quantity("error_sse", "sum of squared position errors", Unit.AREA, Over.TARGETS, -1),
         Quantity("angle_error_max", "largest angle error", Unit.ANGLE, Over.TARGETS, -1),
         Quantity("angle_error_rms", "angle error rms", Unit.ANGLE, Over.TARGETS, -1),
-        Quantity("transmission_min_task", "mu task", Unit.ANGLE, Over.TASK, +1, digits=3),
-        Quantity("transmission_min_cycle", "mu turn", Unit.ANGLE, Over.CYCLE, +1, digits=3),
+        Quantity(
+            "transmission_min_task", "mu task", Unit.ANGLE, Over.TASK, +1, digits=3, words=f"{_WORST} task"
+        ),
+        Quantity(
+            "transmission_min_cycle", "mu turn", Unit.ANGLE, Over.CYCLE, +1, digits=3, words=f"{_WORST} turn"
+        ),
         Quantity("omega4_max", "omega4", Unit.ANGULAR_VELOCITY, better=-1, **_OVERALL),
         Quantity("point_speed_max", "speed of P", Unit.VELOCITY, better=-1, **_OVERALL),
         Quantity("point_acceleration_max", "acceleration of P", Unit.ACCELERATION, better=-1, **_OVERALL),
-        Quantity("torque_peak", "peak torque, task", Unit.TORQUE, digits=4, **_DRIVEN),
-        Quantity("torque_rms", "rms torque, task", Unit.TORQUE, **_DRIVEN),
-        Quantity("joint_force_peak", "peak force, task", Unit.FORCE, digits=4, **_DRIVEN),
-        Quantity("coupler_fit_r2", "fit of P", Unit.SHARE, better=+1, **_OVERALL),
+        Quantity(
+            "torque_peak", "peak torque, task", Unit.TORQUE, digits=4, words="peak torque", short="torque",
+            **_DRIVEN,
+        ),
+        Quantity("torque_rms", "rms torque, task", Unit.TORQUE, words="rms torque", **_DRIVEN),
+        Quantity(
+            "joint_force_peak", "peak force, task", Unit.FORCE, digits=4, words="peak joint force",
+            short="force", **_DRIVEN,
+        ),
+        Quantity("coupler_fit_r2", "fit of P", Unit.RATIO, better=+1, **_OVERALL),
         _length("size", over=Over.TASK, better=-1, digits=4, about=_BOX),
         _length("hausdorff", "Hausdorff distance", over=Over.CYCLE, better=-1, needs=Needs.CLOSED),
         _length("frechet", "Fréchet distance", over=Over.CYCLE, better=-1, needs=Needs.CLOSED),

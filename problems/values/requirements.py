@@ -111,7 +111,7 @@ class Requirements(ReadOnly):
     order: bool = True
     same_branch: bool = True
     transmission_min_deg: float = limit(
-        Quantity("transmission", "transmission angle", Unit.ANGLE, Over.TASK, +1, listed=False),
+        Quantity("transmission", "mu", Unit.ANGLE, Over.TASK, +1, listed=False),
         Kind.AT_LEAST,
         default=0.0,
         allowed=(0.0, 90.0),
@@ -134,7 +134,7 @@ class Requirements(ReadOnly):
         usual=(0.0, 30.0),
     )
     link_ratio_max: float = limit(
-        Quantity("link_ratio", "longest to shortest link", Unit.RATIO, better=-1, listed=False),
+        Quantity("link_ratio", "ratio of longest to shortest link", Unit.RATIO, better=-1, listed=False),
         Kind.AT_MOST,
         default=20.0,
         allowed=(1.0, 1e6),
@@ -228,6 +228,11 @@ class Requirements(ReadOnly):
     def limited(self) -> dict[str, Limit]:
         """What is limited, by field: the fields that are stated."""
         return {name: limited for name, limited in LIMITS.items() if getattr(self, name) is not None}
+
+    def meant(self, quantity: Quantity) -> Quantity:
+        """The quantity itself; of the transmission angle, the one over the motion that is required."""
+        over = quantity.key == "transmission"
+        return MEASURED[f"transmission_min_{self.transmission_over}"] if over else quantity
 
     def ranges(self, name: str) -> dict[str, Limits]:
         """What a field allows (see `Limit.ranges`); empty where it limits nothing."""

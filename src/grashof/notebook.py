@@ -15,7 +15,7 @@ from grashof.figures.files import STYLE
 from grashof.figures.linkage import plot_linkage
 from grashof.figures.parts import missing_glyphs_unwarned
 from grashof.figures.subject import Linkage
-from grashof.output.terminal import UNITS, best_rows, heading
+from grashof.output.terminal import best_rows, heading, units
 from grashof.problems import FourBar, LinkageSpec, Problem, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
@@ -54,7 +54,8 @@ def _result(result: Result) -> str:
     rows = best_rows(result)
     note = f"<p>{escape(result.note)}</p>" if result.note else ""
     told = "<br>".join(escape(line) for line in heading(result, len(result)).splitlines())
-    names = (f"{name} ({UNITS[name]})" if name in UNITS else name for name in rows[0])
+    named = units(result.problem)
+    names = (f"{name} ({named[name]})" if name in named else name for name in rows[0])
     table = _table(names, (row.values() for row in rows))
     return f"<p>{told}</p>{note}{_side_by_side(table, _drawing(result.best, result.problem))}"
 
@@ -72,12 +73,12 @@ def _linkage(linkage: FourBar) -> dict[str, str]:
 def _judged(candidate: Candidate) -> dict[str, str]:
     verdict = candidate.verdict
     task, turn = np.degrees([verdict.transmission_min_task, verdict.transmission_min_cycle])
+    over_turn = f", {turn:.1f} deg over the turn" if verdict.full_rotation else ""
     return {
         "design": candidate.id,
         **_linkage(candidate.linkage),
         "largest position error": f"{verdict.error_max:.2g}",
-        "worst transmission angle": f"{task:.1f} deg over the task"
-        + (f", {turn:.1f} deg over the turn" if verdict.full_rotation else ""),
+        "worst transmission angle": f"{task:.1f} deg over the task{over_turn}",
         "size": f"{verdict.size:.4g}",
         "defects": "; ".join(str(defect) for defect in verdict.defects) or "none",
     }

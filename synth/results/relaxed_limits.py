@@ -129,7 +129,7 @@ def relaxation(
     for change, words in _eased(problem, own, key, missed):
         eased = change.pop("constraints", own)
         wanted = _with(problem.requirements, change)
-        if verify(candidate.linkage, problem.task, wanted, eased).ok:
+        if verify(candidate.linkage, problem.task, wanted, eased, problem=problem).ok:
             return Relaxation(key, words, wanted, eased, candidate, miss, words.count(" instead of "))
     return None
 

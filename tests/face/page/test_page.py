@@ -106,7 +106,7 @@ def test_figures_are_those_of_the_list(few: Result, tmp_path: Path) -> None:
         assert name.rpartition(": ")[2] in parts.text
         assert str(count) in parts.text
     assert "kind = 'motion'" in parts.text
-    assert "transmission at least 15 deg over the task" in parts.text
+    assert "worst transmission angle over the task: from 15 deg" in parts.text
 
 
 def test_the_best_of_each_family_is_shown_with_the_number_of_the_others(alike: Result) -> None:
@@ -238,7 +238,7 @@ def test_ranges_of_an_analysis_are_apart() -> None:
     double = FourBar((0, 0), (4, 0), 3, 1, 3, (0.5, 1))
     report = report_on(LinkageSpec(double, "double", title=HOSTILE))
     parts = Parts(analysis_page(report, RECORD))
-    assert [(each["low"], each["high"]) for each in parts.data["designs"]] == list(report.ranges)
-    for angles, (low, high) in zip(parts.data["theta2"], report.ranges, strict=True):
+    assert [(each["low"], each["high"]) for each in parts.data["designs"]] == list(report.sweep.ranges)
+    for angles, (low, high) in zip(parts.data["theta2"], report.sweep.ranges, strict=True):
         assert (angles[0], angles[-1]) == pytest.approx((np.degrees(low), np.degrees(high)))
     assert HOSTILE in parts.text
