@@ -14,7 +14,7 @@ from grashof.synth.programme.start import Round, Start
 from grashof.synth.starts import precision_points
 from grashof.synth.starts.coupler_search import search
 from grashof.synth.starts.finder import finder_for
-from grashof.synth.starts.path_screening import path_target
+from grashof.synth.starts.search_targets import search_targets
 
 PathSetup = Callable[..., tuple[ScaledProblem, FourBar]]
 
@@ -108,7 +108,7 @@ def test_prescribed_rotations_are_kept(path_scaled: PathSetup, points: int, any_
 def test_a_last_point_that_repeats_the_first_is_met_after_a_turn(exact: bool) -> None:
     points = [*LINE[:3], [24.0, 24.0]] if exact else ELLIPSE
     scaled = setup_of([*points, points[0]])
-    target = path_target(scaled)
+    target = search_targets(scaled)
     assert len(target.points) == len(points)
     assert target.weights.tolist() == [2.0] + [1.0] * (len(points) - 1)
     finds = finds_of(scaled)
@@ -121,10 +121,10 @@ def test_a_last_point_that_repeats_the_first_is_met_after_a_turn(exact: bool) ->
 
 
 def test_an_unrepeated_path_is_taken_as_it_is() -> None:
-    target = path_target(setup_of(ELLIPSE))
+    target = search_targets(setup_of(ELLIPSE))
     assert target.weights.tolist() == [1.0] * 9
     assert not target.timed
-    timed = path_target(setup_of(LINE, timing=[0, -10, -20, -30, -40, -50]))
+    timed = search_targets(setup_of(LINE, timing=[0, -10, -20, -30, -40, -50]))
     np.testing.assert_allclose(np.degrees(timed.timing), [0, 10, 20, 30, 40, 50])
 
 

@@ -1,4 +1,4 @@
-"""What a search over paths has to meet, and its linkages, judged by every requirement."""
+"""What the search has to pass, and its linkages judged by every requirement."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from grashof.synth.programme.screening import (
     violations_apart,
 )
 from grashof.synth.programme.user_constraints import with_own_violations
-from grashof.synth.starts.closed_loop import PathTarget
+from grashof.synth.starts.closed_loop import SearchTargets
 from grashof.synth.starts.loop_search import Placed
 
 
-def path_target(scaled: ScaledProblem) -> PathTarget:
+def search_targets(scaled: ScaledProblem) -> SearchTargets:
     """What the search has to pass; a last point that repeats the first counts as its second half."""
     last = -1 if scaled.problem.task.returns else None
     weights, turn_weights = scaled.weights[:last].copy(), scaled.turn_weights[:last].copy()
     if last:
         weights[0] += scaled.weights[-1]
         turn_weights[0] += scaled.turn_weights[-1]
-    return PathTarget(
+    return SearchTargets(
         points=scaled.targets[:last],
         weights=weights,
         turns=scaled.turns[:last],
@@ -36,7 +36,7 @@ def path_target(scaled: ScaledProblem) -> PathTarget:
     )
 
 
-def judged(scaled: ScaledProblem, target: PathTarget, placed: Placed, direction: FloatArray) -> Screened:
+def judged(scaled: ScaledProblem, target: SearchTargets, placed: Placed, direction: FloatArray) -> Screened:
     """Placed linkages and how far each violates the requirements."""
     a, b, theta2 = placed.a, placed.b, placed.theta2
     if scaled.problem.task.returns:
