@@ -93,14 +93,15 @@ def loosest(problem: Problem, key: str) -> Requirements:
         usual = Requirements().resolved(problem.task.size)
         low, high = usual.link_length if key != "coupler_arms" else usual.coupler_arms  # type: ignore[misc]
         loose = (min(low, given[0]), max(high, given[1]))
-    others: dict[str, Any] = {
+    others = {
         "rotatability": Rotatability.ANY,
         "link_ratio_max": max(100.0, wanted.link_ratio_max),
         "transmission_min_deg": 0.0,
         "keep_out": (),
         **dict.fromkeys(UNSMOOTH, False),
     }
-    return replace(wanted, **{key: others.get(key, loose)})
+    changed: dict[str, Any] = {key: others.get(key, loose)}
+    return replace(wanted, **changed)
 
 
 def relaxation(
