@@ -142,11 +142,9 @@ class DyadPairs(WholePoses, ABC):
         """Pairs that meet all requirements; near misses where none does."""
         dyads = self.dyads(rng)
         pairs = self.pairs(dyads)
-        return (
-            pairs[pairs.feasible]
-            if pairs.feasible.any()
-            else fully_screened(self.scaled, self.near_pairs(dyads))
-        )
+        if pairs.feasible.any():
+            return pairs[pairs.feasible]
+        return fully_screened(self.scaled, self.near_pairs(dyads))
 
     def relaxed(self, rng: np.random.Generator) -> list[Start]:
         """Starts that may miss what stands in the way."""
