@@ -1,6 +1,7 @@
 """Settings of every test, and small searches for tests of anything but the best designs."""
 
 import os
+from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
@@ -19,10 +20,10 @@ SMALL: dict[str, dict[str, Any]] = {
     "grashof.synth.starts.exact_poses": {
         "LINES": 300, "CELL": 0.02, "PAIRS": 200_000, "SAMPLED_PAIRS": 50_000, "NEAR_PAIRS": 30_000,
     },
-    "grashof.synth.starts.paths": {"BARREN": 2, "SEARCHES": 1},
-    "grashof.synth.results.single_relaxations": {"SOLVES": 3},
-    "grashof.synth.results.trade_offs": {"MOST_SEEDS": 4},
-    "grashof.synth.synthesize": {"NEAR_EFFORT": 0.2},
+    "grashof.synth.starts.precision_points": {"BARREN": 2, "SEARCHES": 1},
+    "grashof.synth.results.relaxations": {"SOLVES": 2},
+    "grashof.synth.results.choice": {"SEEDS": 4},
+    "grashof.synth.results.explain": {"NEAR_EFFORT": 0.2},
 }  # fmt: skip
 
 
@@ -32,3 +33,14 @@ def small_search(monkeypatch: pytest.MonkeyPatch) -> None:
     for module, sizes in SMALL.items():
         for name, size in sizes.items():
             monkeypatch.setattr(import_module(module), name, size)
+
+
+@pytest.fixture
+def relaxing_only(monkeypatch: pytest.MonkeyPatch, small_search: None) -> Callable[..., None]:
+    """Small explanations that look at some requirements alone: each takes a search of its own."""
+
+    def of(*keys: str) -> None:
+        module = import_module("grashof.synth.results.relaxations")
+        monkeypatch.setattr(module, "limiting", lambda *_: list(keys))
+
+    return of

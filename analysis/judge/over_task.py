@@ -1,4 +1,4 @@
-"""What a linkage does on its way from the first target to the last: greatest speeds, forces and torque."""
+"""What a linkage does in its task motion: greatest speeds, forces and torque."""
 
 from __future__ import annotations
 

@@ -53,13 +53,17 @@ def uneven_driver_angles(rng: np.random.Generator, count: int) -> FloatArray:
     return angles
 
 
-def planted_motion(rng: np.random.Generator, poses: int) -> tuple[MotionTask, FourBar]:
+def planted_motion(
+    rng: np.random.Generator, poses: int, *, timed: bool = False
+) -> tuple[MotionTask, FourBar]:
     """A motion task, and a full-crank four-bar that does it exactly, in order, on one assembly.
 
     Parameters
     ----------
     rng : numpy.random.Generator
     poses : int
+    timed : bool
+        The driver rotations are prescribed.
 
     Returns
     -------
@@ -72,8 +76,9 @@ def planted_motion(rng: np.random.Generator, poses: int) -> tuple[MotionTask, Fo
     (4, ())
     """
     linkage = random_full_crank(rng)
-    state = solve_position(linkage, uneven_driver_angles(rng, poses))
-    return MotionTask(state.p, state.theta3 + linkage.body_angle), linkage
+    theta2 = uneven_driver_angles(rng, poses)
+    state, timing = solve_position(linkage, theta2), np.abs(theta2 - theta2[0]) if timed else None
+    return MotionTask(state.p, state.theta3 + linkage.body_angle, timing=timing), linkage
 
 
 def planted_path(rng: np.random.Generator, points: int, *, timed: bool = False) -> tuple[PathTask, FourBar]:

@@ -53,7 +53,7 @@ def robustness(linkage: FourBar, task: Task, verdict: Verdict, manufacturing: Ma
     ----------
     linkage : FourBar
         A single linkage.
-    task : MotionTask or PathTask
+    task : Task
     verdict : Verdict
         Of `verify`: the driver angle and assembly at every target.
     manufacturing : Manufacturing
@@ -185,7 +185,7 @@ def yield_monte_carlo(
     ----------
     linkage : FourBar
         The nominal one, single.
-    task : MotionTask or PathTask
+    task : Task
     verdict : Verdict
     band, errors
         As for `yield_linear`.
@@ -239,9 +239,9 @@ def _linear_moves(slope: FloatArray, errors: FloatArray) -> FloatArray:
 
 
 def _nearest_to_dead(linkage: FourBar, task: Task, verdict: Verdict) -> FloatArray:
-    """Driver angles on the way where O2A lies along the ground line, shape (0 to 2,), rad.
+    """Driver angles of the task motion where O2A lies along the ground line, shape (0 to 2,), rad.
 
-    There, or at the ends of the way, the diagonal A-O4 is shortest and longest, whatever the lengths.
+    There, or at the ends of the motion, the diagonal A-O4 is shortest and longest, whatever the lengths.
     """
     start, end = verdict.theta2.min(), verdict.theta2.max()
     if task.closed:

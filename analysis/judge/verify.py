@@ -40,7 +40,7 @@ def verify(
     Parameters
     ----------
     linkage : FourBar
-    task : MotionTask or PathTask
+    task : Task
     requirements : Requirements
         Defaults that depend on the size of the task are filled in.
     constraints : sequence of callable
@@ -57,7 +57,7 @@ def verify(
     Notes
     -----
     Circuit, branch and order defects as Chase & Mirth (1993) define them. With ``order = false``
-    the motion used is the shortest that holds all targets; on a closed path it is the whole turn.
+    the task motion is the shortest that holds all targets; of a closed task it is the whole turn.
 
     Examples
     --------

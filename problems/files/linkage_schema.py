@@ -13,7 +13,6 @@ from grashof.problems.values.checks import GREATEST, finite_number, number_withi
 from grashof.problems.values.dynamics_spec import metres
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkage import FourBar
-from grashof.problems.values.linkage_parts import Kind
 from grashof.problems.values.linkage_spec import LinkageSpec
 
 
@@ -67,7 +66,7 @@ class LinkageTable(Table):
     output_arm: float | None = None
     dynamics: DynamicsTable | None = None
 
-    @field_validator(*(key for key, row in _PARAMETERS.items() if row.kind is not Kind.ANGLE))
+    @field_validator(*(key for key, row in _PARAMETERS.items() if row.kind != "angle"))
     @classmethod
     def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
         for number in np.ravel(_PARAMETERS[str(key.field_name)].array(given)).tolist():

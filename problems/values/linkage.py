@@ -11,7 +11,7 @@ import numpy.typing as npt
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.display import Displayed
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.linkage_parts import Kind, Link, Parameter, joints_of, points_of
+from grashof.problems.values.linkage_parts import Link, Parameter, joints_of, points_of
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
@@ -50,14 +50,14 @@ class FourBar(Displayed):
 
     # What a four-bar is; files, tables, drawings and plates go through these rows.
     PARAMETERS: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("o2", Kind.PLACE),
-        Parameter("o4", Kind.PLACE),
-        Parameter("r2", Kind.LENGTH),
-        Parameter("r3", Kind.LENGTH),
-        Parameter("r4", Kind.LENGTH),
-        Parameter("coupler_point", Kind.ARM, column="p"),
-        Parameter("assembly", Kind.SIGN),
-        Parameter("body_angle", Kind.ANGLE),
+        Parameter("o2", "place"),
+        Parameter("o4", "place"),
+        Parameter("r2", "length"),
+        Parameter("r3", "length"),
+        Parameter("r4", "length"),
+        Parameter("coupler_point", "arm", column="p"),
+        Parameter("assembly", "sign"),
+        Parameter("body_angle", "angle"),
     )
     LINKS: ClassVar[tuple[Link, ...]] = (
         Link(1, "ground", ("o2", "o4")),
@@ -145,7 +145,7 @@ class FourBar(Displayed):
         """The lengths r1, r2, ... and all parameters by their columns in tables. Of a single linkage."""
         found = dict(zip(self.LENGTHS, self.lengths.tolist(), strict=True))
         for row, value in zip(self.PARAMETERS, self.parameters, strict=True):
-            numbers = np.degrees(value) if row.kind is Kind.ANGLE else value
+            numbers = np.degrees(value) if row.kind == "angle" else value
             found |= zip(row.columns, np.ravel(numbers).tolist(), strict=True)
         return found | {"assembly": int(self.assembly)}
 
@@ -153,7 +153,7 @@ class FourBar(Displayed):
         """The linkage with all lengths times a factor, its places measured from `origin`, shape (2,)."""
 
         def change(row: Parameter, value: FloatArray) -> FloatArray:
-            moved = value - origin if row.kind is Kind.PLACE else value
+            moved = value - origin if row.kind == "place" else value
             return moved * factor if row.in_length else moved
 
         return FourBar(*map(change, self.PARAMETERS, self.parameters))

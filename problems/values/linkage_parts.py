@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import Enum, auto
 from itertools import combinations
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -13,18 +13,7 @@ import numpy.typing as npt
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.errors import ProblemError
 
-
-class Kind(Enum):
-    """What the numbers of a parameter are."""
-
-    PLACE = auto()  # x and y, length
-    ARM = auto()  # u and v in the frame of a link, length
-    LENGTH = auto()
-    SIGN = auto()
-    ANGLE = auto()  # rad, in files and tables degrees
-
-
-_ENDINGS = {Kind.PLACE: ("_x", "_y"), Kind.ARM: ("_u", "_v"), Kind.ANGLE: ("_deg",)}
+_ENDINGS = {"place": ("_x", "_y"), "arm": ("_u", "_v"), "angle": ("_deg",)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,29 +24,30 @@ class Parameter:
     ----------
     name : str
         In Python and JSON.
-    kind : Kind
+    kind : {"place", "arm", "length", "sign", "angle"}
+        x and y; u and v in the frame of a link; angles are in rad, in files and tables in deg.
     column : str
         What its columns in tables begin with, where that is not the name.
     """
 
     name: str
-    kind: Kind
+    kind: Literal["place", "arm", "length", "sign", "angle"]
     column: str = ""
 
     @property
     def paired(self) -> bool:
         """Whether it is two numbers, on a last axis."""
-        return self.kind in (Kind.PLACE, Kind.ARM)
+        return self.kind in ("place", "arm")
 
     @property
     def in_length(self) -> bool:
         """Whether its numbers are in the unit of length."""
-        return self.kind in (Kind.PLACE, Kind.ARM, Kind.LENGTH)
+        return self.kind in ("place", "arm", "length")
 
     @property
     def key(self) -> str:
         """Its key in linkage files."""
-        return f"{self.name}_deg" if self.kind is Kind.ANGLE else self.name
+        return f"{self.name}_deg" if self.kind == "angle" else self.name
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -80,9 +70,9 @@ class Parameter:
             raise ProblemError(f"{self.name} is {value!r}; all numbers must be finite")
         if self.paired and array.shape[-1:] != (2,):
             raise ProblemError(f"{self.name} has shape {array.shape}; allowed is (..., 2)")
-        if self.kind is Kind.LENGTH and np.any(array <= 0):
+        if self.kind == "length" and np.any(array <= 0):
             raise ProblemError(f"{self.name} is {value!r}; allowed are lengths greater than zero")
-        if self.kind is Kind.SIGN and np.any(np.abs(array) != 1):
+        if self.kind == "sign" and np.any(np.abs(array) != 1):
             raise ProblemError(f"{self.name} is {value!r}; allowed is +1 or -1")
         return array
 

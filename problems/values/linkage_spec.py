@@ -42,6 +42,11 @@ class LinkageSpec(Displayed):
         for name in ("name", "title", "source", "length_unit"):
             plain_text(getattr(self, name), name)
 
+    @property
+    def unit(self) -> str:
+        """The length unit, or the word length where the file names none."""
+        return self.length_unit or "length"
+
 
 @dataclass(frozen=True, slots=True)
 class ListedDesign:

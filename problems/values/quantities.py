@@ -31,6 +31,11 @@ class Unit(StrEnum):
     ACCELERATION = "length/s²"
 
     @property
+    def lengths(self) -> int:
+        """Power of the length in it; torques and forces come in metres."""
+        return {"length²": 2}.get(self, int(self.startswith("length")))
+
+    @property
     def shown(self) -> float:
         """Factor from values inside to those in files and tables."""
         return float(np.degrees(1.0)) if self is Unit.ANGLE else 1.0

@@ -149,12 +149,12 @@ def solve(
 def check(problem: ProblemArgument) -> None:
     """Read PROBLEM and say what will be asked of a design, without solving."""
     from grashof.output.terminal import folded
-    from grashof.synth.synthesize import refuse_unsupported
+    from grashof.synth.starts.finder import finder_of
     from grashof.wording.problem import summary
 
     with _errors_told():
         loaded = load(problem)
-        refuse_unsupported(loaded)
+        finder_of(loaded).refuse()
         for line in folded(summary(loaded)):
             say(line)
 

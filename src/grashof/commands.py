@@ -61,7 +61,8 @@ def solve(problem: Problem, text: str, options: Options) -> Exit:
     from grashof.output.run_files import write_run
     from grashof.output.terminal import print_table, search_progress
     from grashof.synth import synthesize
-    from grashof.wording.problem import beginning, ends_with_enough
+    from grashof.synth.starts.finder import finder_of
+    from grashof.wording.problem import ends_with_enough
 
     given = {name: getattr(options, name) for name in ("starts", "seed", "effort")}
     search = replace(problem.search, **{name: value for name, value in given.items() if value is not None})
@@ -71,7 +72,7 @@ def solve(problem: Problem, text: str, options: Options) -> Exit:
     check_writable(folder, options.drawings)
     with _interruptible() as interrupted:
         wanted = ends_with_enough(problem)
-        with search_progress(problem.name, beginning(problem), wanted=wanted) as progress:
+        with search_progress(problem.name, finder_of(problem).beginning, wanted=wanted) as progress:
             found = synthesize(
                 problem,
                 **asdict(search),

@@ -73,12 +73,12 @@ def _linkage(linkage: FourBar) -> dict[str, str]:
 def _judged(candidate: Candidate) -> dict[str, str]:
     verdict = candidate.verdict
     task, turn = np.degrees([verdict.transmission_min_task, verdict.transmission_min_cycle])
+    over_turn = f", {turn:.1f} deg over the turn" if verdict.full_rotation else ""
     return {
         "design": candidate.id,
         **_linkage(candidate.linkage),
         "largest position error": f"{verdict.error_max:.2g}",
-        "worst transmission angle": f"{task:.1f} deg over the task"
-        + (f", {turn:.1f} deg over the turn" if verdict.full_rotation else ""),
+        "worst transmission angle": f"{task:.1f} deg over the task{over_turn}",
         "size": f"{verdict.size:.4g}",
         "defects": "; ".join(str(defect) for defect in verdict.defects) or "none",
     }

@@ -9,7 +9,6 @@ import casadi as ca
 import numpy as np
 
 from grashof.analysis.judge.design import Constraint, Design
-from grashof.problems import Rotatability
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
 from grashof.synth.programme.builder import FREE, NONNEGATIVE, Builder, Fill, always
 from grashof.synth.programme.formulas import View, cos_mu, folded, stretched
@@ -42,12 +41,16 @@ class Places:
 class Symbols(View):
     """The design as formulas see it."""
 
-    def __init__(self, x: Unknowns, places: Places) -> None:
+    def __init__(self, form: Form, x: Unknowns, places: Places) -> None:
         self.o2, self.o4 = vector(x.o2), vector(x.o4)
         self.r1, self.r2, self.r3, self.r4 = ca.vertsplit(x.r)
         self.theta1, self.theta2_start = x.theta1, x.theta2_start
         self.ap, self.bp = vector(places.ap), vector(places.bp)
         self.a, self.b = (_track(points) for points in (places.a, places.b))
+        self.body_turn, self.direction = x.body_turn, x.direction
+        self.driver_turn = x.direction * (x.theta2[form.targets - 1] - x.theta2[0])
+        first, last = (vector(b - x.o4) for b in (places.b[0], places.b[-1]))
+        self.output_turn, self.turns, self.double_crank = first.angle_to(last), form.crank, x.double_crank
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,7 +158,7 @@ def require_modes(build: Builder, form: Form, x: Unknowns, places: Places) -> No
             build.require(("same_branch",), x.assembly * sine - 1e-6)
     if form.crank:
         margin = build.parameter(lambda scaled, _: scaled.wanted.rotatability_margin + INSET)
-        longer, total = build.parameter(_longer) * (x.r[0] - x.r[1]), ca.sum1(x.r)
+        longer, total = (1 - 2 * x.double_crank) * (x.r[0] - x.r[1]), ca.sum1(x.r)
         build.require(
             ("rotatability",),
             (x.r[2] + x.r[3] - x.r[0] - x.r[1]) / total - margin,
@@ -203,7 +206,7 @@ def bound_error(build: Builder, form: Form, x: Unknowns, places: Places, targets
 
 def bound_transmission(build: Builder, form: Form, x: Unknowns, places: Places) -> None:
     """cos(tau) bounds |cos(mu)|, which is monotone between the ends of the way and the ground line."""
-    design = Symbols(x, places)
+    design = Symbols(form, x, places)
 
     def bound(diagonal2: ca.SX) -> tuple[ca.SX, ca.SX]:
         cosine = cos_mu(design, diagonal2)
@@ -303,13 +306,6 @@ def _square(scaled: ScaledProblem, start: Start) -> float:
     order = np.argsort(start.visit)
     turned = np.array(start.theta3)[order] + start.body_angle
     return float(scaled.missed(start.track[2][order], turned)) ** 2 * len(order)
-
-
-def _longer(scaled: ScaledProblem, start: Start) -> float:
-    """Whether r1 is longer than r2 (1) or shorter (-1)."""
-    r1, r2, _, _ = start.lengths
-    asked = {Rotatability.CRANK_ROCKER: 1.0, Rotatability.DOUBLE_CRANK: -1.0}
-    return asked.get(scaled.wanted.rotatability, 1.0 if r1 > r2 else -1.0)
 
 
 def _zones(scaled: ScaledProblem, start: Start) -> FloatArray:

@@ -29,6 +29,10 @@ class Dual(NDArrayOperatorsMixin):
     value: FloatArray
     slope: FloatArray
 
+    def column(self, k: int) -> Dual:
+        """One column, as one."""
+        return Dual(self.value[:, [k]], self.slope[:, [k]])
+
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **others: Any) -> Any:
         if method != "__call__" or others or ufunc not in _SLOPES:
             return NotImplemented
@@ -58,6 +62,7 @@ _SLOPES: dict[np.ufunc, Callable[..., tuple[Any, ...]]] = {
     np.log: lambda f, x: (1 / x,),
     np.sin: lambda f, x: (np.cos(x),),
     np.cos: lambda f, x: (-np.sin(x),),
+    np.arccos: lambda f, x: (-1 / np.sqrt(np.maximum(1 - x**2, 1e-12)),),
     np.arctan2: lambda f, y, x: (x / (x**2 + y**2), -y / (x**2 + y**2)),
     np.hypot: lambda f, x, y: (x / f, y / f),
     np.maximum: lambda f, x, y: (np.where(x >= y, 1.0, 0.0), np.where(x >= y, 0.0, 1.0)),

@@ -31,10 +31,21 @@ class View:
     o2, o4 : Vector
     r1, r2, r3, r4, theta1 : scalar
     ap, bp : Vector
-        From A and B to the coupler point, in any frame.
+        From A and B to the coupler point, in a frame that the body is turned against by `body_turn`.
+    body_turn : scalar
     a, b : Vector, at the targets
     theta2_start : scalar
         Driver angle at the first target.
+    driver_turn : scalar
+        Driver rotation from the first target to the last, counted in its sense.
+    direction : scalar
+        Sense of the driver, +1 or -1.
+    output_turn : scalar
+        Rotation of the output link from the first target to the last, within half a turn.
+    turns : bool
+        The driver has to turn fully.
+    double_crank : scalar
+        1 where r2 exceeds r1, so that the output of a full crank turns fully, too; else 0.
     """
 
     o2: Vector
@@ -47,8 +58,14 @@ class View:
     theta2_start: Any
     ap: Vector
     bp: Vector
+    body_turn: Any
     a: Vector
     b: Vector
+    driver_turn: Any
+    direction: Any
+    output_turn: Any
+    turns: bool
+    double_crank: Any
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from grashof.problems import Box, Requirements, Task
 from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
+from grashof.problems.values.quantities import Kind, Limit
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,33 +36,27 @@ class Frame:
     def requirements(self, requirements: Requirements) -> Requirements:
         """Resolved `requirements` with lengths in sizes and boxes in this frame."""
         whole = requirements.resolved(self.scale)
-        return replace(
-            whole,
-            link_length=self._lengths(whole.link_length),
-            r1=self._lengths(whole.r1),
-            r2=self._lengths(whole.r2),
-            r3=self._lengths(whole.r3),
-            r4=self._lengths(whole.r4),
-            coupler_arms=self._lengths(whole.coupler_arms),
-            o2=self._box(whole.o2),
-            o4=self._box(whole.o4),
-            a=self._box(whole.a),
-            b=self._box(whole.b),
-            keep_out=tuple(self._area(corners) for corners in whole.keep_out),
+        limits = {name: self._limit(getattr(whole, name), limit) for name, limit in whole.limited.items()}
+        areas = tuple(self._area(corners) for corners in whole.keep_out)
+        return replace(whole, **limits, keep_out=areas)
+
+    def _limit(self, value: Any, limit: Limit) -> Any:
+        """What a field allows, in this frame."""
+        if isinstance(value, Box):
+            begin = self.origin if limit.kind is Kind.INSIDE else 0j
+            return Box(self._side(value.x, begin.real), self._side(value.y, begin.imag))
+        power = limit.quantity.unit.lengths
+        if not power:
+            return value
+        return (
+            tuple(each / self.scale**power for each in value)
+            if isinstance(value, tuple)
+            else value / self.scale**power
         )
 
-    def _lengths(self, limits: Limits | None) -> Limits | None:
-        return None if limits is None else (limits[0] / self.scale, limits[1] / self.scale)
+    def _side(self, side: Limits, begin: float) -> Limits:
+        return (side[0] - begin) / self.scale, (side[1] - begin) / self.scale
 
     def _area(self, corners: FloatArray) -> FloatArray:
         inside = self.inward(corners)
         return np.stack([inside.real, inside.imag], axis=-1)
-
-    def _box(self, box: Box | None) -> Box | None:
-        if box is None:
-            return None
-        x, y = self.origin.real, self.origin.imag
-        return Box(
-            x=((box.x[0] - x) / self.scale, (box.x[1] - x) / self.scale),
-            y=((box.y[0] - y) / self.scale, (box.y[1] - y) / self.scale),
-        )

@@ -28,7 +28,7 @@ def require_limits(build: Builder, form: Form, x: Unknowns, places: Places) -> N
 
     Where a start gives a bound up, rows with slack stand for it.
     """
-    design = Symbols(x, places)
+    design = Symbols(form, x, places)
     for name, part in parts_of(form.limited, smooth=True):
         value, angle = ca.SX(part.of(design)), LIMITS[name].kind is Kind.EQUAL
         allowed = _angle(name, part) if angle else _range(name, part)
@@ -76,7 +76,7 @@ def _rows(build: Builder, design: Symbols, part: Part, value: ca.SX, allowed: Fi
 def cost_of_goals(build: Builder, form: Form, x: Unknowns, places: Places) -> ca.SX:
     """What is made least: the goals by their weights. What is limited along the motion is bounded, too."""
     weights = {key: build.parameter(_share(form, key)) for key in form.goals}
-    cost, design = ca.SX(0), Symbols(x, places)
+    cost, design = ca.SX(0), Symbols(form, x, places)
     for key, weight in weights.items():
         if key == "transmission":
             cost -= weight * x.tau / (np.pi / 2)

@@ -10,7 +10,7 @@ import numpy as np
 from grashof.analysis.judge.design import Constraint
 from grashof.problems import FourBar, Problem, Requirements, Rotatability, Task
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.problems.values.quantities import Quantity, Unit
+from grashof.problems.values.quantities import Quantity
 from grashof.synth.programme.frame import Frame
 from grashof.synth.theory.burmester import Displacements
 
@@ -108,8 +108,7 @@ class ScaledProblem:
 
     def scale(self, quantity: Quantity) -> float:
         """What the objective counts a quantity in, in the units of the frame."""
-        lengths = {Unit.LENGTH: 1, Unit.AREA: 2, Unit.VELOCITY: 1, Unit.ACCELERATION: 1}
-        return self.problem.scale(quantity) / self.frame.scale ** lengths.get(quantity.unit, 0)
+        return self.problem.scale(quantity) / self.frame.scale**quantity.unit.lengths
 
     def missed(self, p: ComplexArray, turned: FloatArray) -> FloatArray:
         """Root mean weighted square of what targets are missed by, sizes.

@@ -112,6 +112,12 @@ class Many(View):
     a, b : ndarray of complex, shape (n, N), sizes, optional
     p : ndarray of complex, shape (n,), sizes
         The coupler point at the first target.
+    theta2 : ndarray, shape (n, N), rad, optional
+        Driver angles in the order of visit.
+    body_turn : ndarray, shape (n,), rad, optional
+        Angle of the body at the first target.
+    turns : bool
+        The driver has to turn fully.
     """
 
     def __init__(
@@ -121,6 +127,9 @@ class Many(View):
         a: ComplexArray | None = None,
         o4: ComplexArray | None = None,
         b: ComplexArray | None = None,
+        theta2: FloatArray | None = None,
+        body_turn: FloatArray | None = None,
+        turns: bool = True,
     ) -> None:
         if o2 is not None and a is not None:
             crank = a - o2[:, None]
@@ -132,6 +141,13 @@ class Many(View):
         if o2 is not None and o4 is not None and a is not None and b is not None:
             ground = (o4 - o2)[:, None]
             self.r1, self.r3, self.theta1 = np.abs(ground), np.abs(b[:, :1] - a[:, :1]), np.angle(ground)
+            first, last = (_vector((b - o4[:, None])[:, [k]]) for k in (0, -1))
+            self.output_turn, self.turns, self.double_crank = first.angle_to(last), turns, self.r2 > self.r1
+        if theta2 is not None:
+            gone = theta2[:, -1:] - theta2[:, :1]
+            self.driver_turn, self.direction = np.abs(gone), np.sign(gone)
+        if body_turn is not None:
+            self.body_turn = body_turn[:, None]
 
 
 def _oversteps(view: View, wanted: Requirements, dyad: int | None) -> Iterator[tuple[str, FloatArray]]:
@@ -163,6 +179,7 @@ def judge(
     violations: FloatArray,
     wanted: Requirements,
     body_angle: FloatArray | None = None,
+    first_turn: FloatArray | None = None,
 ) -> Screened:
     """Judge linkages by everything but what single dyads decide.
 
@@ -178,13 +195,18 @@ def judge(
     wanted : Requirements
         In the frame of the search.
     body_angle : ndarray, shape (n,), rad, optional
+    first_turn : ndarray, shape (n,), rad, optional
+        Angle of the body at the first target, where it is not the coupler's and `body_angle`.
 
     Returns
     -------
     Screened
     """
-    view = Many(p, found.o2, found.a, found.o4, found.b)
     coupler, output = found.b - found.a, found.b - found.o4[:, None]
+    if first_turn is None:
+        first_turn = np.angle(coupler[:, 0]) + (0.0 if body_angle is None else body_angle)
+    turns = wanted.rotatability is not Rotatability.ANY
+    view = Many(p, found.o2, found.a, found.o4, found.b, found.theta2, first_turn, turns)
     with np.errstate(divide="ignore", invalid="ignore"):
         sine = (coupler.conj() * output).imag / (view.r3 * view.r4)
         assembly = np.where(np.sum(np.sign(sine), axis=1) >= 0, 1.0, -1.0)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -12,6 +12,8 @@ from grashof.problems import FourBar, Objective
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
+
+UNSMOOTH = ("order", "same_branch")  # requirements that no smooth constraint can relax
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,6 +106,14 @@ class Start:
             objective=scaled.problem.objective,
             body_angle=float(linkage.body_angle),
         )
+
+    def at(
+        self, points: Sequence[complex], theta2: Sequence[float], theta3: Sequence[float], body_angle: float
+    ) -> Start:
+        """The same choices with another linkage, its angles in the order of visit."""
+        o2, o4, a, b, p = (complex(point) for point in points)
+        moved = replace(self, o2=o2, o4=o4, a=a, b=b, p=p, body_angle=body_angle)
+        return replace(moved, theta2=tuple(theta2), theta3=tuple(theta3))
 
     @property
     def points(self) -> ComplexArray:

@@ -44,7 +44,7 @@ class Form:
     grid : int
         At how many driver angles what varies along the motion is bounded.
     closed : bool
-        The motion used is a whole turn.
+        The task motion is a whole turn.
     keep_out : tuple of str
         Of o2, o4, a, b, p: which are held in free regions, the moving ones at every target.
     stay : bool

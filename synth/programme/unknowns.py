@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
+from grashof.problems import Rotatability
 from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
 from grashof.synth.programme.builder import Builder, always
 from grashof.synth.programme.scaled_problem import ScaledProblem
@@ -42,6 +43,10 @@ class Unknowns:
         Sense of the driver and assembly, +1 or -1.
     at_first : SX, shape (N,)
         1 at the first target, else 0.
+    double_crank : SX
+        1 where r2 stays longer than r1, else 0.
+    body_turn : SX, rad
+        Of the body against the frame in which the programme has AP: the first pose, or `body_angle`.
     """
 
     o2: ca.SX
@@ -58,29 +63,33 @@ class Unknowns:
     direction: ca.SX
     assembly: ca.SX
     at_first: ca.SX
+    double_crank: ca.SX
+    body_turn: ca.SX
 
     @classmethod
     def of(cls, build: Builder, form: Form) -> Unknowns:
         """The unknowns of a form, in their order."""
         n, none = form.targets, ca.SX(0, 1)
         wide, turns = always(-FAR, FAR), always(-100.0, 100.0)
-        pivots = {name: build.unknown(name, 2, *_pivot(name)) for name in ("o2", "o4", "a", "b")}
+        found = {name: build.unknown(name, 2, *_pivot(name)) for name in ("o2", "o4", "a", "b")}
+        found["r"] = build.unknown("r", 4, lambda _, start: start.lengths, always(SHORTEST, FAR))
+        found["theta1"] = build.unknown("theta1", 1, lambda _, start: start.theta1, always(-LIFTED, LIFTED))
+        found["theta2"] = build.unknown("theta2", n, lambda _, start: start.theta2, _first_fixed)
+        found["tau"] = build.unknown("tau", 1, lambda *_: 0.0, _least_transmission)
+        found |= dict.fromkeys(("theta3", "arm", "body_angle"), none)
+        if not form.poses:
+            found["theta3"] = build.unknown("theta3", n, lambda _, start: start.theta3, turns)
+            found["arm"] = build.unknown("arm", 2, lambda _, start: interleaved(start.arm), wide)
+        if any(form.angles) and not form.poses:
+            found["body_angle"] = build.unknown("body_angle", 1, lambda _, start: start.body_angle, turns)
+        first_turn = build.parameter(lambda scaled, _: scaled.turns[0])
         return cls(
-            **pivots,
-            r=build.unknown("r", 4, lambda _, start: start.lengths, always(SHORTEST, FAR)),
-            theta1=build.unknown("theta1", 1, lambda _, start: start.theta1, always(-LIFTED, LIFTED)),
-            theta2=build.unknown("theta2", n, lambda _, start: start.theta2, _first_fixed),
-            tau=build.unknown("tau", 1, lambda *_: 0.0, _least_transmission),
-            theta3=none if form.poses else build.unknown("theta3", n, lambda _, start: start.theta3, turns),
-            arm=none
-            if form.poses
-            else build.unknown("arm", 2, lambda _, start: interleaved(start.arm), wide),
-            body_angle=build.unknown("body_angle", 1, lambda _, start: start.body_angle, turns)
-            if any(form.angles) and not form.poses
-            else none,
+            **found,
             direction=build.parameter(lambda _, start: start.direction),
             assembly=build.parameter(lambda _, start: start.assembly),
             at_first=build.parameter(lambda _, start: [float(target == 0) for target in start.visit], n),
+            double_crank=build.parameter(_double_crank),
+            body_turn=first_turn if form.poses else found["body_angle"],
         )
 
     @property
@@ -117,6 +126,12 @@ def _least_transmission(scaled: ScaledProblem, start: Start) -> Limits:
     least = np.radians(scaled.wanted.transmission_min_deg) + INSET + start.more_transmission
     least = 0.0 if start.gives("transmission_min_deg") else min(least, np.pi / 2 - INSET)
     return max(LEAST_TRANSMISSION, least), np.pi / 2
+
+
+def _double_crank(scaled: ScaledProblem, start: Start) -> float:
+    r1, r2, _, _ = start.lengths
+    asked = {Rotatability.CRANK_ROCKER: 0.0, Rotatability.DOUBLE_CRANK: 1.0}
+    return asked.get(scaled.wanted.rotatability, float(r1 <= r2))
 
 
 def inset(limits: Limits) -> Limits:

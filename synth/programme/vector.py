@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+import numpy as np
+
 
 @dataclass(frozen=True, slots=True)
 class Vector:
@@ -43,6 +45,14 @@ class Vector:
     def cross(self, other: Vector) -> Any:
         """Component of the vector product across the plane."""
         return self.x * other.y - self.y * other.x
+
+    def angle_to(self, other: Vector) -> Any:
+        """From this vector to another, within half a turn, rad."""
+        return np.arctan2(self.cross(other), self.dot(other))
+
+    def turned(self, angle: Any) -> Vector:
+        """Turned by an angle, counter-clockwise."""
+        return np.cos(angle) * self + np.sin(angle) * self.left
 
     @property
     def square(self) -> Any:

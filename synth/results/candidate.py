@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
-from grashof.analysis import Constraint, Design, Verdict, verify
+from grashof.analysis import Design, Verdict
 from grashof.analysis.judge.design import greatest
 from grashof.analysis.judge.measures import Values
 from grashof.problems import FourBar, Problem
@@ -103,14 +103,6 @@ class Candidate(Displayed):
     def asked_by(self, problem: Problem) -> Candidate:
         """The same with the values that another problem asks for; the verdict stays."""
         return self if problem is self.problem else replace(self, problem=problem)
-
-    def judged(
-        self, problem: Problem, constraints: Sequence[Constraint], *, most_square: float = np.inf
-    ) -> Candidate:
-        """The same with a verdict by another problem, or other constraints; see `verify`."""
-        asked = problem.task, problem.requirements, constraints
-        verdict = verify(self.linkage, *asked, most_square=most_square, problem=problem)
-        return replace(self, verdict=verdict, problem=problem)
 
     def valued(self, objective: Callable[[Design], Any]) -> Candidate:
         """The same with what the user's own objective makes of it."""

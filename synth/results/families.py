@@ -19,14 +19,7 @@ ALIKE = 0.05  # share of the largest number of two designs by which they differ 
 
 
 def listed(problem: Problem, candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
-    """Distinct designs with their families: the best of each, best first, then all others, best first.
-
-    Parameters
-    ----------
-    problem : Problem
-    candidates : sequence of Candidate
-        Verified designs in any order.
-    """
+    """Distinct designs with their families: the best of each, best first, then all others, best first."""
     best_first = ranked(problem, candidates)
     if not best_first:
         return ()
@@ -49,16 +42,8 @@ def best_alike(task: Task, signatures: FloatArray) -> IntArray:
     (`symmetries`). All members of a family are like its best one; what is only like another member
     is not in it.
 
-    Parameters
-    ----------
-    task : Task
-    signatures : ndarray, shape (n, 9), length
-        Of the designs, best first, with pivots measured from the middle of the task.
-
-    Returns
-    -------
-    ndarray of int, shape (n,)
-        Index of the best of the family; its own for the best.
+    The `signatures` of the designs, best first, shape (n, 9), have pivots measured from the middle of
+    the task.
     """
     maps = symmetries(task)
     best = np.arange(len(signatures))

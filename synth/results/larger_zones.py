@@ -12,7 +12,7 @@ from grashof.analysis import Verdict
 from grashof.analysis.judge.design import Constraint
 from grashof.problems import Problem
 from grashof.synth.results.candidate import Candidate
-from grashof.synth.results.relaxation import Relaxation
+from grashof.synth.results.relaxed_limits import Relaxation
 
 MISSED = {"within", "angle_within_deg", "exact"}  # what the judge calls a target missed by too much
 
@@ -20,20 +20,10 @@ MISSED = {"within", "angle_within_deg", "exact"}  # what the judge calls a targe
 def wider(
     problem: Problem, constraints: Sequence[Constraint], known: Sequence[Candidate]
 ) -> list[Relaxation]:
-    """Larger zones, or a greater tolerance, by which the nearest of some designs would do.
+    """Larger zones, or a greater tolerance, by which the nearest of some designs would do; one at most.
 
-    Parameters
-    ----------
-    problem : Problem
-    constraints : sequence of callable
-        The user's own.
-    known : sequence of Candidate
-        Judged against all requirements.
-
-    Returns
-    -------
-    list of Relaxation
-        One at most. The judge has accepted its design under the larger zones and all requirements.
+    The `known` designs are judged against all requirements; the judge has accepted the one named under
+    the larger zones.
     """
     if problem.zones is None:
         return []

@@ -73,13 +73,20 @@ def ranked(
     """
     if objective is not None:
         candidates = [candidate.valued(objective) for candidate in candidates]
+    best_first = sorted(candidates, key=lambda candidate: ranking_key(problem, candidate))
+    return distinct(problem, best_first, DISTINCT, len(best_first))
+
+
+def distinct(
+    problem: Problem, candidates: Sequence[Candidate], least: float, most: int
+) -> tuple[Candidate, ...]:
+    """At most so many of some candidates that are at least so far apart, in their order."""
     if not candidates:
         return ()
-    ordered = sorted(candidates, key=lambda candidate: ranking_key(problem, candidate))
     origin = np.nanmean(problem.task.positions, axis=0)
-    signatures = np.array([signature(candidate.linkage, origin) for candidate in ordered])
-    picked = pick_apart(signatures, -np.arange(len(ordered), dtype=np.float64), DISTINCT, len(ordered))
-    return tuple(ordered[i] for i in picked)
+    signatures = np.array([signature(candidate.linkage, origin) for candidate in candidates])
+    picked = pick_apart(signatures, -np.arange(len(candidates), dtype=np.float64), least, most)
+    return tuple(candidates[i] for i in picked)
 
 
 def pareto_goals(problem: Problem) -> list[Quantity]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from os import PathLike
 from typing import TYPE_CHECKING
 
@@ -14,6 +14,7 @@ from grashof.problems.values.checks import counted
 from grashof.problems.values.display import Displayed
 from grashof.synth.programme.merit import same_error
 from grashof.synth.results.candidate import Candidate
+from grashof.synth.results.tally import Tally
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -30,8 +31,8 @@ class Result(Displayed):
         The best design of each family, best first, then all the others, best first.
     nearest : tuple of Candidate
         For an empty list: designs with one requirement missed, each as little as was possible.
-    counts : mapping of str to int
-        Solves by outcome.
+    tally : Tally
+        Counts of the search: `counts` has all of them by name.
     seconds : mapping of str to float
         Time by stage.
     note : str
@@ -45,10 +46,10 @@ class Result(Displayed):
     """
 
     problem: Problem
-    candidates: tuple[Candidate, ...]
-    nearest: tuple[Candidate, ...]
-    counts: Mapping[str, int]
-    seconds: Mapping[str, float]
+    candidates: tuple[Candidate, ...] = ()
+    nearest: tuple[Candidate, ...] = ()
+    tally: Tally = field(default_factory=Tally)
+    seconds: Mapping[str, float] = field(default_factory=dict)
     note: str = ""
     complete: bool = True
     ended: str = ""
@@ -69,6 +70,11 @@ class Result(Displayed):
         if not self.candidates:
             raise NoSolutionError(self.note)
         return self.candidates[0]
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Solves by outcome, and what else the search counted, by the names that ``run.json`` has."""
+        return self.tally.recorded
 
     @property
     def most_error(self) -> float:

@@ -36,7 +36,7 @@ class PathTarget:
     wanted : Requirements
         In the frame of the points. Its limits draw the search inwards.
     closed : bool
-        The motion used is a whole turn.
+        The task motion is a whole turn.
     """
 
     points: ComplexArray

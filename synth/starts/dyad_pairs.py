@@ -46,20 +46,7 @@ class _Side:
 def screen(motion: Displacements, body: complex, dyads: Dyads, wanted: Requirements, pairs: int) -> Screened:
     """All feasible pairs of the given dyads.
 
-    Parameters
-    ----------
-    motion : Displacements
-    body : complex
-        The guided point at the first pose.
-    dyads : Dyads
-    wanted : Requirements
-        In the frame of the search.
-    pairs : int
-        Most pairs to judge; beyond it the dyads are thinned.
-
-    Returns
-    -------
-    Screened
+    `body` is the guided point at the first pose; beyond so many `pairs` to judge the dyads are thinned.
     """
     driver, driven = _sides(motion, body, dyads, wanted)
     driver, driven = driver[met(driver.violations)], driven[met(driven.violations)]

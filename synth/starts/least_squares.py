@@ -19,6 +19,7 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS, Screened
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.starts.closed_loop import Batch, PathTarget, joined
+from grashof.synth.starts.coupler_search import FOUND, CouplerSearch
 from grashof.synth.starts.loop_search import (
     PLACES,
     Placed,
@@ -36,7 +37,6 @@ from grashof.synth.starts.thinning import refined, thinned
 DRAWS, TIMED_DRAWS = 2000, 600
 ASTRAY = 0.3  # share of them on which P makes a detour between two targets
 FEW_TARGETS = 40  # of a longer task decide which finds are worth the rest
-FOUND = 1e-5  # sizes: so small an error is none
 # Where no limit binds: how many of the best go on for how many steps.
 FREE_STAGES, TIMED_STAGES = ((200, 6), (60, 10), (20, 50)), ((60, 6), (20, 60))
 MOST_CURVES = 6  # starts of such a round
@@ -57,27 +57,19 @@ AMPLE, FEWEST = 24, 0.25
 UNLIMITED = ("order", "same_branch", "keep_out", "constraints")  # no residual of the search stands for them
 
 
-def rounds(scaled: ScaledProblem, rng: np.random.Generator, size: int = 1) -> Iterator[Round]:
-    """Rounds of starts without end.
+@dataclass(frozen=True, slots=True)
+class LeastSquares(CouplerSearch):
+    """Targets that may be missed."""
 
-    Parameters
-    ----------
-    scaled : ScaledProblem
-    rng : numpy.random.Generator
-    size : int
-        How many times the usual number of linkages to draw, and of starts to take.
-
-    Yields
-    ------
-    Round
-    """
-    target = path_target(scaled)
-    some, index = thinned(target, FEW_TARGETS)
-    while True:
-        drawn = draw(some, size * (TIMED_DRAWS if target.timed else DRAWS), rng, ASTRAY)
-        best = _best_fitting(some, drawn, size)
-        free = _free_round(scaled, _on_all_targets(target, index, best), size)
-        yield free or _limited_round(scaled, rng, drawn, best, size)
+    def rounds(self, _enough: int, rng: np.random.Generator, size: int, /) -> Iterator[Round]:
+        """Rounds without end, of `size` times the usual number of draws and starts."""
+        scaled, target = self.scaled, path_target(self.scaled)
+        some, index = thinned(target, FEW_TARGETS)
+        while True:
+            drawn = draw(some, size * (TIMED_DRAWS if target.timed else DRAWS), rng, ASTRAY)
+            best = _best_fitting(some, drawn, size)
+            free = _free_round(scaled, _on_all_targets(target, index, best), size)
+            yield free or _limited_round(scaled, rng, drawn, best, size)
 
 
 def _best_fitting(some: PathTarget, drawn: Batch, size: int) -> Batch:

@@ -23,7 +23,7 @@ from grashof.synth.programme.formulas import (
     stretched,
 )
 from grashof.synth.programme.vector import Vector
-from grashof.synth.starts.closed_loop import Loop, PathTarget
+from grashof.synth.starts.closed_loop import Loop, PathTarget, body_turns
 
 LEAST_TRANSMISSION = 1e-3  # rad: keeps the motion away from dead positions
 LEAST_LENGTH = 1e-9  # sizes
@@ -49,6 +49,7 @@ class Placement(View):
 
     Parameters
     ----------
+    target : PathTarget
     loop : Loop
     by_theta2, by_theta3 : ndarray, shape (n, N, M)
     z : ndarray of complex, shape (n, 3), sizes
@@ -56,9 +57,15 @@ class Placement(View):
     """
 
     def __init__(
-        self, loop: Loop, by_theta2: FloatArray, by_theta3: FloatArray, z: ComplexArray, by_z: ComplexArray
+        self,
+        target: PathTarget,
+        loop: Loop,
+        by_theta2: FloatArray,
+        by_theta3: FloatArray,
+        z: ComplexArray,
+        by_z: ComplexArray,
     ) -> None:
-        self.loop, self.by_theta3 = loop, by_theta3
+        self._target, self.loop, self.by_theta3 = target, loop, by_theta3
         self.relative = Relative(loop, by_theta2)
         self.o2, self._crank, self.ap = (
             Vector(Dual(place.real, slope.real), Dual(place.imag, slope.imag))
@@ -70,22 +77,35 @@ class Placement(View):
         self.r2, self.r3, self.r4 = (self.r1 * getattr(self.relative, name) for name in ("r2", "r3", "r4"))
         self.theta1 = np.arctan2(ground.y, ground.x)
         theta2 = self.relative.theta2
-        self.theta2_start = self.theta1 + Dual(theta2.value[:, :1], theta2.slope[:, :1])
+        first, last = theta2.column(0), theta2.column(-1)
+        self.theta2_start, self.direction = self.theta1 + first, np.sign(last.value - first.value)
+        self.driver_turn, self.double_crank = np.abs(last - first), loop.r2[:, None] > 1
+        self.turns = target.wanted.rotatability is not Rotatability.ANY
 
     @cached_property
     def a(self) -> Vector:  # type: ignore[override]
         """A at every target."""
-        return self.o2 + _turned(self._crank, self.relative.theta2)
+        return self.o2 + self._crank.turned(self.relative.theta2)
 
     @cached_property
     def b(self) -> Vector:  # type: ignore[override]
         """B at every target."""
         theta3 = Dual(np.angle(self.loop.e3), self.by_theta3)
-        return self.a + self.relative.r3 * _turned(self._ground, theta3)
+        return self.a + self.relative.r3 * self._ground.turned(theta3)
 
+    @cached_property
+    def output_turn(self) -> Dual:  # type: ignore[override]
+        """Rotation of the output link from the first target to the last."""
+        first, last = (Vector(self.b.x.column(k), self.b.y.column(k)) - self.o4 for k in (0, -1))
+        turned: Dual = first.angle_to(last)
+        return turned
 
-def _turned(vector: Vector, angle: Dual) -> Vector:
-    return np.cos(angle) * vector + np.sin(angle) * vector.left
+    @cached_property
+    def body_turn(self) -> Dual:  # type: ignore[override]
+        """From the coupler of the loop to the body."""
+        weights = self._target.turn_weights
+        slope = np.einsum("i,sim->sm", weights, self.by_theta3) / weights.sum()
+        return Dual(body_turns(self._target, self.loop)[1][:, None], -slope[:, None])
 
 
 def oversteps(target: PathTarget, at: Placement) -> tuple[FloatArray, FloatArray]:
@@ -148,7 +168,7 @@ def _transmission_rows(target: PathTarget, loop: Relative) -> Iterator[Dual]:
 
 
 def passed(target: PathTarget, theta2: FloatArray) -> tuple[BoolArray, BoolArray]:
-    """Whether the motion used passes O2A folded over the ground line, and stretched along it; (n,) each."""
+    """Whether the task motion passes O2A folded over the ground line, and stretched along it; (n,) each."""
     every = np.ones(len(theta2), dtype=bool)
     if target.wanted.transmission_over is TransmissionOver.CYCLE or target.closed:
         return every, every

@@ -217,7 +217,7 @@ def fitting(target: PathTarget) -> Model:
             residual, slope = _missed(target, loop, z, by_theta2, by_theta3)
             share = np.swapaxes(q.conj(), 1, 2) @ slope
             slope -= q @ share
-            at = Placement(loop, by_theta2, by_theta3, z, -_back_substituted(r, share))
+            at = Placement(target, loop, by_theta2, by_theta3, z, -_back_substituted(r, share))
             return _joined(target, at, residual, slope, PULL, error)
 
     return model
@@ -251,7 +251,7 @@ def within_limits(target: PathTarget, weight: float) -> Model:
                 slope[..., width - PLACES + 2 * k + 1] = 1j * root * spanned
             error = np.where(loop.closes, (np.abs(residual) ** 2).sum(axis=1), np.inf)
             return _joined(
-                target, Placement(loop, by_theta2, by_theta3, z, by_z), residual, slope, weight, error
+                target, Placement(target, loop, by_theta2, by_theta3, z, by_z), residual, slope, weight, error
             )
 
     return model

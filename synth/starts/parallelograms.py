@@ -30,10 +30,8 @@ from grashof.synth.programme.start import Start
 from grashof.synth.programme.user_constraints import screened
 from grashof.synth.starts.sampled_dyads import arms, ground_pivots
 from grashof.synth.starts.selection import feasible_starts, merits
-from grashof.synth.theory.burmester import Displacements
 from grashof.synth.theory.distinct import pick_apart
 
-NOT_TURNED = 1e-9  # of unit rotations
 LEAST_TRANSMISSION = 1e-3  # rad: keeps the motion away from change points
 STRAIGHT = 1e4  # sizes: points on a larger circle lie on a straight line
 BRED, CHILDREN, GENERATIONS = 12, 100, 12  # of the best
@@ -53,11 +51,6 @@ class Circle:
     centre: complex
     radius: float
     off: float
-
-
-def translates(motion: Displacements) -> bool:
-    """Whether all poses are pure translations of the first."""
-    return bool(np.abs(motion.rotation - 1).max() < NOT_TURNED)
 
 
 def circle_through(targets: ComplexArray) -> Circle:
@@ -92,63 +85,46 @@ def circle_through(targets: ComplexArray) -> Circle:
     return Circle(centre, radius, float(np.abs(np.abs(targets - centre) - radius).max()))
 
 
-def starts(scaled: ScaledProblem, enough: int, rng: np.random.Generator) -> list[Start]:
-    """Starts that are parallelogram linkages, the best first, then spread over all.
-
-    Parameters
-    ----------
-    scaled : ScaledProblem
-        Of poses that are pure translations.
-    enough : int
-        Distinct designs wanted.
-    rng : numpy.random.Generator
-    """
-    found = finds(scaled, rng)
-    return [replace(start, settled=True) for start in feasible_starts(scaled, found[found.feasible], enough)]
+def parallelogram_starts(scaled: ScaledProblem, enough: int, rng: np.random.Generator) -> list[Start]:
+    """Starts that are parallelogram linkages, the best first, then spread over all."""
+    linkages = parallelograms(scaled, rng)
+    starts = feasible_starts(scaled, linkages[linkages.feasible], enough)
+    return [replace(start, settled=True) for start in starts]
 
 
-def obstacle(scaled: ScaledProblem) -> str:
+def parallelogram_obstacle(scaled: ScaledProblem) -> str:
     """Why three translated poses or more have no parallelogram linkage; empty where they may have."""
-    circle, told = circle_through(scaled.targets), "the poses are pure translations of each other"
+    poses = "the poses are pure translations of each other"
+    circle = circle_through(scaled.targets)
     if circle.radius > STRAIGHT:
-        return f"{told} along a straight line, and parallelogram linkages carry a body along a circle"
+        return f"{poses} along a straight line, and parallelogram linkages carry a body along a circle"
     if circle.off > scaled.wanted.tolerance:
         off = f"{circle.off * scaled.frame.scale:.3g} {scaled.problem.length_unit}".strip()
-        return f"{told}, up to {off} off any one circle, along which parallelogram linkages carry a body"
+        return f"{poses}, up to {off} off any one circle, along which parallelogram linkages carry a body"
     if scaled.wanted.rotatability is not Rotatability.ANY:
         return (
-            f"{told}: only parallelogram linkages carry the body through them, and their driver cannot turn "
-            "fully without passing a change point"
+            f"{poses}: only parallelogram linkages carry the body through them, and their driver cannot "
+            "turn fully without passing a change point"
         )
     _, half = _arc(scaled, _cranks(scaled, 1, np.random.default_rng(0)))
     if 2 * half[0] < np.pi:
         return ""
     return (
-        f"{told}, spread over {np.degrees(2 * half[0]):.4g} deg of a circle, and parallelogram linkages have "
-        "less than 180 deg from one change point to the next"
+        f"{poses}, spread over {np.degrees(2 * half[0]):.4g} deg of a circle, and parallelogram linkages "
+        "have less than 180 deg from one change point to the next"
     )
 
 
-def finds(scaled: ScaledProblem, rng: np.random.Generator, samples: int = SAMPLES) -> Screened:
-    """Parallelogram linkages through translated poses, screened: drawn, then the best varied.
+def parallelograms(scaled: ScaledProblem, rng: np.random.Generator) -> Screened:
+    """Parallelogram linkages through translated poses: drawn, then the best varied.
 
-    Parameters
-    ----------
-    scaled : ScaledProblem
-        Of poses that are pure translations.
-    rng : numpy.random.Generator
-    samples : int
-
-    Returns
-    -------
-    Screened
-        None where the driver has to turn fully, or where three poses or more lie on no circle.
+    None where the driver has to turn fully, or where three poses or more do not lie on a circle.
     """
     circle = circle_through(scaled.targets) if len(scaled.targets) > 2 else Circle(0.0, 1.0, 0.0)
     off = circle.off > scaled.wanted.tolerance or circle.radius > STRAIGHT
     if off or scaled.wanted.rotatability is not Rotatability.ANY:
         return _judged(scaled, _drawn(scaled, FEW, rng))[:0]
-    drawn = _drawn(scaled, samples, rng)
+    drawn = _drawn(scaled, SAMPLES, rng)
     found = [_judged(scaled, drawn)]
     best, worth = _distinct_best(scaled, drawn, found[0])
     for generation in range(GENERATIONS):

@@ -22,18 +22,7 @@ def sampled_dyads(
 ) -> Dyads:
     """Random dyads of two or three poses: half of them by the joint, half by the pivot.
 
-    Parameters
-    ----------
-    motion : Displacements
-    body : complex, sizes
-        The guided point at the first pose.
-    wanted : Requirements
-        In the frame of the search.
-    rng : numpy.random.Generator
-
-    Returns
-    -------
-    Dyads
+    `body` is the guided point at the first pose, sizes.
     """
     longest = max(limits[1] for limits in wanted.link_lengths)
     moving = body + arms(wanted.coupler_arms, SAMPLES, rng)
@@ -69,6 +58,15 @@ def ground_pivots(box: Box | None, longest: float, samples: int, rng: np.random.
     wide = rng.uniform(*x, count) + 1j * rng.uniform(*y, count)
     near = np.clip(rng.normal(0, 1.5, count), *x) + 1j * np.clip(rng.normal(0, 1.5, count), *y)
     return np.where(rng.random(count) < 0.5, wide, near)
+
+
+def fixed_pivots(wanted: Requirements) -> dict[str, complex]:
+    """Ground pivots whose place is given, by name."""
+    return {
+        name: complex(box.x[0], box.y[0])
+        for name, box in (("O2", wanted.o2), ("O4", wanted.o4))
+        if box is not None and box.x[0] == box.x[1] and box.y[0] == box.y[1]
+    }
 
 
 def joined(first: Dyads, second: Dyads) -> Dyads:

@@ -6,7 +6,6 @@ import numpy as np
 
 from grashof.problems import FourBar
 from grashof.problems.values.arrays import FloatArray, IntArray
-from grashof.problems.values.linkage_parts import Kind
 
 # Share of the largest number of two designs by which they differ at least: 1 %, and a quarter more
 # because pivots are measured from the middle of the task, where the largest number is smaller.
@@ -21,7 +20,7 @@ def signature(linkage: FourBar, origin: FloatArray | None = None) -> FloatArray:
     """
     middle = np.zeros(2) if origin is None else origin
     numbers = [
-        (value - middle if row.kind is Kind.PLACE else value) if row.paired else value[..., None]
+        (value - middle if row.kind == "place" else value) if row.paired else value[..., None]
         for row, value in zip(linkage.PARAMETERS, linkage.parameters, strict=True)
         if row.in_length
     ]

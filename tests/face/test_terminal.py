@@ -23,7 +23,8 @@ from grashof.problems import (
     load,
 )
 from grashof.synth import Progress, Result
-from grashof.wording.problem import beginning, ends_with_enough, error_meaning, summary
+from grashof.synth.starts.finder import finder_of
+from grashof.wording.problem import ends_with_enough, error_meaning, summary
 
 
 def zoned(**zones: Any) -> MotionTask:
@@ -260,4 +261,5 @@ def test_what_the_error_of_poses_counts_is_said(few: Result) -> None:
 )
 def test_the_search_begins_with_what_it_does(name: str, exact: bool | None, said: str) -> None:
     problem = load(name)
-    assert beginning(replace(problem, requirements=replace(problem.requirements, exact=exact))) == said
+    asked = replace(problem, requirements=replace(problem.requirements, exact=exact))
+    assert finder_of(asked).beginning == said

@@ -148,10 +148,9 @@ MIXES: dict[str, tuple[int, list[int], list[int]]] = {
 
 
 @pytest.mark.parametrize("mix", MIXES)
-@pytest.mark.parametrize("seed", range(2))
-def test_poses_with_free_parts_are_met_exactly(mix: str, seed: int) -> None:
+def test_poses_with_free_parts_are_met_exactly(mix: str) -> None:
     poses, places, angles = MIXES[mix]
-    whole, _ = planted(seed, poses)
+    whole, _ = planted(0, poses)
     positions, turned = whole.positions.copy(), whole.angles.copy()
     positions[places], turned[angles] = np.nan, np.nan
     task = MotionTask(positions, turned)

@@ -13,7 +13,6 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
 from grashof.analysis import Position, solve_position
-from grashof.analysis.four_bar.position import places
 from grashof.analysis.numerics.smooth_polygon import smooth_polygon
 from grashof.figures.linkage import figure_of, new_axes, plane
 from grashof.figures.parts import (
@@ -26,6 +25,7 @@ from grashof.figures.parts import (
     draw_task,
     missing_glyphs_unwarned,
     name_points,
+    stands,
 )
 from grashof.figures.subject import Linkage, Subject
 from grashof.problems import Problem, ProblemError
@@ -154,26 +154,17 @@ def _driver(subject: Subject, turns: FloatArray) -> FloatArray:
 class _Moving:
     """The artists of an animation, and the motion that they show.
 
-    Parameters
-    ----------
-    axes : Axes
-    subject : Subject
-    state : Position
-        In every frame.
-    turns : ndarray, shape (N,)
-        Shares of the motion at the points of the path.
-    path : ndarray, shape (N, 2), length
-        What P draws, over the whole motion.
+    `state` holds every frame, `path` what P draws over the whole motion, at the shares `turns` of it.
     """
 
     def __init__(
         self, axes: Axes, subject: Subject, state: Position, turns: FloatArray, path: FloatArray
     ) -> None:
         linkage, problem = subject.linkage, subject.problem
-        self._points, self._path = places(linkage, state), path
+        self._stands, self._path = stands(linkage, state), path
         frames = len(state.p)
         self._drawn = np.searchsorted(turns, np.arange(frames) / frames, side="right")
-        self._links = Links(axes, self._points_in(0), named=False)
+        self._links = Links(axes, self._stands[0], named=False)
         axes.plot(*path.T, color=PATH, linewidth=0.8, linestyle=":", zorder=2)
         (self._trace,) = axes.plot([], [], color=PATH, linewidth=1.8, zorder=3)
         self._corners = _carried(subject, state)
@@ -186,20 +177,17 @@ class _Moving:
         ]
         draw_ground(axes, linkage)
         plane(axes, subject)
-        joints = [self._points[name] for name in linkage.PIVOTS]
-        axes.update_datalim(np.concatenate([*joints, path, *self._corners]))
+        joints = [place for stand in self._stands for name, place in stand.items() if name in linkage.JOINTS]
+        axes.update_datalim(np.concatenate([joints, path, *self._corners]))
         name_points(axes, {name.upper(): getattr(linkage, name) for name in linkage.GROUND})
 
     def show(self, frame: int) -> list[Artist]:
         """Put everything where it is in a frame; what has moved."""
-        self._links.move(self._points_in(frame))
+        self._links.move(self._stands[frame])
         self._trace.set_data(*self._path[: self._drawn[frame]].T)
         for body in self._bodies:
             body.set_xy(self._corners[frame])
         return [*self._links.artists, self._trace, *self._bodies]
-
-    def _points_in(self, frame: int) -> dict[str, FloatArray]:
-        return {name: place[frame] for name, place in self._points.items()}
 
 
 def _carried(subject: Subject, state: Position) -> list[FloatArray]:

@@ -14,7 +14,7 @@ from grashof.figures.subject import Linkage, Subject
 from grashof.problems import FourBar, Problem, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.survey.quantities import FORCES, dynamic_quantities, kinematic_quantities, table_of
-from grashof.survey.sweep import Sweep, dead_positions_unwarned, loads_of, masses_of
+from grashof.survey.sweep import Sweep, dead_positions_unwarned
 
 AxesArray = npt.NDArray[np.object_]
 # What each panel shows: the label of its axis, and the columns of the analysis with their names.
@@ -121,11 +121,11 @@ def plot_dynamics(
     """
     panels = _panels(quantities, DYNAMICS)
     sweep = Sweep.of(Subject.of(linkage, problem).spec, speed_rpm)
-    masses = masses_of(sweep.spec)
-    if masses is None:
+    found = dynamic_quantities(sweep.spec)
+    if not found:
         raise ProblemError(f"{sweep.spec.name} has no masses; a table [dynamics] or a problem states them")
     with dead_positions_unwarned():
-        table = table_of(dynamic_quantities(sweep.spec, masses, loads_of(sweep.spec)), sweep.states())
+        table = table_of(found, sweep.states())
     return draw_curves(sweep, table, panels, ax)
 
 
@@ -152,7 +152,7 @@ def draw_curves(
         if not sweep.turns and not label.startswith("angle"):
             _bound(axes, np.concatenate(list(drawn.values())))
         axes.axhline(0, color=GROUND, linewidth=0.6, zorder=0)
-        axes.set_ylabel(label.format(unit=sweep.spec.length_unit or "length"), parse_math=False)
+        axes.set_ylabel(label.format(unit=sweep.spec.unit), parse_math=False)
         if sweep.turns:
             axes.set_xlim(0, 360)
             axes.set_xticks(np.arange(0, 361, 45))

@@ -9,7 +9,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from grashof.analysis import solve_position
-from grashof.analysis.four_bar.position import places
 from grashof.figures.parts import (
     COUPLER,
     GROUND,
@@ -24,6 +23,7 @@ from grashof.figures.parts import (
     draw_task,
     in_points,
     name_points,
+    stands,
     targets_shown,
 )
 from grashof.figures.subject import Linkage, Subject
@@ -254,8 +254,7 @@ def _positions(subject: Subject, theta2: npt.ArrayLike | None) -> list[dict[str,
     if theta2 is not None and np.isnan(state.theta3).any():
         open_at = np.degrees(angles[np.isnan(state.theta3)][0])
         raise AssemblyError(f"{subject.spec.name} cannot close at theta2 = {open_at:.6g} deg")
-    found = places(subject.linkage, state)
-    return [{name: place[k] for name, place in found.items()} for k in range(len(angles))]
+    return stands(subject.linkage, state)
 
 
 def plane(ax: Axes, subject: Subject) -> None:

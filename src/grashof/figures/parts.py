@@ -14,6 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 
 from grashof.analysis import Position, solve_position
+from grashof.analysis.four_bar.position import places
 from grashof.analysis.numerics.smooth_polygon import smooth_polygon
 from grashof.figures.subject import Subject
 from grashof.problems import FourBar, Problem, Task
@@ -38,6 +39,12 @@ def missing_glyphs_unwarned() -> Iterator[None]:
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", r"Glyph .* missing from", UserWarning)
         yield
+
+
+def stands(linkage: FourBar, state: Position) -> list[dict[str, FloatArray]]:
+    """The points of a linkage in each of N positions, by their names, each of shape (2,)."""
+    found = places(linkage, state)
+    return [{name: place[k] for name, place in found.items()} for k in range(len(state.theta2))]
 
 
 class Links:

@@ -44,7 +44,7 @@ def _curves(report: LinkageReport, table: str, panels: list[Panel]) -> Figure:
 def _path(report: LinkageReport) -> Figure:
     with rc_context(STYLE):
         figure = Figure(figsize=(8.5, 7.0), layout="constrained")
-        axes = plot_linkage(replace(report.spec, problem=None), ax=figure.subplots())
+        axes = plot_linkage(replace(report.sweep.spec, problem=None), ax=figure.subplots())
         halfway = "" if report.masses is not None else " (halfway)"
         for name, track in mass_tracks(report).items():
             label = f"centre of mass, {name}{'' if name == 'all links' else halfway}"
@@ -56,4 +56,4 @@ def _path(report: LinkageReport) -> Figure:
 
 
 def _title(report: LinkageReport) -> str:
-    return shortened(report.spec.title or report.spec.name)
+    return shortened(report.sweep.spec.title or report.sweep.spec.name)

@@ -39,7 +39,7 @@ def write_report(folder: Path, report: LinkageReport) -> list[str]:
 
     about = {
         "versions": {"python": platform.python_version(), **{name: version(name) for name in _PACKAGES}},
-        "settings": {"linkage": report.spec.name, "speed_rpm": report.speed_rpm},
+        "settings": {"linkage": report.sweep.spec.name, "speed_rpm": report.sweep.speed_rpm},
     }
     with replacing_own_files(folder, record=ANALYSIS_RECORD) as fresh:
         for name, table in report.tables.items():
@@ -56,7 +56,7 @@ def write_report(folder: Path, report: LinkageReport) -> list[str]:
 
 def print_report(report: LinkageReport) -> None:
     """Print the summary and the extremes, no wider than the terminal where that can be."""
-    spec = report.spec
+    spec = report.sweep.spec
     lengths = ", ".join(f"{length:.6g}" for length in spec.linkage.lengths)
     say(f"{spec.title or spec.name}: r1 to r4 {lengths} {spec.length_unit}".rstrip())
     for line in _fitting(_facts_table(report)):
@@ -122,7 +122,7 @@ def _summary_frame(report: LinkageReport) -> pd.DataFrame:
 
 
 def _summary(report: LinkageReport) -> dict[str, Any]:
-    spec = report.spec
+    spec = report.sweep.spec
     return {
         "name": spec.name,
         "title": spec.title,

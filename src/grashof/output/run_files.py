@@ -156,7 +156,7 @@ def _about(settings: dict[str, Any]) -> dict[str, Any]:
 
 def _record(result: Result, settings: dict[str, Any], files: list[str]) -> dict[str, Any]:
     errors = {name: getattr(result, name) for name in ("least_error", "most_error")}
-    guards = {name: result.counts.get(f"solver: {name}", 0) for name in _GUARDS}
+    guards = {name: result.tally.statuses[name] for name in _GUARDS}
     return {
         "problem": result.problem.name,
         **_about(settings),
@@ -165,7 +165,7 @@ def _record(result: Result, settings: dict[str, Any], files: list[str]) -> dict[
         **{name: None if np.isnan(error) else error for name, error in errors.items()},
         "designs": len(result),
         "note": result.note,
-        "counts": dict(result.counts),
+        "counts": result.counts,
         "guards_hit": guards,
         "seconds": {stage: round(time, 4) for stage, time in result.seconds.items()},
         "files": files,

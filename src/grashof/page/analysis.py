@@ -32,9 +32,9 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
     str
         One file: it needs no other and no network.
     """
-    spec = report.spec
-    tables = [table for name, table in report.tables.items() if name != "extremes"]
-    curves = [_by_range(table, len(report.ranges)) for table in tables]
+    sweep, spec = report.sweep, report.sweep.spec
+    table = pd.concat([table for name, table in report.tables.items() if name != "extremes"], axis=1)
+    parts = _by_range(table.loc[:, ~table.columns.duplicated()], len(sweep.ranges))
     data = {
         "scene": {"unit": spec.length_unit},
         "designs": [
@@ -42,25 +42,24 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
                 "linkage": spec.linkage.stated,
                 "low": low,
                 "high": high,
-                "turns": report.turns,
-                "direction": 1 if report.speed_rpm >= 0 else -1,
+                "turns": sweep.turns,
+                "direction": 1 if sweep.speed_rpm >= 0 else -1,
             }
-            for low, high in report.ranges
+            for low, high in sweep.ranges
         ],
-        "theta2": [part["theta2_deg"].tolist() for part in curves[0]],
+        "theta2": [part["theta2_deg"].tolist() for part in parts],
         "panels": [
             {
                 "title": title,
                 "unit": unit,
                 "series": [
-                    {"label": label, "values": [compact(part[key].tolist()) for part in curves[number]]}
+                    {"label": label, "values": [compact(part[key].tolist()) for part in parts]}
                     for key, label in names.items()
-                    for number, table in enumerate(tables)
                     if key in table
                 ],
             }
-            for title, unit, names in panels(report.unit)
-            if any(key in table for key in names for table in tables)
+            for title, unit, names in panels(spec.unit)
+            if any(key in table for key in names)
         ],
     }
     lengths = [f"{float(length):.6g}" for length in spec.linkage.lengths]
@@ -72,13 +71,13 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         spec=spec,
         report=report,
         lengths=lengths,
-        ranges=[f"{np.degrees(low):.6g} to {np.degrees(high):.6g} deg" for low, high in report.ranges],
+        ranges=[f"{np.degrees(low):.6g} to {np.degrees(high):.6g} deg" for low, high in sweep.ranges],
         facts=[(fact.label, value_text(fact.value), fact.unit) for fact in report.facts],
         extremes=_extremes(report.tables["extremes"]),
         extreme_columns=[label for _, label in _EXTREMES],
         many="range" in report.tables["extremes"],
         record=record,
-        speed_rpm=abs(report.speed_rpm),
+        speed_rpm=abs(sweep.speed_rpm),
     )
 
 
@@ -91,43 +90,36 @@ def panels(unit: str) -> list[tuple[str, str, dict[str, str]]]:
     >>> title, unit, names
     ('speed of A, B, P', 'mm/s', {'a_speed': 'A', 'b_speed': 'B', 'p_speed': 'P'})
     """
-    places = [
-        (f"place of {name.upper()}", unit, {f"{name}_x": "x", f"{name}_y": "y"})
-        for name in reversed(FourBar.MOVING)
-    ]
-    rates = [
-        (
-            f"{what} of {name.upper()}", f"{unit}/{per}", {f"{name}_{what}_{axis}": axis for axis in "xy"},
-        )
-        for name in reversed(FourBar.MOVING)
-        for what, per in (("velocity", "s"), ("acceleration", "s²"))
-    ]  # fmt: skip
-    forces = [
-        (f"force {name.upper()} in {place}", "N", {f"{name}_{axis}": axis for axis in "xy"})
-        for name, place in FORCES.items()
-    ]
-    sizes = {
-        key: {f"{name}_{key}": name.upper() for name in FourBar.MOVING} for key in ("speed", "acceleration")
-    }
+    points = {name: name.upper() for name in FourBar.MOVING}
+    speeds, accelerations = (
+        {f"{name}_{size}": point for name, point in points.items()} for size in ("speed", "acceleration")
+    )
+    places, rates = [], []
+    for name, point in reversed(points.items()):
+        places.append((f"place of {point}", unit, _xy(name)))
+        for rate, per in (("velocity", "s"), ("acceleration", "s²")):
+            rates.append((f"{rate} of {point}", f"{unit}/{per}", _xy(f"{name}_{rate}")))
+    every = ", ".join(points.values())
     return [
         ("angles", "deg", {"theta3_deg": "θ3", "theta4_deg": "θ4", "mu_deg": "μ"}),
         ("angular velocity", "rad/s", {"omega3": "ω3", "omega4": "ω4"}),
         ("angular acceleration", "rad/s²", {"alpha3": "α3", "alpha4": "α4"}),
-        ("speed of A, B, P", f"{unit}/s", sizes["speed"]),
-        ("acceleration of A, B, P", f"{unit}/s²", sizes["acceleration"]),
+        (f"speed of {every}", f"{unit}/s", speeds),
+        (f"acceleration of {every}", f"{unit}/s²", accelerations),
         ("torque factor of the output arm", unit, {"torque_factor": "factor"}),
         ("drive torque", "N m", {"torque": "torque"}),
         ("drive power", "W", {"power": "power"}),
         ("joint forces", "N", FORCES),
-        (
-            "shaking force", "N",
-            {"shaking_force_x": "x", "shaking_force_y": "y", "shaking_force": "size"},
-        ),
+        ("shaking force", "N", _xy("shaking_force") | {"shaking_force": "size"}),
         ("shaking moment about O2", "N m", {"shaking_moment": "moment"}),
         *places,
         *rates,
-        *forces,
-    ]  # fmt: skip
+        *((f"force {name.upper()} in {joint}", "N", _xy(name)) for name, joint in FORCES.items()),
+    ]
+
+
+def _xy(name: str) -> dict[str, str]:
+    return {f"{name}_{axis}": axis for axis in "xy"}
 
 
 def _by_range(table: pd.DataFrame, count: int) -> list[pd.DataFrame]:

@@ -23,7 +23,7 @@ from grashof.page.render import compact
 from grashof.problems import FourBar, Problem
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics_spec import metres
-from grashof.survey.sweep import INSET, dead_positions_unwarned
+from grashof.survey.sweep import INSET, dead_positions_unwarned, driver_angles
 from grashof.synth import Candidate
 
 STEPS = 180
@@ -45,17 +45,9 @@ class Travel(NamedTuple):
     turns: bool
 
     def angles(self, inset: float = 0.0) -> FloatArray:
-        """Driver angles to sample a curve at, shape (STEPS + 1,), rad; as the page's scripts have them.
-
-        Even over a turn; otherwise closer towards the dead positions, where the linkage runs away
-        from its driver, and beginning `inset` from them.
-        """
-        share = np.linspace(0, 1, STEPS + 1)
-        if self.turns:
-            return self.low + (self.high - self.low) * share
-        low, high = self.low + inset, self.high - inset
-        angles: FloatArray = low + (high - low) * (1 - np.cos(np.pi * share)) / 2
-        return angles
+        """Driver angles of `driver_angles`, as the page's scripts have them, `inset` from dead positions."""
+        inset = 0.0 if self.turns else inset
+        return driver_angles(self.low + inset, self.high - inset, STEPS, even=self.turns)
 
 
 def driver_travel(linkage: FourBar, theta2: FloatArray) -> Travel:

@@ -16,14 +16,13 @@ from grashof.page.render import render
 from grashof.page.scene import scene_of
 from grashof.problems.values.checks import counted
 from grashof.synth import Result
+from grashof.synth.results.tally import DISTINCT, Tally
 from grashof.wording.problem import goals, summary
 
 _SCRIPTS = (
     "linkage.js", "svg.js", "stage.js", "player.js", "curves.js", "scatter.js", "table.js", "compare.js",
     "search.js",
 )  # fmt: skip
-# How a count of the record is headed; the rest come first.
-_OUTCOMES = {"rejected: ": "Rejected, by the first requirement missed", "solver: ": "Ipopt ended with"}
 
 
 def search_page(result: Result, frame: pd.DataFrame, record: Mapping[str, Any], text: str = "") -> str:
@@ -76,7 +75,7 @@ def search_page(result: Result, frame: pd.DataFrame, record: Mapping[str, Any], 
         alike=any(row["alike"] for row in rows),
         best_at=any(row["best_at"] for row in rows),
         classes=sorted(set(frame["grashof_class"])) if designs else [],
-        counts=_counts(result.counts),
+        counts=_counts(result.tally),
         seconds={stage: f"{time:.2f}" for stage, time in result.seconds.items()},
         record=record,
         text=text,
@@ -88,7 +87,7 @@ def _headline(result: Result) -> str:
     listed = len(result.candidates)
     if not listed:
         return "No design found." if result.complete else "Interrupted before any design was found."
-    verified = max(result.counts.get("verified and distinct", 0), listed)
+    verified = max(result.tally.totals[DISTINCT], listed)
     families = len(result.families)
     shown = f" in {counted(families, 'family')}" if families < listed else ""
     if verified > listed:
@@ -116,10 +115,11 @@ def _rows(frame: pd.DataFrame, columns: list[Column]) -> list[dict[str, Any]]:
     ]
 
 
-def _counts(counts: Mapping[str, int]) -> list[tuple[str, list[tuple[str, int]]]]:
-    """Counts of the search under headings, those by outcome each under its own."""
-    tables: dict[str, list[tuple[str, int]]] = {"Counted": [], **{head: [] for head in _OUTCOMES.values()}}
-    for name, count in counts.items():
-        mark = next((mark for mark in _OUTCOMES if name.startswith(mark)), "")
-        tables[_OUTCOMES.get(mark, "Counted")].append((name.removeprefix(mark), count))
-    return [(heading, rows) for heading, rows in tables.items() if rows]
+def _counts(tally: Tally) -> list[tuple[str, list[tuple[str, int]]]]:
+    """Counts of the search under headings."""
+    tables = {
+        "Counted": tally.general,
+        "Rejected, by the first requirement missed": tally.rejected,
+        "Ipopt ended with": tally.statuses,
+    }
+    return [(heading, list(rows.items())) for heading, rows in tables.items() if rows]

@@ -52,7 +52,7 @@ class Fact:
 def facts_of(sweep: Sweep, masses: Masses | None, tables: Mapping[str, pd.DataFrame]) -> Iterator[Fact]:
     """The lines of the summary, in the order told."""
     spec, ranges, turns = sweep.spec, sweep.ranges, sweep.turns
-    linkage, unit = spec.linkage, spec.length_unit or "length"
+    linkage, unit = spec.linkage, spec.unit
     kind = grashof_class(linkage)
     triple = triple_rocker_kind(linkage)
     yield Fact("grashof_class", "Grashof class", f"{kind} {triple}".strip())
@@ -66,13 +66,9 @@ def facts_of(sweep: Sweep, masses: Masses | None, tables: Mapping[str, pd.DataFr
         for name, end in (("low", low), ("high", high)):
             label = f"dead position, {name} end of range {number}"
             yield Fact(f"driver_{name}{mark}_deg", label, float(np.degrees(end)), "deg")
-    if turns:
-        worst = float(np.degrees(worst_transmission(linkage, *ranges[0])))
-        yield Fact("transmission_min_deg", f"worst transmission angle {sweep.over}", worst, "deg")
-    else:
-        yield Fact(
-            "transmission_min_deg", f"worst transmission angle {sweep.over} (dead positions)", 0.0, "deg"
-        )
+    worst, where = (worst_transmission(linkage, *ranges[0]), "") if turns else (0.0, " (dead positions)")
+    label = f"worst transmission angle {sweep.over}{where}"
+    yield Fact("transmission_min_deg", label, float(np.degrees(worst)), "deg")
     yield from _stroke_facts(spec, turns, tables["extremes"])
     box = np.array([reach_box(linkage, low, high) for low, high in ranges])
     extent = np.max(box[:, 1], axis=0) - np.min(box[:, 0], axis=0)
@@ -83,7 +79,7 @@ def facts_of(sweep: Sweep, masses: Masses | None, tables: Mapping[str, pd.DataFr
 
 
 def _stroke_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame) -> Iterator[Fact]:
-    linkage, unit = spec.linkage, spec.length_unit or "length"
+    linkage, unit = spec.linkage, spec.unit
     stroke = output_stroke(linkage)
     if not turns:  # the two toggle positions may lie on different circuits
         swings = extremes[extremes["quantity"] == "theta4_deg"]
@@ -97,9 +93,8 @@ def _stroke_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame) -> Ite
         yield Fact("output_swing_deg", "swing of the output", float(np.degrees(stroke.swing)), "deg")
         yield Fact("stroke_chord", "stroke of B, chord", float(stroke.chord), unit)
         if spec.output_arm is not None:
-            yield Fact(
-                "output_stroke", "stroke of the output arm", float(spec.output_arm * stroke.swing), unit
-            )
+            way = float(spec.output_arm * stroke.swing)
+            yield Fact("output_stroke", "stroke of the output arm", way, unit)
     if np.isfinite(stroke.time_ratio):
         yield Fact("time_ratio", "time ratio of the strokes", float(stroke.time_ratio))
     for index, name in enumerate(("stretched", "folded")):
@@ -117,7 +112,7 @@ def _stroke_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame) -> Ite
 
 def _path_facts(sweep: Sweep) -> Iterator[Fact]:
     spec, ranges, turns = sweep.spec, sweep.ranges, sweep.turns
-    linkage, unit = spec.linkage, spec.length_unit or "length"
+    linkage, unit = spec.linkage, spec.unit
     low, high = ranges[0]
     where = sweep.over if len(ranges) == 1 else "over range 1"
     for degree in (4, 8):
@@ -127,26 +122,19 @@ def _path_facts(sweep: Sweep) -> Iterator[Fact]:
             yield Fact(f"coupler_fit_r2_degree_{degree}", label, r2)
     if turns:
         series = coupler_fourier(linkage)
-        for harmonic in range(1, _HARMONICS + 1):
-            share = float(series.content[harmonic - 1])
+        for number, share in enumerate(series.content[:_HARMONICS].tolist(), start=1):
             if np.isfinite(share):
-                yield Fact(
-                    f"fourier_share_{harmonic}", f"share of harmonic {harmonic} in the path of P", share
-                )
-        yield Fact(
-            f"fourier_error_{_HARMONICS}", f"path of P from {_HARMONICS} harmonics errs by",
-            float(series.error_max[_HARMONICS]), unit,
-        )  # fmt: skip
+                yield Fact(f"fourier_share_{number}", f"share of harmonic {number} in the path of P", share)
+        label = f"path of P from {_HARMONICS} harmonics errs by"
+        yield Fact(f"fourier_error_{_HARMONICS}", label, float(series.error_max[_HARMONICS]), unit)
     crossings = double_points(linkage)
     yield Fact("double_points", "double points of the path of P", len(crossings))
     for number, (point, angles) in enumerate(zip(crossings.points, crossings.theta2, strict=True), start=1):
         for axis, value in zip("xy", point, strict=True):
             yield Fact(f"double_point_{number}_{axis}", f"double point {number}, {axis}", float(value), unit)
         for passage, angle in enumerate(np.degrees(angles), start=1):
-            yield Fact(
-                f"double_point_{number}_theta2_{passage}_deg",
-                f"double point {number}, passage {passage}: theta2", float(angle), "deg",
-            )  # fmt: skip
+            label = f"double point {number}, passage {passage}: theta2"
+            yield Fact(f"double_point_{number}_theta2_{passage}_deg", label, float(angle), "deg")
     still = np.degrees(cusps(linkage))
     yield Fact("cusps", "cusps of the path of P", len(still))
     for number, angle in enumerate(still, start=1):
@@ -163,7 +151,7 @@ def _straight_facts(spec: LinkageSpec, low: float, high: float, turns: bool) -> 
     except ProblemError:  # P does not move, or rounding opens the loop in a dead position
         return
     line, start = min(lines, key=lambda each: each[0].width / each[0].length)
-    unit, what = spec.length_unit or "length", "straightest half turn of P" if turns else "path of P, range 1"
+    unit, what = spec.unit, "straightest half turn of P" if turns else "path of P, range 1"
     yield Fact("straight_from_deg", f"{what}: from theta2", float(np.degrees(start)), "deg")
     yield Fact("straight_to_deg", f"{what}: to theta2", float(np.degrees(start + span)), "deg")
     yield Fact("straight_length", f"{what}: length along its best line", line.length, unit)

@@ -12,7 +12,6 @@ import pandas as pd
 from grashof.analysis import (
     Kinematics,
     Loads,
-    Masses,
     inverse_dynamics,
     solve_kinematics,
     transmission_angle,
@@ -20,6 +19,7 @@ from grashof.analysis import (
 from grashof.problems import FourBar, LinkageSpec
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.dynamics_spec import metres
+from grashof.survey.sweep import masses_of
 
 Curve = Callable[[Kinematics], FloatArray]
 # Keys of the joint forces (f32: on link 2 by link 3), and the joints that they act in.
@@ -57,7 +57,7 @@ class Quantity:
 
 def kinematic_quantities(spec: LinkageSpec) -> list[Quantity]:
     """Angles, rates and points, and the torque factor of an output arm."""
-    unit = spec.length_unit or "length"
+    unit = spec.unit
     driven = {link.number: link.name for link in FourBar.LINKS[2:]}
     found = [
         Quantity(f"theta{n}_deg", f"angle of {name} {n}", "deg", _degrees(f"theta{n}"), 360.0, position=True)
@@ -85,9 +85,13 @@ def kinematic_quantities(spec: LinkageSpec) -> list[Quantity]:
     return found
 
 
-def dynamic_quantities(spec: LinkageSpec, masses: Masses, loads: Loads) -> list[Quantity]:
-    """Torque, power and forces in N, N m and W, whatever the length unit."""
+def dynamic_quantities(spec: LinkageSpec) -> list[Quantity]:
+    """Torque, power and forces in N, N m and W, whatever the length unit; none without masses."""
+    masses = masses_of(spec)
+    if masses is None or spec.dynamics is None:
+        return []
     metre = metres(spec.length_unit)
+    loads = Loads(gravity=np.array(spec.dynamics.gravity) / metre)
 
     def of(name: str) -> Curve:
         return lambda s: getattr(inverse_dynamics(s, masses, loads), name)

@@ -15,7 +15,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.survey.extremes import extremes_table
 from grashof.survey.facts import Fact, facts_of
 from grashof.survey.quantities import dynamic_quantities, kinematic_quantities, table_of
-from grashof.survey.sweep import Sweep, dead_positions_unwarned, loads_of, masses_of
+from grashof.survey.sweep import Sweep, dead_positions_unwarned, masses_of
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,31 +40,6 @@ class LinkageReport:
     tables: Mapping[str, pd.DataFrame]
     notes: tuple[str, ...]
 
-    @property
-    def spec(self) -> LinkageSpec:
-        """The linkage with what its file says besides."""
-        return self.sweep.spec
-
-    @property
-    def speed_rpm(self) -> float:
-        """Speed of the driver."""
-        return self.sweep.speed_rpm
-
-    @property
-    def ranges(self) -> tuple[tuple[float, float], ...]:
-        """Of the driver, rad: one whole turn, or those between dead positions."""
-        return self.sweep.ranges
-
-    @property
-    def turns(self) -> bool:
-        """Whether the driver turns fully without a dead position."""
-        return self.sweep.turns
-
-    @property
-    def unit(self) -> str:
-        """Length unit, or the word length where the file names none."""
-        return self.spec.length_unit or "length"
-
 
 def report_on(spec: LinkageSpec, speed_rpm: float | None = None) -> LinkageReport:
     """Analyse a linkage over all that its driver can do on its own assembly.
@@ -88,11 +63,9 @@ def report_on(spec: LinkageSpec, speed_rpm: float | None = None) -> LinkageRepor
     with dead_positions_unwarned():
         states, quantities = sweep.states(), kinematic_quantities(spec)
         tables = {"kinematics": table_of(quantities, states)}
-        if masses is not None:
-            dynamic = dynamic_quantities(spec, masses, loads_of(spec))
+        if dynamic := dynamic_quantities(spec):
             tables["dynamics"] = table_of(dynamic, states)
-            quantities = [*quantities, *dynamic]
-        tables["extremes"] = extremes_table(sweep, quantities)
+        tables["extremes"] = extremes_table(sweep, quantities + dynamic)
         facts = tuple(facts_of(sweep, masses, tables))
     return LinkageReport(sweep, masses, facts, tables, _notes(sweep))
 
@@ -112,7 +85,7 @@ def mass_tracks(report: LinkageReport) -> dict[str, FloatArray]:
 
     Without masses: of the points halfway between the joints.
     """
-    linkage, masses = report.spec.linkage, report.masses
+    linkage, masses = report.sweep.spec.linkage, report.masses
     tracks: dict[str, FloatArray] = {}
     with dead_positions_unwarned():
         fine = (

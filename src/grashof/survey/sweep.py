@@ -12,7 +12,6 @@ import numpy as np
 
 from grashof.analysis import (
     Kinematics,
-    Loads,
     Masses,
     driver_ranges,
     full_rotation,
@@ -23,7 +22,6 @@ from grashof.analysis import (
 from grashof.problems import DeadPositionWarning, FourBar, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.checks import GREATEST, number_within
-from grashof.problems.values.dynamics_spec import metres
 
 INSET = 1e-6  # rad: extremes of rates are sought so far from a dead position
 _DEAD = 1e-7  # sin(theta4 - theta3), as `solve_kinematics` counts it
@@ -86,12 +84,18 @@ class Sweep:
     def angles(self) -> Iterator[FloatArray]:
         """Driver angles of each range, rad."""
         for low, high in self.ranges:
-            share = np.linspace(0, 1, _STEPS + 1)
-            if not self.turns:  # closer towards dead positions, where the linkage runs away from its driver
-                share = (1 - np.cos(np.pi * share)) / 2
-            angles = low + (high - low) * share
-            angles[-1] = high
-            yield angles
+            yield driver_angles(low, high, _STEPS, even=self.turns)
+
+
+def driver_angles(low: float, high: float, steps: int, *, even: bool) -> FloatArray:
+    """Driver angles to sample a curve at, shape (steps + 1,), rad.
+
+    Closer towards dead positions where not even: there the linkage runs away from its driver.
+    """
+    share = np.linspace(0, 1, steps + 1)
+    angles = low + (high - low) * (share if even else (1 - np.cos(np.pi * share)) / 2)
+    angles[-1] = high
+    return angles
 
 
 def _between_dead_positions(linkage: FourBar) -> Iterator[tuple[float, float]]:
@@ -118,11 +122,3 @@ def masses_of(spec: LinkageSpec) -> Masses | None:
     """Masses that the file states, if any."""
     given = spec.dynamics
     return stated_masses(spec.linkage, given) if given is not None and given.has_masses else None
-
-
-def loads_of(spec: LinkageSpec) -> Loads:
-    """Gravity in the file's length unit."""
-    given = spec.dynamics
-    if given is None or not given.has_masses:
-        return Loads()
-    return Loads(gravity=np.array(given.gravity) / metres(spec.length_unit))

@@ -11,20 +11,13 @@ from grashof.problems.values.quantities import Unit
 from grashof.synth.programme.merit import same_error
 from grashof.synth.results.ranking import pareto_goals
 from grashof.synth.results.trade_offs import FACTORS
-
-
-def beginning(problem: Problem) -> str:
-    """What a search begins with, in words."""
-    task = problem.task
-    met = task.is_whole and not task.is_timed and ends_with_enough(problem)
-    return "tracing dyads and judging pairs" if met else "searching"
+from grashof.synth.starts.finder import asked_first
 
 
 def ends_with_enough(problem: Problem) -> bool:
     """Whether the search ends once it has enough designs: where it begins with exact ones."""
-    if problem.task.zones is not None:
-        return problem.task.exact_by_default
-    return problem.requirements.is_exact(problem.task) and problem.zones is None
+    first = asked_first(problem)
+    return first.requirements.is_exact(first.task)
 
 
 def error_meaning(problem: Problem) -> str:

@@ -124,16 +124,14 @@ def _plan(one: LinkageSpec | ListedDesign, making: Making) -> Plan:
         low, high = (math.radians(finite_number(angle, "theta2_deg")) for angle in making.theta2_deg)
         within = (low, high)
     made = plan_parts(spec.linkage, making.sizes, _millimetres(spec, making), within=within, theta2=theta2)
-    notes = list(made.notes)
+    notes = made.notes
     if spec.output_arm is not None:
-        notes.append(
-            f"the output arm, {spec.output_arm:g} {spec.length_unit} about O4, is not among the parts"
-        )
+        arm = f"the output arm, {spec.output_arm:g} {spec.length_unit} about O4"
+        notes += (f"{arm}, is not among the parts",)
     if isinstance(one, ListedDesign) and len(set(one.assembly)) > 1:
-        notes.append(
-            "the targets need both assemblies; only the motion on that of the first one is looked at"
-        )
-    return replace(made, notes=tuple(notes))
+        both = "the targets need both assemblies"
+        notes += (f"{both}; only the motion on that of the first one is looked at",)
+    return replace(made, notes=notes)
 
 
 def _millimetres(spec: LinkageSpec, making: Making) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations, pairwise
 
 import numpy as np
@@ -187,8 +187,7 @@ def bar(name: str, joints: tuple[str, ...], along: tuple[float, ...], sizes: Pla
 
 def base(along: dict[str, float], sizes: PlateSizes) -> Plate:
     """The base: a bar with holes for the given joints, twice as wide as the links."""
-    plate = bar("base", tuple(along), tuple(along.values()), sizes)
-    return Plate(plate.name, plate.joints, plate.holes, plate.corners, 2 * sizes.width, sizes.hole)
+    return replace(bar("base", tuple(along), tuple(along.values()), sizes), width=2 * sizes.width)
 
 
 def spacer(sizes: PlateSizes) -> Plate:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -215,8 +215,5 @@ def _moved(shapes: list[Shape], x: float, y: float) -> Iterator[Shape]:
     for shape in shapes:
         if isinstance(shape, Outline):
             yield Outline(shape.layer, shape.vertices + np.array([x, y, 0.0]))
-        elif isinstance(shape, Circle):
-            yield Circle(shape.layer, shape.x + float(x), shape.y + float(y), shape.radius)
         else:
-            where = (shape.x + float(x), shape.y + float(y), shape.height)
-            yield Text(shape.layer, *where, shape.words, shape.angle, shape.centred)
+            yield replace(shape, x=shape.x + float(x), y=shape.y + float(y))

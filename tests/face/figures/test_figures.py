@@ -168,7 +168,7 @@ def test_a_design_is_driven_in_the_sense_of_its_task(few: Result) -> None:
 def test_between_limits_ranges_are_apart_and_dead_positions_dotted() -> None:
     (ax,) = plot_kinematics(DOUBLE_ROCKER, quantities=("angular velocity",), ax=axes())
     report = report_on(LinkageSpec(DOUBLE_ROCKER, "rocker"))
-    ends = sorted(float(np.degrees(end)) for each in report.ranges for end in each)
+    ends = sorted(float(np.degrees(end)) for each in report.sweep.ranges for end in each)
     dotted = sorted(float(line.get_xdata()[0]) for line in ax.lines if line.get_linestyle() == ":")
     assert dotted == pytest.approx(ends)
     assert np.isnan(ax.lines[0].get_xydata()).any(axis=1).sum() >= 1

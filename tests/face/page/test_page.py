@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections import Counter
 from dataclasses import replace
 from html import unescape
 from html.parser import HTMLParser
@@ -23,6 +24,7 @@ from grashof.page.designs import Travel, driver_travel
 from grashof.problems import FourBar, LinkageSpec, PathTask, Problem, load, load_linkage_spec
 from grashof.survey import report_on
 from grashof.synth import Result
+from grashof.synth.results.tally import DISTINCT, Tally
 
 HOSTILE = "</script><script>alert(1)</script><!-- & \u2028 ' \" {{ 7*7 }}"
 RECORD: dict[str, Any] = {"versions": {"grashof": "0"}, "settings": {"seed": 0, "time_limit": None}}
@@ -118,9 +120,9 @@ def test_the_best_of_each_family_is_shown_with_the_number_of_the_others(alike: R
     assert "smallest within 1.5 times" in parts.text
     families = [each["figures"]["family"] for each in parts.data["designs"]]
     assert families == [each.family for each in alike.candidates]
-    some = page_of(replace(alike.top(2), counts={"verified and distinct": 8}))
+    some = page_of(replace(alike.top(2), tally=Tally(totals=Counter({DISTINCT: 8}))))
     assert "8 distinct verified designs, listed are the best 5 in 2 families." in Parts(some).text
-    plain = Parts(page_of(replace(alike, candidates=alike.candidates[2:5], counts={}))).text
+    plain = Parts(page_of(replace(alike, candidates=alike.candidates[2:5], tally=Tally()))).text
     assert "like this" not in plain
     assert "3 distinct verified designs." in plain
 
@@ -184,7 +186,7 @@ def test_a_search_without_anything_shows_the_task(few: Result) -> None:
 
 def test_the_scene_is_the_problem() -> None:
     problem = load("path-ellipse")
-    scene = Parts(page_of(Result(problem, (), (), {}, {}, note="none"))).data["scene"]
+    scene = Parts(page_of(Result(problem, note="none"))).data["scene"]
     assert scene["points"] == problem.task.positions.tolist()
     assert scene["regions"] == [{"name": "O2, O4", "x": [-80, 80], "y": [-80, 80]}]
     assert scene["published"]["label"] == "Lin, GA-DE 2010"
@@ -192,7 +194,7 @@ def test_the_scene_is_the_problem() -> None:
     assert np.hypot(*np.moveaxis(gap, -1, 0)).min(axis=0).max() < 0.5
     assert isinstance(problem.task, PathTask)
     other = Problem(task=PathTask(problem.task.points[1:]), name="path-ellipse")
-    assert Parts(page_of(Result(other, (), (), {}, {}))).data["scene"]["published"] is None
+    assert Parts(page_of(Result(other))).data["scene"]["published"] is None
 
 
 def test_an_analysis_shows_every_curve_and_figure() -> None:
@@ -236,7 +238,7 @@ def test_ranges_of_an_analysis_are_apart() -> None:
     double = FourBar((0, 0), (4, 0), 3, 1, 3, (0.5, 1))
     report = report_on(LinkageSpec(double, "double", title=HOSTILE))
     parts = Parts(analysis_page(report, RECORD))
-    assert [(each["low"], each["high"]) for each in parts.data["designs"]] == list(report.ranges)
-    for angles, (low, high) in zip(parts.data["theta2"], report.ranges, strict=True):
+    assert [(each["low"], each["high"]) for each in parts.data["designs"]] == list(report.sweep.ranges)
+    for angles, (low, high) in zip(parts.data["theta2"], report.sweep.ranges, strict=True):
         assert (angles[0], angles[-1]) == pytest.approx((np.degrees(low), np.degrees(high)))
     assert HOSTILE in parts.text

@@ -36,7 +36,7 @@ UNCOVERED = """
 MISSES = "transmission_min_deg: the worst transmission angle over the turn in deg is 13.4955, allowed is "
 MISSES += f"from 60; constraints: {'a_long_name_' * 20} is 3, allowed is up to 0"
 Open = Callable[..., Page]
-QUIET = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
+AS_USUAL: dict[str, Any] = {"media": "screen", "color_scheme": "light", "reduced_motion": "no-preference"}
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +46,7 @@ def browser() -> Iterator[Browser]:
     if path is None:
         pytest.skip("no Chromium on this machine: the page is not tested in a browser")
     with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=path, args=QUIET)
+        started = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
         yield started
         started.close()
 
@@ -71,26 +71,48 @@ def folder(few: Result, alike: Result, tmp_path_factory: pytest.TempPathFactory)
     return path
 
 
+@pytest.fixture(scope="module")
+def window(browser: Browser) -> Page:
+    """One for all tests: to open another takes longer than most of them."""
+    return browser.new_page()
+
+
+@pytest.fixture(scope="module")
+def telephone(browser: Browser) -> Page:
+    return browser.new_page(viewport={"width": 360, "height": 740}, has_touch=True, is_mobile=True)
+
+
 @pytest.fixture
-def opened(browser: Browser, folder: Path) -> Iterator[Open]:
+def opened(window: Page, telephone: Page, folder: Path) -> Iterator[Open]:
     """Opens a page; at the end nothing may have been complained of or asked for over a network."""
     complaints: list[str] = []
-    contexts = []
+    asked: list[str] = []
+    addresses: list[str] = []
+    listeners: dict[Any, Callable[[Any], None]] = {
+        "console": lambda message: complaints.append(f"{message.type}: {message.text}"),
+        "pageerror": lambda error: complaints.append(str(error)),
+        "request": lambda request: asked.append(request.url),
+    }
+    for shown in (window, telephone):
+        for event, listener in listeners.items():
+            shown.on(event, listener)
 
-    def open_page(name: str, **options: Any) -> Page:
-        contexts.append(browser.new_context(viewport=options.pop("viewport", None), **options))
-        page = contexts[-1].new_page()
-        page.on("console", lambda message: complaints.append(f"{message.type}: {message.text}"))
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.on("request", lambda request: complaints.append(request.url) if request.url != address else None)
-        address = (folder / f"{name}.html").as_uri()
-        page.goto(address)
+    def open_page(name: str, size: tuple[int, int] = (1280, 720), touch: bool = False, **media: Any) -> Page:
+        page = telephone if touch else window
+        if not touch:
+            page.set_viewport_size({"width": size[0], "height": size[1]})
+            page.mouse.move(0, 0)
+            page.emulate_media(**AS_USUAL | media)
+        addresses.append((folder / f"{name}.html").as_uri())
+        page.goto(addresses[-1])
         return page
 
     yield open_page
-    for context in contexts:
-        context.close()
+    for shown in (window, telephone):
+        for event, listener in listeners.items():
+            shown.remove_listener(event, listener)
     assert complaints == []
+    assert asked == addresses
 
 
 def state(page: Page) -> dict[str, Any]:
@@ -263,7 +285,7 @@ def test_the_best_that_passes_the_filter_stands_for_its_family(opened: Open, ali
 
 
 def test_a_design_picked_in_the_plot_opens_its_family(opened: Open, alike: Result) -> None:
-    page, ids = opened("alike", viewport={"width": 1300, "height": 1000}), [e.id for e in alike.candidates]
+    page, ids = opened("alike", size=(1300, 1000)), [e.id for e in alike.candidates]
     page.locator(".point[data-index='7']").focus()
     page.keyboard.press("Enter")
     assert state(page)["design"] == ids[7]
@@ -289,7 +311,7 @@ def test_a_filter_compares_with_the_numbers_shown(opened: Open, few: Result) -> 
 
 
 def test_a_point_of_the_scatter_plot_picks_its_design(opened: Open, few: Result) -> None:
-    page = opened("search", viewport={"width": 1300, "height": 1000})
+    page = opened("search", size=(1300, 1000))
     uncovered = page.evaluate(UNCOVERED)
     assert len(uncovered) >= 3
     for index in uncovered[-2:]:
@@ -366,7 +388,7 @@ def test_arrows_turn_the_driver_wherever_nothing_else_needs_them(opened: Open) -
 @pytest.mark.parametrize("width", [360, 1400])
 @pytest.mark.parametrize("name", ["search", "missed", "rocker", "swift"])
 def test_numbers_of_the_axes_stand_apart(opened: Open, name: str, width: int) -> None:
-    page = opened(name, viewport={"width": width, "height": 900})
+    page = opened(name, size=(width, 900))
     boxes = [each.bounding_box() for each in page.locator("#stage .numbers text").all()]
     assert len(boxes) > 5
     for one, other in combinations([box for box in boxes if box], 2):
@@ -396,7 +418,7 @@ def test_a_title_with_a_script_is_only_text(opened: Open) -> None:
 
 @pytest.mark.parametrize("name", ["search", "missed", "nothing", "rocker"])
 def test_a_phone_has_no_sideways_scroll(opened: Open, name: str) -> None:
-    page = opened(name, viewport={"width": 360, "height": 740}, has_touch=True, is_mobile=True)
+    page = opened(name, touch=True)
     assert page.evaluate("document.documentElement.scrollWidth") <= 360
     assert page.locator("#stage .grid").count() == 1
 
@@ -404,7 +426,7 @@ def test_a_phone_has_no_sideways_scroll(opened: Open, name: str) -> None:
 @pytest.mark.parametrize("width", [800, 1400])
 @pytest.mark.parametrize("name", ["search", "missed", "nothing"])
 def test_no_window_has_sideways_scroll(opened: Open, name: str, width: int) -> None:
-    page = opened(name, viewport={"width": width, "height": 900})
+    page = opened(name, size=(width, 900))
     assert page.evaluate("document.documentElement.scrollWidth") <= width
 
 

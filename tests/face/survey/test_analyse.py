@@ -112,7 +112,7 @@ def test_forces_are_newtons_in_every_length_unit() -> None:
 
 
 def test_the_table_is_the_motion(jack: LinkageReport) -> None:
-    table, linkage = jack.tables["kinematics"], jack.spec.linkage
+    table, linkage = jack.tables["kinematics"], jack.sweep.spec.linkage
     assert table["theta2_deg"].tolist() == pytest.approx(list(range(361)))
     state = solve_kinematics(linkage, np.radians(table["theta2_deg"]), 20 * np.pi / 30)
     for name, values in {

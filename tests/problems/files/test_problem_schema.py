@@ -511,6 +511,21 @@ def test_every_key_of_a_path_reaches_its_field() -> None:
     assert (plain.timing, plain.closed) == (None, False)
 
 
+def test_poses_may_be_timed_and_closed() -> None:
+    task = problem(HEAD + "timing_deg = [0, 20, 45.5, 90]\nclosed = true\n").task
+    assert task.timing is not None
+    assert task.timing.tolist() == np.radians([0, 20, 45.5, 90]).tolist()
+    assert task.closed
+    plain = problem(HEAD).task
+    assert (plain.timing, plain.closed) == (None, False)
+    wrong = HEAD + "timing_deg = [0, 20, 10, 90]\nclosed = 1\nwithin = [-1, 1, 1, 1]\n"
+    assert message(wrong).splitlines() == [
+        "motion.within[0] is -1; allowed is 3e-12 to 1e+20",
+        "motion.timing_deg[2] is 10 after 20; allowed are angles that only grow, or only fall",
+        "motion.closed is 1; allowed is true or false",
+    ]
+
+
 @pytest.mark.parametrize(("given", "expected"), [("true", True), ("false", False), (None, None)])
 @pytest.mark.parametrize("head", [HEAD, LINE])
 def test_exact_is_true_false_or_left_to_the_task(head: str, given: str | None, expected: bool | None) -> None:

@@ -101,3 +101,6 @@ def test_angles_of_a_file_come_back_to_the_last_bit(angles: list[float]) -> None
         [[k, 0] for k in range(len(angles) + 1)], timing_deg=[0, *timing], closed=len(angles) > 3
     )
     check_same(again(Problem(task=path)).task, path)
+    poses = [[k, 0, angle] for k, angle in enumerate([0.0, *angles])]
+    timed = MotionTask.from_degrees(poses, timing_deg=[0, *-timing], closed=len(angles) > 3)
+    check_same(again(Problem(task=timed)).task, timed)

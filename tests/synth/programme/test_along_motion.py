@@ -26,14 +26,14 @@ from grashof.problems.values.dynamics_spec import metres
 from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth import Result
 from grashof.synth.programme.along_motion import ALONG, Instant, loads
+from grashof.synth.programme.exchange import solve_by_exchange
 from grashof.synth.programme.nonlinear_programme import solve
 from grashof.synth.programme.on_symbols import numpy_on_symbols
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.vector import Vector
-from grashof.synth.results.attempt import _made, attempt
-from grashof.synth.results.attempt import _solved as solve_for_torque
-from grashof.synth.starts import exact_poses, paths
+from grashof.synth.results.attempt import attempt, polished_and_judged
 from grashof.synth.starts.dyad_pairs import screen
+from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.burmester import trace_four_pose_curves
 
 TORQUE = Objective(transmission=0, torque=1)
@@ -161,7 +161,7 @@ def test_no_pair_of_dyads_needs_less(lightest: Result, driven: Problem) -> None:
 
 def test_the_programme_agrees_with_the_judge(driven: Problem) -> None:
     scaled = ScaledProblem.of(driven)
-    starts = next(exact_poses.rounds(scaled, 8, np.random.default_rng(0))).starts[:12:3]
+    starts = next(finder_for(scaled).rounds(8, np.random.default_rng(0), 1)).starts[:12:3]
     for start in starts:
         made = attempt(scaled, start, 0).candidate
         assert made is not None
@@ -197,8 +197,8 @@ def test_paths(closed: bool) -> None:
     best = synthesize(light, starts=4, enough=4).best
     assert best.torque_peak < 0.5 * min(each.torque_peak for each in others)
     scaled = ScaledProblem.of(light)
-    for start in next(iter(paths.rounds(scaled, 4, np.random.default_rng(0)))).starts[:3]:
-        solved, made = solve_for_torque(scaled, start), attempt(scaled, start, 0).candidate
+    for start in next(iter(finder_for(scaled).rounds(4, np.random.default_rng(0), 1))).starts[:3]:
+        solved, made = solve_by_exchange(scaled, start), attempt(scaled, start, 0).candidate
         assert made is not None
         assert solved.peaks["torque_peak"] * light.reference_torque == pytest.approx(
             made.torque_peak, rel=10 * GRID_ERROR
@@ -211,9 +211,9 @@ def test_the_bound_holds_between_the_angles_of_the_grid() -> None:
     spec = DynamicsSpec(mass_per_length=1.0, payload=1.0, speed_rpm=120)
     quick = Problem(task=task, length_unit="m", objective=TORQUE, dynamics=spec)
     scaled, short = ScaledProblem.of(quick), []
-    for start in next(iter(paths.rounds(scaled, 8, np.random.default_rng(0)))).starts[:8]:
-        for solved in (solve(scaled, start), solve_for_torque(scaled, start)):
-            made = _made(scaled, start, solved, 0)
+    for start in next(iter(finder_for(scaled).rounds(8, np.random.default_rng(0), 1))).starts[:8]:
+        for solved in (solve(scaled, start), solve_by_exchange(scaled, start)):
+            made = polished_and_judged(scaled, start, solved, 0).candidate
             assert made is not None
             short.append(1 - solved.peaks["torque_peak"] * quick.reference_torque / made.torque_peak)
     both = np.array(short).reshape(-1, 2)

@@ -14,7 +14,7 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.programme.nonlinear_programme import Solve, solve
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
-from grashof.synth.starts.paths import search
+from grashof.synth.starts.coupler_search import search
 from grashof.synth.theory.distinct import pick_apart, signature
 
 LINE = [[20.0, 20 + 5.0 * k] for k in range(5)]

@@ -9,18 +9,18 @@ import pytest
 
 from grashof.problems import Box, FourBar
 from grashof.problems.values.arrays import FloatArray
+from grashof.synth.programme import exchange
 from grashof.synth.programme.nonlinear_programme import Solve
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
-from grashof.synth.results import attempt as module
 from grashof.synth.results.attempt import attempt
-from grashof.synth.starts.exact_poses import rounds
+from grashof.synth.starts.finder import finder_for
 
 SetupOf = Callable[..., ScaledProblem]
 
 
 def first_starts(scaled: ScaledProblem, count: int) -> list[Start]:
-    return next(rounds(scaled, 50, np.random.default_rng(0))).starts[:count]
+    return next(finder_for(scaled).rounds(50, np.random.default_rng(0), 1)).starts[:count]
 
 
 def off_circles(linkage: FourBar, scaled: ScaledProblem) -> float:
@@ -95,7 +95,7 @@ def test_numbers_that_are_not_finite_are_no_linkage(
         "Invalid_Number_Detected",
         7,
     )
-    monkeypatch.setattr(module, "solve", lambda *_: broken)
+    monkeypatch.setattr(exchange, "solve", lambda *_: broken)
     result = attempt(scaled, start, 0)
     assert (result.status, result.candidate) == ("Invalid_Number_Detected", None)
 
@@ -106,7 +106,7 @@ def test_the_solver_is_not_believed(luggage_scaled: SetupOf, monkeypatch: pytest
     start = first_starts(scaled, 1)[0]
     moved = (start.o2 + 2, start.o4 - 3j, start.a, start.b, start.p)
     ended = Solve(moved, start.theta2, start.theta3, start.body_angle, "Solve_Succeeded", 7)
-    monkeypatch.setattr(module, "solve", lambda *_: ended)
+    monkeypatch.setattr(exchange, "solve", lambda *_: ended)
     candidate = attempt(scaled, start, 0).candidate
     assert candidate is None or not candidate.verdict.ok
 

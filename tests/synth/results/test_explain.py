@@ -1,6 +1,7 @@
 """The note of an empty list: what it promises is so."""
 
 import re
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -65,7 +66,8 @@ def test_where_least_squares_finds_nothing_either_it_is_not_promised() -> None:
     assert "r1 up to 60 instead of 50" in result.note
 
 
-def test_areas_that_cover_everything_are_named() -> None:
+def test_areas_that_cover_everything_are_named(relaxing_only: Callable[..., None]) -> None:
+    relaxing_only("keep_out", "rotatability")
     everywhere = [[-3000, -3000], [3000, -3000], [3000, 3000], [-3000, 3000]]
     task = load("luggage").task
     wanted = Requirements(link_length=(0.3, 8), coupler_arms=(0.3, 8), keep_out=[everywhere])
@@ -81,7 +83,8 @@ def test_a_time_limit_leaves_the_explanation_out() -> None:
     assert result.nearest == ()
 
 
-def test_the_time_that_the_explanation_takes_is_told() -> None:
+def test_the_time_that_the_explanation_takes_is_told(relaxing_only: Callable[..., None]) -> None:
+    relaxing_only("link_length")
     result = synthesize(replace(load("luggage"), requirements=Requirements(link_length=(0.3, 1.5))), starts=4)
     assert "link_length up to" in repr(result)
     assert result.seconds["explaining"] > 0

@@ -107,7 +107,7 @@ def test_the_top_is_of_families_with_all_their_members(luggage_result: Result) -
 
 def test_ranked_otherwise_the_families_are_named_anew(luggage_result: Result, luggage: Problem) -> None:
     small = replace(luggage, objective=Objective(transmission=0, compactness=1))
-    result = Result(small, listed(small, luggage_result.candidates), (), {}, {})
+    result = Result(small, listed(small, luggage_result.candidates))
     assert {each.id for each in result.candidates} == {each.id for each in luggage_result.candidates}
     for family in result.families:
         assert family[0].verdict.size == min(each.verdict.size for each in family)
@@ -128,7 +128,7 @@ def test_mirrored_designs_and_cognates_of_a_symmetric_closed_path() -> None:
     problem = replace(loaded, task=task, requirements=wanted)
     some = synthesize(problem, effort=0.35).candidates
     pairs = [(each, design) for each in some if (design := mirrored(each, problem)) is not None]
-    result = Result(problem, listed(problem, [each for pair in pairs for each in pair]), (), {}, {})
+    result = Result(problem, listed(problem, [each for pair in pairs for each in pair]))
     family_of = {each.id: each.family for each in result.candidates}
     kept = [(one, other) for one, other in pairs if {one.id, other.id} <= set(family_of)]
     assert len(kept) >= 3

@@ -67,7 +67,8 @@ def test_each_zone_is_named_with_its_own_figure() -> None:
     assert verify(result.nearest[0].linkage, larger, LOOSE).ok
 
 
-def test_a_larger_tolerance_is_named() -> None:
+def test_a_larger_tolerance_is_named(relaxing_only: Callable[..., None]) -> None:
+    relaxing_only()
     wanted = Requirements(exact=True, tolerance=1e-4)
     result = synthesize(Problem(task=task(), requirements=wanted), effort=0.2)
     said = re.search(r"would do: tolerance (\S+) instead of 0\.0001$", result.note)
@@ -84,7 +85,8 @@ def test_zones_beyond_all_reason_still_leave_the_objective_a_good_design() -> No
             assert result.best.objective(result.problem) > least
 
 
-def test_two_poses_may_be_missed_too() -> None:
+def test_two_poses_may_be_missed_too(relaxing_only: Callable[..., None]) -> None:
+    relaxing_only("link_length")
     poses = [[0, 0, 0], [30, 10, 40]]
     problem = Problem(task=MotionTask.from_degrees(poses, within=2), objective=Objective(0, 1))
     result = synthesize(problem, enough=4, effort=0.2)

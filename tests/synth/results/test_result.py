@@ -179,7 +179,7 @@ def test_an_id_is_the_same_in_every_process(luggage_designs: Designs) -> None:
 
 
 def test_an_empty_result_says_why(luggage: Problem) -> None:
-    empty = Result(luggage, (), (), {}, {}, note="no design: nothing fits")
+    empty = Result(luggage, note="no design: nothing fits")
     assert len(empty) == 0
     with pytest.raises(NoSolutionError, match=r"^no design: nothing fits$"):
         _ = empty.best
@@ -200,6 +200,6 @@ def test_values_show_themselves_in_one_line(luggage_result: Result) -> None:
     assert repr(best).startswith(f"<Candidate {best.id}: crank-rocker, r1 to r4 ")
     assert f"mu {mu:.1f} deg over the task" in repr(best)
     assert f"<Result of luggage: {len(luggage_result)} designs; best {best.id}" in repr(luggage_result)
-    assert repr(Result(problem, (), (), {}, {}, note="nothing")) == "<Result of luggage: 0 designs; nothing>"
+    assert repr(Result(problem, note="nothing")) == "<Result of luggage: 0 designs; nothing>"
     assert repr(problem) == "<Problem luggage: MotionTask of 4 targets>"
     assert max(len(repr(value)) for value in (best, problem, luggage_result)) < 160

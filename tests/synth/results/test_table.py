@@ -126,7 +126,7 @@ def test_csv_keeps_every_digit(frame: pd.DataFrame, luggage_result: Result, tmp_
 
 
 def test_an_empty_result_has_all_columns(luggage: Problem, tmp_path: Path) -> None:
-    empty = Result(luggage, (), (), {}, {}, note="no design")
+    empty = Result(luggage, note="no design")
     assert list(empty.to_frame().columns) == COLUMNS
     assert len(empty.to_frame()) == 0
     empty.to_csv(tmp_path / "none.csv")

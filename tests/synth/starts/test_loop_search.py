@@ -10,7 +10,7 @@ from grashof.analysis.judge.planted import planted_path
 from grashof.problems import Box, Problem, Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.starts import paths
+from grashof.synth.starts import coupler_search
 from grashof.synth.starts.closed_loop import Batch, PathTarget
 from grashof.synth.starts.loop_search import PULL, Placed, draw, fitting, improve
 from grashof.synth.starts.loop_search import place as place_batch
@@ -266,7 +266,7 @@ def test_planted_curves_are_found_within_a_few_rounds(points: int, timed: bool, 
     rng = np.random.default_rng(0)
     least = np.inf
     for _ in range(4):
-        finds = paths.search(scaled, 1, rng)
+        finds = coupler_search.search(scaled, 1, rng)
         least = min(least, finds.error.min(initial=np.inf))
         if least < 1e-6:
             break

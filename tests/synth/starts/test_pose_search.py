@@ -11,10 +11,10 @@ from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import MotionTask, Problem, Requirements
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.starts import paths
+from grashof.synth.starts import coupler_search
 from grashof.synth.starts.closed_loop import Batch, Loop, PathTarget, body_turns
+from grashof.synth.starts.coupler_search import FOUND
 from grashof.synth.starts.loop_search import draw, fitting, improve, place
-from grashof.synth.starts.paths import FOUND
 
 GENEROUS: dict[str, Any] = {
     "link_length": (1e-7, 1e7),
@@ -220,7 +220,7 @@ def test_planted_motions_are_found_within_a_few_rounds(
     rng = np.random.default_rng(0)
     least = np.inf
     for _ in range(4):
-        finds = paths.search(scaled, 1, rng)
+        finds = coupler_search.search(scaled, 1, rng)
         least = min(least, finds.error.min(initial=np.inf))
         if least < FOUND:
             break

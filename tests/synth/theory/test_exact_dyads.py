@@ -12,7 +12,8 @@ from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, FourBar, MotionTask, Problem, Requirements
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.starts.exact_poses import _dyads, degenerate, obstacle, relaxed_starts, rounds
+from grashof.synth.starts.exact_poses import DyadPairs
+from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.burmester import Dyads
 
 Judge = Callable[[FourBar, MotionTask], Any]
@@ -66,12 +67,18 @@ BOXES: dict[str, dict[str, Any]] = {
 }
 
 
+def dyads_of(scaled: ScaledProblem) -> Dyads:
+    finder = finder_for(scaled)
+    assert isinstance(finder, DyadPairs)
+    return finder.dyads(rng())
+
+
 @pytest.mark.parametrize("poses", [2, 3])
 @pytest.mark.parametrize("kind", BOXES)
 def test_sampled_dyads_are_exact_and_half_have_their_pivot_where_it_is_wished(poses: int, kind: str) -> None:
     for seed in range(3):
         scaled, _, _ = planted(seed, poses, **BOXES[kind])
-        dyads = _dyads(scaled, rng())
+        dyads = dyads_of(scaled)
         assert len(dyads) > 4000
         assert spread_of_radii(scaled, dyads).max() < 1e-9
         for box in (scaled.wanted.o2, scaled.wanted.o4):
@@ -88,7 +95,7 @@ def test_starts_of_two_and_three_poses_meet_them_with_their_pivots_in_place(
 ) -> None:
     rows = [[0.0, 0, 0], [2, 1, 20], [3, 3, 50]][:poses]
     scaled = posed(rows, link_length=(0.1, 20), **BOXES[kind])
-    (queue,) = rounds(scaled, 10, rng())
+    (queue,) = finder_for(scaled).rounds(10, rng(), 1)
     assert len(queue.starts) >= 5
     for start in queue.starts:
         pair = Dyads(np.array([start.a, start.b]), np.array([start.o2, start.o4]))
@@ -108,7 +115,7 @@ def test_starts_of_two_and_three_poses_meet_them_with_their_pivots_in_place(
 def test_the_planted_dyads_are_among_those_of_five_poses_and_more(poses: int) -> None:
     for seed in range(25):
         scaled, task, linkage = planted(seed, poses)
-        dyads = _dyads(scaled, rng())
+        dyads = dyads_of(scaled)
         assert 2 <= len(dyads) <= 4
         assert spread_of_radii(scaled, dyads).max() < 1e-9
         for moving, ground in zip(*planted_dyads(scaled, task, linkage), strict=True):
@@ -123,8 +130,8 @@ def test_starts_of_five_poses_and_more_are_settled_pairs_of_dyads(
     usable = 0
     for seed in range(10):
         scaled, task, _ = planted(seed, poses)
-        (queue,) = rounds(scaled, 50, rng())
-        dyads = _dyads(scaled, rng())
+        (queue,) = finder_for(scaled).rounds(50, rng(), 1)
+        dyads = dyads_of(scaled)
         assert queue.counts["exact dyads"] == len(dyads)
         assert queue.counts["feasible linkages"] == len(queue.starts) <= len(dyads) * (len(dyads) - 1)
         for start in queue.starts:
@@ -176,11 +183,11 @@ def test_how_far_a_fixed_pivot_is_off_the_curve_of_four_poses() -> None:
     x, y = free.frame.outward(np.array(at))
     scaled = posed(rows, o4=Box((float(x), float(x)), (float(y), float(y))))
     expected = float(np.abs(traced - at).min()) * free.frame.scale
-    said = obstacle(scaled, rng())
+    said = finder_for(scaled).obstacle(rng(), {})
     assert said.startswith(f"O4 is fixed at ({x:.6g}, {y:.6g}), ")
     assert "nearest centre point that four poses have" in said
     assert float(said.split("), ")[1].split()[0]) == pytest.approx(expected, abs=0.03 * free.frame.scale)
-    assert obstacle(free, rng()) == ""
+    assert finder_for(free).obstacle(rng(), {}) == ""
 
 
 def five_without_dyads() -> ScaledProblem:
@@ -189,17 +196,17 @@ def five_without_dyads() -> ScaledProblem:
         draw = np.random.default_rng([43, seed])
         task = MotionTask(draw.normal(size=(5, 2)), draw.uniform(-np.pi, np.pi, 5))
         scaled = ScaledProblem.of(Problem(task=task))
-        if not len(_dyads(scaled, rng())):
+        if not len(dyads_of(scaled)):
             return scaled
     raise AssertionError("every set has dyads")
 
 
 def test_five_poses_without_dyads_say_so() -> None:
     scaled = five_without_dyads()
-    assert obstacle(scaled, rng()) == "the 5 poses have no real dyad, and a linkage needs two"
-    (queue,) = rounds(scaled, 50, rng())
+    assert finder_for(scaled).obstacle(rng(), {}) == "the 5 poses have no real dyad, and a linkage needs two"
+    (queue,) = finder_for(scaled).rounds(50, rng(), 1)
     assert queue.starts == []
-    assert relaxed_starts(scaled, rng()) == []
+    assert finder_for(scaled).relaxed(rng()) == []
 
 
 def test_five_poses_of_a_slider_crank_say_so() -> None:
@@ -207,24 +214,24 @@ def test_five_poses_of_a_slider_crank_say_so() -> None:
     angles = -np.arcsin(crank.imag / 3)
     body = crank + (1 + 0.7j) * np.exp(1j * angles)
     task = MotionTask(np.stack([body.real, body.imag], axis=1), angles)
-    said = obstacle(ScaledProblem.of(Problem(task=task)), rng())
+    said = finder_for(ScaledProblem.of(Problem(task=task))).obstacle(rng(), {})
     assert said.startswith("the 5 poses have ")
     assert said.endswith("; 1 dyad would have to be a slider")
 
 
 def test_two_real_dyads_that_make_no_usable_linkage_are_counted() -> None:
     scaled, _, _ = planted(0, 5, link_length=(1e3, 1e4))
-    count = len(_dyads(scaled, rng()))
+    count = len(dyads_of(scaled))
     assert count >= 2
     few = ", so one linkage at most, or its two drivers" if count == 2 else ""
-    assert obstacle(scaled, rng()) == f"the 5 poses have {count} real dyads only{few}"
+    assert finder_for(scaled).obstacle(rng(), {}) == f"the 5 poses have {count} real dyads only{few}"
 
 
 def test_six_poses_at_random_have_no_dyads() -> None:
     draw = np.random.default_rng(44)
     task = MotionTask(draw.normal(size=(6, 2)), draw.uniform(-np.pi, np.pi, 6))
     scaled = ScaledProblem.of(Problem(task=task, requirements=Requirements(exact=True)))
-    assert obstacle(scaled, rng()) == "the 6 poses have no real dyad, and a linkage needs two"
+    assert finder_for(scaled).obstacle(rng(), {}) == "the 6 poses have no real dyad, and a linkage needs two"
 
 
 def test_one_dyad_of_six_poses_is_not_enough() -> None:
@@ -237,7 +244,9 @@ def test_one_dyad_of_six_poses_is_not_enough() -> None:
         np.concatenate([task.positions, [[p.real, p.imag]]]),
         np.append(task.angles, theta3 + float(linkage.body_angle)),
     )
-    said = obstacle(ScaledProblem.of(Problem(task=six, requirements=Requirements(exact=True))), rng())
+    said = finder_for(ScaledProblem.of(Problem(task=six, requirements=Requirements(exact=True)))).obstacle(
+        rng(), {}
+    )
     assert said == "the 6 poses have a single real dyad, and a linkage needs two"
 
 
@@ -246,24 +255,26 @@ def test_translations_and_rotations_of_any_number_are_told(poses: int) -> None:
     draw = np.random.default_rng(poses)
     places = draw.normal(size=(poses, 2))
     still = MotionTask(places, np.full(poses, 0.3))
-    told = obstacle(ScaledProblem.of(Problem(task=still, requirements=Requirements(exact=True))), rng())
+    told = finder_for(ScaledProblem.of(Problem(task=still, requirements=Requirements(exact=True)))).obstacle(
+        rng(), {}
+    )
     assert "pure translations" in told
     assert ("off any one circle" in told) == (poses > 3)
     turns = draw.uniform(-np.pi, np.pi, poses)
     arm = 2 * np.exp(1j * turns)
     about = MotionTask(np.stack([3 + arm.real, arm.imag - 1], axis=1), turns)
     scaled = ScaledProblem.of(Problem(task=about, requirements=Requirements(exact=True)))
-    assert "pure rotation about (3, -1)" in degenerate(scaled)
+    assert "pure rotation about (3, -1)" in finder_for(scaled).degenerate()
     usual = ScaledProblem.of(Problem(task=MotionTask(places, turns), requirements=Requirements(exact=True)))
-    assert degenerate(usual) == ""
+    assert finder_for(usual).degenerate() == ""
 
 
 @pytest.mark.parametrize("turn", [0.0, 40.0])
 def test_two_poses_are_never_degenerate(turn: float) -> None:
     """A translation or a rotation is what two poses always are; four-bars do it."""
     scaled = posed([[0, 0, 0], [2, 1, turn]], link_length=(0.2, 20))
-    assert degenerate(scaled) == ""
-    (queue,) = rounds(scaled, 5, rng())
+    assert finder_for(scaled).degenerate() == ""
+    (queue,) = finder_for(scaled).rounds(5, rng(), 1)
     assert len(queue.starts) >= 5
 
 
@@ -272,5 +283,5 @@ def test_all_is_in_the_unit_of_the_task() -> None:
     scaled, task, _ = planted(5, 5)
     large = MotionTask(1000 * task.positions, task.angles)
     scaled = ScaledProblem.of(replace(scaled.problem, task=large))
-    here, there = (np.sort_complex(_dyads(each, rng()).ground) for each in (scaled, scaled))
+    here, there = (np.sort_complex(dyads_of(each).ground) for each in (scaled, scaled))
     np.testing.assert_allclose(here, there, atol=1e-9 * np.abs(here).max())

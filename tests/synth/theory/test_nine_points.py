@@ -10,7 +10,7 @@ from grashof import load, synthesize
 from grashof.analysis import verify
 from grashof.analysis.judge.planted import planted_path
 from grashof.problems import Requirements
-from grashof.synth.starts import paths
+from grashof.synth.starts import precision_points
 from grashof.synth.theory.monodromy import collect, general_problem
 from grashof.synth.theory.nine_points import (
     TRIPLETS,
@@ -112,7 +112,7 @@ def computed_once():
         return computed[key]
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(paths, "linkages_through", linkages)
+        patch.setattr(precision_points, "linkages_through", linkages)
         yield
 
 

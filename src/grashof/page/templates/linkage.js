@@ -2,6 +2,10 @@
 const TURN = 2 * Math.PI;
 const DEG = 180 / Math.PI;
 const STEPS = 180;
+// The points of a four-bar, and those on its moving links; plates lie below bars.
+const GROUND = ["o2", "o4"];
+const POINTS = [...GROUND, "a", "b", "p"];
+const LINKS = { coupler: ["a", "b", "p"], output: ["o4", "b"], driver: ["o2", "a"] };
 
 const wrapped = (angle) => angle - TURN * Math.round(angle / TURN);
 

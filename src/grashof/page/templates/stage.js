@@ -35,8 +35,8 @@ function pointsToSee(scene, designs, close) {
     }
     if (!design || close) continue;
     for (const angle of travelPath(design).angles) {
-      const { o2, o4, a, b, p } = positionOf(design.linkage, angle);
-      points.push(o2, o4, a, b, p);
+      const state = positionOf(design.linkage, angle);
+      points.push(...POINTS.map((name) => state[name]));
     }
   }
   return points;
@@ -223,31 +223,26 @@ class Stage {
     theta2.forEach((angle, k) => {
       if (k % every) return;
       const state = positionOf(linkage, angle, assemblies[k]);
-      const [o2, o4, a, b, p] = [state.o2, state.o4, state.a, state.b, state.p].map(this.at);
-      add(layer, "path", { d: through([o2, a]), class: "driver" });
-      add(layer, "path", { d: through([o4, b]), class: "output" });
-      add(layer, "path", { d: through([a, b, p], true), class: "coupler" });
+      for (const name of Object.keys(LINKS).reverse()) {
+        add(layer, "path", { d: linkPath(name, (point) => this.at(state[point])), class: name });
+      }
     });
   }
 
   // The parts that move, and the ground pivots.
   linkage() {
-    const { o2, o4 } = this.design.linkage;
     const ground = add(this.svg, "g", { class: "ground" });
-    for (const [name, pivot] of [
-      ["O2", o2],
-      ["O4", o4],
-    ]) {
-      const [x, y] = this.at(pivot);
+    for (const name of GROUND) {
+      const [x, y] = this.at(this.design.linkage[name]);
       add(ground, "path", { d: `M${px(x)} ${px(y)}l-8 13h16Z` });
-      add(ground, "text", { x: x + 10, y: y + 14 }, name);
+      add(ground, "text", { x: x + 10, y: y + 14 }, name.toUpperCase());
     }
     const layer = add(this.svg, "g", { class: "linkage" });
     const parts = {};
     if (this.scene.body) parts.body = add(layer, "path", { class: "body live" });
-    for (const name of ["coupler", "output", "driver"]) parts[name] = add(layer, "path", { class: name });
+    for (const name of Object.keys(LINKS)) parts[name] = add(layer, "path", { class: name });
     parts.sense = add(layer, "path", { class: "sense" });
-    for (const name of ["o2", "o4", "a", "b", "p"]) {
+    for (const name of POINTS) {
       parts[name] = add(layer, "circle", { r: name === "p" ? 3.5 : 4, class: `joint ${name}` });
     }
     for (const name of ["A", "B", "P"]) parts[name] = add(layer, "text", {}, name);
@@ -266,14 +261,12 @@ class Stage {
     this.state = state;
     this.onDraw(state);
     if (!this.parts) return;
-    const places = Object.fromEntries(
-      ["o2", "o4", "a", "b", "p"].map((name) => [name, this.at(state[name])]),
-    );
-    const { o2, o4, a, b, p } = places;
+    const places = Object.fromEntries(POINTS.map((name) => [name, this.at(state[name])]));
+    const { o2, a, b, p } = places;
     const { parts } = this;
-    set(parts.driver, { d: through([o2, a]) });
-    set(parts.output, { d: through([o4, b]) });
-    set(parts.coupler, { d: through([a, b, p], true) });
+    for (const name of Object.keys(LINKS)) {
+      set(parts[name], { d: linkPath(name, (point) => places[point]) });
+    }
     for (const [name, [x, y]] of Object.entries(places)) set(parts[name], { cx: px(x), cy: px(y) });
     const middle = [(a[0] + b[0] + p[0]) / 3, (a[1] + b[1] + p[1]) / 3];
     set(parts.P, { x: px(p[0] + 9), y: px(p[1] + 16) });

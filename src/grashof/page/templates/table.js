@@ -148,8 +148,8 @@ function thumbnail(design, width = 66, height = 44) {
   });
   const { theta2, linkage, low, high } = design;
   const path = pathOf(linkage, anglesBetween(low, high, design.turns, 36), 0.04).points;
-  const { o2, o4, a, b, p } = positionOf(linkage, theta2[theta2.length >> 1]);
-  const points = [...path, o2, o4, a, b, p];
+  const state = positionOf(linkage, theta2[theta2.length >> 1]);
+  const points = [...path, ...POINTS.map((name) => state[name])];
   const [xs, ys] = [points.map((point) => point[0]), points.map((point) => point[1])];
   const [left, right, bottom, top] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
   const unit = Math.min((width - 8) / (right - left || 1), (height - 8) / (top - bottom || 1));
@@ -158,11 +158,11 @@ function thumbnail(design, width = 66, height = 44) {
     height / 2 - unit * (y - (bottom + top) / 2),
   ];
   add(svg, "path", { d: through(path.map(at)), class: "trace" });
-  add(svg, "path", { d: through([a, b, p].map(at), true), class: "coupler" });
-  add(svg, "path", { d: through([o2, a].map(at)), class: "driver" });
-  add(svg, "path", { d: through([o4, b].map(at)), class: "output" });
-  for (const pivot of [o2, o4]) {
-    const [cx, cy] = at(pivot);
+  for (const name of Object.keys(LINKS)) {
+    add(svg, "path", { d: linkPath(name, (point) => at(state[point])), class: name });
+  }
+  for (const name of GROUND) {
+    const [cx, cy] = at(state[name]);
     add(svg, "circle", { cx: px(cx), cy: px(cy), r: 2, class: "pivot" });
   }
   return svg;

@@ -11,8 +11,10 @@ from grashof.problems import Box, FourBar, PathTask, Problem, Requirements
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS, Screened
 from grashof.synth.programme.start import Round, Start
-from grashof.synth.starts import paths
-from grashof.synth.starts.paths import path_target, relaxed_starts, rounds, search
+from grashof.synth.starts import precision_points
+from grashof.synth.starts.coupler_search import search
+from grashof.synth.starts.finder import finder_for
+from grashof.synth.starts.path_screening import path_target
 
 PathSetup = Callable[..., tuple[ScaledProblem, FourBar]]
 
@@ -31,7 +33,7 @@ def setup_of(
 
 
 def first_rounds(scaled: ScaledProblem, count: int, enough: int = 5, seed: int = 0) -> list[Round]:
-    return list(islice(rounds(scaled, enough, np.random.default_rng(seed)), count))
+    return list(islice(finder_for(scaled).rounds(enough, np.random.default_rng(seed), 1), count))
 
 
 def finds_of(scaled: ScaledProblem, enough: int = 5, seed: int = 0) -> Screened:
@@ -195,7 +197,7 @@ def test_an_equality_leaves_near_misses_to_start_from(wanted: dict[str, Any]) ->
 
 def test_relaxed_starts_miss_one_requirement() -> None:
     scaled = setup_of(LINE, transmission_min_deg=85, transmission_over="cycle")
-    relaxed = relaxed_starts(scaled, np.random.default_rng(0))
+    relaxed = finder_for(scaled).relaxed(np.random.default_rng(0))
     assert relaxed
     for start in relaxed:
         assert 1 <= len(start.relaxed) <= 2
@@ -206,7 +208,7 @@ def test_relaxed_starts_miss_one_requirement() -> None:
 def test_rounds_without_a_start_end(monkeypatch: pytest.MonkeyPatch) -> None:
     scaled = setup_of(LINE)
     none = finds_of(scaled)[:0]
-    monkeypatch.setattr(paths, "search", lambda *_: none)
-    found = list(rounds(scaled, 5, np.random.default_rng(0)))
+    monkeypatch.setattr(precision_points, "search", lambda *_: none)
+    found = list(finder_for(scaled).rounds(5, np.random.default_rng(0), 1))
     assert 1 < len(found) < 100
     assert all(not each.starts for each in found)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,11 +12,11 @@ from grashof.analysis import Defect, verify
 from grashof.analysis.judge.design import Constraint, Design, name_of
 from grashof.problems import Box, Problem, Requirements, Rotatability
 from grashof.problems.values.arrays import Limits
+from grashof.problems.values.quantities import Kind
+from grashof.problems.values.requirements import LIMITS
+from grashof.synth.programme.start import UNSMOOTH
 from grashof.synth.results.candidate import Candidate
 
-LENGTHS = ("r1", "r2", "r3", "r4")
-BOXES = ("o2", "o4", "a", "b")
-ANGLES = ("ground_angle_deg", "theta2_start_deg")
 LEAST_MARGIN = 1e-9  # of full rotation: below it lies a change point
 COARSEST = 0.02  # share of a change that its figure may be rounded by
 
@@ -68,41 +68,39 @@ class Eased:
 def limiting(problem: Problem, constraints: Sequence[Constraint]) -> list[str]:
     """Keys of the requirements that ask for more than to exclude the absurd, exactness aside.
 
-    Parameters
-    ----------
-    problem : Problem
-    constraints : sequence of callable
-        The user's own.
+    The user's own constraints are one of them.
     """
     wanted, usual = problem.requirements, Requirements()
-    keys = ["transmission_min_deg", "link_length", *LENGTHS, "link_ratio_max", "coupler_arms", *BOXES]
-    keys += [*ANGLES, "keep_out"]
-    changed = [key for key in keys if getattr(wanted, key) != getattr(usual, key)]
-    changed += ["constraints"] * bool(constraints)
+    keys = [key for key in (*LIMITS, "keep_out") if getattr(wanted, key) != getattr(usual, key)]
+    keys += ["constraints"] * bool(constraints)
     if wanted.rotatability is not Rotatability.ANY and not problem.task.closed:
-        changed.append("rotatability")
-    return changed + [key for key in ("order", "same_branch") if getattr(wanted, key)]
+        keys.append("rotatability")
+    return keys + [key for key in UNSMOOTH if getattr(wanted, key)]
+
+
+def is_angle(key: str) -> bool:
+    """Whether a requirement is an angle to be kept."""
+    return key in LIMITS and LIMITS[key].kind is Kind.EQUAL
 
 
 def loosest(problem: Problem, key: str) -> Requirements:
     """The requirements of a problem with one of them taken out, or as loose as is not absurd."""
-    wanted, size = problem.requirements, problem.task.size
+    wanted = problem.requirements
     if key == "constraints":
         return wanted
-    usual = Requirements().resolved(size)
-    if key in (*LENGTHS, "link_length", "coupler_arms"):
+    given, loose = getattr(wanted, key), None
+    if key in LIMITS and LIMITS[key].kind is Kind.BETWEEN:
+        usual = Requirements().resolved(problem.task.size)
         low, high = usual.link_length if key != "coupler_arms" else usual.coupler_arms  # type: ignore[misc]
-        given = getattr(wanted, key)
-        return _with(wanted, {key: (min(low, given[0]), max(high, given[1]))})
-    loose: dict[str, Any] = {
+        loose = (min(low, given[0]), max(high, given[1]))
+    others = {
         "rotatability": Rotatability.ANY,
-        "order": False,
-        "same_branch": False,
         "link_ratio_max": max(100.0, wanted.link_ratio_max),
         "transmission_min_deg": 0.0,
         "keep_out": (),
+        **dict.fromkeys(UNSMOOTH, False),
     }
-    return _with(wanted, {key: loose.get(key)})
+    return _with(wanted, {key: others.get(key, loose)})
 
 
 def relaxation(
@@ -124,13 +122,13 @@ def relaxation(
     -----
     The figure is rounded to the loose side, and the judge has to accept the design with it.
     """
-    own = tuple(constraints)
-    smooth = key not in ("rotatability", "order", "same_branch")
-    if smooth and any(defect.requirement != key for defect in candidate.verdict.defects):
-        return None
     missed = [defect for defect in candidate.verdict.defects if defect.requirement == key]
-    miss = max((defect.miss for defect in missed), default=1.0)
-    for wanted, eased, words in _eased(problem, own, key, missed):
+    if key not in ("rotatability", *UNSMOOTH) and len(missed) < len(candidate.verdict.defects):
+        return None
+    miss, own = max((defect.miss for defect in missed), default=1.0), tuple(constraints)
+    for change, words in _eased(problem, own, key, missed):
+        eased = change.pop("constraints", own)
+        wanted = _with(problem.requirements, change)
         if verify(candidate.linkage, problem.task, wanted, eased, problem=problem).ok:
             return Relaxation(key, words, wanted, eased, candidate, miss, words.count(" instead of "))
     return None
@@ -149,56 +147,49 @@ def with_rounded_angle(problem: Problem, relaxation: Relaxation) -> Relaxation:
 
 def _eased(
     problem: Problem, own: tuple[Constraint, ...], key: str, missed: list[Defect]
-) -> list[tuple[Requirements, tuple[Constraint, ...], str]]:
-    """Requirements that ask for less, the least change first, in the order to be tried, with words."""
-    wanted = problem.requirements
+) -> Iterator[tuple[dict[str, Any], str]]:
+    """What asks for less, by key, the least change first, in the order to be tried; with words."""
+    wanted = problem.requirements.resolved(problem.task.size)
+    found, asked = [defect.found for defect in missed], getattr(wanted, key, None)
+    kind = LIMITS[key].kind if key in LIMITS else None
     if key == "rotatability":
-        return [(less, own, words) for less, words in _turning_less(wanted, missed)]
-    if key in ("order", "same_branch"):
-        return [(_with(wanted, {key: False}), own, f"{key} = false")]
-    if not missed:
-        return []
-    if key == "constraints":
-        return [_own_eased(wanted, own, missed)]
-    change = _CHANGES.get(key, _limits_changed)
-    found = change(problem, key, missed)
-    return [] if found is None else [(found[0], own, found[1])]
+        yield from _turning_less(wanted, missed)
+    elif key in UNSMOOTH:
+        yield {key: False}, f"{key} = false"
+    elif not missed:
+        return
+    elif key == "constraints":
+        allowed = {defect.what: _rounded(defect.found, 0.0) for defect in missed}
+        eased = tuple(Eased(one, allowed[name_of(one)]) if name_of(one) in allowed else one for one in own)
+        words = [f"constraint {name} up to {by:g} instead of 0" for name, by in allowed.items()]
+        yield {"constraints": eased}, " with ".join(words)
+    elif key == "keep_out":
+        yield _areas_drawn_in(wanted, missed)
+    elif kind is Kind.BETWEEN:
+        reached = _reaching(asked, found)
+        yield {key: reached}, _range_words(key, asked, reached)
+    elif kind is Kind.INSIDE:
+        yield _box_enlarged(key, asked or Box(), missed)
+    elif kind is Kind.EQUAL:
+        angle = float(f"{found[0] + 360 * round((asked - found[0]) / 360):.12g}")
+        yield {key: angle}, f"{key} {angle:.12g} instead of {asked:g}"
+    else:
+        value = max(_rounded(found[0], asked), 0.0)
+        yield {key: value}, f"{key} {value:.10g} instead of {asked:g}"
 
 
-def _turning_less(wanted: Requirements, missed: list[Defect]) -> list[tuple[Requirements, str]]:
-    tried = list[tuple[Requirements, str]]()
+def _turning_less(wanted: Requirements, missed: list[Defect]) -> Iterator[tuple[dict[str, Any], str]]:
     asked, margins = wanted.rotatability, [d.found for d in missed if "margin" in d.what]
     if margins and margins[0] > LEAST_MARGIN:
         margin = max(_rounded(margins[0], wanted.rotatability_margin), 0.0)
         words = f"rotatability_margin {margin:g} instead of {wanted.rotatability_margin:g}"
-        tried.append((replace(wanted, rotatability_margin=margin), words))
+        yield {"rotatability_margin": margin}, words
     others = (Rotatability.FULL_CRANK, Rotatability.ANY)
     for kind in others[asked is Rotatability.FULL_CRANK :]:
-        words = f'rotatability "{kind}" instead of "{asked}"'
-        tried.append((replace(wanted, rotatability=kind), words))
-    return tried
+        yield {"rotatability": kind}, f'rotatability "{kind}" instead of "{asked}"'
 
 
-def _own_eased(
-    wanted: Requirements, own: tuple[Constraint, ...], missed: list[Defect]
-) -> tuple[Requirements, tuple[Constraint, ...], str]:
-    allowed = {defect.what: _rounded(defect.found, 0.0) for defect in missed}
-    eased = tuple(Eased(one, allowed[name_of(one)]) if name_of(one) in allowed else one for one in own)
-    return (
-        wanted,
-        eased,
-        " with ".join(f"constraint {name} up to {by:g} instead of 0" for name, by in allowed.items()),
-    )
-
-
-def _limits_changed(problem: Problem, key: str, missed: list[Defect]) -> tuple[Requirements, str] | None:
-    given: Limits = getattr(problem.requirements.resolved(problem.task.size), key)
-    reached = _reaching(given, [defect.found for defect in missed])
-    return _with(problem.requirements, {key: reached}), _range_words(key, given, reached)
-
-
-def _box_changed(problem: Problem, key: str, missed: list[Defect]) -> tuple[Requirements, str] | None:
-    box: Box = getattr(problem.requirements, key) or Box()
+def _box_enlarged(key: str, box: Box, missed: list[Defect]) -> tuple[dict[str, Any], str]:
     sides, words = {}, []
     for axis in ("x", "y"):
         given: Limits = getattr(box, axis)
@@ -206,23 +197,10 @@ def _box_changed(problem: Problem, key: str, missed: list[Defect]) -> tuple[Requ
         sides[axis] = _reaching(given, found)
         if found:
             words.append(_range_words(f"{key}.{axis}", given, sides[axis]))
-    return _with(problem.requirements, {key: Box(**sides)}), " with ".join(words)
+    return {key: Box(**sides)}, " with ".join(words)
 
 
-def _number_changed(problem: Problem, key: str, missed: list[Defect]) -> tuple[Requirements, str] | None:
-    asked = float(getattr(problem.requirements, key))
-    value = _rounded(missed[0].found, asked)
-    changed = _with(problem.requirements, {key: max(value, 0.0)})
-    return changed, f"{key} {max(value, 0.0):.10g} instead of {asked:g}"
-
-
-def _angle_changed(problem: Problem, key: str, missed: list[Defect]) -> tuple[Requirements, str] | None:
-    asked, found = float(getattr(problem.requirements, key)), missed[0].found
-    found = float(f"{found + 360 * round((asked - found) / 360):.12g}")
-    return _with(problem.requirements, {key: found}), f"{key} {found:.12g} instead of {asked:g}"
-
-
-def _areas_drawn_in(problem: Problem, _: str, missed: list[Defect]) -> tuple[Requirements, str] | None:
+def _areas_drawn_in(wanted: Requirements, missed: list[Defect]) -> tuple[dict[str, Any], str]:
     # Here, not above: shapely takes a while to import, and few problems have areas.
     import shapely
 
@@ -230,21 +208,10 @@ def _areas_drawn_in(problem: Problem, _: str, missed: list[Defect]) -> tuple[Req
 
     by = _rounded(max(defect.found for defect in missed), 0.0)
     # Holes are closed: areas without them ask for more, which the judge then decides.
-    left = shapely.get_parts(shapely.buffer(solid(problem.requirements.keep_out), -by, join_style="mitre"))
+    left = shapely.get_parts(shapely.buffer(solid(wanted.keep_out), -by, join_style="mitre"))
     areas = tuple(shapely.get_coordinates(part.exterior)[:-1] for part in left if not part.is_empty)
-    parts = " and ".join(
-        defect.what.removesuffix(" inside").removeprefix("the depth of ") for defect in missed
-    )
-    return replace(problem.requirements, keep_out=areas), f"keep_out drawn in by {by:g}, the depth of {parts}"
-
-
-_Change = Callable[[Problem, str, list[Defect]], tuple[Requirements, str] | None]
-_CHANGES: dict[str, _Change] = {
-    **dict.fromkeys(BOXES, _box_changed),
-    **dict.fromkeys(ANGLES, _angle_changed),
-    **dict.fromkeys(("transmission_min_deg", "link_ratio_max"), _number_changed),
-    "keep_out": _areas_drawn_in,
-}
+    depths = (defect.what.removesuffix(" inside").removeprefix("the depth of ") for defect in missed)
+    return {"keep_out": areas}, f"keep_out drawn in by {by:g}, the depth of {' and '.join(depths)}"
 
 
 def _with(wanted: Requirements, changed: dict[str, Any]) -> Requirements:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -17,52 +16,33 @@ from grashof.synth.programme.screening import (
     judge,
     keep_out_violation,
 )
-from grashof.synth.programme.start import Start
+from grashof.synth.programme.start import UNSMOOTH, Start
 from grashof.synth.programme.user_constraints import screened
-from grashof.synth.results.attempt import Attempt
 from grashof.synth.results.candidate import Candidate
-from grashof.synth.results.relaxation import (
-    ANGLES,
+from grashof.synth.results.judging import judged_again
+from grashof.synth.results.relaxed_limits import (
     Relaxation,
+    is_angle,
     limiting,
     loosest,
     relaxation,
     with_rounded_angle,
 )
-from grashof.synth.results.workers import Solver
-from grashof.synth.starts import exact_poses, paths
+from grashof.synth.results.search import Run
+from grashof.synth.starts.finder import finder_for
 from grashof.synth.starts.selection import closest_starts
 
 SOLVES = 6  # starts for each requirement
-FINDS = 20  # of a search for them
 DEAD = 1e-3  # rad: a transmission angle near a dead position
 
 
 def relaxations(
-    scaled: ScaledProblem,
-    solve: Solver,
-    known: list[Candidate],
-    rng: np.random.Generator,
-    ended: Callable[[], bool],
+    scaled: ScaledProblem, known: list[Candidate], rng: np.random.Generator, run: Run
 ) -> list[Relaxation]:
     """For each requirement that may be the only one in the way: how it would have to be relaxed.
 
-    Parameters
-    ----------
-    scaled : ScaledProblem
-    solve : callable
-        Attempts from starts.
-    known : list of Candidate
-        Designs that were rejected.
-    rng : numpy.random.Generator
-    ended : callable
-        Asked before every requirement.
-
-    Returns
-    -------
-    list of Relaxation
-        One for each requirement at most, the smallest miss first. The judge has accepted each of the
-        designs under the relaxed requirement and all others.
+    One relaxation for each requirement at most, the smallest miss first; `known` are designs that were
+    rejected. The judge has accepted each design under the relaxed requirement and all others.
 
     Notes
     -----
@@ -72,12 +52,12 @@ def relaxations(
     """
     found = list[Relaxation]()
     for key in limiting(scaled.problem, scaled.constraints):
-        if ended():
+        if run.ended():
             break
         rejected = [one for one in known if {d.requirement for d in one.verdict.defects} == {key}]
-        best = _least(scaled, key, _candidates(scaled, key, solve, rng) + rejected)
+        best = _least(scaled, key, _candidates(scaled, key, rng, run) + rejected)
         if best is not None:
-            found.append(_finished(scaled, best, solve))
+            found.append(_finished(scaled, best, run))
     return sorted(found, key=lambda one: (one.miss, one.key))
 
 
@@ -91,20 +71,21 @@ def _least(scaled: ScaledProblem, key: str, candidates: list[Candidate]) -> Rela
     )
 
 
-def _candidates(scaled: ScaledProblem, key: str, solve: Solver, rng: np.random.Generator) -> list[Candidate]:
+def _candidates(scaled: ScaledProblem, key: str, rng: np.random.Generator, run: Run) -> list[Candidate]:
     """Designs that miss a requirement by little, and others by nothing if that can be."""
     loose = _loose(scaled, key)
-    finds = rejudged(scaled, _finds(loose, rng))
-    starts = closest_starts(scaled, finds, key, SOLVES)
-    settled = scaled.motion is not None and len(scaled.targets) > 4
-    if settled:
-        return _judged(scaled, solve(loose, [replace(start, settled=True) for start in starts], 0))
-    found = _judged(scaled, solve(loose, [replace(start, settled=True) for start in starts[:2]], 0))
-    if key not in ("order", "same_branch"):  # no smooth constraint can relax these
+    finder = finder_for(loose)
+    linkages = rejudged(scaled, finder.near(rng))
+    starts = closest_starts(scaled, linkages, key, SOLVES)
+    as_they_are = [replace(start, settled=True) for start in starts]
+    if not finder.freedom:
+        return _judged(scaled, loose, as_they_are, run)
+    found = _judged(scaled, loose, as_they_are[:2], run)
+    if key not in UNSMOOTH:
         whole, *sides = _parts(scaled, key)
         eased = [replace(start, relaxed=whole) for start in starts]
         eased += [replace(start, relaxed=side) for side in sides for start in starts[: SOLVES // 2]]
-        found += _judged(scaled, solve(scaled, eased, 0))
+        found += _judged(scaled, scaled, eased, run)
     return found
 
 
@@ -114,10 +95,10 @@ def _parts(scaled: ScaledProblem, key: str) -> list[tuple[str, ...]]:
     return [(key,), *((f"{key}.{axis}",) for axis in closed if len(closed) > 1)]
 
 
-def _judged(scaled: ScaledProblem, attempts: list[Attempt]) -> list[Candidate]:
-    """The designs of attempts, judged by the requirements as they were asked."""
-    designs = [one.candidate for one in attempts if one.candidate is not None]
-    return [one.judged(scaled.problem, scaled.constraints) for one in designs]
+def _judged(scaled: ScaledProblem, solved: ScaledProblem, starts: list[Start], run: Run) -> list[Candidate]:
+    """The designs of starts solved under other requirements, judged by those that were asked."""
+    attempts = run.solve(solved, starts, 0)
+    return [judged_again(scaled, one.candidate) for one in attempts if one.candidate is not None]
 
 
 def _loose(scaled: ScaledProblem, key: str) -> ScaledProblem:
@@ -125,31 +106,25 @@ def _loose(scaled: ScaledProblem, key: str) -> ScaledProblem:
     return ScaledProblem.of(problem, () if key == "constraints" else scaled.constraints)
 
 
-def _finished(scaled: ScaledProblem, found: Relaxation, solve: Solver) -> Relaxation:
+def _finished(scaled: ScaledProblem, found: Relaxation, run: Run) -> Relaxation:
     """The same relaxation with an angle in round figures, or a design of smaller error, if there is one.
 
     Both are solved under the relaxed requirement, which makes sure of it.
     """
-    if scaled.exact and found.key not in ANGLES:
+    angle = is_angle(found.key)
+    if scaled.exact and not angle:
         return found
-    asked = with_rounded_angle(scaled.problem, found) if found.key in ANGLES else found
+    asked = with_rounded_angle(scaled.problem, found) if angle else found
     problem = replace(scaled.problem, requirements=asked.requirements)
     eased = ScaledProblem.of(problem, asked.constraints)
-    judged = found.candidate.judged(problem, asked.constraints)
-    (made,) = solve(eased, [Start.of_linkage(eased, judged.linkage, judged.verdict)], 0)
-    if made.candidate is None or not made.candidate.verdict.ok:
+    under_it = judged_again(eased, found.candidate)
+    (made,) = run.solve(eased, [Start.of_linkage(eased, under_it.linkage, under_it.verdict)], 0)
+    if not made.verified:
         return found
-    (candidate,) = _judged(scaled, [made])
-    if not scaled.exact and found.key not in ANGLES:
+    candidate = judged_again(scaled, made.verified[0])
+    if not angle:
         candidate = max(found.candidate, candidate, key=lambda one: one.score(problem))
     return replace(asked, candidate=candidate)
-
-
-def _finds(scaled: ScaledProblem, rng: np.random.Generator) -> Screened:
-    """Linkages that a search comes up with, feasible ones if there are any."""
-    if scaled.motion is not None:
-        return exact_poses.finds(scaled, rng)
-    return paths.search(scaled, FINDS, rng)
 
 
 def rejudged(scaled: ScaledProblem, finds: Screened) -> Screened:

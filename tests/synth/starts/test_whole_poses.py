@@ -11,7 +11,7 @@ from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, Probl
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS
 from grashof.synth.programme.start import Start
-from grashof.synth.starts.exact_poses import degenerate, obstacle, refuse_equal_poses, relaxed_starts, rounds
+from grashof.synth.starts.finder import finder_for
 from grashof.synth.starts.selection import PEAK_SPACING, PEAKS
 from grashof.synth.theory.distinct import apart, signature
 
@@ -21,7 +21,7 @@ SetupOf = Callable[..., ScaledProblem]
 
 
 def queue_of(scaled: ScaledProblem, enough: int = 50, seed: int = 0) -> tuple[list[Start], int]:
-    (queue,) = rounds(scaled, enough, np.random.default_rng(seed))
+    (queue,) = finder_for(scaled).rounds(enough, np.random.default_rng(seed), 1)
     return queue.starts, queue.counts["feasible linkages"]
 
 
@@ -40,16 +40,16 @@ def poses(rows: list[list[float]], **rest: Any) -> ScaledProblem:
 def test_usual_poses_are_not_degenerate(
     luggage_scaled: SetupOf, planted_scaled: Callable[..., tuple[ScaledProblem, FourBar]]
 ) -> None:
-    assert degenerate(luggage_scaled()) == ""
-    assert all(degenerate(planted_scaled(seed)[0]) == "" for seed in range(20))
+    assert finder_for(luggage_scaled()).degenerate() == ""
+    assert all(finder_for(planted_scaled(seed)[0]).degenerate() == "" for seed in range(20))
 
 
 def test_pure_translation_is_told() -> None:
     for turn in (0, 360):
         scaled = poses([[0, 0, 10], [1, 0, 10], [2, 1, 10 + turn], [0, 3, 10]])
-        assert "pure translations" in obstacle(scaled, np.random.default_rng(0))
-        assert degenerate(scaled) == ""
-    assert degenerate(poses([[0, 0, 10], [1, 0, 10], [2, 1, 10.1], [0, 3, 10]])) == ""
+        assert "pure translations" in finder_for(scaled).obstacle(np.random.default_rng(0), {})
+        assert finder_for(scaled).degenerate() == ""
+    assert finder_for(poses([[0, 0, 10], [1, 0, 10], [2, 1, 10.1], [0, 3, 10]])).degenerate() == ""
 
 
 def test_pure_rotation_is_told_with_its_centre() -> None:
@@ -58,18 +58,18 @@ def test_pure_rotation_is_told_with_its_centre() -> None:
     for turn in (0, 30, 50, 120):
         arm = 2 * np.exp(1j * np.radians(turn + 20))
         rows.append([about[0] + arm.real, about[1] + arm.imag, float(turn)])
-    assert "pure rotation about (3, -1.5)" in degenerate(poses(rows))
+    assert "pure rotation about (3, -1.5)" in finder_for(poses(rows)).degenerate()
     on_the_spot = poses([[1, 2, turn] for turn in (0, 30, 50, 120)], angle_length=1)
-    assert "pure rotation about (1, 2)" in degenerate(on_the_spot)
+    assert "pure rotation about (1, 2)" in finder_for(on_the_spot).degenerate()
     rows[2][0] += 1e-3
-    assert degenerate(poses(rows)) == ""
+    assert finder_for(poses(rows)).degenerate() == ""
 
 
 @pytest.mark.parametrize("again", [20.0, 380.0])
 def test_equal_poses_that_do_not_follow_each_other_are_refused(again: float) -> None:
     task = MotionTask.from_degrees([[0, 0, 0], [1, 0, 20], [2, 1, 50], [1, 0, again]])
     with pytest.raises(ProblemError, match=r"motion.poses\[1\] and motion.poses\[3\] are equal"):
-        refuse_equal_poses(task)
+        finder_for(ScaledProblem.of(Problem(task=task))).refuse()
 
 
 def test_the_best_are_free_and_apart_then_all_over_the_family(luggage_scaled: SetupOf) -> None:
@@ -147,7 +147,7 @@ def test_an_equality_leaves_near_misses_to_start_from(luggage_scaled: SetupOf) -
 
 def test_relaxed_starts_may_miss_one_requirement_where_one_is_enough(luggage_scaled: SetupOf) -> None:
     scaled = luggage_scaled(transmission_min_deg=60, transmission_over="cycle")
-    relaxed = relaxed_starts(scaled, np.random.default_rng(0))
+    relaxed = finder_for(scaled).relaxed(np.random.default_rng(0))
     assert 1 <= len(relaxed) <= 15
     assert {start.relaxed for start in relaxed} == {("transmission_min_deg",)}
     for start in relaxed:
@@ -158,11 +158,11 @@ def test_relaxed_starts_may_miss_one_requirement_where_one_is_enough(luggage_sca
 def test_relaxed_starts_miss_as_few_requirements_as_can_be(luggage_scaled: SetupOf) -> None:
     far, high = Box((90, 91), (90, 91)), Box(y=(80, 81))
     scaled = luggage_scaled(o2=far, o4=high, transmission_min_deg=10)
-    relaxed = relaxed_starts(scaled, np.random.default_rng(0))
+    relaxed = finder_for(scaled).relaxed(np.random.default_rng(0))
     assert relaxed
     assert {start.relaxed for start in relaxed} == {("o2", "o4")}
     assert set(relaxed[0].relaxed) <= set(GROUPS)
 
 
 def test_nothing_to_relax_where_pairs_are_feasible(luggage_scaled: SetupOf) -> None:
-    assert relaxed_starts(luggage_scaled(), np.random.default_rng(0)) == []
+    assert finder_for(luggage_scaled()).relaxed(np.random.default_rng(0)) == []

@@ -1,5 +1,6 @@
 """What alone has to be relaxed: problems made infeasible by a known amount, and hints that are true."""
 
+from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import replace
 from typing import Any
@@ -15,9 +16,12 @@ from grashof.synth import Result
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.results.attempt import attempt
-from grashof.synth.results.explain import Failure, explain
-from grashof.synth.results.relaxation import Relaxation, limiting, loosest, relaxation
-from grashof.synth.results.single_relaxations import relaxations
+from grashof.synth.results.explain import explain
+from grashof.synth.results.ledger import Ledger
+from grashof.synth.results.relaxations import relaxations
+from grashof.synth.results.relaxed_limits import Relaxation, limiting, loosest, relaxation
+from grashof.synth.results.search import Run
+from grashof.synth.results.trade_offs import Chosen
 
 pytestmark = pytest.mark.usefixtures("small_search")
 
@@ -31,7 +35,8 @@ def ways(problem: Problem, constraints: tuple[Any, ...] = ()) -> dict[str, Relax
     def solve(scaled: ScaledProblem, starts: list[Start], first: int) -> list[Any]:
         return [attempt(scaled, start, first + k) for k, start in enumerate(starts)]
 
-    found = relaxations(scaled, solve, [], np.random.default_rng(0), lambda: False)
+    run = Run(problem.search, solve, lambda: False)
+    found = relaxations(scaled, [], np.random.default_rng(0), run)
     assert [way.miss for way in found] == sorted(way.miss for way in found)
     for way in found:
         linkage = way.candidate.linkage
@@ -157,8 +162,11 @@ def test_a_hint_can_be_followed() -> None:
 FAR = {"o2": Box((40, 41), (0, 1)), "o4": Box((0, 1), (0, 1)), "link_length": (1, 20)}
 
 
-def test_either_of_two_contradictory_limits_would_do_for_least_squares() -> None:
+def test_either_of_two_contradictory_limits_would_do_for_least_squares(
+    relaxing_only: Callable[..., None],
+) -> None:
     """O2 and O4 are at least 39 apart and r1 at most 20: the boxes, or the length, have to give 19."""
+    relaxing_only("o2", "o4", "link_length")
     circle = np.exp(1j * np.linspace(0, 6, 12))
     task = PathTask(np.stack([2 * circle.real, circle.imag], axis=1))
     found = ways(Problem(task=task, requirements=Requirements(exact=False, **FAR)))
@@ -168,7 +176,10 @@ def test_either_of_two_contradictory_limits_would_do_for_least_squares() -> None
     assert found["link_length"].words.startswith("link_length up to 39")
 
 
-def test_neither_workers_nor_repetition_change_an_explanation(two_processes: Executor) -> None:
+def test_neither_workers_nor_repetition_change_an_explanation(
+    two_processes: Executor, relaxing_only: Callable[..., None]
+) -> None:
+    relaxing_only("link_length", "order")
     problem = replace(load("luggage"), requirements=Requirements(link_length=(0.3, 1.5)))
     one, two = (synthesize(problem, starts=4, seed=3, executor=other) for other in (None, two_processes))
     assert "link_length up to" in one.note
@@ -205,7 +216,8 @@ def test_it_can_be_stopped() -> None:
     def none(*_: Any) -> Any:
         raise AssertionError("asked although stopped")
 
-    said = explain(Failure(scaled, [], [], {}), none, none, np.random.default_rng(0), lambda: True)
+    run = Run(problem.search, none, lambda: True)
+    said = explain(scaled, Ledger(scaled, problem.search, ""), Chosen((), [], 0), run)
     assert said.note.startswith("no design")
     assert said.nearest == ()
 

@@ -1,0 +1,81 @@
+"""What is chosen from the designs of a search: all, trade-offs, or the best where targets may be missed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from grashof.synth.programme.merit import same_error
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.results.attempt import Attempt
+from grashof.synth.results.candidate import Candidate
+from grashof.synth.results.judging import judged_again
+from grashof.synth.results.larger_zones import shares
+from grashof.synth.results.ledger import EXACT_ERROR, Ledger
+from grashof.synth.results.ranking import ranked
+from grashof.synth.results.search import Run, error_of_use
+from grashof.synth.results.trade_offs import Chosen, seeds_of, started_at, trade_offs
+
+NEAR = 1.6  # times the error that is allowed: least-squares designs up to there are begun from
+SEEDS = 12  # designs that are begun from
+
+
+def choose(scaled: ScaledProblem, ledgers: list[Ledger], run: Run) -> Chosen:
+    """All exact designs, a choice about the least error, or the best where targets may be missed."""
+    ledger = ledgers[-1]
+    with run.timed("choosing"):
+        if scaled.bounded:
+            found = [candidate for each in ledgers for candidate in each.verified]
+            return _best_within_bounds(scaled, found, ledger, run)
+        if not scaled.exact and ledger.best:
+            return trade_offs(scaled, ledger, run)
+    return Chosen(ledger.best, ledger.rejected, 0)
+
+
+def _best_within_bounds(
+    scaled: ScaledProblem, found: Sequence[Candidate], ledger: Ledger, run: Run
+) -> Chosen:
+    """The best designs by the objective that miss the targets by no more than they may.
+
+    They are begun from the designs `found` without zones or ``error_factor``: exact ones, or of least
+    squares; `ledger` is that of the last search.
+    """
+    problem, factor = scaled.problem, scaled.problem.requirements.error_factor
+    most = np.inf if factor is None else factor * max(ledger.least, same_error(problem))
+    allowed = most if factor is not None else max(error_of_use(scaled), ledger.least)
+    starts = [
+        started_at(scaled, one, problem.objective, most_error=most, zoned=scaled.zones is not None)
+        for one in seeds_of(problem, found, NEAR * allowed, round(SEEDS * max(1.0, run.search.effort)))
+    ]
+    attempts = [] if run.ended() else run.solve(scaled, starts, ledger.solved)
+    solved = len(attempts)
+    again = [judged_again(scaled, one, most) for one in found]
+    good = [one for one in again if one.verdict.ok]
+    for one in attempts:
+        good += one.verified[:1]
+        good += [each for each in one.cognates if judged_again(scaled, each, most).verdict.ok]
+    if not good and scaled.zones is not None and not run.ended():  # how large the zones would have to be
+        relaxed = [replace(start, relaxed=("within",)) for start in starts]
+        lack = min((max(shares(problem, one.verdict)) for one in again), default=1.0)
+        larger = replace(scaled, zones=scaled.zones * max(1.0, lack / 2))
+        made = run.solve(larger, relaxed, ledger.solved + solved) + [Attempt("", one) for one in again]
+        good = [candidate for one in made for candidate in one.verified[:1]]
+        attempts, solved = made + attempts, solved + len(starts)
+    return Chosen(ranked(problem, good), [one for one in attempts if not one.verified], solved)
+
+
+def least_error(scaled: ScaledProblem, ledger: Ledger) -> float:
+    """The least error that a search found, length; NaN for exact designs, and where zones allow errors."""
+    fitted = not ledger.scaled.exact and scaled.zones is None and bool(ledger.best)
+    return ledger.least * scaled.problem.task.size if fitted else np.nan
+
+
+def why_ended(scaled: ScaledProblem, ledger: Ledger) -> str:
+    """Why the search ended, and that exact designs could be asked for where least squares are."""
+    fitted = not np.isnan(least_error(scaled, ledger)) and ledger.least <= EXACT_ERROR
+    if not (fitted and scaled.problem.task.exact_by_default):
+        return ledger.why
+    more = "every target can be met, and without exact = false more such designs are looked for"
+    return f"{ledger.why}; {more}"

@@ -1,0 +1,96 @@
+"""Judging: what the analysis says of linkages, by the requirements of a scaled problem."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from grashof.analysis import Verdict, verify
+from grashof.problems import FourBar, ProblemError
+from grashof.problems.values.arrays import ComplexArray
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.screening import Configurations, dyad_violations, judge, met
+from grashof.synth.results.candidate import Candidate
+from grashof.synth.theory.cognates import assembly_of, cognate_points, position_of
+
+
+def judged(
+    scaled: ScaledProblem,
+    points: ComplexArray,
+    assembly: int,
+    body_angle: float,
+    *,
+    start: int,
+    iterations: int,
+    most_error: float = np.inf,
+) -> Candidate | None:
+    """A design with the verdict on it.
+
+    Parameters
+    ----------
+    scaled : ScaledProblem
+    points : ndarray of complex, shape (5,), sizes
+        O2, O4, and A, B, P at the first target.
+    assembly : int
+    body_angle : float, rad
+        Whole poses do not need it: the first one says how the body stands to the coupler.
+    start, iterations : int
+        What it came from.
+    most_error : float, sizes
+        Root mean square error that is allowed.
+
+    Returns
+    -------
+    Candidate or None
+        None where two pivots coincide.
+    """
+    given = None if scaled.motion is not None else np.array(body_angle)
+    try:
+        linkage = scaled.linkages(points, np.array(assembly), given)
+    except ProblemError:
+        return None
+    verdict = verdict_on(scaled, linkage, most_error)
+    candidate = Candidate(linkage, verdict, scaled.problem, start, iterations)
+    if verdict.ok:
+        candidate.objective(scaled.problem)  # here, where many are judged at once; the values stay known
+    return candidate
+
+
+def verdict_on(scaled: ScaledProblem, linkage: FourBar, most_error: float = np.inf) -> Verdict:
+    """The judge's verdict; `most_error` is the root mean square error that is allowed, sizes."""
+    problem, task = scaled.problem, scaled.problem.task
+    square = len(task) * (most_error * task.size) ** 2
+    asked = task, problem.requirements, scaled.constraints
+    return verify(linkage, *asked, most_square=square, problem=problem)
+
+
+def judged_again(scaled: ScaledProblem, candidate: Candidate, most_error: float = np.inf) -> Candidate:
+    """A design judged by the requirements of another problem with the same targets."""
+    verdict = verdict_on(scaled, candidate.linkage, most_error)
+    return replace(candidate, verdict=verdict, problem=scaled.problem)
+
+
+def verified_cognates(scaled: ScaledProblem, candidate: Candidate) -> tuple[Candidate, ...]:
+    """The cognates of a design without defects."""
+    position = position_of(candidate.linkage, float(candidate.verdict.theta2[0]))
+    came_from = {"start": candidate.start, "iterations": candidate.iterations}
+    found = []
+    for cognate in cognate_points(position, scaled.timed):
+        points = (cognate - scaled.frame.origin) / scaled.frame.scale
+        if np.isfinite(points).all() and _worth_judging(scaled, points):
+            other = judged(scaled, points, assembly_of(points), 0.0, **came_from)
+            if other is not None and other.verdict.ok:
+                found.append(replace(other, cognate_of=candidate.id))
+    return tuple(found)
+
+
+def _worth_judging(scaled: ScaledProblem, points: ComplexArray) -> bool:
+    """Whether lengths, pivots and rotatability of a linkage are as required: cheap to know beforehand."""
+    o2, o4, a, b, p = points[:, None]
+    one, none = np.zeros((1, 1), dtype=np.int64), np.zeros(1)
+    theta2 = np.angle(a - o2)[:, None]
+    places = Configurations(o2, o4, a[:, None], b[:, None], one, theta2, none + 1)
+    violations = dyad_violations("o2", o2, a[:, None], p, scaled.wanted)
+    violations += dyad_violations("o4", o4, b[:, None], p, scaled.wanted)
+    return bool(met(judge(places, p, none, violations, scaled.wanted).violations)[0])

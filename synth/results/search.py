@@ -1,0 +1,174 @@
+"""One search: rounds of starts, solved batch by batch until the ledger has enough."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from itertools import count
+from time import perf_counter
+
+import numpy as np
+
+from grashof.problems import Problem, Search
+from grashof.synth.programme.nonlinear_programme import MOST_ITERATIONS
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.start import Round, Start
+from grashof.synth.programme.user_constraints import mended
+from grashof.synth.results.ledger import SAME, Ledger
+from grashof.synth.results.workers import Solver
+from grashof.synth.starts.finder import Finder, asked_first, finder_for
+
+# Solves between two looks at what is verified, fixed, so that workers change nothing: of exact designs,
+# and of least squares, where every look may spare solves.
+BATCH, BATCH_LEAST_SQUARES = 16, 8
+LARGER = 2  # times the draws and starts of a usual round: rounds that more effort adds
+FEW = 8  # exact designs: with fewer, zones are filled from those of least squares, too
+CONTINUED = 3  # times at most that the solve of the least error goes on
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """How far a search is.
+
+    Parameters
+    ----------
+    solved, starts : int
+        Solves done, and most that there can be.
+    verified, enough : int
+        Distinct verified designs, and how many are enough.
+    """
+
+    solved: int
+    starts: int
+    verified: int
+    enough: int
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """How a search is run.
+
+    Parameters
+    ----------
+    search : Search
+    solve : callable
+        Attempts from starts (`Solver`).
+    ended : callable
+        Asked between solves: to be content with what there is.
+    progress : callable, optional
+        Called with a `Progress` after every batch.
+    seconds : dict
+        Time by stage.
+    """
+
+    search: Search
+    solve: Solver
+    ended: Callable[[], bool]
+    progress: Callable[[Progress], object] | None = None
+    seconds: dict[str, float] = field(default_factory=lambda: {"screening": 0.0, "solving": 0.0})
+
+    @contextmanager
+    def timed(self, stage: str) -> Iterator[None]:
+        """Add the time of what is inside to a stage."""
+        since = perf_counter()
+        yield
+        self.seconds[stage] = self.seconds.get(stage, 0.0) + perf_counter() - since
+
+
+def searches(scaled: ScaledProblem, run: Run) -> list[Ledger]:
+    """The search as it is asked; where targets may be missed, one or two without.
+
+    First with all of them met, where that can be expected; then by least squares, where few do. Two
+    poses leave least squares nothing to make small.
+    """
+
+    def search(problem: Problem) -> Ledger:
+        asked = ScaledProblem.of(problem, scaled.constraints)
+        return search_designs(replace(asked, of_use=error_of_use(scaled)), run)
+
+    first = search(asked_first(scaled.problem))
+    met_by_few = first.scaled.exact and len(first.best) < FEW
+    if scaled.bounded and met_by_few and first.complete and len(scaled.targets) > 2:
+        return [first, search(scaled.problem.without_zones())]
+    return [first]
+
+
+def search_designs(scaled: ScaledProblem, run: Run) -> Ledger:
+    """Find starts, solve from them, and keep what is verified, round by round until there is enough."""
+    finder = finder_for(scaled)
+    ledger = Ledger(scaled, run.search, finder.exhausted)
+    rounds = _rounds(finder, ledger)
+    while True:
+        with run.timed("screening"):
+            found = next(rounds, None)
+        if found is None:
+            break
+        with run.timed("solving"):
+            _solve_round(found, ledger, run)
+        if run.ended():
+            ledger.complete = ledger.done or ledger.ended
+            break
+    if not scaled.exact:
+        _continue_best(ledger, run)
+    return ledger
+
+
+def _rounds(finder: Finder, ledger: Ledger) -> Iterator[Round]:
+    """Rounds until what the effort asks for is done: those of ``effort = 1`` first, then larger ones."""
+    for number in count():
+        seed = np.random.SeedSequence(ledger.search.seed, spawn_key=(number,) if number else ())
+        rng, size, any_starts = np.random.default_rng(seed), LARGER if number else 1, False
+        for found in finder.rounds(ledger.search.enough, rng, size):
+            any_starts = any_starts or bool(found.starts)
+            yield found
+            if ledger.done or (not number and ledger.ended):
+                break
+        if not number:
+            ledger.plan_more()
+        if ledger.done or not any_starts:
+            return
+
+
+def _solve_round(found: Round, ledger: Ledger, run: Run) -> None:
+    """Solve starts batch by batch until enough is found or the search is ended."""
+    ledger.begin(found)
+    scaled, enough = ledger.scaled, run.search.enough
+    starts = mended(scaled, found.starts)
+    batch = min(BATCH, enough) if scaled.exact else BATCH_LEAST_SQUARES
+    for begin in range(0, len(starts), batch):
+        if run.ended() or not ledger.within_round:
+            return
+        some = ledger.worthwhile(found, starts[begin : begin + batch], first=begin == 0)
+        if some:
+            _solve(some[: ledger.starts - ledger.solved], ledger, run)
+        if run.progress is not None:
+            run.progress(Progress(ledger.solved, ledger.starts, len(ledger.best), enough))
+
+
+def _continue_best(ledger: Ledger, run: Run) -> None:
+    """Go on from the least error where its solve stopped for want of iterations."""
+    scaled = ledger.scaled
+    for _ in range(CONTINUED):
+        best = min(ledger.verified, key=lambda one: one.error(scaled.problem), default=None)
+        if best is None or best.iterations < MOST_ITERATIONS or run.ended():
+            return
+        before = ledger.least
+        _solve([Start.of_linkage(scaled, best.linkage, best.verdict)], ledger, run)
+        if ledger.least > before * (1 - SAME):
+            return
+
+
+def _solve(starts: list[Start], ledger: Ledger, run: Run) -> None:
+    """Solve and verify, then rank what is verified."""
+    ledger.take(run.solve(ledger.scaled, starts, ledger.solved))
+    ledger.rank()
+
+
+def error_of_use(scaled: ScaledProblem) -> float:
+    """Up to which error a design is of use where zones are allowed, root mean square, sizes."""
+    if scaled.zones is None:
+        return 0.0
+    zones = np.where(np.isfinite(scaled.zones), scaled.zones, 0.0)
+    square = (scaled.weights * zones[0] ** 2 + scaled.turn_weights * zones[1] ** 2).sum()
+    return float(np.sqrt(square / len(scaled.targets)))

@@ -1,0 +1,58 @@
+"""Counts of a search: what was looked at, and what became of the solves."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from grashof.synth.results.attempt import Attempt, Outcome
+
+COGNATES, CHOICE, DISTINCT = "cognates verified", "solves for the choice", "verified and distinct"
+
+
+@dataclass(frozen=True, slots=True)
+class Tally:
+    """Counts of a search.
+
+    Parameters
+    ----------
+    found : Counter of str
+        By the search for starts, such as "feasible linkages".
+    outcomes : Counter of Outcome
+        Of solves.
+    totals : Counter of str
+        `COGNATES`, `CHOICE`, `DISTINCT`.
+    rejected : Counter of str
+        Solves by the first requirement that their designs miss.
+    statuses : Counter of str
+        Solves by Ipopt's return status.
+    """
+
+    found: Counter[str] = field(default_factory=Counter)
+    outcomes: Counter[Outcome] = field(default_factory=Counter)
+    totals: Counter[str] = field(default_factory=Counter)
+    rejected: Counter[str] = field(default_factory=Counter)
+    statuses: Counter[str] = field(default_factory=Counter)
+
+    def add(self, attempts: Iterable[Attempt]) -> None:
+        """Count attempts."""
+        for one in attempts:
+            self.statuses[one.status] += 1
+            self.outcomes[one.outcome] += 1
+            if one.verified:
+                self.totals[COGNATES] += len(one.cognates)
+            elif one.candidate is not None:
+                self.rejected[one.candidate.verdict.defects[0].requirement] += 1
+
+    @property
+    def general(self) -> dict[str, int]:
+        """All but rejections and statuses, by name."""
+        ended = {str(each): self.outcomes[each] for each in self.outcomes if each is not Outcome.REJECTED}
+        return {**self.found, **ended, **self.totals}
+
+    @property
+    def recorded(self) -> dict[str, int]:
+        """All counts in one, as ``run.json`` has them."""
+        rejected = {f"rejected: {requirement}": n for requirement, n in self.rejected.items()}
+        return {**self.general, **rejected, **{f"solver: {status}": n for status, n in self.statuses.items()}}

@@ -1,0 +1,125 @@
+"""The search over linkages that are feasible by construction: paths, and poses with parts free or missed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from grashof.problems import ProblemError, Requirements
+from grashof.problems.values.checks import counted
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.screening import Screened
+from grashof.synth.programme.start import Start
+from grashof.synth.starts.closed_loop import PathTarget
+from grashof.synth.starts.loop_search import draw, fitting, improve, place
+from grashof.synth.starts.path_screening import entries_of, judged, path_target
+from grashof.synth.starts.sampled_dyads import fixed_pivots
+from grashof.synth.starts.selection import relaxed_starts
+from grashof.synth.starts.thinning import refined, thinned
+
+# Draws, and how many of the best go on for how many steps: few solutions, or a whole family.
+ISOLATED = (4000, ((300, 8), (80, 12), (20, 50)))
+FAMILY = (6000, ((1500, 10), (800, 10)))
+TIMED = (600, ((60, 6), (20, 60)))
+FEW_POINTS = 48  # of a longer path decide which linkages are worth the rest
+EXACT = 1e-16  # sizes squared: such an error is left to the solver
+FOUND = 1e-5  # sizes: rms error of a start for an exact task
+NEAR = 20  # linkages near the requirements are enough
+
+
+@dataclass(frozen=True, slots=True)
+class CouplerSearch:
+    """Targets that no theory leads to directly."""
+
+    scaled: ScaledProblem
+
+    beginning: ClassVar[str] = "searching"
+    freedom: ClassVar[bool] = True
+    exhausted: ClassVar[str] = "there are no other starts"
+
+    @property
+    def cognates(self) -> bool:
+        """They trace the same path; not where angles of the body, or a pivot or start angle, are given."""
+        wanted = self.scaled.wanted
+        given = self.scaled.has_angles or wanted.theta2_start_deg is not None
+        return not given and not fixed_pivots(wanted)
+
+    def refuse(self) -> None:
+        """Raise `ProblemError` for fewer than three distinct targets."""
+        task, count = self.scaled.problem.task, len(path_target(self.scaled).points)
+        if count < 3:
+            free = " where parts are left free, the driver is timed or requirements.exact is false"
+            raise ProblemError(
+                f"{task.kind}.{task.target}s has {counted(count, f'distinct {task.target}')}; "
+                f"allowed are three or more{'' if task.only_points else free}"
+            )
+
+    def degenerate(self) -> str:
+        """Why a single position needs no linkage; empty for others."""
+        placed = self.scaled.targets[self.scaled.weights > 0]
+        if np.abs(placed - placed[0]).max() > 0:
+            return ""
+        x, y = self.scaled.frame.outward(placed[0])
+        return f"all positions are at ({x:.6g}, {y:.6g}): a single pivot there does the job"
+
+    def near(self, rng: np.random.Generator) -> Screened:
+        """Linkages of one round of the search."""
+        return search(self.scaled, NEAR, rng)
+
+    def relaxed(self, rng: np.random.Generator) -> list[Start]:
+        """Starts that may miss what stands in the way."""
+        drawn, free = (search(self.scaled, 1, rng, to_boxes=to_boxes) for to_boxes in (True, False))
+        return relaxed_starts(self.scaled, drawn) or relaxed_starts(self.scaled, free)
+
+    def obstacle(self, _rng: np.random.Generator, _counts: Mapping[str, int], /) -> str:
+        """Theory says nothing."""
+        return ""
+
+
+def search(
+    scaled: ScaledProblem, enough: int, rng: np.random.Generator, *, to_boxes: bool = True
+) -> Screened:
+    """One round of the search, drawn towards the pivots' boxes or not, its linkages judged."""
+    target = path_target(scaled)
+    if not to_boxes:
+        target = replace(target, wanted=replace(target.wanted, o2=None, o4=None))
+    draws, (*stages, (keep, steps)) = _effort(scaled, target)
+    some, index = thinned(target, FEW_POINTS)
+    batch = draw(some, draws, rng)
+    with np.errstate(all="ignore"):
+        error = place(some, batch).error
+        for keep_now, steps_now in stages:
+            best = np.argsort(error, kind="stable")[:keep_now]
+            batch, error = improve(fitting(some), batch[best], steps_now, EXACT, until=min(enough, keep_now))
+        batch = refined(target, index, batch[np.argsort(error, kind="stable")[:keep]])
+        batch, _ = improve(fitting(target), batch, steps, EXACT, until=min(enough, keep))
+        placed = place(target, batch)
+    sound = np.isfinite(placed.error)
+    if scaled.exact:
+        sound &= placed.error <= len(target.points) * FOUND**2
+    return judged(scaled, target, entries_of(placed, sound), batch.direction[sound])
+
+
+def _effort(scaled: ScaledProblem, target: PathTarget) -> tuple[int, tuple[tuple[int, int], ...]]:
+    if has_family(scaled):
+        return FAMILY
+    return TIMED if target.timed else ISOLATED
+
+
+def has_family(scaled: ScaledProblem) -> bool:
+    """Whether exact designs have freedom left: more unknowns than equations."""
+    target = path_target(scaled)
+    unknowns = target.unknowns + 6 + target.has_angles - (target.wanted.order and not target.timed)
+    equations = 2 * np.count_nonzero(target.weights) + np.count_nonzero(target.turn_weights)
+    equations += _equalities(scaled.wanted)
+    return bool(scaled.exact and unknowns > equations)
+
+
+def _equalities(wanted: Requirements) -> int:
+    """How many numbers the requirements fix: coordinates of pivots, and angles."""
+    sides = [side for box in (wanted.o2, wanted.o4) if box is not None for side in (box.x, box.y)]
+    fixed = [wanted.ground_angle_deg is not None, wanted.theta2_start_deg is not None]
+    return sum(low == high for low, high in sides) + sum(fixed)

@@ -1,0 +1,80 @@
+"""The kinds of search, and which of them suits a problem."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Protocol
+
+import numpy as np
+
+from grashof.problems import Problem
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.screening import Screened
+from grashof.synth.programme.start import Round, Start
+from grashof.synth.starts.exact_poses import FewPoses, ManyPoses, Parallelograms
+from grashof.synth.starts.least_squares import LeastSquares
+from grashof.synth.starts.precision_points import NinePoints, PrecisionPoints
+
+
+class Finder(Protocol):
+    """A kind of search: how it finds starts, and what it knows of the problems that it suits."""
+
+    @property
+    def beginning(self) -> str:
+        """What the search begins with, for those who wait."""
+
+    @property
+    def freedom(self) -> bool:
+        """Whether targets that are met leave a programme anything to decide."""
+
+    @property
+    def cognates(self) -> bool:
+        """Whether cognates of a design are designs, too."""
+
+    @property
+    def exhausted(self) -> str:
+        """Why a search ends that has gone through all its rounds."""
+
+    def refuse(self) -> None:
+        """Raise `ProblemError` for targets that cannot be searched for."""
+
+    def degenerate(self) -> str:
+        """Why the targets need no linkage; empty where they need one."""
+
+    def rounds(self, enough: int, rng: np.random.Generator, size: int, /) -> Iterator[Round]:
+        """Rounds of starts for `enough` designs, with `size` times the usual draws where that helps."""
+
+    def near(self, rng: np.random.Generator) -> Screened:
+        """Linkages that meet the requirements, or nearly do."""
+
+    def relaxed(self, rng: np.random.Generator) -> list[Start]:
+        """Starts that may miss what stands in the way."""
+
+    def obstacle(self, rng: np.random.Generator, counts: Mapping[str, int], /) -> str:
+        """Why theory, or what the rounds counted, leaves no design; empty where it may leave one."""
+
+
+def finder_for(scaled: ScaledProblem) -> Finder:
+    """The first kind of search that suits a problem."""
+    for kind in (Parallelograms, FewPoses, ManyPoses, NinePoints, PrecisionPoints):
+        if kind.suits(scaled):
+            return kind(scaled)
+    return LeastSquares(scaled)
+
+
+def finder_of(problem: Problem) -> Finder:
+    """The kind of search that a problem begins with."""
+    return finder_for(ScaledProblem.of(asked_first(problem)))
+
+
+def asked_first(problem: Problem) -> Problem:
+    """The problem that a search begins with.
+
+    Where targets may be missed, that is to meet all of them if linkages that do can be expected, or
+    else least squares.
+    """
+    if problem.zones is None and problem.requirements.error_factor is None:
+        return problem
+    return problem.without_zones(
+        exact=problem.requirements.exact is not False and problem.task.exact_by_default
+    )

@@ -1,0 +1,116 @@
+"""Targets to be met exactly, other than whole poses alone: rounds of the search.
+
+Exact paths through nine points have it followed by all linkages that there are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.screening import follow
+from grashof.synth.programme.start import Round
+from grashof.synth.starts.closed_loop import PathTarget
+from grashof.synth.starts.coupler_search import CouplerSearch, has_family, search
+from grashof.synth.starts.loop_search import Placed
+from grashof.synth.starts.path_screening import judged, path_target
+from grashof.synth.starts.selection import feasible_starts, mended_starts, starts_of
+from grashof.synth.theory.cognates import cognate_points
+from grashof.synth.theory.nine_points import coupler_turns, linkages_through
+
+BARREN = 12  # so many rounds on end without a start end the search
+SEARCHES = 6  # rounds of the search before all linkages through nine points are computed
+THROUGH = "linkages through the points"  # counted
+
+
+@dataclass(frozen=True, slots=True)
+class PrecisionPoints(CouplerSearch):
+    """Any targets to be met exactly."""
+
+    @staticmethod
+    def suits(scaled: ScaledProblem) -> bool:
+        """Whatever has to be met."""
+        return scaled.exact
+
+    def rounds(self, enough: int, rng: np.random.Generator, _size: int, /) -> Iterator[Round]:
+        """Rounds of the search until several on end are barren."""
+        barren = 0
+        while barren < BARREN:
+            found = self._round(enough, rng)
+            barren = 0 if found.starts else barren + 1
+            yield found
+
+    def _round(self, enough: int, rng: np.random.Generator) -> Round:
+        linkages = search(self.scaled, enough, rng)
+        feasible = linkages[linkages.feasible]
+        starts = feasible_starts(self.scaled, feasible, enough)
+        if len(starts) < enough:
+            starts += mended_starts(self.scaled, linkages, enough)
+        settled = not has_family(self.scaled)  # without freedom the linkage is the design already
+        starts = [replace(start, settled=settled) for start in starts]
+        return Round(starts, {"feasible linkages": len(feasible)})
+
+
+@dataclass(frozen=True, slots=True)
+class NinePoints(PrecisionPoints):
+    """Nine distinct points of a path without timing: finitely many linkages, all of which can be computed."""
+
+    @staticmethod
+    def suits(scaled: ScaledProblem) -> bool:
+        """So many points, to be met exactly."""
+        if not scaled.exact or scaled.timed or not scaled.problem.task.only_points:
+            return False
+        points = path_target(scaled).points
+        apart = np.abs(points[:, None] - points) + np.eye(len(points))
+        return len(points) == 9 and bool(apart.min() > 1e-9)
+
+    def rounds(self, enough: int, rng: np.random.Generator, _size: int, /) -> Iterator[Round]:
+        """Rounds of the search, which for points in order is most often sooner there, then all linkages."""
+        for _ in range(SEARCHES if self.scaled.wanted.order else 0):
+            yield self._round(enough, rng)
+        yield self._all_linkages(rng)
+
+    def _all_linkages(self, rng: np.random.Generator) -> Round:
+        """Of every triplet of cognates through the points the first feasible one; the others follow."""
+        target = path_target(self.scaled)
+        through = linkages_through(target.points, rng)
+        linkages = judged(self.scaled, target, *_at_points(_driven_from_both_sides(through), target))
+        feasible = linkages.feasible.reshape(-1, 3, 2)
+        usable = feasible.any(axis=2)
+        first = usable & (np.cumsum(usable, axis=1) == 1)
+        chosen = np.flatnonzero(feasible & first[..., None])
+        starts = [replace(start, settled=True) for start in starts_of(self.scaled, linkages, chosen)]
+        return Round(starts, {"feasible linkages": int(feasible.sum()), THROUGH: 3 * len(through)})
+
+    def obstacle(self, _rng: np.random.Generator, counts: Mapping[str, int], /) -> str:
+        """That none of all linkages does it; empty where they were not computed."""
+        every = counts.get(THROUGH, 0)
+        return f"none of the {every} linkages through the points meets all requirements" if every else ""
+
+
+def _driven_from_both_sides(linkages: ComplexArray) -> ComplexArray:
+    """Linkages (n, 5) and their cognates, each driven from either side; (6 n, 5)."""
+    swap = [1, 0, 3, 2, 4]
+    cognates = cognate_points(linkages.T, timed=False)
+    one_side = [linkages.T, *cognates[:2]]
+    other_side = [linkages.T[swap], *cognates[2:]]
+    return np.stack([one_side, other_side]).transpose(3, 1, 0, 2).reshape(-1, 5)
+
+
+def _at_points(points: ComplexArray, target: PathTarget) -> tuple[Placed, FloatArray]:
+    """Linkages (n, 5) that pass all points: where they stand there, and the shorter sense of the driver."""
+    o2, _, a, b, p = (column[:, None] for column in points.T)
+    turns = coupler_turns(points, target.points)
+    a, b = target.points + (a - p) * turns, target.points + (b - p) * turns
+    theta2 = np.angle(a - o2)
+    forth, back = (follow(theta2, np.full(len(points), sense)) for sense in (1.0, -1.0))
+    shorter = np.abs(forth[:, -1] - theta2[:, 0]) <= np.abs(back[:, -1] - theta2[:, 0])
+    theta2 = np.where(shorter[:, None], forth, back)
+    p = np.broadcast_to(target.points, a.shape)
+    none = np.zeros(len(points))
+    placed = Placed(none, points[:, 0], points[:, 1], a, b, p, theta2, body_angle=none)
+    return placed, np.where(shorter, 1.0, -1.0)

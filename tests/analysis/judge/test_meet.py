@@ -1,0 +1,120 @@
+"""Timed, closed and mixed tasks through the judge's one door."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from grashof.analysis import solve_position, verify
+from grashof.analysis.judge.meet import meet
+from grashof.analysis.judge.planted import planted_motion, planted_path, random_full_crank
+from grashof.problems import FourBar, MotionTask, PathTask, Requirements
+
+LEAST = Requirements(exact=False)
+TURN = 2 * np.pi
+
+
+def freed(task: MotionTask, **rest: Any) -> MotionTask:
+    """Whole poses, points and angles in turn."""
+    positions, angles = task.positions.copy(), task.angles.copy()
+    angles[1::3], positions[2::3] = np.nan, np.nan
+    return MotionTask(positions, angles, timing=task.timing, **rest)
+
+
+def moved(task: MotionTask, rng: np.random.Generator, share: float) -> MotionTask:
+    noise = rng.normal(0, share, (len(task), 3))
+    places, angles = task.positions + task.size * noise[:, :2], task.angles + noise[:, 2]
+    return MotionTask(places, angles, weights=rng.uniform(0.5, 2, len(task)), timing=task.timing)
+
+
+def squares_at(linkage: FourBar, task: MotionTask, theta2: Any) -> Any:
+    """Weighted squares at driver angles (..., N), by the definition."""
+    state = solve_position(linkage, theta2)
+    gap = np.nan_to_num(((state.p - task.positions) ** 2).sum(axis=-1))
+    off = np.nan_to_num(np.angle(np.exp(1j * (state.theta3 + linkage.body_angle - task.angles))))
+    return (task.weights * (gap + (task.angle_length * off) ** 2)).sum(axis=-1)
+
+
+@pytest.mark.parametrize("poses", [2, 4, 12])
+@pytest.mark.parametrize("mixed", [False, True])
+def test_planted_timed_poses_are_met_in_time(poses: int, mixed: bool) -> None:
+    for seed in range(8):
+        task, linkage = planted_motion(np.random.default_rng([poses, seed]), poses, timed=True)
+        task = freed(task) if mixed and poses > 2 else task
+        for order in (True, False):
+            targets, motion = meet(linkage, task, Requirements(order=order))
+            assert np.nanmax(targets.position_error) < 1e-9 * task.size
+            assert np.nanmax(targets.angle_error) < 1e-9
+            turned = motion.direction * (motion.theta2 - motion.theta2[0])
+            np.testing.assert_allclose(turned, task.driver_turns, rtol=0, atol=1e-12)
+            assert (targets.assembly == linkage.assembly).all()
+
+
+@pytest.mark.parametrize("mixed", [False, True])
+def test_no_other_first_angle_has_less_squares(mixed: bool) -> None:
+    for seed in range(6):
+        rng = np.random.default_rng([9, seed])
+        task, linkage = planted_motion(rng, 7, timed=True)
+        task = moved(task, rng, 0.1)
+        task = freed(task, weights=task.weights) if mixed else task
+        verdict = verify(linkage, task, LEAST)
+        first = np.linspace(0, TURN, 20_000)[:, None]
+        around = [squares_at(linkage, task, first + sense * task.driver_turns).min() for sense in (1, -1)]
+        assert verdict.square <= min(around) * (1 + 1e-9)
+        assert verdict.square == pytest.approx(squares_at(linkage, task, verdict.theta2), rel=1e-9)
+
+
+def test_timed_poses_are_met_from_a_given_angle_on() -> None:
+    task, linkage = planted_motion(np.random.default_rng(4), 5, timed=True)
+    _, motion = meet(linkage, task, Requirements(theta2_start_deg=33.0))
+    assert motion.theta2[0] == np.radians(33.0)
+
+
+@pytest.mark.parametrize("timed", [False, True])
+def test_closed_poses_take_a_whole_turn(timed: bool) -> None:
+    for seed in range(6):
+        task, linkage = planted_motion(np.random.default_rng([3, seed]), 5, timed=timed)
+        plain, closed = (
+            verify(linkage, each, LEAST)
+            for each in (task, MotionTask(task.positions, task.angles, timing=task.timing, closed=True))
+        )
+        assert closed.transmission_min_task == pytest.approx(closed.transmission_min_cycle, abs=1e-9)
+        assert plain.transmission_min_task >= closed.transmission_min_task
+        assert closed.size >= plain.size
+        np.testing.assert_allclose(closed.theta2, plain.theta2)
+        _, motion = meet(linkage, MotionTask(task.positions, task.angles, closed=True), LEAST)
+        assert motion.end - motion.start == pytest.approx(motion.direction * TURN)
+
+
+def test_a_closed_task_needs_a_driver_that_turns() -> None:
+    rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=3, r3=1, r4=3, coupler_point=(0.5, 1))
+    state = solve_position(rocker, [0.6, 0.7, 0.8])
+    wanted = Requirements(rotatability="any", exact=False)  # type: ignore[arg-type]
+    for closed in (False, True):
+        verdict = verify(rocker, MotionTask(state.p, state.theta3, closed=closed), wanted)
+        assert [defect.requirement for defect in verdict.defects if closed] == ["rotatability"] * closed
+
+
+def test_positions_alone_are_met_as_points() -> None:
+    for seed in range(6):
+        rng = np.random.default_rng([8, seed])
+        path, linkage = planted_path(rng, 6)
+        places = path.points + 0.1 * path.size * rng.normal(size=(6, 2))
+        one = verify(linkage, PathTask(places), LEAST)
+        other = verify(linkage, MotionTask(places, np.full(6, np.nan)), LEAST)
+        np.testing.assert_allclose(other.theta2, one.theta2, rtol=0, atol=1e-9)
+        assert other.square == pytest.approx(one.square, rel=1e-9)
+
+
+def test_weights_of_points_move_where_they_are_met_together() -> None:
+    """Two points out of order stand together: at the better of the two for the heavier one."""
+    linkage = random_full_crank(np.random.default_rng(2))
+    places = solve_position(linkage, [0.1, 1.4, 1.2, 2.5]).p
+    errors = []
+    for heavy in (1.0, 1e4):
+        task = MotionTask(places, np.full(4, np.nan), weights=[1, heavy, 1, 1])
+        targets, motion = meet(linkage, task, LEAST)
+        assert motion.in_order
+        errors.append(targets.position_error)
+    assert errors[1][1] < 1e-3 * errors[0][1]
+    assert errors[1][2] > errors[0][2]
