@@ -70,8 +70,9 @@ class Values(Mapping[str, float]):
     @cached_property
     def theta2_ends(self) -> FloatArray:
         """Driver angles at the first target, above -pi to pi, and at the last."""
-        ends = self.verdict.theta2[[0, -1]]
-        return ends - TURN * np.ceil((ends[0] - np.pi) / TURN)
+        first, last = self.verdict.theta2[[0, -1]].tolist()
+        turns = np.ceil((first - np.pi) / TURN)
+        return np.array([first, last]) - TURN * turns
 
     @cached_property
     def over_task(self) -> OverTask:
