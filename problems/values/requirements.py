@@ -263,7 +263,7 @@ LIMITS: dict[str, Limit] = {
 QUANTITIES = MEASURED | {limited.quantity.key: limited.quantity for limited in LIMITS.values()}
 
 
-def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float:
+def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float | str:
     if limited.kind in (Kind.INSIDE, Kind.ON_BODY):
         if not isinstance(value, Box):
             raise ProblemError(f"{where} is {value!r}; allowed is a Box")
@@ -271,6 +271,10 @@ def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float:
     low, high = limited.allowed
     if limited.kind is Kind.BETWEEN:
         return limits(value, where, least=low, most=high)
+    if limited.kind is Kind.WORD:
+        if value not in limited.words:
+            raise ProblemError(f"{where} is {value!r}; allowed is one of {', '.join(limited.words)}")
+        return str(value)
     if limited.kind is Kind.EQUAL:
         return finite_number(value, where)
     return number_within(value, low, high, where)

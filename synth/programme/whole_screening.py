@@ -8,7 +8,7 @@ import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.requirements import LIMITS
-from grashof.synth.programme.along_motion import ALONG, SCREENED, magnitudes
+from grashof.synth.programme.along_motion import ALONG, SCREENED, magnitudes, value_of
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS, Screened
 from grashof.synth.programme.user_constraints import own_violations
@@ -33,8 +33,9 @@ def _beyond(scaled: ScaledProblem, linkages: Screened, name: str) -> FloatArray:
     low, high = scaled.problem.requirements.ranges(name)[""]
     ways = linkages.theta2, linkages.direction, linkages.assembly
     peak = magnitudes(scaled.problem, quantity.key, linkages.points, *ways, SCREENED).max(axis=1)
-    value = peak * scaled.problem.scale(quantity)
-    return np.maximum(np.nan_to_num(np.maximum(low - value, value - high) / max(high, low), posinf=FAR), 0.0)
+    value = value_of(quantity.key, peak) * scaled.problem.scale(quantity)
+    share = np.maximum(low - value, value - high) / (high if np.isfinite(high) else max(low, 1.0))
+    return np.maximum(np.nan_to_num(share, posinf=FAR), 0.0)
 
 
 FAR = 1e3  # stands for an amount without bound

@@ -1,0 +1,49 @@
+"""Quantities: the formula of the search is the measure of the judge, and what is limited is kept."""
+
+import numpy as np
+import pytest
+
+from grashof.analysis import Verdict, verify
+from grashof.analysis.judge.measures import Values
+from grashof.analysis.judge.planted import planted_motion
+from grashof.problems import FourBar, MotionTask, Problem, Requirements
+from grashof.problems.values.arrays import FloatArray
+from grashof.synth.programme.formulas import FORMULAS, Part
+from grashof.synth.programme.screening import Many
+
+JUDGED = 50
+
+
+def planted(seed: int) -> tuple[MotionTask, FourBar, Verdict]:
+    """A linkage that meets five poses with its driver turning fully."""
+    task, linkage = planted_motion(np.random.default_rng([12, seed]), poses=5)
+    return task, linkage, verify(linkage, task, Requirements())
+
+
+def as_seen(task: MotionTask, linkage: FourBar, values: Values) -> Many:
+    """The same linkage as the search sees it, in the problem's own unit."""
+    state = values.at_targets
+    a, b, p = (getattr(state, name) @ np.array([1, 1j]) for name in "abp")
+    o2, o4 = (pivot @ np.array([1, 1j]) for pivot in (linkage.o2, linkage.o4))
+    theta2, turn = values.verdict.theta2[None], np.array([task.angles[0]])
+    return Many(p[:1], o2[None], a[None], o4[None], b[None], theta2, turn)
+
+
+def of_part(part: Part, view: Many) -> FloatArray:
+    """All numbers of a part, as the judge counts them."""
+    value = part.of(view) if part.per is None else part.of(view) / part.per(view)
+    return np.ravel(np.sqrt(value) if part.squared else value)
+
+
+@pytest.mark.parametrize("key", FORMULAS)
+def test_the_formula_is_the_measure(key: str) -> None:
+    for seed in range(JUDGED):
+        task, linkage, verdict = planted(seed)
+        values = Values(linkage, verdict, Problem(task=task))
+        view, parts = as_seen(task, linkage, values), values.parts(key)
+        for part in FORMULAS[key]:
+            found, expected = of_part(part, view), parts[part.axis or (part.name if len(parts) > 1 else "")]
+            if key in ("ground_angle", "theta2_start"):  # modulo a turn
+                found, expected = np.exp(1j * found), np.exp(1j * expected)  # type: ignore[assignment]
+            near = 1e-9 * max(task.size, np.abs(expected).max())
+            np.testing.assert_allclose(found, expected * np.ones_like(found), rtol=0, atol=near)
