@@ -134,6 +134,7 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     "size": attrgetter("verdict.size"),
     **{field.name: attrgetter(f"over_task.{field.name}") for field in fields(OverTask)},
     "torque_peak": lambda values: torque_peak(values.linkage, values.problem, values.verdict),
+    "driver_rotation": lambda values: np.ptp(values.verdict.theta2),
     "hausdorff": lambda values: values.curve_distances[0],
     "frechet": lambda values: values.curve_distances[1],
     **{

@@ -48,6 +48,7 @@ class Box:
         refuse(wrong)
 
 
+_FIRST_TO_LAST = "from the first target to the last"
 _FROM_ZERO = (0.0, GREATEST)
 
 
@@ -96,6 +97,10 @@ class Requirements(ReadOnly):
         Direction O2->O4.
     theta2_start_deg : float, deg, optional
         Driver angle at the first target.
+    size, torque_peak, worst_move, ... : tuple of float, optional
+        (lo, hi) for whatever candidates.csv lists; see `grashof.problems.values.quantities`.
+    driver_rotation_deg : tuple of float, deg, optional
+        (lo, hi) for the driver rotation from the first target to the last.
     keep_out : sequence of array_like, shape (M, 2), length
         Polygons; their boundary may be touched. Where two overlap or share a side they are one.
     keep_out_for : sequence of {"o2", "o4", "a", "b", "p", "links"}
@@ -159,6 +164,11 @@ class Requirements(ReadOnly):
     frechet: Limits | None = limit("frechet", Kind.BETWEEN, allowed=_FROM_ZERO)
     worst_move: Limits | None = limit("worst_move", Kind.BETWEEN, allowed=_FROM_ZERO)
     share_within_made: Limits | None = limit("share_within_made", Kind.BETWEEN, allowed=(0.0, 1.0))
+    driver_rotation_deg: Limits | None = limit(
+        Quantity("driver_rotation", "driver rotation", Unit.ANGLE, Over.TARGETS, about=_FIRST_TO_LAST),
+        Kind.BETWEEN,
+        allowed=(0.0, 360.0),
+    )
     keep_out: tuple[FloatArray, ...] = ()
     keep_out_for: tuple[str, ...] = ("o2", "o4")
 

@@ -137,6 +137,7 @@ FORMULAS: dict[str, tuple[Part, ...]] = {
     "b": _place("b", 4),
     "ground_angle": (Part("theta1", lambda d: d.theta1),),
     "theta2_start": (Part("theta2", lambda d: d.theta2_start, dyad=2),),
+    "driver_rotation": (Part("driver rotation", lambda d: d.driver_turn),),
 }
 _SMOOTH = {"link_ratio": _PAIRS}
 LOGARITHMIC = {"link_length", "r1", "r2", "r3", "r4", "link_ratio"}  # ratios count, not differences

@@ -1,8 +1,12 @@
 """Quantities: the formula of the search is the measure of the judge, and what is limited is kept."""
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 import pytest
 
+from grashof import load, synthesize
 from grashof.analysis import Verdict, verify
 from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.planted import planted_motion
@@ -12,6 +16,13 @@ from grashof.synth.programme.formulas import FORMULAS, Part
 from grashof.synth.programme.screening import Many
 
 JUDGED = 50
+
+
+def conveyor() -> Problem:
+    """Five poses of a conveyor that no linkage within these lengths meets."""
+    poses = [[0, 0, 0], [60, 90, 15], [180, 140, 40], [300, 90, 70], [360, 0, 90]]
+    wanted = Requirements(exact=False, link_length=(30.0, 400.0))
+    return Problem(task=MotionTask.from_degrees(poses), requirements=wanted, length_unit="mm")
 
 
 def planted(seed: int) -> tuple[MotionTask, FourBar, Verdict]:
@@ -47,3 +58,35 @@ def test_the_formula_is_the_measure(key: str) -> None:
                 found, expected = np.exp(1j * found), np.exp(1j * expected)  # type: ignore[assignment]
             near = 1e-9 * max(task.size, np.abs(expected).max())
             np.testing.assert_allclose(found, expected * np.ones_like(found), rtol=0, atol=near)
+
+
+TASKS: dict[str, tuple[Problem, dict[str, Any]]] = {
+    "poses met": (load("luggage"), {"enough": 12}),
+    "poses fitted": (conveyor(), {"effort": 0.2}),
+    "points met": (load("path-8-points"), {"enough": 12, "starts": 24}),
+}
+
+
+def limited(problem: Problem, **wanted: Any) -> Problem:
+    return replace(problem, requirements=replace(problem.requirements, **wanted))
+
+
+def values_of(problem: Problem, key: str, **search: Any) -> list[float]:
+    """A quantity of every design of a list, as the judge has it of the linkage alone."""
+    found = synthesize(problem, **search).candidates
+    wanted = problem.requirements
+    verdicts = [verify(each.linkage, problem.task, wanted, problem=problem) for each in found]
+    assert [verdict.defects for verdict in verdicts if not verdict.ok] == []
+    return [
+        Values(each.linkage, verdict, problem)[key] for each, verdict in zip(found, verdicts, strict=True)
+    ]
+
+
+@pytest.mark.parametrize("kind", TASKS)
+def test_the_driver_rotation_is_kept_within_limits(kind: str) -> None:
+    problem, search = TASKS[kind]
+    free = np.degrees(values_of(problem, "driver_rotation", **search))
+    most = float(np.quantile(free, 0.25))
+    kept = np.degrees(values_of(limited(problem, driver_rotation_deg=(0, most)), "driver_rotation", **search))
+    assert len(kept) >= 3
+    assert max(kept) <= most + 1e-6
