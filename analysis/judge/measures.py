@@ -135,6 +135,7 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     **{field.name: attrgetter(f"over_task.{field.name}") for field in fields(OverTask)},
     "torque_peak": lambda values: torque_peak(values.linkage, values.problem, values.verdict),
     "driver_rotation": lambda values: np.ptp(values.verdict.theta2),
+    "driver_sense": attrgetter("verdict.direction"),
     "hausdorff": lambda values: values.curve_distances[0],
     "frechet": lambda values: values.curve_distances[1],
     **{

@@ -101,6 +101,8 @@ class Requirements(ReadOnly):
         (lo, hi) for whatever candidates.csv lists; see `grashof.problems.values.quantities`.
     driver_rotation_deg : tuple of float, deg, optional
         (lo, hi) for the driver rotation from the first target to the last.
+    driver_sense : {"either", "ccw", "cw"}
+        Sense of the driver from the first target to the last: counter-clockwise or clockwise.
     keep_out : sequence of array_like, shape (M, 2), length
         Polygons; their boundary may be touched. Where two overlap or share a side they are one.
     keep_out_for : sequence of {"o2", "o4", "a", "b", "p", "links"}
@@ -168,6 +170,12 @@ class Requirements(ReadOnly):
         Quantity("driver_rotation", "driver rotation", Unit.ANGLE, Over.TARGETS, about=_FIRST_TO_LAST),
         Kind.BETWEEN,
         allowed=(0.0, 360.0),
+    )
+    driver_sense: str = limit(
+        Quantity("driver_sense", "sense of the driver", Unit.RATIO, Over.TARGETS, listed=False),
+        Kind.WORD,
+        default="either",
+        words={"either": (-1.0, 1.0), "ccw": (1.0, 1.0), "cw": (-1.0, -1.0)},
     )
     keep_out: tuple[FloatArray, ...] = ()
     keep_out_for: tuple[str, ...] = ("o2", "o4")

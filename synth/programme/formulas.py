@@ -137,6 +137,7 @@ FORMULAS: dict[str, tuple[Part, ...]] = {
     "b": _place("b", 4),
     "ground_angle": (Part("theta1", lambda d: d.theta1),),
     "theta2_start": (Part("theta2", lambda d: d.theta2_start, dyad=2),),
+    "driver_sense": (Part("driver sense", lambda d: d.direction, fixed=True),),
     "driver_rotation": (Part("driver rotation", lambda d: d.driver_turn),),
 }
 _SMOOTH = {"link_ratio": _PAIRS}

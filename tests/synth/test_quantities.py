@@ -18,6 +18,13 @@ from grashof.synth.programme.screening import Many
 JUDGED = 50
 
 
+def three_poses() -> Problem:
+    """Three poses of a suitcase, which leave much freedom."""
+    luggage = load("luggage")
+    task = MotionTask.from_degrees([[5, 4, 0], [3.5, 4, -5], [1, 0, 0]])
+    return replace(luggage, task=task, dynamics=None)
+
+
 def conveyor() -> Problem:
     """Five poses of a conveyor that no linkage within these lengths meets."""
     poses = [[0, 0, 0], [60, 90, 15], [180, 140, 40], [300, 90, 70], [360, 0, 90]]
@@ -61,7 +68,7 @@ def test_the_formula_is_the_measure(key: str) -> None:
 
 
 TASKS: dict[str, tuple[Problem, dict[str, Any]]] = {
-    "poses met": (load("luggage"), {"enough": 12}),
+    "poses met": (three_poses(), {"enough": 12}),
     "poses fitted": (conveyor(), {"effort": 0.2}),
     "points met": (load("path-8-points"), {"enough": 12, "starts": 24}),
 }
@@ -90,3 +97,12 @@ def test_the_driver_rotation_is_kept_within_limits(kind: str) -> None:
     kept = np.degrees(values_of(limited(problem, driver_rotation_deg=(0, most)), "driver_rotation", **search))
     assert len(kept) >= 3
     assert max(kept) <= most + 1e-6
+
+
+@pytest.mark.parametrize("sense", ["ccw", "cw"])
+@pytest.mark.parametrize("kind", TASKS)
+def test_the_driver_turns_in_the_sense_that_is_asked_for(kind: str, sense: str) -> None:
+    problem, search = TASKS[kind]
+    senses = values_of(limited(problem, driver_sense=sense), "driver_sense", **search)
+    assert len(senses) >= 1
+    assert set(senses) == {1.0 if sense == "ccw" else -1.0}
