@@ -48,6 +48,7 @@ class Box:
         refuse(wrong)
 
 
+_SWING = "of link 4 between its limit positions; over the task where the driver does not turn"
 _FIRST_TO_LAST = "from the first target to the last"
 _FROM_ZERO = (0.0, GREATEST)
 
@@ -103,6 +104,9 @@ class Requirements(ReadOnly):
         (lo, hi) for the driver rotation from the first target to the last.
     driver_sense : {"either", "ccw", "cw"}
         Sense of the driver from the first target to the last: counter-clockwise or clockwise.
+    output_swing_deg : tuple of float, deg, optional
+        (lo, hi) for the swing of link 4 between its limit positions, O2, A and B in line; over the task motion
+        where the driver does not turn fully, and 360 where link 4 does.
     keep_out : sequence of array_like, shape (M, 2), length
         Polygons; their boundary may be touched. Where two overlap or share a side they are one.
     keep_out_for : sequence of {"o2", "o4", "a", "b", "p", "links"}
@@ -176,6 +180,11 @@ class Requirements(ReadOnly):
         Kind.WORD,
         default="either",
         words={"either": (-1.0, 1.0), "ccw": (1.0, 1.0), "cw": (-1.0, -1.0)},
+    )
+    output_swing_deg: Limits | None = limit(
+        Quantity("output_swing", "output swing", Unit.ANGLE, Over.CYCLE, +1, about=_SWING),
+        Kind.BETWEEN,
+        allowed=(0.0, 360.0),
     )
     keep_out: tuple[FloatArray, ...] = ()
     keep_out_for: tuple[str, ...] = ("o2", "o4")
