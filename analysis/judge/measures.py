@@ -152,6 +152,7 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     "driver_rotation": lambda values: np.ptp(values.verdict.theta2),
     "driver_sense": attrgetter("verdict.direction"),
     "output_swing": _output_swing,
+    "time_ratio": lambda values: output_stroke(values.linkage).time_ratio,
     "hausdorff": lambda values: values.curve_distances[0],
     "frechet": lambda values: values.curve_distances[1],
     **{

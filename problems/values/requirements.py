@@ -48,7 +48,8 @@ class Box:
         refuse(wrong)
 
 
-_SWING = "of link 4 between its limit positions; over the task where the driver does not turn"
+_SWING = "of link 4 between its limit positions, over the task where the driver cannot turn"
+_STROKES = "time of the slow stroke of link 4 over that of the quick one"
 _FIRST_TO_LAST = "from the first target to the last"
 _FROM_ZERO = (0.0, GREATEST)
 
@@ -105,8 +106,11 @@ class Requirements(ReadOnly):
     driver_sense : {"either", "ccw", "cw"}
         Sense of the driver from the first target to the last: counter-clockwise or clockwise.
     output_swing_deg : tuple of float, deg, optional
-        (lo, hi) for the swing of link 4 between its limit positions, O2, A and B in line; over the task motion
+        (lo, hi) for the swing of link 4 between its limit positions, O2, A, B in line; over the task motion
         where the driver does not turn fully, and 360 where link 4 does.
+    time_ratio : tuple of float, optional
+        (lo, hi) for the time of the slow stroke of link 4 over that of the quick one, the driver turning
+        steadily; of a driver that does not turn fully there is none.
     keep_out : sequence of array_like, shape (M, 2), length
         Polygons; their boundary may be touched. Where two overlap or share a side they are one.
     keep_out_for : sequence of {"o2", "o4", "a", "b", "p", "links"}
@@ -185,6 +189,11 @@ class Requirements(ReadOnly):
         Quantity("output_swing", "output swing", Unit.ANGLE, Over.CYCLE, +1, about=_SWING),
         Kind.BETWEEN,
         allowed=(0.0, 360.0),
+    )
+    time_ratio: Limits | None = limit(
+        Quantity("time_ratio", "time ratio", Unit.RATIO, Over.CYCLE, +1, about=_STROKES),
+        Kind.BETWEEN,
+        allowed=(1.0, 1e6),
     )
     keep_out: tuple[FloatArray, ...] = ()
     keep_out_for: tuple[str, ...] = ("o2", "o4")

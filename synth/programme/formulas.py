@@ -136,6 +136,16 @@ def _output_swing(d: View) -> Any:
     return (1 - d.double_crank) * (far - close) + d.double_crank * TURN
 
 
+def _time_ratio(d: View) -> Any:
+    """(pi + delta) / (pi - delta) with delta between the directions of O2B in its limit positions.
+
+    Zero for a double-crank, whose output has no strokes.
+    """
+    far, close = (np.arccos(_cosine(d.r4, d.r1, d.r3 + sign * d.r2)) for sign in (1.0, -1.0))
+    delta = (1 - d.double_crank) * np.abs(far - close)
+    return (1 - d.double_crank) * (np.pi + delta) / np.maximum(np.pi - delta, 1e-9)
+
+
 # By the key of the quantity.
 FORMULAS: dict[str, tuple[Part, ...]] = {
     "link_length": _LINKS,
@@ -153,6 +163,7 @@ FORMULAS: dict[str, tuple[Part, ...]] = {
     "theta2_start": (Part("theta2", lambda d: d.theta2_start, dyad=2),),
     "driver_sense": (Part("driver sense", lambda d: d.direction, fixed=True),),
     "output_swing": (Part("output swing", _output_swing),),
+    "time_ratio": (Part("time ratio", _time_ratio),),
     "driver_rotation": (Part("driver rotation", lambda d: d.driver_turn),),
 }
 _SMOOTH = {"link_ratio": _PAIRS}

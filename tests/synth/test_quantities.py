@@ -61,6 +61,9 @@ def test_the_formula_is_the_measure(key: str) -> None:
             found, expected = of_part(part, view), parts[part.axis or (part.name if len(parts) > 1 else "")]
             if key in ("ground_angle", "theta2_start"):  # modulo a turn
                 found, expected = np.exp(1j * found), np.exp(1j * expected)  # type: ignore[assignment]
+            if np.isnan(expected).any():  # a double-crank has no time ratio
+                assert (found == 0).all()
+                continue
             near = 1e-9 * max(task.size, np.abs(expected).max())
             np.testing.assert_allclose(found, expected * np.ones_like(found), rtol=0, atol=near)
 
@@ -131,3 +134,26 @@ def test_the_output_swing_as_a_goal() -> None:
     wide = replace(problem, objective=Objective(transmission=0, output_swing=1))
     free, best = (values_of(each, "output_swing", **search) for each in (problem, wide))
     assert best[0] >= max(free) - 1e-6
+
+
+def test_the_time_ratio_is_that_of_a_steady_driver() -> None:
+    """From the linkage alone: shares of a turn in which link 4 swings forth and back."""
+    for seed in range(12):
+        task, linkage, verdict = planted(seed)
+        found = Values(linkage, verdict, Problem(task=task))["time_ratio"]
+        theta4 = np.unwrap(solve_position(linkage, np.linspace(0, 2 * np.pi, 200001)).theta4)
+        forth = float(np.mean(np.diff(theta4) > 0))
+        if 0 < forth < 1:
+            assert found == pytest.approx(max(forth, 1 - forth) / min(forth, 1 - forth), abs=1e-4)
+        else:
+            assert np.isnan(found)
+
+
+@pytest.mark.parametrize("kind", TASKS)
+def test_the_time_ratio_is_kept_within_limits(kind: str) -> None:
+    problem, search = TASKS[kind]
+    rockers = limited(problem, rotatability="crank-rocker")
+    least = float(np.median(values_of(rockers, "time_ratio", **search)))
+    kept = values_of(limited(rockers, time_ratio=(least, 100)), "time_ratio", **search)
+    assert len(kept) >= 2
+    assert min(kept) >= least * (1 - 1e-6)
