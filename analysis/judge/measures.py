@@ -131,6 +131,18 @@ def _output_swing(values: Values) -> float:
     return float(np.ptp(np.unwrap(theta4)))
 
 
+def _omega2(values: Values) -> float:
+    return 1.0 if values.problem.dynamics is None else values.problem.dynamics.omega2
+
+
+def _signed_advantage(values: Values) -> float:
+    """With the sign of omega2 / omega4 where it is least."""
+    theta2 = np.linspace(*motion_ends(values.problem.task, values.verdict), 721)
+    theta4 = np.unwrap(solve_position(values.linkage, theta2, values.verdict.assembly[0]).theta4)
+    rate = np.nan_to_num(np.diff(theta4) / np.diff(theta2))
+    return float(np.sign(rate[np.abs(rate).argmax()])) * values["mechanical_advantage"]
+
+
 # Of every quantity that is one number.
 MEASURES: dict[str, Callable[[Values], float]] = {
     **{name: partial(_column, name) for name in ("o2_x", "o2_y", "o4_x", "o4_y", "p_u", "p_v")},
@@ -153,6 +165,8 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     "driver_sense": attrgetter("verdict.direction"),
     "output_swing": _output_swing,
     "time_ratio": lambda values: output_stroke(values.linkage).time_ratio,
+    "mechanical_advantage": lambda values: _omega2(values) / values["omega4_max"],
+    "mechanical_advantage_min": _signed_advantage,
     "hausdorff": lambda values: values.curve_distances[0],
     "frechet": lambda values: values.curve_distances[1],
     **{

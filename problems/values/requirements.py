@@ -111,6 +111,8 @@ class Requirements(ReadOnly):
     time_ratio : tuple of float, optional
         (lo, hi) for the time of the slow stroke of link 4 over that of the quick one, the driver turning
         steadily; of a driver that does not turn fully there is none.
+    mechanical_advantage_min : float, optional
+        Least ``|omega2 / omega4|`` over the task motion.
     keep_out : sequence of array_like, shape (M, 2), length
         Polygons; their boundary may be touched. Where two overlap or share a side they are one.
     keep_out_for : sequence of {"o2", "o4", "a", "b", "p", "links"}
@@ -194,6 +196,11 @@ class Requirements(ReadOnly):
         Quantity("time_ratio", "time ratio", Unit.RATIO, Over.CYCLE, +1, about=_STROKES),
         Kind.BETWEEN,
         allowed=(1.0, 1e6),
+    )
+    mechanical_advantage_min: float | None = limit(
+        Quantity("mechanical_advantage", "mechanical advantage", Unit.RATIO, Over.TASK, +1, listed=False),
+        Kind.AT_LEAST,
+        allowed=(0.0, 1e6),
     )
     keep_out: tuple[FloatArray, ...] = ()
     keep_out_for: tuple[str, ...] = ("o2", "o4")
@@ -295,8 +302,16 @@ LIMITS: dict[str, Limit] = {
     field.name: field.metadata["limit"] for field in fields(Requirements) if "limit" in field.metadata
 }
 
+_ADVANTAGE = Quantity(
+    "mechanical_advantage_min",
+    "mechanical advantage",
+    Unit.RATIO,
+    Over.TASK,
+    about="omega2 / omega4 where it is least over the task motion, with its sign",
+)
 # All that can be said of a design, by key; those that are listed in the order of the columns.
 QUANTITIES = MEASURED | {limited.quantity.key: limited.quantity for limited in LIMITS.values()}
+QUANTITIES[_ADVANTAGE.key] = _ADVANTAGE
 
 
 def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float | str:

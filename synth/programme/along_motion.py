@@ -130,6 +130,7 @@ def joint_forces(at: Instant) -> list[Any]:
 # the magnitude, of several the greatest.
 Along: TypeAlias = Callable[[Instant], list[Any]]
 ALONG: dict[str, Along] = {
+    "mechanical_advantage": lambda at: [at.speed4],
     "omega4_max": lambda at: [at.speed4],
     "point_speed_max": lambda at: [at.velocity(at.point)],
     "point_acceleration_max": lambda at: [at.acceleration(at.point)],
@@ -139,7 +140,7 @@ ALONG: dict[str, Along] = {
 
 
 # Those whose value is one over the greatest magnitude.
-INVERSE: frozenset[str] = frozenset()
+INVERSE = frozenset({"mechanical_advantage"})
 
 
 def value_of(key: str, peak: Any) -> Any:

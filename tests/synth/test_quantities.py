@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from grashof import load, synthesize
-from grashof.analysis import Verdict, solve_position, verify
+from grashof.analysis import Verdict, solve_kinematics, solve_position, verify
 from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import FourBar, MotionTask, Objective, Problem, Requirements
@@ -157,3 +157,31 @@ def test_the_time_ratio_is_kept_within_limits(kind: str) -> None:
     kept = values_of(limited(rockers, time_ratio=(least, 100)), "time_ratio", **search)
     assert len(kept) >= 2
     assert min(kept) >= least * (1 - 1e-6)
+
+
+def test_the_mechanical_advantage_is_omega2_over_omega4() -> None:
+    for seed in range(12):
+        task, linkage, verdict = planted(seed)
+        values = Values(linkage, verdict, Problem(task=task))
+        motion = np.linspace(verdict.theta2.min(), verdict.theta2.max(), 4001)
+        ratio = 1 / solve_kinematics(linkage, motion, 1.0).omega4
+        least = ratio[np.abs(ratio).argmin()]
+        assert values["mechanical_advantage"] == pytest.approx(abs(least), rel=1e-5)
+        assert values["mechanical_advantage_min"] == pytest.approx(least, rel=1e-5)
+
+
+@pytest.mark.parametrize("kind", ["poses met", "points met"])
+def test_the_mechanical_advantage_is_kept_above_its_limit(kind: str) -> None:
+    problem, search = TASKS[kind]
+    least = float(np.median(values_of(problem, "mechanical_advantage", **search)))
+    asked = limited(problem, mechanical_advantage_min=least)
+    kept = values_of(asked, "mechanical_advantage", **search)
+    assert len(kept) >= 2
+    assert min(kept) >= least * (1 - 1e-6)
+
+
+def test_the_mechanical_advantage_as_a_goal() -> None:
+    problem, search = TASKS["poses met"]
+    strong = replace(problem, objective=Objective(transmission=0, mechanical_advantage=1))
+    free, best = (values_of(each, "mechanical_advantage", **search) for each in (problem, strong))
+    assert best[0] >= max(free) * (1 - 1e-6)

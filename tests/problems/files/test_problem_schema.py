@@ -83,6 +83,7 @@ worst_move = [0, 9]
 share_within_made = [0.5, 1]
 driver_rotation_deg = [90, 180]
 driver_sense = "cw"
+mechanical_advantage_min = 0.5
 time_ratio = [1.2, 1.6]
 output_swing_deg = [40, 60]
 [dynamics]
