@@ -11,7 +11,8 @@ import numpy as np
 
 from grashof.analysis.curves.curve_distance import curve_distances
 from grashof.analysis.four_bar.position import Position, solve_position
-from grashof.analysis.judge.over_task import OverTask, over_task, torque_peak
+from grashof.analysis.four_bar.stroke import output_stroke
+from grashof.analysis.judge.over_task import OverTask, motion_ends, over_task, torque_peak
 from grashof.analysis.judge.tolerance import robustness
 from grashof.analysis.judge.verdict import Verdict
 from grashof.problems import FourBar, Problem
@@ -116,6 +117,20 @@ def _made(key: str, values: Values) -> float:
     return values.made[key]
 
 
+def _output_swing(values: Values) -> float:
+    """Between limit positions; over the task motion where the driver does not turn fully."""
+    linkage = values.linkage
+    if values.verdict.full_rotation:
+        swing = float(output_stroke(linkage).swing)
+        return TURN if np.isnan(swing) else swing
+    start, end = motion_ends(values.problem.task, values.verdict)
+    turned = output_stroke(linkage).theta2 + TURN * np.arange(-3, 4)[:, None]
+    inside = turned[(turned > min(start, end)) & (turned < max(start, end))]
+    theta2 = np.sort(np.concatenate([np.linspace(start, end, 181), inside]))
+    theta4 = solve_position(linkage, theta2, values.verdict.assembly[0]).theta4
+    return float(np.ptp(np.unwrap(theta4)))
+
+
 # Of every quantity that is one number.
 MEASURES: dict[str, Callable[[Values], float]] = {
     **{name: partial(_column, name) for name in ("o2_x", "o2_y", "o4_x", "o4_y", "p_u", "p_v")},
@@ -135,6 +150,8 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     **{field.name: attrgetter(f"over_task.{field.name}") for field in fields(OverTask)},
     "torque_peak": lambda values: torque_peak(values.linkage, values.problem, values.verdict),
     "driver_rotation": lambda values: np.ptp(values.verdict.theta2),
+    "driver_sense": attrgetter("verdict.direction"),
+    "output_swing": _output_swing,
     "hausdorff": lambda values: values.curve_distances[0],
     "frechet": lambda values: values.curve_distances[1],
     **{

@@ -48,6 +48,7 @@ class Box:
         refuse(wrong)
 
 
+_SWING = "of link 4 between its limit positions; over the task where the driver does not turn"
 _FIRST_TO_LAST = "from the first target to the last"
 _FROM_ZERO = (0.0, GREATEST)
 
@@ -101,6 +102,11 @@ class Requirements(ReadOnly):
         (lo, hi) for whatever candidates.csv lists; see `grashof.problems.values.quantities`.
     driver_rotation_deg : tuple of float, deg, optional
         (lo, hi) for the driver rotation from the first target to the last.
+    driver_sense : {"either", "ccw", "cw"}
+        Sense of the driver from the first target to the last: counter-clockwise or clockwise.
+    output_swing_deg : tuple of float, deg, optional
+        (lo, hi) for the swing of link 4 between its limit positions, O2, A and B in line; over the task motion
+        where the driver does not turn fully, and 360 where link 4 does.
     keep_out : sequence of array_like, shape (M, 2), length
         Polygons; their boundary may be touched. Where two overlap or share a side they are one.
     keep_out_for : sequence of {"o2", "o4", "a", "b", "p", "links"}
@@ -166,6 +172,17 @@ class Requirements(ReadOnly):
     share_within_made: Limits | None = limit("share_within_made", Kind.BETWEEN, allowed=(0.0, 1.0))
     driver_rotation_deg: Limits | None = limit(
         Quantity("driver_rotation", "driver rotation", Unit.ANGLE, Over.TARGETS, about=_FIRST_TO_LAST),
+        Kind.BETWEEN,
+        allowed=(0.0, 360.0),
+    )
+    driver_sense: str = limit(
+        Quantity("driver_sense", "sense of the driver", Unit.RATIO, Over.TARGETS, listed=False),
+        Kind.WORD,
+        default="either",
+        words={"either": (-1.0, 1.0), "ccw": (1.0, 1.0), "cw": (-1.0, -1.0)},
+    )
+    output_swing_deg: Limits | None = limit(
+        Quantity("output_swing", "output swing", Unit.ANGLE, Over.CYCLE, +1, about=_SWING),
         Kind.BETWEEN,
         allowed=(0.0, 360.0),
     )

@@ -7,15 +7,20 @@ import numpy as np
 import pytest
 
 from grashof import load, synthesize
-from grashof.analysis import Verdict, verify
+from grashof.analysis import Verdict, solve_position, verify
 from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.planted import planted_motion
-from grashof.problems import FourBar, MotionTask, Problem, Requirements
+from grashof.problems import FourBar, MotionTask, Objective, Problem, Requirements
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.programme.formulas import FORMULAS, Part
 from grashof.synth.programme.screening import Many
 
 JUDGED = 50
+
+
+def three_poses() -> Problem:
+    """Three poses, which leave much freedom: drivers turn in either sense."""
+    return Problem(task=planted_motion(np.random.default_rng([12, 2]), poses=3)[0])
 
 
 def conveyor() -> Problem:
@@ -61,7 +66,7 @@ def test_the_formula_is_the_measure(key: str) -> None:
 
 
 TASKS: dict[str, tuple[Problem, dict[str, Any]]] = {
-    "poses met": (load("luggage"), {"enough": 12}),
+    "poses met": (three_poses(), {"enough": 12}),
     "poses fitted": (conveyor(), {"effort": 0.2}),
     "points met": (load("path-8-points"), {"enough": 12, "starts": 24}),
 }
@@ -90,3 +95,39 @@ def test_the_driver_rotation_is_kept_within_limits(kind: str) -> None:
     kept = np.degrees(values_of(limited(problem, driver_rotation_deg=(0, most)), "driver_rotation", **search))
     assert len(kept) >= 3
     assert max(kept) <= most + 1e-6
+
+
+@pytest.mark.parametrize("sense", ["ccw", "cw"])
+@pytest.mark.parametrize("kind", TASKS)
+def test_the_driver_turns_in_the_sense_that_is_asked_for(kind: str, sense: str) -> None:
+    problem, search = TASKS[kind]
+    senses = values_of(limited(problem, driver_sense=sense), "driver_sense", **search)
+    assert len(senses) >= 1
+    assert set(senses) == {1.0 if sense == "ccw" else -1.0}
+
+
+def test_the_output_swing_is_that_of_the_whole_turn() -> None:
+    """From the linkage alone: the greatest less the least angle of link 4 over a turn."""
+    for seed in range(12):
+        task, linkage, verdict = planted(seed)
+        found = Values(linkage, verdict, Problem(task=task))["output_swing"]
+        theta4 = np.unwrap(solve_position(linkage, np.linspace(0, 2 * np.pi, 20001)).theta4)
+        assert found == pytest.approx(np.ptp(theta4), abs=1e-6)
+
+
+@pytest.mark.parametrize("kind", TASKS)
+def test_the_output_swing_is_kept_within_limits(kind: str) -> None:
+    problem, search = TASKS[kind]
+    free = np.degrees(values_of(problem, "output_swing", **search))
+    low, high = float(np.median(free)) - 4, float(np.median(free)) + 4
+    kept = np.degrees(values_of(limited(problem, output_swing_deg=(low, high)), "output_swing", **search))
+    assert len(kept) >= 2
+    assert min(kept) >= low - 1e-6
+    assert max(kept) <= high + 1e-6
+
+
+def test_the_output_swing_as_a_goal() -> None:
+    problem, search = TASKS["poses met"]
+    wide = replace(problem, objective=Objective(transmission=0, output_swing=1))
+    free, best = (values_of(each, "output_swing", **search) for each in (problem, wide))
+    assert best[0] >= max(free) - 1e-6

@@ -82,6 +82,8 @@ frechet = [0, 9]
 worst_move = [0, 9]
 share_within_made = [0.5, 1]
 driver_rotation_deg = [90, 180]
+driver_sense = "cw"
+output_swing_deg = [40, 60]
 [dynamics]
 payload = 1
 [manufacturing]
