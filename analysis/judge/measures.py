@@ -72,8 +72,8 @@ class Values(Mapping[str, float]):
     def theta2_ends(self) -> FloatArray:
         """Driver angles at the first target, above -pi to pi, and at the last."""
         first, last = self.verdict.theta2[[0, -1]].tolist()
-        turns = np.ceil((first - np.pi) / TURN)
-        return np.array([first, last]) - TURN * turns
+        ends: FloatArray = np.array([first, last]) - TURN * np.ceil((first - np.pi) / TURN)
+        return ends
 
     @cached_property
     def over_task(self) -> OverTask:
