@@ -11,7 +11,8 @@ import numpy as np
 
 from grashof.analysis.curves.curve_distance import curve_distances
 from grashof.analysis.four_bar.position import Position, solve_position
-from grashof.analysis.judge.over_task import OverTask, over_task, torque_peak
+from grashof.analysis.four_bar.stroke import output_stroke
+from grashof.analysis.judge.over_task import OverTask, motion_ends, over_task, torque_peak
 from grashof.analysis.judge.tolerance import robustness
 from grashof.analysis.judge.verdict import Verdict
 from grashof.problems import FourBar, Problem
@@ -70,8 +71,9 @@ class Values(Mapping[str, float]):
     @cached_property
     def theta2_ends(self) -> FloatArray:
         """Driver angles at the first target, above -pi to pi, and at the last."""
-        ends = self.verdict.theta2[[0, -1]]
-        return ends - TURN * np.ceil((ends[0] - np.pi) / TURN)
+        first, last = self.verdict.theta2[[0, -1]].tolist()
+        turns = np.ceil((first - np.pi) / TURN)
+        return np.array([first, last]) - TURN * turns
 
     @cached_property
     def over_task(self) -> OverTask:
@@ -115,6 +117,20 @@ def _made(key: str, values: Values) -> float:
     return values.made[key]
 
 
+def _output_swing(values: Values) -> float:
+    """Between limit positions; over the task motion where the driver does not turn fully."""
+    linkage = values.linkage
+    if values.verdict.full_rotation:
+        swing = float(output_stroke(linkage).swing)
+        return TURN if np.isnan(swing) else swing
+    start, end = motion_ends(values.problem.task, values.verdict)
+    turned = output_stroke(linkage).theta2 + TURN * np.arange(-3, 4)[:, None]
+    inside = turned[(turned > min(start, end)) & (turned < max(start, end))]
+    theta2 = np.sort(np.concatenate([np.linspace(start, end, 181), inside]))
+    theta4 = solve_position(linkage, theta2, values.verdict.assembly[0]).theta4
+    return float(np.ptp(np.unwrap(theta4)))
+
+
 # Of every quantity that is one number.
 MEASURES: dict[str, Callable[[Values], float]] = {
     **{name: partial(_column, name) for row in FourBar.PARAMETERS if row.paired for name in row.columns},
@@ -133,6 +149,10 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     "size": attrgetter("verdict.size"),
     **{field.name: attrgetter(f"over_task.{field.name}") for field in fields(OverTask)},
     "torque_peak": lambda values: torque_peak(values.linkage, values.problem, values.verdict),
+    "driver_rotation": lambda values: np.ptp(values.verdict.theta2),
+    "driver_sense": attrgetter("verdict.direction"),
+    "output_swing": _output_swing,
+    "time_ratio": lambda values: output_stroke(values.linkage).time_ratio,
     "hausdorff": lambda values: values.curve_distances[0],
     "frechet": lambda values: values.curve_distances[1],
     **{

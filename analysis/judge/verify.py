@@ -115,19 +115,18 @@ def _square(targets: Targets, task: Task) -> float:
 
 
 def _exactness(targets: Targets, task: Task, wanted: Requirements) -> list[Defect]:
-    worst = float(np.nanmax(targets.position_error))
-    allowed = wanted.tolerance * task.size
-    defects = []
-    if not worst <= allowed:
-        miss = worst / task.size - wanted.tolerance
-        defects.append(Defect("exact", "the largest position error", worst, f"up to {allowed:.6g}", miss))
-    turned = float(np.nanmax(targets.angle_error, initial=0.0))
-    if not turned * task.angle_length <= allowed:
-        limit = float(np.degrees(allowed / task.angle_length))
-        miss = turned - allowed / task.angle_length
-        found = float(np.degrees(turned))
-        defects.append(Defect("exact", "the largest angle error in deg", found, f"up to {limit:.6g}", miss))
-    return defects
+    allowed, deg = wanted.tolerance * task.size, float(np.degrees(1.0))
+    errors = (
+        ("position error", targets.position_error, allowed, task.size, 1.0),
+        ("angle error in deg", targets.angle_error, allowed / task.angle_length, 1.0, deg),
+    )
+    return [
+        Defect(
+            "exact", f"the largest {what}", worst * unit, f"up to {most * unit:.6g}", (worst - most) / size
+        )
+        for what, error, most, size, unit in errors
+        if not (worst := float(np.nanmax(error, initial=0.0))) <= most
+    ]
 
 
 def _zones(targets: Targets, task: Task) -> list[Defect]:

@@ -153,6 +153,7 @@ class Problem(ReadOnly):
             Needs.MANUFACTURING: "manufacturing is missing",
             Needs.CLOSED: f"{self.task.kind}.closed is false; allowed is true",
             Needs.LEAST_SQUARES: "requirements.exact = false is missing",
+            Needs.ANGLES: f"{self.task.kind} has no angles",
         }
         wrong = [
             f"{missing[quantity.needs]}; {where} needs it"
@@ -174,6 +175,7 @@ class Problem(ReadOnly):
             Needs.MANUFACTURING: self.manufacturing is not None,
             Needs.CLOSED: self.task.closed,
             Needs.LEAST_SQUARES: not self.requirements.is_exact(self.task),
+            Needs.ANGLES: bool(self.task.has_angle.any()),
         }
         return stated.get(needs, True)
 

@@ -49,7 +49,10 @@ class Box:
         refuse(wrong)
 
 
-_LENGTHS = (0.0, GREATEST)
+_SWING = "of link 4 between its limit positions, over the task where the driver cannot turn"
+_STROKES = "time of the slow stroke of link 4 over that of the quick one"
+_FIRST_TO_LAST = "from the first target to the last"
+_FROM_ZERO = (0.0, GREATEST)
 
 
 def _place(name: str, over: Over) -> Quantity:
@@ -97,6 +100,18 @@ class Requirements(ReadOnly):
         Direction O2->O4.
     theta2_start_deg : float, deg, optional
         Driver angle at the first target.
+    size, torque_peak, worst_move, ... : tuple of float, optional
+        (lo, hi) for whatever candidates.csv lists; see `grashof.problems.values.quantities`.
+    driver_rotation_deg : tuple of float, deg, optional
+        (lo, hi) for the driver rotation from the first target to the last.
+    driver_sense : {"either", "ccw", "cw"}
+        Sense of the driver from the first target to the last: counter-clockwise or clockwise.
+    output_swing_deg : tuple of float, deg, optional
+        (lo, hi) for the swing of link 4 between its limit positions, O2, A, B in line; over the task motion
+        where the driver does not turn fully, and 360 where link 4 does.
+    time_ratio : tuple of float, optional
+        (lo, hi) for the time of the slow stroke of link 4 over that of the quick one, the driver turning
+        steadily; of a driver that does not turn fully there is none.
     keep_out : sequence of array_like, shape (M, 2), length
         Polygons; their boundary may be touched. Where two overlap or share a side they are one.
     keep_out_for : sequence of {"o2", "o4", "a", "b", "p", "links"}
@@ -121,17 +136,17 @@ class Requirements(ReadOnly):
     link_length: Limits | None = limit(
         Quantity("link_length", "link length", Unit.LENGTH, listed=False),
         Kind.BETWEEN,
-        allowed=_LENGTHS,
+        allowed=_FROM_ZERO,
         usual=(0.01, 20.0),
     )
-    r1: Limits | None = limit("r1", Kind.BETWEEN, allowed=_LENGTHS)
-    r2: Limits | None = limit("r2", Kind.BETWEEN, allowed=_LENGTHS)
-    r3: Limits | None = limit("r3", Kind.BETWEEN, allowed=_LENGTHS)
-    r4: Limits | None = limit("r4", Kind.BETWEEN, allowed=_LENGTHS)
+    r1: Limits | None = limit("r1", Kind.BETWEEN, allowed=_FROM_ZERO)
+    r2: Limits | None = limit("r2", Kind.BETWEEN, allowed=_FROM_ZERO)
+    r3: Limits | None = limit("r3", Kind.BETWEEN, allowed=_FROM_ZERO)
+    r4: Limits | None = limit("r4", Kind.BETWEEN, allowed=_FROM_ZERO)
     coupler_arms: Limits | None = limit(
         Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False),
         Kind.BETWEEN,
-        allowed=_LENGTHS,
+        allowed=_FROM_ZERO,
         usual=(0.0, 30.0),
     )
     link_ratio_max: float = limit(
@@ -148,6 +163,39 @@ class Requirements(ReadOnly):
         Quantity("ground_angle", "direction of O2O4", Unit.ANGLE, listed=False), Kind.EQUAL
     )
     theta2_start_deg: float | None = limit("theta2_start", Kind.EQUAL)
+    size: Limits | None = limit("size", Kind.BETWEEN, allowed=_FROM_ZERO)
+    omega4_max: Limits | None = limit("omega4_max", Kind.BETWEEN, allowed=_FROM_ZERO)
+    point_speed_max: Limits | None = limit("point_speed_max", Kind.BETWEEN, allowed=_FROM_ZERO)
+    point_acceleration_max: Limits | None = limit("point_acceleration_max", Kind.BETWEEN, allowed=_FROM_ZERO)
+    torque_peak: Limits | None = limit("torque_peak", Kind.BETWEEN, allowed=_FROM_ZERO)
+    torque_rms: Limits | None = limit("torque_rms", Kind.BETWEEN, allowed=_FROM_ZERO)
+    joint_force_peak: Limits | None = limit("joint_force_peak", Kind.BETWEEN, allowed=_FROM_ZERO)
+    coupler_fit_r2: Limits | None = limit("coupler_fit_r2", Kind.BETWEEN, allowed=(-GREATEST, 1.0))
+    hausdorff: Limits | None = limit("hausdorff", Kind.BETWEEN, allowed=_FROM_ZERO)
+    frechet: Limits | None = limit("frechet", Kind.BETWEEN, allowed=_FROM_ZERO)
+    worst_move: Limits | None = limit("worst_move", Kind.BETWEEN, allowed=_FROM_ZERO)
+    share_within_made: Limits | None = limit("share_within_made", Kind.BETWEEN, allowed=(0.0, 1.0))
+    driver_rotation_deg: Limits | None = limit(
+        Quantity("driver_rotation", "driver rotation", Unit.ANGLE, Over.TARGETS, about=_FIRST_TO_LAST),
+        Kind.BETWEEN,
+        allowed=(0.0, 360.0),
+    )
+    driver_sense: str = limit(
+        Quantity("driver_sense", "sense of the driver", Unit.RATIO, Over.TARGETS, listed=False),
+        Kind.WORD,
+        default="either",
+        words={"either": (-1.0, 1.0), "ccw": (1.0, 1.0), "cw": (-1.0, -1.0)},
+    )
+    output_swing_deg: Limits | None = limit(
+        Quantity("output_swing", "output swing", Unit.ANGLE, Over.CYCLE, +1, about=_SWING),
+        Kind.BETWEEN,
+        allowed=(0.0, 360.0),
+    )
+    time_ratio: Limits | None = limit(
+        Quantity("time_ratio", "time ratio", Unit.RATIO, Over.CYCLE, +1, about=_STROKES),
+        Kind.BETWEEN,
+        allowed=(1.0, 1e6),
+    )
     keep_out: tuple[FloatArray, ...] = ()
     keep_out_for: tuple[str, ...] = ("o2", "o4")
 
@@ -252,7 +300,7 @@ LIMITS: dict[str, Limit] = {
 QUANTITIES = MEASURED | {limited.quantity.key: limited.quantity for limited in LIMITS.values()}
 
 
-def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float:
+def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float | str:
     if limited.kind in (Kind.INSIDE, Kind.ON_BODY):
         if not isinstance(value, Box):
             raise ProblemError(f"{where} is {value!r}; allowed is a Box")
@@ -260,6 +308,10 @@ def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float:
     low, high = limited.allowed
     if limited.kind is Kind.BETWEEN:
         return limits(value, where, least=low, most=high)
+    if limited.kind is Kind.WORD:
+        if value not in limited.words:
+            raise ProblemError(f"{where} is {value!r}; allowed is one of {', '.join(limited.words)}")
+        return str(value)
     if limited.kind is Kind.EQUAL:
         return finite_number(value, where)
     return number_within(value, low, high, where)

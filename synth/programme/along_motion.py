@@ -138,6 +138,15 @@ ALONG: dict[str, Along] = {
 }
 
 
+# Those whose value is one over the greatest magnitude.
+INVERSE: frozenset[str] = frozenset()
+
+
+def value_of(key: str, peak: Any) -> Any:
+    """The value of a quantity whose greatest magnitude is known, and the other way round."""
+    return 1 / peak if key in INVERSE else peak
+
+
 def loads(problem: Problem) -> FloatArray:
     """What drives torque and forces, shape (LOADS,), which then come in reference torques and forces.
 

@@ -1,0 +1,125 @@
+"""The list of a page in a real browser: sorted, filtered, folded into families."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from playwright.sync_api import Page, expect
+
+from grashof.synth import Result
+
+Open = Callable[..., Page]
+
+
+def state(page: Page) -> dict[str, Any]:
+    found: dict[str, Any] = page.evaluate("grashof.state()")
+    return found
+
+
+def test_columns_are_sorted(opened: Open, few: Result) -> None:
+    page, frame = opened("search"), few.to_frame()
+    for key, first in (("size", True), ("transmission_min_task_deg", False), ("id", True), ("rank", True)):
+        header = page.locator(f"th[data-key={key}]")
+        for ascending in (first, not first):
+            header.locator("button").click()
+            assert header.get_attribute("aria-sort") == ("ascending" if ascending else "descending")
+            listed = [few.candidates[row].id for row in frame.sort_values(key, ascending=ascending).index]
+            assert state(page)["listed"] == listed
+            assert page.locator("tbody td code").all_inner_texts() == listed
+    assert page.locator("th[aria-sort=none]").count() > 5
+
+
+def test_designs_are_filtered(opened: Open, few: Result) -> None:
+    page, frame = opened("search"), few.to_frame()
+    sizes = frame["size"].round(2)  # as the table shows them
+    angles = frame["transmission_min_task_deg"].round(1)
+    size, transmission = sorted(sizes)[len(frame) // 2], sorted(angles)[len(frame) // 2]
+    assert (frame["size"] > size).any()
+    page.fill("[name=size]", f"{size:.2f}")
+    assert set(state(page)["listed"]) == set(frame.loc[sizes <= size, "id"])
+    page.fill("[name=transmission]", f"{transmission:.1f}")
+    both = (sizes <= size) & (angles >= transmission)
+    assert set(state(page)["listed"]) == set(frame.loc[both, "id"])
+    assert page.locator("form output").inner_text() == f"{both.sum()} of {len(frame)}"
+    assert page.locator(".point:not(.filtered)").count() == both.sum()
+    page.locator("button[type=reset]").click()
+    expect(page.locator("form output")).to_have_text(f"{len(frame)} of {len(frame)}")
+    page.check("[name=pareto]")
+    assert set(state(page)["listed"]) == set(frame.loc[frame["pareto"], "id"])
+    page.uncheck("[name=pareto]")
+    page.fill("[name=text]", frame["id"][3])
+    assert state(page)["listed"] == [frame["id"][3]]
+
+
+def test_one_design_of_each_family_is_listed_until_it_is_opened(opened: Open, alike: Result) -> None:
+    page, ids = opened("alike"), [each.id for each in alike.candidates]
+    assert state(page)["listed"] == ids[:5]
+    buttons = page.locator("[data-alike]:visible")
+    assert buttons.all_inner_texts() == ["2 like this", "1 like this"]
+    assert page.locator("form output").inner_text() == "8 of 8 in 5 families"
+    assert page.locator(".point:not(.filtered)").count() == 8
+    buttons.first.click()
+    assert buttons.first.get_attribute("aria-expanded") == "true"
+    assert state(page)["design"] == ids[0]
+    assert state(page)["listed"] == [ids[k] for k in (0, 5, 6, 1, 2, 3, 4)]
+    assert page.locator("tbody tr:visible td code").all_inner_texts() == state(page)["listed"]
+    assert page.locator("tr.member:visible").count() == 2
+    buttons.first.focus()
+    page.keyboard.press("Enter")
+    assert state(page)["listed"] == ids[:5]
+    page.uncheck("[name=fold]")
+    assert state(page)["listed"] == ids
+    assert buttons.count() == 0
+
+
+def test_members_stay_with_the_best_of_their_family_however_sorted(opened: Open, alike: Result) -> None:
+    page, frame = opened("alike"), alike.to_frame()
+    page.locator("[data-alike]:visible").first.click()
+    page.locator("th[data-key=size] button").click()
+    best = frame[:5].sort_values("size")["id"].tolist()
+    members = frame.iloc[[5, 6]].sort_values("size")["id"].tolist()
+    place = best.index(frame["id"][0]) + 1
+    assert state(page)["listed"] == [*best[:place], *members, *best[place:]]
+    page.uncheck("[name=fold]")
+    assert state(page)["listed"] == frame.sort_values("size")["id"].tolist()
+
+
+def test_the_best_that_passes_the_filter_stands_for_its_family(opened: Open, alike: Result) -> None:
+    page, ids = opened("alike"), [each.id for each in alike.candidates]
+    page.fill("[name=text]", ids[6])
+    assert state(page)["listed"] == [ids[6]]
+    assert page.locator("[data-alike]:visible").count() == 0
+    page.fill("[name=text]", "least error")
+    assert state(page)["listed"] == [ids[0]]
+    page.fill("[name=text]", "")
+    page.fill("[name=size]", str(alike.to_frame()["size"].max() - 0.01))
+    shown, sizes = set(state(page)["listed"]), alike.to_frame()["size"].round(2)
+    passing = alike.to_frame()[sizes <= sizes.max() - 0.01]
+    assert shown == set(passing.groupby("family", sort=False)["id"].first())
+
+
+def test_a_design_picked_in_the_plot_opens_its_family(opened: Open, alike: Result) -> None:
+    page, ids = opened("alike", size=(1300, 1000)), [e.id for e in alike.candidates]
+    page.locator(".point[data-index='7']").focus()
+    page.keyboard.press("Enter")
+    assert state(page)["design"] == ids[7]
+    assert state(page)["listed"] == [*ids[:2], ids[7], *ids[2:5]]
+    assert page.locator("tr.chosen").is_visible()
+
+
+def test_a_filter_compares_with_the_numbers_shown(opened: Open, few: Result) -> None:
+    page = opened("search")
+    nothing = page.get_by_text("no design matches")
+    for name, key in (("transmission", "transmission_min_task_deg"), ("size", "size")):
+        column = page.locator("table.designs thead th").evaluate_all(
+            "(heads, key) => heads.findIndex((head) => head.dataset.key === key)", key
+        )
+        for row in page.locator("tr[data-index]").all():
+            page.fill(f"[name={name}]", row.locator("th, td").nth(column).inner_text())
+            assert row.is_visible()
+            assert not nothing.is_visible()
+        page.fill(f"[name={name}]", "")
+    page.fill("[name=transmission]", "89")
+    assert state(page)["listed"] == []
+    assert nothing.is_visible()

@@ -1,0 +1,114 @@
+"""A run that is interrupted, loses its reader or cannot draw: what it leaves behind."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pytest
+from matplotlib.figure import Figure
+
+import grashof.figures.files as grashof_draw
+from grashof.problems import (
+    Problem,
+    problem_text,
+)
+from grashof.synth import Candidate
+
+Grashof = Callable[..., Any]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
+def test_interrupt_while_drawing_leaves_drawings_out(
+    grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    draw = grashof_draw.draw_design
+
+    def interrupted(problem: Problem, candidate: Candidate, rank: int) -> Figure:
+        if rank == 2:
+            signal.raise_signal(signal.SIGINT)
+        return draw(problem, candidate, rank)
+
+    monkeypatch.setattr(grashof_draw, "draw_design", interrupted)
+    done = grashof("solve", "luggage", "--starts", "8")
+    assert done.exit_code == 130
+    names = {"candidates.csv", "candidates.json", "report.html", "run.json"}
+    names |= {f"design-0{rank}.{kind}" for rank in (1, 2) for kind in ("png", "svg")}
+    folder = tmp_path / "luggage-designs"
+    assert {path.name for path in folder.iterdir()} == names
+    assert set(json.loads((folder / "run.json").read_text())["files"]) == names
+
+
+@pytest.mark.parametrize(("error", "code"), [(OSError(28, "disk full"), 3), (KeyboardInterrupt(), 130)])
+def test_a_drawing_that_fails_does_not_cost_the_lists(
+    grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException, code: int
+) -> None:
+    def fail(*_: object) -> None:
+        raise error
+
+    monkeypatch.setattr(grashof_draw, "save", fail)
+    assert grashof("solve", "luggage", "--starts", "4").exit_code == code
+    folder = tmp_path / "luggage-designs"
+    names = {"candidates.csv", "candidates.json", "report.html", "run.json"}
+    assert {path.name for path in folder.iterdir()} == names
+    assert set(json.loads((folder / "run.json").read_text())["files"]) == names
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes of another kind")
+@pytest.mark.parametrize("merged", [True, False])
+def test_a_reader_that_leaves_ends_nothing(tmp_path: Path, merged: bool) -> None:
+    # FORCE_COLOR makes rich take a pipe for a terminal.
+    program = "from grashof.cli import main; main()"
+    command = [sys.executable, "-c", program, "solve", "luggage", "--starts", "8", "--drawings", "0"]
+    running = subprocess.Popen(
+        command,
+        cwd=tmp_path,
+        env={**os.environ, "FORCE_COLOR": "1"} if merged else None,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT if merged else subprocess.PIPE,
+        text=True,
+    )
+    assert running.stdout is not None
+    if merged:
+        running.stdout.readline()
+    running.stdout.close()
+    said = "" if merged else running.communicate(timeout=60)[1]
+    assert running.wait(timeout=60) == 0
+    assert "Error" not in said
+    assert "Exception" not in said
+    assert len(pd.read_csv(tmp_path / "luggage-designs" / "candidates.csv")) > 0
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
+def test_interrupt_writes_what_was_verified(tmp_path: Path) -> None:
+    text = problem_text("luggage") + "\n[search]\nstarts = 5000\nenough = 300\n"
+    (tmp_path / "long.toml").write_text(text, encoding="utf-8")
+    command = [
+        sys.executable,
+        "-c",
+        "from grashof.cli import main; main()",
+        "solve",
+        "long.toml",
+        "--drawings",
+        "0",
+    ]
+    running = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+    assert running.stderr is not None
+    seen = ""
+    while "starts solved" not in seen:
+        seen = running.stderr.readline()
+    time.sleep(0.2)
+    running.send_signal(signal.SIGINT)
+    running.communicate(timeout=60)
+    assert running.returncode == 130
+    table = pd.read_csv(tmp_path / "long-designs" / "candidates.csv")
+    assert len(table) > 0
+    assert json.loads((tmp_path / "long-designs" / "run.json").read_text())["complete"] is False

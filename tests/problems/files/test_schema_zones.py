@@ -1,0 +1,121 @@
+"""Zones and areas kept out in problem files."""
+
+import tomllib
+
+import numpy as np
+import pytest
+
+from grashof.problems import MotionTask, PathTask, Problem, ProblemError
+from grashof.problems.files.problem_schema import problem_from
+
+POSES = "poses = [[5, 4, 0], [3.5, 4, -5], [2, 3, -5], [1, 0, 0]]"
+HEAD = f'kind = "motion"\n[motion]\n{POSES}\n'
+
+
+def problem(text: str) -> Problem:
+    return problem_from(tomllib.loads(text), "test")
+
+
+def message(text: str) -> str:
+    with pytest.raises(ProblemError) as caught:
+        problem(text)
+    assert caught.value.__cause__ is None
+    return str(caught.value)
+
+
+KEEP_OUT = {
+    "[[[0, 0], [1, 0]]]": "[0] has 2 distinct corners; allowed are three or more",
+    "[[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 0], [2, 0]]]": (
+        "[1] has no area: its corners lie on a straight line"
+    ),
+    "[[[0, 0], [2, 2], [2, 0], [0, 2]]]": (
+        "[0] crosses or touches itself at (1, 1); allowed is a simple polygon"
+    ),
+    "[[[0, 0], [1, nan], [1, 1]]]": "[0][1] is [1.0, nan]; all numbers must be finite",
+    "[[[0, 0], [1, 'a'], [1, 1]]]": "[0][1][1] is 'a'; allowed is a number",
+    "[[[0, 0], [1, 1]], [[0, 0], [2, 0], [1, 1]], [[0, 0], [1, 0], [2, 0]]]": (
+        "[0] has 2 distinct corners; allowed are three or more\n"
+        "requirements.keep_out[2] has no area: its corners lie on a straight line"
+    ),
+    "[[0, 0]]": "[0][0] is 0; allowed is a corner [x, y]\n"
+    "requirements.keep_out[0][1] is 0; allowed is a corner [x, y]",
+    "3": " is 3; allowed is a list of polygons, each a list of corners [x, y]",
+}
+
+
+@pytest.mark.parametrize("text", KEEP_OUT)
+def test_bad_areas_are_named(text: str) -> None:
+    assert message(HEAD + f"[requirements]\nkeep_out = {text}") == f"requirements.keep_out{KEEP_OUT[text]}"
+
+
+def test_what_keeps_out_is_one_of_a_few() -> None:
+    allowed = "allowed is a list of o2, o4, a, b, p and links"
+    for text, found in (("['o2', 'o3']", "[1] is 'o3'"), ("[]", " is []")):
+        said = message(HEAD + f"[requirements]\nkeep_out_for = {text}")
+        assert said == f"requirements.keep_out_for{found}; {allowed}"
+
+
+LINE = 'kind = "path"\n[path]\npoints = [[20, 20], [20, 25], [21, 30]]\n'
+ZONES = HEAD + "within = [1, 2, 3, 4]\n"
+
+
+def test_zones_reach_their_fields() -> None:
+    motion = problem(ZONES + "angle_within_deg = 1.5\n[objective]\nmaximise = 'compactness'").task
+    assert isinstance(motion, MotionTask)
+    assert motion.within is not None
+    assert motion.angle_within is not None
+    assert motion.within.tolist() == [1, 2, 3, 4]
+    assert motion.angle_within.tolist() == [np.radians(1.5)] * 4
+    path = problem(LINE + "within = 2").task
+    assert isinstance(path, PathTask)
+    assert path.within is not None
+    assert path.within.tolist() == [2, 2, 2]
+
+
+NUMBER_OR_LIST = "allowed is a number, or a list of one for each target"
+BAD_ZONES = [
+    ("within = '6'", f"motion.within is '6'; {NUMBER_OR_LIST}"),
+    ("within = true", f"motion.within is true; {NUMBER_OR_LIST}"),
+    ("within = { x = 1 }", f"motion.within is a table; {NUMBER_OR_LIST}"),
+    ("within = [1, 2]", "motion.within has 2 numbers for 4 targets; "),
+    ("within = []", "motion.within has 0 numbers for 4 targets; "),
+    ("within = [1, true, 1, 1]", "motion.within[1] is true; allowed is a number"),
+    ("within = [1, [1], 1, 1]", "motion.within[1] is [1]; allowed is a number"),
+    ("within = 0", "motion.within is 0; allowed is "),
+    ("within = -1", "motion.within is -1; allowed is "),
+    ("within = nan", "motion.within is nan; allowed is "),
+    ("within = inf", "motion.within is inf; allowed is "),
+    ("within = 1e300", "motion.within is 1e+300; allowed is "),
+    ("within = [1, 1, 1, 1e-13]", "motion.within[3] is 1e-13; allowed is "),
+    ("angle_within_deg = 181", "motion.angle_within_deg is 181; allowed is 1e-10 to 180"),
+    ("angle_within_deg = [1, 1, 0, 1]", "motion.angle_within_deg[2] is 0; allowed is 1e-10 to 180"),
+    (
+        "within = 1\n[requirements]\nexact = true",
+        "motion.within does not go with requirements.exact = true; ",
+    ),
+    (
+        "within = 1\n[requirements]\nerror_factor = 2",
+        "requirements.error_factor does not go with motion.within; allowed is one of them",
+    ),
+    ("[requirements]\nerror_factor = 2", "requirements.error_factor needs least squares, exact = false"),
+    ("[requirements]\nerror_factor = 0.9", "requirements.error_factor is 0.9; allowed is 1 to 1e+06"),
+    ("[search]\neffort = 0.1", "search.effort is 0.1; allowed is 0.2 to 100"),
+    ("[search]\neffort = inf", "search.effort is inf; allowed is a finite number"),
+    (
+        "[requirements]\nexact = false\n[objective]\nmaximise = 'transmission'",
+        "objective is of no effect in least squares; ",
+    ),
+]
+
+
+@pytest.mark.parametrize(("text", "said"), BAD_ZONES)
+def test_bad_zones_are_one_line(text: str, said: str) -> None:
+    told = message(HEAD + text)
+    assert told.startswith(said)
+    assert "\n" not in told
+
+
+def test_zones_of_a_path_are_told_beside_other_errors() -> None:
+    told = message('kind = "path"\n[path]\npoints = [[0, 0], [1, 0]]\nwithin = [1, 2, -3]\n').splitlines()
+    assert told[0] == "path.points has 2 points; allowed are three or more"
+    assert told[1].startswith("path.within[2] is -3; allowed is ")
