@@ -145,7 +145,7 @@ def _signed_advantage(values: Values) -> float:
 
 # Of every quantity that is one number.
 MEASURES: dict[str, Callable[[Values], float]] = {
-    **{name: partial(_column, name) for name in ("o2_x", "o2_y", "o4_x", "o4_y", "p_u", "p_v")},
+    **{name: partial(_column, name) for row in FourBar.PARAMETERS if row.paired for name in row.columns},
     **{name: attrgetter(f"linkage.{name}") for name in FourBar.LENGTHS},
     "body_angle": lambda values: _angle_error(lambda _: float(values.linkage.body_angle), values),
     "ground_angle": attrgetter("linkage.theta1"),

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.arrays import Limits
+from grashof.problems.values.linkage import FourBar
 
 
 class Unit(StrEnum):
@@ -139,9 +140,9 @@ _DRIVEN: dict[str, Any] = {**_OVERALL, "better": -1, "needs": Needs.DYNAMICS}
 MEASURED: dict[str, Quantity] = {
     quantity.key: quantity
     for quantity in (
-        *(_length(f"{pivot}_{axis}") for pivot in ("o2", "o4") for axis in "xy"),
-        *(_length(f"r{link}", digits=4) for link in (1, 2, 3, 4)),
-        *(_length(f"p_{axis}") for axis in "uv"),
+        *(_length(name) for row in FourBar.PARAMETERS if row.kind == "place" for name in row.columns),
+        *(_length(name, digits=4) for name in FourBar.LENGTHS),
+        *(_length(name) for row in FourBar.PARAMETERS if row.kind == "arm" for name in row.columns),
         Quantity("body_angle", "body angle", Unit.ANGLE, about="orientation of the body minus theta3"),
         Quantity("theta2_start", "driver angle at the first target", Unit.ANGLE, Over.TARGETS),
         Quantity("theta2_end", "driver angle at the last target", Unit.ANGLE, Over.TARGETS),
@@ -178,7 +179,7 @@ MEASURED: dict[str, Quantity] = {
                 f"move_{name}", f"move by {name}", Unit.RATIO, Over.TARGETS, -1, Needs.MANUFACTURING,
                 about=_MOVED.format(name),
             )
-            for name in ("r1", "r2", "r3", "r4", "u", "v")
+            for name in FourBar.DIMENSIONS
         ),
         _length("worst_move", "worst move", over=Over.TARGETS, better=-1, needs=Needs.MANUFACTURING),
         Quantity("share_within_linear", "within, linear", Unit.SHARE, Over.TARGETS, +1, Needs.MANUFACTURING),

@@ -12,6 +12,7 @@ import numpy as np
 from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.checks import GREATEST, finite_number, limits, noted, number_within, refuse
 from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.linkage import FourBar
 from grashof.problems.values.quantities import MEASURED, Kind, Limit, Over, Quantity, Unit, limit
 from grashof.problems.values.read_only import ReadOnly
 from grashof.problems.values.task import Task
@@ -331,7 +332,7 @@ def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float | st
     return number_within(value, low, high, where)
 
 
-MAY_KEEP_OUT = ("o2", "o4", "a", "b", "p", "links")
+MAY_KEEP_OUT = (*FourBar.POINTS, "links")
 
 
 def _areas(values: Sequence[FloatArray]) -> tuple[FloatArray, ...]:
