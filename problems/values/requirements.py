@@ -190,7 +190,7 @@ class Requirements(ReadOnly):
         allowed=(0.0, 360.0),
     )
     driver_sense: str = limit(
-        Quantity("driver_sense", "sense of the driver", Unit.RATIO, Over.TARGETS, listed=False),
+        Quantity("driver_sense", "sense of the driver", Unit.RATIO, listed=False),
         Kind.WORD,
         default="either",
         words={"either": (-1.0, 1.0), "ccw": (1.0, 1.0), "cw": (-1.0, -1.0)},
@@ -254,6 +254,19 @@ class Requirements(ReadOnly):
         """Limits of r1, r2, r3, r4 (of resolved requirements)."""
         every = self.link_length or (0.0, np.inf)
         return self.r1 or every, self.r2 or every, self.r3 or every, self.r4 or every
+
+    def contradictions(self, task: Task) -> list[str]:
+        """What these requirements and a task do not agree on, a line each."""
+        wrong = []
+        if task.zones is not None and self.exact:
+            wrong.append(f"{task.kind}.within does not go with requirements.exact = true; it takes its place")
+        if task.zones is not None and self.error_factor is not None:
+            wrong.append(
+                f"requirements.error_factor does not go with {task.kind}.within; allowed is one of them"
+            )
+        if self.error_factor is not None and self.is_exact(task):
+            wrong.append("requirements.error_factor needs least squares, exact = false")
+        return wrong
 
     def is_exact(self, task: Task) -> bool:
         """Whether a design has to meet every target of the task.

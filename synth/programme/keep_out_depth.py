@@ -40,11 +40,14 @@ def depth(wanted: Requirements, name: str, points: ComplexArray) -> FloatArray:
     >>> depth(square, "o2", points).tolist(), depth(square, "a", points).tolist()
     ([1.0, 0.0, 0.0], [0.0, 0.0, 0.0])
     """
+    return inside(wanted, points) if name in points_kept_out(wanted) else np.zeros(points.shape)
+
+
+def inside(wanted: Requirements, points: ComplexArray) -> FloatArray:
+    """How deep points (...) lie inside the areas, whatever they are of; zero outside."""
     found = np.zeros(points.shape)
-    if name not in points_kept_out(wanted):
-        return found
     area = solid(wanted.keep_out)
-    inside = shapely.contains_xy(area, points.real, points.imag)
-    places = shapely.points(points.real[inside], points.imag[inside])
-    found[inside] = shapely.distance(shapely.boundary(area), places)
+    within = shapely.contains_xy(area, points.real, points.imag)
+    places = shapely.points(points.real[within], points.imag[within])
+    found[within] = shapely.distance(shapely.boundary(area), places)
     return np.where(found > TOUCHING, found, 0.0)

@@ -6,7 +6,7 @@ import numpy as np
 
 from grashof.problems import FourBar
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.synth.programme.keep_out_depth import depth, points_kept_out
+from grashof.synth.programme.keep_out_depth import inside, points_kept_out
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 from grashof.synth.theory.closure import coupler_of
@@ -42,8 +42,7 @@ def depth_on_the_way(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
                 tracks += [places[one] + share * (places[other] - places[one]) for share in _ALONG]
         track = np.concatenate(tracks, axis=1)
         closed = np.isfinite(track)
-        inside = depth(wanted, names[0], np.where(closed, track, 0.0))
-        deepest[rows] = np.where(closed, inside, 0.0).max(axis=1)
+        deepest[rows] = np.where(closed, inside(wanted, np.where(closed, track, 0.0)), 0.0).max(axis=1)
     return deepest
 
 
