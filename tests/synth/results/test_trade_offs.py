@@ -91,7 +91,7 @@ def leg(objective: str, least_deg: float) -> Problem:
 
 @pytest.mark.parametrize(("objective", "least_deg"), [("transmission", 35), ("compactness", 40)])
 def test_zones_of_the_walking_leg(objective: str, least_deg: float) -> None:
-    result = synthesize(leg(objective, least_deg), effort=0.35)
+    result = synthesize(leg(objective, least_deg), effort=0.2)
     best = result.best
     if objective == "transmission":
         assert mu_of(best) >= 71
@@ -108,12 +108,12 @@ def test_zones_of_the_walking_leg(objective: str, least_deg: float) -> None:
 
 def test_an_error_factor_bounds_the_error_and_lets_the_objective_decide(dshape: Result) -> None:
     wanted = replace(dshape.problem.requirements, error_factor=1.2)
-    result = synthesize(replace(dshape.problem, requirements=wanted), effort=0.35)
+    result = synthesize(replace(dshape.problem, requirements=wanted), effort=0.2)
     assert errors_of(result).max() <= 1.2 * errors_of(dshape).min() * (1 + 1e-6)
     assert mu_of(result.best) >= 65.1
     assert mu_of(result.best) == pytest.approx(max(mu_of(each) for each in result.candidates), abs=1e-6)
     small = replace(result.problem, objective=Objective(transmission=0, compactness=1))
-    assert synthesize(small, effort=0.35).best.verdict.size <= 334.5
+    assert synthesize(small, effort=0.2).best.verdict.size <= 334.5
 
 
 @pytest.mark.usefixtures("small_search")
