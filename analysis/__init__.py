@@ -70,10 +70,10 @@ from grashof.analysis.four_bar.transmission import (
     worst_transmission_cycle,
 )
 from grashof.analysis.judge.design import Constraint, Design
-from grashof.analysis.judge.limits import Defect
 from grashof.analysis.judge.over_task import OverTask, over_task
 from grashof.analysis.judge.tolerance import Robustness, robustness, sensitivity
-from grashof.analysis.judge.verify import Verdict, verify
+from grashof.analysis.judge.verdict import Defect, Verdict
+from grashof.analysis.judge.verify import verify
 
 __all__ = [
     "AppliedForce",

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
 from time import perf_counter
+from typing import Any
 
 from grashof.analysis.judge.design import Constraint
 from grashof.problems import Problem, ProblemError
@@ -81,7 +82,7 @@ def synthesize(
         raise ProblemError(f"problem is a {type(problem).__name__}; allowed is a Problem, such as load gives")
     if isinstance(constraints, str) or not isinstance(constraints, Sequence):
         raise ProblemError(f"constraints is {constraints!r}; allowed is a list of functions of a design")
-    given = {"starts": starts, "enough": enough, "seed": seed, "effort": effort}
+    given: dict[str, Any] = {"starts": starts, "enough": enough, "seed": seed, "effort": effort}
     search = replace(problem.search, **{name: n for name, n in given.items() if n is not None})
     whole_number(workers, 1, "workers")
     if time_limit is not None and finite_number(time_limit, "time_limit") <= 0:

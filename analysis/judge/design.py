@@ -10,6 +10,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.judge.verdict import Verdict
 from grashof.problems import FourBar, ProblemError
 from grashof.problems.values.arrays import FloatArray, IntArray
 
@@ -65,17 +66,23 @@ class Design:
             p=list(state.p),
         )
 
+    @classmethod
+    def judged(cls, linkage: FourBar, verdict: Verdict) -> Design:
+        """The numbers of a linkage with its verdict."""
+        visit = np.argsort(verdict.direction * verdict.theta2, kind="stable")
+        return cls.of(linkage, verdict.theta2[visit], verdict.assembly[visit])
+
 
 Constraint: TypeAlias = Callable[[Design], Any]  # zero or negative where it is met; a scalar or several
 
 
-def greatest(constraint: Constraint, design: Design) -> float:
-    """The greatest of the values of a constraint on the numbers of a design; NaN when one is none.
+def greatest(constraint: Constraint, design: Design, what: str = "constraint") -> float:
+    """The greatest of the values of a constraint, or objective, on the numbers of a design; NaN when one is.
 
     Raises
     ------
     ProblemError
-        The values are no numbers.
+        The values are not numbers.
 
     Examples
     --------
@@ -91,7 +98,7 @@ def greatest(constraint: Constraint, design: Design) -> float:
     except (TypeError, ValueError):
         given = " ".join(reprlib.repr(values).split())
         raise ProblemError(
-            f"constraint {name_of(constraint)} gives {given} on numbers; allowed is a scalar, or several"
+            f"{what} {name_of(constraint)} gives {given} on numbers; allowed is a scalar, or several"
         ) from None
 
 

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from grashof.analysis.curves.fit import coupler_fit_r2
-from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics
+from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.loads import Joint, Loads
 from grashof.analysis.forces.mass import stated_masses
-from grashof.analysis.four_bar.kinematics import Kinematics, solve_kinematics
+from grashof.analysis.four_bar.kinematics import solve_kinematics
 from grashof.analysis.four_bar.position import solve_position
-from grashof.analysis.judge.verify import Verdict
+from grashof.analysis.judge.verdict import Verdict
 from grashof.problems import DeadPositionWarning, DynamicsSpec, FourBar, Problem, Task
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics_spec import metres
@@ -97,50 +97,37 @@ def over_task(linkage: FourBar, problem: Problem, verdict: Verdict) -> OverTask:
     >>> round(found.omega4_max, 6), round(found.coupler_fit_r2, 6), round(found.torque_peak, 3)
     (1.260659, 0.999996, 2.757)
     """
-    linkage = _as_used(linkage, verdict)
+    linkage, spec = _as_used(linkage, verdict), problem.dynamics
     start, end = motion_ends(problem.task, verdict)
     theta2 = _sampled(linkage, start, end)
     if not _joined(linkage, verdict, theta2):
         return _NONE
-    spec = problem.dynamics
+    forces: tuple[float, ...] = ()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeadPositionWarning)
-        if spec is None:
-            peaks = _peaks(_moving(linkage, 1.0), theta2)
-            forces: dict[str, float] = {}
-        else:
-            metre = metres(problem.length_unit)
-            peaks, square = _peaks(_driven(linkage, spec, metre), theta2), np.inf
-            if np.isfinite(peaks[3]):
-                torque = _torque(linkage, spec, metre)
-                square = mean_over(lambda angle: torque(angle) ** 2, start, end)
-            forces = {
-                "torque_peak": float(peaks[3]),
-                "torque_rms": float(np.sqrt(square)),
-                "joint_force_peak": float(peaks[4]),
-            }
-    return OverTask(
-        omega4_max=float(peaks[0]),
-        point_speed_max=float(peaks[1]),
-        point_acceleration_max=float(peaks[2]),
-        coupler_fit_r2=float(coupler_fit_r2(linkage, start, end)),
-        **forces,
-    )
+        omega4, speed, acceleration = _peaks(_speeds(linkage, 1.0 if spec is None else spec.omega2), theta2)
+        if spec is not None:
+            loaded, square = _loaded(linkage, spec, metres(problem.length_unit)), np.inf
+            peak, force = _peaks(loaded, theta2)
+            if np.isfinite(peak):
+                square = mean_over(lambda angle: loaded(angle)[0] ** 2, start, end)
+            forces = float(peak), float(np.sqrt(square)), float(force)
+    fit = float(coupler_fit_r2(linkage, start, end))
+    return OverTask(float(omega4), float(speed), float(acceleration), fit, *forces)
 
 
 def torque_peak(linkage: FourBar, problem: Problem, verdict: Verdict) -> float:
     """The drive torque's greatest magnitude as `over_task` has it, N m; NaN without dynamics."""
-    spec = problem.dynamics
-    if spec is None:
+    if problem.dynamics is None:
         return np.nan
     linkage = _as_used(linkage, verdict)
     theta2 = _sampled(linkage, *motion_ends(problem.task, verdict))
     if not _joined(linkage, verdict, theta2):
         return np.nan
-    torque = _torque(linkage, spec, metres(problem.length_unit))
+    loaded = _loaded(linkage, problem.dynamics, metres(problem.length_unit))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeadPositionWarning)
-        return float(_peaks(lambda angle: torque(angle)[None], theta2)[0])
+        return float(_peaks(lambda angle: loaded(angle)[:1], theta2)[0])
 
 
 def _as_used(linkage: FourBar, verdict: Verdict) -> FourBar:
@@ -194,51 +181,26 @@ def mean_over(curve: Curves, start: float, end: float) -> float:
     return mean
 
 
-def _moving(linkage: FourBar, omega2: float) -> Curves:
+def _speeds(linkage: FourBar, omega2: float) -> Curves:
+    """|omega4|, speed and acceleration of P, each a row."""
+
     def curves(theta2: FloatArray) -> FloatArray:
-        return np.stack(_speeds(solve_kinematics(linkage, theta2, omega2)))
+        state = solve_kinematics(linkage, theta2, omega2)
+        return np.stack([np.abs(state.omega4), state.p.speed, state.p.acceleration_magnitude])
 
     return curves
 
 
-def _speeds(state: Kinematics) -> list[FloatArray]:
-    point = state.p
-    return [np.abs(state.omega4), point.speed, point.acceleration_magnitude]
-
-
-def _driven(linkage: FourBar, spec: DynamicsSpec, metre: float) -> Curves:
-    """Speeds, |torque| in N m, and the greatest joint force in N, each a row."""
-    run = _run(linkage, spec, metre)
-
-    def curves(theta2: FloatArray) -> FloatArray:
-        state, found = run(theta2)
-        force = np.max([found.joint_force(joint) for joint in Joint], axis=0)
-        return np.stack([*_speeds(state), metre**2 * np.abs(found.torque), metre * force])
-
-    return curves
-
-
-def _torque(linkage: FourBar, spec: DynamicsSpec, metre: float) -> Curves:
-    """|torque| in N m."""
-    run = _run(linkage, spec, metre)
-
-    def curve(theta2: FloatArray) -> FloatArray:
-        torque: FloatArray = metre**2 * np.abs(run(theta2)[1].torque)
-        return torque
-
-    return curve
-
-
-def _run(
-    linkage: FourBar, spec: DynamicsSpec, metre: float
-) -> Callable[[FloatArray], tuple[Kinematics, Dynamics]]:
+def _loaded(linkage: FourBar, spec: DynamicsSpec, metre: float) -> Curves:
+    """|torque| in N m and the greatest joint force in N, each a row."""
     masses, loads = stated_masses(linkage, spec), Loads(gravity=np.array(spec.gravity) / metre)
 
-    def run(theta2: FloatArray) -> tuple[Kinematics, Dynamics]:
-        state = solve_kinematics(linkage, theta2, spec.omega2)
-        return state, inverse_dynamics(state, masses, loads)
+    def curves(theta2: FloatArray) -> FloatArray:
+        found = inverse_dynamics(solve_kinematics(linkage, theta2, spec.omega2), masses, loads)
+        force = np.max([found.joint_force(joint) for joint in Joint], axis=0)
+        return np.stack([metre**2 * np.abs(found.torque), metre * force])
 
-    return run
+    return curves
 
 
 def _sampled(linkage: FourBar, start: float, end: float) -> FloatArray:

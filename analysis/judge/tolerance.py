@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.four_bar.transmission import transmission_angle
-from grashof.analysis.judge.verify import Verdict
+from grashof.analysis.judge.verdict import Verdict
 from grashof.problems import FourBar, Manufacturing, Task
 from grashof.problems.values.arrays import BoolArray, FloatArray
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
 from grashof.analysis.four_bar.mobility import (
-    GrashofClass,
     branch_index,
     circuit_index,
     full_rotation,
@@ -16,80 +15,15 @@ from grashof.analysis.four_bar.mobility import (
     passes_change_point,
     rotatability,
 )
-from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.four_bar.reach import diagonal, reach_box
 from grashof.analysis.four_bar.transmission import worst_transmission, worst_transmission_cycle
 from grashof.analysis.judge.design import Constraint, Design, greatest, name_of
-from grashof.analysis.judge.limits import SLACK, Defect, angles, geometry, places
+from grashof.analysis.judge.limits import SLACK, missed
+from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.meet import meet
 from grashof.analysis.judge.task_motion import STEADY, Targets, TaskMotion
-from grashof.problems import FourBar, Requirements, Rotatability, Task, TransmissionOver
-from grashof.problems.values.arrays import FloatArray, IntArray
-
-
-@dataclass(frozen=True, slots=True)
-class Verdict:
-    """What a linkage does with a task, and every defect.
-
-    Parameters
-    ----------
-    theta2 : ndarray, shape (N,), rad
-        Driver angle at each target, unwrapped along the task motion.
-    assembly : ndarray of int, shape (N,)
-        Assembly at each target.
-    position_error : ndarray, shape (N,), length
-        NaN where a target has no position.
-    angle_error : ndarray, shape (N,), rad
-        NaN where a target has no angle.
-    square : float, length squared
-        What least squares makes small: the weighted sum of |dp|^2 + (angle_length * dangle)^2.
-    direction : int
-        Sense of the driver, +1 counter-clockwise.
-    grashof_class : GrashofClass
-    full_rotation, circuit_ok, branch_ok, order_ok : bool
-    transmission_min_task, transmission_min_cycle : float, rad
-        Worst min(mu, pi - mu) over the task motion and over the turn.
-    size : float, length
-        Diagonal of the box around O2, O4 and all that A, B and P reach in the task motion.
-    defects : tuple of Defect
-        Empty for a design that does what is required.
-    """
-
-    theta2: FloatArray
-    assembly: IntArray
-    position_error: FloatArray
-    angle_error: FloatArray
-    square: float
-    direction: int
-    grashof_class: GrashofClass
-    full_rotation: bool
-    circuit_ok: bool
-    branch_ok: bool
-    order_ok: bool
-    transmission_min_task: float
-    transmission_min_cycle: float
-    size: float
-    defects: tuple[Defect, ...]
-
-    @property
-    def ok(self) -> bool:
-        """Whether the linkage has no defect."""
-        return not self.defects
-
-    @property
-    def error_max(self) -> float:
-        """Greatest distance from a target position."""
-        return float(np.nanmax(self.position_error))
-
-    @property
-    def error_sse(self) -> float:
-        """Sum of squared distances from the target positions."""
-        return float(np.nansum(self.position_error**2))
-
-    @property
-    def error_rms(self) -> float:
-        """Root mean square distance from the target positions."""
-        return float(np.sqrt(np.nanmean(self.position_error**2)))
+from grashof.analysis.judge.verdict import Defect, Verdict
+from grashof.problems import FourBar, Problem, Requirements, Rotatability, Task
 
 
 def verify(
@@ -99,6 +33,7 @@ def verify(
     constraints: Sequence[Constraint] = (),
     *,
     most_square: float = np.inf,
+    problem: Problem | None = None,
 ) -> Verdict:
     """Judge a single linkage.
 
@@ -112,6 +47,8 @@ def verify(
         The user's own: functions of a `Design`, zero or negative where met.
     most_square : float, length squared
         Up to which `Verdict.square` is allowed: what ``error_factor`` makes of the least one found.
+    problem : Problem, optional
+        That the task is of: what limits of torques, forces or made linkages need.
 
     Returns
     -------
@@ -140,24 +77,7 @@ def verify(
     # Without a motion that joins the targets nothing is transmitted.
     task_worst = float(worst_transmission(linkage, motion.start, motion.end)) if branch_ok else 0.0
     cycle_worst = float(worst_transmission_cycle(linkage))
-    over_task = wanted.transmission_over is TransmissionOver.TASK
-    worst = task_worst if over_task else cycle_worst
-    defects = [
-        *(_exactness(targets, task, wanted) if wanted.is_exact(task) else []),
-        *_zones(targets, task),
-        *_whole_error(targets, task, most_square),
-        *_same_branch(circuit_ok, branch_ok, int(linkage.assembly), targets, wanted),
-        *_order(motion, wanted),
-        *_rotatability(linkage, task, wanted),
-        *_covered(targets),
-        *(_least_transmission(worst, wanted) if branch_ok or not wanted.same_branch else []),
-        *geometry(linkage, task, wanted),
-        *places(linkage, solve_position(linkage, targets.theta2, targets.assembly), task, wanted),
-        *angles(linkage, targets, wanted),
-        *_own(linkage, targets, motion, constraints),
-        *(_kept_out(linkage, targets, motion, task, wanted, joined=branch_ok) if wanted.keep_out else []),
-    ]
-    return Verdict(
+    verdict = Verdict(
         theta2=motion.theta2,
         assembly=targets.assembly,
         position_error=targets.position_error,
@@ -172,8 +92,21 @@ def verify(
         transmission_min_task=task_worst,
         transmission_min_cycle=cycle_worst,
         size=diagonal(reach_box(linkage, motion.start, motion.end)),
-        defects=tuple(defects),
+        defects=(),
     )
+    defects = (
+        *(_exactness(targets, task, wanted) if wanted.is_exact(task) else []),
+        *_zones(targets, task),
+        *_whole_error(targets, task, most_square),
+        *_same_branch(circuit_ok, branch_ok, int(linkage.assembly), targets, wanted),
+        *_order(motion, wanted),
+        *_rotatability(linkage, task, wanted),
+        *_covered(targets),
+        *missed(Values(linkage, verdict, problem or Problem(task=task)), wanted),
+        *(_own(Design.judged(linkage, verdict), constraints) if constraints else []),
+        *(_kept_out(linkage, targets, motion, task, wanted, joined=branch_ok) if wanted.keep_out else []),
+    )
+    return replace(verdict, defects=defects)
 
 
 def _square(targets: Targets, task: Task) -> float:
@@ -182,19 +115,18 @@ def _square(targets: Targets, task: Task) -> float:
 
 
 def _exactness(targets: Targets, task: Task, wanted: Requirements) -> list[Defect]:
-    worst = float(np.nanmax(targets.position_error))
-    allowed = wanted.tolerance * task.size
-    defects = []
-    if not worst <= allowed:
-        miss = worst / task.size - wanted.tolerance
-        defects.append(Defect("exact", "the largest position error", worst, f"up to {allowed:.6g}", miss))
-    turned = float(np.nanmax(targets.angle_error, initial=0.0))
-    if not turned * task.angle_length <= allowed:
-        limit = float(np.degrees(allowed / task.angle_length))
-        miss = turned - allowed / task.angle_length
-        found = float(np.degrees(turned))
-        defects.append(Defect("exact", "the largest angle error in deg", found, f"up to {limit:.6g}", miss))
-    return defects
+    allowed, deg = wanted.tolerance * task.size, float(np.degrees(1.0))
+    errors = (
+        ("position error", targets.position_error, allowed, task.size, 1.0),
+        ("angle error in deg", targets.angle_error, allowed / task.angle_length, 1.0, deg),
+    )
+    return [
+        Defect(
+            "exact", f"the largest {what}", worst * unit, f"up to {most * unit:.6g}", (worst - most) / size
+        )
+        for what, error, most, size, unit in errors
+        if not (worst := float(np.nanmax(error, initial=0.0))) <= most
+    ]
 
 
 def _zones(targets: Targets, task: Task) -> list[Defect]:
@@ -282,28 +214,11 @@ def _covered(targets: Targets) -> list[Defect]:
     return [Defect("rotatability", what, missed, "0", 1.0)]
 
 
-def _least_transmission(worst: float, wanted: Requirements) -> list[Defect]:
-    least = np.radians(wanted.transmission_min_deg)
-    if worst >= least - SLACK:
-        return []
-    what = f"the worst transmission angle over the {wanted.transmission_over} in deg"
-    allowed = f"from {wanted.transmission_min_deg:g}"
-    return [Defect("transmission_min_deg", what, float(np.degrees(worst)), allowed, float(least - worst))]
-
-
-def _own(
-    linkage: FourBar, targets: Targets, motion: TaskMotion, constraints: Sequence[Constraint]
-) -> list[Defect]:
-    if not constraints:
-        return []
-    visit = np.argsort(motion.direction * motion.theta2, kind="stable")
-    design = Design.of(linkage, motion.theta2[visit], targets.assembly[visit])
-    defects = []
-    for constraint in constraints:
-        value = greatest(constraint, design)
-        if not value <= SLACK:
-            defects.append(Defect("constraints", name_of(constraint), value, "up to 0", value))
-    return defects
+def _own(design: Design, constraints: Sequence[Constraint]) -> list[Defect]:
+    values = [(name_of(constraint), greatest(constraint, design)) for constraint in constraints]
+    return [
+        Defect("constraints", name, value, "up to 0", value) for name, value in values if not value <= SLACK
+    ]
 
 
 def _kept_out(

@@ -29,7 +29,7 @@ from grashof.problems.values.objective import GOALS, Objective
 from grashof.problems.values.path_task import PathTask
 from grashof.problems.values.quantities import Needs, Quantity, Unit
 from grashof.problems.values.read_only import ReadOnly
-from grashof.problems.values.requirements import Requirements
+from grashof.problems.values.requirements import QUANTITIES, Requirements
 from grashof.problems.values.task import Task
 
 LEAST_TOLERANCE = 1e-4  # sizes: from here on a tolerance is a zone about each target
@@ -149,11 +149,17 @@ class Problem(ReadOnly):
         asked = {f"objective.maximise.{name}": GOALS[name] for name, w in self.objective.stated.items() if w}
         asked |= {f"requirements.{name}": limit.quantity for name, limit in self.requirements.limited.items()}
         missing = {
-            Needs.DYNAMICS: self.dynamics is None and "dynamics is missing",
-            Needs.MANUFACTURING: self.manufacturing is None and "manufacturing is missing",
-            Needs.CLOSED: not self.task.closed and f"{self.task.kind}.closed is false; allowed is true",
+            Needs.DYNAMICS: "dynamics is missing",
+            Needs.MANUFACTURING: "manufacturing is missing",
+            Needs.CLOSED: f"{self.task.kind}.closed is false; allowed is true",
+            Needs.LEAST_SQUARES: "requirements.exact = false is missing",
+            Needs.ANGLES: f"{self.task.kind} has no angles",
         }
-        wrong = [f"{why}; {where} needs it" for where, q in asked.items() if (why := missing.get(q.needs))]
+        wrong = [
+            f"{missing[quantity.needs]}; {where} needs it"
+            for where, quantity in asked.items()
+            if not self.states(quantity.needs)
+        ]
         if not self.requirements.same_branch:
             wrong += [
                 f"requirements.same_branch is false; allowed is true when {where} is given"
@@ -161,6 +167,17 @@ class Problem(ReadOnly):
                 if quantity.needs is Needs.DYNAMICS
             ]
         return wrong
+
+    def states(self, needs: Needs) -> bool:
+        """Whether it states what a quantity needs to have a value."""
+        stated = {
+            Needs.DYNAMICS: self.dynamics is not None,
+            Needs.MANUFACTURING: self.manufacturing is not None,
+            Needs.CLOSED: self.task.closed,
+            Needs.LEAST_SQUARES: not self.requirements.is_exact(self.task),
+            Needs.ANGLES: bool(self.task.has_angle.any()),
+        }
+        return stated.get(needs, True)
 
     def _undecided(self) -> list[str]:
         """What is contradictory about whether the error or the objective decides."""
@@ -175,6 +192,12 @@ class Problem(ReadOnly):
         if self.objective != Objective() and not self.by_objective:
             wrong.append(NO_OBJECTIVE)
         return wrong
+
+    @property
+    def goals(self) -> tuple[tuple[Quantity, float], ...]:
+        """What the objective weighs, with its weights; the transmission angle over the motion required."""
+        goals = self.objective.goals.items()
+        return tuple((self.requirements.meant(QUANTITIES[key]), weight) for key, weight in goals)
 
     @property
     def by_objective(self) -> bool:

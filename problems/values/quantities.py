@@ -7,6 +7,7 @@ can steer (`grashof.synth.programme.formulas`); the two share nothing but the ke
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum, StrEnum, auto
 from typing import Any
@@ -14,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.arrays import Limits
+from grashof.problems.values.linkage import FourBar
 
 
 class Unit(StrEnum):
@@ -40,6 +42,10 @@ class Unit(StrEnum):
         """Factor from values inside to those in files and tables."""
         return float(np.degrees(1.0)) if self is Unit.ANGLE else 1.0
 
+    def of(self, length_unit: str) -> str:
+        """The unit with the problem's own unit of length in it, where that has a name."""
+        return self.replace("length", length_unit or "length")
+
 
 class Over(StrEnum):
     """Where a quantity is taken."""
@@ -53,11 +59,12 @@ class Over(StrEnum):
 class Needs(Enum):
     """What the problem has to state for a quantity to have a value."""
 
-    NOTHING = auto()
-    DYNAMICS = auto()
-    MANUFACTURING = auto()
-    CLOSED = auto()
-    LEAST_SQUARES = auto()
+    NOTHING = "nothing"
+    DYNAMICS = "dynamics"
+    MANUFACTURING = "manufacturing"
+    CLOSED = "a closed path"
+    LEAST_SQUARES = "exact = false"
+    ANGLES = "targets with angles"
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +86,11 @@ class Quantity:
     about : str
         What it is, where its label does not say so.
     listed : bool
-        Whether it is a column; what has several parts, such as a place, is none.
+        Whether it is a column; what has several parts, such as a place, is not.
+    words : str
+        What it is called in a sentence, where that is not its label.
+    short : str
+        Heading where there is little room, where that is not its label.
     """
 
     key: str
@@ -91,6 +102,21 @@ class Quantity:
     digits: int = 0
     about: str = ""
     listed: bool = True
+    words: str = ""
+    short: str = ""
+
+    def __post_init__(self) -> None:
+        for name in ("words", "short"):
+            object.__setattr__(self, name, getattr(self, name) or self.label)
+
+    def range_text(self, limits: Limits) -> str:
+        """Limits as files state them: "0.3 to 8", "from 15", "up to 20", "30"; empty where none are."""
+        low, high = (f"{side * self.unit.shown:.6g}" for side in limits)
+        if np.isinf(limits[0]):
+            return "" if np.isinf(limits[1]) else f"up to {high}"
+        if np.isinf(limits[1]):
+            return f"from {low}"
+        return low if low == high else f"{low} to {high}"
 
     @property
     def column(self) -> str:
@@ -104,6 +130,7 @@ def _length(key: str, label: str = "", **others: Any) -> Quantity:
 
 _BOX = "diagonal of the box around O2, O4 and all that A, B and P reach from the first target to the last"
 _FITTED = "what least squares makes small: root mean square of positions and angles together, weighted"
+_WORST = "worst transmission angle over the"
 _MOVED = "how far the worst target moves per unit of change of {}"
 _MISSED: dict[str, Any] = {"over": Over.TARGETS, "better": -1}
 _OVERALL: dict[str, Any] = {"over": Over.TASK, "about": "from the first target to the last"}
@@ -113,27 +140,37 @@ _DRIVEN: dict[str, Any] = {**_OVERALL, "better": -1, "needs": Needs.DYNAMICS}
 MEASURED: dict[str, Quantity] = {
     quantity.key: quantity
     for quantity in (
-        *(_length(f"{pivot}_{axis}") for pivot in ("o2", "o4") for axis in "xy"),
-        *(_length(f"r{link}", digits=4) for link in (1, 2, 3, 4)),
-        *(_length(f"p_{axis}") for axis in "uv"),
+        *(_length(name) for row in FourBar.PARAMETERS if row.kind == "place" for name in row.columns),
+        *(_length(name, digits=4) for name in FourBar.LENGTHS),
+        *(_length(name) for row in FourBar.PARAMETERS if row.kind == "arm" for name in row.columns),
         Quantity("body_angle", "body angle", Unit.ANGLE, about="orientation of the body minus theta3"),
-        Quantity("theta2_start", "theta2 at the first target", Unit.ANGLE, Over.TARGETS),
-        Quantity("theta2_end", "theta2 at the last target", Unit.ANGLE, Over.TARGETS),
+        Quantity("theta2_start", "driver angle at the first target", Unit.ANGLE, Over.TARGETS),
+        Quantity("theta2_end", "driver angle at the last target", Unit.ANGLE, Over.TARGETS),
         _length("error", "error rms", digits=3, needs=Needs.LEAST_SQUARES, about=_FITTED, **_MISSED),
         _length("error_max", "largest position error", over=Over.TARGETS, better=-1),
         _length("error_rms", "position error rms", over=Over.TARGETS, better=-1),
         Quantity("error_sse", "sum of squared position errors", Unit.AREA, Over.TARGETS, -1),
         Quantity("angle_error_max", "largest angle error", Unit.ANGLE, Over.TARGETS, -1),
         Quantity("angle_error_rms", "angle error rms", Unit.ANGLE, Over.TARGETS, -1),
-        Quantity("transmission_min_task", "mu task", Unit.ANGLE, Over.TASK, +1, digits=3),
-        Quantity("transmission_min_cycle", "mu turn", Unit.ANGLE, Over.CYCLE, +1, digits=3),
+        Quantity(
+            "transmission_min_task", "mu task", Unit.ANGLE, Over.TASK, +1, digits=3, words=f"{_WORST} task"
+        ),
+        Quantity(
+            "transmission_min_cycle", "mu turn", Unit.ANGLE, Over.CYCLE, +1, digits=3, words=f"{_WORST} turn"
+        ),
         Quantity("omega4_max", "omega4", Unit.ANGULAR_VELOCITY, better=-1, **_OVERALL),
         Quantity("point_speed_max", "speed of P", Unit.VELOCITY, better=-1, **_OVERALL),
         Quantity("point_acceleration_max", "acceleration of P", Unit.ACCELERATION, better=-1, **_OVERALL),
-        Quantity("torque_peak", "peak torque, task", Unit.TORQUE, digits=4, **_DRIVEN),
-        Quantity("torque_rms", "rms torque, task", Unit.TORQUE, **_DRIVEN),
-        Quantity("joint_force_peak", "peak force, task", Unit.FORCE, digits=4, **_DRIVEN),
-        Quantity("coupler_fit_r2", "fit of P", Unit.SHARE, better=+1, **_OVERALL),
+        Quantity(
+            "torque_peak", "peak torque, task", Unit.TORQUE, digits=4, words="peak torque", short="torque",
+            **_DRIVEN,
+        ),
+        Quantity("torque_rms", "rms torque, task", Unit.TORQUE, words="rms torque", **_DRIVEN),
+        Quantity(
+            "joint_force_peak", "peak force, task", Unit.FORCE, digits=4, words="peak joint force",
+            short="force", **_DRIVEN,
+        ),
+        Quantity("coupler_fit_r2", "fit of P", Unit.RATIO, better=+1, **_OVERALL),
         _length("size", over=Over.TASK, better=-1, digits=4, about=_BOX),
         _length("hausdorff", "Hausdorff distance", over=Over.CYCLE, better=-1, needs=Needs.CLOSED),
         _length("frechet", "Fréchet distance", over=Over.CYCLE, better=-1, needs=Needs.CLOSED),
@@ -142,7 +179,7 @@ MEASURED: dict[str, Quantity] = {
                 f"move_{name}", f"move by {name}", Unit.RATIO, Over.TARGETS, -1, Needs.MANUFACTURING,
                 about=_MOVED.format(name),
             )
-            for name in ("r1", "r2", "r3", "r4", "u", "v")
+            for name in FourBar.DIMENSIONS
         ),
         _length("worst_move", "worst move", over=Over.TARGETS, better=-1, needs=Needs.MANUFACTURING),
         Quantity("share_within_linear", "within, linear", Unit.SHARE, Over.TARGETS, +1, Needs.MANUFACTURING),
@@ -162,6 +199,7 @@ class Kind(Enum):
     EQUAL = auto()  # an angle
     INSIDE = auto()  # a box in the plane
     ON_BODY = auto()  # a box in the body's frame
+    WORD = auto()  # one of several words, each of which allows a range
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,12 +214,20 @@ class Limit:
         Least and greatest number that may be asked for, as files state it.
     usual : tuple of float, optional
         Limits where none are given, in sizes of the task.
+    words : mapping of str to tuple of float
+        What each word allows.
     """
 
     quantity: Quantity
     kind: Kind
     allowed: tuple[float, float]
     usual: tuple[float, float] | None = None
+    words: Mapping[str, Limits] = field(default_factory=dict)
+
+    @property
+    def widest(self) -> str:
+        """The word that allows most."""
+        return max(self.words, key=lambda word: self.words[word][1] - self.words[word][0])
 
     def ranges(self, value: Any) -> dict[str, Limits]:
         """What a value of the field allows, in rad where it is an angle: by axis of a box, else by "".
@@ -193,6 +239,8 @@ class Limit:
         """
         if self.kind in (Kind.INSIDE, Kind.ON_BODY):
             return {"x": value.x, "y": value.y}
+        if self.kind is Kind.WORD:
+            return {"": self.words[value]}
         low, high = value if self.kind is Kind.BETWEEN else (value, value)
         if self.kind is Kind.AT_LEAST:
             high = np.inf
@@ -208,7 +256,8 @@ def limit(
     default: Any = None,
     allowed: tuple[float, float] = (-np.inf, np.inf),
     usual: tuple[float, float] | None = None,
+    words: Mapping[str, Limits] | None = None,
 ) -> Any:
     """A field of `Requirements` that limits a quantity: one of `MEASURED`, or one declared with the field."""
     limited = MEASURED[quantity] if isinstance(quantity, str) else quantity
-    return field(default=default, metadata={"limit": Limit(limited, kind, allowed, usual)})
+    return field(default=default, metadata={"limit": Limit(limited, kind, allowed, usual, words or {})})

@@ -12,6 +12,7 @@ import numpy as np
 from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.checks import GREATEST, finite_number, limits, noted, number_within, refuse
 from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.linkage import FourBar
 from grashof.problems.values.quantities import MEASURED, Kind, Limit, Over, Quantity, Unit, limit
 from grashof.problems.values.read_only import ReadOnly
 from grashof.problems.values.task import Task
@@ -48,7 +49,10 @@ class Box:
         refuse(wrong)
 
 
-_LENGTHS = (0.0, GREATEST)
+_SWING = "of link 4 between its limit positions, over the task where the driver cannot turn"
+_STROKES = "time of the slow stroke of link 4 over that of the quick one"
+_FIRST_TO_LAST = "from the first target to the last"
+_FROM_ZERO = (0.0, GREATEST)
 
 
 def _place(name: str, over: Over) -> Quantity:
@@ -96,6 +100,20 @@ class Requirements(ReadOnly):
         Direction O2->O4.
     theta2_start_deg : float, deg, optional
         Driver angle at the first target.
+    size, torque_peak, worst_move, ... : tuple of float, optional
+        (lo, hi) for whatever candidates.csv lists; see `grashof.problems.values.quantities`.
+    driver_rotation_deg : tuple of float, deg, optional
+        (lo, hi) for the driver rotation from the first target to the last.
+    driver_sense : {"either", "ccw", "cw"}
+        Sense of the driver from the first target to the last: counter-clockwise or clockwise.
+    output_swing_deg : tuple of float, deg, optional
+        (lo, hi) for the swing of link 4 between its limit positions, O2, A, B in line; over the task motion
+        where the driver does not turn fully, and 360 where link 4 does.
+    time_ratio : tuple of float, optional
+        (lo, hi) for the time of the slow stroke of link 4 over that of the quick one, the driver turning
+        steadily; of a driver that does not turn fully there is none.
+    mechanical_advantage_min : float, optional
+        Least ``|omega2 / omega4|`` over the task motion.
     keep_out : sequence of array_like, shape (M, 2), length
         Polygons; their boundary may be touched. Where two overlap or share a side they are one.
     keep_out_for : sequence of {"o2", "o4", "a", "b", "p", "links"}
@@ -111,7 +129,7 @@ class Requirements(ReadOnly):
     order: bool = True
     same_branch: bool = True
     transmission_min_deg: float = limit(
-        Quantity("transmission", "transmission angle", Unit.ANGLE, Over.TASK, +1, listed=False),
+        Quantity("transmission", "mu", Unit.ANGLE, Over.TASK, +1, listed=False),
         Kind.AT_LEAST,
         default=0.0,
         allowed=(0.0, 90.0),
@@ -120,21 +138,21 @@ class Requirements(ReadOnly):
     link_length: Limits | None = limit(
         Quantity("link_length", "link length", Unit.LENGTH, listed=False),
         Kind.BETWEEN,
-        allowed=_LENGTHS,
+        allowed=_FROM_ZERO,
         usual=(0.01, 20.0),
     )
-    r1: Limits | None = limit("r1", Kind.BETWEEN, allowed=_LENGTHS)
-    r2: Limits | None = limit("r2", Kind.BETWEEN, allowed=_LENGTHS)
-    r3: Limits | None = limit("r3", Kind.BETWEEN, allowed=_LENGTHS)
-    r4: Limits | None = limit("r4", Kind.BETWEEN, allowed=_LENGTHS)
+    r1: Limits | None = limit("r1", Kind.BETWEEN, allowed=_FROM_ZERO)
+    r2: Limits | None = limit("r2", Kind.BETWEEN, allowed=_FROM_ZERO)
+    r3: Limits | None = limit("r3", Kind.BETWEEN, allowed=_FROM_ZERO)
+    r4: Limits | None = limit("r4", Kind.BETWEEN, allowed=_FROM_ZERO)
     coupler_arms: Limits | None = limit(
         Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False),
         Kind.BETWEEN,
-        allowed=_LENGTHS,
+        allowed=_FROM_ZERO,
         usual=(0.0, 30.0),
     )
     link_ratio_max: float = limit(
-        Quantity("link_ratio", "longest to shortest link", Unit.RATIO, better=-1, listed=False),
+        Quantity("link_ratio", "ratio of longest to shortest link", Unit.RATIO, better=-1, listed=False),
         Kind.AT_MOST,
         default=20.0,
         allowed=(1.0, 1e6),
@@ -147,6 +165,44 @@ class Requirements(ReadOnly):
         Quantity("ground_angle", "direction of O2O4", Unit.ANGLE, listed=False), Kind.EQUAL
     )
     theta2_start_deg: float | None = limit("theta2_start", Kind.EQUAL)
+    size: Limits | None = limit("size", Kind.BETWEEN, allowed=_FROM_ZERO)
+    omega4_max: Limits | None = limit("omega4_max", Kind.BETWEEN, allowed=_FROM_ZERO)
+    point_speed_max: Limits | None = limit("point_speed_max", Kind.BETWEEN, allowed=_FROM_ZERO)
+    point_acceleration_max: Limits | None = limit("point_acceleration_max", Kind.BETWEEN, allowed=_FROM_ZERO)
+    torque_peak: Limits | None = limit("torque_peak", Kind.BETWEEN, allowed=_FROM_ZERO)
+    torque_rms: Limits | None = limit("torque_rms", Kind.BETWEEN, allowed=_FROM_ZERO)
+    joint_force_peak: Limits | None = limit("joint_force_peak", Kind.BETWEEN, allowed=_FROM_ZERO)
+    coupler_fit_r2: Limits | None = limit("coupler_fit_r2", Kind.BETWEEN, allowed=(-GREATEST, 1.0))
+    hausdorff: Limits | None = limit("hausdorff", Kind.BETWEEN, allowed=_FROM_ZERO)
+    frechet: Limits | None = limit("frechet", Kind.BETWEEN, allowed=_FROM_ZERO)
+    worst_move: Limits | None = limit("worst_move", Kind.BETWEEN, allowed=_FROM_ZERO)
+    share_within_made: Limits | None = limit("share_within_made", Kind.BETWEEN, allowed=(0.0, 1.0))
+    driver_rotation_deg: Limits | None = limit(
+        Quantity("driver_rotation", "driver rotation", Unit.ANGLE, Over.TARGETS, about=_FIRST_TO_LAST),
+        Kind.BETWEEN,
+        allowed=(0.0, 360.0),
+    )
+    driver_sense: str = limit(
+        Quantity("driver_sense", "sense of the driver", Unit.RATIO, Over.TARGETS, listed=False),
+        Kind.WORD,
+        default="either",
+        words={"either": (-1.0, 1.0), "ccw": (1.0, 1.0), "cw": (-1.0, -1.0)},
+    )
+    output_swing_deg: Limits | None = limit(
+        Quantity("output_swing", "output swing", Unit.ANGLE, Over.CYCLE, +1, about=_SWING),
+        Kind.BETWEEN,
+        allowed=(0.0, 360.0),
+    )
+    time_ratio: Limits | None = limit(
+        Quantity("time_ratio", "time ratio", Unit.RATIO, Over.CYCLE, +1, about=_STROKES),
+        Kind.BETWEEN,
+        allowed=(1.0, 1e6),
+    )
+    mechanical_advantage_min: float | None = limit(
+        Quantity("mechanical_advantage", "mechanical advantage", Unit.RATIO, Over.TASK, +1, listed=False),
+        Kind.AT_LEAST,
+        allowed=(0.0, 1e6),
+    )
     keep_out: tuple[FloatArray, ...] = ()
     keep_out_for: tuple[str, ...] = ("o2", "o4")
 
@@ -229,6 +285,11 @@ class Requirements(ReadOnly):
         """What is limited, by field: the fields that are stated."""
         return {name: limited for name, limited in LIMITS.items() if getattr(self, name) is not None}
 
+    def meant(self, quantity: Quantity) -> Quantity:
+        """The quantity itself; of the transmission angle, the one over the motion that is required."""
+        over = quantity.key == "transmission"
+        return MEASURED[f"transmission_min_{self.transmission_over}"] if over else quantity
+
     def ranges(self, name: str) -> dict[str, Limits]:
         """What a field allows (see `Limit.ranges`); empty where it limits nothing."""
         value = getattr(self, name) if name in LIMITS else None
@@ -242,11 +303,19 @@ LIMITS: dict[str, Limit] = {
     field.name: field.metadata["limit"] for field in fields(Requirements) if "limit" in field.metadata
 }
 
+_ADVANTAGE = Quantity(
+    "mechanical_advantage_min",
+    "mechanical advantage",
+    Unit.RATIO,
+    Over.TASK,
+    about="omega2 / omega4 where it is least over the task motion, with its sign",
+)
 # All that can be said of a design, by key; those that are listed in the order of the columns.
 QUANTITIES = MEASURED | {limited.quantity.key: limited.quantity for limited in LIMITS.values()}
+QUANTITIES[_ADVANTAGE.key] = _ADVANTAGE
 
 
-def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float:
+def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float | str:
     if limited.kind in (Kind.INSIDE, Kind.ON_BODY):
         if not isinstance(value, Box):
             raise ProblemError(f"{where} is {value!r}; allowed is a Box")
@@ -254,12 +323,16 @@ def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float:
     low, high = limited.allowed
     if limited.kind is Kind.BETWEEN:
         return limits(value, where, least=low, most=high)
+    if limited.kind is Kind.WORD:
+        if value not in limited.words:
+            raise ProblemError(f"{where} is {value!r}; allowed is one of {', '.join(limited.words)}")
+        return str(value)
     if limited.kind is Kind.EQUAL:
         return finite_number(value, where)
     return number_within(value, low, high, where)
 
 
-MAY_KEEP_OUT = ("o2", "o4", "a", "b", "p", "links")
+MAY_KEEP_OUT = (*FourBar.POINTS, "links")
 
 
 def _areas(values: Sequence[FloatArray]) -> tuple[FloatArray, ...]:

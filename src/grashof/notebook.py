@@ -15,7 +15,7 @@ from grashof.figures.files import STYLE
 from grashof.figures.linkage import plot_linkage
 from grashof.figures.parts import missing_glyphs_unwarned
 from grashof.figures.subject import Linkage
-from grashof.output.terminal import UNITS, best_rows, heading
+from grashof.output.terminal import best_rows, heading, units
 from grashof.problems import FourBar, LinkageSpec, Problem, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
@@ -54,7 +54,8 @@ def _result(result: Result) -> str:
     rows = best_rows(result)
     note = f"<p>{escape(result.note)}</p>" if result.note else ""
     told = "<br>".join(escape(line) for line in heading(result, len(result)).splitlines())
-    names = (f"{name} ({UNITS[name]})" if name in UNITS else name for name in rows[0])
+    named = units(result.problem)
+    names = (f"{name} ({named[name]})" if name in named else name for name in rows[0])
     table = _table(names, (row.values() for row in rows))
     return f"<p>{told}</p>{note}{_side_by_side(table, _drawing(result.best, result.problem))}"
 

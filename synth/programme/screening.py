@@ -281,6 +281,16 @@ def dyad_violations(
     return violations
 
 
+def violations_apart(
+    found: Configurations, p: ComplexArray, track: ComplexArray, wanted: Requirements
+) -> FloatArray:
+    """What both dyads, and P on its `track` (n, k), violate by themselves; see `dyad_violations`."""
+    violations = dyad_violations("o2", found.o2, found.a, p, wanted)
+    violations += dyad_violations("o4", found.o4, found.b, p, wanted)
+    violations[:, GROUPS.index("keep_out")] += keep_out_violation("p", track, wanted)
+    return violations
+
+
 def keep_out_violation(name: str, points: ComplexArray, wanted: Requirements) -> FloatArray:
     """How deep a pivot or the coupler point lies in areas kept out, deepest of its places (n, k); (n,)."""
     if not wanted.keep_out:
@@ -320,6 +330,13 @@ def follow(angle: FloatArray, direction: FloatArray) -> FloatArray:
     """Driver angles (n, N) counted on in the driver's sense, each step less than a turn."""
     steps = direction[:, None] * ((direction[:, None] * np.diff(angle, axis=1)) % TURN)
     return np.concatenate([angle[:, :1], angle[:, :1] + np.cumsum(steps, axis=1)], axis=1)
+
+
+def shorter_way(angle: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Driver angles (n, N) counted on in the sense that takes them the shorter way, and that sense (n,)."""
+    forth, back = (follow(angle, np.full(len(angle), sense)) for sense in (1.0, -1.0))
+    shorter = np.ptp(forth, axis=1) <= np.ptp(back, axis=1)
+    return np.where(shorter[:, None], forth, back), np.where(shorter, 1.0, -1.0)
 
 
 def met(violations: FloatArray) -> BoolArray:

@@ -160,10 +160,10 @@ class Start:
         return first, last
 
     @classmethod
-    def of_find(cls, finds: Screened, index: int, objective: Objective) -> Start:
-        """The start that entry `index` of the finds of a search makes."""
-        visit = finds.visit[index]
-        o2, o4, a, b, p = (complex(point) for point in finds.points[index])
+    def of_screened(cls, linkages: Screened, index: int, objective: Objective) -> Start:
+        """The start that entry `index` of screened linkages makes."""
+        visit = linkages.visit[index]
+        o2, o4, a, b, p = (complex(point) for point in linkages.points[index])
         return cls(
             o2=o2,
             o4=o4,
@@ -171,12 +171,12 @@ class Start:
             b=b,
             p=p,
             visit=tuple(int(target) for target in visit),
-            theta2=tuple(float(angle) for angle in finds.theta2[index]),
-            theta3=tuple(float(angle) for angle in np.unwrap(np.angle(finds.coupler[index][visit]))),
-            direction=int(finds.direction[index]),
-            assembly=int(finds.assembly[index]),
+            theta2=tuple(float(angle) for angle in linkages.theta2[index]),
+            theta3=tuple(float(angle) for angle in np.unwrap(np.angle(linkages.coupler[index][visit]))),
+            direction=int(linkages.direction[index]),
+            assembly=int(linkages.assembly[index]),
             objective=objective,
-            body_angle=float(finds.body_angle[index]),
+            body_angle=float(linkages.body_angle[index]),
         )
 
 

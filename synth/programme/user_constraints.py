@@ -1,4 +1,4 @@
-"""The user's own constraints: are they usable, which finds miss them, which starts have to be mended."""
+"""The user's own constraints: are they usable, which linkages miss them, which starts have to be mended."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.synth.programme.on_symbols import on_symbols
 from grashof.synth.programme.one_at_a_time import one_at_a_time
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import GROUPS, Screened
+from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Start
 
 FAR = 1e3  # stands for an amount without bound
@@ -45,36 +45,32 @@ def refuse_unusable(scaled: ScaledProblem, *, in_processes: bool) -> None:
 
 
 @one_at_a_time
-def screened(scaled: ScaledProblem, finds: Screened) -> Screened:
-    """The same with violations of the user's constraints, all evaluated at once."""
-    if not scaled.constraints or not len(finds):
-        return finds
+def own_violations(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
+    """By how much linkages violate the user's constraints, all evaluated at once; shape (n,)."""
     design, symbols = _symbols(len(scaled.targets))
     values = ca.vertcat(
         *(ca.vec(ca.SX(one)) for own in scaled.constraints for one in _several(on_symbols(own, design)))
     )
-    amounts = np.asarray(ca.Function("own", [symbols], [values])(_numbers(scaled, finds).T))
-    missed = np.nan_to_num(np.maximum(amounts, 0.0), nan=1.0, posinf=FAR).sum(axis=0)
-    violations = finds.violations.copy()
-    violations[:, GROUPS.index("constraints")] += missed
-    return replace(finds, violations=violations)
+    amounts = np.asarray(ca.Function("own", [symbols], [values])(_numbers(scaled, linkages).T))
+    missed: FloatArray = np.nan_to_num(np.maximum(amounts, 0.0), nan=1.0, posinf=FAR).sum(axis=0)
+    return missed
 
 
-def _numbers(scaled: ScaledProblem, finds: Screened) -> FloatArray:
-    """The numbers of finds in the order of `_symbols`, shape (n, M)."""
-    o2, o4, a, b, p = finds.points.T
+def _numbers(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
+    """The numbers of linkages in the order of `_symbols`, shape (n, M)."""
+    o2, o4, a, b, p = linkages.points.T
     r3 = np.abs(b - a)
-    turned = np.take_along_axis(finds.coupler, finds.visit, axis=1) / r3[:, None]
+    turned = np.take_along_axis(linkages.coupler, linkages.visit, axis=1) / r3[:, None]
     arm = (p - a) * r3 / (b - a)
-    at_a = o2[:, None] + np.abs(a - o2)[:, None] * np.exp(1j * finds.theta2)
+    at_a = o2[:, None] + np.abs(a - o2)[:, None] * np.exp(1j * linkages.theta2)
     places = np.stack([at_a, at_a + r3[:, None] * turned, at_a + arm[:, None] * turned])
     columns = [
         *scaled.frame.outward(np.stack([o2, o4])).transpose(0, 2, 1).reshape(4, -1),
         *(scaled.frame.scale * np.abs([o4 - o2, a - o2, b - a, b - o4])),
         np.angle(o4 - o2),
         *(scaled.frame.scale * np.stack([arm.real, arm.imag])),
-        *finds.theta2.T,
-        *scaled.frame.outward(places).transpose(0, 2, 3, 1).reshape(-1, len(finds)),
+        *linkages.theta2.T,
+        *scaled.frame.outward(places).transpose(0, 2, 3, 1).reshape(-1, len(linkages)),
     ]
     return np.stack(columns, axis=1)
 
@@ -89,7 +85,7 @@ def mended(scaled: ScaledProblem, starts: list[Start]) -> list[Start]:
     ]
 
 
-def relaxed(scaled: ScaledProblem, starts: list[Start]) -> list[Start]:
+def relaxed_by_own(scaled: ScaledProblem, starts: list[Start]) -> list[Start]:
     """The first few starts, free to come as near to the user's constraints as they can."""
     if not scaled.constraints:
         return []

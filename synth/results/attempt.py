@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import Any
 
 import numpy as np
 
@@ -59,8 +60,9 @@ class Attempt:
     @property
     def verified(self) -> tuple[Candidate, ...]:
         """The design, if the judge accepted it, and its cognates."""
-        ok = self.candidate is not None and self.candidate.verdict.ok
-        return (self.candidate, *self.cognates) if ok else ()
+        if self.candidate is None or not self.candidate.verdict.ok:
+            return ()
+        return (self.candidate, *self.cognates)
 
 
 def attempt(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
@@ -114,7 +116,7 @@ def polished_and_judged(scaled: ScaledProblem, start: Start, solve: Solve, numbe
     done = Attempt(solve.status, None)
     if not np.isfinite(solve.points).all():
         return done
-    about = {"start": number, "iterations": solve.iterations, "most_error": start.most_error}
+    about: dict[str, Any] = {"start": number, "iterations": solve.iterations, "most_error": start.most_error}
     for version in (polished_solve(scaled, start, solve), solve):
         points = np.array(version.points)
         done = replace(done, candidate=judged(scaled, points, start.assembly, version.body_angle, **about))

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
-from grashof.analysis import Verdict
-from grashof.problems import FourBar, Problem, TransmissionOver
+from grashof.analysis import Design, Verdict
+from grashof.analysis.judge.design import greatest
+from grashof.analysis.judge.measures import Values
+from grashof.problems import FourBar, Problem
 from grashof.problems.values.display import Displayed
-from grashof.synth.programme.merit import same_error, weigh
+from grashof.synth.programme.merit import same_error
 from grashof.synth.theory.distinct import signature
 
 
@@ -22,28 +26,38 @@ class Candidate(Displayed):
     ----------
     linkage : FourBar
     verdict : Verdict
+    problem : Problem
+        That it is for.
     start : int
         Number of the start that it came from.
     iterations : int
         Of Ipopt.
     cognate_of : str
         Id of the design whose coupler curve this one traces too; empty for the others.
-    torque_peak : float, N m
-        Greatest magnitude of the drive torque over the motion used; NaN where it is not known.
     best_at : str
         What a design of a least-squares list was made for, such as "least error"; empty for the others.
     family : str
         Id of the best design of those like it; empty before designs are sorted into families.
+    own_objective : float, optional
+        What the user's own objective makes of it, less is better; None where there is none.
+    values : Values
+        What can be said of it, by the keys of the quantities; each is measured when it is asked for.
     """
 
     linkage: FourBar
     verdict: Verdict
+    problem: Problem
     start: int
     iterations: int
     cognate_of: str = ""
-    torque_peak: float = np.nan
     best_at: str = ""
     family: str = ""
+    own_objective: float | None = None
+    values: Values = field(default=None, compare=False)  # type: ignore[assignment]  # kept by `replace`
+
+    def __post_init__(self) -> None:
+        if self.values is None or not self.values.are_of(self.linkage, self.verdict, self.problem):
+            object.__setattr__(self, "values", Values(self.linkage, self.verdict, self.problem))
 
     def __repr__(self) -> str:
         return f"<Candidate {self._words}>"
@@ -66,12 +80,6 @@ class Candidate(Displayed):
             f"{self.id}: {self.verdict.grashof_class}, r1 to r4 {lengths}, mu {worst:.1f} deg over the task"
         )
 
-    def transmission(self, over: TransmissionOver) -> float:
-        """Worst transmission angle over the task or the cycle, rad."""
-        if over is TransmissionOver.CYCLE:
-            return self.verdict.transmission_min_cycle
-        return self.verdict.transmission_min_task
-
     def error(self, problem: Problem) -> float:
         """What the design misses the task by, in sizes of the task.
 
@@ -83,13 +91,23 @@ class Candidate(Displayed):
         return float(np.sqrt(self.verdict.square / len(problem.task))) / problem.task.size
 
     def objective(self, problem: Problem) -> float:
-        """How good the design is by the problem's objective, whatever its error; greater is better."""
-        transmission = self.transmission(problem.requirements.transmission_over)
-        size = self.verdict.size / problem.task.size
-        if not problem.objective.torque:
-            return float(weigh(problem.objective, np.array(transmission), np.array(size)))
-        torque = np.inf if np.isnan(self.torque_peak) else self.torque_peak / problem.reference_torque
-        return float(weigh(problem.objective, np.array(transmission), np.array(size), np.array(torque)))
+        """How good the design is by the objective, whatever its error; greater is better."""
+        score = sum(
+            weight * goal.better * self.values[goal.key] / problem.scale(goal)
+            for goal, weight in problem.goals
+        )
+        if self.own_objective is not None:
+            score = -self.own_objective
+        return -np.inf if np.isnan(score) else float(score)
+
+    def asked_by(self, problem: Problem) -> Candidate:
+        """The same with the values that another problem asks for; the verdict stays."""
+        return self if problem is self.problem else replace(self, problem=problem)
+
+    def valued(self, objective: Callable[[Design], Any]) -> Candidate:
+        """The same with what the user's own objective makes of it."""
+        design = Design.judged(self.linkage, self.verdict)
+        return replace(self, own_objective=greatest(objective, design, "objective"))
 
     def score(self, problem: Problem) -> float:
         """How far a search has come with this design; greater is better.

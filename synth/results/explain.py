@@ -9,7 +9,7 @@ import numpy as np
 from grashof.analysis import Verdict
 from grashof.problems import Rotatability
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.user_constraints import relaxed as relaxed_own
+from grashof.synth.programme.user_constraints import relaxed_by_own
 from grashof.synth.results.attempt import Attempt
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.results.families import listed
@@ -86,7 +86,7 @@ def _explained(scaled: ScaledProblem, ledger: Ledger, rejected: list[Attempt], r
     if near:
         note = f"no design: {why or 'exact: none'}; {_comes_within(scaled, near[0])}, with exact = false"
         return Explanation(note, tuple(one.candidate for one in near))
-    relaxed = finder.relaxed(rng) + relaxed_own(scaled, ledger.latest)
+    relaxed = finder.relaxed(rng) + relaxed_by_own(scaled, ledger.latest)
     nearest = () if run.ended() else closest_misses(run.solve(scaled, relaxed, len(rejected)))
     nearest = nearest or closest_misses(rejected)
     return Explanation(_none_note(scaled, nearest, why), nearest)

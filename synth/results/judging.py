@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 
 from grashof.analysis import Verdict, verify
-from grashof.analysis.judge.over_task import torque_peak
 from grashof.problems import FourBar, ProblemError
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
@@ -26,7 +25,7 @@ def judged(
     iterations: int,
     most_error: float = np.inf,
 ) -> Candidate | None:
-    """A design with the verdict on it, and its torque where it is accepted.
+    """A design with the verdict on it.
 
     Parameters
     ----------
@@ -52,20 +51,24 @@ def judged(
     except ProblemError:
         return None
     verdict = verdict_on(scaled, linkage, most_error)
-    torque = torque_peak(linkage, scaled.problem, verdict) if verdict.ok else np.nan
-    return Candidate(linkage, verdict, start, iterations, torque_peak=torque)
+    candidate = Candidate(linkage, verdict, scaled.problem, start, iterations)
+    if verdict.ok:
+        candidate.objective(scaled.problem)  # here, where many are judged at once; the values stay known
+    return candidate
 
 
 def verdict_on(scaled: ScaledProblem, linkage: FourBar, most_error: float = np.inf) -> Verdict:
     """The judge's verdict; `most_error` is the root mean square error that is allowed, sizes."""
     problem, task = scaled.problem, scaled.problem.task
     square = len(task) * (most_error * task.size) ** 2
-    return verify(linkage, task, problem.requirements, scaled.constraints, most_square=square)
+    asked = task, problem.requirements, scaled.constraints
+    return verify(linkage, *asked, most_square=square, problem=problem)
 
 
 def judged_again(scaled: ScaledProblem, candidate: Candidate, most_error: float = np.inf) -> Candidate:
     """A design judged by the requirements of another problem with the same targets."""
-    return replace(candidate, verdict=verdict_on(scaled, candidate.linkage, most_error))
+    verdict = verdict_on(scaled, candidate.linkage, most_error)
+    return replace(candidate, verdict=verdict, problem=scaled.problem)
 
 
 def verified_cognates(scaled: ScaledProblem, candidate: Candidate) -> tuple[Candidate, ...]:

@@ -30,7 +30,7 @@ def polished_start(scaled: ScaledProblem, start: Start) -> Start:
     theta3 = np.unwrap(np.angle(polished.coupler[visit]))
     theta3 += 2 * np.pi * np.round((start.theta3[0] - theta3[0]) / (2 * np.pi))
     theta2 = tuple(polished.theta2[visit].tolist())
-    return start.at(polished.points, theta2, tuple(theta3.tolist()), polished.body_angle)
+    return start.at(polished.points.tolist(), theta2, tuple(theta3.tolist()), polished.body_angle)
 
 
 def polished_solve(scaled: ScaledProblem, start: Start, solve: Solve) -> Solve:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
-from grashof.analysis import Verdict
+from grashof.analysis import Design, Verdict
 from grashof.analysis.judge.limits import SLACK
 from grashof.problems import Problem
 from grashof.problems.values.arrays import BoolArray
+from grashof.problems.values.quantities import Quantity
+from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth.programme.merit import same_error
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.theory.distinct import DISTINCT, pick_apart, signature
@@ -49,13 +52,27 @@ def ranking_key(problem: Problem, candidate: Candidate) -> tuple[float, ...]:
         error *= 1.0 if problem.by_objective else WORSE_ERROR
     bounded = problem.by_objective and not problem.requirements.is_exact(problem.task)
     counted_error = 0.0 if bounded or error <= same_error(problem) * (1 + SLACK) else round(error, DIGITS)
-    cost = np.inf if np.isnan(objective) else -round(objective, DIGITS)
     numbers = signature(candidate.linkage).tolist()
-    return (counted_error, cost, float(avoided), candidate.verdict.size, *numbers)
+    return (counted_error, -round(objective, DIGITS), float(avoided), candidate.verdict.size, *numbers)
 
 
-def ranked(problem: Problem, candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
-    """Distinct candidates, best first; of two that are not distinct the better one stays."""
+def ranked(
+    problem: Problem,
+    candidates: Sequence[Candidate],
+    objective: Callable[[Design], Any] | None = None,
+) -> tuple[Candidate, ...]:
+    """Distinct candidates, best first; of two that are not distinct the better one stays.
+
+    Parameters
+    ----------
+    problem : Problem
+    candidates : sequence of Candidate
+    objective : callable, optional
+        The user's own in place of the problem's: a function of a `Design`, smaller is better. The
+        candidates keep what it makes of them.
+    """
+    if objective is not None:
+        candidates = [candidate.valued(objective) for candidate in candidates]
     best_first = sorted(candidates, key=lambda candidate: ranking_key(problem, candidate))
     return distinct(problem, best_first, DISTINCT, len(best_first))
 
@@ -72,29 +89,33 @@ def distinct(
     return tuple(candidates[i] for i in picked)
 
 
-def pareto_optimal(problem: Problem, candidates: tuple[Candidate, ...]) -> BoolArray:
-    """Which candidates no other one beats in error, worst transmission, size and torque; shape (n,).
+def pareto_goals(problem: Problem) -> list[Quantity]:
+    """What the Pareto mark is about besides the error: transmission, size, torque, and what is weighed."""
+    keys = ["transmission", "size", *(["torque_peak"] if problem.dynamics is not None else [])]
+    usual = [problem.requirements.meant(QUANTITIES[key]) for key in keys]
+    return list(dict.fromkeys([*usual, *(goal for goal, _ in problem.goals)]))
 
-    Errors up to `same_error` count as equal. The torque is the greatest on the task when the
-    problem has dynamics; where it is not known it counts as infinite.
+
+def pareto_optimal(problem: Problem, candidates: tuple[Candidate, ...]) -> BoolArray:
+    """Which candidates no other one beats in error and `pareto_goals`; shape (n,).
+
+    Errors up to `same_error` count as equal. What has no value is worst.
 
     Parameters
     ----------
     problem : Problem
     candidates : tuple of Candidate
     """
-    over = problem.requirements.transmission_over
+    goals = pareto_goals(problem)
     costs = np.array([
         (
             max(candidate.error(problem), same_error(problem)),
-            -candidate.transmission(over),
-            candidate.verdict.size,
-            np.inf if np.isnan(candidate.torque_peak) else candidate.torque_peak,
+            candidate.own_objective or 0.0,
+            *(-goal.better * candidate.values[goal.key] for goal in goals),
         )
         for candidate in candidates
-    ]).reshape(-1, 4)  # fmt: skip
-    if problem.dynamics is None:
-        costs[:, 3] = 0.0
+    ]).reshape(-1, 2 + len(goals))  # fmt: skip
+    costs[np.isnan(costs)] = np.inf
     no_worse = (costs[:, None] <= costs[None]).all(axis=2)
     better = (costs[:, None] < costs[None]).any(axis=2)
     beaten: BoolArray = np.any(no_worse & better, axis=0)

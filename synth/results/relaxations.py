@@ -12,12 +12,11 @@ from grashof.synth.programme.screening import (
     GROUPS,
     Configurations,
     Screened,
-    dyad_violations,
     judge,
-    keep_out_violation,
+    violations_apart,
 )
 from grashof.synth.programme.start import UNSMOOTH, Start
-from grashof.synth.programme.user_constraints import screened
+from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.results.judging import judged_again
 from grashof.synth.results.relaxed_limits import (
@@ -127,21 +126,19 @@ def _finished(scaled: ScaledProblem, found: Relaxation, run: Run) -> Relaxation:
     return replace(asked, candidate=candidate)
 
 
-def rejudged(scaled: ScaledProblem, finds: Screened) -> Screened:
+def rejudged(scaled: ScaledProblem, linkages: Screened) -> Screened:
     """Screened linkages judged again, by the requirements of another problem with the same task."""
-    if not len(finds):
-        return finds
-    o2, o4, a, b, p = finds.points.T
-    counted: FloatArray = np.take_along_axis(finds.theta2, np.argsort(finds.visit, axis=1), axis=1)
+    if not len(linkages):
+        return linkages
+    o2, o4, a, b, p = linkages.points.T
+    counted: FloatArray = np.take_along_axis(linkages.theta2, np.argsort(linkages.visit, axis=1), axis=1)
     at_a = o2[:, None] + np.abs(a - o2)[:, None] * np.exp(1j * counted)
-    at_b = at_a + finds.coupler
-    at_p = at_a + ((p - a) / (b - a))[:, None] * finds.coupler
-    violations = dyad_violations("o2", o2, at_a, p, scaled.wanted) + dyad_violations(
-        "o4", o4, at_b, p, scaled.wanted
-    )
-    violations[:, GROUPS.index("keep_out")] += keep_out_violation("p", at_p, scaled.wanted)
-    found = Configurations(o2, o4, at_a, at_b, finds.visit, finds.theta2, finds.direction)
-    judged = judge(found, p, finds.error, violations, scaled.wanted, finds.body_angle)
+    at_b = at_a + linkages.coupler
+    at_p = at_a + ((p - a) / (b - a))[:, None] * linkages.coupler
+    found = Configurations(o2, o4, at_a, at_b, linkages.visit, linkages.theta2, linkages.direction)
+    violations = violations_apart(found, p, at_p, scaled.wanted)
+    first_turn = None if scaled.motion is None else np.full(len(linkages), scaled.motion.first_turn)
+    judged = judge(found, p, linkages.error, violations, scaled.wanted, linkages.body_angle, first_turn)
     if scaled.wanted.same_branch:  # at a dead position rounding decides what else is lacking
         judged.violations[judged.transmission < DEAD, GROUPS.index("same_branch")] += 1.0
-    return screened(scaled, judged)
+    return fully_screened(scaled, judged)

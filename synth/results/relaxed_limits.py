@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from grashof.analysis import Defect, verify
 from grashof.analysis.judge.design import Constraint, Design, name_of
-from grashof.problems import Box, Problem, Requirements, Rotatability
+from grashof.problems import Box, FourBar, Problem, Requirements, Rotatability
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.quantities import Kind
 from grashof.problems.values.requirements import LIMITS
@@ -89,10 +89,12 @@ def loosest(problem: Problem, key: str) -> Requirements:
     if key == "constraints":
         return wanted
     given, loose = getattr(wanted, key), None
-    if key in LIMITS and LIMITS[key].kind is Kind.BETWEEN:
-        usual = Requirements().resolved(problem.task.size)
-        low, high = usual.link_length if key != "coupler_arms" else usual.coupler_arms  # type: ignore[misc]
+    usual = LIMITS["link_length" if key in FourBar.LENGTHS else key].usual if key in LIMITS else None
+    if usual is not None:
+        low, high = (problem.task.size * share for share in usual)
         loose = (min(low, given[0]), max(high, given[1]))
+    if key in LIMITS and LIMITS[key].kind is Kind.WORD:
+        loose = LIMITS[key].widest
     others = {
         "rotatability": Rotatability.ANY,
         "link_ratio_max": max(100.0, wanted.link_ratio_max),
@@ -100,7 +102,8 @@ def loosest(problem: Problem, key: str) -> Requirements:
         "keep_out": (),
         **dict.fromkeys(UNSMOOTH, False),
     }
-    return _with(wanted, {key: others.get(key, loose)})
+    changed: dict[str, Any] = {key: others.get(key, loose)}
+    return replace(wanted, **changed)
 
 
 def relaxation(
@@ -128,8 +131,8 @@ def relaxation(
     miss, own = max((defect.miss for defect in missed), default=1.0), tuple(constraints)
     for change, words in _eased(problem, own, key, missed):
         eased = change.pop("constraints", own)
-        wanted = _with(problem.requirements, change)
-        if verify(candidate.linkage, problem.task, wanted, eased).ok:
+        wanted = replace(problem.requirements, **change)
+        if verify(candidate.linkage, problem.task, wanted, eased, problem=problem).ok:
             return Relaxation(key, words, wanted, eased, candidate, miss, words.count(" instead of "))
     return None
 
@@ -137,11 +140,10 @@ def relaxation(
 def with_rounded_angle(problem: Problem, relaxation: Relaxation) -> Relaxation:
     """The same with its angle rounded like other figures; whether a design does it has to be seen."""
     key = relaxation.key
-    asked, needed = (
-        float(getattr(wanted, key)) for wanted in (problem.requirements, relaxation.requirements)
-    )
-    angle = _rounded(needed, asked)
-    wanted = _with(problem.requirements, {key: angle})
+    asked: float = getattr(problem.requirements, key)
+    angle = _rounded(getattr(relaxation.requirements, key), asked)
+    changed: dict[str, Any] = {key: angle}
+    wanted = replace(problem.requirements, **changed)
     return replace(relaxation, requirements=wanted, words=f"{key} {angle:.10g} instead of {asked:g}")
 
 
@@ -150,7 +152,7 @@ def _eased(
 ) -> Iterator[tuple[dict[str, Any], str]]:
     """What asks for less, by key, the least change first, in the order to be tried; with words."""
     wanted = problem.requirements.resolved(problem.task.size)
-    found, asked = [defect.found for defect in missed], getattr(wanted, key, None)
+    found, asked = [defect.found for defect in missed], cast(Any, getattr(wanted, key, None))
     kind = LIMITS[key].kind if key in LIMITS else None
     if key == "rotatability":
         yield from _turning_less(wanted, missed)
@@ -168,8 +170,10 @@ def _eased(
     elif kind is Kind.BETWEEN:
         reached = _reaching(asked, found)
         yield {key: reached}, _range_words(key, asked, reached)
-    elif kind is Kind.INSIDE:
+    elif kind in (Kind.INSIDE, Kind.ON_BODY):
         yield _box_enlarged(key, asked or Box(), missed)
+    elif kind is Kind.WORD:
+        yield {key: LIMITS[key].widest}, f'{key} "{LIMITS[key].widest}" instead of "{asked}"'
     elif kind is Kind.EQUAL:
         angle = float(f"{found[0] + 360 * round((asked - found[0]) / 360):.12g}")
         yield {key: angle}, f"{key} {angle:.12g} instead of {asked:g}"
@@ -212,10 +216,6 @@ def _areas_drawn_in(wanted: Requirements, missed: list[Defect]) -> tuple[dict[st
     areas = tuple(shapely.get_coordinates(part.exterior)[:-1] for part in left if not part.is_empty)
     depths = (defect.what.removesuffix(" inside").removeprefix("the depth of ") for defect in missed)
     return {"keep_out": areas}, f"keep_out drawn in by {by:g}, the depth of {' and '.join(depths)}"
-
-
-def _with(wanted: Requirements, changed: dict[str, Any]) -> Requirements:
-    return replace(wanted, **changed)
 
 
 def _reaching(given: Limits, found: list[float]) -> Limits:

@@ -55,6 +55,11 @@ class Result(Displayed):
     ended: str = ""
     least_error: float = np.nan
 
+    def __post_init__(self) -> None:
+        for name in ("candidates", "nearest"):
+            designs = (each.asked_by(self.problem) for each in getattr(self, name))
+            object.__setattr__(self, name, tuple(designs))
+
     def __repr__(self) -> str:
         best = f"best {self.best._words}" if self.candidates else self.note
         return f"<Result of {self.problem.name}: {counted(len(self), 'design')}; {best}>"

@@ -110,9 +110,8 @@ def _worth_choosing(problem: Problem, every: list[Candidate], least: float) -> t
     words: dict[int, list[str]] = {k: [] for k in range(len(kept))}
     if kept:  # the first of the list may be another one, if nobody would build it
         words[min(words, key=lambda k: round(_error(problem, kept[k]), ALIKE + 1))].append("least error")
-    over = problem.requirements.transmission_over
     values = {
-        "best mu": [-round(one.transmission(over), ALIKE) for one in kept],
+        "best mu": [-round(one.values["transmission"], ALIKE) for one in kept],
         "smallest": [round(one.verdict.size / problem.task.size, ALIKE) for one in kept],
     }
     for factor in FACTORS[::-1]:

@@ -18,7 +18,7 @@ SHORTEST = 1e-3  # of the longest step between targets: no step counts as less
 
 
 @dataclass(frozen=True, slots=True)
-class PathTarget:
+class SearchTargets:
     """What the coupler has to pass.
 
     Parameters
@@ -131,7 +131,7 @@ class Loop:
     closes: BoolArray
 
     @classmethod
-    def of(cls, target: PathTarget, batch: Batch) -> Loop:
+    def of(cls, target: SearchTargets, batch: Batch) -> Loop:
         """Close the loop of every linkage at every target."""
         if target.wanted.rotatability is Rotatability.ANY:
             lengths, by_lengths = _any_lengths(batch)
@@ -141,7 +141,7 @@ class Loop:
         theta2 = _driver_angles(target, batch)
         e2 = np.exp(1j * theta2)
         coupler, beside2 = coupler_of(1 - r2[:, None] * e2, r3[:, None], r4[:, None], batch.assembly)
-        closes = (beside2 > 1e-12 * r3[:, None] ** 2).all(axis=1)
+        closes: BoolArray = np.all(beside2 > 1e-12 * r3[:, None] ** 2, axis=1)
         output = r2[:, None] * e2 + coupler - 1
         return cls(r2, r3, r4, by_lengths, theta2, e2, coupler / r3[:, None], output / r4[:, None], closes)
 
@@ -180,7 +180,7 @@ def _any_lengths(batch: Batch) -> tuple[tuple[FloatArray, FloatArray, FloatArray
     return (r2, r3, r4), lengths[:, :, None] * np.eye(3)
 
 
-def _driver_angles(target: PathTarget, batch: Batch) -> FloatArray:
+def _driver_angles(target: SearchTargets, batch: Batch) -> FloatArray:
     """Driver angles (n, N)."""
     unknowns, sense = batch.unknowns, batch.direction[:, None]
     if target.timed:
@@ -191,7 +191,7 @@ def _driver_angles(target: PathTarget, batch: Batch) -> FloatArray:
     return unknowns[:, 3:4] + TURN * sense * gone
 
 
-def by_unknowns(target: PathTarget, batch: Batch) -> FloatArray:
+def by_unknowns(target: SearchTargets, batch: Batch) -> FloatArray:
     """Derivative of the driver angles, (n, N, M)."""
     n = len(target.points)
     slope = np.zeros((len(batch), n, batch.unknowns.shape[1]))
@@ -214,7 +214,7 @@ def shares_of_turn(log_gaps: FloatArray) -> tuple[FloatArray, FloatArray]:
     return share, np.concatenate([np.zeros((len(share), 1)), np.cumsum(share[:, :-1], axis=1)], axis=1)
 
 
-def body_turns(target: PathTarget, loop: Loop) -> tuple[FloatArray, FloatArray]:
+def body_turns(target: SearchTargets, loop: Loop) -> tuple[FloatArray, FloatArray]:
     """Angles of the body missed, weighted (n, N), and the best angle from the coupler in the loop (n,).
 
     None where no target has an angle: (n, 0). How the body sits on the coupler is solved for exactly.
@@ -229,7 +229,7 @@ def body_turns(target: PathTarget, loop: Loop) -> tuple[FloatArray, FloatArray]:
     return np.sqrt(weights) * (missed - mean[:, None]), middle + mean
 
 
-def by_body_turns(target: PathTarget, by_theta3: FloatArray) -> FloatArray:
+def by_body_turns(target: SearchTargets, by_theta3: FloatArray) -> FloatArray:
     """Derivative of `body_turns` by the unknowns, (n, N, M) or (n, 0, M)."""
     if not target.has_angles:
         return by_theta3[:, :0]

@@ -13,10 +13,9 @@ from grashof.problems.values.checks import counted
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Start
-from grashof.synth.starts.closed_loop import PathTarget
 from grashof.synth.starts.loop_search import draw, fitting, improve, place
-from grashof.synth.starts.path_screening import entries_of, judged, path_target
 from grashof.synth.starts.sampled_dyads import fixed_pivots
+from grashof.synth.starts.search_targets import judged, search_targets
 from grashof.synth.starts.selection import relaxed_starts
 from grashof.synth.starts.thinning import refined, thinned
 
@@ -49,7 +48,7 @@ class CouplerSearch:
 
     def refuse(self) -> None:
         """Raise `ProblemError` for fewer than three distinct targets."""
-        task, count = self.scaled.problem.task, len(path_target(self.scaled).points)
+        task, count = self.scaled.problem.task, len(search_targets(self.scaled).points)
         if count < 3:
             free = " where parts are left free, the driver is timed or requirements.exact is false"
             raise ProblemError(
@@ -83,10 +82,11 @@ def search(
     scaled: ScaledProblem, enough: int, rng: np.random.Generator, *, to_boxes: bool = True
 ) -> Screened:
     """One round of the search, drawn towards the pivots' boxes or not, its linkages judged."""
-    target = path_target(scaled)
+    target = search_targets(scaled)
     if not to_boxes:
         target = replace(target, wanted=replace(target.wanted, o2=None, o4=None))
-    draws, (*stages, (keep, steps)) = _effort(scaled, target)
+    effort = FAMILY if has_family(scaled) else TIMED if target.timed else ISOLATED
+    draws, (*stages, (keep, steps)) = effort
     some, index = thinned(target, FEW_POINTS)
     batch = draw(some, draws, rng)
     with np.errstate(all="ignore"):
@@ -100,18 +100,12 @@ def search(
     sound = np.isfinite(placed.error)
     if scaled.exact:
         sound &= placed.error <= len(target.points) * FOUND**2
-    return judged(scaled, target, entries_of(placed, sound), batch.direction[sound])
-
-
-def _effort(scaled: ScaledProblem, target: PathTarget) -> tuple[int, tuple[tuple[int, int], ...]]:
-    if has_family(scaled):
-        return FAMILY
-    return TIMED if target.timed else ISOLATED
+    return judged(scaled, target, placed[sound], batch.direction[sound])
 
 
 def has_family(scaled: ScaledProblem) -> bool:
     """Whether exact designs have freedom left: more unknowns than equations."""
-    target = path_target(scaled)
+    target = search_targets(scaled)
     unknowns = target.unknowns + 6 + target.has_angles - (target.wanted.order and not target.timed)
     equations = 2 * np.count_nonzero(target.weights) + np.count_nonzero(target.turn_weights)
     equations += _equalities(scaled.wanted)

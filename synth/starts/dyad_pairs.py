@@ -53,9 +53,9 @@ def screen(motion: Displacements, body: complex, dyads: Dyads, wanted: Requireme
     stride = max(1, int(np.ceil(np.sqrt(len(driver) * len(driven) / pairs))))
     driver, driven = driver[::stride], driven[::stride]
     if not len(driver) or not len(driven):
-        return _judged(body, driver[:0], driven[:0], wanted)
+        return _judged(motion, body, driver[:0], driven[:0], wanted)
     first, second = np.nonzero(_promising(motion, driver, driven, wanted))
-    judged = _judged(body, driver[first], driven[second], wanted)
+    judged = _judged(motion, body, driver[first], driven[second], wanted)
     return judged[judged.feasible]
 
 
@@ -70,7 +70,7 @@ def near_misses(
     apart &= np.abs(driver.dyads.ground[:, None] - driven.dyads.ground) > 1e-6
     long = np.abs(driver.dyads.moving - driver.dyads.ground) > 1e-6
     first, second = np.nonzero(apart & long[:, None] & long)
-    return _judged(body, driver[first], driven[second], wanted)
+    return _judged(motion, body, driver[first], driven[second], wanted)
 
 
 def _sides(motion: Displacements, body: complex, dyads: Dyads, wanted: Requirements) -> tuple[_Side, _Side]:
@@ -126,7 +126,9 @@ def _promising(motion: Displacements, driver: _Side, driven: _Side, wanted: Requ
     return keep
 
 
-def _judged(body: complex, driver: _Side, driven: _Side, wanted: Requirements) -> Screened:
+def _judged(
+    motion: Displacements, body: complex, driver: _Side, driven: _Side, wanted: Requirements
+) -> Screened:
     """Pairs taken entry by entry."""
     found = Configurations(
         driver.dyads.ground,
@@ -137,5 +139,5 @@ def _judged(body: complex, driver: _Side, driven: _Side, wanted: Requirements) -
         driver.theta2,
         driver.direction,
     )
-    exact = np.zeros(len(driver))
-    return judge(found, np.full(len(driver), body), exact, driver.violations + driven.violations, wanted)
+    p, exact, turned = (np.full(len(driver), each) for each in (body, 0.0, motion.first_turn))
+    return judge(found, p, exact, driver.violations + driven.violations, wanted, first_turn=turned)

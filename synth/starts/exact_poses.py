@@ -20,7 +20,7 @@ from grashof.problems.values.checks import counted
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Round, Start
-from grashof.synth.programme.user_constraints import screened
+from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.starts.dyad_pairs import near_misses, screen
 from grashof.synth.starts.parallelograms import parallelogram_obstacle, parallelogram_starts, parallelograms
 from grashof.synth.starts.sampled_dyads import fixed_pivots, joined, sampled_dyads
@@ -132,7 +132,7 @@ class DyadPairs(WholePoses, ABC):
         """Pairs that meet all requirements but, perhaps, the user's own constraints."""
         scaled = self.scaled
         most = SAMPLED_PAIRS if len(scaled.targets) < 4 else PAIRS
-        return screened(scaled, screen(self.motion, scaled.targets[0], dyads, scaled.wanted, most))
+        return fully_screened(scaled, screen(self.motion, scaled.targets[0], dyads, scaled.wanted, most))
 
     def near_pairs(self, dyads: Dyads) -> Screened:
         """Pairs, feasible or not, and how far each violates all requirements but the user's own."""
@@ -142,9 +142,9 @@ class DyadPairs(WholePoses, ABC):
         """Pairs that meet all requirements; near misses where none does."""
         dyads = self.dyads(rng)
         pairs = self.pairs(dyads)
-        return (
-            pairs[pairs.feasible] if pairs.feasible.any() else screened(self.scaled, self.near_pairs(dyads))
-        )
+        if pairs.feasible.any():
+            return pairs[pairs.feasible]
+        return fully_screened(self.scaled, self.near_pairs(dyads))
 
     def relaxed(self, rng: np.random.Generator) -> list[Start]:
         """Starts that may miss what stands in the way."""

@@ -15,10 +15,12 @@ import numpy as np
 
 from grashof.problems import TransmissionOver
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.problems.values.requirements import LIMITS
+from grashof.synth.programme.formulas import FORMULAS
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS, Screened
 from grashof.synth.programme.start import Round, Start
-from grashof.synth.starts.closed_loop import Batch, PathTarget, joined
+from grashof.synth.starts.closed_loop import Batch, SearchTargets, joined
 from grashof.synth.starts.coupler_search import FOUND, CouplerSearch
 from grashof.synth.starts.loop_search import (
     PLACES,
@@ -31,12 +33,12 @@ from grashof.synth.starts.loop_search import (
     with_places,
     within_limits,
 )
-from grashof.synth.starts.path_screening import entries_of, judged, path_target
+from grashof.synth.starts.search_targets import judged, search_targets
 from grashof.synth.starts.thinning import refined, thinned
 
 DRAWS, TIMED_DRAWS = 2000, 600
 ASTRAY = 0.3  # share of them on which P makes a detour between two targets
-FEW_TARGETS = 40  # of a longer task decide which finds are worth the rest
+FEW_TARGETS = 40  # of a longer task decide which linkages are worth the rest
 # Where no limit binds: how many of the best go on for how many steps.
 FREE_STAGES, TIMED_STAGES = ((200, 6), (60, 10), (20, 50)), ((60, 6), (20, 60))
 MOST_CURVES = 6  # starts of such a round
@@ -44,7 +46,7 @@ MOST_CURVES = 6  # starts of such a round
 # motion, its promise is a little off.
 NEAR_BEST, NEAR_BEST_SHIFTED = 1.6, 2.0
 SAME_ERROR = 1e-3  # share: a feasible find so near to the best one says that no limit binds
-SAME_CURVE = 0.1  # of the rms error: two finds closer at every target are one
+SAME_CURVE = 0.1  # of the rms error: two linkages closer at every target are one
 # Where limits bind: how many of the best distinct go on, for how many steps, at what weight of the
 # limits (in sizes).
 STAGES = ((400, 8, 0.3), (200, 10, 1.0), (80, 20, 5.0), (40, 40, 5.0))
@@ -54,7 +56,16 @@ COPY = 0.01  # sizes: two linkages closer at three targets are one
 # tasks of more targets than `AMPLE`, whose solves take longer.
 BEST, OTHERS, EARLY = 12, 4, 8
 AMPLE, FEWEST = 24, 0.25
-UNLIMITED = ("order", "same_branch", "keep_out", "constraints")  # no residual of the search stands for them
+# No residual of the search stands for these.
+UNLIMITED = (
+    *("order", "same_branch", "keep_out", "constraints"),
+    *(
+        name
+        for name, limit in LIMITS.items()
+        if all(part.fixed for part in FORMULAS.get(limit.quantity.key, ()))
+        and limit.quantity.key != "transmission"
+    ),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +74,7 @@ class LeastSquares(CouplerSearch):
 
     def rounds(self, _enough: int, rng: np.random.Generator, size: int, /) -> Iterator[Round]:
         """Rounds without end, of `size` times the usual number of draws and starts."""
-        scaled, target = self.scaled, path_target(self.scaled)
+        scaled, target = self.scaled, search_targets(self.scaled)
         some, index = thinned(target, FEW_TARGETS)
         while True:
             drawn = draw(some, size * (TIMED_DRAWS if target.timed else DRAWS), rng, ASTRAY)
@@ -72,7 +83,7 @@ class LeastSquares(CouplerSearch):
             yield free or _limited_round(scaled, rng, drawn, best, size)
 
 
-def _best_fitting(some: PathTarget, drawn: Batch, size: int) -> Batch:
+def _best_fitting(some: SearchTargets, drawn: Batch, size: int) -> Batch:
     """Of some linkages those that fit best, improved, whether they keep the limits or not."""
     batch = drawn
     with np.errstate(all="ignore"):
@@ -83,7 +94,7 @@ def _best_fitting(some: PathTarget, drawn: Batch, size: int) -> Batch:
         return batch[np.argsort(error, kind="stable")]
 
 
-def _on_all_targets(target: PathTarget, index: IntArray, batch: Batch) -> Batch:
+def _on_all_targets(target: SearchTargets, index: IntArray, batch: Batch) -> Batch:
     """Linkages that know the targets `index` with driver angles at every one, improved there."""
     if len(index) == len(target.points):
         return batch
@@ -93,14 +104,14 @@ def _on_all_targets(target: PathTarget, index: IntArray, batch: Batch) -> Batch:
 
 def _free_round(scaled: ScaledProblem, batch: Batch, size: int) -> Round | None:
     """Starts from linkages that fit best; None where the best of them break a limit."""
-    target = path_target(scaled)
+    target = search_targets(scaled)
     with np.errstate(all="ignore"):
         placed = place(target, batch)
     sound = np.isfinite(placed.error)
-    finds = judged(scaled, target, entries_of(placed, sound), batch.direction[sound])
-    least = finds.error.min(initial=np.inf)
+    linkages = judged(scaled, target, placed[sound], batch.direction[sound])
+    least = linkages.error.min(initial=np.inf)
     useful = max(NEAR_BEST * least, scaled.of_use)
-    feasible = finds[finds.feasible & (finds.error <= useful)]
+    feasible = linkages[linkages.feasible & (linkages.error <= useful)]
     if not len(feasible) or feasible.error.min() > max(least * (1 + SAME_ERROR), FOUND):
         return None
     order = np.argsort(feasible.error, kind="stable")
@@ -126,37 +137,29 @@ def _other_curves(starts: list[Start], most: int) -> list[Start]:
     return chosen
 
 
-@dataclass(frozen=True, slots=True)
-class _Stage:
-    """Linkages of the search, best first, and their errors with what limits add (n,), sizes."""
-
-    finds: Screened
-    error: FloatArray
-
-
 def _limited_round(
     scaled: ScaledProblem, rng: np.random.Generator, drawn: Batch, best: Batch, size: int
 ) -> Round:
     """Starts of the search under every limit, from drawn linkages and those that fit best."""
     before_limits, found = _search(scaled, drawn, best, size)
-    late = _ranked(scaled, found)
+    linkages, error = _ranked(scaled, found)
     share = size * min(1.0, max(AMPLE / len(scaled.targets), FEWEST))
     first, others, before = (round(share * count) for count in (BEST, OTHERS, EARLY))
-    chosen = [_start(scaled, late.finds, late.error, k) for k in range(min(first, len(late.error)))]
-    rest = np.arange(len(chosen), len(late.error))
-    chosen += [_start(scaled, late.finds, late.error, k) for k in _some(rng, rest, others)]
+    chosen = [_start(scaled, linkages, error, k) for k in range(min(first, len(error)))]
+    rest = np.arange(len(chosen), len(error))
+    chosen += [_start(scaled, linkages, error, k) for k in _some(rng, rest, others)]
     prune = NEAR_BEST
     if _ends_bind(scaled):  # the search may shift the ends of the motion, the programme may not
-        early = _ranked(scaled, before_limits)
-        some = _some(rng, np.arange(len(early.error)), before)
-        chosen += [replace(_start(scaled, early.finds, early.error, k), promise=0.0) for k in some]
+        early, error = _ranked(scaled, before_limits)
+        some = _some(rng, np.arange(len(error)), before)
+        chosen += [replace(_start(scaled, early, error, k), promise=0.0) for k in some]
         prune = NEAR_BEST_SHIFTED
-    return Round(chosen, {"feasible linkages": int(late.finds.feasible.sum())}, size, prune)
+    return Round(chosen, {"feasible linkages": int(linkages.feasible.sum())}, size, prune)
 
 
 def _search(scaled: ScaledProblem, drawn: Batch, best: Batch, size: int) -> tuple[Batch, Batch]:
     """Linkages after the first stage, and after the last one."""
-    target = path_target(scaled)
+    target = search_targets(scaled)
     some, index = thinned(target, FEW_TARGETS)
     with np.errstate(all="ignore"):
         batch = early = with_places(some, drawn)
@@ -177,26 +180,29 @@ def _search(scaled: ScaledProblem, drawn: Batch, best: Batch, size: int) -> tupl
         return early, batch
 
 
-def _with_places_refined(target: PathTarget, index: IntArray, batch: Batch) -> Batch:
+def _with_places_refined(target: SearchTargets, index: IntArray, batch: Batch) -> Batch:
     """Linkages that know the targets `index` with driver angles at every one, where they stand."""
     places = batch.unknowns[:, -PLACES:]
     inner = refined(target, index, replace(batch, unknowns=batch.unknowns[:, :-PLACES]))
     return replace(inner, unknowns=np.concatenate([inner.unknowns, places], axis=1))
 
 
-def _ranked(scaled: ScaledProblem, batch: Batch) -> _Stage:
-    target = path_target(scaled)
+def _ranked(scaled: ScaledProblem, batch: Batch) -> tuple[Screened, FloatArray]:
+    """Linkages of the search, best first, and their errors with what limits add (n,), sizes."""
+    target = search_targets(scaled)
     placed = standing(target, batch)
     error, _, _ = within_limits(target, STAGES[-1][2])(batch)
     sound = np.flatnonzero(np.isfinite(error) & np.isfinite(placed.error))
-    finds = judged(scaled, target, entries_of(placed, sound), batch.direction[sound])
+    linkages = judged(scaled, target, placed[sound], batch.direction[sound])
     unlimited = [GROUPS.index(name) for name in UNLIMITED]
-    merit = np.sqrt(error[sound] / len(scaled.targets)) + finds.violations[:, unlimited].sum(axis=1)
+    merit = np.sqrt(error[sound] / len(scaled.targets)) + linkages.violations[:, unlimited].sum(axis=1)
     order = np.argsort(merit, kind="stable")
-    return _Stage(finds[order], merit[order])
+    return linkages[order], merit[order]
 
 
-def _best_distinct(target: PathTarget, batch: Batch, error: FloatArray, keep: int, *, drawn: bool) -> Batch:
+def _best_distinct(
+    target: SearchTargets, batch: Batch, error: FloatArray, keep: int, *, drawn: bool
+) -> Batch:
     """At most `keep` linkages, least error first; of copies the better one. Draws have no copies."""
     order = np.argsort(error, kind="stable")
     order = order[np.isfinite(error[order])]
@@ -220,9 +226,9 @@ def _distinct(placed: Placed) -> IntArray:
     return np.array(picked, dtype=np.int64)
 
 
-def _start(scaled: ScaledProblem, finds: Screened, error: FloatArray, index: int) -> Start:
-    start = Start.of_find(finds, index, scaled.problem.objective)
-    met = bool(finds.feasible[index]) and finds.error[index] < FOUND
+def _start(scaled: ScaledProblem, linkages: Screened, error: FloatArray, index: int) -> Start:
+    start = Start.of_screened(linkages, index, scaled.problem.objective)
+    met = bool(linkages.feasible[index]) and linkages.error[index] < FOUND
     return replace(start, promise=float(error[index]), settled=met)
 
 

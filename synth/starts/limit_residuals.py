@@ -23,7 +23,7 @@ from grashof.synth.programme.formulas import (
     stretched,
 )
 from grashof.synth.programme.vector import Vector
-from grashof.synth.starts.closed_loop import Loop, PathTarget, body_turns
+from grashof.synth.starts.closed_loop import Loop, SearchTargets, body_turns
 
 LEAST_TRANSMISSION = 1e-3  # rad: keeps the motion away from dead positions
 LEAST_LENGTH = 1e-9  # sizes
@@ -49,7 +49,7 @@ class Placement(View):
 
     Parameters
     ----------
-    target : PathTarget
+    target : SearchTargets
     loop : Loop
     by_theta2, by_theta3 : ndarray, shape (n, N, M)
     z : ndarray of complex, shape (n, 3), sizes
@@ -58,7 +58,7 @@ class Placement(View):
 
     def __init__(
         self,
-        target: PathTarget,
+        target: SearchTargets,
         loop: Loop,
         by_theta2: FloatArray,
         by_theta3: FloatArray,
@@ -108,12 +108,12 @@ class Placement(View):
         return Dual(body_turns(self._target, self.loop)[1][:, None], -slope[:, None])
 
 
-def oversteps(target: PathTarget, at: Placement) -> tuple[FloatArray, FloatArray]:
+def oversteps(target: SearchTargets, at: Placement) -> tuple[FloatArray, FloatArray]:
     """How far every limit is overstepped, and the derivative by the unknowns.
 
     Parameters
     ----------
-    target : PathTarget
+    target : SearchTargets
     at : Placement
 
     Returns
@@ -130,8 +130,10 @@ def oversteps(target: PathTarget, at: Placement) -> tuple[FloatArray, FloatArray
     )
 
 
-def _limit_rows(target: PathTarget, at: Placement) -> Iterator[Dual]:
+def _limit_rows(target: SearchTargets, at: Placement) -> Iterator[Dual]:
     for name, part in parts_of(target.wanted.limited):
+        if part.fixed:
+            continue
         low, high = range_of(target.wanted, name, part)
         value = np.sqrt(part.of(at)) if part.squared else part.of(at)
         if LIMITS[name].kind is Kind.EQUAL:
@@ -151,7 +153,7 @@ def _outside(row: Dual, limits: Limits) -> Dual:
     return Dual(over, np.where((over != 0)[..., None], row.slope, 0.0))
 
 
-def _transmission_rows(target: PathTarget, loop: Relative) -> Iterator[Dual]:
+def _transmission_rows(target: SearchTargets, loop: Relative) -> Iterator[Dual]:
     """How far |cos mu| exceeds what is allowed: with O2A along the ground line, and at the ends."""
     wanted, theta2 = target.wanted, loop.theta2
     least = np.radians(wanted.transmission_min_deg)
@@ -167,7 +169,7 @@ def _transmission_rows(target: PathTarget, loop: Relative) -> Iterator[Dual]:
         yield _outside(cos_mu(loop, at_angle(loop, angle)), (-most, most))
 
 
-def passed(target: PathTarget, theta2: FloatArray) -> tuple[BoolArray, BoolArray]:
+def passed(target: SearchTargets, theta2: FloatArray) -> tuple[BoolArray, BoolArray]:
     """Whether the task motion passes O2A folded over the ground line, and stretched along it; (n,) each."""
     every = np.ones(len(theta2), dtype=bool)
     if target.wanted.transmission_over is TransmissionOver.CYCLE or target.closed:

@@ -16,11 +16,11 @@ from typing import TypeAlias
 import numpy as np
 
 from grashof.problems import Rotatability
-from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.synth.starts.closed_loop import (
     Batch,
     Loop,
-    PathTarget,
+    SearchTargets,
     body_turns,
     by_body_turns,
     by_theta3_of,
@@ -62,8 +62,11 @@ class Placed:
     theta2: FloatArray
     body_angle: FloatArray
 
+    def __getitem__(self, index: BoolArray | IntArray) -> Placed:
+        return Placed(*(getattr(self, name)[index] for name in self.__slots__))
 
-def draw(target: PathTarget, count: int, rng: np.random.Generator, astray: float = 0.0) -> Batch:
+
+def draw(target: SearchTargets, count: int, rng: np.random.Generator, astray: float = 0.0) -> Batch:
     """Random linkages, feasible by construction; gaps between driver angles follow the points.
 
     On a share of them, `astray`, P makes a detour between two targets.
@@ -97,14 +100,14 @@ def draw(target: PathTarget, count: int, rng: np.random.Generator, astray: float
     )
 
 
-def place(target: PathTarget, batch: Batch) -> Placed:
+def place(target: SearchTargets, batch: Batch) -> Placed:
     """Where the linkages of a batch fit the points best."""
     loop = Loop.of(target, batch)
     z, _, _, error = _project(target, loop)
     return _standing(target, loop, z, error)
 
 
-def _standing(target: PathTarget, loop: Loop, z: ComplexArray, error: FloatArray) -> Placed:
+def _standing(target: SearchTargets, loop: Loop, z: ComplexArray, error: FloatArray) -> Placed:
     """Where linkages stand with given z0, z1, z2 (n, 3); `error` is that of the points alone."""
     z0, z1, z2 = z.T
     ground = z1 / loop.r2
@@ -182,7 +185,9 @@ def _step(residual: FloatArray, jacobian: FloatArray, damping: FloatArray) -> Fl
     return step
 
 
-def _project(target: PathTarget, loop: Loop) -> tuple[ComplexArray, ComplexArray, ComplexArray, FloatArray]:
+def _project(
+    target: SearchTargets, loop: Loop
+) -> tuple[ComplexArray, ComplexArray, ComplexArray, FloatArray]:
     """Best z0, z1, z2 (n, 3), the QR factors of what they span (n, N, 3) and (n, 3, 3), and the error."""
     root = np.sqrt(target.weights)
     basis = np.stack([np.ones_like(loop.e2), loop.e2, loop.e3], axis=-1) * root[:, None]
@@ -205,7 +210,7 @@ def _back_substituted(r: ComplexArray, right: ComplexArray) -> ComplexArray:
     return np.stack([z0, z1, z2], axis=1)
 
 
-def fitting(target: PathTarget) -> Model:
+def fitting(target: SearchTargets) -> Model:
     """The error of linkages that are placed best, with a light pull towards the limits."""
 
     def model(batch: Batch) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -223,12 +228,12 @@ def fitting(target: PathTarget) -> Model:
     return model
 
 
-def within_limits(target: PathTarget, weight: float) -> Model:
+def within_limits(target: SearchTargets, weight: float) -> Model:
     """The error under limits, for batches with their places among the unknowns (see `with_places`).
 
     Parameters
     ----------
-    target : PathTarget
+    target : SearchTargets
     weight : float, sizes
         Error that overstepping a limit by one unit counts as.
     """
@@ -260,7 +265,7 @@ def within_limits(target: PathTarget, weight: float) -> Model:
 PLACES = 6  # unknowns that place a linkage: real and imaginary parts of z0, z1, z2
 
 
-def with_places(target: PathTarget, batch: Batch) -> Batch:
+def with_places(target: SearchTargets, batch: Batch) -> Batch:
     """A batch with z0, z1, z2 as six more unknowns, where the linkages fit the points best."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         z, _, _, error = _project(target, Loop.of(target, batch))
@@ -269,7 +274,7 @@ def with_places(target: PathTarget, batch: Batch) -> Batch:
     return replace(batch, unknowns=np.concatenate([batch.unknowns, parts], axis=1))[sound]
 
 
-def standing(target: PathTarget, batch: Batch) -> Placed:
+def standing(target: SearchTargets, batch: Batch) -> Placed:
     """Where the linkages of a batch with places stand."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         loop, z = _loop_and_places(target, batch)
@@ -278,14 +283,14 @@ def standing(target: PathTarget, batch: Batch) -> Placed:
         return _standing(target, loop, z, np.where(loop.closes, error, np.inf))
 
 
-def _loop_and_places(target: PathTarget, batch: Batch) -> tuple[Loop, ComplexArray]:
+def _loop_and_places(target: SearchTargets, batch: Batch) -> tuple[Loop, ComplexArray]:
     loop = Loop.of(target, replace(batch, unknowns=batch.unknowns[:, :-PLACES]))
     parts = batch.unknowns[:, -PLACES:].reshape(len(batch), 3, 2)
     return loop, parts[..., 0] + 1j * parts[..., 1]
 
 
 def _missed(
-    target: PathTarget, loop: Loop, z: ComplexArray, by_theta2: FloatArray, by_theta3: FloatArray
+    target: SearchTargets, loop: Loop, z: ComplexArray, by_theta2: FloatArray, by_theta3: FloatArray
 ) -> tuple[ComplexArray, ComplexArray]:
     """From P to the points, weighted (n, N), and the derivative of P with z held (n, N, M)."""
     root = np.sqrt(target.weights)
@@ -296,7 +301,7 @@ def _missed(
 
 
 def _joined(
-    target: PathTarget,
+    target: SearchTargets,
     at: Placement,
     residual: ComplexArray,
     slope: ComplexArray,

@@ -21,13 +21,12 @@ from grashof.synth.programme.screening import (
     Configurations,
     Screened,
     as_they_come,
-    dyad_violations,
-    follow,
     judge,
-    keep_out_violation,
+    shorter_way,
+    violations_apart,
 )
 from grashof.synth.programme.start import Start
-from grashof.synth.programme.user_constraints import screened
+from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.starts.sampled_dyads import arms, ground_pivots
 from grashof.synth.starts.selection import feasible_starts, merits
 from grashof.synth.theory.distinct import pick_apart
@@ -239,7 +238,7 @@ def _kept(scaled: ScaledProblem, drawn: _Drawn) -> _Drawn:
 
 
 def _judged(scaled: ScaledProblem, drawn: _Drawn) -> Screened:
-    """What each violations; a motion up to a change point violations the same branch."""
+    """How far each violates the requirements; a motion up to a change point leaves the branch."""
     wanted, count = scaled.wanted, len(drawn)
     moved = scaled.targets - scaled.targets[0]
     a, b = drawn.a[:, None] + moved, (drawn.a + drawn.coupler)[:, None] + moved
@@ -248,25 +247,19 @@ def _judged(scaled: ScaledProblem, drawn: _Drawn) -> Screened:
     angle = np.angle(a - o2[:, None])
     visit = np.broadcast_to(np.arange(len(moved)), angle.shape)
     if wanted.order:
-        back = follow(angle, -np.ones(count))
-        forth = follow(angle, np.ones(count))
-        shorter = np.ptp(forth, axis=1) <= np.ptp(back, axis=1)
-        theta2, direction = np.where(shorter[:, None], forth, back), np.where(shorter, 1.0, -1.0)
+        theta2, direction = shorter_way(angle)
     else:
         visit, theta2, direction = as_they_come(angle)
-    violations = dyad_violations("o2", o2, a, p, wanted) + dyad_violations("o4", o4, b, p, wanted)
-    violations[:, GROUPS.index("keep_out")] += keep_out_violation(
-        "p", np.broadcast_to(scaled.targets, a.shape), wanted
-    )
+    found = Configurations(o2, o4, a, b, visit, theta2, direction)
+    violations = violations_apart(found, p, np.broadcast_to(scaled.targets, a.shape), wanted)
     violations[:, GROUPS.index("order")] += np.maximum(np.ptp(theta2, axis=1) - TURN, 0)
-    found = judge(
-        Configurations(o2, o4, a, b, visit, theta2, direction), p, np.zeros(count), violations, wanted
-    )
+    first_turn = np.full(count, scaled.turns[0])
+    linkages = judge(found, p, np.zeros(count), violations, wanted, first_turn=first_turn)
     if wanted.same_branch:
-        near = np.maximum(LEAST_TRANSMISSION - found.transmission, 0.0)
-        found.violations[:, GROUPS.index("same_branch")] += near
-    found.violations[found.violations < ROUNDING] = 0.0
-    return screened(scaled, found)
+        near = np.maximum(LEAST_TRANSMISSION - linkages.transmission, 0.0)
+        linkages.violations[:, GROUPS.index("same_branch")] += near
+    linkages.violations[linkages.violations < ROUNDING] = 0.0
+    return fully_screened(scaled, linkages)
 
 
 def _distinct_best(scaled: ScaledProblem, drawn: _Drawn, found: Screened) -> tuple[_Drawn, FloatArray]:

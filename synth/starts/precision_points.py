@@ -12,12 +12,12 @@ import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import follow
+from grashof.synth.programme.screening import shorter_way
 from grashof.synth.programme.start import Round
-from grashof.synth.starts.closed_loop import PathTarget
+from grashof.synth.starts.closed_loop import SearchTargets
 from grashof.synth.starts.coupler_search import CouplerSearch, has_family, search
 from grashof.synth.starts.loop_search import Placed
-from grashof.synth.starts.path_screening import judged, path_target
+from grashof.synth.starts.search_targets import judged, search_targets
 from grashof.synth.starts.selection import feasible_starts, mended_starts, starts_of
 from grashof.synth.theory.cognates import cognate_points
 from grashof.synth.theory.nine_points import coupler_turns, linkages_through
@@ -64,7 +64,7 @@ class NinePoints(PrecisionPoints):
         """So many points, to be met exactly."""
         if not scaled.exact or scaled.timed or not scaled.problem.task.only_points:
             return False
-        points = path_target(scaled).points
+        points = search_targets(scaled).points
         apart = np.abs(points[:, None] - points) + np.eye(len(points))
         return len(points) == 9 and bool(apart.min() > 1e-9)
 
@@ -76,7 +76,7 @@ class NinePoints(PrecisionPoints):
 
     def _all_linkages(self, rng: np.random.Generator) -> Round:
         """Of every triplet of cognates through the points the first feasible one; the others follow."""
-        target = path_target(self.scaled)
+        target = search_targets(self.scaled)
         through = linkages_through(target.points, rng)
         linkages = judged(self.scaled, target, *_at_points(_driven_from_both_sides(through), target))
         feasible = linkages.feasible.reshape(-1, 3, 2)
@@ -101,16 +101,11 @@ def _driven_from_both_sides(linkages: ComplexArray) -> ComplexArray:
     return np.stack([one_side, other_side]).transpose(3, 1, 0, 2).reshape(-1, 5)
 
 
-def _at_points(points: ComplexArray, target: PathTarget) -> tuple[Placed, FloatArray]:
+def _at_points(points: ComplexArray, target: SearchTargets) -> tuple[Placed, FloatArray]:
     """Linkages (n, 5) that pass all points: where they stand there, and the shorter sense of the driver."""
     o2, _, a, b, p = (column[:, None] for column in points.T)
     turns = coupler_turns(points, target.points)
     a, b = target.points + (a - p) * turns, target.points + (b - p) * turns
-    theta2 = np.angle(a - o2)
-    forth, back = (follow(theta2, np.full(len(points), sense)) for sense in (1.0, -1.0))
-    shorter = np.abs(forth[:, -1] - theta2[:, 0]) <= np.abs(back[:, -1] - theta2[:, 0])
-    theta2 = np.where(shorter[:, None], forth, back)
-    p = np.broadcast_to(target.points, a.shape)
-    none = np.zeros(len(points))
-    placed = Placed(none, points[:, 0], points[:, 1], a, b, p, theta2, body_angle=none)
-    return placed, np.where(shorter, 1.0, -1.0)
+    theta2, direction = shorter_way(np.angle(a - o2))
+    none, p = np.zeros(len(points)), np.broadcast_to(target.points, a.shape)
+    return Placed(none, points[:, 0], points[:, 1], a, b, p, theta2, body_angle=none), direction

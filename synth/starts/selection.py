@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from grashof.problems import Rotatability
 from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.requirements import QUANTITIES
-from grashof.synth.programme.along_motion import ALONG, SCREENED, magnitudes
+from grashof.synth.programme.along_motion import ALONG, SCREENED, magnitudes, value_of
 from grashof.synth.programme.formulas import FORMULAS
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS, Many, Screened
@@ -87,7 +88,7 @@ def closest_starts(scaled: ScaledProblem, linkages: Screened, group: str, most: 
 
 def starts_of(scaled: ScaledProblem, linkages: Screened, picked: IntArray) -> list[Start]:
     """Starts at some of the linkages."""
-    return [Start.of_find(linkages, int(index), scaled.problem.objective) for index in picked]
+    return [Start.of_screened(linkages, int(index), scaled.problem.objective) for index in picked]
 
 
 def _spread(
@@ -140,16 +141,20 @@ def merits(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
 
 def _worth(scaled: ScaledProblem, linkages: Screened, key: str) -> FloatArray:
     """What the objective counts a quantity as, greater is better; nothing where the search has no formula."""
+    worth: FloatArray = np.zeros(len(linkages))
     if key == "transmission":
-        return linkages.transmission / (np.pi / 2)
-    if key == "size":
-        return -np.hypot(np.ptp(linkages.points.real, axis=1), np.ptp(linkages.points.imag, axis=1))
-    if key in ALONG:
+        worth = linkages.transmission / (np.pi / 2)
+    elif key == "size":
+        worth = -np.hypot(np.ptp(linkages.points.real, axis=1), np.ptp(linkages.points.imag, axis=1))
+    elif key in ALONG:
         ways = linkages.theta2, linkages.direction, linkages.assembly
-        return -magnitudes(scaled.problem, key, linkages.points, *ways, SCREENED).max(axis=1)
-    if key in FORMULAS:
+        peak = magnitudes(scaled.problem, key, linkages.points, *ways, SCREENED).max(axis=1)
+        worth = QUANTITIES[key].better * value_of(key, peak)
+    elif key in FORMULAS:
         (part,) = FORMULAS[key]
         o2, o4, a, b, p = linkages.points.T
-        value: FloatArray = part.of(Many(p, o2, a[:, None], o4, b[:, None]))[:, 0]
-        return QUANTITIES[key].better * value / scaled.scale(QUANTITIES[key])
-    return np.zeros(len(linkages))
+        turns = scaled.wanted.rotatability is not Rotatability.ANY
+        pairs = Many(p, o2, a[:, None], o4, b[:, None], linkages.theta2, turns=turns)
+        value = part.of(pairs)[:, 0]
+        worth = QUANTITIES[key].better * value / scaled.scale(QUANTITIES[key])
+    return worth

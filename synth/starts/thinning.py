@@ -7,22 +7,22 @@ from dataclasses import replace
 import numpy as np
 
 from grashof.problems.values.arrays import IntArray
-from grashof.synth.starts.closed_loop import Batch, PathTarget, shares_of_turn
+from grashof.synth.starts.closed_loop import Batch, SearchTargets, shares_of_turn
 
 SMALLEST = 1e-6  # share of a turn: gaps get no smaller
 
 
-def thinned(target: PathTarget, most: int) -> tuple[PathTarget, IntArray]:
+def thinned(target: SearchTargets, most: int) -> tuple[SearchTargets, IntArray]:
     """At most `most` points of a path, evenly picked, and which; the first and the last are kept.
 
     Parameters
     ----------
-    target : PathTarget
+    target : SearchTargets
     most : int
 
     Returns
     -------
-    PathTarget
+    SearchTargets
     index : ndarray of int
         Of the points kept.
     """
@@ -35,12 +35,12 @@ def thinned(target: PathTarget, most: int) -> tuple[PathTarget, IntArray]:
     return replace(target, **{name: getattr(target, name)[index] for name in names}), index
 
 
-def refined(target: PathTarget, index: IntArray, batch: Batch) -> Batch:
+def refined(target: SearchTargets, index: IntArray, batch: Batch) -> Batch:
     """Linkages of a thinned path with driver angles at every point, in between by the length of the path.
 
     Parameters
     ----------
-    target : PathTarget
+    target : SearchTargets
         With all points.
     index : ndarray of int
         Of the points that `batch` knows.

@@ -21,16 +21,19 @@ class Displacements:
     ----------
     rotation, shift : ndarray of complex, shape (N,)
         Unit rotations and shifts in length; 1 and 0 for the first pose.
+    first_turn : float, rad
+        Angle of the body in the first pose.
     """
 
     rotation: ComplexArray
     shift: ComplexArray
+    first_turn: float = 0.0
 
     @classmethod
     def from_poses(cls, positions: ComplexArray, angles: FloatArray) -> Displacements:
         """Displacements of poses at `positions`, shape (N,), turned by `angles`, shape (N,), rad."""
         rotation = np.exp(1j * (angles - angles[0]))
-        return cls(rotation, positions - rotation * positions[0])
+        return cls(rotation, positions - rotation * positions[0], float(angles[0]))
 
     def inverse(self) -> Displacements:
         """Displacements of the ground as the body sees it: circle and centre points change places."""

@@ -107,7 +107,13 @@ def test_help_is_no_error(grashof: Grashof) -> None:
 def test_check_and_problems(grashof: Grashof, tmp_path: Path) -> None:
     done = grashof("check", "luggage")
     assert done.exit_code == 0
-    for said in ("4 poses", "5.65685 m", "at least 15 deg over the task", "r4 0.3 to 8", "full-crank"):
+    for said in (
+        "4 poses",
+        "5.65685 m",
+        "angle over the task: from 15 deg",
+        "link length: 0.3 to 8 m",
+        "full-crank",
+    ):
         assert said in done.stdout
     assert "luggage" in grashof("problems").stdout
     text = grashof("problems", "luggage").stdout
@@ -161,7 +167,7 @@ def test_what_nobody_expected_ends_with_one_line(grashof: Grashof, monkeypatch: 
     def broken(_problem: Problem) -> list[str]:
         raise ZeroDivisionError("division\nby zero")
 
-    monkeypatch.setattr("grashof.output.terminal.summary", broken)
+    monkeypatch.setattr("grashof.wording.problem.summary", broken)
     monkeypatch.delenv("GRASHOF_TRACEBACK", raising=False)
     done = grashof("check", "luggage")
     assert done.exit_code == 3

@@ -56,7 +56,7 @@ def test_the_torque_is_shown_where_it_is_asked_for(few: Result, capsys: pytest.C
     print_table(replace(few, problem=driven))
     lines = capsys.readouterr().out.splitlines()
     row = next(line for line in lines if line.lstrip().startswith("1"))
-    assert f" {few.candidates[0].torque_peak:.4g} " in row
+    assert f" {few.candidates[0].values['torque_peak']:.4g} " in row
     assert any("N m" in line for line in lines)
 
 
@@ -210,11 +210,11 @@ def test_summary_names_every_requirement_given() -> None:
     )
     text = "\n".join(summary(replace(load("luggage"), requirements=wanted)))
     for said in (
-        "o2: x 0 to 1",
-        "b: x -inf to inf, y 2 to 3",
-        "ground_angle_deg 30",
-        "theta2_start_deg -20",
-        "r3 1 to 2",
+        "place of O2: x 0 to 1 m",
+        "place of B: y 2 to 3 m",
+        "direction of O2O4: 30 deg",
+        "driver angle at the first target: -20 deg",
+        "r3: 1 to 2 m",
     ):
         assert said in text
 

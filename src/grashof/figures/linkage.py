@@ -29,6 +29,8 @@ from grashof.figures.parts import (
 from grashof.figures.subject import Linkage, Subject
 from grashof.problems import AssemblyError, Problem, ProblemError
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.checks import near_miss
+from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth import Result
 from grashof.synth.results.ranking import pareto_optimal
 
@@ -143,8 +145,10 @@ def plot_coupler_curve(linkage: Linkage, problem: Problem | None = None, *, ax: 
     return ax
 
 
-def plot_design_space(result: Result, *, ax: Axes | None = None) -> Axes:
-    """Plot the worst transmission angle of all designs against their size, the Pareto-optimal ones ringed.
+def plot_design_space(
+    result: Result, *, x: str = "size", y: str = "transmission", ax: Axes | None = None
+) -> Axes:
+    """Plot two quantities of all designs against each other, the Pareto-optimal ones ringed.
 
     The colour is the peak torque where the problem has dynamics, or else the position error where the
     targets are not met exactly; grey where it is not finite. The best ten carry their rank, where there is
@@ -153,6 +157,8 @@ def plot_design_space(result: Result, *, ax: Axes | None = None) -> Axes:
     Parameters
     ----------
     result : Result
+    x, y : str
+        Keys of quantities: what a column of `Result.to_frame` holds, without its "_deg".
     ax : Axes, optional
         A scale of colours is added to its figure.
 
@@ -164,34 +170,30 @@ def plot_design_space(result: Result, *, ax: Axes | None = None) -> Axes:
     ------
     NoSolutionError
         There are no designs; it says why.
+    ProblemError
+        A key is unknown.
     """
     _ = result.best
     problem, candidates = result.problem, result.candidates
-    over = problem.requirements.transmission_over
-    size = np.array([candidate.verdict.size for candidate in candidates])
-    mu = np.degrees([candidate.transmission(over) for candidate in candidates])
-    torque = [candidate.torque_peak for candidate in candidates]
+    (x_values, x_label), (y_values, y_label) = _along(result, x), _along(result, y)
     front = pareto_optimal(problem, candidates)
-    unit = problem.length_unit or "length"
     ax = new_axes(ax)
-    label, third = None, np.zeros(len(candidates))
-    if problem.dynamics is not None:
-        label, third = "peak torque (N m)", np.array(torque)
-    elif not problem.requirements.is_exact(problem.task):
-        label, third = f"rms error ({unit})", np.array([each.verdict.error_rms for each in candidates])
-    if label is None:
-        ax.scatter(size, mu, color=COUPLER, label="design", zorder=3)
+    third = "torque_peak" if problem.dynamics is not None else "error_rms"
+    if third == "error_rms" and problem.requirements.is_exact(problem.task):
+        ax.scatter(x_values, y_values, color=COUPLER, label="design", zorder=3)
     else:
-        known = np.where(np.isfinite(third), third, np.nan)
+        values, label = _along(result, third)
+        known = np.where(np.isfinite(values), values, np.nan)
         scale = colormaps["viridis"].with_extremes(bad=KEPT_OUT)
-        dots = ax.scatter(size, mu, c=known, cmap=scale, plotnonfinite=True, label="design", zorder=3)
-        bar = figure_of(ax).colorbar(dots, ax=ax)
-        bar.set_label(label, parse_math=False)
+        dots = ax.scatter(
+            x_values, y_values, c=known, cmap=scale, plotnonfinite=True, label="design", zorder=3
+        )
+        figure_of(ax).colorbar(dots, ax=ax).set_label(label, parse_math=False)
     ax.scatter(
-        size[front], mu[front], s=110, facecolors="none", edgecolors=GROUND, linewidths=1.2,
+        x_values[front], y_values[front], s=110, facecolors="none", edgecolors=GROUND, linewidths=1.2,
         label="Pareto-optimal", zorder=4,
     )  # fmt: skip
-    best = np.column_stack([size, mu])[:_NUMBERED]
+    best = np.column_stack([x_values, y_values])[:_NUMBERED]
     taken: list[FloatArray] = []
     for rank, (place, there) in enumerate(zip(best, in_points(ax, best), strict=True), start=1):
         if apart(there, taken):
@@ -199,10 +201,23 @@ def plot_design_space(result: Result, *, ax: Axes | None = None) -> Axes:
                 f"{rank}", tuple(place), (6, 5), textcoords="offset points", fontsize="small", zorder=5
             )
             taken.append(there)
-    ax.set_xlabel(f"size of the design ({unit})", parse_math=False)
-    ax.set_ylabel(f"worst transmission angle over the {over} (deg)")
+    ax.set_xlabel(x_label, parse_math=False)
+    ax.set_ylabel(y_label, parse_math=False)
     ax.legend(loc="best", fontsize="small")
     return ax
+
+
+def _along(result: Result, key: str) -> tuple[FloatArray, str]:
+    """A quantity of all designs, as tables show it, and what it is called."""
+    if key not in (known := result.best.values):
+        meant = near_miss(key, list(known))
+        raise ProblemError(
+            f"{key!r} is not a quantity of designs{f'; did you mean {meant}?' if meant else ''}"
+        )
+    quantity = result.problem.requirements.meant(QUANTITIES[key])
+    values = [candidate.values[quantity.key] * quantity.unit.shown for candidate in result.candidates]
+    unit = quantity.unit.of(result.problem.length_unit)
+    return np.array(values), f"{quantity.words} ({unit})" if unit else quantity.words
 
 
 def new_axes(ax: Axes | None) -> Axes:

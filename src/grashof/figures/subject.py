@@ -58,7 +58,7 @@ class Subject:
         if isinstance(linkage, Candidate):
             verdict = linkage.verdict
         else:
-            verdict = verify(spec.linkage, problem.task, problem.requirements)
+            verdict = verify(spec.linkage, problem.task, problem.requirements, problem=problem)
         return cls(_posed(spec, problem, verdict), problem, verdict)
 
     @property

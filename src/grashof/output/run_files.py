@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import platform
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,8 +15,9 @@ from grashof.output.folder import PAGE, RECORD, replacing_own_files
 from grashof.problems import Problem
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.quantities import Needs, Over
 from grashof.synth import Candidate, Result
-from grashof.synth.results.table import DYNAMICS, MANUFACTURING, MOTION, labels, to_frame
+from grashof.synth.results.table import LISTED, facts, to_frame
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -99,6 +100,7 @@ def _write_record(
 
 def _designs(result: Result, frame: pd.DataFrame) -> dict[str, Any]:
     problem = result.problem
+    keys = _written(problem)
     return {
         "grashof": version("grashof"),
         "problem": problem.name,
@@ -108,9 +110,9 @@ def _designs(result: Result, frame: pd.DataFrame) -> dict[str, Any]:
         "angle_unit": "rad",
         **({} if problem.dynamics is None else {"dynamics": problem.dynamics.stated}),
         "designs": [
-            {"rank": rank, **_design(candidate), "pareto": bool(best), **figures}
-            for rank, (candidate, best, figures) in enumerate(
-                zip(result.candidates, frame["pareto"], _figures(problem, frame), strict=True), start=1
+            {"rank": rank, **_design(candidate, keys), "pareto": bool(best)}
+            for rank, (candidate, best) in enumerate(
+                zip(result.candidates, frame["pareto"], strict=True), start=1
             )
         ],
     }
@@ -121,38 +123,28 @@ def _given(errors: FloatArray) -> list[float | None]:
     return [None if np.isnan(error) else float(error) for error in errors]
 
 
-def _design(candidate: Candidate) -> dict[str, Any]:
+def _design(candidate: Candidate, keys: Sequence[str]) -> dict[str, Any]:
     verdict = candidate.verdict
     turned = verdict.angle_error
     angle_error = {} if np.isnan(turned).all() else {"angle_error": _given(turned)}
     return {
-        **labels(candidate),
+        **facts(candidate),
         "linkage": candidate.linkage.stated,
         "theta2": verdict.theta2.tolist(),
         "assembly": verdict.assembly.tolist(),
         "position_error": _given(verdict.position_error),
         **angle_error,
-        "grashof_class": str(verdict.grashof_class),
-        "direction": verdict.direction,
-        "circuit_ok": verdict.circuit_ok,
-        "branch_ok": verdict.branch_ok,
-        "order_ok": verdict.order_ok,
-        "full_rotation": verdict.full_rotation,
-        "transmission_min_task": verdict.transmission_min_task,
-        "transmission_min_cycle": verdict.transmission_min_cycle,
-        "size": verdict.size,
-        "start": candidate.start,
-        "iterations": candidate.iterations,
+        **{key: x if np.isfinite(x := candidate.values[key]) else None for key in keys},
     }
 
 
-def _figures(problem: Problem, frame: pd.DataFrame) -> list[dict[str, Any]]:
-    """The columns of each design that its problem gives a meaning, null where they are not finite."""
-    dynamics = () if problem.dynamics is None else DYNAMICS
-    columns = [*MOTION, *dynamics, *(() if problem.manufacturing is None else MANUFACTURING)]
-    rows = frame[columns].to_numpy(dtype=np.float64).tolist()
+def _written(problem: Problem) -> list[str]:
+    """Keys of what is said of each design besides its errors, where the problem states what it takes."""
+    over = Over.TASK, Over.CYCLE
     return [
-        {name: x if np.isfinite(x) else None for name, x in zip(columns, row, strict=True)} for row in rows
+        each.key
+        for each in LISTED
+        if problem.states(each.needs) and (each.over in over or each.needs is Needs.MANUFACTURING)
     ]
 
 

@@ -8,7 +8,6 @@ from contextlib import contextmanager
 from io import StringIO
 from textwrap import TextWrapper
 
-import numpy as np
 from rich import box
 from rich.console import Console, JustifyMethod
 from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
@@ -16,8 +15,10 @@ from rich.progress import Progress as Bar
 from rich.table import Table
 
 from grashof.output.streams import say
-from grashof.problems import Problem
+from grashof.problems import FourBar, Problem
 from grashof.problems.values.checks import counted
+from grashof.problems.values.quantities import Over, Quantity, Unit
+from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth import Candidate, Progress, Result
 from grashof.synth.results.ranking import pareto_optimal
 from grashof.wording.problem import error_meaning, goals
@@ -27,7 +28,6 @@ _PIPED_WIDTH = 140
 _WIDE = 100  # columns; narrower terminals get fewer digits
 _UNBOUNDED = 1000
 # Columns that a narrow terminal does without, first to last.
-UNITS = {"mu task": "deg", "mu turn": "deg", "torque": "N m"}  # of columns; lengths are in the problem's
 _DROPPED = (("class",), ("O2", "O4"), ("like this",), ("best at",), ("size",), ("mu turn",))
 _JUSTIFY: dict[str, JustifyMethod] = {"O2": "center", "O4": "center", "class": "left", "best at": "left"}
 _TWO_LINES = ("error rms", "like this")
@@ -122,9 +122,7 @@ def best_rows(result: Result, digits: int = 4) -> list[dict[str, str]]:
     """
     front, families = pareto_optimal(result.problem, result.candidates), result.families[:_ROWS]
     left_out = [
-        *(["error rms"] if result.problem.requirements.is_exact(result.problem.task) else []),
         *(["class"] if len(_classes(result)) == 1 else []),
-        *([] if result.problem.objective.torque else ["torque"]),
         *([] if any(len(family) > 1 for family in families) else ["like this"]),
         *([] if any(family[0].best_at for family in families) else ["best at"]),
     ]
@@ -140,13 +138,28 @@ def best_rows(result: Result, digits: int = 4) -> list[dict[str, str]]:
     return [{name: cell for name, cell in row.items() if name not in left_out} for row in rows]
 
 
+def units(problem: Problem) -> dict[str, str]:
+    """Units of the columns of `best_rows`; lengths are in the problem's."""
+    counted_in = {each.short: each.unit for each in _decided_by(problem)}
+    bare = Unit.LENGTH, Unit.RATIO
+    return {name: unit.of(problem.length_unit) for name, unit in counted_in.items() if unit not in bare}
+
+
+def _decided_by(problem: Problem) -> list[Quantity]:
+    """The error where there is one, the transmission angle, whatever else is weighed, size and lengths."""
+    error = [] if problem.requirements.is_exact(problem.task) else ["error"]
+    goals = [goal.key for goal, _ in problem.goals if goal.key != "size"]
+    keys = *error, "transmission_min_task", "transmission_min_cycle", *goals, "size", *FourBar.LENGTHS
+    return [QUANTITIES[key] for key in dict.fromkeys(keys)]
+
+
 def _table(result: Result, digits: int, left_out: Sequence[str]) -> Table:
-    rows = best_rows(result, digits)
+    rows, counted_in = best_rows(result, digits), units(result.problem)
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
     names = [name for name in rows[0] if name not in left_out]
     for name in names:
         title = name.replace(" ", "\n") if name in _TWO_LINES or digits < 4 or "size" in left_out else name
-        unit = f"\n{UNITS[name]}" if name in UNITS else ""
+        unit = f"\n{counted_in[name]}" if name in counted_in else ""
         table.add_column(f"{title}{unit}", justify=_JUSTIFY.get(name, "right"), no_wrap=True)
     for row in rows:
         table.add_row(*(row[name] for name in names))
@@ -189,15 +202,18 @@ def _classes(result: Result) -> set[str]:
 
 
 def _cells(problem: Problem, candidate: Candidate, digits: int) -> dict[str, str]:
-    linkage, verdict = candidate.linkage, candidate.verdict
-    task, turn = np.degrees([verdict.transmission_min_task, verdict.transmission_min_cycle])
+    linkage = candidate.linkage
     return {
-        "error rms": f"{candidate.error(problem) * problem.task.size:.2g}",
-        "mu task": f"{task:.1f}",
-        "mu turn": f"{turn:.1f}" if verdict.full_rotation else "-",
-        "torque": f"{candidate.torque_peak:.{digits}g}",
-        "size": f"{verdict.size:.{digits}g}",
-        **{f"r{i}": f"{length:.{digits}g}" for i, length in enumerate(linkage.lengths, start=1)},
+        **{each.short: _cell(each, candidate, digits) for each in _decided_by(problem)},
         **{name: f"{x:.3g}, {y:.3g}" for name, (x, y) in (("O2", linkage.o2), ("O4", linkage.o4))},
-        "class": str(verdict.grashof_class),
+        "class": str(candidate.verdict.grashof_class),
     }
+
+
+def _cell(quantity: Quantity, candidate: Candidate, digits: int) -> str:
+    if quantity.over is Over.CYCLE and not candidate.verdict.full_rotation:
+        return "-"
+    value = candidate.values[quantity.key] * quantity.unit.shown
+    if quantity.unit is Unit.ANGLE:
+        return f"{value:.1f}"
+    return f"{value:.{2 if quantity.key == 'error' else digits}g}"

@@ -10,13 +10,14 @@ import numpy as np
 import pandas as pd
 
 from grashof.problems import Problem
-from grashof.synth.results.table import DYNAMICS, MOTION
+from grashof.problems.values.quantities import Needs
+from grashof.synth.results.table import LISTED, OWN
 from grashof.wording.problem import error_meaning
 
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A column of the page's table.
+    """A quantity of the designs on a page.
 
     Parameters
     ----------
@@ -30,6 +31,8 @@ class Column:
         +1 where more is better, -1 where less is, 0 for neither.
     about : str
         What it is, where its label does not say so.
+    listed : bool
+        Whether the table has it; the others are axes that designs may be compared by.
     """
 
     key: str
@@ -38,6 +41,7 @@ class Column:
     decimals: int
     better: int = 0
     about: str = ""
+    listed: bool = True
 
     def text(self, value: Any) -> str:
         """A value as the table shows it."""
@@ -49,71 +53,41 @@ class Column:
         return f"{number:z.{self.decimals}f}" if self.decimals >= 0 else f"{number:.3e}"
 
 
-# Key, label, unit (of length: "length"), significant digits of the largest, which way is better.
-_LISTED = (
-    ("error", "error rms", "length", 3, -1),
-    ("transmission_min_task_deg", "μ task", "deg", 3, 1),
-    ("transmission_min_cycle_deg", "μ turn", "deg", 3, 1),
-    ("size", "size", "length", 4, -1),
-    ("torque_peak", "peak torque, task", "N m", 4, -1),
-    ("joint_force_peak", "peak force, task", "N", 4, -1),
-    ("share_within_made", "made within", "share", 3, 1),
-    *((name, name, "length", 4, 0) for name in ("r1", "r2", "r3", "r4")),
-)
-_UNITS = {
-    "omega4_max": "rad/s", "point_speed_max": "length/s", "point_acceleration_max": "length/s²",
-    "torque_peak": "N m", "torque_rms": "N m", "joint_force_peak": "N", "error_sse": "length²",
-    "move_u": "", "move_v": "",
-}  # fmt: skip
-_SIZE = "diagonal of the box around O2, O4 and all that A, B and P reach from the first target to the last"
-_FITTED = "what least squares makes small: root mean square of positions and angles together, weighted"
-# What figures are, where their names do not tell.
-_ABOUT = {
-    "size": _SIZE,
-    "error": _FITTED,
-    "family": "the best of the designs that are alike",
-} | dict.fromkeys((*MOTION, *DYNAMICS), "from the first target to the last")
-_LENGTHS = (
-    "o2_x", "o2_y", "o4_x", "o4_y", "r1", "r2", "r3", "r4", "p_u", "p_v", "error", "error_max", "error_rms",
-    "size", "hausdorff", "frechet", "worst_move",
-)  # fmt: skip
+def columns_of(problem: Problem, frame: pd.DataFrame) -> list[Column]:
+    """Every quantity that is known of some of these designs, those of the table first.
 
-
-def listed(problem: Problem, frame: pd.DataFrame) -> list[Column]:
-    """Columns of the table that say something of these designs.
-
-    The error is left out where every target is met, and the transmission angle over the task where
-    the task is a whole turn.
+    Without the transmission angle over the task where that is a whole turn, or else the one over the turn
+    where no driver turns fully.
     """
-    exact = problem.requirements.is_exact(problem.task)
-    left_out = {"error"} if exact else set()
-    if problem.task.closed:
-        left_out.add("transmission_min_task_deg")
-    elif not frame["full_rotation"].any():
-        left_out.add("transmission_min_cycle_deg")
+    whole, turns = problem.task.closed, frame["full_rotation"].any()
+    left_out = "transmission_min_task" if whole else "" if turns else "transmission_min_cycle"
+    known = [
+        each
+        for each in (*LISTED, OWN)
+        if each.key != left_out and each.column in frame and not frame[each.column].isna().all()
+    ]
+    # In the table first what any design has, then what takes masses or tolerances, then the lengths.
+    stated = Needs.DYNAMICS, Needs.MANUFACTURING
+    known.sort(key=lambda each: (not each.digits, not each.better, each.needs in stated))
     return [
         Column(
-            key,
-            label,
-            in_length(unit, problem.length_unit),
-            _decimals(frame[key], digits),
-            better,
-            error_meaning(problem) if key == "error" else _ABOUT.get(key, ""),
+            each.column,
+            each.label.replace("mu ", "μ "),
+            each.unit.of(problem.length_unit),
+            _decimals(frame[each.column], each.digits),
+            each.better,
+            error_meaning(problem) if each.key == "error" else each.about,
+            listed=each.digits > 0,
         )
-        for key, label, unit, digits, better in _LISTED
-        if key not in left_out and (unit == "deg" or not frame[key].isna().all())
+        for each in known
     ]
 
 
 def figure_units(frame: pd.DataFrame, length_unit: str) -> list[tuple[str, str, str]]:
     """Name, unit and meaning of every column of candidates.csv that is filled, in its order."""
-    filled = [str(key) for key in frame if not frame[key].isna().all()]
-    return [(key, in_length(_unit(key), length_unit), _ABOUT.get(key, "")) for key in filled]
-
-
-def in_length(unit: str, length_unit: str) -> str:
-    """A unit with the problem's own unit of length in it."""
-    return unit.replace("length", length_unit) if length_unit else unit
+    known = {each.column: (each.unit.of(length_unit), each.about) for each in (*LISTED, OWN)}
+    known["family"] = "", "the best of the designs that are alike"
+    return [(str(key), *known.get(str(key), ("", ""))) for key in frame if not frame[key].isna().all()]
 
 
 def _decimals(values: pd.Series[Any], digits: int) -> int:
@@ -123,9 +97,3 @@ def _decimals(values: pd.Series[Any], digits: int) -> int:
         return 0
     power = math.floor(math.log10(known.max()))
     return max(digits - 1 - power, 0) if -3 <= power <= 6 else -1
-
-
-def _unit(key: str) -> str:
-    if key in _LENGTHS:
-        return "length"
-    return "deg" if key.endswith("_deg") else _UNITS.get(key, "")

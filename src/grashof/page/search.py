@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from grashof.page.columns import Column, figure_units, listed
+from grashof.page.columns import Column, columns_of, figure_units
 from grashof.page.designs import designs_of, driver_travel
 from grashof.page.render import render
 from grashof.page.scene import scene_of
@@ -47,14 +48,13 @@ def search_page(result: Result, frame: pd.DataFrame, record: Mapping[str, Any], 
     moving = [not np.isnan(driver_travel(each.linkage, each.verdict.theta2).low) for each in listing]
     designs = [each for each, moves in zip(listing, moving, strict=True) if moves]
     frame = frame[moving] if designs else frame.iloc[:0]
-    columns = listed(problem, frame) if designs else []
+    axes = columns_of(problem, frame) if designs else []
+    columns = [column for column in axes if column.listed]
     data = {
         "found": bool(result.candidates),
         "scene": scene_of(problem),
-        "columns": [
-            {name: getattr(each, name) for name in ("key", "label", "unit", "better", "about")}
-            for each in columns
-        ],
+        "columns": [asdict(each) for each in columns],
+        "axes": [asdict(each) for each in axes],
         "units": figure_units(frame, problem.length_unit) if designs else [],
         "designs": designs_of(problem, designs, frame),
         "torqueUnit": "N m",

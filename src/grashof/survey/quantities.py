@@ -118,7 +118,8 @@ def _vector(
     ]
 
     def size(state: Kinematics) -> FloatArray:
-        return np.hypot(*np.moveaxis(of(state), -1, 0)) * factor
+        vector = of(state)
+        return np.hypot(vector[..., 0], vector[..., 1]) * factor
 
     return [*components, Quantity(keys[1], labels[1], unit, size, never_negative=True)]
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
-
 import numpy as np
 
-from grashof.problems import DynamicsSpec, Problem, Task, TransmissionOver
+from grashof.problems import DynamicsSpec, Problem, Requirements, Task
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
+from grashof.problems.values.quantities import Unit
 from grashof.synth.programme.merit import same_error
+from grashof.synth.results.ranking import pareto_goals
 from grashof.synth.results.trade_offs import FACTORS
 from grashof.synth.starts.finder import asked_first
 
@@ -32,7 +32,7 @@ def error_meaning(problem: Problem) -> str:
 def goals(problem: Problem) -> str:
     """What the Pareto mark is about, in words."""
     names = [] if problem.requirements.is_exact(problem.task) else ["error"]
-    names += ["mu", "size"] if problem.dynamics is None else ["mu", "size", "torque"]
+    names += [goal.short.removesuffix(" task").removesuffix(" turn") for goal in pareto_goals(problem)]
     return f"{', '.join(names[:-1])} and {names[-1]}"
 
 
@@ -40,28 +40,16 @@ def summary(problem: Problem) -> list[str]:
     """A problem in a few lines, with the requirements as they will be applied."""
     task, wanted = problem.task, problem.requirements.resolved(problem.task.size)
     unit = f" {problem.length_unit}" if problem.length_unit else ""
-    lengths = ", ".join(
-        f"r{i} {low:g} to {high:g}" for i, (low, high) in enumerate(wanted.link_lengths, start=1)
-    )
-    arms = wanted.coupler_arms or (0.0, np.inf)
     lines = [
         f"{problem.name}: {problem.title}" if problem.title else problem.name,
         f"  {_task(task, unit)}; {_exactness(problem)}",
         f"  rotatability {wanted.rotatability}, margin {wanted.rotatability_margin:g}; "
         f"order {_yes(wanted.order)}, same branch {_yes(wanted.same_branch)}",
-        f"  transmission at least {wanted.transmission_min_deg:g} deg over the {wanted.transmission_over}",
-        f"  links{unit and f' in{unit}'}: {lengths}; ratio up to {wanted.link_ratio_max:g}; "
-        f"coupler arms {arms[0]:g} to {arms[1]:g}",
+        *(f"  {_limit(problem, wanted, name)}" for name in wanted.limited),
     ]
-    for name in ("o2", "o4", "a", "b"):
-        place = getattr(problem.requirements, name)
-        if place is not None:
-            lines.append(f"  {name}: x {place.x[0]:g} to {place.x[1]:g}, y {place.y[0]:g} to {place.y[1]:g}")
     if wanted.keep_out:
         names = ", ".join(wanted.keep_out_for)
         lines.append(f"  kept out of {counted(len(wanted.keep_out), 'area')}: {names}")
-    angles = {key: getattr(wanted, key) for key in ("ground_angle_deg", "theta2_start_deg")}
-    lines += [f"  {key} {value:g}" for key, value in angles.items() if value is not None]
     if problem.manufacturing is not None:
         made = problem.manufacturing
         lines.append(f"  made to within {made.length_tolerance:g}{unit}, band {made.band:g}{unit}")
@@ -74,15 +62,19 @@ def summary(problem: Problem) -> list[str]:
     ]
 
 
+def _limit(problem: Problem, wanted: Requirements, name: str) -> str:
+    """What a field of the requirements limits, and how."""
+    quantity = wanted.meant(wanted.limited[name].quantity)
+    sides = {part: quantity.range_text(limits) for part, limits in wanted.ranges(name).items()}
+    unit = problem.length_unit if quantity.unit is Unit.LENGTH else quantity.unit
+    said = ", ".join(f"{part} {side}".strip() for part, side in sides.items() if side)
+    return f"{quantity.words}: {said} {unit}".strip()
+
+
 def _best(problem: Problem) -> str:
     """What designs are ranked by, as `ranking_key` does it."""
-    over = "turn" if problem.requirements.transmission_over is TransmissionOver.CYCLE else "task"
-    words = {
-        "transmission": f"greatest worst transmission angle over the {over}",
-        "compactness": "smallest size",
-        "torque": "smallest peak torque",
-    }
-    weights = {words[name]: weight for name, weight in asdict(problem.objective).items() if weight}
+    degree = {1: "greatest", -1: "smallest"}
+    weights = {f"{degree[goal.better]} {goal.words}": weight for goal, weight in problem.goals}
     best = next(iter(weights))
     if len(weights) > 1:
         best = f"a weighted sum: {', '.join(f'{word} {weight:g}' for word, weight in weights.items())}"

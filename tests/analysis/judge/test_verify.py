@@ -285,11 +285,11 @@ def test_transmission_over_the_task_and_over_the_cycle() -> None:
     over_task = float(np.degrees(worst_transmission(CRANK_ROCKER, *np.radians([60.0, 170.0]))))
     over_cycle = float(np.degrees(worst_transmission_cycle(CRANK_ROCKER)))
     assert over_cycle < over_task - 5
-    for over, worst in (("task", over_task), ("cycle", over_cycle)):
+    for over, motion, worst in (("task", "task", over_task), ("cycle", "turn", over_cycle)):
         assert judged(Requirements(transmission_over=over, transmission_min_deg=worst)).ok
         strict = Requirements(transmission_over=over, transmission_min_deg=worst + 1e-4)
         defect = only(judged(strict), "transmission_min_deg")
-        assert defect.what == f"the worst transmission angle over the {over} in deg"
+        assert defect.what == f"the worst transmission angle over the {motion} in deg"
         assert defect.found == pytest.approx(worst)
         assert defect.allowed == f"from {worst + 1e-4:g}"
         assert defect.miss == pytest.approx(np.radians(1e-4), rel=1e-6)

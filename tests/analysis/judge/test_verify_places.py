@@ -76,7 +76,9 @@ def test_default_lengths_exclude_only_the_absurd() -> None:
 def test_ratio_of_the_links() -> None:
     ratio = max(LENGTHS.values()) / min(LENGTHS.values())
     assert judged(link_ratio_max=ratio).ok
-    defect = only(judged(link_ratio_max=ratio - NEAR), "link_ratio_max", "longest to shortest link", ratio)
+    defect = only(
+        judged(link_ratio_max=ratio - NEAR), "link_ratio_max", "the ratio of longest to shortest link", ratio
+    )
     assert defect.allowed == f"up to {ratio - NEAR:g}"
     assert defect.miss == pytest.approx(NEAR / ratio, rel=1e-5)
 
@@ -113,14 +115,17 @@ def test_a_fixed_pivot_is_a_box_without_room() -> None:
 
 
 @pytest.mark.parametrize(
-    ("key", "angle"),
-    [("ground_angle_deg", float(np.degrees(np.arctan2(1.3, 3.7)))), ("theta2_start_deg", DEGREES[0])],
+    ("key", "what", "angle"),
+    [
+        ("ground_angle_deg", "direction of O2O4", float(np.degrees(np.arctan2(1.3, 3.7)))),
+        ("theta2_start_deg", "driver angle at the first target", DEGREES[0]),
+    ],
 )
-def test_angles_that_are_asked_for(key: str, angle: float) -> None:
+def test_angles_that_are_asked_for(key: str, what: str, angle: float) -> None:
     for whole in (-360, 0, 360):
         assert judged(**{key: angle + whole}).ok
     for wrong in (angle + 1e-3, angle - 1e-3, angle + 180):
-        defect = only(judged(**{key: wrong}), key, "the angle in deg", angle)
+        defect = only(judged(**{key: wrong}), key, f"the {what} in deg", angle)
         assert defect.allowed == f"{wrong:g}"
         assert defect.miss == pytest.approx(np.radians(abs(wrong - angle)), rel=1e-6)
 

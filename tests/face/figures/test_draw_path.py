@@ -20,7 +20,7 @@ from grashof.synth import Candidate
 
 def drawn(linkage: FourBar, problem: Problem) -> Axes:
     verdict = verify(linkage, problem.task, problem.requirements)
-    return draw_design(problem, Candidate(linkage, verdict, 0, 0), 1).axes[0]
+    return draw_design(problem, Candidate(linkage, verdict, problem, 0, 0), 1).axes[0]
 
 
 def planted(count: int, *, closed: bool = False) -> tuple[Problem, FourBar]:

@@ -187,7 +187,7 @@ def test_the_design_space_is_the_table(few: Result) -> None:
     assert ranks[0] == 1
     assert set(ranks) <= set(range(1, 11))
     assert [text.xy for text in ax.texts] == [tuple(expected[rank - 1]) for rank in ranks]
-    assert ax.get_xlabel() == "size of the design (m)"
+    assert ax.get_xlabel() == "size (m)"
     assert ax.get_ylabel() == "worst transmission angle over the task (deg)"
     assert [each.get_ylabel() for each in ax.figure.axes[1:]] == ["peak torque (N m)"]
 
@@ -210,7 +210,7 @@ def test_without_dynamics_the_colour_tells_nothing_or_the_error(few: Result) -> 
     assert len(ax.figure.axes) == 1
     loose = replace(plain, requirements=replace(plain.requirements, exact=False))
     ax = plot_design_space(replace(few, problem=loose), ax=axes())
-    assert ax.figure.axes[1].get_ylabel() == "rms error (m)"
+    assert ax.figure.axes[1].get_ylabel() == "position error rms (m)"
     with pytest.raises(NoSolutionError, match="too narrow"):
         plot_design_space(replace(few, candidates=(), note="too narrow"))
     assert plt.get_fignums() == []

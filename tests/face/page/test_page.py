@@ -106,7 +106,7 @@ def test_figures_are_those_of_the_list(few: Result, tmp_path: Path) -> None:
         assert name.rpartition(": ")[2] in parts.text
         assert str(count) in parts.text
     assert "kind = 'motion'" in parts.text
-    assert "transmission at least 15 deg over the task" in parts.text
+    assert "worst transmission angle over the task: from 15 deg" in parts.text
 
 
 def test_the_best_of_each_family_is_shown_with_the_number_of_the_others(alike: Result) -> None:

@@ -65,6 +65,33 @@ seed = 4
 effort = 2.5
 """
 
+# Limits of what takes masses, tolerances or a whole turn.
+EVERY_LIMIT = f"""{HEAD}
+closed = true
+[requirements]
+size = [0, 9]
+omega4_max = [0, 9]
+point_speed_max = [0, 9]
+point_acceleration_max = [0, 9]
+torque_peak = [0, 9]
+torque_rms = [0, 9]
+joint_force_peak = [0, 9]
+coupler_fit_r2 = [0.5, 1]
+hausdorff = [0, 9]
+frechet = [0, 9]
+worst_move = [0, 9]
+share_within_made = [0.5, 1]
+driver_rotation_deg = [90, 180]
+driver_sense = "cw"
+mechanical_advantage_min = 0.5
+time_ratio = [1.2, 1.6]
+output_swing_deg = [40, 60]
+[dynamics]
+payload = 1
+[manufacturing]
+length_tolerance = 0.1
+"""
+
 
 def problem(text: str) -> Problem:
     return problem_from(tomllib.loads(text), "test")
@@ -122,12 +149,15 @@ def test_every_key_reaches_its_field() -> None:
     assert every.search == Search(starts=100, enough=20, seed=4, effort=2.5)
 
 
-def test_the_example_above_uses_every_requirement() -> None:
+def test_the_examples_above_use_every_requirement() -> None:
     fields = {field.name for field in dataclasses.fields(Requirements)}
-    assert set(tomllib.loads(EVERY_KEY)["requirements"]) == fields
     assert set(RequirementsTable.model_fields) == fields
-    given_away = problem(EVERY_KEY).requirements
-    assert [name for name in fields if getattr(given_away, name) == getattr(Requirements(), name)] == []
+    used: set[str] = set()
+    for text in (EVERY_KEY, EVERY_LIMIT.replace("[motion]", 'length_unit = "m"\n[motion]')):
+        given, names = problem(text).requirements, set(tomllib.loads(text)["requirements"])
+        assert [name for name in names if getattr(given, name) == getattr(Requirements(), name)] == []
+        used |= names
+    assert used == fields
 
 
 def test_what_is_not_said_has_the_defaults_of_the_value_types() -> None:

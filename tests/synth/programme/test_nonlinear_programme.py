@@ -60,7 +60,7 @@ ALONE: dict[str, dict[str, Any]] = {
 def best_apart(scaled: ScaledProblem, pairs: Screened, count: int) -> list[Start]:
     signatures = signature(scaled.linkages(pairs.points, pairs.assembly))
     picked = pick_apart(signatures, pairs.transmission, 0.2, count)
-    return [Start.of_find(pairs, int(index), Objective()) for index in picked]
+    return [Start.of_screened(pairs, int(index), Objective()) for index in picked]
 
 
 def judged(scaled: ScaledProblem, points: tuple[complex, ...], assembly: int) -> Verdict:
@@ -262,7 +262,7 @@ def test_relaxed_misses_nothing_else_and_less_than_any_traced_pair(
     least = min(max(defect.miss for defect in defects) for defects in before)
     after = []
     for index in order:
-        start = replace(Start.of_find(pairs, int(index), Objective()), relaxed=(key,))
+        start = replace(Start.of_screened(pairs, int(index), Objective()), relaxed=(key,))
         defects = ended(scaled, start).verdict.defects
         assert {d.requirement for d in defects} <= {key, *LENGTH_KEYS[key]}
         after.append(max(defect.miss for defect in defects))
@@ -309,7 +309,7 @@ def test_no_success_going_back(
     pairs = pairs[np.ptp(np.sign(np.diff(np.unwrap(pairs.theta2), axis=1)), axis=1) > 0]
     assert len(pairs) > 10
     for index in range(0, len(pairs), len(pairs) // 3):
-        start = Start.of_find(pairs, index, Objective())
+        start = Start.of_screened(pairs, index, Objective())
         theta2 = np.unwrap(start.theta2)
         sense = 1 if theta2[-1] > theta2[0] else -1
         check_no_success(scaled, replace(start, theta2=tuple(theta2), direction=sense))
@@ -326,7 +326,7 @@ def test_no_success_beyond_a_turn(
     pairs = out_of_order(scaled)
     assert len(pairs) > 10
     for index in range(0, len(pairs), len(pairs) // 4):
-        start = Start.of_find(pairs, index, Objective())
+        start = Start.of_screened(pairs, index, Objective())
         assert abs(start.theta2[-1] - start.theta2[0]) > 2 * np.pi
         check_no_success(scaled, start)
 
@@ -342,7 +342,7 @@ def test_success_means_that_the_judge_agrees(luggage_scaled: SetupOf, all_pairs:
     least_first = np.argsort(pairs.violations.sum(axis=1), kind="stable")
     succeeded = 0
     for index in least_first[: len(pairs) // 20 : len(pairs) // 80]:
-        start = replace(Start.of_find(pairs, int(index), Objective()), stay=True)
+        start = replace(Start.of_screened(pairs, int(index), Objective()), stay=True)
         result = attempt(scaled, start, 0)
         if result.status == "Solve_Succeeded":
             assert result.candidate is not None

@@ -54,7 +54,7 @@ def best_starts(scaled: ScaledProblem, count: int, seed: int = 0) -> list[Start]
     picked = pick_apart(
         signature(scaled.linkages(finds.points, finds.assembly)), finds.transmission, 0.2, count
     )
-    return [Start.of_find(finds, int(index), Objective()) for index in picked]
+    return [Start.of_screened(finds, int(index), Objective()) for index in picked]
 
 
 class Track:
@@ -281,7 +281,7 @@ def test_least_squares_keep_the_requirements() -> None:
         finds = search(scaled, 5, np.random.default_rng(0))
         best = np.argsort(finds.error + finds.violations.sum(axis=1))[:2]
         for index in best:
-            start = Start.of_find(finds, int(index), Objective())
+            start = Start.of_screened(finds, int(index), Objective())
             solved = solve(scaled, start, max_iter=500)
             if solved.status == "Solve_Succeeded":
                 check(Track(scaled, start, solved), requirements)

@@ -64,7 +64,7 @@ def test_a_start_of_a_pair_is_that_pair(
     pairs = feasible_pairs(scaled)
     objective = Objective(transmission=0.5, compactness=2)
     for index in range(0, len(pairs), max(1, len(pairs) // 10)):
-        start = Start.of_find(pairs, index, objective)
+        start = Start.of_screened(pairs, index, objective)
         assert start.points.tobytes() == pairs.points[index].tobytes()
         assert start.objective == objective
         assert (start.radius, start.stay, start.settled, start.relaxed) == (np.inf, False, False, ())

@@ -11,7 +11,7 @@ import pytest
 from grashof import synthesize
 from grashof.analysis import verify
 from grashof.analysis.judge.planted import random_full_crank
-from grashof.problems import FourBar, MotionTask, PathTask, Problem, Requirements, load
+from grashof.problems import FourBar, MotionTask, Objective, PathTask, Problem, Requirements, load
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth import Candidate, Result
 from grashof.synth.results.families import best_alike, listed
@@ -106,7 +106,7 @@ def test_the_top_is_of_families_with_all_their_members(luggage_result: Result) -
 
 
 def test_ranked_otherwise_the_families_are_named_anew(luggage_result: Result, luggage: Problem) -> None:
-    small = replace(luggage, objective=replace(luggage.objective, transmission=0, compactness=1))
+    small = replace(luggage, objective=Objective(transmission=0, compactness=1))
     result = Result(small, listed(small, luggage_result.candidates))
     assert {each.id for each in result.candidates} == {each.id for each in luggage_result.candidates}
     for family in result.families:

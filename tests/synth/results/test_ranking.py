@@ -11,9 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grashof.analysis import verify
-from grashof.problems import FourBar, Objective, PathTask, Problem, Requirements
+from grashof.problems import FourBar, Objective, PathTask, Problem, ProblemError, Requirements
 from grashof.synth import Candidate
-from grashof.synth.results.ranking import impractical, pareto_optimal, ranked, ranking_key
+from grashof.synth.results.ranking import impractical, pareto_goals, pareto_optimal, ranked, ranking_key
+from grashof.synth.results.table import to_frame
+from grashof.wording.problem import goals
 
 POINTS = np.array([[0.0, 0], [1, 0.5], [2, 0.5], [4, 0]])  # size 4
 LEAST_SQUARES = Problem(task=PathTask(POINTS), requirements=Requirements(exact=False))
@@ -36,7 +38,7 @@ def design(number: int, error: float = 0.0, mu: float = 40.0, size: float = 2.0,
         defects=(),
     )
     linkage = FourBar(o2=(0, 0), o4=(4 + number, 0), r2=1, r3=4, r4=3)
-    return Candidate(linkage, verdict, number, 0, **more)
+    return Candidate(linkage, verdict, LEAST_SQUARES, number, 0, **more)
 
 
 def order(problem: Problem, *designs: Candidate) -> list[int]:
@@ -167,3 +169,31 @@ def test_ranking_keeps_what_a_design_is_best_at() -> None:
     some = design(1, 0.01, best_at="least error"), design(2, 0.011, best_at="smallest within 1.5 times")
     told = [each.best_at for each in ranked(LEAST_SQUARES, some)]
     assert told == ["least error", "smallest within 1.5 times"]
+
+
+def test_the_user_s_own_objective_ranks() -> None:
+    some = design(1, mu=50), design(2, mu=40), design(3, mu=30)
+    best_first = ranked(EXACT, some, lambda design: (design.o4[0] - design.o2[0] - 6) ** 2)
+    assert [each.start for each in best_first] == [2, 1, 3]
+    assert [each.own_objective for each in best_first] == [0, 1, 1]
+    assert [each.start for each in ranked(EXACT, best_first[::-1])] == [2, 1, 3]  # they keep it
+    frame = to_frame(EXACT, best_first)
+    assert frame["objective"].tolist() == [0, 1, 1]
+    assert frame["pareto"].tolist() == [True, True, False]
+    assert "objective" not in to_frame(EXACT, some)
+
+
+def test_an_objective_without_a_value_is_the_worst() -> None:
+    some = ranked(EXACT, (design(1), design(2)), lambda design: np.log(design.o4[0] - 5.5))
+    assert [each.start for each in some] == [2, 1]
+    with pytest.raises(ProblemError, match="objective <lambda> gives 'short' on numbers"):
+        ranked(EXACT, some, lambda design: "short")
+
+
+def test_other_goals_can_be_weighed() -> None:
+    problem = replace(EXACT, objective=Objective(1, omega4_max=0.5))
+    one = design(1)
+    share = 0.5 * one.values["omega4_max"]
+    assert one.objective(problem) == pytest.approx(40 / 90 - share)
+    assert [goal.key for goal in pareto_goals(problem)] == ["transmission_min_task", "size", "omega4_max"]
+    assert goals(problem) == "mu, size and omega4"

@@ -130,14 +130,15 @@ def test_pareto_marks_with_the_torque(luggage_designs: Designs, luggage: Problem
     assert marks[without].all()  # one more goal takes no mark away
     assert marks[int(np.argmin(peaks))]
     assert without.sum() < marks.sum() < len(marks)
-    assert [c.torque_peak for c in luggage_designs] == peaks
+    assert [c.values["torque_peak"] for c in luggage_designs] == peaks
 
 
 def test_an_unknown_torque_counts_as_infinite(luggage_designs: Designs, luggage: Problem) -> None:
     """As of a design without a motion that joins its targets."""
-    unknown, endless, known = (
-        replace(luggage_designs[0], torque_peak=peak) for peak in (np.nan, np.inf, 1.0)
-    )
+    one = luggage_designs[0]
+    unknown, endless, known = (replace(one, values=None) for _ in range(3))
+    for each, peak in ((unknown, np.nan), (endless, np.inf), (known, 1.0)):
+        each.values._known["torque_peak"] = peak
     assert pareto_optimal(luggage, (known, unknown)).tolist() == [True, False]
     assert pareto_optimal(luggage, (endless, unknown)).tolist() == [True, True]
     driven = replace(luggage, objective=Objective(0, 0, 1))

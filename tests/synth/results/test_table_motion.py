@@ -9,7 +9,10 @@ import pytest
 from grashof.analysis import over_task
 from grashof.problems import DynamicsSpec
 from grashof.synth import Result
-from grashof.synth.results.table import DYNAMICS, MOTION, to_frame
+from grashof.synth.results.table import to_frame
+
+MOTION = ("omega4_max", "point_speed_max", "point_acceleration_max", "coupler_fit_r2")
+DYNAMICS = ("torque_peak", "torque_rms", "joint_force_peak")
 
 
 @pytest.fixture(scope="module")
@@ -38,18 +41,15 @@ def test_figures_make_sense(frame: pd.DataFrame, luggage_result: Result) -> None
 
 def test_without_dynamics_the_columns_of_torque_are_empty(luggage_result: Result) -> None:
     problem = replace(luggage_result.problem, dynamics=None)
-    few = luggage_result.candidates[:4]
-    bare = to_frame(problem, few)
+    bare = replace(luggage_result.top(4), problem=problem).to_frame()[:4]
     assert bare[list(DYNAMICS)].isna().all(axis=None)
     np.testing.assert_allclose(bare[list(MOTION)], luggage_result.to_frame()[list(MOTION)][:4], rtol=1e-12)
 
 
 def test_the_driver_s_speed_is_that_of_the_problem(luggage_result: Result) -> None:
-    few = luggage_result.candidates[:4]
-    slow, fast = (
-        to_frame(replace(luggage_result.problem, dynamics=DynamicsSpec(2.0, speed_rpm=rpm)), few)
-        for rpm in (10.0, 20.0)
-    )
+    few = luggage_result.top(4)
+    specs = (DynamicsSpec(2.0, speed_rpm=rpm) for rpm in (10.0, 20.0))
+    slow, fast = (replace(few, problem=replace(few.problem, dynamics=spec)).to_frame() for spec in specs)
     for name, power in {"omega4_max": 1, "point_speed_max": 1, "point_acceleration_max": 2}.items():
         np.testing.assert_allclose(fast[name], 2**power * slow[name], rtol=1e-12)
     for name in DYNAMICS:  # no gravity: all is inertia

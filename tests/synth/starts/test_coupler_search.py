@@ -14,7 +14,7 @@ from grashof.synth.programme.start import Round, Start
 from grashof.synth.starts import precision_points
 from grashof.synth.starts.coupler_search import search
 from grashof.synth.starts.finder import finder_for
-from grashof.synth.starts.path_screening import path_target
+from grashof.synth.starts.search_targets import search_targets
 
 PathSetup = Callable[..., tuple[ScaledProblem, FourBar]]
 
@@ -108,7 +108,7 @@ def test_prescribed_rotations_are_kept(path_scaled: PathSetup, points: int, any_
 def test_a_last_point_that_repeats_the_first_is_met_after_a_turn(exact: bool) -> None:
     points = [*LINE[:3], [24.0, 24.0]] if exact else ELLIPSE
     scaled = setup_of([*points, points[0]])
-    target = path_target(scaled)
+    target = search_targets(scaled)
     assert len(target.points) == len(points)
     assert target.weights.tolist() == [2.0] + [1.0] * (len(points) - 1)
     finds = finds_of(scaled)
@@ -121,17 +121,17 @@ def test_a_last_point_that_repeats_the_first_is_met_after_a_turn(exact: bool) ->
 
 
 def test_an_unrepeated_path_is_taken_as_it_is() -> None:
-    target = path_target(setup_of(ELLIPSE))
+    target = search_targets(setup_of(ELLIPSE))
     assert target.weights.tolist() == [1.0] * 9
     assert not target.timed
-    timed = path_target(setup_of(LINE, timing=[0, -10, -20, -30, -40, -50]))
+    timed = search_targets(setup_of(LINE, timing=[0, -10, -20, -30, -40, -50]))
     np.testing.assert_allclose(np.degrees(timed.timing), [0, 10, 20, 30, 40, 50])
 
 
 def test_the_rms_error_is_over_all_targets() -> None:
     scaled = setup_of([*ELLIPSE, ELLIPSE[0]])
     finds = finds_of(scaled)
-    starts = [Start.of_find(finds, index, scaled.problem.objective) for index in range(len(finds))]
+    starts = [Start.of_screened(finds, index, scaled.problem.objective) for index in range(len(finds))]
     for start, error in zip(starts, finds.error, strict=True):
         off = np.abs(start.track[2] - scaled.targets[list(start.visit)])
         assert error == pytest.approx(np.sqrt(np.mean(off**2)), rel=1e-6)
@@ -152,7 +152,7 @@ def test_any_driver_covers_the_points(order: bool) -> None:
     assert len(feasible) > 10
     rocking = 0
     for index in range(0, len(feasible), len(feasible) // 10):
-        start = Start.of_find(feasible, index, scaled.problem.objective)
+        start = Start.of_screened(feasible, index, scaled.problem.objective)
         assert closes_on_the_way(start)
         assert not order or start.visit == (0, 1, 2, 3, 4)
         r1, r2, r3, r4 = start.lengths
@@ -170,7 +170,7 @@ def test_without_order_points_are_met_as_they_come() -> None:
     steps = feasible.direction[:, None] * np.diff(feasible.theta2, axis=1)
     assert (steps >= 0).all()
     assert (steps.sum(axis=1) < 2 * np.pi).all()
-    starts = [Start.of_find(feasible, i, scaled.problem.objective) for i in range(0, len(feasible), 20)]
+    starts = [Start.of_screened(feasible, i, scaled.problem.objective) for i in range(0, len(feasible), 20)]
     check_tracks(scaled, starts, 1e-5)
 
 
@@ -181,7 +181,7 @@ def test_interpolation_mixes_assemblies() -> None:
     assert len(feasible)
     sides = []
     for index in range(len(feasible)):
-        start = Start.of_find(feasible, index, scaled.problem.objective)
+        start = Start.of_screened(feasible, index, scaled.problem.objective)
         a, b, _ = start.track
         sides.append(np.sign(((b - a).conj() * (b - start.o4)).imag))
     assert any(np.ptp(side) > 0 for side in sides)

@@ -16,7 +16,7 @@ from grashof.problems import Box, FourBar, MotionTask, PathTask, Problem, Requir
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth import Candidate, Result
-from grashof.synth.starts.closed_loop import Batch, PathTarget
+from grashof.synth.starts.closed_loop import Batch, SearchTargets
 from grashof.synth.starts.limit_residuals import LEAST_TRANSMISSION
 from grashof.synth.starts.loop_search import draw, standing, with_places, within_limits
 
@@ -30,16 +30,16 @@ TIGHT: dict[str, Any] = {
 }  # fmt: skip
 
 
-def target_of(rotatability: str, over: str, order: bool = True, **wanted: Any) -> PathTarget:
+def target_of(rotatability: str, over: str, order: bool = True, **wanted: Any) -> SearchTargets:
     rng = np.random.default_rng(7)
     along = np.linspace(0, 4, 6)
     points = np.exp(0.7j * along) * (1 + 0.2 * along) + rng.normal(0, 0.1, (6, 2)) @ np.array([1, 1j])
     limits = {"rotatability": rotatability, "transmission_over": over, "order": order, **wanted}
     free = np.zeros(6)
-    return PathTarget(points, rng.uniform(0.5, 2, 6), free, free, free, Requirements(**limits))
+    return SearchTargets(points, rng.uniform(0.5, 2, 6), free, free, free, Requirements(**limits))
 
 
-def drawn(target: PathTarget, count: int) -> Batch:
+def drawn(target: SearchTargets, count: int) -> Batch:
     with np.errstate(all="ignore"):
         batch = with_places(target, draw(target, 8 * count, np.random.default_rng(1)))
     rng = np.random.default_rng(2)

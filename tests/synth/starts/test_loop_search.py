@@ -11,7 +11,7 @@ from grashof.problems import Box, Problem, Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.starts import coupler_search
-from grashof.synth.starts.closed_loop import Batch, PathTarget
+from grashof.synth.starts.closed_loop import Batch, SearchTargets
 from grashof.synth.starts.loop_search import PULL, Placed, draw, fitting, improve
 from grashof.synth.starts.loop_search import place as place_batch
 
@@ -31,7 +31,7 @@ KINDS = [
 CRANKS = [kind for kind in KINDS if kind[0] != "any"]
 
 
-def target_of(kind: tuple[str, bool, bool, bool], n: int = 7, seed: int = 0, **wanted: Any) -> PathTarget:
+def target_of(kind: tuple[str, bool, bool, bool], n: int = 7, seed: int = 0, **wanted: Any) -> SearchTargets:
     """Points at random along a curve, none of them special, with weights."""
     rotatability, order, branch, timed = kind
     rng = np.random.default_rng([5, seed])
@@ -40,26 +40,26 @@ def target_of(kind: tuple[str, bool, bool, bool], n: int = 7, seed: int = 0, **w
     timing = np.concatenate([[0.0], np.cumsum(rng.uniform(0.2, 0.8, n - 1))]) if timed else np.zeros(n)
     limits = GENEROUS | {"rotatability": rotatability, "order": order, "same_branch": branch} | wanted
     free = np.zeros(n)
-    return PathTarget(points, rng.uniform(0.5, 2, n), free, free, timing, Requirements(**limits))
+    return SearchTargets(points, rng.uniform(0.5, 2, n), free, free, timing, Requirements(**limits))
 
 
-def place(target: PathTarget, batch: Batch) -> Placed:
+def place(target: SearchTargets, batch: Batch) -> Placed:
     with np.errstate(all="ignore"):  # loops that do not close
         return place_batch(target, batch)
 
 
-def cost_of(target: PathTarget, batch: Batch) -> FloatArray:
+def cost_of(target: SearchTargets, batch: Batch) -> FloatArray:
     return np.nan_to_num(fitting(target)(batch)[0], nan=np.inf)
 
 
-def draws(target: PathTarget, count: int = 60, seed: int = 1) -> Batch:
+def draws(target: SearchTargets, count: int = 60, seed: int = 1) -> Batch:
     """Drawn linkages whose loop closes at all points."""
     batch = draw(target, 20 * count, np.random.default_rng(seed))
     closing = np.flatnonzero(np.isfinite(place(target, batch).error))
     return batch[closing[:count]]
 
 
-def lengths_of(target: PathTarget, batch: Batch) -> FloatArray:
+def lengths_of(target: SearchTargets, batch: Batch) -> FloatArray:
     """r1 to r4 of placed linkages, shape (4, n), from their first position."""
     placed = place(target, batch)
     a, b = placed.a[:, 0], placed.b[:, 0]
@@ -156,7 +156,7 @@ def moved(batch: Batch, change: FloatArray) -> Batch:
     return replace(batch, unknowns=batch.unknowns + change)
 
 
-def differences(target: PathTarget, batch: Batch, of: int) -> FloatArray:
+def differences(target: SearchTargets, batch: Batch, of: int) -> FloatArray:
     """Central differences of part `of` of the linearisation by every unknown, unknowns last."""
     step, columns = 1e-6, []
     for change in step * np.eye(batch.unknowns.shape[1]):

@@ -12,7 +12,7 @@ from grashof.problems import MotionTask, Problem, Requirements
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.starts import coupler_search
-from grashof.synth.starts.closed_loop import Batch, Loop, PathTarget, body_turns
+from grashof.synth.starts.closed_loop import Batch, Loop, SearchTargets, body_turns
 from grashof.synth.starts.coupler_search import FOUND
 from grashof.synth.starts.loop_search import draw, fitting, improve, place
 
@@ -30,7 +30,7 @@ KINDS = [
 N = 7
 
 
-def target_of(kind: tuple[str, bool, bool], free: str, seed: int = 0) -> PathTarget:
+def target_of(kind: tuple[str, bool, bool], free: str, seed: int = 0) -> SearchTargets:
     """Poses at random along a curve, with weights; of some of them nothing but the place or the angle."""
     rotatability, order, branch = kind
     rng = np.random.default_rng([51, seed])
@@ -43,7 +43,7 @@ def target_of(kind: tuple[str, bool, bool], free: str, seed: int = 0) -> PathTar
         weights[[0, 3]] = 0
     limits = GENEROUS | {"rotatability": rotatability, "order": order, "same_branch": branch}
     turns = 0.3 * along + rng.normal(0, 0.2, N) + 2.5  # past a half turn for some
-    return PathTarget(
+    return SearchTargets(
         np.where(weights > 0, points, 0),
         weights,
         np.where(turn_weights > 0, turns, 0),
@@ -53,7 +53,7 @@ def target_of(kind: tuple[str, bool, bool], free: str, seed: int = 0) -> PathTar
     )
 
 
-def draws(target: PathTarget, count: int, seed: int = 1) -> Batch:
+def draws(target: SearchTargets, count: int, seed: int = 1) -> Batch:
     """Drawn linkages whose loop closes at all points, and well."""
     batch = draw(target, 40 * count, np.random.default_rng(seed))
     with np.errstate(all="ignore"):
@@ -61,7 +61,7 @@ def draws(target: PathTarget, count: int, seed: int = 1) -> Batch:
     return batch[np.flatnonzero(sound)[:count]]
 
 
-def turned_of(target: PathTarget, batch: Batch) -> tuple[FloatArray, FloatArray, FloatArray]:
+def turned_of(target: SearchTargets, batch: Batch) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Directions of AB of placed linkages (n, N), their body angle (n,), and the error of the places (n,)."""
     placed = place(target, batch)
     coupler = np.angle(placed.b - placed.a)
@@ -69,7 +69,7 @@ def turned_of(target: PathTarget, batch: Batch) -> tuple[FloatArray, FloatArray,
     return coupler, placed.body_angle, gap
 
 
-def missed(target: PathTarget, coupler: FloatArray, body_angle: FloatArray) -> FloatArray:
+def missed(target: SearchTargets, coupler: FloatArray, body_angle: FloatArray) -> FloatArray:
     off = np.angle(np.exp(1j * (coupler + body_angle - target.turns)))
     square: FloatArray = (target.turn_weights * off**2).sum(axis=-1)
     return square
@@ -142,7 +142,7 @@ def moved(batch: Batch, change: FloatArray) -> Batch:
     return replace(batch, unknowns=batch.unknowns + change)
 
 
-def differences(target: PathTarget, batch: Batch, of: int) -> FloatArray:
+def differences(target: SearchTargets, batch: Batch, of: int) -> FloatArray:
     """Central differences of part `of` of the linearisation by every unknown, unknowns last."""
     step, columns = 1e-6, []
     for change in step * np.eye(batch.unknowns.shape[1]):

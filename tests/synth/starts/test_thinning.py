@@ -3,14 +3,14 @@
 import numpy as np
 
 from grashof.problems import Requirements
-from grashof.synth.starts.closed_loop import PathTarget
+from grashof.synth.starts.closed_loop import SearchTargets
 from grashof.synth.starts.loop_search import draw, place
 from grashof.synth.starts.thinning import refined, thinned
 
 
-def target_of(count: int, timed: bool = False, **wanted: object) -> PathTarget:
+def target_of(count: int, timed: bool = False, **wanted: object) -> SearchTargets:
     angle = np.linspace(0, 5, count)
-    return PathTarget(
+    return SearchTargets(
         points=np.exp(1j * angle) + 0.2 * np.exp(-2j * angle),
         weights=np.ones(count),
         turns=np.zeros(count),

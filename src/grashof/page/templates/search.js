@@ -1,6 +1,6 @@
 // The page of a search: what is chosen is drawn, marked and told everywhere.
 class SearchPage {
-  constructor({ found, scene, columns, units, designs, torqueUnit }) {
+  constructor({ found, scene, columns, axes, units, designs, torqueUnit }) {
     Object.assign(this, { found, scene, units, designs, torqueUnit, chosen: 0 });
     const choose = (index) => this.choose(index);
     const turnTo = (degrees) => this.turnTo(degrees / DEG);
@@ -11,7 +11,7 @@ class SearchPage {
     this.player = new Player($("#player"), { onMove: (theta2) => this.stage.move(theta2) });
     this.transmission = new Curves($("#transmission"), { onPick: turnTo });
     this.torque = designs[0].torque && new Curves($("#torque"), { onPick: turnTo });
-    this.scatter = $("#scatter") && new Scatter($("#scatter"), { columns, designs, onPick: choose });
+    this.scatter = $("#scatter") && new Scatter($("#scatter"), { columns: axes, designs, onPick: choose });
     this.comparison = new Comparison($("#compare"), {
       scene,
       designs,

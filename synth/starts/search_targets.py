@@ -1,33 +1,31 @@
-"""What a search over paths has to meet, and its linkages as finds, judged by every requirement."""
+"""What the search has to pass, and its linkages judged by every requirement."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray
+from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import (
-    GROUPS,
     Configurations,
     Screened,
     as_they_come,
-    dyad_violations,
     judge,
-    keep_out_violation,
+    violations_apart,
 )
-from grashof.synth.programme.user_constraints import screened
-from grashof.synth.starts.closed_loop import PathTarget
+from grashof.synth.programme.whole_screening import fully_screened
+from grashof.synth.starts.closed_loop import SearchTargets
 from grashof.synth.starts.loop_search import Placed
 
 
-def path_target(scaled: ScaledProblem) -> PathTarget:
+def search_targets(scaled: ScaledProblem) -> SearchTargets:
     """What the search has to pass; a last point that repeats the first counts as its second half."""
     last = -1 if scaled.problem.task.returns else None
     weights, turn_weights = scaled.weights[:last].copy(), scaled.turn_weights[:last].copy()
     if last:
         weights[0] += scaled.weights[-1]
         turn_weights[0] += scaled.turn_weights[-1]
-    return PathTarget(
+    return SearchTargets(
         points=scaled.targets[:last],
         weights=weights,
         turns=scaled.turns[:last],
@@ -38,12 +36,7 @@ def path_target(scaled: ScaledProblem) -> PathTarget:
     )
 
 
-def entries_of(placed: Placed, rows: BoolArray | IntArray) -> Placed:
-    """Some linkages of a batch."""
-    return Placed(*(getattr(placed, name)[rows] for name in placed.__slots__))
-
-
-def judged(scaled: ScaledProblem, target: PathTarget, placed: Placed, direction: FloatArray) -> Screened:
+def judged(scaled: ScaledProblem, target: SearchTargets, placed: Placed, direction: FloatArray) -> Screened:
     """Placed linkages and how far each violates the requirements."""
     a, b, theta2 = placed.a, placed.b, placed.theta2
     if scaled.problem.task.returns:
@@ -53,10 +46,7 @@ def judged(scaled: ScaledProblem, target: PathTarget, placed: Placed, direction:
     if not target.wanted.order:
         visit, theta2, direction = as_they_come(theta2)
     p = placed.p[:, 0]
-    violations = dyad_violations("o2", placed.o2, a, p, scaled.wanted) + dyad_violations(
-        "o4", placed.o4, b, p, scaled.wanted
-    )
-    violations[:, GROUPS.index("keep_out")] += keep_out_violation("p", placed.p, scaled.wanted)
     found = Configurations(placed.o2, placed.o4, a, b, visit, theta2, direction)
+    violations = violations_apart(found, p, placed.p, scaled.wanted)
     error = np.sqrt(placed.error / len(scaled.targets))
-    return screened(scaled, judge(found, p, error, violations, scaled.wanted, placed.body_angle))
+    return fully_screened(scaled, judge(found, p, error, violations, scaled.wanted, placed.body_angle))

@@ -1,0 +1,202 @@
+"""What a judged linkage measures: a value of every quantity, by the judge's own means."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import fields
+from functools import cached_property, partial
+from operator import attrgetter
+
+import numpy as np
+
+from grashof.analysis.curves.curve_distance import curve_distances
+from grashof.analysis.four_bar.position import Position, solve_position
+from grashof.analysis.four_bar.stroke import output_stroke
+from grashof.analysis.judge.over_task import OverTask, motion_ends, over_task, torque_peak
+from grashof.analysis.judge.tolerance import robustness
+from grashof.analysis.judge.verdict import Verdict
+from grashof.problems import FourBar, Problem
+from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.problems.values.quantities import Needs
+from grashof.problems.values.requirements import QUANTITIES
+
+
+class Values(Mapping[str, float]):
+    """The values of a design by the keys of their quantities, each measured when it is asked for.
+
+    In rad, N, N m and the problem's unit of length; NaN where the problem does not state what a quantity
+    needs, or the linkage has no such value.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        A single linkage.
+    verdict : Verdict
+        Of `verify`.
+    problem : Problem
+        Its task, and what else it states: dynamics, manufacturing.
+    """
+
+    def __init__(self, linkage: FourBar, verdict: Verdict, problem: Problem) -> None:
+        self.linkage, self.verdict, self.problem = linkage, verdict, problem
+        self._known: dict[str, float] = {}
+
+    def __getitem__(self, key: str) -> float:
+        if key not in self._known:
+            measure = MEASURES[key]
+            self._known[key] = float(measure(self)) if self.problem.states(QUANTITIES[key].needs) else np.nan
+        return self._known[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(MEASURES)
+
+    def __len__(self) -> int:
+        return len(MEASURES)
+
+    def are_of(self, linkage: FourBar, verdict: Verdict, problem: Problem) -> bool:
+        """Whether they are those of this very design, by a problem that states the same."""
+        stated = attrgetter("requirements", "dynamics", "manufacturing", "length_unit")
+        alike = self.problem is problem or stated(self.problem) == stated(problem)
+        return self.linkage is linkage and self.verdict is verdict and alike
+
+    def parts(self, key: str) -> Mapping[str, FloatArray]:
+        """A quantity by its parts, such as the axes of a place; by "" where it is a number."""
+        return PARTS[key](self) if key in PARTS else {"": np.array([self[key]])}
+
+    @cached_property
+    def at_targets(self) -> Position:
+        """The linkage at the targets."""
+        return solve_position(self.linkage, self.verdict.theta2, self.verdict.assembly)
+
+    @cached_property
+    def theta2_ends(self) -> FloatArray:
+        """Driver angles at the first target, above -pi to pi, and at the last."""
+        first, last = self.verdict.theta2[[0, -1]].tolist()
+        ends: FloatArray = np.array([first, last]) - TURN * np.ceil((first - np.pi) / TURN)
+        return ends
+
+    @cached_property
+    def over_task(self) -> OverTask:
+        """Figures of the motion from the first target to the last."""
+        return over_task(self.linkage, self.problem, self.verdict)
+
+    @cached_property
+    def made(self) -> Mapping[str, float]:
+        """How the design takes inexact dimensions."""
+        if self.problem.manufacturing is None:
+            return {}
+        found = robustness(self.linkage, self.problem.task, self.verdict, self.problem.manufacturing)
+        moves = zip((f"move_{name}" for name in FourBar.DIMENSIONS), found.moves.tolist(), strict=True)
+        shares = {"share_within_linear": found.share_linear, "share_within_made": found.share_made}
+        return {**dict(moves), "worst_move": found.worst_move, **shares}
+
+    @cached_property
+    def curve_distances(self) -> tuple[float, float]:
+        """Hausdorff and Fréchet distance of the coupler curve from the polygon of the targets."""
+        if not self.verdict.full_rotation or not self.problem.task.has_position.all():
+            return np.nan, np.nan
+        return curve_distances(self.linkage, self.problem.task.positions, self.verdict.direction)
+
+
+def _angle_error(number: Callable[[FloatArray], float], values: Values) -> float:
+    """A number of the angle errors; NaN where no angle is asked for."""
+    errors = values.verdict.angle_error
+    return np.nan if np.isnan(errors).all() else number(errors)
+
+
+def _column(name: str, values: Values) -> float:
+    return values.linkage.columns[name]
+
+
+def _link_ratio(values: Values) -> float:
+    lengths = values.linkage.lengths
+    return lengths.max() / lengths.min() if lengths.min() > 0 else np.inf
+
+
+def _made(key: str, values: Values) -> float:
+    return values.made[key]
+
+
+def _output_swing(values: Values) -> float:
+    """Between limit positions; over the task motion where the driver does not turn fully."""
+    linkage = values.linkage
+    if values.verdict.full_rotation:
+        swing = float(output_stroke(linkage).swing)
+        return TURN if np.isnan(swing) else swing
+    start, end = motion_ends(values.problem.task, values.verdict)
+    turned = output_stroke(linkage).theta2 + TURN * np.arange(-3, 4)[:, None]
+    inside = turned[(turned > min(start, end)) & (turned < max(start, end))]
+    theta2 = np.sort(np.concatenate([np.linspace(start, end, 181), inside]))
+    theta4 = solve_position(linkage, theta2, values.verdict.assembly[0]).theta4
+    return float(np.ptp(np.unwrap(theta4)))
+
+
+def _omega2(values: Values) -> float:
+    return 1.0 if values.problem.dynamics is None else values.problem.dynamics.omega2
+
+
+def _signed_advantage(values: Values) -> float:
+    """With the sign of omega2 / omega4 where it is least."""
+    theta2 = np.linspace(*motion_ends(values.problem.task, values.verdict), 721)
+    theta4 = np.unwrap(solve_position(values.linkage, theta2, values.verdict.assembly[0]).theta4)
+    rate = np.nan_to_num(np.diff(theta4) / np.diff(theta2))
+    return float(np.sign(rate[np.abs(rate).argmax()])) * values["mechanical_advantage"]
+
+
+# Of every quantity that is one number.
+MEASURES: dict[str, Callable[[Values], float]] = {
+    **{name: partial(_column, name) for row in FourBar.PARAMETERS if row.paired for name in row.columns},
+    **{name: attrgetter(f"linkage.{name}") for name in FourBar.LENGTHS},
+    "body_angle": lambda values: _angle_error(lambda _: float(values.linkage.body_angle), values),
+    "ground_angle": attrgetter("linkage.theta1"),
+    "link_ratio": _link_ratio,
+    "theta2_start": lambda values: values.theta2_ends[0],
+    "theta2_end": lambda values: values.theta2_ends[1],
+    "error": lambda values: np.sqrt(values.verdict.square / len(values.problem.task)),
+    **{name: attrgetter(f"verdict.{name}") for name in ("error_max", "error_rms", "error_sse")},
+    "angle_error_max": partial(_angle_error, np.nanmax),
+    "angle_error_rms": partial(_angle_error, lambda errors: np.sqrt(np.nanmean(errors**2))),
+    "transmission": lambda values: values[values.problem.requirements.meant(QUANTITIES["transmission"]).key],
+    **{(key := f"transmission_min_{over}"): attrgetter(f"verdict.{key}") for over in ("task", "cycle")},
+    "size": attrgetter("verdict.size"),
+    **{field.name: attrgetter(f"over_task.{field.name}") for field in fields(OverTask)},
+    "torque_peak": lambda values: torque_peak(values.linkage, values.problem, values.verdict),
+    "driver_rotation": lambda values: np.ptp(values.verdict.theta2),
+    "driver_sense": attrgetter("verdict.direction"),
+    "output_swing": _output_swing,
+    "time_ratio": lambda values: output_stroke(values.linkage).time_ratio,
+    "mechanical_advantage": lambda values: _omega2(values) / values["omega4_max"],
+    "mechanical_advantage_min": _signed_advantage,
+    "hausdorff": lambda values: values.curve_distances[0],
+    "frechet": lambda values: values.curve_distances[1],
+    **{
+        quantity.key: partial(_made, quantity.key)
+        for quantity in QUANTITIES.values()
+        if quantity.needs is Needs.MANUFACTURING
+    },
+}
+
+
+def _place(point: str, values: Values) -> dict[str, FloatArray]:
+    x, y = np.atleast_2d(attrgetter(point)(values)).T
+    return {"x": x, "y": y}
+
+
+def _lengths(values: Values) -> dict[str, FloatArray]:
+    return dict(zip(FourBar.LENGTHS, values.linkage.lengths[:, None], strict=True))
+
+
+def _arms(values: Values) -> dict[str, FloatArray]:
+    arm = complex(*values.linkage.coupler_point)
+    return {"A-P": np.abs([arm]), "B-P": np.abs([arm - complex(values.linkage.r3)])}
+
+
+# Of those that have several parts.
+PARTS: Mapping[str, Callable[[Values], Mapping[str, FloatArray]]] = {
+    "link_length": _lengths,
+    "coupler_arms": _arms,
+    "o2": partial(_place, "linkage.o2"),
+    "o4": partial(_place, "linkage.o4"),
+    "a": partial(_place, "at_targets.a"),
+    "b": partial(_place, "at_targets.b"),
+}

@@ -1,0 +1,102 @@
+"""The judge's verdict on a linkage: what it does with a task, and what it misses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from grashof.analysis.four_bar.mobility import GrashofClass
+from grashof.problems.values.arrays import FloatArray, IntArray
+
+
+@dataclass(frozen=True, slots=True)
+class Defect:
+    """One requirement that a design misses.
+
+    Parameters
+    ----------
+    requirement : str
+        Its key; "exact" for targets that are not met.
+    what : str
+        The quantity judged, such as "r3".
+    found : float
+        Its value, as tables print it (degrees for angles).
+    allowed : str
+    miss : float
+        By how much it is missed: share of the size, rad, or ratio.
+    """
+
+    requirement: str
+    what: str
+    found: float
+    allowed: str
+    miss: float
+
+    def __str__(self) -> str:
+        return f"{self.requirement}: {self.what} is {self.found:.6g}, allowed is {self.allowed}"
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What a linkage does with a task, and every defect.
+
+    Parameters
+    ----------
+    theta2 : ndarray, shape (N,), rad
+        Driver angle at each target, counted on along the motion.
+    assembly : ndarray of int, shape (N,)
+        Assembly at each target.
+    position_error : ndarray, shape (N,), length
+        NaN where a target has no position.
+    angle_error : ndarray, shape (N,), rad
+        NaN where a target has no angle.
+    square : float, length squared
+        What least squares makes small: the weighted sum of |dp|^2 + (angle_length * dangle)^2.
+    direction : int
+        Sense of the driver, +1 counter-clockwise.
+    grashof_class : GrashofClass
+    full_rotation, circuit_ok, branch_ok, order_ok : bool
+    transmission_min_task, transmission_min_cycle : float, rad
+        Worst min(mu, pi - mu) over the motion used and over the turn.
+    size : float, length
+        Diagonal of the box around O2, O4 and all that A, B and P reach in the motion used.
+    defects : tuple of Defect
+        Empty for a design that does what is required.
+    """
+
+    theta2: FloatArray
+    assembly: IntArray
+    position_error: FloatArray
+    angle_error: FloatArray
+    square: float
+    direction: int
+    grashof_class: GrashofClass
+    full_rotation: bool
+    circuit_ok: bool
+    branch_ok: bool
+    order_ok: bool
+    transmission_min_task: float
+    transmission_min_cycle: float
+    size: float
+    defects: tuple[Defect, ...]
+
+    @property
+    def ok(self) -> bool:
+        """Whether the linkage has no defect."""
+        return not self.defects
+
+    @property
+    def error_max(self) -> float:
+        """Greatest distance from a target position."""
+        return float(np.nanmax(self.position_error))
+
+    @property
+    def error_sse(self) -> float:
+        """Sum of squared distances from the target positions."""
+        return float(np.nansum(self.position_error**2))
+
+    @property
+    def error_rms(self) -> float:
+        """Root mean square distance from the target positions."""
+        return float(np.sqrt(np.nanmean(self.position_error**2)))

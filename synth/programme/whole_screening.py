@@ -1,0 +1,41 @@
+"""Violations that take the whole problem: limits along the motion, and the user's constraints."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.requirements import LIMITS
+from grashof.synth.programme.along_motion import ALONG, SCREENED, magnitudes, value_of
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.screening import GROUPS, Screened
+from grashof.synth.programme.user_constraints import own_violations
+
+
+def fully_screened(scaled: ScaledProblem, linkages: Screened) -> Screened:
+    """The same with these violations, too."""
+    along = [name for name in scaled.wanted.limited if LIMITS[name].quantity.key in ALONG]
+    if not len(linkages) or not (along or scaled.constraints):
+        return linkages
+    violations = linkages.violations.copy()
+    for name in along:
+        violations[:, GROUPS.index(name)] = _beyond(scaled, linkages, name)
+    if scaled.constraints:
+        violations[:, GROUPS.index("constraints")] += own_violations(scaled, linkages)
+    return replace(linkages, violations=violations)
+
+
+def _beyond(scaled: ScaledProblem, linkages: Screened, name: str) -> FloatArray:
+    """By how much the greatest magnitude exceeds its limit, as a share of it; (n,)."""
+    quantity = LIMITS[name].quantity
+    low, high = scaled.problem.requirements.ranges(name)[""]
+    ways = linkages.theta2, linkages.direction, linkages.assembly
+    peak = magnitudes(scaled.problem, quantity.key, linkages.points, *ways, SCREENED).max(axis=1)
+    value = value_of(quantity.key, peak) * scaled.problem.scale(quantity)
+    share = np.maximum(low - value, value - high) / (high if np.isfinite(high) else max(low, 1.0))
+    return np.maximum(np.nan_to_num(share, posinf=FAR), 0.0)
+
+
+FAR = 1e3  # stands for an amount without bound

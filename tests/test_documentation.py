@@ -1,0 +1,45 @@
+"""The tables of the README are those of the quantities, columns and requirements that are declared."""
+
+import re
+from dataclasses import fields
+from pathlib import Path
+
+import pytest
+
+from grashof.problems import Requirements
+from grashof.problems.values.quantities import Unit
+from grashof.problems.values.requirements import LIMITS
+from grashof.synth.results.table import COLUMNS, LISTED
+
+README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+# Columns by name, with the unit of their row.
+ROWS = {
+    name: unit.strip()
+    for names, unit in re.findall(r"^\| (`[^|]+) \|([^|]*)\|[^|]+\|$", README, re.MULTILINE)
+    for name in re.findall(r"`(\w+)`", names)
+}
+REQUIREMENTS = README.split("\n[requirements]\n")[1].split("\n[objective]\n")[0]
+
+
+@pytest.mark.parametrize("name", COLUMNS)
+def test_every_column_has_a_row(name: str) -> None:
+    assert name in ROWS
+
+
+def test_no_row_is_of_a_column_that_is_gone() -> None:
+    assert set(ROWS) == set(COLUMNS)
+
+
+@pytest.mark.parametrize("quantity", LISTED, ids=lambda each: each.key)
+def test_rows_state_the_unit(quantity) -> None:  # type: ignore[no-untyped-def]
+    assert ROWS[quantity.column] == quantity.unit
+
+
+@pytest.mark.parametrize("name", [field.name for field in fields(Requirements)])
+def test_every_requirement_is_in_the_example(name: str) -> None:
+    assert re.search(rf"\b{name}\b", REQUIREMENTS)
+
+
+@pytest.mark.parametrize("name", LIMITS)
+def test_a_limit_that_is_an_angle_says_so_by_its_key(name: str) -> None:
+    assert name.endswith("_deg") == (LIMITS[name].quantity.unit is Unit.ANGLE)
