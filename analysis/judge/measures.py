@@ -191,6 +191,14 @@ def _arms(values: Values) -> dict[str, FloatArray]:
     return {"A-P": np.abs([arm]), "B-P": np.abs([arm - complex(values.linkage.r3)])}
 
 
+def _on_body(of_a: float, values: Values) -> dict[str, FloatArray]:
+    """A (`of_a` 0) or B (1) in the frame of the body, whose origin is P."""
+    linkage = values.linkage
+    arm = of_a * linkage.r3 - complex(*linkage.coupler_point)
+    place = arm * np.exp(-1j * linkage.body_angle)
+    return {"x": np.array([place.real]), "y": np.array([place.imag])}
+
+
 # Of those that have several parts.
 PARTS: Mapping[str, Callable[[Values], Mapping[str, FloatArray]]] = {
     "link_length": _lengths,
@@ -199,4 +207,6 @@ PARTS: Mapping[str, Callable[[Values], Mapping[str, FloatArray]]] = {
     "o4": partial(_place, "linkage.o4"),
     "a": partial(_place, "at_targets.a"),
     "b": partial(_place, "at_targets.b"),
+    "a_on_body": partial(_on_body, 0.0),
+    "b_on_body": partial(_on_body, 1.0),
 }

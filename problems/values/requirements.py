@@ -13,7 +13,7 @@ from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.checks import GREATEST, finite_number, limits, noted, number_within, refuse
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkage import FourBar
-from grashof.problems.values.quantities import MEASURED, Kind, Limit, Over, Quantity, Unit, limit
+from grashof.problems.values.quantities import MEASURED, Kind, Limit, Needs, Over, Quantity, Unit, limit
 from grashof.problems.values.read_only import ReadOnly
 from grashof.problems.values.task import Task
 
@@ -57,6 +57,11 @@ _FROM_ZERO = (0.0, GREATEST)
 
 def _place(name: str, over: Over) -> Quantity:
     return Quantity(name, f"place of {name.upper()}", Unit.LENGTH, over, listed=False)
+
+
+def _bracket(name: str) -> Quantity:
+    words = f"place of {name.upper()} on the body"
+    return Quantity(f"{name}_on_body", words, Unit.LENGTH, needs=Needs.ANGLES, listed=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -114,6 +119,8 @@ class Requirements(ReadOnly):
         steadily; of a driver that does not turn fully there is none.
     mechanical_advantage_min : float, optional
         Least ``|omega2 / omega4|`` over the task motion.
+    a_on_body, b_on_body : Box, optional
+        Where A and B may sit on the body that is guided, in its frame: origin at P, turned with it.
     keep_out : sequence of array_like, shape (M, 2), length
         Polygons; their boundary may be touched. Where two overlap or share a side they are one.
     keep_out_for : sequence of {"o2", "o4", "a", "b", "p", "links"}
@@ -183,7 +190,7 @@ class Requirements(ReadOnly):
         allowed=(0.0, 360.0),
     )
     driver_sense: str = limit(
-        Quantity("driver_sense", "sense of the driver", Unit.RATIO, Over.TARGETS, listed=False),
+        Quantity("driver_sense", "sense of the driver", Unit.RATIO, listed=False),
         Kind.WORD,
         default="either",
         words={"either": (-1.0, 1.0), "ccw": (1.0, 1.0), "cw": (-1.0, -1.0)},
@@ -203,6 +210,8 @@ class Requirements(ReadOnly):
         Kind.AT_LEAST,
         allowed=(0.0, 1e6),
     )
+    a_on_body: Box | None = limit(_bracket("a"), Kind.ON_BODY)
+    b_on_body: Box | None = limit(_bracket("b"), Kind.ON_BODY)
     keep_out: tuple[FloatArray, ...] = ()
     keep_out_for: tuple[str, ...] = ("o2", "o4")
 
@@ -245,6 +254,19 @@ class Requirements(ReadOnly):
         """Limits of r1, r2, r3, r4 (of resolved requirements)."""
         every = self.link_length or (0.0, np.inf)
         return self.r1 or every, self.r2 or every, self.r3 or every, self.r4 or every
+
+    def contradictions(self, task: Task) -> list[str]:
+        """What these requirements and a task do not agree on, a line each."""
+        wrong = []
+        if task.zones is not None and self.exact:
+            wrong.append(f"{task.kind}.within does not go with requirements.exact = true; it takes its place")
+        if task.zones is not None and self.error_factor is not None:
+            wrong.append(
+                f"requirements.error_factor does not go with {task.kind}.within; allowed is one of them"
+            )
+        if self.error_factor is not None and self.is_exact(task):
+            wrong.append("requirements.error_factor needs least squares, exact = false")
+        return wrong
 
     def is_exact(self, task: Task) -> bool:
         """Whether a design has to meet every target of the task.

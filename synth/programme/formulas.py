@@ -106,6 +106,18 @@ def _place(name: str, dyad: int) -> tuple[Part, ...]:
     )
 
 
+def _bracket(name: str) -> tuple[Part, ...]:
+    """A or B in the frame of the body."""
+
+    def place(d: View) -> Vector:
+        arm: Vector = -getattr(d, f"{name}p")
+        return arm.turned(-d.body_turn)
+
+    return tuple(
+        Part(f"{name}_on_body.{axis}", lambda d, axis=axis: getattr(place(d), axis), axis) for axis in "xy"
+    )
+
+
 _LINKS = (
     Part("r1", lambda d: d.r1),
     Part("r2", lambda d: d.r2, dyad=2),
@@ -159,6 +171,8 @@ FORMULAS: dict[str, tuple[Part, ...]] = {
     "o4": _place("o4", 4),
     "a": _place("a", 2),
     "b": _place("b", 4),
+    "a_on_body": _bracket("a"),
+    "b_on_body": _bracket("b"),
     "ground_angle": (Part("theta1", lambda d: d.theta1),),
     "theta2_start": (Part("theta2", lambda d: d.theta2_start, dyad=2),),
     "driver_sense": (Part("driver sense", lambda d: d.direction, fixed=True),),

@@ -10,7 +10,7 @@ from grashof import load, synthesize
 from grashof.analysis import Verdict, solve_kinematics, solve_position, verify
 from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.planted import planted_motion
-from grashof.problems import FourBar, MotionTask, Objective, Problem, Requirements
+from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, Requirements
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.programme.formulas import FORMULAS, Part
 from grashof.synth.programme.screening import Many
@@ -185,3 +185,26 @@ def test_the_mechanical_advantage_as_a_goal() -> None:
     strong = replace(problem, objective=Objective(transmission=0, mechanical_advantage=1))
     free, best = (values_of(each, "mechanical_advantage", **search) for each in (problem, strong))
     assert best[0] >= max(free) * (1 - 1e-6)
+
+
+@pytest.mark.parametrize("kind", ["poses met", "poses fitted"])
+@pytest.mark.parametrize("joint", ["a", "b"])
+def test_a_joint_sits_on_the_body_where_it_may(kind: str, joint: str) -> None:
+    problem, search = TASKS[kind]
+
+    def places(asked: Problem) -> FloatArray:
+        """From the positions at every target: the joint less P, turned back with the body."""
+        found = []
+        for each in synthesize(asked, **search).candidates:
+            state = solve_position(each.linkage, each.verdict.theta2, each.verdict.assembly)
+            arm = (getattr(state, joint) - state.p) @ np.array([1, 1j])
+            place = arm * np.exp(-1j * (state.theta3 + each.linkage.body_angle))
+            assert np.ptp(place.real) < 1e-9 * problem.task.size
+            found.append([place[0].real, place[0].imag])
+        return np.array(found)
+
+    middle, half = np.median(places(problem), axis=0), 0.5 * problem.task.size
+    sides = [(float(at - half), float(at + half)) for at in middle]
+    kept = places(limited(problem, **{f"{joint}_on_body": Box(*sides)}))
+    assert len(kept) >= 1
+    assert (np.abs(kept - middle) <= half * (1 + 1e-6)).all()
