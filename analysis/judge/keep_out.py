@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from grashof.analysis.four_bar.position import places, solve_position
 from grashof.analysis.judge.task_motion import Targets, TaskMotion
-from grashof.problems import FourBar, Requirements
+from grashof.problems import FourBar, Requirements, Task
 from grashof.problems.values.areas import solid
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 
@@ -20,6 +20,7 @@ _SAMPLES = 541
 _ALONG = 33  # samples along the piece of a link that lies inside
 _PEAKS = 3  # of the depth over the motion that are looked at more closely
 _ROUNDS, _NEARBY = 18, np.linspace(-1, 1, 7)  # each three times as close
+SLACK = 1e-9  # sizes: rounding
 _ROUGH = 5  # rounds along a link, while looking for the driver angles where it reaches deepest
 
 
@@ -115,7 +116,13 @@ def segment_depth(area: Area, begin: FloatArray, end: FloatArray, rounds: int = 
 
 
 def intrusions(
-    linkage: FourBar, wanted: Requirements, targets: Targets, motion: TaskMotion, *, joined: bool
+    linkage: FourBar,
+    task: Task,
+    wanted: Requirements,
+    targets: Targets,
+    motion: TaskMotion,
+    *,
+    joined: bool,
 ) -> dict[str, float]:
     """How deep the parts of a linkage that shall keep out reach into the areas kept out.
 
@@ -123,6 +130,7 @@ def intrusions(
     ----------
     linkage : FourBar
         A single linkage.
+    task : MotionTask or PathTask
     wanted : Requirements
     targets : Targets
     motion : TaskMotion
@@ -132,7 +140,7 @@ def intrusions(
     Returns
     -------
     dict of str to float, length
-        The greatest depth of each part, such as "O2" or "link AB"; zero outside and on the boundary.
+        The greatest depth of each part that lies inside, such as "O2" or "link AB".
 
     Notes
     -----
@@ -154,7 +162,7 @@ def intrusions(
         else:
             at = _depth_of(area, linkage, ends, targets.assembly)
             deepest[part] = float(at(targets.theta2, _ROUNDS).max())
-    return {part: max(found, 0.0) for part, found in deepest.items()}
+    return {part: found for part, found in deepest.items() if found > SLACK * task.size}
 
 
 def _lines() -> dict[str, tuple[str, ...]]:

@@ -11,7 +11,8 @@ import numpy as np
 
 from grashof.analysis.curves.curve_distance import curve_distances
 from grashof.analysis.four_bar.position import Position, solve_position
-from grashof.analysis.judge.over_task import OverTask, over_task, torque_peak
+from grashof.analysis.four_bar.stroke import output_stroke
+from grashof.analysis.judge.over_task import OverTask, motion_ends, over_task, torque_peak
 from grashof.analysis.judge.tolerance import robustness
 from grashof.analysis.judge.verdict import Verdict
 from grashof.problems import FourBar, Problem
@@ -71,8 +72,8 @@ class Values(Mapping[str, float]):
     def theta2_ends(self) -> FloatArray:
         """Driver angles at the first target, above -pi to pi, and at the last."""
         first, last = self.verdict.theta2[[0, -1]].tolist()
-        turns = np.ceil((first - np.pi) / TURN)
-        return np.array([first, last]) - TURN * turns
+        ends: FloatArray = np.array([first, last]) - TURN * np.ceil((first - np.pi) / TURN)
+        return ends
 
     @cached_property
     def over_task(self) -> OverTask:
@@ -116,9 +117,35 @@ def _made(key: str, values: Values) -> float:
     return values.made[key]
 
 
+def _output_swing(values: Values) -> float:
+    """Between limit positions; over the task motion where the driver does not turn fully."""
+    linkage = values.linkage
+    if values.verdict.full_rotation:
+        swing = float(output_stroke(linkage).swing)
+        return TURN if np.isnan(swing) else swing
+    start, end = motion_ends(values.problem.task, values.verdict)
+    turned = output_stroke(linkage).theta2 + TURN * np.arange(-3, 4)[:, None]
+    inside = turned[(turned > min(start, end)) & (turned < max(start, end))]
+    theta2 = np.sort(np.concatenate([np.linspace(start, end, 181), inside]))
+    theta4 = solve_position(linkage, theta2, values.verdict.assembly[0]).theta4
+    return float(np.ptp(np.unwrap(theta4)))
+
+
+def _omega2(values: Values) -> float:
+    return 1.0 if values.problem.dynamics is None else values.problem.dynamics.omega2
+
+
+def _signed_advantage(values: Values) -> float:
+    """With the sign of omega2 / omega4 where it is least."""
+    theta2 = np.linspace(*motion_ends(values.problem.task, values.verdict), 721)
+    theta4 = np.unwrap(solve_position(values.linkage, theta2, values.verdict.assembly[0]).theta4)
+    rate = np.nan_to_num(np.diff(theta4) / np.diff(theta2))
+    return float(np.sign(rate[np.abs(rate).argmax()])) * values["mechanical_advantage"]
+
+
 # Of every quantity that is one number.
 MEASURES: dict[str, Callable[[Values], float]] = {
-    **{name: partial(_column, name) for name in ("o2_x", "o2_y", "o4_x", "o4_y", "p_u", "p_v")},
+    **{name: partial(_column, name) for row in FourBar.PARAMETERS if row.paired for name in row.columns},
     **{name: attrgetter(f"linkage.{name}") for name in FourBar.LENGTHS},
     "body_angle": lambda values: _angle_error(lambda _: float(values.linkage.body_angle), values),
     "ground_angle": attrgetter("linkage.theta1"),
@@ -134,6 +161,12 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     "size": attrgetter("verdict.size"),
     **{field.name: attrgetter(f"over_task.{field.name}") for field in fields(OverTask)},
     "torque_peak": lambda values: torque_peak(values.linkage, values.problem, values.verdict),
+    "driver_rotation": lambda values: np.ptp(values.verdict.theta2),
+    "driver_sense": attrgetter("verdict.direction"),
+    "output_swing": _output_swing,
+    "time_ratio": lambda values: output_stroke(values.linkage).time_ratio,
+    "mechanical_advantage": lambda values: _omega2(values) / values["omega4_max"],
+    "mechanical_advantage_min": _signed_advantage,
     "hausdorff": lambda values: values.curve_distances[0],
     "frechet": lambda values: values.curve_distances[1],
     **{
@@ -158,6 +191,14 @@ def _arms(values: Values) -> dict[str, FloatArray]:
     return {"A-P": np.abs([arm]), "B-P": np.abs([arm - complex(values.linkage.r3)])}
 
 
+def _on_body(of_a: float, values: Values) -> dict[str, FloatArray]:
+    """A (`of_a` 0) or B (1) in the frame of the body, whose origin is P."""
+    linkage = values.linkage
+    arm = of_a * linkage.r3 - complex(*linkage.coupler_point)
+    place = arm * np.exp(-1j * linkage.body_angle)
+    return {"x": np.array([place.real]), "y": np.array([place.imag])}
+
+
 # Of those that have several parts.
 PARTS: Mapping[str, Callable[[Values], Mapping[str, FloatArray]]] = {
     "link_length": _lengths,
@@ -166,4 +207,6 @@ PARTS: Mapping[str, Callable[[Values], Mapping[str, FloatArray]]] = {
     "o4": partial(_place, "linkage.o4"),
     "a": partial(_place, "at_targets.a"),
     "b": partial(_place, "at_targets.b"),
+    "a_on_body": partial(_on_body, 0.0),
+    "b_on_body": partial(_on_body, 1.0),
 }

@@ -198,7 +198,7 @@ Place = Annotated[
 
 Areas = Annotated[list[Corners], listed("a list of polygons, each a list of corners [x, y]")]
 Parts = Annotated[list[str], listed(f"a list of {', '.join(MAY_KEEP_OUT[:-1])} and {MAY_KEEP_OUT[-1]}")]
-_BY_KIND = {Kind.BETWEEN: Pair, Kind.INSIDE: Place, Kind.ON_BODY: Place}
+_BY_KIND = {Kind.BETWEEN: Pair, Kind.INSIDE: Place, Kind.ON_BODY: Place, Kind.WORD: str}
 _MODES: dict[str, Any] = {
     **dict.fromkeys(("exact", "order", "same_branch"), bool),
     **dict.fromkeys(("rotatability", "transmission_over"), str),

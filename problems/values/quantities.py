@@ -7,6 +7,7 @@ can steer (`grashof.synth.programme.formulas`); the two share nothing but the ke
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum, StrEnum, auto
 from typing import Any
@@ -14,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.arrays import Limits
+from grashof.problems.values.linkage import FourBar
 
 
 class Unit(StrEnum):
@@ -138,9 +140,9 @@ _DRIVEN: dict[str, Any] = {**_OVERALL, "better": -1, "needs": Needs.DYNAMICS}
 MEASURED: dict[str, Quantity] = {
     quantity.key: quantity
     for quantity in (
-        *(_length(f"{pivot}_{axis}") for pivot in ("o2", "o4") for axis in "xy"),
-        *(_length(f"r{link}", digits=4) for link in (1, 2, 3, 4)),
-        *(_length(f"p_{axis}") for axis in "uv"),
+        *(_length(name) for row in FourBar.PARAMETERS if row.kind == "place" for name in row.columns),
+        *(_length(name, digits=4) for name in FourBar.LENGTHS),
+        *(_length(name) for row in FourBar.PARAMETERS if row.kind == "arm" for name in row.columns),
         Quantity("body_angle", "body angle", Unit.ANGLE, about="orientation of the body minus theta3"),
         Quantity("theta2_start", "driver angle at the first target", Unit.ANGLE, Over.TARGETS),
         Quantity("theta2_end", "driver angle at the last target", Unit.ANGLE, Over.TARGETS),
@@ -177,7 +179,7 @@ MEASURED: dict[str, Quantity] = {
                 f"move_{name}", f"move by {name}", Unit.RATIO, Over.TARGETS, -1, Needs.MANUFACTURING,
                 about=_MOVED.format(name),
             )
-            for name in ("r1", "r2", "r3", "r4", "u", "v")
+            for name in FourBar.DIMENSIONS
         ),
         _length("worst_move", "worst move", over=Over.TARGETS, better=-1, needs=Needs.MANUFACTURING),
         Quantity("share_within_linear", "within, linear", Unit.SHARE, Over.TARGETS, +1, Needs.MANUFACTURING),
@@ -197,6 +199,7 @@ class Kind(Enum):
     EQUAL = auto()  # an angle
     INSIDE = auto()  # a box in the plane
     ON_BODY = auto()  # a box in the body's frame
+    WORD = auto()  # one of several words, each of which allows a range
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,12 +214,20 @@ class Limit:
         Least and greatest number that may be asked for, as files state it.
     usual : tuple of float, optional
         Limits where none are given, in sizes of the task.
+    words : mapping of str to tuple of float
+        What each word allows.
     """
 
     quantity: Quantity
     kind: Kind
     allowed: tuple[float, float]
     usual: tuple[float, float] | None = None
+    words: Mapping[str, Limits] = field(default_factory=dict)
+
+    @property
+    def widest(self) -> str:
+        """The word that allows most."""
+        return max(self.words, key=lambda word: self.words[word][1] - self.words[word][0])
 
     def ranges(self, value: Any) -> dict[str, Limits]:
         """What a value of the field allows, in rad where it is an angle: by axis of a box, else by "".
@@ -228,6 +239,8 @@ class Limit:
         """
         if self.kind in (Kind.INSIDE, Kind.ON_BODY):
             return {"x": value.x, "y": value.y}
+        if self.kind is Kind.WORD:
+            return {"": self.words[value]}
         low, high = value if self.kind is Kind.BETWEEN else (value, value)
         if self.kind is Kind.AT_LEAST:
             high = np.inf
@@ -243,7 +256,8 @@ def limit(
     default: Any = None,
     allowed: tuple[float, float] = (-np.inf, np.inf),
     usual: tuple[float, float] | None = None,
+    words: Mapping[str, Limits] | None = None,
 ) -> Any:
     """A field of `Requirements` that limits a quantity: one of `MEASURED`, or one declared with the field."""
     limited = MEASURED[quantity] if isinstance(quantity, str) else quantity
-    return field(default=default, metadata={"limit": Limit(limited, kind, allowed, usual)})
+    return field(default=default, metadata={"limit": Limit(limited, kind, allowed, usual, words or {})})

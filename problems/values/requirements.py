@@ -12,7 +12,8 @@ import numpy as np
 from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.checks import GREATEST, finite_number, limits, noted, number_within, refuse
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.quantities import MEASURED, Kind, Limit, Over, Quantity, Unit, limit
+from grashof.problems.values.linkage import FourBar
+from grashof.problems.values.quantities import MEASURED, Kind, Limit, Needs, Over, Quantity, Unit, limit
 from grashof.problems.values.read_only import ReadOnly
 from grashof.problems.values.task import Task
 
@@ -48,11 +49,19 @@ class Box:
         refuse(wrong)
 
 
+_SWING = "of link 4 between its limit positions, over the task where the driver cannot turn"
+_STROKES = "time of the slow stroke of link 4 over that of the quick one"
+_FIRST_TO_LAST = "from the first target to the last"
 _FROM_ZERO = (0.0, GREATEST)
 
 
 def _place(name: str, over: Over) -> Quantity:
     return Quantity(name, f"place of {name.upper()}", Unit.LENGTH, over, listed=False)
+
+
+def _bracket(name: str) -> Quantity:
+    words = f"place of {name.upper()} on the body"
+    return Quantity(f"{name}_on_body", words, Unit.LENGTH, needs=Needs.ANGLES, listed=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -96,6 +105,22 @@ class Requirements(ReadOnly):
         Direction O2->O4.
     theta2_start_deg : float, deg, optional
         Driver angle at the first target.
+    size, torque_peak, worst_move, ... : tuple of float, optional
+        (lo, hi) for whatever candidates.csv lists; see `grashof.problems.values.quantities`.
+    driver_rotation_deg : tuple of float, deg, optional
+        (lo, hi) for the driver rotation from the first target to the last.
+    driver_sense : {"either", "ccw", "cw"}
+        Sense of the driver from the first target to the last: counter-clockwise or clockwise.
+    output_swing_deg : tuple of float, deg, optional
+        (lo, hi) for the swing of link 4 between its limit positions, O2, A, B in line; over the task motion
+        where the driver does not turn fully, and 360 where link 4 does.
+    time_ratio : tuple of float, optional
+        (lo, hi) for the time of the slow stroke of link 4 over that of the quick one, the driver turning
+        steadily; of a driver that does not turn fully there is none.
+    mechanical_advantage_min : float, optional
+        Least ``|omega2 / omega4|`` over the task motion.
+    a_on_body, b_on_body : Box, optional
+        Where A and B may sit on the body that is guided, in its frame: origin at P, turned with it.
     keep_out : sequence of array_like, shape (M, 2), length
         Polygons; their boundary may be touched. Where two overlap or share a side they are one.
     keep_out_for : sequence of {"o2", "o4", "a", "b", "p", "links"}
@@ -159,6 +184,34 @@ class Requirements(ReadOnly):
     frechet: Limits | None = limit("frechet", Kind.BETWEEN, allowed=_FROM_ZERO)
     worst_move: Limits | None = limit("worst_move", Kind.BETWEEN, allowed=_FROM_ZERO)
     share_within_made: Limits | None = limit("share_within_made", Kind.BETWEEN, allowed=(0.0, 1.0))
+    driver_rotation_deg: Limits | None = limit(
+        Quantity("driver_rotation", "driver rotation", Unit.ANGLE, Over.TARGETS, about=_FIRST_TO_LAST),
+        Kind.BETWEEN,
+        allowed=(0.0, 360.0),
+    )
+    driver_sense: str = limit(
+        Quantity("driver_sense", "sense of the driver", Unit.RATIO, listed=False),
+        Kind.WORD,
+        default="either",
+        words={"either": (-1.0, 1.0), "ccw": (1.0, 1.0), "cw": (-1.0, -1.0)},
+    )
+    output_swing_deg: Limits | None = limit(
+        Quantity("output_swing", "output swing", Unit.ANGLE, Over.CYCLE, +1, about=_SWING),
+        Kind.BETWEEN,
+        allowed=(0.0, 360.0),
+    )
+    time_ratio: Limits | None = limit(
+        Quantity("time_ratio", "time ratio", Unit.RATIO, Over.CYCLE, +1, about=_STROKES),
+        Kind.BETWEEN,
+        allowed=(1.0, 1e6),
+    )
+    mechanical_advantage_min: float | None = limit(
+        Quantity("mechanical_advantage", "mechanical advantage", Unit.RATIO, Over.TASK, +1, listed=False),
+        Kind.AT_LEAST,
+        allowed=(0.0, 1e6),
+    )
+    a_on_body: Box | None = limit(_bracket("a"), Kind.ON_BODY)
+    b_on_body: Box | None = limit(_bracket("b"), Kind.ON_BODY)
     keep_out: tuple[FloatArray, ...] = ()
     keep_out_for: tuple[str, ...] = ("o2", "o4")
 
@@ -201,6 +254,19 @@ class Requirements(ReadOnly):
         """Limits of r1, r2, r3, r4 (of resolved requirements)."""
         every = self.link_length or (0.0, np.inf)
         return self.r1 or every, self.r2 or every, self.r3 or every, self.r4 or every
+
+    def contradictions(self, task: Task) -> list[str]:
+        """What these requirements and a task do not agree on, a line each."""
+        wrong = []
+        if task.zones is not None and self.exact:
+            wrong.append(f"{task.kind}.within does not go with requirements.exact = true; it takes its place")
+        if task.zones is not None and self.error_factor is not None:
+            wrong.append(
+                f"requirements.error_factor does not go with {task.kind}.within; allowed is one of them"
+            )
+        if self.error_factor is not None and self.is_exact(task):
+            wrong.append("requirements.error_factor needs least squares, exact = false")
+        return wrong
 
     def is_exact(self, task: Task) -> bool:
         """Whether a design has to meet every target of the task.
@@ -259,11 +325,19 @@ LIMITS: dict[str, Limit] = {
     field.name: field.metadata["limit"] for field in fields(Requirements) if "limit" in field.metadata
 }
 
+_ADVANTAGE = Quantity(
+    "mechanical_advantage_min",
+    "mechanical advantage",
+    Unit.RATIO,
+    Over.TASK,
+    about="omega2 / omega4 where it is least over the task motion, with its sign",
+)
 # All that can be said of a design, by key; those that are listed in the order of the columns.
 QUANTITIES = MEASURED | {limited.quantity.key: limited.quantity for limited in LIMITS.values()}
+QUANTITIES[_ADVANTAGE.key] = _ADVANTAGE
 
 
-def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float:
+def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float | str:
     if limited.kind in (Kind.INSIDE, Kind.ON_BODY):
         if not isinstance(value, Box):
             raise ProblemError(f"{where} is {value!r}; allowed is a Box")
@@ -271,12 +345,16 @@ def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float:
     low, high = limited.allowed
     if limited.kind is Kind.BETWEEN:
         return limits(value, where, least=low, most=high)
+    if limited.kind is Kind.WORD:
+        if value not in limited.words:
+            raise ProblemError(f"{where} is {value!r}; allowed is one of {', '.join(limited.words)}")
+        return str(value)
     if limited.kind is Kind.EQUAL:
         return finite_number(value, where)
     return number_within(value, low, high, where)
 
 
-MAY_KEEP_OUT = ("o2", "o4", "a", "b", "p", "links")
+MAY_KEEP_OUT = (*FourBar.POINTS, "links")
 
 
 def _areas(values: Sequence[FloatArray]) -> tuple[FloatArray, ...]:

@@ -130,12 +130,22 @@ def joint_forces(at: Instant) -> list[Any]:
 # the magnitude, of several the greatest.
 Along: TypeAlias = Callable[[Instant], list[Any]]
 ALONG: dict[str, Along] = {
+    "mechanical_advantage": lambda at: [at.speed4],
     "omega4_max": lambda at: [at.speed4],
     "point_speed_max": lambda at: [at.velocity(at.point)],
     "point_acceleration_max": lambda at: [at.acceleration(at.point)],
     "torque_peak": drive_torque,
     "joint_force_peak": joint_forces,
 }
+
+
+# Those whose value is one over the greatest magnitude.
+INVERSE = frozenset({"mechanical_advantage"})
+
+
+def value_of(key: str, peak: Any) -> Any:
+    """The value of a quantity whose greatest magnitude is known, and the other way round."""
+    return 1 / peak if key in INVERSE else peak
 
 
 def loads(problem: Problem) -> FloatArray:

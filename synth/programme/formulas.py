@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems import Requirements
-from grashof.problems.values.arrays import Limits
+from grashof.problems.values.arrays import TURN, Limits
 from grashof.problems.values.requirements import LIMITS
 from grashof.synth.programme.vector import Vector
 
@@ -106,6 +106,18 @@ def _place(name: str, dyad: int) -> tuple[Part, ...]:
     )
 
 
+def _bracket(name: str) -> tuple[Part, ...]:
+    """A or B in the frame of the body."""
+
+    def place(d: View) -> Vector:
+        arm: Vector = -getattr(d, f"{name}p")
+        return arm.turned(-d.body_turn)
+
+    return tuple(
+        Part(f"{name}_on_body.{axis}", lambda d, axis=axis: getattr(place(d), axis), axis) for axis in "xy"
+    )
+
+
 _LINKS = (
     Part("r1", lambda d: d.r1),
     Part("r2", lambda d: d.r2, dyad=2),
@@ -122,6 +134,30 @@ _PAIRS = tuple(
     Part(f"{long.name} to {short.name}", long.of, per=short.of) for short, long in permutations(_LINKS, 2)
 )
 
+
+def _cosine(opposite: Any, one: Any, other: Any) -> Any:
+    """Law of cosines, kept within -1 and 1 where there is no triangle."""
+    return np.minimum(np.maximum((one**2 + other**2 - opposite**2) / (2 * one * other), -1.0), 1.0)
+
+
+def _output_swing(d: View) -> Any:
+    """Between the triangles O2-B-O4 with links 2 and 3 stretched and folded; of a double-crank a turn."""
+    if not d.turns:
+        return np.abs(d.output_turn)
+    far, close = (np.arccos(_cosine(d.r3 + sign * d.r2, d.r1, d.r4)) for sign in (1.0, -1.0))
+    return (1 - d.double_crank) * (far - close) + d.double_crank * TURN
+
+
+def _time_ratio(d: View) -> Any:
+    """(pi + delta) / (pi - delta) with delta between the directions of O2B in its limit positions.
+
+    Zero for a double-crank, whose output has no strokes.
+    """
+    far, close = (np.arccos(_cosine(d.r4, d.r1, d.r3 + sign * d.r2)) for sign in (1.0, -1.0))
+    delta = (1 - d.double_crank) * np.abs(far - close)
+    return (1 - d.double_crank) * (np.pi + delta) / np.maximum(np.pi - delta, 1e-9)
+
+
 # By the key of the quantity.
 FORMULAS: dict[str, tuple[Part, ...]] = {
     "link_length": _LINKS,
@@ -135,8 +171,14 @@ FORMULAS: dict[str, tuple[Part, ...]] = {
     "o4": _place("o4", 4),
     "a": _place("a", 2),
     "b": _place("b", 4),
+    "a_on_body": _bracket("a"),
+    "b_on_body": _bracket("b"),
     "ground_angle": (Part("theta1", lambda d: d.theta1),),
     "theta2_start": (Part("theta2", lambda d: d.theta2_start, dyad=2),),
+    "driver_sense": (Part("driver sense", lambda d: d.direction, fixed=True),),
+    "output_swing": (Part("output swing", _output_swing),),
+    "time_ratio": (Part("time ratio", _time_ratio),),
+    "driver_rotation": (Part("driver rotation", lambda d: d.driver_turn),),
 }
 _SMOOTH = {"link_ratio": _PAIRS}
 LOGARITHMIC = {"link_length", "r1", "r2", "r3", "r4", "link_ratio"}  # ratios count, not differences

@@ -10,7 +10,17 @@ import numpy as np
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
 from grashof.problems.values.quantities import Kind
 from grashof.problems.values.requirements import LIMITS, QUANTITIES
-from grashof.synth.programme.along_motion import AGREES, ALONG, LOADS, MOST_PEAKS, Instant, loads, magnitudes
+from grashof.synth.programme.along_motion import (
+    AGREES,
+    ALONG,
+    INVERSE,
+    LOADS,
+    MOST_PEAKS,
+    Instant,
+    loads,
+    magnitudes,
+    value_of,
+)
 from grashof.synth.programme.builder import Builder, Fill, always
 from grashof.synth.programme.constraints import Places, Symbols, cross, vector
 from grashof.synth.programme.formulas import FORMULAS, Part, parts_of, range_of
@@ -93,7 +103,8 @@ def cost_of_goals(build: Builder, form: Form, x: Unknowns, places: Places) -> ca
             ("size",), build.parameter(lambda scaled, _: scaled.wanted.ranges("size")[""][1]) - size
         )
     for key in form.along:
-        cost += weights.get(key, 0.0) * _peak(build, form, x, places, key)
+        value = value_of(key, _peak(build, form, x, places, key))
+        cost -= weights.get(key, 0.0) * QUANTITIES[key].better * value
     return cost
 
 
@@ -157,7 +168,8 @@ def _most(form: Form, key: str) -> Fill:
 
     def limits(scaled: ScaledProblem, start: Start) -> Limits:
         fields = [name for name, limit in scaled.wanted.limited.items() if limit.quantity.key == key]
-        most = min((scaled.wanted.ranges(name)[""][1] for name in fields), default=np.inf)
+        side = 0 if key in INVERSE else 1
+        most = min((value_of(key, scaled.wanted.ranges(name)[""][side]) for name in fields), default=np.inf)
         return 0.0, most / (scaled.scale(QUANTITIES[key]) * peak_unit(form, scaled, start, key)) * (
             1 - AGREES
         )
@@ -169,7 +181,7 @@ def _share(form: Form, key: str) -> Fill:
     """Weight of a goal; those of all add up to 1."""
 
     def counted(scaled: ScaledProblem, start: Start, key: str) -> float:
-        unit = peak_unit(form, scaled, start, key) if key in ALONG else 1.0
+        unit = value_of(key, peak_unit(form, scaled, start, key)) if key in ALONG else 1.0
         return start.objective.goals[key] * unit / (scaled.scale(QUANTITIES[key]) if key in FORMULAS else 1.0)
 
     def share(scaled: ScaledProblem, start: Start) -> float:

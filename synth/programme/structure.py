@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from grashof.problems import Rotatability, TransmissionOver
+from grashof.problems import FourBar, Rotatability, TransmissionOver
 from grashof.problems.values.quantities import Over
 from grashof.problems.values.requirements import LIMITS
 from grashof.synth.programme.along_motion import ALONG
@@ -119,7 +119,7 @@ class Form:
 
     def places_of(self, name: str) -> int:
         """At how many places a point is held in free regions."""
-        return 1 if name in ("o2", "o4") else self.targets
+        return 1 if name in FourBar.GROUND else self.targets
 
 
 def _limited(scaled: ScaledProblem, start: Start) -> tuple[str, ...]:
@@ -143,7 +143,7 @@ def _nearest(scaled: ScaledProblem, start: Start) -> tuple[bool, ...]:
     wanted, count = scaled.wanted, len(start.visit)
     if scaled.exact or start.relaxed or start.loose:
         return (False,) * count
-    moving = set(wanted.keep_out_for) - {"o2", "o4"} if wanted.keep_out else set()
+    moving = set(wanted.keep_out_for) - set(FourBar.GROUND) if wanted.keep_out else set()
     placed = any(
         limit.quantity.over is Over.TARGETS and name != "theta2_start_deg"
         for name, limit in wanted.limited.items()

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from grashof.problems import Rotatability
+from grashof.problems import FourBar, Rotatability
 from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
 from grashof.synth.programme.builder import Builder, always
 from grashof.synth.programme.scaled_problem import ScaledProblem
@@ -71,7 +71,7 @@ class Unknowns:
         """The unknowns of a form, in their order."""
         n, none = form.targets, ca.SX(0, 1)
         wide, turns = always(-FAR, FAR), always(-100.0, 100.0)
-        found = {name: build.unknown(name, 2, *_pivot(name)) for name in ("o2", "o4", "a", "b")}
+        found = {name: build.unknown(name, 2, *_pivot(name)) for name in FourBar.PIVOTS}
         found["r"] = build.unknown("r", 4, lambda _, start: start.lengths, always(SHORTEST, FAR))
         found["theta1"] = build.unknown("theta1", 1, lambda _, start: start.theta1, always(-LIFTED, LIFTED))
         found["theta2"] = build.unknown("theta2", n, lambda _, start: start.theta2, _first_fixed)
@@ -100,7 +100,7 @@ class Unknowns:
 
 def _pivot(name: str) -> tuple[object, object]:
     """Guess and limits of a pivot, which may move by the radius of a start."""
-    far = (-FAR, FAR) if name in ("o2", "o4") else inset((-FAR, FAR))
+    far = (-FAR, FAR) if name in FourBar.GROUND else inset((-FAR, FAR))
 
     def guess(_: ScaledProblem, start: Start) -> FloatArray:
         return interleaved(getattr(start, name))

@@ -1,4 +1,4 @@
-"""Violations that take the whole problem: limits along the motion, and the user's constraints."""
+"""Violations that take the whole problem: areas and limits of the motion, the user's constraints."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.requirements import LIMITS
-from grashof.synth.programme.along_motion import ALONG, SCREENED, magnitudes
+from grashof.synth.programme.along_motion import ALONG, SCREENED, magnitudes, value_of
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS, Screened
 from grashof.synth.programme.user_constraints import own_violations
@@ -16,10 +16,17 @@ from grashof.synth.programme.user_constraints import own_violations
 
 def fully_screened(scaled: ScaledProblem, linkages: Screened) -> Screened:
     """The same with these violations, too."""
-    along = [name for name in scaled.wanted.limited if LIMITS[name].quantity.key in ALONG]
-    if not len(linkages) or not (along or scaled.constraints):
+    wanted = scaled.wanted
+    along = [name for name in wanted.limited if LIMITS[name].quantity.key in ALONG]
+    if not len(linkages) or not (along or scaled.constraints or wanted.keep_out):
         return linkages
     violations = linkages.violations.copy()
+    if wanted.keep_out:
+        # Here, not above: shapely takes a while to import, and few problems have areas.
+        from grashof.synth.programme.keep_out_motion import depth_on_the_way
+
+        sound = linkages.feasible  # the others need not be looked at so closely
+        violations[sound, GROUPS.index("keep_out")] = depth_on_the_way(scaled, linkages[sound])
     for name in along:
         violations[:, GROUPS.index(name)] = _beyond(scaled, linkages, name)
     if scaled.constraints:
@@ -33,8 +40,9 @@ def _beyond(scaled: ScaledProblem, linkages: Screened, name: str) -> FloatArray:
     low, high = scaled.problem.requirements.ranges(name)[""]
     ways = linkages.theta2, linkages.direction, linkages.assembly
     peak = magnitudes(scaled.problem, quantity.key, linkages.points, *ways, SCREENED).max(axis=1)
-    value = peak * scaled.problem.scale(quantity)
-    return np.maximum(np.nan_to_num(np.maximum(low - value, value - high) / max(high, low), posinf=FAR), 0.0)
+    value = value_of(quantity.key, peak) * scaled.problem.scale(quantity)
+    share = np.maximum(low - value, value - high) / (high if np.isfinite(high) else max(low, 1.0))
+    return np.maximum(np.nan_to_num(share, posinf=FAR), 0.0)
 
 
 FAR = 1e3  # stands for an amount without bound

@@ -93,6 +93,8 @@ def loosest(problem: Problem, key: str) -> Requirements:
     if usual is not None:
         low, high = (problem.task.size * share for share in usual)
         loose = (min(low, given[0]), max(high, given[1]))
+    if key in LIMITS and LIMITS[key].kind is Kind.WORD:
+        loose = LIMITS[key].widest
     others = {
         "rotatability": Rotatability.ANY,
         "link_ratio_max": max(100.0, wanted.link_ratio_max),
@@ -170,6 +172,8 @@ def _eased(
         yield {key: reached}, _range_words(key, asked, reached)
     elif kind in (Kind.INSIDE, Kind.ON_BODY):
         yield _box_enlarged(key, asked or Box(), missed)
+    elif kind is Kind.WORD:
+        yield {key: LIMITS[key].widest}, f'{key} "{LIMITS[key].widest}" instead of "{asked}"'
     elif kind is Kind.EQUAL:
         angle = float(f"{found[0] + 360 * round((asked - found[0]) / 360):.12g}")
         yield {key: angle}, f"{key} {angle:.12g} instead of {asked:g}"

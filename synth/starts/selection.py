@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from grashof.problems import Rotatability
 from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.requirements import QUANTITIES
-from grashof.synth.programme.along_motion import ALONG, SCREENED, magnitudes
+from grashof.synth.programme.along_motion import ALONG, SCREENED, magnitudes, value_of
 from grashof.synth.programme.formulas import FORMULAS
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS, Many, Screened
@@ -147,10 +148,13 @@ def _worth(scaled: ScaledProblem, linkages: Screened, key: str) -> FloatArray:
         worth = -np.hypot(np.ptp(linkages.points.real, axis=1), np.ptp(linkages.points.imag, axis=1))
     elif key in ALONG:
         ways = linkages.theta2, linkages.direction, linkages.assembly
-        worth = -magnitudes(scaled.problem, key, linkages.points, *ways, SCREENED).max(axis=1)
+        peak = magnitudes(scaled.problem, key, linkages.points, *ways, SCREENED).max(axis=1)
+        worth = QUANTITIES[key].better * value_of(key, peak)
     elif key in FORMULAS:
         (part,) = FORMULAS[key]
         o2, o4, a, b, p = linkages.points.T
-        value = part.of(Many(p, o2, a[:, None], o4, b[:, None]))[:, 0]
+        turns = scaled.wanted.rotatability is not Rotatability.ANY
+        pairs = Many(p, o2, a[:, None], o4, b[:, None], linkages.theta2, turns=turns)
+        value = part.of(pairs)[:, 0]
         worth = QUANTITIES[key].better * value / scaled.scale(QUANTITIES[key])
     return worth

@@ -15,7 +15,7 @@ from rich.progress import Progress as Bar
 from rich.table import Table
 
 from grashof.output.streams import say
-from grashof.problems import Problem
+from grashof.problems import FourBar, Problem
 from grashof.problems.values.checks import counted
 from grashof.problems.values.quantities import Over, Quantity, Unit
 from grashof.problems.values.requirements import QUANTITIES
@@ -149,7 +149,7 @@ def _decided_by(problem: Problem) -> list[Quantity]:
     """The error where there is one, the transmission angle, whatever else is weighed, size and lengths."""
     error = [] if problem.requirements.is_exact(problem.task) else ["error"]
     goals = [goal.key for goal, _ in problem.goals if goal.key != "size"]
-    keys = *error, "transmission_min_task", "transmission_min_cycle", *goals, "size", "r1", "r2", "r3", "r4"
+    keys = *error, "transmission_min_task", "transmission_min_cycle", *goals, "size", *FourBar.LENGTHS
     return [QUANTITIES[key] for key in dict.fromkeys(keys)]
 
 

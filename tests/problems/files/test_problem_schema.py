@@ -81,6 +81,13 @@ hausdorff = [0, 9]
 frechet = [0, 9]
 worst_move = [0, 9]
 share_within_made = [0.5, 1]
+driver_rotation_deg = [90, 180]
+driver_sense = "cw"
+a_on_body = {{ x = [0, 1] }}
+b_on_body = [1, 2]
+mechanical_advantage_min = 0.5
+time_ratio = [1.2, 1.6]
+output_swing_deg = [40, 60]
 [dynamics]
 payload = 1
 [manufacturing]

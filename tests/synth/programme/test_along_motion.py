@@ -81,6 +81,7 @@ def curves(problem: Problem, linkage: FourBar, theta2: FloatArray) -> dict[str, 
     heavy = Loads(gravity=np.array(spec.gravity) / metre)
     dynamics = inverse_dynamics(state, stated_masses(linkage, spec), heavy)
     return {
+        "mechanical_advantage": np.abs(state.omega4 / state.omega2),  # its inverse
         "omega4_max": np.abs(state.omega4),
         "point_speed_max": state.p.speed,
         "point_acceleration_max": state.p.acceleration_magnitude,
@@ -132,14 +133,16 @@ def lightest(driven: Problem) -> Result:
 
 
 def test_the_list_begins_with_the_smallest_torque(lightest: Result, driven: Problem) -> None:
-    peaks = [each.torque_peak for each in lightest.candidates]
+    peaks = [each.values["torque_peak"] for each in lightest.candidates]
     assert peaks == sorted(peaks)
     assert peaks == [over_task(c.linkage, driven, c.verdict).torque_peak for c in lightest.candidates]
     for candidate in lightest.candidates:
-        assert candidate.score(driven) == pytest.approx(-candidate.torque_peak / driven.reference_torque)
+        assert candidate.score(driven) == pytest.approx(
+            -candidate.values["torque_peak"] / driven.reference_torque
+        )
         assert np.degrees(candidate.verdict.transmission_min_task) >= 15 - 1e-6
     stiff = synthesize(load("luggage"), starts=16, enough=16).best
-    assert peaks[0] < 0.95 * stiff.torque_peak
+    assert peaks[0] < 0.95 * stiff.values["torque_peak"]
     assert stiff.verdict.transmission_min_task > lightest.best.verdict.transmission_min_task + 0.02
 
 
@@ -155,8 +158,8 @@ def test_no_pair_of_dyads_needs_less(lightest: Result, driven: Problem) -> None:
     share = np.linspace(0, 1, 33)
     theta2 = pairs.theta2[:, :1] + (pairs.theta2[:, -1:] - pairs.theta2[:, :1]) * share
     peaks = np.abs(judged(driven, linkages, theta2)).max(axis=1)
-    assert peaks.min() > lightest.best.torque_peak * (1 - 1e-4)
-    assert peaks.min() < lightest.best.torque_peak * 1.05  # not for want of good ones
+    assert peaks.min() > lightest.best.values["torque_peak"] * (1 - 1e-4)
+    assert peaks.min() < lightest.best.values["torque_peak"] * 1.05  # not for want of good ones
 
 
 def test_the_programme_agrees_with_the_judge(driven: Problem) -> None:
@@ -166,7 +169,7 @@ def test_the_programme_agrees_with_the_judge(driven: Problem) -> None:
         made = attempt(scaled, start, 0).candidate
         assert made is not None
         peak = solve(scaled, start).peaks["torque_peak"] * driven.reference_torque
-        assert made.torque_peak * (1 - GRID_ERROR) < peak < made.torque_peak * (1 + 1e-6)
+        assert made.values["torque_peak"] * (1 - GRID_ERROR) < peak < made.values["torque_peak"] * (1 + 1e-6)
 
 
 @pytest.mark.parametrize("weight", [0.3, 3.0])
@@ -174,7 +177,9 @@ def test_a_weight_beside_the_transmission(driven: Problem, lightest: Result, wei
     both = replace(driven, objective=Objective(transmission=1, torque=weight))
     best = synthesize(both, starts=16, enough=16).best
     share = best.verdict.transmission_min_task / (np.pi / 2)
-    assert best.score(both) == pytest.approx(share - weight * best.torque_peak / both.reference_torque)
+    assert best.score(both) == pytest.approx(
+        share - weight * best.values["torque_peak"] / both.reference_torque
+    )
     assert best.score(both) >= max(each.score(both) for each in lightest.candidates)
 
 
@@ -184,7 +189,7 @@ def test_backwards_the_torque_is_the_same(driven: Problem, lightest: Result) -> 
     back = replace(driven, task=MotionTask(task.positions[::-1], task.angles[::-1]))
     best = synthesize(back, starts=16, enough=16).best
     assert best.verdict.direction == -lightest.best.verdict.direction
-    assert best.torque_peak == pytest.approx(lightest.best.torque_peak, rel=GRID_ERROR)
+    assert best.values["torque_peak"] == pytest.approx(lightest.best.values["torque_peak"], rel=GRID_ERROR)
 
 
 @pytest.mark.parametrize("closed", [False, True])
@@ -195,13 +200,13 @@ def test_paths(closed: bool) -> None:
     light = replace(stiff, objective=TORQUE)
     others = synthesize(stiff, starts=4, enough=4).candidates
     best = synthesize(light, starts=4, enough=4).best
-    assert best.torque_peak < 0.5 * min(each.torque_peak for each in others)
+    assert best.values["torque_peak"] < 0.5 * min(each.values["torque_peak"] for each in others)
     scaled = ScaledProblem.of(light)
     for start in next(iter(finder_for(scaled).rounds(4, np.random.default_rng(0), 1))).starts[:3]:
         solved, made = solve_by_exchange(scaled, start), attempt(scaled, start, 0).candidate
         assert made is not None
         assert solved.peaks["torque_peak"] * light.reference_torque == pytest.approx(
-            made.torque_peak, rel=10 * GRID_ERROR
+            made.values["torque_peak"], rel=10 * GRID_ERROR
         )
 
 
@@ -215,7 +220,9 @@ def test_the_bound_holds_between_the_angles_of_the_grid() -> None:
         for solved in (solve(scaled, start), solve_by_exchange(scaled, start)):
             made = polished_and_judged(scaled, start, solved, 0).candidate
             assert made is not None
-            short.append(1 - solved.peaks["torque_peak"] * quick.reference_torque / made.torque_peak)
+            short.append(
+                1 - solved.peaks["torque_peak"] * quick.reference_torque / made.values["torque_peak"]
+            )
     both = np.array(short).reshape(-1, 2)
     once, again = both[np.isfinite(both).all(axis=1)].T  # unknown for designs with a defect
     assert len(once) >= 6
@@ -233,5 +240,5 @@ def test_an_objective_of_least_squares_wants_a_bound_of_the_error() -> None:
     within = PathTask(task.points, within=0.02 * task.size)
     light = synthesize(Problem(task=within, objective=TORQUE, **driven), effort=0.2)
     plain = synthesize(Problem(task=within, **driven), effort=0.2)
-    assert light.best.torque_peak <= plain.best.torque_peak * (1 + 1e-6)
+    assert light.best.values["torque_peak"] <= plain.best.values["torque_peak"] * (1 + 1e-6)
     assert plain.best.verdict.transmission_min_task >= light.best.verdict.transmission_min_task - 1e-6

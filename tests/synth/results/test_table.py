@@ -9,8 +9,9 @@ import pandas as pd
 import pytest
 
 from grashof.problems import Problem
+from grashof.problems.values.quantities import MEASURED
 from grashof.synth import Result
-from grashof.synth.results.table import to_frame
+from grashof.synth.results.table import LISTED, to_frame
 
 # DESIGN section 4, word for word, and what has been added since.
 CONTRACT = """
@@ -22,8 +23,10 @@ torque_rms, joint_force_peak, coupler_fit_r2, size, pareto, cognate_of, start, i
 hausdorff, frechet, move_r1, move_r2, move_r3, move_r4, move_u, move_v, worst_move,
 share_within_linear, share_within_made
 """
-COLUMNS = [name.strip() for name in CONTRACT.split(",")]
-WITHOUT_MEANING = ["error", "cognate_of", "best_at", "hausdorff", "frechet", *COLUMNS[-9:]]
+FIRST = [name.strip() for name in CONTRACT.split(",")]
+# Quantities that a requirement declares follow.
+COLUMNS = FIRST + [each.column for each in LISTED if each.key not in MEASURED]
+WITHOUT_MEANING = ["error", "cognate_of", "best_at", "hausdorff", "frechet", *FIRST[-9:]]
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,210 @@
+"""Quantities: the formula of the search is the measure of the judge, and what is limited is kept."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from grashof import load, synthesize
+from grashof.analysis import Verdict, solve_kinematics, solve_position, verify
+from grashof.analysis.judge.measures import Values
+from grashof.analysis.judge.planted import planted_motion
+from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, Requirements
+from grashof.problems.values.arrays import FloatArray
+from grashof.synth.programme.formulas import FORMULAS, Part
+from grashof.synth.programme.screening import Many
+
+JUDGED = 50
+
+
+def three_poses() -> Problem:
+    """Three poses, which leave much freedom: drivers turn in either sense."""
+    return Problem(task=planted_motion(np.random.default_rng([12, 2]), poses=3)[0])
+
+
+def conveyor() -> Problem:
+    """Five poses of a conveyor that no linkage within these lengths meets."""
+    poses = [[0, 0, 0], [60, 90, 15], [180, 140, 40], [300, 90, 70], [360, 0, 90]]
+    wanted = Requirements(exact=False, link_length=(30.0, 400.0))
+    return Problem(task=MotionTask.from_degrees(poses), requirements=wanted, length_unit="mm")
+
+
+def planted(seed: int) -> tuple[MotionTask, FourBar, Verdict]:
+    """A linkage that meets five poses with its driver turning fully."""
+    task, linkage = planted_motion(np.random.default_rng([12, seed]), poses=5)
+    return task, linkage, verify(linkage, task, Requirements())
+
+
+def as_seen(task: MotionTask, linkage: FourBar, values: Values) -> Many:
+    """The same linkage as the search sees it, in the problem's own unit."""
+    state = values.at_targets
+    a, b, p = (getattr(state, name) @ np.array([1, 1j]) for name in "abp")
+    o2, o4 = (pivot @ np.array([1, 1j]) for pivot in (linkage.o2, linkage.o4))
+    theta2, turn = values.verdict.theta2[None], np.array([task.angles[0]])
+    return Many(p[:1], o2[None], a[None], o4[None], b[None], theta2, turn)
+
+
+def of_part(part: Part, view: Many) -> FloatArray:
+    """All numbers of a part, as the judge counts them."""
+    value = part.of(view) if part.per is None else part.of(view) / part.per(view)
+    return np.ravel(np.sqrt(value) if part.squared else value)
+
+
+@pytest.mark.parametrize("key", FORMULAS)
+def test_the_formula_is_the_measure(key: str) -> None:
+    for seed in range(JUDGED):
+        task, linkage, verdict = planted(seed)
+        values = Values(linkage, verdict, Problem(task=task))
+        view, parts = as_seen(task, linkage, values), values.parts(key)
+        for part in FORMULAS[key]:
+            found, expected = of_part(part, view), parts[part.axis or (part.name if len(parts) > 1 else "")]
+            if key in ("ground_angle", "theta2_start"):  # modulo a turn
+                found, expected = np.exp(1j * found), np.exp(1j * expected)  # type: ignore[assignment]
+            if np.isnan(expected).any():  # a double-crank has no time ratio
+                assert (found == 0).all()
+                continue
+            near = 1e-9 * max(task.size, np.abs(expected).max())
+            np.testing.assert_allclose(found, expected * np.ones_like(found), rtol=0, atol=near)
+
+
+TASKS: dict[str, tuple[Problem, dict[str, Any]]] = {
+    "poses met": (three_poses(), {"enough": 12}),
+    "poses fitted": (conveyor(), {"effort": 0.2}),
+    "points met": (load("path-8-points"), {"enough": 12, "starts": 24}),
+}
+
+
+def limited(problem: Problem, **wanted: Any) -> Problem:
+    return replace(problem, requirements=replace(problem.requirements, **wanted))
+
+
+def values_of(problem: Problem, key: str, **search: Any) -> list[float]:
+    """A quantity of every design of a list, as the judge has it of the linkage alone."""
+    found = synthesize(problem, **search).candidates
+    wanted = problem.requirements
+    verdicts = [verify(each.linkage, problem.task, wanted, problem=problem) for each in found]
+    assert [verdict.defects for verdict in verdicts if not verdict.ok] == []
+    return [
+        Values(each.linkage, verdict, problem)[key] for each, verdict in zip(found, verdicts, strict=True)
+    ]
+
+
+@pytest.mark.parametrize("kind", TASKS)
+def test_the_driver_rotation_is_kept_within_limits(kind: str) -> None:
+    problem, search = TASKS[kind]
+    free = np.degrees(values_of(problem, "driver_rotation", **search))
+    most = float(np.quantile(free, 0.25))
+    kept = np.degrees(values_of(limited(problem, driver_rotation_deg=(0, most)), "driver_rotation", **search))
+    assert len(kept) >= 3
+    assert max(kept) <= most + 1e-6
+
+
+@pytest.mark.parametrize("sense", ["ccw", "cw"])
+@pytest.mark.parametrize("kind", TASKS)
+def test_the_driver_turns_in_the_sense_that_is_asked_for(kind: str, sense: str) -> None:
+    problem, search = TASKS[kind]
+    senses = values_of(limited(problem, driver_sense=sense), "driver_sense", **search)
+    assert len(senses) >= 1
+    assert set(senses) == {1.0 if sense == "ccw" else -1.0}
+
+
+def test_the_output_swing_is_that_of_the_whole_turn() -> None:
+    """From the linkage alone: the greatest less the least angle of link 4 over a turn."""
+    for seed in range(12):
+        task, linkage, verdict = planted(seed)
+        found = Values(linkage, verdict, Problem(task=task))["output_swing"]
+        theta4 = np.unwrap(solve_position(linkage, np.linspace(0, 2 * np.pi, 20001)).theta4)
+        assert found == pytest.approx(np.ptp(theta4), abs=1e-6)
+
+
+@pytest.mark.parametrize("kind", TASKS)
+def test_the_output_swing_is_kept_within_limits(kind: str) -> None:
+    problem, search = TASKS[kind]
+    free = np.degrees(values_of(problem, "output_swing", **search))
+    low, high = float(np.median(free)) - 4, float(np.median(free)) + 4
+    kept = np.degrees(values_of(limited(problem, output_swing_deg=(low, high)), "output_swing", **search))
+    assert len(kept) >= 2
+    assert min(kept) >= low - 1e-6
+    assert max(kept) <= high + 1e-6
+
+
+def test_the_output_swing_as_a_goal() -> None:
+    problem, search = TASKS["poses met"]
+    wide = replace(problem, objective=Objective(transmission=0, output_swing=1))
+    free, best = (values_of(each, "output_swing", **search) for each in (problem, wide))
+    assert best[0] >= max(free) - 1e-6
+
+
+def test_the_time_ratio_is_that_of_a_steady_driver() -> None:
+    """From the linkage alone: shares of a turn in which link 4 swings forth and back."""
+    for seed in range(12):
+        task, linkage, verdict = planted(seed)
+        found = Values(linkage, verdict, Problem(task=task))["time_ratio"]
+        theta4 = np.unwrap(solve_position(linkage, np.linspace(0, 2 * np.pi, 200001)).theta4)
+        forth = float(np.mean(np.diff(theta4) > 0))
+        if 0 < forth < 1:
+            assert found == pytest.approx(max(forth, 1 - forth) / min(forth, 1 - forth), abs=1e-4)
+        else:
+            assert np.isnan(found)
+
+
+@pytest.mark.parametrize("kind", TASKS)
+def test_the_time_ratio_is_kept_within_limits(kind: str) -> None:
+    problem, search = TASKS[kind]
+    rockers = limited(problem, rotatability="crank-rocker")
+    least = float(np.median(values_of(rockers, "time_ratio", **search)))
+    kept = values_of(limited(rockers, time_ratio=(least, 100)), "time_ratio", **search)
+    assert len(kept) >= 2
+    assert min(kept) >= least * (1 - 1e-6)
+
+
+def test_the_mechanical_advantage_is_omega2_over_omega4() -> None:
+    for seed in range(12):
+        task, linkage, verdict = planted(seed)
+        values = Values(linkage, verdict, Problem(task=task))
+        motion = np.linspace(verdict.theta2.min(), verdict.theta2.max(), 4001)
+        ratio = 1 / solve_kinematics(linkage, motion, 1.0).omega4
+        least = ratio[np.abs(ratio).argmin()]
+        assert values["mechanical_advantage"] == pytest.approx(abs(least), rel=1e-5)
+        assert values["mechanical_advantage_min"] == pytest.approx(least, rel=1e-5)
+
+
+@pytest.mark.parametrize("kind", ["poses met", "points met"])
+def test_the_mechanical_advantage_is_kept_above_its_limit(kind: str) -> None:
+    problem, search = TASKS[kind]
+    least = float(np.median(values_of(problem, "mechanical_advantage", **search)))
+    asked = limited(problem, mechanical_advantage_min=least)
+    kept = values_of(asked, "mechanical_advantage", **search)
+    assert len(kept) >= 2
+    assert min(kept) >= least * (1 - 1e-6)
+
+
+def test_the_mechanical_advantage_as_a_goal() -> None:
+    problem, search = TASKS["poses met"]
+    strong = replace(problem, objective=Objective(transmission=0, mechanical_advantage=1))
+    free, best = (values_of(each, "mechanical_advantage", **search) for each in (problem, strong))
+    assert best[0] >= max(free) * (1 - 1e-6)
+
+
+@pytest.mark.parametrize("kind", ["poses met", "poses fitted"])
+@pytest.mark.parametrize("joint", ["a", "b"])
+def test_a_joint_sits_on_the_body_where_it_may(kind: str, joint: str) -> None:
+    problem, search = TASKS[kind]
+
+    def places(asked: Problem) -> FloatArray:
+        """From the positions at every target: the joint less P, turned back with the body."""
+        found = []
+        for each in synthesize(asked, **search).candidates:
+            state = solve_position(each.linkage, each.verdict.theta2, each.verdict.assembly)
+            arm = (getattr(state, joint) - state.p) @ np.array([1, 1j])
+            place = arm * np.exp(-1j * (state.theta3 + each.linkage.body_angle))
+            assert np.ptp(place.real) < 1e-9 * problem.task.size
+            found.append([place[0].real, place[0].imag])
+        return np.array(found)
+
+    middle, half = np.median(places(problem), axis=0), 0.5 * problem.task.size
+    sides = [(float(at - half), float(at + half)) for at in middle]
+    kept = places(limited(problem, **{f"{joint}_on_body": Box(*sides)}))
+    assert len(kept) >= 1
+    assert (np.abs(kept - middle) <= half * (1 + 1e-6)).all()
