@@ -8,11 +8,11 @@ from dataclasses import replace
 from time import perf_counter
 from typing import Any
 
-from grashof.analysis.judge.design import Constraint
+from grashof.analysis.judge.design import Constraint, OwnObjective
 from grashof.problems import Problem, ProblemError
 from grashof.problems.values.checks import finite_number, whole_number
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.user_constraints import refuse_unusable
+from grashof.synth.programme.user_functions import refuse_unusable
 from grashof.synth.results.choice import choose, least_error, why_ended
 from grashof.synth.results.explain import explain
 from grashof.synth.results.families import listed
@@ -27,6 +27,7 @@ def synthesize(
     problem: Problem,
     *,
     constraints: Sequence[Constraint] = (),
+    objective: OwnObjective | None = None,
     starts: int | None = None,
     enough: int | None = None,
     seed: int | None = None,
@@ -45,6 +46,9 @@ def synthesize(
     constraints : sequence of callable
         Your own: functions of a `Design`, zero or negative where met, made of arithmetic that works
         on symbols (`**`, `np.hypot`, `casadi.fmax`). With more processes, functions of a module.
+    objective : callable, optional
+        Your own in place of the problem's: a function of the same kind that gives one scalar, smaller
+        where the design is better. It decides where an ``[objective]`` would.
     starts, enough, seed : int, optional
     effort : float, optional
         Override the problem's own (see `Search`).
@@ -89,7 +93,7 @@ def synthesize(
         raise ProblemError(f"time_limit is {time_limit!r}; allowed is a time in s greater than zero")
     finder_of(problem).refuse()
     begun = perf_counter()
-    scaled = ScaledProblem.of(problem, constraints)
+    scaled = ScaledProblem.of(problem, constraints, objective)
     refuse_unusable(scaled, in_processes=workers > 1 or executor is not None)
     if reason := finder_for(scaled).degenerate():
         return Result(problem, seconds={"total": perf_counter() - begun}, note=f"no design: {reason}")

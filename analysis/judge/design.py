@@ -1,4 +1,4 @@
-"""What a user's own constraint sees of a design: the same names on numbers and on symbols."""
+"""What a user's own functions see of a design: the same names on numbers and on symbols."""
 
 from __future__ import annotations
 
@@ -74,6 +74,7 @@ class Design:
 
 
 Constraint: TypeAlias = Callable[[Design], Any]  # zero or negative where it is met; a scalar or several
+OwnObjective: TypeAlias = Callable[[Design], Any]  # smaller is better; a scalar
 
 
 def greatest(constraint: Constraint, design: Design, what: str = "constraint") -> float:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from grashof.analysis.judge.design import Constraint, Design
+from grashof.analysis.judge.design import Constraint, Design, OwnObjective
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
 from grashof.synth.programme.builder import FREE, NONNEGATIVE, Builder, Fill, always
 from grashof.synth.programme.formulas import View, cos_mu, folded, stretched
@@ -17,6 +17,7 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import PLANES, Form, points_held
 from grashof.synth.programme.unknowns import FAR, INSET, Unknowns, interleaved
+from grashof.synth.programme.user_functions import magnitude_at
 from grashof.synth.programme.vector import Vector
 from grashof.synth.theory.burmester import Displacements
 
@@ -263,6 +264,12 @@ def require_own(build: Builder, x: Unknowns, places: Places, constraints: Sequen
         value = on_symbols(constraint, symbolic_design(build, x, places))
         for one in value if isinstance(value, (list, tuple)) else [value]:
             build.require(("constraints",), -ca.vec(ca.SX(one)) - OWN_INSET)
+
+
+def own_goal(build: Builder, x: Unknowns, places: Places, objective: OwnObjective) -> ca.SX:
+    """The user's own objective, in units of what it is at the start."""
+    unit = build.parameter(lambda scaled, start: magnitude_at(scaled, start, objective))
+    return ca.SX(on_symbols(objective, symbolic_design(build, x, places))) / unit
 
 
 def symbolic_design(build: Builder, x: Unknowns, places: Places) -> Design:

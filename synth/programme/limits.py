@@ -182,7 +182,7 @@ def _share(form: Form, key: str) -> Fill:
 
     def counted(scaled: ScaledProblem, start: Start, key: str) -> float:
         unit = value_of(key, peak_unit(form, scaled, start, key)) if key in ALONG else 1.0
-        return start.objective.goals[key] * unit / (scaled.scale(QUANTITIES[key]) if key in FORMULAS else 1.0)
+        return start.goals[key] * unit / (scaled.scale(QUANTITIES[key]) if key in FORMULAS else 1.0)
 
     def share(scaled: ScaledProblem, start: Start) -> float:
         return counted(scaled, start, key) / sum(counted(scaled, start, each) for each in form.goals)

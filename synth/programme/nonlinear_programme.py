@@ -10,7 +10,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from grashof.analysis.judge.design import Constraint
+from grashof.analysis.judge.design import Constraint, OwnObjective
 from grashof.synth.programme.builder import Builder, Programme, always
 from grashof.synth.programme.constraints import (
     Targets,
@@ -19,6 +19,7 @@ from grashof.synth.programme.constraints import (
     close_at_points,
     close_at_poses,
     keep_out,
+    own_goal,
     require_modes,
     require_own,
     square,
@@ -83,7 +84,8 @@ def solve(scaled: ScaledProblem, start: Start, max_iter: int | None = None) -> S
     """
     patience = PATIENCE[scaled.bounded] if start.bounded else MOST_ITERATIONS
     form = Form.of(scaled, start)
-    programme = _programme(form, patience if max_iter is None else max_iter, scaled.constraints)
+    most = patience if max_iter is None else max_iter
+    programme = _programme(form, most, scaled.constraints, scaled.own_objective)
     given = programme.arguments(scaled, start)
     fixed = sum(np.count_nonzero(given[f"lb{kind}"] == given[f"ub{kind}"]) for kind in "xg")
     if (given["lbx"] > given["ubx"]).any() or fixed > len(given["lbx"]):  # nothing is left to solve for
@@ -126,9 +128,11 @@ _IPOPT = {
 
 
 @lru_cache(maxsize=32)
-def _programme(form: Form, max_iter: int, constraints: tuple[Constraint, ...]) -> Programme:
+def _programme(
+    form: Form, max_iter: int, constraints: tuple[Constraint, ...], own_objective: OwnObjective | None
+) -> Programme:
     with numpy_on_symbols():
-        build, cost = _stated(form, constraints)
+        build, cost = _stated(form, constraints, own_objective)
     options: dict[str, Any] = {
         "print_time": False,
         "show_eval_warnings": False,
@@ -138,7 +142,9 @@ def _programme(form: Form, max_iter: int, constraints: tuple[Constraint, ...]) -
     return build.programme(cost, options)
 
 
-def _stated(form: Form, constraints: tuple[Constraint, ...]) -> tuple[Builder, ca.SX]:
+def _stated(
+    form: Form, constraints: tuple[Constraint, ...], own_objective: OwnObjective | None
+) -> tuple[Builder, ca.SX]:
     """Unknowns and rows of a programme, and what it makes least."""
     build = Builder()
     x, targets = Unknowns.of(build, form), Targets.of(build, form)
@@ -153,6 +159,8 @@ def _stated(form: Form, constraints: tuple[Constraint, ...]) -> tuple[Builder, c
     keep_out(build, form, x, places)
     require_own(build, x, places, constraints)
     cost = cost_of_goals(build, form, x, places)
+    if form.own_goal and own_objective is not None:
+        cost += own_goal(build, x, places, own_objective)
     if form.fits:  # the error comes first; the rest only settles what the error leaves open
         cost = targets.error_scale * square(form, x, places, targets) - 1e-8 * x.tau
     if form.stay:

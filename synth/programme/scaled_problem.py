@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from grashof.analysis.judge.design import Constraint
-from grashof.problems import FourBar, Problem, Requirements, Rotatability, Task
+from grashof.analysis.judge.design import Constraint, OwnObjective
+from grashof.problems import FourBar, Objective, Problem, Requirements, Rotatability, Task
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.quantities import Quantity
 from grashof.synth.programme.frame import Frame
@@ -44,6 +44,8 @@ class ScaledProblem:
         The user's own.
     zones : ndarray, shape (2, N), sizes and rad, or None
         How far the position and the angle of each target may be missed.
+    own_objective : callable, optional
+        The user's own in place of the problem's.
     of_use : float, sizes
         Least squares: designs up to this error are of use, be they far from the best.
     """
@@ -60,10 +62,16 @@ class ScaledProblem:
     exact: bool
     constraints: tuple[Constraint, ...] = ()
     zones: FloatArray | None = None
+    own_objective: OwnObjective | None = None
     of_use: float = 0.0
 
     @classmethod
-    def of(cls, problem: Problem, constraints: Sequence[Constraint] = ()) -> ScaledProblem:
+    def of(
+        cls,
+        problem: Problem,
+        constraints: Sequence[Constraint] = (),
+        own_objective: OwnObjective | None = None,
+    ) -> ScaledProblem:
         """Make a problem ready."""
         task, frame = problem.task, Frame.of(problem.task)
         zones = problem.zones
@@ -84,7 +92,17 @@ class ScaledProblem:
             exact=exact,
             constraints=tuple(constraints),
             zones=None if zones is None else zones / [[frame.scale], [1.0]],
+            own_objective=own_objective,
         )
+
+    def of_problem(self, problem: Problem) -> ScaledProblem:
+        """Another problem with the same functions of the user."""
+        return ScaledProblem.of(problem, self.constraints, self.own_objective)
+
+    @property
+    def objective(self) -> Objective | None:
+        """What decides besides the error; None for the user's own."""
+        return self.problem.objective if self.own_objective is None else None
 
     @property
     def bounded(self) -> bool:

@@ -35,8 +35,8 @@ class Start:
     theta3 : tuple of float, rad
         Coupler angles in that order, each near the last.
     direction, assembly : int
-    objective : Objective
-        What the solve makes best.
+    objective : Objective or None
+        What the solve makes best; None for the user's own.
     body_angle : float, rad
         From the coupler to the body, where the first pose does not say it; else zero.
     radius : float, sizes
@@ -72,7 +72,7 @@ class Start:
     theta3: tuple[float, ...]
     direction: int
     assembly: int
-    objective: Objective = field(default_factory=Objective)
+    objective: Objective | None = field(default_factory=Objective)
     body_angle: float = 0.0
     radius: float = np.inf
     stay: bool = False
@@ -103,7 +103,7 @@ class Start:
             theta3=tuple(np.unwrap(state.theta3[visit]).tolist()),
             direction=verdict.direction,
             assembly=int(linkage.assembly),
-            objective=scaled.problem.objective,
+            objective=scaled.objective,
             body_angle=float(linkage.body_angle),
         )
 
@@ -124,6 +124,11 @@ class Start:
     def bounded(self) -> bool:
         """Whether the error is bounded, and the objective decides."""
         return self.zoned or bool(np.isfinite(self.most_error))
+
+    @property
+    def goals(self) -> Mapping[str, float]:
+        """Weights of the quantities that it makes best; none where the user's own objective is."""
+        return {} if self.objective is None else self.objective.goals
 
     @property
     def theta1(self) -> float:
@@ -160,7 +165,7 @@ class Start:
         return first, last
 
     @classmethod
-    def of_screened(cls, linkages: Screened, index: int, objective: Objective) -> Start:
+    def of_screened(cls, linkages: Screened, index: int, objective: Objective | None) -> Start:
         """The start that entry `index` of screened linkages makes."""
         visit = linkages.visit[index]
         o2, o4, a, b, p = (complex(point) for point in linkages.points[index])

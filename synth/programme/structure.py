@@ -41,6 +41,8 @@ class Form:
         Fields of the requirements that limit something, those apart that cannot bind.
     goals : tuple of str
         Keys of the quantities that are weighed; none where another objective comes first.
+    own_goal : bool
+        The user's own objective decides.
     grid : int
         At how many driver angles what varies along the motion is bounded.
     closed : bool
@@ -69,6 +71,7 @@ class Form:
     over_task: bool
     limited: tuple[str, ...]
     goals: tuple[str, ...]
+    own_goal: bool
     grid: int
     closed: bool
     keep_out: tuple[str, ...]
@@ -105,7 +108,8 @@ class Form:
             same_branch=wanted.same_branch,
             over_task=wanted.transmission_over is TransmissionOver.TASK and not closed,
             limited=_limited(scaled, start),
-            goals=() if plain else tuple(start.objective.goals),
+            goals=() if plain else tuple(start.goals),
+            own_goal=not plain and start.objective is None,
             grid=_grid_size(start, closed),
             closed=closed,
             keep_out=points_held(scaled),
@@ -149,7 +153,8 @@ def _nearest(scaled: ScaledProblem, start: Start) -> tuple[bool, ...]:
         for name, limit in wanted.limited.items()
     )
     zoned = start.zoned and (scaled.has_angles or scaled.timed)
-    every = bool(placed or moving or scaled.constraints or zoned)
+    own = scaled.constraints or (start.bounded and start.objective is None)
+    every = bool(placed or moving or own or zoned)
     if scaled.timed:
         return (every and wanted.theta2_start_deg is None,) * count
     over_task = wanted.transmission_over is TransmissionOver.TASK and not scaled.closed

@@ -11,7 +11,7 @@ from grashof.problems.values.requirements import LIMITS
 from grashof.synth.programme.along_motion import ALONG, SCREENED, magnitudes, value_of
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS, Screened
-from grashof.synth.programme.user_constraints import own_violations
+from grashof.synth.programme.user_functions import own_violations
 
 
 def fully_screened(scaled: ScaledProblem, linkages: Screened) -> Screened:

@@ -46,7 +46,7 @@ def _best_within_bounds(
     most = np.inf if factor is None else factor * max(ledger.least, same_error(problem))
     allowed = most if factor is not None else max(error_of_use(scaled), ledger.least)
     starts = [
-        started_at(scaled, one, problem.objective, most_error=most, zoned=scaled.zones is not None)
+        started_at(scaled, one, scaled.objective, most_error=most, zoned=scaled.zones is not None)
         for one in seeds_of(problem, found, NEAR * allowed, round(SEEDS * max(1.0, run.search.effort)))
     ]
     attempts = [] if run.ended() else run.solve(scaled, starts, ledger.solved)

@@ -9,7 +9,7 @@ import numpy as np
 from grashof.analysis import Verdict
 from grashof.problems import Rotatability
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.user_constraints import relaxed_by_own
+from grashof.synth.programme.user_functions import relaxed_by_own
 from grashof.synth.results.attempt import Attempt
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.results.families import listed
@@ -114,7 +114,7 @@ def _by_least_squares(scaled: ScaledProblem, run: Run) -> list[_Near]:
     problem = replace(scaled.problem, requirements=wanted)
     search = replace(run.search, effort=NEAR_EFFORT, enough=min(run.search.enough, NEAR))
     alone = Run(search, run.solve, run.ended)
-    found = search_designs(ScaledProblem.of(problem, scaled.constraints), alone).best
+    found = search_designs(scaled.of_problem(problem), alone).best
     return [_Near(one.verdict, judged_again(scaled, one)) for one in listed(problem, found)[:SHOWN]]
 
 

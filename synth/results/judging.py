@@ -51,7 +51,7 @@ def judged(
     except ProblemError:
         return None
     verdict = verdict_on(scaled, linkage, most_error)
-    candidate = Candidate(linkage, verdict, scaled.problem, start, iterations)
+    candidate = _valued(scaled, Candidate(linkage, verdict, scaled.problem, start, iterations))
     if verdict.ok:
         candidate.objective(scaled.problem)  # here, where many are judged at once; the values stay known
     return candidate
@@ -68,7 +68,12 @@ def verdict_on(scaled: ScaledProblem, linkage: FourBar, most_error: float = np.i
 def judged_again(scaled: ScaledProblem, candidate: Candidate, most_error: float = np.inf) -> Candidate:
     """A design judged by the requirements of another problem with the same targets."""
     verdict = verdict_on(scaled, candidate.linkage, most_error)
-    return replace(candidate, verdict=verdict, problem=scaled.problem)
+    return _valued(scaled, replace(candidate, verdict=verdict, problem=scaled.problem))
+
+
+def _valued(scaled: ScaledProblem, candidate: Candidate) -> Candidate:
+    """The same with what the user's own objective makes of it, where there is one."""
+    return candidate if scaled.own_objective is None else candidate.valued(scaled.own_objective)
 
 
 def verified_cognates(scaled: ScaledProblem, candidate: Candidate) -> tuple[Candidate, ...]:

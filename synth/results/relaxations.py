@@ -102,7 +102,7 @@ def _judged(scaled: ScaledProblem, solved: ScaledProblem, starts: list[Start], r
 
 def _loose(scaled: ScaledProblem, key: str) -> ScaledProblem:
     problem = replace(scaled.problem, requirements=loosest(scaled.problem, key))
-    return ScaledProblem.of(problem, () if key == "constraints" else scaled.constraints)
+    return replace(scaled.of_problem(problem), constraints=() if key == "constraints" else scaled.constraints)
 
 
 def _finished(scaled: ScaledProblem, found: Relaxation, run: Run) -> Relaxation:
@@ -115,7 +115,7 @@ def _finished(scaled: ScaledProblem, found: Relaxation, run: Run) -> Relaxation:
         return found
     asked = with_rounded_angle(scaled.problem, found) if angle else found
     problem = replace(scaled.problem, requirements=asked.requirements)
-    eased = ScaledProblem.of(problem, asked.constraints)
+    eased = replace(scaled.of_problem(problem), constraints=asked.constraints)
     under_it = judged_again(eased, found.candidate)
     (made,) = run.solve(eased, [Start.of_linkage(eased, under_it.linkage, under_it.verdict)], 0)
     if not made.verified:

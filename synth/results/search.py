@@ -14,7 +14,7 @@ from grashof.problems import Problem, Search
 from grashof.synth.programme.nonlinear_programme import MOST_ITERATIONS
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Round, Start
-from grashof.synth.programme.user_constraints import mended
+from grashof.synth.programme.user_functions import mended
 from grashof.synth.results.ledger import SAME, Ledger
 from grashof.synth.results.workers import Solver
 from grashof.synth.starts.finder import Finder, asked_first, finder_for
@@ -84,7 +84,7 @@ def searches(scaled: ScaledProblem, run: Run) -> list[Ledger]:
     """
 
     def search(problem: Problem) -> Ledger:
-        asked = ScaledProblem.of(problem, scaled.constraints)
+        asked = scaled.of_problem(problem)
         return search_designs(replace(asked, of_use=error_of_use(scaled)), run)
 
     first = search(asked_first(scaled.problem))

@@ -80,7 +80,7 @@ def trade_offs(scaled: ScaledProblem, ledger: Ledger, run: Run) -> Chosen:
 def started_at(
     scaled: ScaledProblem,
     candidate: Candidate,
-    objective: Objective,
+    objective: Objective | None,
     *,
     most_error: float,
     zoned: bool = False,

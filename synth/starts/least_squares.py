@@ -227,7 +227,7 @@ def _distinct(placed: Placed) -> IntArray:
 
 
 def _start(scaled: ScaledProblem, linkages: Screened, error: FloatArray, index: int) -> Start:
-    start = Start.of_screened(linkages, index, scaled.problem.objective)
+    start = Start.of_screened(linkages, index, scaled.objective)
     met = bool(linkages.feasible[index]) and linkages.error[index] < FOUND
     return replace(start, promise=float(error[index]), settled=met)
 

@@ -14,6 +14,7 @@ from grashof.synth.programme.formulas import FORMULAS
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS, Many, Screened
 from grashof.synth.programme.start import Start
+from grashof.synth.programme.user_functions import own_merit
 from grashof.synth.theory.distinct import pick_apart, signature
 
 POOL = 6000  # linkages among which starts are picked
@@ -88,7 +89,7 @@ def closest_starts(scaled: ScaledProblem, linkages: Screened, group: str, most: 
 
 def starts_of(scaled: ScaledProblem, linkages: Screened, picked: IntArray) -> list[Start]:
     """Starts at some of the linkages."""
-    return [Start.of_screened(linkages, int(index), scaled.problem.objective) for index in picked]
+    return [Start.of_screened(linkages, int(index), scaled.objective) for index in picked]
 
 
 def _spread(
@@ -133,6 +134,8 @@ def merits(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
     """Score of each linkage; its size is that of a box around what is known of it at the first target."""
     if not scaled.exact:
         return -linkages.error
+    if scaled.own_objective is not None:
+        return own_merit(scaled, linkages, scaled.own_objective)
     score = np.zeros(len(linkages))
     for key, weight in scaled.problem.objective.weights:
         score += weight * _worth(scaled, linkages, key)

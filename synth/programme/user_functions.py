@@ -1,18 +1,20 @@
-"""The user's own constraints: are they usable, which linkages miss them, which starts have to be mended."""
+"""The user's own functions: are they usable, what are they of linkages, which starts have to be mended."""
 
 from __future__ import annotations
 
 import pickle
 import re
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
-from grashof.analysis.judge.design import Constraint, Design, greatest, name_of
+from grashof.analysis.judge.design import Constraint, Design, OwnObjective, greatest, name_of
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.checks import counted
+from grashof.problems.values.problem import NO_OBJECTIVE
 from grashof.synth.programme.on_symbols import on_symbols
 from grashof.synth.programme.one_at_a_time import one_at_a_time
 from grashof.synth.programme.scaled_problem import ScaledProblem
@@ -28,32 +30,69 @@ _PLACE = re.compile(r'^\S+\.[ch]pp:\d+: (Assertion ".*?" failed: )?')
 WRONG = (TypeError, ValueError, AttributeError, IndexError, KeyError, RuntimeError, ArithmeticError)
 
 
+@dataclass(frozen=True, slots=True)
+class _Kind:
+    """A sort of function: what it is called, what its value means, and whether it may be several."""
+
+    name: str
+    value: str
+    several: bool
+
+
+_CONSTRAINT = _Kind("constraint", "zero or negative where it is met", several=True)
+_OBJECTIVE = _Kind("objective", "smaller where the design is better", several=False)
+
+
 def refuse_unusable(scaled: ScaledProblem, *, in_processes: bool) -> None:
-    """Raise `ProblemError` for a constraint that cannot be used on symbols, or not in other processes."""
+    """Raise `ProblemError` for a function that cannot be used on symbols, or not in other processes."""
     for constraint in scaled.constraints:
         if not callable(constraint) or isinstance(constraint, type):
             raise ProblemError(f"constraints has {constraint!r}; allowed are functions of a design")
-        _try_on_symbols(constraint, len(scaled.targets))
-        if in_processes:
-            try:
-                pickle.dumps(constraint)
-            except (pickle.PicklingError, AttributeError, TypeError) as error:
-                raise ProblemError(
-                    f"constraint {name_of(constraint)} cannot be sent to other processes ({error}); allowed "
-                    "with workers are functions of a module"
-                ) from None
+        _refuse(scaled, constraint, _CONSTRAINT, in_processes)
+    own = scaled.own_objective
+    if own is None:
+        return
+    if not callable(own) or isinstance(own, type):
+        raise ProblemError(f"objective is {own!r}; allowed is a function of a design")
+    if not scaled.problem.by_objective:
+        raise ProblemError(NO_OBJECTIVE)
+    _refuse(scaled, own, _OBJECTIVE, in_processes)
+
+
+def _refuse(scaled: ScaledProblem, function: Constraint, kind: _Kind, in_processes: bool) -> None:
+    _try_on_symbols(function, kind, len(scaled.targets))
+    if not in_processes:
+        return
+    try:
+        pickle.dumps(function)
+    except (pickle.PicklingError, AttributeError, TypeError) as error:
+        raise ProblemError(
+            f"{kind.name} {name_of(function)} cannot be sent to other processes ({error}); allowed with "
+            "workers are functions of a module"
+        ) from None
+
+
+def own_violations(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
+    """By how much linkages violate the user's constraints; shape (n,)."""
+    amounts = _values(scaled, linkages, scaled.constraints)
+    missed: FloatArray = np.nan_to_num(np.maximum(amounts, 0.0), nan=1.0, posinf=FAR).sum(axis=0)
+    return missed
+
+
+def own_merit(scaled: ScaledProblem, linkages: Screened, objective: OwnObjective) -> FloatArray:
+    """How good the user's own objective makes linkages, greater is better; shape (n,)."""
+    merit: FloatArray = np.nan_to_num(-_values(scaled, linkages, (objective,))[0], nan=-np.inf)
+    return merit
 
 
 @one_at_a_time
-def own_violations(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
-    """By how much linkages violate the user's constraints, all evaluated at once; shape (n,)."""
+def _values(scaled: ScaledProblem, linkages: Screened, functions: tuple[Constraint, ...]) -> FloatArray:
+    """What functions make of linkages, all evaluated at once, a row for each value."""
     design, symbols = _symbols(len(scaled.targets))
     values = ca.vertcat(
-        *(ca.vec(ca.SX(one)) for own in scaled.constraints for one in _several(on_symbols(own, design)))
+        *(ca.vec(ca.SX(one)) for own in functions for one in _several(on_symbols(own, design)))
     )
-    amounts = np.asarray(ca.Function("own", [symbols], [values])(_numbers(scaled, linkages).T))
-    missed: FloatArray = np.nan_to_num(np.maximum(amounts, 0.0), nan=1.0, posinf=FAR).sum(axis=0)
-    return missed
+    return np.asarray(ca.Function("own", [symbols], [values])(_numbers(scaled, linkages).T))
 
 
 def _numbers(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
@@ -100,6 +139,12 @@ def _met(scaled: ScaledProblem, start: Start) -> bool:
     return all(greatest(constraint, design) <= 0 for constraint in scaled.constraints)
 
 
+def magnitude_at(scaled: ScaledProblem, start: Start, objective: OwnObjective) -> float:
+    """The magnitude of the user's own objective at a start, to count it in; 1 where it is none."""
+    magnitude = abs(greatest(objective, _design(scaled, start), "objective"))
+    return magnitude if 1e-9 < magnitude < np.inf else 1.0
+
+
 def _design(scaled: ScaledProblem, start: Start) -> Design:
     a, b, p = (list(scaled.frame.outward(track)) for track in start.track)
     r1, r2, r3, r4 = np.array(start.lengths) * scaled.frame.scale
@@ -135,42 +180,40 @@ def _several(value: Any) -> list[Any]:
 
 
 @one_at_a_time
-def _try_on_symbols(constraint: Constraint, targets: int) -> None:
+def _try_on_symbols(function: Constraint, kind: _Kind, targets: int) -> None:
     design, _ = _symbols(targets)
     try:
-        value = on_symbols(constraint, design)
+        value = on_symbols(function, design)
     except WRONG as error:
         reason = _PLACE.sub("", " ".join(str(error).split())).rstrip(".")
         if "truth value" in reason:
             reason += " (casadi.fmax, casadi.fmin and casadi.if_else do what max, min and if cannot)"
         raise ProblemError(
-            f"constraint {name_of(constraint)} fails on symbols: {reason}; allowed are functions of a design "
+            f"{kind.name} {name_of(function)} fails on symbols: {reason}; allowed are functions of a design "
             "made of arithmetic that works on CasADi symbols"
         ) from error
-    _refuse_no_amounts(constraint, value)
+    _refuse_no_amounts(f"{kind.name} {name_of(function)}", kind, value)
 
 
-def _refuse_no_amounts(constraint: Constraint, value: Any) -> None:
-    """Raise `ProblemError` for what a constraint gives on symbols, if it is no scalar and not several."""
-    name = name_of(constraint)
+def _refuse_no_amounts(name: str, kind: _Kind, value: Any) -> None:
+    """Raise `ProblemError` for what a function gives on symbols, if that is not what its kind gives."""
+    allowed = f"a scalar, {kind.value}" + (", or a list of them" if kind.several else "")
     several = _several(value)
     for one in several:
         try:
             symbols = ca.SX(one)
         except WRONG:
-            raise ProblemError(
-                f"constraint {name} gives {one!r}; allowed is a scalar, zero or negative where it is met, or "
-                "a list of them"
-            ) from None
+            raise ProblemError(f"{name} gives {one!r}; allowed is {allowed}") from None
         if any(element.is_constant() and not element.is_regular() for element in symbols.nz):
             raise ProblemError(  # such as float() of a symbol
-                f"constraint {name} fails on symbols: its value is not a number; allowed are functions of a "
+                f"{name} fails on symbols: its value is not a number; allowed are functions of a "
                 "design made of arithmetic that works on CasADi symbols"
             )
         if isinstance(one, (bool, np.bool_)) or any(element.op() in _TRUTHS for element in symbols.nz):
             raise ProblemError(
-                f"constraint {name} gives a truth value; allowed is a scalar, zero or negative where it is "
-                "met: a - b instead of a < b"
+                f"{name} gives a truth value; allowed is a scalar, {kind.value}: a - b instead of a < b"
             )
-    if not any(ca.SX(one).numel() > 0 for one in several):
-        raise ProblemError(f"constraint {name} gives nothing; allowed is a scalar or a list of them")
+    count = sum(ca.SX(one).numel() for one in several)
+    if not count or (count > 1 and not kind.several):
+        given = counted(count, "value") if count else "nothing"
+        raise ProblemError(f"{name} gives {given}; allowed is {allowed}")
