@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from grashof.analysis.four_bar.position import places, solve_position
 from grashof.analysis.judge.task_motion import Targets, TaskMotion
-from grashof.problems import FourBar, Requirements
+from grashof.problems import FourBar, Requirements, Task
 from grashof.problems.values.areas import solid
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 
@@ -20,6 +20,7 @@ _SAMPLES = 541
 _ALONG = 33  # samples along the piece of a link that lies inside
 _PEAKS = 3  # of the depth over the motion that are looked at more closely
 _ROUNDS, _NEARBY = 18, np.linspace(-1, 1, 7)  # each three times as close
+SLACK = 1e-9  # sizes: rounding
 _ROUGH = 5  # rounds along a link, while looking for the driver angles where it reaches deepest
 
 
@@ -115,7 +116,13 @@ def segment_depth(area: Area, begin: FloatArray, end: FloatArray, rounds: int = 
 
 
 def intrusions(
-    linkage: FourBar, wanted: Requirements, targets: Targets, motion: TaskMotion, *, joined: bool
+    linkage: FourBar,
+    task: Task,
+    wanted: Requirements,
+    targets: Targets,
+    motion: TaskMotion,
+    *,
+    joined: bool,
 ) -> dict[str, float]:
     """How deep the parts of a linkage that shall keep out reach into the areas kept out.
 
@@ -123,6 +130,7 @@ def intrusions(
     ----------
     linkage : FourBar
         A single linkage.
+    task : MotionTask or PathTask
     wanted : Requirements
     targets : Targets
     motion : TaskMotion
@@ -132,7 +140,7 @@ def intrusions(
     Returns
     -------
     dict of str to float, length
-        The greatest depth of each part, such as "O2" or "link AB"; zero outside and on the boundary.
+        The greatest depth of each part that lies inside, such as "O2" or "link AB".
 
     Notes
     -----
@@ -143,7 +151,14 @@ def intrusions(
     area, deepest = Area.of(wanted.keep_out), dict[str, float]()
     parts: dict[str, tuple[str, ...]] = {}
     for name in wanted.keep_out_for:
-        parts |= _lines() if name == "links" else {name.upper(): (name,)}
+        if name != "body":
+            parts |= _lines() if name == "links" else {name.upper(): (name,)}
+        elif task.body is not None:
+            at = _body_depth(area, linkage, task.body, targets.assembly[:1] if joined else targets.assembly)
+            over = (
+                _deepest_over(at, motion.start, motion.end) if joined else at(targets.theta2, _ROUNDS).max()
+            )
+            deepest["the body"] = float(over)
     for part, ends in parts.items():
         if set(ends) <= set(linkage.GROUND):
             deepest[part] = float(depth(area, getattr(linkage, ends[0])))
@@ -154,7 +169,7 @@ def intrusions(
         else:
             at = _depth_of(area, linkage, ends, targets.assembly)
             deepest[part] = float(at(targets.theta2, _ROUNDS).max())
-    return {part: max(found, 0.0) for part, found in deepest.items()}
+    return {part: found for part, found in deepest.items() if found > SLACK * task.size}
 
 
 def _lines() -> dict[str, tuple[str, ...]]:
@@ -179,6 +194,31 @@ def _depth_of(
         closed = np.isfinite(begin + end).all(axis=-1)
         begin, end, one = begin[closed], end[closed], len(ends) == 1
         found[closed] = depth(area, begin) if one else segment_depth(area, begin, end, rounds)
+        return found
+
+    return at
+
+
+def _body_depth(
+    area: Area, linkage: FourBar, outline: FloatArray, assembly: IntArray
+) -> Callable[[FloatArray, int], FloatArray]:
+    """Depth of the body's closed outline in an area, or of an area's corners in the body."""
+    corner = outline @ np.array([1, 1j])
+    body = Area.of([outline]) if len(outline) > 2 else None
+
+    def at(theta2: FloatArray, rounds: int) -> FloatArray:
+        state = solve_position(linkage, theta2, assembly)
+        p, turn = state.p @ np.array([1, 1j]), np.exp(1j * (state.theta3 + linkage.body_angle))
+        found, closed = np.full(len(theta2), -np.inf), np.isfinite(p + turn)
+        p, turn = p[closed, None], turn[closed, None]
+        begin = p + turn * corner
+        ends = (np.stack([each.real, each.imag], axis=-1) for each in (begin, np.roll(begin, -1, axis=1)))
+        sides = segment_depth(area, *(each.reshape(-1, 2) for each in ends), rounds)
+        found[closed] = sides.reshape(begin.shape).max(axis=1)
+        if body is not None:  # an area may lie wholly inside the body
+            held = (area.begin - p) / turn
+            within = depth(body, np.stack([held.real, held.imag], axis=-1)).max(axis=1)
+            found[closed] = np.maximum(found[closed], within)
         return found
 
     return at

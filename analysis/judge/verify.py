@@ -229,6 +229,5 @@ def _kept_out(
 
     return [
         Defect("keep_out", f"the depth of {part} inside", deep, "0", deep / task.size)
-        for part, deep in intrusions(linkage, wanted, targets, motion, joined=joined).items()
-        if deep > SLACK * task.size
+        for part, deep in intrusions(linkage, task, wanted, targets, motion, joined=joined).items()
     ]

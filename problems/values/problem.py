@@ -180,15 +180,8 @@ class Problem(ReadOnly):
         return stated.get(needs, True)
 
     def _undecided(self) -> list[str]:
-        """What is contradictory about whether the error or the objective decides."""
-        wanted, kind, zones = self.requirements, self.task.kind, self.task.zones
-        wrong = []
-        if zones is not None and wanted.exact:
-            wrong.append(f"{kind}.within does not go with requirements.exact = true; it takes its place")
-        if zones is not None and wanted.error_factor is not None:
-            wrong.append(f"requirements.error_factor does not go with {kind}.within; allowed is one of them")
-        if wanted.error_factor is not None and wanted.is_exact(self.task):
-            wrong.append("requirements.error_factor needs least squares, exact = false")
+        """What is contradictory about the task and the requirements, and about what decides."""
+        wrong = self.requirements.contradictions(self.task)
         if self.objective != Objective() and not self.by_objective:
             wrong.append(NO_OBJECTIVE)
         return wrong

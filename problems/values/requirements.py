@@ -123,9 +123,9 @@ class Requirements(ReadOnly):
         Where A and B may sit on the body that is guided, in its frame: origin at P, turned with it.
     keep_out : sequence of array_like, shape (M, 2), length
         Polygons; their boundary may be touched. Where two overlap or share a side they are one.
-    keep_out_for : sequence of {"o2", "o4", "a", "b", "p", "links"}
-        What keeps out of them: pivots, coupler point, or all links as straight lines (O2A, AB, O4B,
-        AP, BP); all but o2 and o4 over the motion from first to last target.
+    keep_out_for : sequence of {"o2", "o4", "a", "b", "p", "links", "body"}
+        What keeps out of them: pivots, coupler point, all links as straight lines (O2A, AB, O4B,
+        AP, BP), or the outline of the body; all but o2 and o4 over the motion from first to last target.
     """
 
     exact: bool | None = None
@@ -190,7 +190,7 @@ class Requirements(ReadOnly):
         allowed=(0.0, 360.0),
     )
     driver_sense: str = limit(
-        Quantity("driver_sense", "sense of the driver", Unit.RATIO, Over.TARGETS, listed=False),
+        Quantity("driver_sense", "sense of the driver", Unit.RATIO, listed=False),
         Kind.WORD,
         default="either",
         words={"either": (-1.0, 1.0), "ccw": (1.0, 1.0), "cw": (-1.0, -1.0)},
@@ -254,6 +254,21 @@ class Requirements(ReadOnly):
         """Limits of r1, r2, r3, r4 (of resolved requirements)."""
         every = self.link_length or (0.0, np.inf)
         return self.r1 or every, self.r2 or every, self.r3 or every, self.r4 or every
+
+    def contradictions(self, task: Task) -> list[str]:
+        """What these requirements and a task do not agree on, a line each."""
+        wrong = []
+        if task.zones is not None and self.exact:
+            wrong.append(f"{task.kind}.within does not go with requirements.exact = true; it takes its place")
+        if task.zones is not None and self.error_factor is not None:
+            wrong.append(
+                f"requirements.error_factor does not go with {task.kind}.within; allowed is one of them"
+            )
+        if self.error_factor is not None and self.is_exact(task):
+            wrong.append("requirements.error_factor needs least squares, exact = false")
+        if self.keep_out and "body" in self.keep_out_for and task.body is None:
+            wrong.append(f"{task.kind}.body is missing; requirements.keep_out_for has body")
+        return wrong
 
     def is_exact(self, task: Task) -> bool:
         """Whether a design has to meet every target of the task.
@@ -341,7 +356,7 @@ def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float | st
     return number_within(value, low, high, where)
 
 
-MAY_KEEP_OUT = (*FourBar.POINTS, "links")
+MAY_KEEP_OUT = (*FourBar.POINTS, "links", "body")
 
 
 def _areas(values: Sequence[FloatArray]) -> tuple[FloatArray, ...]:

@@ -231,12 +231,6 @@ def judge(
         violate(name, amount)
     violate("link_length", 1e-9 - np.minimum(view.r1, view.r3)[:, 0])
     points = np.stack([found.o2, found.o4, found.a[:, 0], found.b[:, 0], p], axis=1)
-    if wanted.keep_out:
-        from grashof.synth.programme.keep_out_depth import depth_on_the_way
-
-        sound = met(violations)  # the others need not be looked at so closely
-        deep = depth_on_the_way(points[sound], assembly[sound], found.theta2[sound], wanted)
-        violations[sound, GROUPS.index("keep_out")] = deep
     return Screened(
         points=points,
         visit=found.visit,

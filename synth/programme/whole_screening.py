@@ -1,4 +1,4 @@
-"""Violations that take the whole problem: limits along the motion, and the user's constraints."""
+"""Violations that take the whole problem: areas and limits of the motion, the user's constraints."""
 
 from __future__ import annotations
 
@@ -16,10 +16,17 @@ from grashof.synth.programme.user_constraints import own_violations
 
 def fully_screened(scaled: ScaledProblem, linkages: Screened) -> Screened:
     """The same with these violations, too."""
-    along = [name for name in scaled.wanted.limited if LIMITS[name].quantity.key in ALONG]
-    if not len(linkages) or not (along or scaled.constraints):
+    wanted = scaled.wanted
+    along = [name for name in wanted.limited if LIMITS[name].quantity.key in ALONG]
+    if not len(linkages) or not (along or scaled.constraints or wanted.keep_out):
         return linkages
     violations = linkages.violations.copy()
+    if wanted.keep_out:
+        # Here, not above: shapely takes a while to import, and few problems have areas.
+        from grashof.synth.programme.keep_out_motion import depth_on_the_way
+
+        sound = linkages.feasible  # the others need not be looked at so closely
+        violations[sound, GROUPS.index("keep_out")] = depth_on_the_way(scaled, linkages[sound])
     for name in along:
         violations[:, GROUPS.index(name)] = _beyond(scaled, linkages, name)
     if scaled.constraints:
