@@ -75,8 +75,7 @@ def _places(linkages: Screened) -> dict[str, ComplexArray]:
     angle = theta2[:, :1] + (theta2[:, -1:] - theta2[:, :1]) * np.linspace(0, 1, _SAMPLES)
     at_a = o2 + np.abs(a - o2) * np.exp(1j * angle)
     with np.errstate(all="ignore"):
-        coupler, beside2 = coupler_of(o4 - at_a, np.abs(b - a), np.abs(b - o4), assembly[:, None])
-        coupler[beside2 <= 0] = np.nan
+        coupler = coupler_of(o4 - at_a, np.abs(b - a), np.abs(b - o4), assembly[:, None])
         arm = coupler * ((p - a) / (b - a))
     fixed = np.ones_like(at_a)
     return {"o2": o2 * fixed, "o4": o4 * fixed, "a": at_a, "b": at_a + coupler, "p": at_a + arm}

@@ -12,7 +12,6 @@ import numpy as np
 
 from grashof.problems import Requirements, Rotatability
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
-from grashof.synth.theory.closure import coupler_of
 
 SHORTEST = 1e-3  # of the longest step between targets: no step counts as less
 
@@ -140,8 +139,14 @@ class Loop:
         r2, r3, r4 = lengths
         theta2 = _driver_angles(target, batch)
         e2 = np.exp(1j * theta2)
-        coupler, beside2 = coupler_of(1 - r2[:, None] * e2, r3[:, None], r4[:, None], batch.assembly)
-        closes: BoolArray = np.all(beside2 > 1e-12 * r3[:, None] ** 2, axis=1)
+        diagonal = 1 - r2[:, None] * e2
+        s = np.abs(diagonal)
+        along = (s**2 + (r3**2 - r4**2)[:, None]) / (2 * s)
+        beside2 = r3[:, None] ** 2 - along**2
+        closes = (beside2 > 1e-12 * r3[:, None] ** 2).all(axis=1)
+        # Not `coupler_of`: what is open, too, has numbers here, and last digits decide a list.
+        beside = batch.assembly * np.sqrt(np.where(beside2 > 0, beside2, 1.0))
+        coupler = (along + 1j * beside) * diagonal / s
         output = r2[:, None] * e2 + coupler - 1
         return cls(r2, r3, r4, by_lengths, theta2, e2, coupler / r3[:, None], output / r4[:, None], closes)
 

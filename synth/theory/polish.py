@@ -104,8 +104,7 @@ def _linearised(
     e2 = np.exp(1j * theta2)
     a = o2 + r2 * e2
     with np.errstate(invalid="ignore", divide="ignore"):
-        coupler, beside2 = coupler_of(o4 - a, r3, r4, assembly)
-        coupler[beside2 <= 0] = np.nan
+        coupler = coupler_of(o4 - a, r3, r4, assembly)
         e3, e4 = coupler / r3, (a + coupler - o4) / r4
         p = a + arm * e3
         below = r3 * (e3 * e4.conj()).imag
