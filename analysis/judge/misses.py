@@ -16,11 +16,12 @@ from grashof.problems.values.arrays import TURN, FloatArray, IntArray
 def misses(linkage: FourBar, task: Task, theta2: FloatArray, assembly: IntArray) -> FloatArray:
     """|dp|^2 + (angle_length * dangle)^2 of what targets have, shape (..., N); inf where it cannot close."""
     state = solve_position(linkage, theta2, assembly)
-    gap = np.where(task.has_position, ((state.p - task.positions) ** 2).sum(axis=-1), 0.0)
-    off = wrapped(state.theta3 - (task.angles - linkage.body_angle))
-    turn = np.where(task.has_angle, task.angle_length * off, 0.0)
-    miss: FloatArray = np.nan_to_num(gap + turn**2, nan=np.inf, posinf=np.inf)
-    return miss
+    gap = state.p - task.positions
+    miss: FloatArray = np.where(task.has_position, gap[..., 0] ** 2 + gap[..., 1] ** 2, 0.0)
+    if task.has_angle.any():
+        off = wrapped(state.theta3 - (task.angles - linkage.body_angle))
+        miss = miss + np.where(task.has_angle, task.angle_length * off, 0.0) ** 2
+    return np.nan_to_num(miss, nan=np.inf, posinf=np.inf)
 
 
 def squares(

@@ -104,7 +104,7 @@ class TargetsTable(Table):
     task: ClassVar[type[MotionTask | PathTask]]
     plain: ClassVar[list[float]]  # a target, but for its x
     fewest: ClassVar[int]
-    besides: ClassVar[dict[str, float]] = {}  # what targets need to be a task
+    besides: ClassVar[dict[str, Any]] = {}  # what targets need to be a task
 
     @field_validator("*")
     @classmethod

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import replace
-from typing import Any, ClassVar, Self
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -121,10 +121,13 @@ class Task(ReadOnly, ABC):
             turn = np.minimum(place / self.angle_length, np.pi)
         return np.where([self.has_position, self.has_angle], [place, turn], np.inf)
 
+    def with_zones(self, **zones: FloatArray | None) -> Self:
+        """The same targets with other zones, by the names of `stated_zones`."""
+        return replace(self, **zones)  # type: ignore[type-var]
+
     def without_zones(self) -> Self:
         """The same targets, none of them to be missed."""
-        none: dict[str, Any] = dict.fromkeys(self.stated_zones)
-        return replace(self, **none)  # type: ignore[type-var]
+        return self.with_zones(**dict.fromkeys(self.stated_zones))
 
     @property
     def exact_by_default(self) -> bool:

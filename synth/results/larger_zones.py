@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from grashof.analysis import Verdict, verify
 from grashof.analysis.judge.design import Constraint
 from grashof.problems import Problem
+from grashof.problems.values.arrays import FloatArray
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.results.relaxed_limits import Relaxation
 
@@ -57,7 +57,7 @@ def _enlarged(problem: Problem, times: tuple[float, float]) -> tuple[Problem, st
     if len(given) == 1:  # it stands for both
         (only,) = given
         least = {only: max(times)}
-    larger, words = dict[str, Any](), list[str]()
+    larger, words = dict[str, FloatArray](), list[str]()
     for name, zone in given.items():
         if least[name] <= 1:
             continue
@@ -72,7 +72,7 @@ def _enlarged(problem: Problem, times: tuple[float, float]) -> tuple[Problem, st
             words.append(f"{key} {factor:g} times as large")
     if "angle_within" in larger:
         larger["angle_within"] = np.minimum(larger["angle_within"], np.pi)
-    return replace(problem, task=replace(task, **larger)), " and ".join(words)
+    return replace(problem, task=task.with_zones(**larger)), " and ".join(words)
 
 
 def up(value: float) -> float:
