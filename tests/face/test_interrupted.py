@@ -38,7 +38,7 @@ def test_interrupt_while_drawing_leaves_drawings_out(
         return draw(problem, candidate, rank)
 
     monkeypatch.setattr(grashof_draw, "draw_design", interrupted)
-    done = grashof("solve", "luggage", "--starts", "8")
+    done = grashof("solve", "luggage", "--starts", "16")
     assert done.exit_code == 130
     names = {"candidates.csv", "candidates.json", "report.html", "run.json"}
     names |= {f"design-0{rank}.{kind}" for rank in (1, 2) for kind in ("png", "svg")}
