@@ -22,7 +22,7 @@ SMALL: dict[str, dict[str, Any]] = {
     },
     "grashof.synth.starts.precision_points": {"BARREN": 2, "SEARCHES": 1},
     "grashof.synth.results.relaxations": {"SOLVES": 2},
-    "grashof.synth.results.choice": {"SEEDS": 4},
+    "grashof.synth.results.choice": {"SEEDS": 3},
     "grashof.synth.results.explain": {"NEAR_EFFORT": 0.2},
 }  # fmt: skip
 

@@ -151,7 +151,14 @@ def intrusions(
     area, deepest = Area.of(wanted.keep_out), dict[str, float]()
     parts: dict[str, tuple[str, ...]] = {}
     for name in wanted.keep_out_for:
-        parts |= _lines() if name == "links" else {name.upper(): (name,)}
+        if name != "body":
+            parts |= _lines() if name == "links" else {name.upper(): (name,)}
+        elif task.body is not None:
+            at = _body_depth(area, linkage, task.body, targets.assembly[:1] if joined else targets.assembly)
+            over = (
+                _deepest_over(at, motion.start, motion.end) if joined else at(targets.theta2, _ROUNDS).max()
+            )
+            deepest["the body"] = float(over)
     for part, ends in parts.items():
         if set(ends) <= set(linkage.GROUND):
             deepest[part] = float(depth(area, getattr(linkage, ends[0])))
@@ -187,6 +194,31 @@ def _depth_of(
         closed = np.isfinite(begin + end).all(axis=-1)
         begin, end, one = begin[closed], end[closed], len(ends) == 1
         found[closed] = depth(area, begin) if one else segment_depth(area, begin, end, rounds)
+        return found
+
+    return at
+
+
+def _body_depth(
+    area: Area, linkage: FourBar, outline: FloatArray, assembly: IntArray
+) -> Callable[[FloatArray, int], FloatArray]:
+    """Depth of the body's closed outline in an area, or of an area's corners in the body."""
+    corner = outline @ np.array([1, 1j])
+    body = Area.of([outline]) if len(outline) > 2 else None
+
+    def at(theta2: FloatArray, rounds: int) -> FloatArray:
+        state = solve_position(linkage, theta2, assembly)
+        p, turn = state.p @ np.array([1, 1j]), np.exp(1j * (state.theta3 + linkage.body_angle))
+        found, closed = np.full(len(theta2), -np.inf), np.isfinite(p + turn)
+        p, turn = p[closed, None], turn[closed, None]
+        begin = p + turn * corner
+        ends = (np.stack([each.real, each.imag], axis=-1) for each in (begin, np.roll(begin, -1, axis=1)))
+        sides = segment_depth(area, *(each.reshape(-1, 2) for each in ends), rounds)
+        found[closed] = sides.reshape(begin.shape).max(axis=1)
+        if body is not None:  # an area may lie wholly inside the body
+            held = (area.begin - p) / turn
+            within = depth(body, np.stack([held.real, held.imag], axis=-1)).max(axis=1)
+            found[closed] = np.maximum(found[closed], within)
         return found
 
     return at

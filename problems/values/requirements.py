@@ -123,9 +123,9 @@ class Requirements(ReadOnly):
         Where A and B may sit on the body that is guided, in its frame: origin at P, turned with it.
     keep_out : sequence of array_like, shape (M, 2), length
         Polygons; their boundary may be touched. Where two overlap or share a side they are one.
-    keep_out_for : sequence of {"o2", "o4", "a", "b", "p", "links"}
-        What keeps out of them: pivots, coupler point, or all links as straight lines (O2A, AB, O4B,
-        AP, BP); all but o2 and o4 over the motion from first to last target.
+    keep_out_for : sequence of {"o2", "o4", "a", "b", "p", "links", "body"}
+        What keeps out of them: pivots, coupler point, all links as straight lines (O2A, AB, O4B,
+        AP, BP), or the outline of the body; all but o2 and o4 over the motion from first to last target.
     """
 
     exact: bool | None = None
@@ -266,6 +266,8 @@ class Requirements(ReadOnly):
             )
         if self.error_factor is not None and self.is_exact(task):
             wrong.append("requirements.error_factor needs least squares, exact = false")
+        if self.keep_out and "body" in self.keep_out_for and task.body is None:
+            wrong.append(f"{task.kind}.body is missing; requirements.keep_out_for has body")
         return wrong
 
     def is_exact(self, task: Task) -> bool:
@@ -354,7 +356,7 @@ def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float | st
     return number_within(value, low, high, where)
 
 
-MAY_KEEP_OUT = (*FourBar.POINTS, "links")
+MAY_KEEP_OUT = (*FourBar.POINTS, "links", "body")
 
 
 def _areas(values: Sequence[FloatArray]) -> tuple[FloatArray, ...]:

@@ -31,19 +31,41 @@ def depth_on_the_way(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
     """
     wanted = scaled.wanted
     names = [name for name in points_kept_out(wanted) if name in FourBar.MOVING]
-    links = "links" in wanted.keep_out_for
+    links, body = "links" in wanted.keep_out_for, _body(scaled)
     deepest = np.zeros(len(linkages))
-    for begin in range(0, len(linkages) if names else 0, _ROWS):
+    for begin in range(0, len(linkages) if names or len(body) else 0, _ROWS):
         rows = slice(begin, begin + _ROWS)
         places = _places(linkages[rows])
         tracks = [places[name] for name in names]
         if links:
             for one, other in (line for link in FourBar.LINKS[1:] for line in link.lines):
                 tracks += [places[one] + share * (places[other] - places[one]) for share in _ALONG]
+        if len(body):
+            turned = (places["b"] - places["a"]) * np.exp(1j * _from_coupler(scaled, linkages[rows]))[:, None]
+            turned /= np.abs(turned)
+            tracks += [places["p"] + turned * corner for corner in body]
         track = np.concatenate(tracks, axis=1)
         closed = np.isfinite(track)
         deepest[rows] = np.where(closed, inside(wanted, np.where(closed, track, 0.0)), 0.0).max(axis=1)
     return deepest
+
+
+def _body(scaled: ScaledProblem) -> ComplexArray:
+    """Points along the outline of the body that keeps out, in its frame; none where it need not."""
+    outline = scaled.problem.task.body
+    if "body" not in scaled.wanted.keep_out_for or outline is None:
+        return np.zeros(0, dtype=np.complex128)
+    corner = outline @ np.array([1, 1j]) / scaled.frame.scale
+    side = np.roll(corner, -1) - corner
+    return (corner[:, None] + np.concatenate([[0.0], _ALONG]) * side[:, None]).ravel()
+
+
+def _from_coupler(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
+    """From the direction of AB to that of the body, shape (n,), rad."""
+    if scaled.motion is None:
+        return linkages.body_angle
+    _, _, a, b, _ = linkages.points.T
+    return scaled.motion.first_turn - np.angle(b - a)
 
 
 def _places(linkages: Screened) -> dict[str, ComplexArray]:

@@ -272,7 +272,7 @@ def least_error() -> LeastError:
 
 
 @pytest.fixture(scope="session")
-def two_processes() -> Iterator[Executor]:
-    """Two worker processes that all tests share: to start them takes longer than a small search."""
-    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+def other_process() -> Iterator[Executor]:
+    """A worker process that all tests share: to start one takes longer than a small search."""
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
         yield pool

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import shapely
 
 from grashof import load, synthesize
 from grashof.analysis import Verdict, solve_kinematics, solve_position, verify
@@ -12,6 +13,7 @@ from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, Requirements
 from grashof.problems.values.arrays import FloatArray
+from grashof.synth import Candidate
 from grashof.synth.programme.formulas import FORMULAS, Part
 from grashof.synth.programme.screening import Many
 
@@ -208,3 +210,38 @@ def test_a_joint_sits_on_the_body_where_it_may(kind: str, joint: str) -> None:
     kept = places(limited(problem, **{f"{joint}_on_body": Box(*sides)}))
     assert len(kept) >= 1
     assert (np.abs(kept - middle) <= half * (1 + 1e-6)).all()
+
+
+def test_the_body_keeps_out_of_areas() -> None:
+    """The outline carried through three poses, against a post that it would sweep; by shapely alone."""
+    outline = np.array([[-0.3, -0.3], [0.3, -0.3], [0.3, 0.3], [-0.3, 0.3]])
+    plain, search = TASKS["poses met"]
+    task = MotionTask(plain.task.positions, plain.task.angles, body=outline * plain.task.size)
+    bodies = replace(plain, task=task)
+
+    def swept(design: Candidate) -> shapely.Geometry:
+        motion = np.linspace(design.verdict.theta2.min(), design.verdict.theta2.max(), 6000)  # some run fast
+        state = solve_position(design.linkage, motion, design.verdict.assembly[0])
+        turned = np.exp(1j * (state.theta3 + design.linkage.body_angle))[:, None]
+        corners = (state.p @ np.array([1, 1j]))[:, None] + turned * (task.body @ np.array([1, 1j]))
+        return shapely.union_all(shapely.polygons(np.stack([corners.real, corners.imag], axis=-1)))
+
+    free = synthesize(bodies, **search).candidates[:5]
+    rooms = [swept(each) for each in free]
+    spare = shapely.difference(rooms[0], shapely.union_all(rooms[1:3]))
+    if spare.is_empty:
+        spare = shapely.difference(rooms[0], rooms[1])
+    x, y = (float(at) for at in shapely.get_coordinates(shapely.point_on_surface(spare))[0])
+    half = 0.01 * task.size
+    post = [[x - half, y - half], [x + half, y - half], [x + half, y + half], [x - half, y + half]]
+    asked = limited(bodies, keep_out=[post], keep_out_for=["body"])
+    missed = [verify(each.linkage, task, asked.requirements).defects for each in free]
+    for room, defects in zip(rooms, missed, strict=True):
+        told, square, near = bool(defects), shapely.Polygon(post), 0.005 * task.size
+        if shapely.intersects(room.buffer(-near), square):
+            assert told
+        elif not shapely.intersects(room.buffer(near), square):
+            assert not told
+    kept = synthesize(asked, **search).candidates[:5]
+    assert len(kept) >= 3
+    assert not any(shapely.intersects(swept(each), shapely.Polygon(post).buffer(-1e-6)) for each in kept)

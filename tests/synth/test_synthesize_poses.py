@@ -19,6 +19,8 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.results.attempt import attempt
 
+pytestmark = pytest.mark.usefixtures("small_search")
+
 Judge = Callable[[FourBar, MotionTask], Any]
 EXACT, LEAST = Requirements(exact=True), Requirements(exact=False)
 
@@ -216,8 +218,8 @@ def test_a_constraint_that_the_only_linkage_breaks_is_named() -> None:
     assert "; this alone would do: constraint too_long up to 1010 instead of 0" in result.note
 
 
-def test_workers_change_nothing(tmp_path: Any, two_processes: Executor) -> None:
+def test_workers_change_nothing(tmp_path: Any, other_process: Executor) -> None:
     problem, _ = noisy(1, 6)
-    for name, executor in (("here", None), ("there", two_processes)):
+    for name, executor in (("here", None), ("there", other_process)):
         synthesize(problem, effort=0.2, executor=executor).to_csv(tmp_path / name)
     assert (tmp_path / "here").read_bytes() == (tmp_path / "there").read_bytes()

@@ -1,5 +1,6 @@
 """Timed, closed and mixed poses from problem to list: planted ones, and limits that are active."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,8 @@ from grashof.analysis import verify
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, MotionTask, Problem, ProblemError, Requirements
 from grashof.synth import Result
+
+pytestmark = pytest.mark.usefixtures("small_search")
 
 EXACT, LEAST = Requirements(exact=True), Requirements(exact=False)
 
@@ -35,9 +38,9 @@ def noisy(seed: int, poses: int) -> MotionTask:
 
 
 @pytest.fixture(scope="module")
-def free() -> Result:
+def free(least_error: Callable[..., Result]) -> Result:
     """What least squares come to without limits."""
-    return synthesize(Problem(task=noisy(1, 7), requirements=LEAST), starts=8)
+    return least_error(Problem(task=noisy(1, 7), requirements=LEAST), starts=8)
 
 
 def check_timing(result: Result) -> None:
@@ -82,7 +85,9 @@ def test_closed_poses_are_met_on_a_whole_turn(poses: int, mixed: bool, again: bo
 @pytest.mark.parametrize(
     "limit", ["a", "transmission_min_deg", "o2", "theta2_start_deg", "keep_out", "error_factor"]
 )
-def test_timed_least_squares_keep_an_active_limit(free: Result, limit: str) -> None:
+def test_timed_least_squares_keep_an_active_limit(
+    free: Result, limit: str, least_error: Callable[..., Result]
+) -> None:
     check_timing(free)
     task, best = free.problem.task, free.best
     least = best.verdict.square
@@ -101,7 +106,7 @@ def test_timed_least_squares_keep_an_active_limit(free: Result, limit: str) -> N
         "error_factor": 1.3,
     }
     limited = Requirements(exact=False, **{limit: wanted[limit]})
-    result = synthesize(Problem(task=task, requirements=limited), starts=8)
+    result = least_error(Problem(task=task, requirements=limited), starts=8)
     check_timing(result)
     if limit == "error_factor":
         assert result.best.verdict.square <= 1.3**2 * least * (1 + 1e-6)

@@ -304,7 +304,7 @@ def test_all_errors_are_told_a_line_each() -> None:
         "requirements.link_ratio_max is 0; allowed is 1 to 1e+06",
         "requirements.o2.x is [2, 1]; allowed is [lo, hi] with lo <= hi",
         "requirements.o2.y is [4, 3]; allowed is [lo, hi] with lo <= hi",
-        "requirements.keep_out_for[0] is 'o3'; allowed is a list of o2, o4, a, b, p and links",
+        "requirements.keep_out_for[0] is 'o3'; allowed is a list of o2, o4, a, b, p, links and body",
         "objective.maximise.compactness is 10000000000; allowed is 0 to 1e+09",
         "objective.maximise.torque is -1; allowed is 0 to 1e+09",
         "dynamics.masses[1] is -2; allowed is a number from zero",

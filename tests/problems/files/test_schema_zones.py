@@ -49,7 +49,7 @@ def test_bad_areas_are_named(text: str) -> None:
 
 
 def test_what_keeps_out_is_one_of_a_few() -> None:
-    allowed = "allowed is a list of o2, o4, a, b, p and links"
+    allowed = "allowed is a list of o2, o4, a, b, p, links and body"
     for text, found in (("['o2', 'o3']", "[1] is 'o3'"), ("[]", " is []")):
         said = message(HEAD + f"[requirements]\nkeep_out_for = {text}")
         assert said == f"requirements.keep_out_for{found}; {allowed}"

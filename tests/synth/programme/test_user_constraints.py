@@ -18,6 +18,8 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS
 from grashof.synth.starts.coupler_search import search
 
+pytestmark = pytest.mark.usefixtures("small_search")
+
 LIMITS: dict[str, Any] = {"link_length": (0.2, 10), "transmission_min_deg": 20}
 THREE = Problem(
     task=MotionTask.from_degrees([[0, 0, 0], [2, 1, 20], [3, 3, 50]]), requirements=Requirements(**LIMITS)

@@ -177,11 +177,11 @@ def test_either_of_two_contradictory_limits_would_do_for_least_squares(
 
 
 def test_neither_workers_nor_repetition_change_an_explanation(
-    two_processes: Executor, relaxing_only: Callable[..., None]
+    other_process: Executor, relaxing_only: Callable[..., None]
 ) -> None:
     relaxing_only("link_length", "order")
     problem = replace(load("luggage"), requirements=Requirements(link_length=(0.3, 1.5)))
-    one, two = (synthesize(problem, starts=4, seed=3, executor=other) for other in (None, two_processes))
+    one, two = (synthesize(problem, starts=4, seed=3, executor=other) for other in (None, other_process))
     assert "link_length up to" in one.note
     assert one.note == two.note
     assert [near.id for near in one.nearest] == [near.id for near in two.nearest]

@@ -180,9 +180,9 @@ def places_of(candidate: Candidate) -> FloatArray:
 # Every limit on the cheapest task; on the others those that take another way through the search.
 GRID = {
     "timed": list(LIMITS),
-    "closed": ["cycle", "r1", "link_ratio_max"],
-    "open": ["transmission_min_deg", "o4", "b"],
-    "poses": ["transmission_min_deg", "r3", "coupler_arms", "o2"],
+    "closed": ["cycle"],
+    "open": ["transmission_min_deg", "b"],
+    "poses": ["transmission_min_deg", "o2"],
 }
 
 
