@@ -1,4 +1,4 @@
-"""The tables of the README are those of the quantities, columns and requirements that are declared."""
+"""The documentation has the quantities, columns and requirements that are declared, and paths that exist."""
 
 import re
 from dataclasses import fields
@@ -11,7 +11,8 @@ from grashof.problems.values.quantities import Unit
 from grashof.problems.values.requirements import LIMITS
 from grashof.synth.results.table import COLUMNS, LISTED
 
-README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
 # Columns by name, with the unit of their row.
 ROWS = {
     name: unit.strip()
@@ -43,3 +44,15 @@ def test_every_requirement_is_in_the_example(name: str) -> None:
 @pytest.mark.parametrize("name", LIMITS)
 def test_a_limit_that_is_an_angle_says_so_by_its_key(name: str) -> None:
     assert name.endswith("_deg") == (LIMITS[name].quantity.unit is Unit.ANGLE)
+
+
+@pytest.mark.parametrize("page", ["docs/architecture.md", "docs/conventions.md", "CONTRIBUTING.md"])
+def test_paths_that_are_named_exist(page: str) -> None:
+    text = (ROOT / page).read_text(encoding="utf-8")
+    named = re.findall(r"(?<![\w/.])(?:problems|analysis|synth|src|tests|scripts|docs|\.ci)/[\w/.*-]*", text)
+    assert [path for path in named if not any(ROOT.glob(path.rstrip("./")))] == []
+
+
+def test_the_readme_links_the_pages_for_those_who_change_the_code() -> None:
+    for page in ("docs/architecture.md", "docs/conventions.md", "CONTRIBUTING.md"):
+        assert f"`{page}`" in README

@@ -1,6 +1,7 @@
 """The package as a whole: its map of folders, its layers, what importing it costs."""
 
 import ast
+import re
 import subprocess
 import sys
 import tomllib
@@ -81,18 +82,38 @@ def test_no_module_imports_itself_by_way_of_others() -> None:
     assert circle({name: others - passing_on for name, others in arrows.items()}) == []
 
 
-def test_no_room_imports_from_one_that_imports_from_it() -> None:
-    def room(name: str) -> str:
-        return name if SOURCES[name].name == "__init__.py" else name.rpartition(".")[0]
+def room(name: str) -> str:
+    """Package that a module lies in."""
+    return name if SOURCES[name].name == "__init__.py" else name.rpartition(".")[0]
 
+
+def imports_of_rooms() -> dict[str, set[str]]:
+    """Other rooms that the modules of each room import from."""
     arrows: dict[str, set[str]] = {}
     for name in SOURCES:
         if SOURCES[name].name != "__init__.py":
-            arrows.setdefault(room(name), set()).update(
-                room(other) for other in imported(name) if other in SOURCES
-            )
+            others = {room(other) for other in imported(name) if other in SOURCES}
+            arrows.setdefault(room(name), set()).update(others - {room(name)})
+    return arrows
+
+
+def test_no_room_imports_from_one_that_imports_from_it() -> None:
     layers = set(LAYERS)
-    assert circle({name: others - {name} - layers for name, others in arrows.items()}) == []
+    assert circle({name: others - layers for name, others in imports_of_rooms().items()}) == []
+
+
+def test_the_table_of_rooms_states_what_they_import() -> None:
+    page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `([\w/]+)` \|[^|]+\|([^|]*)\|([^|]*)\|$", page, re.MULTILINE)
+    stated = {path: [set(re.findall(r"\w+", cell)) for cell in cells] for path, *cells in rows}
+    found = {}
+    for name, others in imports_of_rooms().items():
+        mine = layer_of(name)
+        beside = {other.rpartition(".")[2] for other in others if layer_of(other) == mine}
+        below = {layer_of(other).rpartition(".")[2] for other in others if layer_of(other) != mine}
+        path = next(path.parent for source, path in SOURCES.items() if room(source) == name)
+        found[path.relative_to(ROOT).as_posix()] = [beside, below]
+    assert stated == found
 
 
 def modules_after(statement: str) -> set[str]:
