@@ -7,7 +7,7 @@ import numpy as np
 from grashof.analysis.four_bar.mobility import branch_index
 from grashof.analysis.judge.nearest_points import met_singly
 from grashof.analysis.judge.nearest_poses import nearest_to_poses
-from grashof.analysis.judge.points_in_order import Met, met_in_order
+from grashof.analysis.judge.points_in_order import met_in_order
 from grashof.analysis.judge.poses_in_order import poses_in_order
 from grashof.analysis.judge.task_motion import Targets, TaskMotion, task_motion
 from grashof.analysis.judge.timed_targets import met_in_time
@@ -54,18 +54,12 @@ def meet(linkage: FourBar, task: Task, wanted: Requirements) -> tuple[Targets, T
 def _points_or_timed(linkage: FourBar, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
     start = None if wanted.theta2_start_deg is None else float(np.radians(wanted.theta2_start_deg))
     method = met_in_time if task.is_timed else met_in_order if wanted.order else met_singly
-    met = method(linkage, task, wanted.same_branch, start)
-    if met is None:
-        turns = np.nan_to_num(task.driver_turns)
-        met = Met((start or 0.0) + turns, np.full(len(task), int(linkage.assembly)), 1)
-    theta2 = met.theta2
+    anywhere = (start or 0.0) + np.nan_to_num(task.driver_turns), np.full(len(task), int(linkage.assembly)), 1
+    theta2, assembly, sense = method(linkage, task, wanted.same_branch, start) or anywhere
     if start is None:
         theta2 = theta2 - TURN * np.round(theta2[0] / TURN)
-    if met.direction:
-        motion = TaskMotion.ordered(theta2, met.direction)
-    else:
-        motion = task_motion(linkage, theta2, False)
-    return Targets.of(linkage, task, theta2, met.assembly), motion
+    motion = TaskMotion.ordered(theta2, sense) if sense else task_motion(linkage, theta2, False)
+    return Targets.of(linkage, task, theta2, assembly), motion
 
 
 def _poses(linkage: FourBar, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:

@@ -23,7 +23,8 @@ def met_singly(linkage: FourBar, task: Task, same_branch: bool, theta2_start: fl
     """
     points = task.positions @ np.array([1, 1j])
     target = np.arange(len(task))
-    best, least = None, np.inf
+    best: Met | None = None
+    least = np.inf
     for track in _tracks_through(linkage, same_branch, theta2_start):
         angle, low, high, assembly = nearest_guess(track, points, _VALLEYS)
         if theta2_start is not None:
@@ -32,7 +33,7 @@ def met_singly(linkage: FourBar, task: Task, same_branch: bool, theta2_start: fl
         chosen = np.argmin(value, axis=0)
         total = float((task.weights * value[chosen, target]).sum())
         if total < least:
-            best, least = Met(angle[chosen, target], assembly[chosen, target], 0), total
+            best, least = (angle[chosen, target], assembly[chosen, target], 0), total
     return best
 
 

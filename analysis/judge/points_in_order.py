@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 
@@ -27,21 +28,8 @@ _BESIDE = 0.15  # rad
 _LOOK = np.linspace(-1, 1, 25)
 
 
-@dataclass(frozen=True, slots=True)
-class Met:
-    """Where a linkage meets the targets of a task.
-
-    Parameters
-    ----------
-    theta2 : ndarray, shape (N,), rad
-    assembly : ndarray of int, shape (N,)
-    direction : int
-        Sense of the driver from target to target, +1 or -1; 0 when they are met in no order.
-    """
-
-    theta2: FloatArray
-    assembly: IntArray
-    direction: int
+# Where targets are met: driver angles and assemblies, each (N,), and the sense of the driver, 0 in no order.
+Met: TypeAlias = tuple[FloatArray, IntArray, int]
 
 
 def met_in_order(linkage: FourBar, task: Task, same_branch: bool, theta2_start: float | None) -> Met | None:
@@ -76,7 +64,7 @@ def met_in_order(linkage: FourBar, task: Task, same_branch: bool, theta2_start: 
     row = int(np.argmin(np.where(level, np.ptp(theta2, axis=1), np.inf)))
     guess, passage = near[row]
     sense = passage.direction
-    return Met(theta2[row][::sense], guess.assembly[::sense], sense)
+    return theta2[row][::sense], guess.assembly[::sense], sense
 
 
 def _beside(

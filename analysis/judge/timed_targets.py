@@ -40,7 +40,7 @@ def met_in_time(linkage: FourBar, task: Task, same_branch: bool, theta2_start: f
     best = int(np.argmax(level))
     theta2 = start[best] + turns[sense[best]]
     side = np.argmin(misses(linkage, task, theta2, signs[:, None]), axis=0)
-    return Met(theta2, signs[side], 1 - 2 * int(sense[best]))
+    return theta2, signs[side], 1 - 2 * int(sense[best])
 
 
 def _model(linkage: FourBar, task: Task, turns: FloatArray, signs: IntArray) -> Callable[[FloatArray], Model]:

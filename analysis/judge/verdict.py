@@ -44,7 +44,7 @@ class Verdict:
     Parameters
     ----------
     theta2 : ndarray, shape (N,), rad
-        Driver angle at each target, counted on along the motion.
+        Driver angle at each target, unwrapped along the task motion.
     assembly : ndarray of int, shape (N,)
         Assembly at each target.
     position_error : ndarray, shape (N,), length
@@ -58,9 +58,9 @@ class Verdict:
     grashof_class : GrashofClass
     full_rotation, circuit_ok, branch_ok, order_ok : bool
     transmission_min_task, transmission_min_cycle : float, rad
-        Worst min(mu, pi - mu) over the motion used and over the turn.
+        Worst min(mu, pi - mu) over the task motion and over the turn.
     size : float, length
-        Diagonal of the box around O2, O4 and all that A, B and P reach in the motion used.
+        Diagonal of the box around O2, O4 and all that A, B and P reach in it.
     defects : tuple of Defect
         Empty for a design that does what is required.
     """

@@ -189,7 +189,7 @@ def _rotatability(linkage: FourBar, task: Task, wanted: Requirements) -> list[De
     if wanted.rotatability is Rotatability.ANY:
         if not task.closed:
             return []
-        margin, why = 0.0, "a closed path takes a whole turn"
+        margin, why = 0.0, f"a closed {task.kind} takes a whole turn"
     least = float(rotatability(linkage).min())
     defects = []
     if least < margin - SLACK:

@@ -9,6 +9,7 @@ import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from numbers import Real
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -83,6 +84,17 @@ def outline(values: npt.ArrayLike, where: str) -> FloatArray:
     if len(corners) < 2:
         raise ProblemError(f"{where} has {counted(len(corners), 'corner')}; allowed are two or more")
     return corners
+
+
+def number_array(values: npt.ArrayLike, message: str, axes: Sequence[int] = range(9)) -> npt.NDArray[Any]:
+    """Values as an array of so many axes, refused with a message when they are not numbers."""
+    try:
+        numbers = np.asarray(values)
+    except ValueError:  # lists of unequal length inside
+        numbers = np.array(None)
+    if numbers.dtype.kind not in "iuf" or numbers.ndim not in axes:
+        raise ProblemError(message)
+    return numbers
 
 
 def finite_number(value: float, where: str) -> float:

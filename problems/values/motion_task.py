@@ -17,6 +17,7 @@ from grashof.problems.values.checks import (
     finite_number,
     near_miss,
     noted,
+    number_array,
     number_within,
     outline,
     refuse,
@@ -24,7 +25,7 @@ from grashof.problems.values.checks import (
 )
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.task import Task
-from grashof.problems.values.timing import driver_timing, timing_from_degrees, whole_turn
+from grashof.problems.values.timing import driver_timing, finite_angles, whole_turn
 from grashof.problems.values.zones import LEAST_ZONE, turn_sizes, zone_sizes
 
 _POSE = "a pose [x, y, angle in degrees]"
@@ -171,7 +172,7 @@ class MotionTask(Task):
             body=body,
             within=within,
             angle_within=turn_sizes(angle_within_deg, len(rows), in_degrees=True),
-            timing=timing_from_degrees(timing_deg, "motion"),
+            timing=None if timing_deg is None else np.radians(finite_angles(timing_deg, "motion")),
             closed=closed,
         )
 
@@ -201,12 +202,7 @@ def _row(pose: object, where: str) -> tuple[float, float, float]:
 
 
 def _numbers(values: npt.ArrayLike, what: str) -> FloatArray:
-    try:
-        numbers = np.asarray(values)
-    except ValueError:  # rows of unequal length inside
-        raise ProblemError(f"motion.poses has {what} {values!r}; allowed are numbers") from None
-    if numbers.dtype.kind not in "iuf":
-        raise ProblemError(f"motion.poses has {what} {values!r}; allowed are numbers")
+    numbers = number_array(values, f"motion.poses has {what} {values!r}; allowed are numbers")
     if np.isinf(numbers).any():
         raise ProblemError(
             f"motion.poses has {what} that are infinite; allowed are numbers, NaN for free ones"
@@ -217,12 +213,7 @@ def _numbers(values: npt.ArrayLike, what: str) -> FloatArray:
 def _weights(values: npt.ArrayLike | None, count: int) -> FloatArray:
     if values is None:
         return frozen_array(np.ones(count))
-    try:
-        weights = np.asarray(values)
-    except ValueError:
-        weights = np.array(None)
-    if weights.dtype.kind not in "iuf" or weights.ndim != 1:
-        raise ProblemError(f"motion.weights is {values!r}; allowed is a list of numbers")
+    weights = number_array(values, f"motion.weights is {values!r}; allowed is a list of numbers", (1,))
     if len(weights) != count:
         raise ProblemError(f"motion.weights has {counted(len(weights), 'number')} for {count} poses")
     least, most = _WEIGHTS

@@ -12,7 +12,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import GREATEST, counted, finite_rows, task_size
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.task import Task
-from grashof.problems.values.timing import driver_timing, timing_from_degrees, whole_turn
+from grashof.problems.values.timing import driver_timing, finite_angles, whole_turn
 from grashof.problems.values.zones import LEAST_ZONE, zone_sizes
 
 
@@ -85,7 +85,7 @@ class PathTask(Task):
         within: npt.ArrayLike | None = None,
     ) -> PathTask:
         """Task with its timing in degrees, as problem files write it."""
-        timing = timing_from_degrees(timing_deg, "path")
+        timing = None if timing_deg is None else np.radians(finite_angles(timing_deg, "path"))
         return cls(points, timing=timing, closed=closed, within=within)
 
     @property

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.values.arrays import TURN, FloatArray, frozen_array
-from grashof.problems.values.checks import counted
+from grashof.problems.values.checks import counted, number_array
 from grashof.problems.values.errors import ProblemError
 
 
@@ -25,11 +25,6 @@ def driver_timing(values: npt.ArrayLike | None, count: int, kind: str, target: s
     ------
     ProblemError
         Not such numbers.
-
-    Examples
-    --------
-    >>> driver_timing([0, -1, -2], 3, "path", "point")
-    array([ 0., -1., -2.])
     """
     if values is None:
         return None
@@ -50,20 +45,10 @@ def driver_timing(values: npt.ArrayLike | None, count: int, kind: str, target: s
     return frozen_array(timing)
 
 
-def timing_from_degrees(values: npt.ArrayLike | None, kind: str) -> FloatArray | None:
-    """The same as problem files write them, not checked yet but for being finite numbers."""
-    return None if values is None else np.radians(finite_angles(values, kind))
-
-
 def finite_angles(values: npt.ArrayLike, kind: str) -> FloatArray:
     """A list of finite numbers, as an array."""
     where = f"{kind}.timing_deg"
-    try:
-        numbers = np.asarray(values)
-    except ValueError:  # lists of unequal length inside
-        raise ProblemError(f"{where} is {values!r}; allowed is a list of angles") from None
-    if numbers.ndim != 1 or numbers.dtype.kind not in "iuf":
-        raise ProblemError(f"{where} is {values!r}; allowed is a list of angles")
+    numbers = number_array(values, f"{where} is {values!r}; allowed is a list of angles", (1,))
     for index in np.flatnonzero(~np.isfinite(numbers)):
         raise ProblemError(f"{where}[{index}] is {numbers[index]}; all numbers must be finite")
     return numbers.astype(np.float64)

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.values.arrays import FloatArray, frozen_array
-from grashof.problems.values.checks import GREATEST, counted
+from grashof.problems.values.checks import GREATEST, counted, number_array
 from grashof.problems.values.errors import ProblemError
 
 LEAST_ZONE = 1e-12  # below, digits are lost
@@ -40,12 +40,7 @@ def zone_sizes(
     if values is None:
         return None
     allowed = "allowed is a number greater than zero, or a list of one for each target"
-    try:
-        numbers = np.asarray(values)
-    except ValueError:  # lists of unequal length inside
-        numbers = np.array(None)
-    if numbers.dtype.kind not in "iuf" or numbers.ndim > 1:
-        raise ProblemError(f"{where} is {values!r}; {allowed}")
+    numbers = number_array(values, f"{where} is {values!r}; {allowed}", (0, 1))
     if numbers.ndim == 1 and len(numbers) != count:
         raise ProblemError(f"{where} has {counted(len(numbers), 'number')} for {count} targets; {allowed}")
     for index, number in enumerate(np.atleast_1d(numbers)):
