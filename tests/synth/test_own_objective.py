@@ -49,11 +49,12 @@ def test_designs_are_sorted_by_it_and_say_so() -> None:
 
 
 def of_path(**wanted: Any) -> Result:
-    points = np.array(
-        [[0, 0], [1, 0.4], [2, 0.5], [3, 0.2], [3.2, -0.8], [2.5, -1.2], [1.2, -1], [0.2, -0.6]]
-    )
+    x = [0, 0.7, 1.5, 2.2, 2.9, 3.3, 3.2, 2.6, 1.9, 1.1, 0.4, -0.1]
+    y = [0, 0.5, 0.6, 0.5, 0.1, -0.5, -1.0, -1.3, -1.2, -1.1, -0.8, -0.4]
     return synthesize(
-        Problem(task=PathTask(points=points), requirements=Requirements(exact=False, **wanted)),
+        Problem(
+            task=PathTask(points=np.column_stack([x, y])), requirements=Requirements(exact=False, **wanted)
+        ),
         objective=ground if "error_factor" in wanted else None,
         enough=5,
     )
