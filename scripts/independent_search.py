@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import minimize
 
-from grashof.analysis.judge.verify import Verdict, verify
+from grashof.analysis import Verdict, verify
 from grashof.problems import Box, FourBar, Problem, Requirements, Rotatability
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 

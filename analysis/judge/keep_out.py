@@ -212,8 +212,11 @@ def _body_depth(
         found, closed = np.full(len(theta2), -np.inf), np.isfinite(p + turn)
         p, turn = p[closed, None], turn[closed, None]
         begin = p + turn * corner
-        ends = (np.stack([each.real, each.imag], axis=-1) for each in (begin, np.roll(begin, -1, axis=1)))
-        sides = segment_depth(area, *(each.reshape(-1, 2) for each in ends), rounds)
+        a, b = (
+            np.stack([each.real, each.imag], axis=-1).reshape(-1, 2)
+            for each in (begin, np.roll(begin, -1, axis=1))
+        )
+        sides = segment_depth(area, a, b, rounds)
         found[closed] = sides.reshape(begin.shape).max(axis=1)
         if body is not None:  # an area may lie wholly inside the body
             held = (area.begin - p) / turn

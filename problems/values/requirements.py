@@ -297,7 +297,7 @@ class Requirements(ReadOnly):
             for name, limited in LIMITS.items()
             if limited.usual is not None and getattr(self, name) is None
         }
-        free = {
+        free: dict[str, Any] = {
             name: None
             for name, limited in LIMITS.items()
             if limited.kind in (Kind.INSIDE, Kind.ON_BODY) and getattr(self, name) == Box()

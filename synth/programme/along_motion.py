@@ -84,15 +84,18 @@ class Instant:
 
     def velocity(self, on_coupler: Vector) -> Vector:
         """Of a place given from A."""
-        return self.crank.left + self.speed3 * on_coupler.left
+        velocity: Vector = self.crank.left + self.speed3 * on_coupler.left
+        return velocity
 
     def acceleration(self, on_coupler: Vector) -> Vector:
         """Of a place given from A."""
-        return self.rate3 * on_coupler.left - self.crank - self.speed3**2 * on_coupler
+        acceleration: Vector = self.rate3 * on_coupler.left - self.crank - self.speed3**2 * on_coupler
+        return acceleration
 
     def inertia_force(self, mass: Any, acceleration: Vector) -> Vector:
         """What a mass takes besides its weight: m (a - g)."""
-        return mass * (self.load[0] * acceleration - Vector(self.load[1], self.load[2]))
+        force: Vector = mass * (self.load[0] * acceleration - Vector(self.load[1], self.load[2]))
+        return force
 
 
 def drive_torque(at: Instant) -> list[Any]:

@@ -197,8 +197,10 @@ def bound_error(build: Builder, form: Form, x: Unknowns, places: Places, targets
     if form.most_error:
         most = build.parameter(lambda _, start: min(start.most_error, FAR) ** 2 * form.targets)
         build.row(1 - square(form, x, places, targets) / most)
-    zones = build.parameter(_zones, 2 * form.targets) if form.zoned else None
-    for k in range(form.targets if zones is not None else 0):
+    if not form.zoned:
+        return
+    zones = build.parameter(_zones, 2 * form.targets)
+    for k in range(form.targets):
         if form.positions[k]:
             build.require(("within",), 1 - ca.sumsqr(places.p[k] - targets.points[k]) / zones[k] ** 2)
         if form.angles[k]:

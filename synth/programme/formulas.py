@@ -9,7 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
+from functools import partial
 from itertools import permutations
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -100,22 +102,17 @@ class Part:
 
 
 def _place(name: str, dyad: int) -> tuple[Part, ...]:
-    return tuple(
-        Part(f"{name}.{axis}", lambda d, axis=axis: getattr(getattr(d, name), axis), axis, dyad)
-        for axis in "xy"
-    )
+    return tuple(Part(f"{name}.{axis}", attrgetter(f"{name}.{axis}"), axis, dyad) for axis in "xy")
 
 
 def _bracket(name: str) -> tuple[Part, ...]:
     """A or B in the frame of the body."""
 
-    def place(d: View) -> Vector:
+    def place(axis: str, d: View) -> Any:
         arm: Vector = -getattr(d, f"{name}p")
-        return arm.turned(-d.body_turn)
+        return getattr(arm.turned(-d.body_turn), axis)
 
-    return tuple(
-        Part(f"{name}_on_body.{axis}", lambda d, axis=axis: getattr(place(d), axis), axis) for axis in "xy"
-    )
+    return tuple(Part(f"{name}_on_body.{axis}", partial(place, axis), axis) for axis in "xy")
 
 
 _LINKS = (

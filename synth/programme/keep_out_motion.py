@@ -57,7 +57,8 @@ def _body(scaled: ScaledProblem) -> ComplexArray:
         return np.zeros(0, dtype=np.complex128)
     corner = outline @ np.array([1, 1j]) / scaled.frame.scale
     side = np.roll(corner, -1) - corner
-    return (corner[:, None] + np.concatenate([[0.0], _ALONG]) * side[:, None]).ravel()
+    points: ComplexArray = (corner[:, None] + np.concatenate([[0.0], _ALONG]) * side[:, None]).ravel()
+    return points
 
 
 def _from_coupler(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
@@ -65,7 +66,8 @@ def _from_coupler(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
     if scaled.motion is None:
         return linkages.body_angle
     _, _, a, b, _ = linkages.points.T
-    return scaled.motion.first_turn - np.angle(b - a)
+    turn: FloatArray = scaled.motion.first_turn - np.angle(b - a)
+    return turn
 
 
 def _places(linkages: Screened) -> dict[str, ComplexArray]:

@@ -89,7 +89,7 @@ def cost_of_goals(build: Builder, form: Form, x: Unknowns, places: Places) -> ca
     """What is made least: the goals by their weights. What is limited along the motion is bounded, too."""
     weights = {key: build.parameter(_share(form, key)) for key in form.goals}
     cost, design = ca.SX(0), Symbols(form, x, places)
-    size = diagonal(build, x, places) if "size" in (*form.goals, *form.limited) else None
+    size = diagonal(build, x, places) if "size" in (*form.goals, *form.limited) else ca.SX(0)
     for key, weight in weights.items():
         if key == "transmission":
             cost -= weight * x.tau / (np.pi / 2)
@@ -98,7 +98,7 @@ def cost_of_goals(build: Builder, form: Form, x: Unknowns, places: Places) -> ca
         elif key in FORMULAS:
             (part,) = FORMULAS[key]
             cost -= weight * QUANTITIES[key].better * ca.SX(part.of(design))
-    if "size" in form.limited and size is not None:
+    if "size" in form.limited:
         build.require(
             ("size",), build.parameter(lambda scaled, _: scaled.wanted.ranges("size")[""][1]) - size
         )

@@ -165,11 +165,13 @@ def _oversteps(view: View, wanted: Requirements, dyad: int | None) -> Iterator[t
 def _overstep(view: View, part: Part, low: float, high: float) -> FloatArray:
     value = part.of(view)
     if low == high and part.axis == "":  # an angle
-        return np.abs(np.angle(np.exp(1j * (value - low))))
-    if part.per is not None:
-        return np.maximum(value / high - part.per(view), 0.0)
-    value = np.sqrt(value) if part.squared else value
-    return np.maximum(np.maximum(low - value, value - high), 0.0)
+        amount: FloatArray = np.abs(np.angle(np.exp(1j * (value - low))))
+    elif part.per is not None:
+        amount = np.maximum(value / high - part.per(view), 0.0)
+    else:
+        value = np.sqrt(value) if part.squared else value
+        amount = np.maximum(np.maximum(low - value, value - high), 0.0)
+    return amount
 
 
 def judge(

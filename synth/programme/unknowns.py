@@ -9,7 +9,7 @@ import numpy as np
 
 from grashof.problems import FourBar, Rotatability
 from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
-from grashof.synth.programme.builder import Builder, always
+from grashof.synth.programme.builder import Builder, Fill, always
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import Form
@@ -98,7 +98,7 @@ class Unknowns:
         return ca.dot(self.at_first, self.theta2)
 
 
-def _pivot(name: str) -> tuple[object, object]:
+def _pivot(name: str) -> tuple[Fill, Fill]:
     """Guess and limits of a pivot, which may move by the radius of a start."""
     far = (-FAR, FAR) if name in FourBar.GROUND else inset((-FAR, FAR))
 
@@ -152,4 +152,5 @@ def lifted(required: float, start: float) -> float:
 
 def interleaved(points: ComplexArray | complex) -> FloatArray:
     """Real and imaginary parts of points, one after the other."""
-    return np.stack([np.real(points), np.imag(points)], axis=-1).ravel()
+    parts: list[FloatArray] = [np.real(points), np.imag(points)]
+    return np.stack(parts, axis=-1).ravel()

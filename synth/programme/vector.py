@@ -52,7 +52,8 @@ class Vector:
 
     def turned(self, angle: Any) -> Vector:
         """Turned by an angle, counter-clockwise."""
-        return np.cos(angle) * self + np.sin(angle) * self.left
+        turned: Vector = np.cos(angle) * self + np.sin(angle) * self.left
+        return turned
 
     @property
     def square(self) -> Any:

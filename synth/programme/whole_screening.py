@@ -42,7 +42,8 @@ def _beyond(scaled: ScaledProblem, linkages: Screened, name: str) -> FloatArray:
     peak = magnitudes(scaled.problem, quantity.key, linkages.points, *ways, SCREENED).max(axis=1)
     value = value_of(quantity.key, peak) * scaled.problem.scale(quantity)
     share = np.maximum(low - value, value - high) / (high if np.isfinite(high) else max(low, 1.0))
-    return np.maximum(np.nan_to_num(share, posinf=FAR), 0.0)
+    amount: FloatArray = np.maximum(np.nan_to_num(share, posinf=FAR), 0.0)
+    return amount
 
 
 FAR = 1e3  # stands for an amount without bound

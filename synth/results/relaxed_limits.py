@@ -88,7 +88,8 @@ def loosest(problem: Problem, key: str) -> Requirements:
     wanted = problem.requirements
     if key == "constraints":
         return wanted
-    given, loose = getattr(wanted, key), None
+    given = getattr(wanted, key)
+    loose: Any = None
     usual = LIMITS["link_length" if key in FourBar.LENGTHS else key].usual if key in LIMITS else None
     if usual is not None:
         low, high = (problem.task.size * share for share in usual)

@@ -18,7 +18,7 @@ class Tally:
     Parameters
     ----------
     found : Counter of str
-        By the search for starts, such as "feasible linkages".
+        By the search for starts, such as "feasible finds".
     outcomes : Counter of Outcome
         Of solves.
     totals : Counter of str

@@ -105,7 +105,7 @@ class Parallelograms(WholePoses):
         """One round."""
         if self.freedom or size == 1:
             starts = parallelogram_starts(self.scaled, enough, rng)
-            yield Round(starts, {"feasible linkages": len(starts)})
+            yield Round(starts, {"feasible finds": len(starts)})
 
     def near(self, rng: np.random.Generator) -> Screened:
         """Parallelogram linkages, feasible or not."""
@@ -173,7 +173,7 @@ class FewPoses(DyadPairs):
             only_own = len(pairs) > len(feasible)  # nothing but the user's own constraints is violated
             starts += mended_starts(scaled, pairs if only_own else self.near_pairs(dyads), enough)
         alternating = [start for both in zip_longest(sideways, starts) for start in both if start]
-        yield Round(alternating, {"feasible linkages": len(feasible), "exact dyads": 0})
+        yield Round(alternating, {"feasible finds": len(feasible), "exact dyads": 0})
 
     def dyads(self, rng: np.random.Generator) -> Dyads:
         """Dyads all along the curves of four poses; random ones of fewer."""
@@ -215,7 +215,7 @@ class ManyPoses(DyadPairs):
         dyads = self.dyads(rng)
         pairs = self.pairs(dyads)
         starts = starts_of(self.scaled, pairs, np.argsort(-merits(self.scaled, pairs), kind="stable"))
-        counts = {"feasible linkages": int(pairs.feasible.sum()), "exact dyads": len(dyads)}
+        counts = {"feasible finds": int(pairs.feasible.sum()), "exact dyads": len(dyads)}
         yield Round([replace(start, settled=True) for start in starts], counts)
 
     def dyads(self, rng: np.random.Generator) -> Dyads:

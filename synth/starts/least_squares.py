@@ -116,7 +116,7 @@ def _free_round(scaled: ScaledProblem, batch: Batch, size: int) -> Round | None:
         return None
     order = np.argsort(feasible.error, kind="stable")
     starts = [_start(scaled, feasible, feasible.error, int(k)) for k in order]
-    counts = {"feasible linkages": len(feasible)}
+    counts = {"feasible finds": len(feasible)}
     most = size * MOST_CURVES * (2 if scaled.of_use else 1)
     return Round(_other_curves(starts, most), counts, size, NEAR_BEST, free=True)
 
@@ -154,7 +154,7 @@ def _limited_round(
         some = _some(rng, np.arange(len(error)), before)
         chosen += [replace(_start(scaled, early, error, k), promise=0.0) for k in some]
         prune = NEAR_BEST_SHIFTED
-    return Round(chosen, {"feasible linkages": int(linkages.feasible.sum())}, size, prune)
+    return Round(chosen, {"feasible finds": int(linkages.feasible.sum())}, size, prune)
 
 
 def _search(scaled: ScaledProblem, drawn: Batch, best: Batch, size: int) -> tuple[Batch, Batch]:

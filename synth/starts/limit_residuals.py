@@ -91,17 +91,18 @@ class Placement(View):
     def b(self) -> Vector:  # type: ignore[override]
         """B at every target."""
         theta3 = Dual(np.angle(self.loop.e3), self.by_theta3)
-        return self.a + self.relative.r3 * self._ground.turned(theta3)
+        at_b: Vector = self.a + self.relative.r3 * self._ground.turned(theta3)
+        return at_b
 
     @cached_property
-    def output_turn(self) -> Dual:  # type: ignore[override]
+    def output_turn(self) -> Dual:
         """Rotation of the output link from the first target to the last."""
         first, last = (Vector(self.b.x.column(k), self.b.y.column(k)) - self.o4 for k in (0, -1))
         turned: Dual = first.angle_to(last)
         return turned
 
     @cached_property
-    def body_turn(self) -> Dual:  # type: ignore[override]
+    def body_turn(self) -> Dual:
         """From the coupler of the loop to the body."""
         weights = self._target.turn_weights
         slope = np.einsum("i,sim->sm", weights, self.by_theta3) / weights.sum()

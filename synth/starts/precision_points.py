@@ -52,7 +52,7 @@ class PrecisionPoints(CouplerSearch):
             starts += mended_starts(self.scaled, linkages, enough)
         settled = not has_family(self.scaled)  # without freedom the linkage is the design already
         starts = [replace(start, settled=settled) for start in starts]
-        return Round(starts, {"feasible linkages": len(feasible)})
+        return Round(starts, {"feasible finds": len(feasible)})
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +84,7 @@ class NinePoints(PrecisionPoints):
         first = usable & (np.cumsum(usable, axis=1) == 1)
         chosen = np.flatnonzero(feasible & first[..., None])
         starts = [replace(start, settled=True) for start in starts_of(self.scaled, linkages, chosen)]
-        return Round(starts, {"feasible linkages": int(feasible.sum()), THROUGH: 3 * len(through)})
+        return Round(starts, {"feasible finds": int(feasible.sum()), THROUGH: 3 * len(through)})
 
     def obstacle(self, _rng: np.random.Generator, counts: Mapping[str, int], /) -> str:
         """That none of all linkages does it; empty where they were not computed."""

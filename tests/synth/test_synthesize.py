@@ -250,5 +250,5 @@ def test_counts_add_up(luggage_result: Result) -> None:
     outcomes = sum(count for name, count in counts.items() if name in ends or name.startswith("rejected: "))
     assert solves == outcomes
     assert counts["verified and distinct"] == len(luggage_result)
-    assert counts["feasible linkages"] > 1000
+    assert counts["feasible finds"] > 1000
     assert {"screening", "solving", "total"} <= set(luggage_result.seconds)

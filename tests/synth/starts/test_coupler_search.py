@@ -64,7 +64,7 @@ def test_a_family_has_feasible_starts_that_are_apart() -> None:
     scaled = setup_of(LINE, link_length=(5, 60), rotatability="crank-rocker")
     (first,) = first_rounds(scaled, 1, enough=20)
     starts = first.starts
-    assert first.counts["feasible linkages"] >= len(starts) > 20
+    assert first.counts["feasible finds"] >= len(starts) > 20
     assert not any(start.settled for start in starts)
     check_tracks(scaled, starts, 1e-5)
     scale = scaled.frame.scale
@@ -191,7 +191,7 @@ def test_interpolation_mixes_assemblies() -> None:
 def test_an_equality_leaves_near_misses_to_start_from(wanted: dict[str, Any]) -> None:
     scaled = setup_of(LINE[:4], link_length=(5, 60), **wanted)
     (first,) = first_rounds(scaled, 1, enough=10)
-    assert first.counts["feasible linkages"] == 0
+    assert first.counts["feasible finds"] == 0
     assert len(first.starts) >= 10
 
 

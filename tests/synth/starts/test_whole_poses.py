@@ -22,7 +22,7 @@ SetupOf = Callable[..., ScaledProblem]
 
 def queue_of(scaled: ScaledProblem, enough: int = 50, seed: int = 0) -> tuple[list[Start], int]:
     (queue,) = finder_for(scaled).rounds(enough, np.random.default_rng(seed), 1)
-    return queue.starts, queue.counts["feasible linkages"]
+    return queue.starts, queue.counts["feasible finds"]
 
 
 def linkage_of(scaled: ScaledProblem, start: Start) -> FourBar:

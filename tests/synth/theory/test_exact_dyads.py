@@ -99,7 +99,7 @@ def test_starts_of_two_and_three_poses_meet_them_with_their_pivots_in_place(
     for start in queue.starts:
         pair = Dyads(np.array([start.a, start.b]), np.array([start.o2, start.o4]))
         assert spread_of_radii(scaled, pair).max() < 1e-9
-    for start in queue.starts[: min(5, queue.counts["feasible linkages"])]:
+    for start in queue.starts[: min(5, queue.counts["feasible finds"])]:
         found = independent_judge(
             scaled.linkages(start.points, np.array(start.assembly)), scaled.problem.task
         )
@@ -132,7 +132,7 @@ def test_starts_of_five_poses_and_more_are_settled_pairs_of_dyads(
         (queue,) = finder_for(scaled).rounds(50, rng(), 1)
         dyads = dyads_of(scaled)
         assert queue.counts["exact dyads"] == len(dyads)
-        assert queue.counts["feasible linkages"] == len(queue.starts) <= len(dyads) * (len(dyads) - 1)
+        assert queue.counts["feasible finds"] == len(queue.starts) <= len(dyads) * (len(dyads) - 1)
         for start in queue.starts:
             assert start.settled
             for pair in ((start.a, start.o2), (start.b, start.o4)):
