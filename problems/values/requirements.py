@@ -297,17 +297,17 @@ class Requirements(ReadOnly):
             for name, limited in LIMITS.items()
             if limited.usual is not None and getattr(self, name) is None
         }
-        free: dict[str, Any] = {
-            name: None
+        anywhere: dict[str, Any] = {
+            name: Box()
             for name, limited in LIMITS.items()
-            if limited.kind in (Kind.INSIDE, Kind.ON_BODY) and getattr(self, name) == Box()
+            if limited.kind is Kind.INSIDE and getattr(self, name) is None
         }
-        return replace(self, **usual, **free)
+        return replace(self, **usual, **anywhere)
 
     @property
     def limited(self) -> dict[str, Limit]:
         """What is limited, by field: the fields that are stated."""
-        return {name: limited for name, limited in LIMITS.items() if getattr(self, name) is not None}
+        return {name: limited for name, limited in LIMITS.items() if getattr(self, name) not in (None, Box())}
 
     def meant(self, quantity: Quantity) -> Quantity:
         """The quantity itself; of the transmission angle, the one over the motion that is required."""
@@ -317,7 +317,7 @@ class Requirements(ReadOnly):
     def ranges(self, name: str) -> dict[str, Limits]:
         """What a field allows (see `Limit.ranges`); empty where it limits nothing."""
         value = getattr(self, name) if name in LIMITS else None
-        return {} if value is None else LIMITS[name].ranges(value)
+        return {} if value in (None, Box()) else LIMITS[name].ranges(value)
 
 
 _RANGES = {"tolerance": (1e-12, 1.0), "error_factor": (1.0, 1e6), "rotatability_margin": (0.0, 0.25)}

@@ -225,7 +225,7 @@ def test_relaxed_transmission_comes_as_near_as_the_best_without_the_limit(
 
 RELAXED: dict[str, tuple[str, dict[str, Any]]] = {
     "short links": ("link_length", {"link_length": (0.3, 2.5)}),
-    "short r3": ("link_length", {"r3": (0.3, 0.6)}),
+    "short r3": ("r3", {"r3": (0.3, 0.6)}),
     "short arms": ("coupler_arms", {"coupler_arms": (0.0, 2.0)}),
     "o2 far away": ("o2", {"o2": Box((20, 21), (0, 1))}),
     "o4 far away": ("o4", {"o4": Box(y=(15, 16))}),
