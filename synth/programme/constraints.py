@@ -320,7 +320,7 @@ def _square(scaled: ScaledProblem, start: Start) -> float:
 def _zones(scaled: ScaledProblem, start: Start) -> FloatArray:
     """How far each target may be missed, drawn in a little: sizes, then rad."""
     zones = np.full((2, len(scaled.targets)), FAR) if scaled.zones is None else scaled.zones
-    return (np.minimum(zones, MOST_ZONE) * (1 - ZONE_INSET))[:, list(start.visit)].ravel()
+    return (np.minimum(zones, MOST_ZONE) * (1 - ZONE_INSET - start.tighter))[:, list(start.visit)].ravel()
 
 
 def _planes(scaled: ScaledProblem, start: Start) -> FloatArray:

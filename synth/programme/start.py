@@ -54,6 +54,8 @@ class Start:
         Root mean square error that a least-squares search came to here, with what limits add.
     more_transmission : float, rad
         By how much more than required the transmission is bounded.
+    tighter : float
+        Share by which zones are drawn in.
     loose : bool
         Driver angles need not be where the judge will find them.
     most_error : float, sizes
@@ -81,6 +83,7 @@ class Start:
     peaks_at: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     promise: float = 0.0
     more_transmission: float = 0.0
+    tighter: float = 0.0
     loose: bool = False
     most_error: float = np.inf
     zoned: bool = False

@@ -15,13 +15,14 @@ from grashof.synth.programme.start import UNSMOOTH, Start
 from grashof.synth.programme.structure import Form
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.results.judging import judged, verified_cognates
+from grashof.synth.results.larger_zones import MISSED, shares
 from grashof.synth.results.polishing import polished_solve, polished_start
 from grashof.synth.starts.finder import finder_for
 
 TRANSMISSION = "transmission_min_deg"
-# The judge may put the ends of the motion a little farther than the programme: so many solves at most
-# ask for that much more of the transmission, unless what is missing is more than a little (rad).
-MORE, BEYOND, A_LITTLE = 5, 1.05, 0.2
+# The judge may put the driver a little elsewhere than the programme: so many solves at most ask for that
+# much more, unless what is missing is more than a little (of transmission, rad; share of a zone).
+MORE, BEYOND, A_LITTLE, OF_ZONE = 5, 1.05, 0.2, 1e-4
 
 
 class Outcome(StrEnum):
@@ -84,18 +85,17 @@ def attempt(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
 
 
 def _solved(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
-    """Solve; again, asking for more, as long as the transmission alone is a little short."""
+    """Solve; again, asking for more, as long as the transmission, or a zone, alone is a little short."""
     solve = solve_by_exchange(scaled, start)
     if solve.status not in SOLVED and any(Form.of(scaled, start).nearest):
         start = replace(start, loose=True)
         solve = solve_by_exchange(scaled, start)
     done = polished_and_judged(scaled, start, solve, number)
     for _ in range(0 if scaled.exact else MORE):
-        short = _short_of_transmission(done.candidate)
-        if not 0 < short < A_LITTLE:
+        more = _more(scaled, start, done.candidate)
+        if not more:
             break
-        more = start.more_transmission + BEYOND * short
-        start = replace(begun_from(start, solve), more_transmission=more)
+        start = replace(begun_from(start, solve), **more)
         again = solve_by_exchange(scaled, start)
         if again.status not in SOLVED:
             break
@@ -104,11 +104,18 @@ def _solved(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
     return done
 
 
-def _short_of_transmission(candidate: Candidate | None) -> float:
-    """By how much the transmission is missed, where nothing else is, rad; else zero."""
-    if candidate is None or {defect.requirement for defect in candidate.verdict.defects} != {TRANSMISSION}:
-        return 0.0
-    return candidate.verdict.defects[0].miss
+def _more(scaled: ScaledProblem, start: Start, candidate: Candidate | None) -> dict[str, float]:
+    """What the next solve asks for, where one thing alone is missed by a little; else nothing."""
+    missed = {defect.requirement for defect in candidate.verdict.defects} if candidate is not None else set()
+    if candidate is None or not missed:
+        return {}
+    short = candidate.verdict.defects[0].miss
+    if missed == {TRANSMISSION} and short < A_LITTLE:
+        return {"more_transmission": start.more_transmission + BEYOND * short}
+    beyond = max(shares(scaled.problem, candidate.verdict)) - 1 if missed <= MISSED else 0.0
+    if start.zoned and not start.relaxed and 0 < beyond < OF_ZONE:
+        return {"tighter": start.tighter + BEYOND * beyond}
+    return {}
 
 
 def polished_and_judged(scaled: ScaledProblem, start: Start, solve: Solve, number: int) -> Attempt:

@@ -24,8 +24,8 @@ def test_resolved_fills_in_what_depends_on_the_size() -> None:
     resolved = Requirements().resolved(5.0)
     assert resolved.link_length == (0.05, 100.0)
     assert resolved.coupler_arms == (0.0, 150.0)
-    assert resolved.o2 is resolved.o4 is resolved.a is resolved.b is None
-    assert Requirements(o2=Box()).resolved(2.0).o2 is None
+    assert resolved.o2 == resolved.o4 == resolved.a == resolved.b == Box()
+    assert "o2" not in Requirements(o2=Box()).resolved(2.0).limited
 
 
 def test_resolved_keeps_what_is_given() -> None:
