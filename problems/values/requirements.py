@@ -298,7 +298,7 @@ class Requirements(ReadOnly):
             if limited.usual is not None and getattr(self, name) is None
         }
         anywhere: dict[str, Any] = {
-            name: Box()
+            name: _ANYWHERE
             for name, limited in LIMITS.items()
             if limited.kind is Kind.INSIDE and getattr(self, name) is None
         }
@@ -307,7 +307,9 @@ class Requirements(ReadOnly):
     @property
     def limited(self) -> dict[str, Limit]:
         """What is limited, by field: the fields that are stated."""
-        return {name: limited for name, limited in LIMITS.items() if getattr(self, name) not in (None, Box())}
+        return {
+            name: limited for name, limited in LIMITS.items() if getattr(self, name) not in (None, _ANYWHERE)
+        }
 
     def meant(self, quantity: Quantity) -> Quantity:
         """The quantity itself; of the transmission angle, the one over the motion that is required."""
@@ -317,7 +319,7 @@ class Requirements(ReadOnly):
     def ranges(self, name: str) -> dict[str, Limits]:
         """What a field allows (see `Limit.ranges`); empty where it limits nothing."""
         value = getattr(self, name) if name in LIMITS else None
-        return {} if value in (None, Box()) else LIMITS[name].ranges(value)
+        return {} if value in (None, _ANYWHERE) else LIMITS[name].ranges(value)
 
 
 _RANGES = {"tolerance": (1e-12, 1.0), "error_factor": (1.0, 1e6), "rotatability_margin": (0.0, 0.25)}
@@ -398,3 +400,6 @@ def _member(kind: type[StrEnum], value: str, where: str) -> StrEnum:
     except ValueError:
         allowed = ", ".join(kind)
         raise ProblemError(f"{where} is {value!r}; allowed is one of {allowed}") from None
+
+
+_ANYWHERE = Box()

@@ -51,7 +51,7 @@ class Symbols(View):
         self.body_turn, self.direction = x.body_turn, x.direction
         self.driver_turn = x.direction * (x.theta2[form.targets - 1] - x.theta2[0])
         first, last = (vector(b - x.o4) for b in (places.b[0], places.b[-1]))
-        self.output_turn, self.turns, self.double_crank = first.angle_to(last), form.crank, x.double_crank
+        self.output_turn, self.turns, self.double_crank = first.angle_to(last), x.turns, x.double_crank
 
 
 @dataclass(frozen=True, slots=True)
@@ -320,7 +320,8 @@ def _square(scaled: ScaledProblem, start: Start) -> float:
 def _zones(scaled: ScaledProblem, start: Start) -> FloatArray:
     """How far each target may be missed, drawn in a little: sizes, then rad."""
     zones = np.full((2, len(scaled.targets)), FAR) if scaled.zones is None else scaled.zones
-    return (np.minimum(zones, MOST_ZONE) * (1 - ZONE_INSET - start.tighter))[:, list(start.visit)].ravel()
+    kept = 1 - ZONE_INSET - start.asks("within")
+    return (np.minimum(zones, MOST_ZONE) * kept)[:, list(start.visit)].ravel()
 
 
 def _planes(scaled: ScaledProblem, start: Start) -> FloatArray:

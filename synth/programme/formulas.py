@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems import Requirements
-from grashof.problems.values.arrays import TURN, Limits
+from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, Limits
 from grashof.problems.values.requirements import LIMITS
 from grashof.synth.programme.vector import Vector
 
@@ -44,8 +44,8 @@ class View:
         Sense of the driver, +1 or -1.
     output_turn : scalar
         Rotation of the output link from the first target to the last, within half a turn.
-    turns : bool
-        The driver has to turn fully.
+    turns : scalar
+        1 where the driver turns fully, else 0.
     double_crank : scalar
         1 where r2 exceeds r1, so that the output of a full crank turns fully, too; else 0.
     """
@@ -66,7 +66,7 @@ class View:
     driver_turn: Any
     direction: Any
     output_turn: Any
-    turns: bool
+    turns: Any
     double_crank: Any
 
 
@@ -132,17 +132,29 @@ _PAIRS = tuple(
 )
 
 
+_FLAT = 1 - 1e-15
+
+
 def _cosine(opposite: Any, one: Any, other: Any) -> Any:
-    """Law of cosines, kept within -1 and 1 where there is no triangle."""
-    return np.minimum(np.maximum((one**2 + other**2 - opposite**2) / (2 * one * other), -1.0), 1.0)
+    """Law of cosines, kept between -1 and 1 where there is no triangle: arccos has no slope at the ends."""
+    cosine = (one**2 + other**2 - opposite**2) / (2 * one * other)
+    return np.minimum(np.maximum(cosine, -_FLAT), _FLAT)
+
+
+def turns_fully(r1: FloatArray, r2: FloatArray, r3: FloatArray, r4: FloatArray) -> BoolArray:
+    """Whether links 3 and 4 close the loop both where link 2 lies along the ground and against it."""
+    fully: BoolArray = (r1 + r2 <= r3 + r4) & (np.abs(r1 - r2) >= np.abs(r3 - r4))
+    return fully
 
 
 def _output_swing(d: View) -> Any:
-    """Between the triangles O2-B-O4 with links 2 and 3 stretched and folded; of a double-crank a turn."""
-    if not d.turns:
-        return np.abs(d.output_turn)
+    """Between the triangles O2-B-O4 with links 2 and 3 stretched and folded; of a double-crank a turn.
+
+    From the first target to the last where the driver does not turn fully.
+    """
     far, close = (np.arccos(_cosine(d.r3 + sign * d.r2, d.r1, d.r4)) for sign in (1.0, -1.0))
-    return (1 - d.double_crank) * (far - close) + d.double_crank * TURN
+    whole = (1 - d.double_crank) * (far - close) + d.double_crank * TURN
+    return d.turns * whole + (1 - d.turns) * np.abs(d.output_turn)
 
 
 def _time_ratio(d: View) -> Any:

@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
-from grashof.problems.values.quantities import Kind
+from grashof.problems.values.quantities import Kind, Unit
 from grashof.problems.values.requirements import LIMITS, QUANTITIES
 from grashof.synth.programme.along_motion import (
     AGREES,
@@ -57,8 +57,10 @@ def require_limits(build: Builder, form: Form, x: Unknowns, places: Places) -> N
 
 
 def _range(name: str, part: Part) -> Fill:
-    def limits(scaled: ScaledProblem, _: Start) -> Limits:
-        return near(range_of(scaled.wanted, name, part))
+    def limits(scaled: ScaledProblem, start: Start) -> Limits:
+        low, high = range_of(scaled.wanted, name, part)
+        more, of_ratio = start.asks(name), LIMITS[name].quantity.unit is Unit.RATIO
+        return near((low + more * (low if of_ratio else 1.0), high - more * (high if of_ratio else 1.0)))
 
     return limits
 
@@ -99,9 +101,8 @@ def cost_of_goals(build: Builder, form: Form, x: Unknowns, places: Places) -> ca
             (part,) = FORMULAS[key]
             cost -= weight * QUANTITIES[key].better * ca.SX(part.of(design))
     if "size" in form.limited:
-        build.require(
-            ("size",), build.parameter(lambda scaled, _: scaled.wanted.ranges("size")[""][1]) - size
-        )
+        most = build.parameter(lambda scaled, start: scaled.wanted.ranges("size")[""][1] - start.asks("size"))
+        build.require(("size",), most - size)
     for key in form.along:
         value = value_of(key, _peak(build, form, x, places, key))
         cost -= weights.get(key, 0.0) * QUANTITIES[key].better * value

@@ -19,6 +19,7 @@ from grashof.synth.programme.formulas import (
     parts_of,
     range_of,
     stretched,
+    turns_fully,
 )
 from grashof.synth.programme.vector import Vector
 
@@ -74,6 +75,14 @@ class Screened:
         """Which linkages violate nothing, shape (n,)."""
         return met(self.violations)
 
+    @property
+    def track(self) -> ComplexArray:
+        """A, B and P at every target in the order of visit, shape (3, n, N), sizes."""
+        o2, _, a, b, p = self.points.T[..., None]
+        coupler = np.take_along_axis(self.coupler, self.visit, axis=1)
+        at_a = o2 + np.abs(a - o2) * np.exp(1j * self.theta2)
+        return np.stack([at_a, at_a + coupler, at_a + (p - a) / (b - a) * coupler])
+
 
 @dataclass(frozen=True, slots=True)
 class Configurations:
@@ -116,8 +125,6 @@ class Many(View):
         Driver angles in the order of visit.
     body_turn : ndarray, shape (n,), rad, optional
         Angle of the body at the first target.
-    turns : bool
-        The driver has to turn fully.
     """
 
     def __init__(
@@ -129,7 +136,6 @@ class Many(View):
         b: ComplexArray | None = None,
         theta2: FloatArray | None = None,
         body_turn: FloatArray | None = None,
-        turns: bool = True,
     ) -> None:
         if o2 is not None and a is not None:
             crank = a - o2[:, None]
@@ -142,7 +148,8 @@ class Many(View):
             ground = (o4 - o2)[:, None]
             self.r1, self.r3, self.theta1 = np.abs(ground), np.abs(b[:, :1] - a[:, :1]), np.angle(ground)
             first, last = (_vector((b - o4[:, None])[:, [k]]) for k in (0, -1))
-            self.output_turn, self.turns, self.double_crank = first.angle_to(last), turns, self.r2 > self.r1
+            self.output_turn, self.double_crank = first.angle_to(last), self.r2 > self.r1
+            self.turns = turns_fully(self.r1, self.r2, self.r3, self.r4)
         if theta2 is not None:
             gone = theta2[:, -1:] - theta2[:, :1]
             self.driver_turn, self.direction = np.abs(gone), np.sign(gone)
@@ -207,8 +214,7 @@ def judge(
     coupler, output = found.b - found.a, found.b - found.o4[:, None]
     if first_turn is None:
         first_turn = np.angle(coupler[:, 0]) + (0.0 if body_angle is None else body_angle)
-    turns = wanted.rotatability is not Rotatability.ANY
-    view = Many(p, found.o2, found.a, found.o4, found.b, found.theta2, first_turn, turns)
+    view = Many(p, found.o2, found.a, found.o4, found.b, found.theta2, first_turn)
     with np.errstate(divide="ignore", invalid="ignore"):
         sine = (coupler.conj() * output).imag / (view.r3 * view.r4)
         assembly = np.where(np.sum(np.sign(sine), axis=1) >= 0, 1.0, -1.0)

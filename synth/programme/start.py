@@ -52,10 +52,8 @@ class Start:
         Where else what varies along the motion is bounded, as shares of it, by the key of the quantity.
     promise : float, sizes
         Root mean square error that a least-squares search came to here, with what limits add.
-    more_transmission : float, rad
-        By how much more than required the transmission is bounded.
-    tighter : float
-        Share by which zones are drawn in.
+    more : mapping of str to float
+        By how much more than required what each field limits is bounded, in the units of `Defect.miss`.
     loose : bool
         Driver angles need not be where the judge will find them.
     most_error : float, sizes
@@ -82,8 +80,7 @@ class Start:
     relaxed: tuple[str, ...] = ()
     peaks_at: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     promise: float = 0.0
-    more_transmission: float = 0.0
-    tighter: float = 0.0
+    more: Mapping[str, float] = field(default_factory=dict)
     loose: bool = False
     most_error: float = np.inf
     zoned: bool = False
@@ -132,6 +129,10 @@ class Start:
     def goals(self) -> Mapping[str, float]:
         """Weights of the quantities that it makes best; none where the user's own objective is."""
         return {} if self.objective is None else self.objective.goals
+
+    def asks(self, field: str) -> float:
+        """By how much more than required what a field limits is bounded."""
+        return self.more.get(field, 0.0)
 
     @property
     def theta1(self) -> float:

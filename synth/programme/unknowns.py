@@ -10,6 +10,7 @@ import numpy as np
 from grashof.problems import FourBar, Rotatability
 from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
 from grashof.synth.programme.builder import Builder, Fill, always
+from grashof.synth.programme.formulas import turns_fully
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import Form
@@ -43,6 +44,8 @@ class Unknowns:
         Sense of the driver and assembly, +1 or -1.
     at_first : SX, shape (N,)
         1 at the first target, else 0.
+    turns : SX
+        1 where the driver of the start turns fully, else 0.
     double_crank : SX
         1 where r2 stays longer than r1, else 0.
     body_turn : SX, rad
@@ -63,6 +66,7 @@ class Unknowns:
     direction: ca.SX
     assembly: ca.SX
     at_first: ca.SX
+    turns: ca.SX
     double_crank: ca.SX
     body_turn: ca.SX
 
@@ -88,6 +92,7 @@ class Unknowns:
             direction=build.parameter(lambda _, start: start.direction),
             assembly=build.parameter(lambda _, start: start.assembly),
             at_first=build.parameter(lambda _, start: [float(target == 0) for target in start.visit], n),
+            turns=build.parameter(_turns),
             double_crank=build.parameter(_double_crank),
             body_turn=first_turn if form.poses else found["body_angle"],
         )
@@ -123,9 +128,14 @@ def _first_fixed(scaled: ScaledProblem, start: Start) -> tuple[FloatArray, Float
 
 
 def _least_transmission(scaled: ScaledProblem, start: Start) -> Limits:
-    least = np.radians(scaled.wanted.transmission_min_deg) + INSET + start.more_transmission
+    least = np.radians(scaled.wanted.transmission_min_deg) + INSET + start.asks("transmission_min_deg")
     least = 0.0 if start.gives("transmission_min_deg") else min(least, np.pi / 2 - INSET)
     return max(LEAST_TRANSMISSION, least), np.pi / 2
+
+
+def _turns(scaled: ScaledProblem, start: Start) -> float:
+    required = scaled.wanted.rotatability is not Rotatability.ANY
+    return float(required or turns_fully(*np.array(start.lengths)))
 
 
 def _double_crank(scaled: ScaledProblem, start: Start) -> float:

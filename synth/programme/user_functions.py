@@ -99,17 +99,14 @@ def _numbers(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
     """The numbers of linkages in the order of `_symbols`, shape (n, M)."""
     o2, o4, a, b, p = linkages.points.T
     r3 = np.abs(b - a)
-    turned = np.take_along_axis(linkages.coupler, linkages.visit, axis=1) / r3[:, None]
     arm = (p - a) * r3 / (b - a)
-    at_a = o2[:, None] + np.abs(a - o2)[:, None] * np.exp(1j * linkages.theta2)
-    places = np.stack([at_a, at_a + r3[:, None] * turned, at_a + arm[:, None] * turned])
     columns = [
         *scaled.frame.outward(np.stack([o2, o4])).transpose(0, 2, 1).reshape(4, -1),
         *(scaled.frame.scale * np.abs([o4 - o2, a - o2, b - a, b - o4])),
         np.angle(o4 - o2),
         *(scaled.frame.scale * np.stack([arm.real, arm.imag])),
         *linkages.theta2.T,
-        *scaled.frame.outward(places).transpose(0, 2, 3, 1).reshape(-1, len(linkages)),
+        *scaled.frame.outward(linkages.track).transpose(0, 2, 3, 1).reshape(-1, len(linkages)),
     ]
     return np.stack(columns, axis=1)
 

@@ -18,7 +18,7 @@ def fully_screened(scaled: ScaledProblem, linkages: Screened) -> Screened:
     """The same with these violations, too."""
     wanted = scaled.wanted
     along = [name for name in wanted.limited if LIMITS[name].quantity.key in ALONG]
-    if not len(linkages) or not (along or scaled.constraints or wanted.keep_out):
+    if not len(linkages) or not (along or wanted.size or scaled.constraints or wanted.keep_out):
         return linkages
     violations = linkages.violations.copy()
     if wanted.keep_out:
@@ -27,11 +27,22 @@ def fully_screened(scaled: ScaledProblem, linkages: Screened) -> Screened:
 
         sound = linkages.feasible  # the others need not be looked at so closely
         violations[sound, GROUPS.index("keep_out")] = depth_on_the_way(scaled, linkages[sound])
+    if wanted.size is not None:
+        size = _sizes(linkages)
+        low, high = wanted.size
+        violations[:, GROUPS.index("size")] = np.maximum(np.maximum(low - size, size - high), 0.0)
     for name in along:
         violations[:, GROUPS.index(name)] = _beyond(scaled, linkages, name)
     if scaled.constraints:
         violations[:, GROUPS.index("constraints")] += own_violations(scaled, linkages)
     return replace(linkages, violations=violations)
+
+
+def _sizes(linkages: Screened) -> FloatArray:
+    """Diagonals of boxes around the pivots and the coupler point at all targets, shape (n,), sizes."""
+    places = np.concatenate([linkages.points[:, :2], *linkages.track], axis=1)
+    diagonal: FloatArray = np.hypot(np.ptp(places.real, axis=1), np.ptp(places.imag, axis=1))
+    return diagonal
 
 
 def _beyond(scaled: ScaledProblem, linkages: Screened, name: str) -> FloatArray:

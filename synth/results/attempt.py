@@ -8,7 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from grashof.problems.values.requirements import LIMITS
 from grashof.synth.programme.exchange import SOLVED, begun_from, solve_by_exchange
+from grashof.synth.programme.formulas import FORMULAS
 from grashof.synth.programme.nonlinear_programme import Solve
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import UNSMOOTH, Start
@@ -19,10 +21,15 @@ from grashof.synth.results.larger_zones import MISSED, shares
 from grashof.synth.results.polishing import polished_solve, polished_start
 from grashof.synth.starts.finder import finder_for
 
-TRANSMISSION = "transmission_min_deg"
-# The judge may put the driver a little elsewhere than the programme: so many solves at most ask for that
-# much more, unless what is missing is more than a little (of transmission, rad; share of a zone).
+# The judge may put the driver a little elsewhere than the programme, and looks between the targets: so many
+# solves at most ask for that much more, unless what is missing is more than a little (as in `Defect.miss`;
+# share of a zone).
 MORE, BEYOND, A_LITTLE, OF_ZONE = 5, 1.05, 0.2, 1e-4
+# Fields that more can be asked of.
+ASKED = {
+    "within", "transmission_min_deg", "size",
+    *(name for name, limit in LIMITS.items() if limit.quantity.key in FORMULAS),
+}  # fmt: skip
 
 
 class Outcome(StrEnum):
@@ -85,17 +92,17 @@ def attempt(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
 
 
 def _solved(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
-    """Solve; again, asking for more, as long as the transmission, or a zone, alone is a little short."""
+    """Solve; again, asking for more, as long as one thing alone is missed by a little."""
     solve = solve_by_exchange(scaled, start)
     if solve.status not in SOLVED and any(Form.of(scaled, start).nearest):
         start = replace(start, loose=True)
         solve = solve_by_exchange(scaled, start)
     done = polished_and_judged(scaled, start, solve, number)
-    for _ in range(0 if scaled.exact else MORE):
+    for _ in range(MORE if solve.status in SOLVED else 0):
         more = _more(scaled, start, done.candidate)
         if not more:
             break
-        start = replace(begun_from(start, solve), **more)
+        start = replace(begun_from(start, solve), more={**start.more, **more})
         again = solve_by_exchange(scaled, start)
         if again.status not in SOLVED:
             break
@@ -105,17 +112,17 @@ def _solved(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
 
 
 def _more(scaled: ScaledProblem, start: Start, candidate: Candidate | None) -> dict[str, float]:
-    """What the next solve asks for, where one thing alone is missed by a little; else nothing."""
+    """What the next solve asks for besides, by field; nothing unless one alone is missed by a little."""
     missed = {defect.requirement for defect in candidate.verdict.defects} if candidate is not None else set()
     if candidate is None or not missed:
         return {}
-    short = candidate.verdict.defects[0].miss
-    if missed == {TRANSMISSION} and short < A_LITTLE:
-        return {"more_transmission": start.more_transmission + BEYOND * short}
-    beyond = max(shares(scaled.problem, candidate.verdict)) - 1 if missed <= MISSED else 0.0
-    if start.zoned and not start.relaxed and 0 < beyond < OF_ZONE:
-        return {"tighter": start.tighter + BEYOND * beyond}
-    return {}
+    if missed <= MISSED and start.zoned and not start.relaxed:
+        field, short, little = "within", max(shares(scaled.problem, candidate.verdict)) - 1, OF_ZONE
+    else:
+        field, short, little = min(missed), max(each.miss for each in candidate.verdict.defects), A_LITTLE
+    if len(missed - MISSED) > 1 or field not in ASKED or start.gives(field) or not 0 < short < little:
+        return {}
+    return {field: start.asks(field) + BEYOND * short}
 
 
 def polished_and_judged(scaled: ScaledProblem, start: Start, solve: Solve, number: int) -> Attempt:

@@ -21,6 +21,7 @@ from grashof.synth.programme.formulas import (
     parts_of,
     range_of,
     stretched,
+    turns_fully,
 )
 from grashof.synth.programme.vector import Vector
 from grashof.synth.starts.closed_loop import Loop, SearchTargets, body_turns
@@ -80,7 +81,9 @@ class Placement(View):
         first, last = theta2.column(0), theta2.column(-1)
         self.theta2_start, self.direction = self.theta1 + first, np.sign(last.value - first.value)
         self.driver_turn, self.double_crank = np.abs(last - first), loop.r2[:, None] > 1
-        self.turns = target.wanted.rotatability is not Rotatability.ANY
+        required = target.wanted.rotatability is not Rotatability.ANY
+        lengths = (each[:, None] for each in (np.ones_like(loop.r2), loop.r2, loop.r3, loop.r4))
+        self.turns = required | turns_fully(*lengths)
 
     @cached_property
     def a(self) -> Vector:  # type: ignore[override]

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from grashof.problems import Rotatability
 from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth.programme.along_motion import ALONG, SCREENED, magnitudes, value_of
@@ -156,8 +155,7 @@ def _worth(scaled: ScaledProblem, linkages: Screened, key: str) -> FloatArray:
     elif key in FORMULAS:
         (part,) = FORMULAS[key]
         o2, o4, a, b, p = linkages.points.T
-        turns = scaled.wanted.rotatability is not Rotatability.ANY
-        pairs = Many(p, o2, a[:, None], o4, b[:, None], linkages.theta2, turns=turns)
+        pairs = Many(p, o2, a[:, None], o4, b[:, None], linkages.theta2)
         value = part.of(pairs)[:, 0]
         worth = QUANTITIES[key].better * value / scaled.scale(QUANTITIES[key])
     return worth
