@@ -1,6 +1,7 @@
 """Quantities: the formula of the search is the measure of the judge, and what is limited is kept."""
 
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from grashof.synth import Candidate
 from grashof.synth.programme.formulas import FORMULAS, Part
 from grashof.synth.programme.screening import Many
 
+pytestmark = pytest.mark.usefixtures("small_search")
 JUDGED = 50
 
 
@@ -73,7 +75,7 @@ def test_the_formula_is_the_measure(key: str) -> None:
 TASKS: dict[str, tuple[Problem, dict[str, Any]]] = {
     "poses met": (three_poses(), {"enough": 12}),
     "poses fitted": (conveyor(), {"effort": 0.2}),
-    "points met": (load("path-8-points"), {"enough": 12, "starts": 24}),
+    "points met": (load("path-8-points"), {"enough": 6, "starts": 12}),
 }
 
 
@@ -83,13 +85,16 @@ def limited(problem: Problem, **wanted: Any) -> Problem:
 
 def values_of(problem: Problem, key: str, **search: Any) -> list[float]:
     """A quantity of every design of a list, as the judge has it of the linkage alone."""
-    found = synthesize(problem, **search).candidates
+    return [each[key] for each in solved(problem, tuple(search.items()))]
+
+
+@cache
+def solved(problem: Problem, search: tuple[tuple[str, Any], ...]) -> list[Values]:
+    found = synthesize(problem, **dict(search)).candidates
     wanted = problem.requirements
     verdicts = [verify(each.linkage, problem.task, wanted, problem=problem) for each in found]
     assert [verdict.defects for verdict in verdicts if not verdict.ok] == []
-    return [
-        Values(each.linkage, verdict, problem)[key] for each, verdict in zip(found, verdicts, strict=True)
-    ]
+    return [Values(each.linkage, verdict, problem) for each, verdict in zip(found, verdicts, strict=True)]
 
 
 @pytest.mark.parametrize("kind", TASKS)
