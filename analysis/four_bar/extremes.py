@@ -127,13 +127,13 @@ def motion_between(linkage: FourBar, start: float | None, end: float | None) -> 
     turns = bool(full_rotation(linkage))
     if start is None or end is None:
         if start is not end:
-            raise ProblemError("start and end are allowed together, or neither")
+            raise ProblemError("one of start and end is given; give both or neither")
         low, high = driver_ranges(linkage)[0]
         start, end = (0.0, TURN) if turns else (float(low), float(high))
         if np.isnan(start):
             raise AssemblyError("the linkage cannot close at any driver angle")
     if not end > start:
-        raise ProblemError(f"start is {start:.6g} and end {end:.6g}; allowed is start < end")
+        raise ProblemError(f"start is {start:.6g} and end {end:.6g}; start must be less than end")
     return start, end, turns and abs(end - start - TURN) < 1e-12
 
 
@@ -148,7 +148,7 @@ def sampled(
     at[-1] = end
     values = np.asarray(curve(at), dtype=np.float64)
     if values.shape != at.shape:
-        raise ProblemError(f"the quantity has shape {values.shape}; allowed is one value for each angle")
+        raise ProblemError(f"the quantity has shape {values.shape}; it must have one value for each angle")
     if np.isnan(values).any():
         angle = np.degrees(at[np.isnan(values)][0])
         raise AssemblyError(f"the quantity has no value at driver angle {angle:.6g} deg")

@@ -53,7 +53,7 @@ class CouplerSearch:
             free = " where parts are left free, the driver is timed or requirements.exact is false"
             raise ProblemError(
                 f"{task.kind}.{task.target}s has {counted(count, f'distinct {task.target}')}; "
-                f"allowed are three or more{'' if task.only_points else free}"
+                f"it must have three or more{'' if task.only_points else free}"
             )
 
     def degenerate(self) -> str:

@@ -75,7 +75,7 @@ class WholePoses:
             if moved + abs(motion.rotation[i] - motion.rotation[j]) < 1e-12:
                 raise ProblemError(
                     f"motion.poses[{i}] and motion.poses[{j}] are equal; "
-                    "allowed are distinct poses, or requirements.exact = false"
+                    "they must be distinct, or requirements.exact = false"
                 )
 
     def degenerate(self) -> str:

@@ -49,10 +49,10 @@ class Subject:
             spec = LinkageSpec(linkage.linkage, linkage.id)
         else:
             raise ProblemError(
-                f"linkage is {reprlib.repr(linkage)}; allowed are a FourBar, a LinkageSpec and a Candidate"
+                f"linkage is {reprlib.repr(linkage)}; it must be a FourBar, a LinkageSpec or a Candidate"
             )
         if spec.linkage.shape:
-            raise ProblemError(f"linkage is a batch of shape {spec.linkage.shape}; allowed is a single one")
+            raise ProblemError(f"linkage is a batch of shape {spec.linkage.shape}; it must be a single one")
         if problem is None:
             return cls(spec)
         if isinstance(linkage, Candidate):

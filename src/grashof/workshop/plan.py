@@ -147,7 +147,7 @@ def plan_parts(
 def _in_millimetres(linkage: FourBar, mm_per_unit: float) -> FourBar:
     """The linkage in mm, with O2 at the origin."""
     if linkage.shape:
-        raise ProblemError(f"linkage is a batch of shape {linkage.shape}; allowed is one linkage")
+        raise ProblemError(f"linkage is a batch of shape {linkage.shape}; it must be a single one")
     return linkage.scaled(positive_number(mm_per_unit, "mm_per_unit"), linkage.o2)
 
 

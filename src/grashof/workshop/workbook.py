@@ -98,7 +98,7 @@ def listed_candidates(path: Path, designs: Sequence[ListedDesign]) -> pd.DataFra
     except OSError as error:
         raise ProblemError(f"{table}: cannot be read: {error.strerror}; --xlsx lists it") from None
     except (ValueError, KeyError, TypeError, csv.Error):
-        raise ProblemError(f"{table}: is not a table of designs; allowed is that of grashof solve") from None
+        raise ProblemError(f"{table}: is not a table of designs; it must be that of grashof solve") from None
     for design in designs:
         if ids.get(design.rank) != design.id:
             raise ProblemError(

@@ -188,7 +188,7 @@ def test_paths_hold_it_and_so_do_their_cognates() -> None:
 
 
 def test_no_function_is_refused() -> None:
-    with pytest.raises(ProblemError, match=r"^constraints has 5; allowed are functions of a design$"):
+    with pytest.raises(ProblemError, match=r"^constraints has 5; they must be functions of a design$"):
         synthesize(THREE, constraints=[5])  # type: ignore[list-item]
 
 
@@ -234,7 +234,7 @@ def test_what_is_no_number_on_numbers_is_named() -> None:
     def matrix(design: Design) -> Any:
         return ca.SX.ones(2, 2) * design.r1
 
-    with pytest.raises(ProblemError, match=r"^constraint matrix gives SX.* on numbers; allowed is"):
+    with pytest.raises(ProblemError, match=r"^constraint matrix gives SX.* on numbers; it must give"):
         synthesize(THREE, starts=4, constraints=[matrix])
 
 
