@@ -62,17 +62,17 @@ def synthesize(
     progress : callable, optional
         Called with a `Progress` after every batch.
     stop : callable, optional
-        Asked before every batch; the search ends when it says True.
+        Asked before every batch; the search ends when it returns True.
 
     Returns
     -------
     Result
-        Perhaps empty; then `Result.note` and `Result.nearest` say what stood in the way.
+        Perhaps empty; then `Result.note` and `Result.nearest` show why.
 
     Raises
     ------
     ProblemError
-        The problem cannot be stated to this version.
+        The problem, or another argument, is invalid.
     SolverError
         A worker process or the executor was lost.
 

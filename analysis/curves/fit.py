@@ -80,7 +80,7 @@ def fit_polynomial(parameter: npt.ArrayLike, values: npt.ArrayLike, degree: int)
     Parameters
     ----------
     parameter : array_like, shape (N,)
-        The driver angle, say, or the share of the motion done.
+        Such as the driver angle, or the share of the motion done.
     values : array_like, shape (N,) or (N, K)
         One coordinate or several.
     degree : int
@@ -152,7 +152,7 @@ def regression(points: npt.ArrayLike, degree: int) -> PolynomialFit:
     step = np.diff(path[:, 0])
     if not (np.all(step > 0) or np.all(step < 0)):
         warnings.warn(
-            "x turns back along the path, so y is no function of x; fit x and y against the driver angle",
+            "x turns back along the path, so y is not a function of x; fit x and y against the driver angle",
             NotAFunctionWarning,
             stacklevel=2,
         )

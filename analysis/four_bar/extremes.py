@@ -66,7 +66,7 @@ def extremes(
     start, end : float, rad, optional
         Driver angles; by default the whole turn, or the first of `driver_ranges`.
     period : float, optional
-        By which the quantity may jump: 2 pi for an angle, which is then counted on.
+        By which the quantity may jump: 2 pi for an angle, which is then unwrapped.
 
     Returns
     -------
@@ -110,7 +110,7 @@ def extremes_of(
     closed : bool
         The curve goes on beyond its ends as it began.
     period : float, optional
-        By which its values may jump; they are then counted on.
+        By which its values may jump; they are then unwrapped.
 
     Returns
     -------
@@ -140,7 +140,7 @@ def motion_between(linkage: FourBar, start: float | None, end: float | None) -> 
 def sampled(
     curve: Curve, start: float, end: float, closed: bool, period: float | None
 ) -> tuple[FloatArray, FloatArray]:
-    """Where a curve is sampled, and its values there, counted on by `period`; shapes (N,)."""
+    """Where a curve is sampled, and its values there, unwrapped by `period`; shapes (N,)."""
     share = np.linspace(0, 1, _SAMPLES)
     if not closed:  # closer towards ends that may be dead positions
         share = (1 - np.cos(np.pi * share)) / 2

@@ -162,7 +162,7 @@ def _parsed(text: str, file_name: str, name: str) -> LinkageSpec:
 
 
 def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
-    """Design of a list that `grashof solve` wrote, and all that the list says of it."""
+    """Design of a list that `grashof solve` wrote, and all that the list states of it."""
     from grashof.problems.files.linkage_schema import linkage_from
 
     where = f"{path}#{which}"

@@ -24,7 +24,7 @@ from grashof.problems.values.errors import ProblemError
 
 # Type of a validator's error; its message is what the value must be.
 WRONG = "wrong"
-# Tags tell the shapes of a value apart. They enter the location of an error and are left out of its path.
+# Tags distinguish the shapes of a value. They enter the location of an error and are left out of its path.
 TABLE, LIST, WORD, NUMBER = "<table>", "<list>", "<word>", "<number>"
 _WANTED = {
     "float_type": "a number",
@@ -39,7 +39,7 @@ class Table(BaseModel):
     """A table of a file. Its value type is built once here, so that what it refuses is counted too."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
-    # Whether one of its keys, found elsewhere, says that this table was meant.
+    # Whether one of its keys, found elsewhere, shows that this table was meant.
     telling: ClassVar[bool] = True
 
     def value(self) -> object:
@@ -76,7 +76,7 @@ def stated(table: type[AnyTable], document: dict[str, Any], tables: Mapping[str,
         return table.model_validate(document)
     except ValidationError as refused:
         errors = refused.errors(include_url=False)
-    # A missing key comes last: most often it stands in the file, misspelt, and that error says more.
+    # A missing key comes last: most often it stands in the file, misspelt, and that error is clearer.
     errors.sort(key=lambda error: error["type"] == "missing")
     raise ProblemError("\n".join(dict.fromkeys(_described(error, tables) for error in errors)))
 

@@ -1,6 +1,6 @@
 """Areas that parts of a linkage keep out of: polygons checked, and joined to one solid.
 
-The only module that states polygons to shapely. It is imported only where there are areas.
+The only module that gives polygons to shapely. It is imported only where there are areas.
 """
 
 from __future__ import annotations

@@ -38,8 +38,8 @@ class DynamicsSpec:
     Raises
     ------
     ProblemError
-        Numbers that are not finite or beyond 1e20, negative masses, or links whose masses are said
-        twice or by half.
+        Numbers that are not finite or beyond 1e20, negative masses, or links whose masses are given
+        twice or in part.
 
     Examples
     --------
@@ -86,7 +86,7 @@ class DynamicsSpec:
 
     @property
     def stated(self) -> dict[str, Any]:
-        """The arguments that give this value, without those that are not said: a file's table."""
+        """The arguments that give this value, without those that are not given: a file's table."""
         every = {name: getattr(self, name) for name in self.__slots__}
         return {name: value for name, value in every.items() if value is not None}
 

@@ -36,7 +36,7 @@ class PathTask(Task):
     ------
     ProblemError
         Fewer than three points, numbers that are not finite or beyond 1e20, a size below 1e-20, two
-        consecutive equal points (the last may repeat the first), or a timing that is none.
+        consecutive equal points (the last may repeat the first), or a timing that is not one.
 
     Examples
     --------

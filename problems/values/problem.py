@@ -101,9 +101,9 @@ class Problem(ReadOnly):
     outlines : sequence of array_like, shape (M, 2), length
         The scene: drawn, no constraint.
     manufacturing : Manufacturing, optional
-        How exactly linkages are made; without it nothing is said about made ones.
+        How exactly linkages are made; without it there are no columns of made ones.
     dynamics : DynamicsSpec, optional
-        Masses, speed and gravity; without it nothing is said about torque and forces.
+        Masses, speed and gravity; without it there are no torques and forces.
     """
 
     task: Task
@@ -201,7 +201,7 @@ class Problem(ReadOnly):
 
     @property
     def zones(self) -> FloatArray | None:
-        """How far positions (length) and angles (rad) may be missed, shape (2, N), where that is said.
+        """How far positions (length) and angles (rad) may be missed, shape (2, N), where that is given.
 
         Each target's own zone, or a tolerance of `LEAST_TOLERANCE` and more where every target has
         to be met.
@@ -216,7 +216,7 @@ class Problem(ReadOnly):
         return np.where([task.has_position, task.has_angle], radii, np.inf)
 
     def without_zones(self, *, exact: bool | None = False) -> Problem:
-        """The same problem with no target to be missed, by least squares unless it says else."""
+        """The same problem with no target to be missed, by least squares unless it states otherwise."""
         task = self.task.without_zones() if self.task.zones is not None else self.task
         tight = min(self.requirements.tolerance, Requirements().tolerance)
         wanted = replace(self.requirements, exact=exact, error_factor=None, tolerance=tight)

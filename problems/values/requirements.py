@@ -88,7 +88,7 @@ class Requirements(ReadOnly):
     order : bool
         The driver meets the targets in sequence, in one sense, within one turn.
     same_branch : bool
-        One assembly and no dead position over the whole motion used.
+        One assembly and no dead position over the task motion.
     transmission_min_deg : float, deg
         Least min(mu, pi - mu) over `transmission_over`.
     transmission_over : TransmissionOver
@@ -332,7 +332,7 @@ _ADVANTAGE = Quantity(
     Over.TASK,
     about="omega2 / omega4 where it is least over the task motion, with its sign",
 )
-# All that can be said of a design, by key; those that are listed in the order of the columns.
+# All quantities of a design, by key; those that are listed in the order of the columns.
 QUANTITIES = MEASURED | {limited.quantity.key: limited.quantity for limited in LIMITS.values()}
 QUANTITIES[_ADVANTAGE.key] = _ADVANTAGE
 

@@ -194,7 +194,7 @@ def _try_on_symbols(function: Constraint, kind: _Kind, targets: int) -> None:
 
 
 def _refuse_no_amounts(name: str, kind: _Kind, value: Any) -> None:
-    """Raise `ProblemError` for what a function gives on symbols, if that is not what its kind gives."""
+    """Raise `ProblemError` if what a function gives on symbols is not what its kind has to give."""
     wanted = f"it must give a scalar, {kind.value}" + (", or a list of them" if kind.several else "")
     several = _several(value)
     for one in several:

@@ -69,12 +69,12 @@ class CouplerSearch:
         return search(self.scaled, NEAR, rng)
 
     def relaxed(self, rng: np.random.Generator) -> list[Start]:
-        """Starts that may miss what stands in the way."""
+        """Starts that may miss what no linkage meets."""
         drawn, free = (search(self.scaled, 1, rng, to_boxes=to_boxes) for to_boxes in (True, False))
         return relaxed_starts(self.scaled, drawn) or relaxed_starts(self.scaled, free)
 
     def obstacle(self, _rng: np.random.Generator, _counts: Mapping[str, int], /) -> str:
-        """Theory says nothing."""
+        """Empty: there is no theory of these targets."""
         return ""
 
 

@@ -165,7 +165,10 @@ SENSE = [
         "[requirements]\ncoupler_arms = [0, 1e300]",
         "requirements.coupler_arms is [0, 1e+300]; hi must be at most 1e+20",
     ),
-    ("[requirements]\no2 = { x = [0, 1e100] }", "requirements.o2.x is [0, 1e+100]; its sides must be at most 1e+20"),
+    (
+        "[requirements]\no2 = { x = [0, 1e100] }",
+        "requirements.o2.x is [0, 1e+100]; its sides must be at most 1e+20",
+    ),
     (
         "[manufacturing]\nlength_tolerance = 1e300",
         "manufacturing.length_tolerance is 1e+300; it must be at most 1e+20",

@@ -18,9 +18,9 @@ THREE = Problem(task=MotionTask.from_degrees([[0, 0, 0], [2, 1, 20], [3, 3, 50]]
         (lambda design: [design.r3 - 2, design.r2 == 1], "gives a truth value"),
         (lambda _: True, "gives a truth value"),
         (lambda _: np.bool_(False), "gives a truth value"),
-        (lambda _: None, "gives None; it must be a scalar"),
-        (lambda _: "r2", "gives 'r2'; it must be a scalar"),
-        (lambda _: [], "gives nothing; it must be a scalar"),
+        (lambda _: None, "gives None; it must give a scalar"),
+        (lambda _: "r2", "gives 'r2'; it must give a scalar"),
+        (lambda _: [], "gives nothing; it must give a scalar"),
         (lambda design: np.max([design.r2, design.r3]), "fails on symbols: .*CasADi"),
         (
             lambda design: max(design.r2, design.r3),
