@@ -1,4 +1,4 @@
-"""Moving pictures: a linkage over all that its driver can do, as GIF or MP4."""
+"""Animations: a linkage over all that its driver can do, as GIF or MP4."""
 
 from __future__ import annotations
 

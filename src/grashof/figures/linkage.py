@@ -169,7 +169,7 @@ def plot_design_space(
     Raises
     ------
     NoSolutionError
-        There are no designs; it says why.
+        There are no designs; it states why.
     ProblemError
         A key is unknown.
     """

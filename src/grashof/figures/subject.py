@@ -73,7 +73,7 @@ class Subject:
 
 
 def _posed(spec: LinkageSpec, problem: Problem, verdict: Verdict) -> LinkageSpec:
-    """The linkage with what its problem says of unit and masses."""
+    """The linkage with the unit and masses that its problem states."""
     linkage = replace(spec.linkage, assembly=np.asarray(verdict.assembly[0], dtype=np.float64))
     dynamics = (problem.dynamics or DynamicsSpec()).turning(verdict.direction)
     title = spec.title if problem is spec.problem else problem.title or problem.name

@@ -31,9 +31,9 @@ class Making:
     scale : str
         Of a model: a number, or a ratio such as 1:20.
     mm_per_unit : float, optional
-        Where the length unit is none of mm, cm, m, in, ft.
+        Where the length unit is not mm, cm, m, in or ft.
     theta2_deg : pair of float, optional
-        Driver angles of the use.
+        Range of driver angles used.
     """
 
     sizes: PlateSizes
@@ -87,7 +87,7 @@ def export_files(linkage: str, making: Making, files: dict[str, Path]) -> Plan |
     return made
 
 
-def told(plan: Plan) -> list[str]:
+def plan_lines(plan: Plan) -> list[str]:
     """The parts list and the notes, as lines for the terminal."""
     rows = plan.rows()
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
@@ -131,7 +131,7 @@ def _plan(one: LinkageSpec | ListedDesign, making: Making) -> Plan:
         notes += (f"{arm}, is not among the parts",)
     if isinstance(one, ListedDesign) and len(set(one.assembly)) > 1:
         both = "the targets need both assemblies"
-        notes += (f"{both}; only the motion on that of the first one is looked at",)
+        notes += (f"{both}; only the motion on that of the first one is considered",)
     return replace(made, notes=notes)
 
 
@@ -146,7 +146,7 @@ def _millimetres(spec: LinkageSpec, making: Making) -> float:
         given = METRES[unit] * 1000
     elif given is None:
         raise ProblemError(
-            f"length_unit of {spec.name} is {unit!r}, none of {', '.join(METRES)}; give "
+            f"length_unit of {spec.name} is {unit!r}, not one of {', '.join(METRES)}; give "
             "--mm-per-unit NUMBER, the millimetres of one unit"
         )
     return _ratio(making.scale) * positive_number(given, "mm_per_unit")

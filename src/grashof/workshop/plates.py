@@ -144,7 +144,7 @@ def outline(corners: npt.ArrayLike, radius: float) -> FloatArray:
 
 
 def link_plates(linkage: FourBar, sizes: PlateSizes) -> tuple[dict[str, Plate], str]:
-    """Plates of the links `driver`, `coupler` and `output`, and what to say of P.
+    """Plates of the links `driver`, `coupler` and `output`, and a note on P.
 
     Parameters
     ----------

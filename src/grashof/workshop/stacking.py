@@ -26,7 +26,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.workshop.plates import Plate, PlateSizes
 
 LINKS = tuple(link.name for link in FourBar.LINKS[1:])
-# What each pin joins; what is no link is the base.
+# What each pin joins; what is not a link is the base.
 JOINTS = {
     joint.upper(): tuple(FourBar.LINKS[number - 1].name for number in numbers)
     for joint, numbers in FourBar.JOINTS.items()
@@ -101,9 +101,9 @@ def ranges_of_use(
     ----------
     linkage : FourBar
     within : pair of float, rad, optional
-        First and last angle of the use.
+        First and last angle used.
     at : float, rad, optional
-        An angle of the use: of two ranges between dead positions only the one with it counts.
+        An angle used: of two ranges between dead positions only the one with it counts.
 
     Returns
     -------

@@ -112,7 +112,7 @@ def test_other_length_units_need_millimetres(grashof: Grashof, tmp_path: Path) -
     (tmp_path / "mine.toml").write_text(f'length_unit = "hand"\n{PLAIN}')
     done = grashof("export", "mine.toml", "--svg", "a.svg")
     assert done.exit_code == 2
-    assert "length_unit of mine is 'hand', none of mm, cm, m, in, ft; give --mm-per-unit" in done.stderr
+    assert "length_unit of mine is 'hand', not one of mm, cm, m, in, ft; give --mm-per-unit" in done.stderr
     done = grashof("export", "mine.toml", "--svg", "a.svg", "--mm-per-unit", "101.6")
     assert done.exit_code == 0
     assert "O2-A 3048" in done.stdout
