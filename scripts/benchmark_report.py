@@ -40,7 +40,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         size = path.stat().st_size
     figures, page = (median(each) for each in zip(*times, strict=True))
     print(f"{chosen.problem}, {len(result)} designs ({len(found)} distinct)")
-    print(f"figures of the list: {figures:.2f} s")
+    print(f"values of the list: {figures:.2f} s")
     print(f"page made and written: {page:.2f} s, {size / 1e6:.2f} MB")
     return 0
 

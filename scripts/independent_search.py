@@ -74,7 +74,7 @@ class Aim:
 
 @dataclass(frozen=True, slots=True)
 class Designs:
-    """A batch of designs on their way.
+    """A batch of designs being improved.
 
     Parameters
     ----------

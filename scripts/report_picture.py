@@ -19,7 +19,7 @@ PICTURE = Path(__file__).parents[1] / "docs" / "report.png"
 
 
 def take_picture(page: Path, picture: Path, browser: str) -> None:
-    """Screenshot of a page, with the linkage on its way and drawn at the targets."""
+    """Screenshot of a page, with the linkage in motion and drawn at the targets."""
     with sync_playwright() as playwright:
         chromium = playwright.chromium.launch(executable_path=browser, args=["--no-sandbox"])
         tab = chromium.new_page(viewport={"width": 1200, "height": 925}, color_scheme="light")

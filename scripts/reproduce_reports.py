@@ -1,8 +1,8 @@
-"""The figures of the two engineering reports that Grashof grew from, beside the right ones.
+"""The values of the two engineering reports that Grashof grew from, beside the right ones.
 
     python scripts/reproduce_reports.py
 
-What the reports print stands here as text; every right figure is computed by `grashof.analysis`.
+What the reports print stands here as text; every right value is computed by `grashof.analysis`.
 """
 
 import argparse

@@ -11,6 +11,7 @@ from typing import Any
 from grashof.analysis.judge.design import Constraint, OwnObjective
 from grashof.problems import Problem, ProblemError
 from grashof.problems.values.checks import finite_number, whole_number
+from grashof.problems.values.errors import wrong_value
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.user_functions import refuse_unusable
 from grashof.synth.results.choice import choose, least_error, why_ended
@@ -61,17 +62,17 @@ def synthesize(
     progress : callable, optional
         Called with a `Progress` after every batch.
     stop : callable, optional
-        Asked before every batch; the search ends when it says True.
+        Asked before every batch; the search ends when it returns True.
 
     Returns
     -------
     Result
-        Perhaps empty; then `Result.note` and `Result.nearest` say what stood in the way.
+        Perhaps empty; then `Result.note` and `Result.nearest` show why.
 
     Raises
     ------
     ProblemError
-        The problem cannot be stated to this version.
+        The problem, or another argument, is invalid.
     SolverError
         A worker process or the executor was lost.
 
@@ -83,14 +84,14 @@ def synthesize(
     (True, True)
     """
     if not isinstance(problem, Problem):
-        raise ProblemError(f"problem is a {type(problem).__name__}; allowed is a Problem, such as load gives")
+        raise ProblemError(f"problem is a {type(problem).__name__}; it must be a Problem, such as load gives")
     if isinstance(constraints, str) or not isinstance(constraints, Sequence):
-        raise ProblemError(f"constraints is {constraints!r}; allowed is a list of functions of a design")
+        raise wrong_value("constraints", constraints, "a list of functions of a design")
     given: dict[str, Any] = {"starts": starts, "enough": enough, "seed": seed, "effort": effort}
     search = replace(problem.search, **{name: n for name, n in given.items() if n is not None})
     whole_number(workers, 1, "workers")
     if time_limit is not None and finite_number(time_limit, "time_limit") <= 0:
-        raise ProblemError(f"time_limit is {time_limit!r}; allowed is a time in s greater than zero")
+        raise wrong_value("time_limit", time_limit, "a time in s greater than zero")
     finder_of(problem).refuse()
     begun = perf_counter()
     scaled = ScaledProblem.of(problem, constraints, objective)

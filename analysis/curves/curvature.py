@@ -116,7 +116,7 @@ def driver_intervals(
             )
         return [(low, high)]
     if theta2_start is not None or theta2_end is not None:
-        raise ProblemError("one end of the motion is given; allowed are both or none")
+        raise ProblemError("one end of the motion is given; give both or neither")
     if full_rotation(linkage):
         return [(-np.pi, np.pi)]
     ends = driver_ranges(linkage)

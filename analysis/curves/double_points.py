@@ -52,7 +52,7 @@ def all_double_points(linkage: FourBar) -> DoublePoints:
     -------
     DoublePoints
         theta2 in [-pi, pi]. None where P is A or B, whose arcs have no isolated double point, and no
-        point that the linkage does not reach; cusps are told by `cusps`.
+        point that the linkage does not reach; cusps are found by `cusps`.
 
     Notes
     -----

@@ -10,8 +10,9 @@ from scipy.optimize import brentq, minimize_scalar
 
 from grashof.analysis.four_bar.extremes import Curve, Quantity, extremes_of, motion_between, sampled
 from grashof.analysis.four_bar.kinematics import solve_kinematics
-from grashof.problems import FourBar, ProblemError
+from grashof.problems import FourBar
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.errors import wrong_value
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +67,7 @@ def dwell(
     [212.818, 249.37]
     """
     if not tolerance > 0:
-        raise ProblemError(f"tolerance is {tolerance!r}; allowed are numbers greater than zero")
+        raise wrong_value("tolerance", tolerance, "a number greater than zero")
     start, end, closed = motion_between(linkage, start, end)
 
     def curve(theta2: FloatArray) -> FloatArray:

@@ -80,7 +80,7 @@ def fit_polynomial(parameter: npt.ArrayLike, values: npt.ArrayLike, degree: int)
     Parameters
     ----------
     parameter : array_like, shape (N,)
-        The driver angle, say, or the share of the motion done.
+        Such as the driver angle, or the share of the motion done.
     values : array_like, shape (N,) or (N, K)
         One coordinate or several.
     degree : int
@@ -152,7 +152,7 @@ def regression(points: npt.ArrayLike, degree: int) -> PolynomialFit:
     step = np.diff(path[:, 0])
     if not (np.all(step > 0) or np.all(step < 0)):
         warnings.warn(
-            "x turns back along the path, so y is no function of x; fit x and y against the driver angle",
+            "x turns back along the path, so y is not a function of x; fit x and y against the driver angle",
             NotAFunctionWarning,
             stacklevel=2,
         )
@@ -220,7 +220,7 @@ def coupler_fit_r2(
     """
     degree = whole_number(degree, 1, "degree")
     if degree > 30:
-        raise ProblemError(f"degree is {degree}; allowed is 1 to 30")
+        raise ProblemError(f"degree is {degree}; it must be from 1 to 30")
     node, weight, basis = _quadrature(degree)
     start, end = np.asarray(theta2_start, dtype=np.float64), np.asarray(theta2_end, dtype=np.float64)
     theta2 = (start + end)[..., None] / 2 + (end - start)[..., None] / 2 * node
@@ -239,11 +239,11 @@ def samples(parameter: npt.ArrayLike, values: npt.ArrayLike) -> tuple[FloatArray
         t, y = np.asarray(parameter, dtype=np.float64), np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError):
         raise ProblemError(
-            "parameter and values are not all numbers; allowed are arrays of numbers"
+            "parameter and values are not all numbers; they must be arrays of numbers"
         ) from None
     if t.ndim != 1 or y.ndim not in (1, 2) or len(t) != len(y) or len(t) == 0:
         raise ProblemError(
-            f"parameter and values have shapes {t.shape} and {y.shape}; allowed are (N,) with (N,) or (N, K)"
+            f"parameter and values have shapes {t.shape} and {y.shape}; they must be (N,) with (N,) or (N, K)"
         )
     if not (np.isfinite(t).all() and np.isfinite(y).all()):
         raise ProblemError("parameter or values hold NaN or infinity; all numbers must be finite")

@@ -118,7 +118,7 @@ def coupler_fourier(linkage: FourBar, samples: int = 256) -> FourierSeries:
     Raises
     ------
     ProblemError
-        A driver that does not turn fully: its coupler curve is no periodic function of theta2.
+        A driver that does not turn fully: its coupler curve is not a periodic function of theta2.
 
     Examples
     --------

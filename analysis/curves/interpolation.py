@@ -62,7 +62,7 @@ def newton_interpolation(nodes: npt.ArrayLike, values: npt.ArrayLike) -> NewtonP
     -----
     f[ti..tj] = (f[ti+1..tj] - f[ti..tj-1]) / (tj - ti). Between the nodes such a polynomial may
     run far away from a path, the more so with x as the parameter, where nodes crowd at the turning
-    points of the path: `greatest_error` tells.
+    points of the path: see `greatest_error`.
 
     Examples
     --------
@@ -86,7 +86,7 @@ def spline(parameter: npt.ArrayLike, values: npt.ArrayLike, period: float | None
     Parameters
     ----------
     parameter : array_like, shape (N,)
-        Increasing: the driver angle, say.
+        Increasing, such as the driver angle.
     values : array_like, shape (N,) or (N, K)
     period : float, optional
         Of a closed curve (a turn of the driver): the samples are those of one period, the first one

@@ -14,6 +14,7 @@ from grashof.analysis.forces.mass import Body, Masses
 from grashof.analysis.four_bar.kinematics import Kinematics
 from grashof.problems import FourBar, ProblemError, SolverError
 from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.errors import wrong_value
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -145,7 +146,7 @@ def balance_torque(
     elif measure == "peak":
         moment = _least_peak(effects, before)
     else:
-        raise ProblemError(f"measure is {measure!r}; allowed are 'rms' and 'peak'")
+        raise wrong_value("measure", measure, "'rms' or 'peak'")
     weight = _counterweight(moment[0] + 1j * moment[1], radius)
     whole = Masses(masses.crank + weight, masses.coupler, masses.output)
     return TorqueBalance(weight, whole, before, inverse_dynamics(state, whole, loads).torque)
@@ -167,7 +168,7 @@ def _counterweight(moment: ComplexArray, radius: npt.ArrayLike) -> Body:
     """Point mass with a given moment (mass times place) at a given radius."""
     radius = np.asarray(radius, dtype=np.float64)
     if not np.all(radius > 0):
-        raise ProblemError(f"the counterweight's radius is {radius}; allowed are lengths above zero")
+        raise ProblemError(f"the counterweight's radius is {radius}; it must be greater than zero")
     place = radius * np.exp(1j * np.angle(moment))
     return Body(np.abs(moment) / radius, 0.0, np.stack([place.real, place.imag], axis=-1))
 

@@ -85,7 +85,7 @@ def size_flywheel(
         raise AssemblyError("the driver does not turn fully, so a flywheel cannot keep its speed")
     if not (omega2 != 0 and 0 < fluctuation < 2):
         raise ProblemError(
-            f"omega2 is {omega2!r} and fluctuation {fluctuation!r}; allowed are a speed other than 0, and "
+            f"omega2 is {omega2!r} and fluctuation {fluctuation!r}; they must be a speed other than 0 and "
             "a share above 0 and below 2"
         )
     theta2 = np.linspace(0, 2 * np.pi, _SAMPLES + 1)

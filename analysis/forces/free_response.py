@@ -29,7 +29,7 @@ from grashof.problems.values.arrays import FloatArray
 Drive = float | Callable[[float, float, float], float]
 
 # sin(theta4 - theta3) at which a motion towards a dead position ends: beyond it the driver angle no
-# longer says how the linkage moves on.
+# longer shows how the linkage moves on.
 _DEAD_END = 1e-3
 
 

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from grashof.analysis.four_bar.kinematics import Kinematics, PointMotion
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.errors import wrong_value
 
 Varying: TypeAlias = npt.ArrayLike | Callable[[Kinematics], npt.ArrayLike]
 Pair: TypeAlias = tuple[float, float]
@@ -137,7 +138,7 @@ class Friction:
         """One of the three for every joint, shape (4,)."""
         values = np.asarray(getattr(self, name), dtype=np.float64)
         if values.shape not in ((), (4,)) or not np.isfinite(values).all() or np.any(values < 0):
-            raise ProblemError(f"{name} friction is {values}; allowed are one or four numbers from zero")
+            raise ProblemError(f"{name} friction is {values}; it must be one or four numbers from zero")
         return np.broadcast_to(values, 4)
 
 
@@ -167,7 +168,7 @@ class Loads:
         """Gravity, shape (2,)."""
         gravity = np.asarray(self.gravity, dtype=np.float64)
         if gravity.shape != (2,) or not np.isfinite(gravity).all():
-            raise ProblemError(f"gravity is {self.gravity!r}; allowed is a pair of finite numbers")
+            raise wrong_value("gravity", self.gravity, "a pair of finite numbers")
         return gravity
 
 

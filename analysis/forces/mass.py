@@ -11,6 +11,7 @@ import numpy.typing as npt
 from grashof.analysis.four_bar.kinematics import Kinematics, PointMotion
 from grashof.problems import DynamicsSpec, FourBar, ProblemError
 from grashof.problems.values.arrays import FloatArray, frozen_array
+from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.read_only import ReadOnly
 
 
@@ -37,11 +38,11 @@ class Body(ReadOnly):
         for name, value in (("mass", mass), ("inertia", inertia), ("centre", centre)):
             array = frozen_array(value)
             if not np.isfinite(array).all():
-                raise ProblemError(f"{name} is {value!r}; allowed are finite numbers")
+                raise wrong_value(name, value, "a finite number")
             if name != "centre" and np.any(array < 0):
-                raise ProblemError(f"{name} is {value!r}; allowed are numbers from zero")
+                raise wrong_value(name, value, "a number from zero")
             if name == "centre" and np.shape(array)[-1:] != (2,):
-                raise ProblemError(f"centre has shape {np.shape(array)}; allowed is (..., 2)")
+                raise ProblemError(f"centre has shape {np.shape(array)}; it must be (..., 2)")
             object.__setattr__(self, name, array)
 
     def __add__(self, other: Body) -> Body:
@@ -174,7 +175,7 @@ def given_masses(
     """
     for name, values in (("masses", masses), ("inertias", inertias), ("centres", centres)):
         if values is not None and len(values) != 3:
-            raise ProblemError(f"{name} has {len(values)} entries; allowed are three, for links 2, 3 and 4")
+            raise ProblemError(f"{name} has {len(values)} entries; it must have three, for links 2, 3 and 4")
     lengths = [getattr(linkage, f"r{link}") / 2 for link in (2, 3, 4)]
     halfway = [np.stack([half, np.zeros_like(half)], axis=-1) for half in lengths]
     places = halfway if centres is None else [np.asarray(centre, dtype=np.float64) for centre in centres]

@@ -57,13 +57,13 @@ def central_differences(
     weights = _WEIGHTS.get((derivative, accuracy))
     if weights is None:
         raise ProblemError(
-            f"derivative is {derivative!r} and accuracy {accuracy!r}; allowed are 1 or 2, and 2 or 4"
+            f"derivative is {derivative!r} and accuracy {accuracy!r}; they must be 1 or 2, and 2 or 4"
         )
     count = len(at) if at.ndim == 1 else 0
     if count < len(weights) or len(values) != count:
         raise ProblemError(
-            f"at has shape {at.shape}, values {values.shape}; allowed is one row for each of {len(weights)} "
-            "or more places"
+            f"at has shape {at.shape}, values {values.shape}; they must have one row for each of "
+            f"{len(weights)} or more places"
         )
     step = (at[-1] - at[0]) / (count - 1)
     if step == 0 or np.abs(np.diff(at) - step).max() > 1e-6 * abs(step):

@@ -66,7 +66,7 @@ def extremes(
     start, end : float, rad, optional
         Driver angles; by default the whole turn, or the first of `driver_ranges`.
     period : float, optional
-        By which the quantity may jump: 2 pi for an angle, which is then counted on.
+        By which the quantity may jump: 2 pi for an angle, which is then unwrapped.
 
     Returns
     -------
@@ -110,7 +110,7 @@ def extremes_of(
     closed : bool
         The curve goes on beyond its ends as it began.
     period : float, optional
-        By which its values may jump; they are then counted on.
+        By which its values may jump; they are then unwrapped.
 
     Returns
     -------
@@ -127,20 +127,20 @@ def motion_between(linkage: FourBar, start: float | None, end: float | None) -> 
     turns = bool(full_rotation(linkage))
     if start is None or end is None:
         if start is not end:
-            raise ProblemError("start and end are allowed together, or neither")
+            raise ProblemError("one of start and end is given; give both or neither")
         low, high = driver_ranges(linkage)[0]
         start, end = (0.0, TURN) if turns else (float(low), float(high))
         if np.isnan(start):
             raise AssemblyError("the linkage cannot close at any driver angle")
     if not end > start:
-        raise ProblemError(f"start is {start:.6g} and end {end:.6g}; allowed is start < end")
+        raise ProblemError(f"start is {start:.6g} and end {end:.6g}; start must be less than end")
     return start, end, turns and abs(end - start - TURN) < 1e-12
 
 
 def sampled(
     curve: Curve, start: float, end: float, closed: bool, period: float | None
 ) -> tuple[FloatArray, FloatArray]:
-    """Where a curve is sampled, and its values there, counted on by `period`; shapes (N,)."""
+    """Where a curve is sampled, and its values there, unwrapped by `period`; shapes (N,)."""
     share = np.linspace(0, 1, _SAMPLES)
     if not closed:  # closer towards ends that may be dead positions
         share = (1 - np.cos(np.pi * share)) / 2
@@ -148,7 +148,7 @@ def sampled(
     at[-1] = end
     values = np.asarray(curve(at), dtype=np.float64)
     if values.shape != at.shape:
-        raise ProblemError(f"the quantity has shape {values.shape}; allowed is one value for each angle")
+        raise ProblemError(f"the quantity has shape {values.shape}; it must have one value for each angle")
     if np.isnan(values).any():
         angle = np.degrees(at[np.isnan(values)][0])
         raise AssemblyError(f"the quantity has no value at driver angle {angle:.6g} deg")

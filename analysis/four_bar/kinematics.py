@@ -13,6 +13,7 @@ from grashof.analysis.four_bar.position import Sides, close_loop, sides
 from grashof.analysis.numerics.blockwise import in_blocks
 from grashof.problems import AssemblyError, DeadPositionWarning, FourBar, ProblemError
 from grashof.problems.values.arrays import BoolArray, FloatArray
+from grashof.problems.values.errors import wrong_value
 
 # Below this sin(theta4 - theta3) its digits are rounding: one unit in the last place of the driver
 # angle or of a length changes the velocities by more than a tenth.
@@ -133,7 +134,7 @@ class Kinematics:
         """
         at = np.asarray(at, dtype=np.float64)
         if at.shape[-1:] != (2,):
-            raise ProblemError(f"at has shape {at.shape}; allowed is (..., 2)")
+            raise ProblemError(f"at has shape {at.shape}; it must be (..., 2)")
         carried = _carried(at, self.angular(link))
         if link == 3:
             carried = carried + _carried(_along(self.linkage.r2), self.angular(2))
@@ -291,7 +292,7 @@ def _along(length: FloatArray) -> FloatArray:
 
 def _check_link(link: int) -> None:
     if link not in (2, 3, 4):
-        raise ProblemError(f"link is {link!r}; allowed are 2 (driver), 3 (coupler), 4 (output)")
+        raise wrong_value("link", link, "2 (driver), 3 (coupler) or 4 (output)")
 
 
 def _warn_of(theta2: FloatArray, dead: BoolArray) -> None:

@@ -123,7 +123,7 @@ def passes_change_point(linkage: FourBar, start: float, end: float) -> bool:
     Notes
     -----
     A parallelogram linkage has them at theta1 and theta1 + pi. It can leave them as an antiparallelogram,
-    and a driver at rest there cannot say which: a dead position like others.
+    and a driver at rest there cannot decide which: a dead position like others.
 
     Examples
     --------
@@ -233,7 +233,7 @@ def circuit_index(linkage: FourBar, theta2: npt.ArrayLike, assembly: npt.ArrayLi
     -----
     With a driver that turns fully each assembly is a circuit. Otherwise each range of the driver
     is one, its two assemblies meeting in the dead positions at its ends (Chase & Mirth 1993).
-    At a change point the circuits meet; they are told apart as on the nearest Grashof linkage.
+    At a change point the circuits meet; they are distinguished as on the nearest Grashof linkage.
 
     Examples
     --------

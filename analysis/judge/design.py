@@ -99,7 +99,7 @@ def greatest(constraint: Constraint, design: Design, what: str = "constraint") -
     except (TypeError, ValueError):
         given = " ".join(reprlib.repr(values).split())
         raise ProblemError(
-            f"{what} {name_of(constraint)} gives {given} on numbers; allowed is a scalar, or several"
+            f"{what} {name_of(constraint)} gives {given} on numbers; it must give a scalar or several"
         ) from None
 
 

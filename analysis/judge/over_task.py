@@ -73,7 +73,7 @@ def over_task(linkage: FourBar, problem: Problem, verdict: Verdict) -> OverTask:
     linkage : FourBar
         A single linkage.
     problem : Problem
-        Its task; its dynamics say the driver's speed (else 1 rad/s) and the masses.
+        Its task; its dynamics give the driver's speed (else 1 rad/s) and the masses.
     verdict : Verdict
         Of `verify`: the driver angle at every target.
 
@@ -85,7 +85,7 @@ def over_task(linkage: FourBar, problem: Problem, verdict: Verdict) -> OverTask:
     -----
     Dense samples, densest where the linkage comes closest to a dead position, then ever closer ones
     about the highest: the maxima are right to rounding where the quantity is smooth. The mean of
-    the squared torque is a Gauss-Legendre sum refined until it stands.
+    the squared torque is a Gauss-Legendre sum refined until it converges.
 
     Examples
     --------

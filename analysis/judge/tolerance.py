@@ -47,7 +47,7 @@ class Robustness:
 
 
 def robustness(linkage: FourBar, task: Task, verdict: Verdict, manufacturing: Manufacturing) -> Robustness:
-    """How a single design takes inexact dimensions; the same figures whenever it is asked.
+    """Effect of inexact dimensions on a single design; the same values whenever it is asked.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def yield_monte_carlo(
     """Share of made linkages whose worst target moves by at most `band`, by exact positions.
 
     Those that cannot be assembled at a target count as outside, and, when the nominal linkage passes
-    from the first target to the last, those that cannot be assembled all the way.
+    from the first target to the last, those that cannot be assembled in between.
 
     Parameters
     ----------

@@ -34,7 +34,7 @@ class Defect:
     miss: float
 
     def __str__(self) -> str:
-        return f"{self.requirement}: {self.what} is {self.found:.6g}, allowed is {self.allowed}"
+        return f"{self.requirement}: {self.what} is {self.found:.6g}, allowed: {self.allowed}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -144,8 +144,8 @@ def _zones(targets: Targets, task: Task) -> list[Defect]:
             unit = np.degrees(1.0) if what == "angle" else 1.0
             key, deg = ("angle_within_deg", " in deg") if what == "angle" else ("within", "")
             found, allowed = unit * float(miss[worst]), f"up to {unit * zone[worst]:.6g}"
-            said = f"the {what} error{deg} at target {worst + 1}"
-            defects.append(Defect(key, said, found, allowed, float(over[worst])))
+            where = f"the {what} error{deg} at target {worst + 1}"
+            defects.append(Defect(key, where, found, allowed, float(over[worst])))
     return defects
 
 

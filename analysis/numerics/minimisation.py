@@ -160,7 +160,7 @@ def _curvature(model: Model) -> FloatArray:
 
 
 def _better(current: Model, fresh: Model) -> BoolArray:
-    # Where the value has no digits left to fall by, the slope still tells.
+    # Where the value has no digits left to fall by, the slope still decides.
     with np.errstate(invalid="ignore"):
         level = (fresh[0] <= current[0] * (1 + 1e-14)) & (np.abs(fresh[1]) < np.abs(current[1]))
     return (fresh[0] < current[0]) | level

@@ -58,8 +58,8 @@ def derivatives(function: Callable[[Any], Any], time: npt.ArrayLike) -> tuple[Fl
         series = function(Taylor([at, 1.0]))
     except (TypeError, ValueError, AttributeError) as error:
         raise ProblemError(
-            f"a function of time cannot be differentiated: {error}; allowed are arithmetic, NumPy's "
-            "functions, splines and polynomials"
+            f"a function of time cannot be differentiated: {error}; it must be made of arithmetic, "
+            "NumPy's functions, splines and polynomials"
         ) from error
     terms = series.terms if isinstance(series, Taylor) else Taylor([series]).terms
     return tuple(

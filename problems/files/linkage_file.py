@@ -69,9 +69,9 @@ def load_linkage_spec(linkage: str | os.PathLike[str]) -> LinkageSpec:
         return _candidate(Path(file), which)[0]
     table, row = (file, which) if mark and file.endswith(".csv") else (text, "1")
     if table.endswith(".csv"):
-        raise ProblemError(f"{text}: is a table; allowed is {table.removesuffix('.csv')}.json#{row}")
+        raise ProblemError(f"{text}: is a table; name the design as {table.removesuffix('.csv')}.json#{row}")
     if text.endswith(".json"):
-        raise ProblemError(f"{text}: is a list of designs; allowed is {text}#1 for the first of them")
+        raise ProblemError(f"{text}: is a list of designs; name one of them, such as {text}#1")
     if isinstance(linkage, str) and not looks_like_path(text):
         if text in _LINKAGES.names:
             return _parsed(_LINKAGES.text(text), f"{text}.toml", text)
@@ -113,7 +113,7 @@ def load_design(path: Path, which: str) -> ListedDesign:
         )
     except (KeyError, TypeError, ValueError):
         raise ProblemError(
-            f"{path}#{which}: states no targets; allowed is a candidates.json of grashof solve"
+            f"{path}#{which}: states no targets; it must be a candidates.json of grashof solve"
         ) from None
 
 
@@ -162,12 +162,12 @@ def _parsed(text: str, file_name: str, name: str) -> LinkageSpec:
 
 
 def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
-    """Design of a list that `grashof solve` wrote, and all that the list says of it."""
+    """Design of a list that `grashof solve` wrote, and all that the list states of it."""
     from grashof.problems.files.linkage_schema import linkage_from
 
     where = f"{path}#{which}"
     if exists(str(path)) and not (path.is_file() or path.is_dir()):  # a pipe or a device may never end
-        raise ProblemError(f"{path}: is not an ordinary file; allowed is a list of designs")
+        raise ProblemError(f"{path}: is not an ordinary file; it must be a list of designs")
     try:
         content = json.loads(file_text(path, "a list of designs"))
         designs = {int(design["rank"]): design for design in content["designs"]}
@@ -179,11 +179,11 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
         raise
     except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
         raise ProblemError(
-            f"{path}: is not a list of designs; allowed is a candidates.json of grashof solve"
+            f"{path}: is not a list of designs; it must be a candidates.json of grashof solve"
         ) from None
     if which not in ranks:
-        allowed = f"a rank, 1 to {max(designs)}, or the id of a design" if designs else "none, it is empty"
-        raise ProblemError(f"{where}: has no design {which or '(none named)'}; allowed is {allowed}")
+        hint = f"name a rank, 1 to {max(designs)}, or the id of a design" if designs else "the list is empty"
+        raise ProblemError(f"{where}: has no design {which or '(none named)'}; {hint}")
     rank = ranks[which]
     design = designs[rank]
     keys = [row.name for row in FourBar.PARAMETERS]
@@ -192,7 +192,7 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
         turned, direction = stated.pop("body_angle"), design["direction"]
     except (KeyError, TypeError):
         raise ProblemError(
-            f"{where}: states no linkage and direction; allowed are the keys {', '.join(keys)}"
+            f"{where}: states no linkage and direction; the keys are {', '.join(keys)}"
         ) from None
     # JSON can spell what no file can hold.
     heading, unit = (readable(word) if isinstance(word, str) else word for word in (heading, unit))
@@ -203,7 +203,7 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
     except ProblemError as error:
         raise located(error, where) from None
     if direction not in (1, -1):
-        raise ProblemError(f"{where}: direction is {reprlib.repr(direction)}; allowed is +1 or -1")
+        raise ProblemError(f"{where}: direction is {reprlib.repr(direction)}; it must be +1 or -1")
     driven = (spec.dynamics or DynamicsSpec()).turning(direction)
     title, source = f"{spec.title}: design {rank}", readable(str(path))
     problem = _listed_problem(content, path)

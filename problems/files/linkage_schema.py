@@ -79,7 +79,7 @@ class LinkageTable(Table):
         where = str(key.field_name)
         if length is not None:
             if finite_number(length, where) <= 0:
-                raise ProblemError(f"{where} is {length:g}; allowed are lengths greater than zero")
+                raise ProblemError(f"{where} is {length:g}; it must be greater than zero")
             number_within(length, -GREATEST, GREATEST, where)
         return length
 
@@ -95,17 +95,17 @@ class LinkageTable(Table):
         given = {row.name: getattr(self, row.key) for row in FourBar.PARAMETERS}
         linkage = FourBar(**given | {"o4": self._o4(), "body_angle": np.radians(self.body_angle_deg)})
         if not linkage.r1 > 0:
-            raise ProblemError("o4 is where o2 is; allowed are two different ground pivots")
+            raise ProblemError("o4 is where o2 is; the ground pivots must be distinct")
         return linkage
 
     def _o4(self) -> list[float]:
         if self.o4 is not None:
             for key in ("r1", "ground_angle_deg"):
                 if getattr(self, key) is not None:
-                    raise ProblemError(f"{key} is given besides o4; allowed is one of them")
+                    raise ProblemError(f"{key} is given besides o4; give one of them")
             return self.o4
         if self.r1 is None:
-            raise ProblemError("o4 is missing; allowed is also r1 with ground_angle_deg")
+            raise ProblemError("o4 is missing; give it, or r1 with ground_angle_deg")
         angle = np.radians(self.ground_angle_deg or 0.0)
         return [float(self.o2[0] + self.r1 * np.cos(angle)), float(self.o2[1] + self.r1 * np.sin(angle))]
 

@@ -72,7 +72,7 @@ def problem_from(document: dict[str, Any], name: str) -> Problem:
 
 
 def _ill_matched(document: dict[str, Any]) -> Iterator[str]:
-    """What is wrong between tables, which nothing else tells as long as one of them is wrong by itself."""
+    """Errors between tables, which nothing else reports as long as one of them is wrong by itself."""
     kind, unit = document.get("kind"), document.get("length_unit", "")
     for other in {"motion": ["path"], "path": ["motion"]}.get(kind, []) if isinstance(kind, str) else []:
         if other in document:
@@ -166,7 +166,7 @@ class SceneTable(Table):
 
 
 class BoxTable(Table):
-    telling: ClassVar[bool] = False  # x and y say nothing about where they belong
+    telling: ClassVar[bool] = False  # x and y do not show where they belong
     x: Pair | None = None
     y: Pair | None = None
 

@@ -22,11 +22,11 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 from grashof.problems.values.checks import near_miss, plain_text
 from grashof.problems.values.errors import ProblemError
 
-# What a validator says about a value: its message is what is allowed instead.
+# Type of a validator's error; its message is what the value must be.
 WRONG = "wrong"
-# Tags tell the shapes of a value apart. They enter the location of an error and are left out of its path.
+# Tags distinguish the shapes of a value. They enter the location of an error and are left out of its path.
 TABLE, LIST, WORD, NUMBER = "<table>", "<list>", "<word>", "<number>"
-_ALLOWED = {
+_WANTED = {
     "float_type": "a number",
     "int_type": "a whole number",
     "string_type": "a string",
@@ -39,7 +39,7 @@ class Table(BaseModel):
     """A table of a file. Its value type is built once here, so that what it refuses is counted too."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
-    # Whether one of its keys, found elsewhere, says that this table was meant.
+    # Whether one of its keys, found elsewhere, shows that this table was meant.
     telling: ClassVar[bool] = True
 
     def value(self) -> object:
@@ -76,7 +76,7 @@ def stated(table: type[AnyTable], document: dict[str, Any], tables: Mapping[str,
         return table.model_validate(document)
     except ValidationError as refused:
         errors = refused.errors(include_url=False)
-    # A missing key comes last: most often it stands in the file, misspelt, and that error says more.
+    # A missing key comes last: most often it stands in the file, misspelt, and that error is clearer.
     errors.sort(key=lambda error: error["type"] == "missing")
     raise ProblemError("\n".join(dict.fromkeys(_described(error, tables) for error in errors)))
 
@@ -89,23 +89,23 @@ def _plain(text: str, key: ValidationInfo) -> str:
 Text: TypeAlias = Annotated[str, AfterValidator(_plain)]
 
 
-def listed(allowed: str) -> BeforeValidator:
-    """Validator that refuses what is no list, saying what it should be a list of."""
+def listed(wanted: str) -> BeforeValidator:
+    """Validator that refuses what is not a list, with what it must be."""
 
     def refuse(value: object) -> object:
         if not isinstance(value, list):
-            raise PydanticCustomError(WRONG, allowed)
+            raise PydanticCustomError(WRONG, wanted)
         return value
 
     return BeforeValidator(refuse)
 
 
-def of_length(count: int, allowed: str) -> AfterValidator:
+def of_length(count: int, wanted: str) -> AfterValidator:
     """Validator of a list: so many entries."""
 
     def refuse(values: list[float]) -> list[float]:
         if len(values) != count:
-            raise PydanticCustomError(WRONG, allowed)
+            raise PydanticCustomError(WRONG, wanted)
         return values
 
     return AfterValidator(refuse)
@@ -138,8 +138,7 @@ def _described(error: ErrorDetails, tables: Mapping[str, type[Table]]) -> str:
         lines = str(error["ctx"]["error"]).splitlines()
         # A value type names its key from the top of the file; a box cannot know whose it is.
         return "\n".join(line if line.startswith(path) else f"{path}.{line}" for line in lines)
-    allowed = _ALLOWED.get(kind, error["msg"])
-    return f"{path} is {_shown(error['input'])}; allowed is {allowed}"
+    return f"{path} is {_shown(error['input'])}; it must be {_WANTED.get(kind, error['msg'])}"
 
 
 def _unknown(location: tuple[int | str, ...], tables: Mapping[str, type[Table]]) -> str:
@@ -147,7 +146,7 @@ def _unknown(location: tuple[int | str, ...], tables: Mapping[str, type[Table]])
     keys = list(tables[table].model_fields)
     homes = (name for name, other in tables.items() if key in other.model_fields and other.telling)
     meant = near_miss(key, keys) or next((f"{home}.{key}".lstrip(".") for home in homes), None)
-    return f"{path} is unknown; " + (f"did you mean {meant}?" if meant else f"allowed are {', '.join(keys)}")
+    return f"{path} is unknown; " + (f"did you mean {meant}?" if meant else f"the keys are {', '.join(keys)}")
 
 
 def _path(location: tuple[int | str, ...]) -> str:

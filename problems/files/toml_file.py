@@ -62,10 +62,10 @@ def exists(text: str) -> bool:
     return bool(text) and os.path.exists(text)  # noqa: PTH110
 
 
-def file_text(path: Path, allowed: str, hint: str = "") -> str:
-    """Text of a file that a user named; `ProblemError` says why it cannot be read, a hint what is meant."""
+def file_text(path: Path, wanted: str, hint: str = "") -> str:
+    """Text of a file that a user named; `ProblemError` states why it cannot be read, a hint what is meant."""
     if os.path.isdir(path):  # noqa: PTH112
-        raise ProblemError(f"{path}: is a folder; allowed is {allowed}")
+        raise ProblemError(f"{path}: is a folder; it must be {wanted}")
     try:
         # utf-8-sig: editors on Windows put a byte order mark first, which TOML does not know.
         return path.read_bytes().decode("utf-8-sig")

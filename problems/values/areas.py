@@ -1,6 +1,6 @@
 """Areas that parts of a linkage keep out of: polygons checked, and joined to one solid.
 
-The only module that states polygons to shapely. It is imported only where there are areas.
+The only module that gives polygons to shapely. It is imported only where there are areas.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import shapely
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import GREATEST, counted, finite_rows, noted, refuse
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.errors import ProblemError, wrong_value
 
 _FLAT = 1e-12  # share of the square of its extent below which a polygon has no area
 
@@ -29,13 +29,13 @@ def polygons(values: Iterable[npt.ArrayLike], where: str) -> tuple[FloatArray, .
 
     Examples
     --------
-    >>> polygons([[[0, 0], [2, 2], [0, 0]]], "keep_out")
+    >>> polygons([[[0, 0], [2, 2], [0, 0]]], "areas")
     Traceback (most recent call last):
         ...
-    grashof.problems.values.errors.ProblemError: keep_out[0] has 2 distinct corners; allowed are three or more
+    grashof.problems.values.errors.ProblemError: areas[0] has 2 distinct corners; it must have three or more
     """
     if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
-        raise ProblemError(f"{where} is {values!r}; allowed is a list of polygons")
+        raise wrong_value(where, values, "a list of polygons")
     areas: list[FloatArray] = []
     wrong: list[str] = []
     for index, corners in enumerate(values):
@@ -72,7 +72,7 @@ def _polygon(values: npt.ArrayLike, where: str) -> FloatArray:
     corners = finite_rows(values, 2, where, "a corner [x, y]", GREATEST)
     distinct = len(np.unique(corners, axis=0))
     if distinct < 3:
-        raise ProblemError(f"{where} has {counted(distinct, 'distinct corner')}; allowed are three or more")
+        raise ProblemError(f"{where} has {counted(distinct, 'distinct corner')}; it must have three or more")
     extent = float(np.hypot(*np.ptp(corners, axis=0)))
     if shapely.MultiPoint(corners).convex_hull.area <= _FLAT * extent**2:
         raise ProblemError(f"{where} has no area: its corners lie on a straight line")
@@ -80,7 +80,7 @@ def _polygon(values: npt.ArrayLike, where: str) -> FloatArray:
     if found:
         x, y = (float(number) for number in found.groups())
         raise ProblemError(
-            f"{where} crosses or touches itself at ({x:.6g}, {y:.6g}); allowed is a simple polygon"
+            f"{where} crosses or touches itself at ({x:.6g}, {y:.6g}); it must be a simple polygon"
         )
     if reason != "Valid Geometry":
         raise ProblemError(f"{where} is not a simple polygon: {reason.lower()}")

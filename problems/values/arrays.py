@@ -1,4 +1,4 @@
-"""Array types, and what every module counts angles by."""
+"""Array types, and the full turn."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.values.arrays import FloatArray, Limits, frozen_array
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.errors import ProblemError, wrong_value
 
 GREATEST = 1e20  # of lengths, masses and speeds: squares of torques stay within the floats
 LEAST = 1e-20  # size of a task, for the same reason
@@ -26,7 +26,7 @@ def finite_rows(
 ) -> FloatArray:
     """Array of shape (N, `columns`), each row checked by itself so that the message can name it."""
     if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
-        raise ProblemError(f"{where} is {values!r}; allowed is a list, each entry {row_means}")
+        raise wrong_value(where, values, f"a list, each entry {row_means}")
     rows: list[FloatArray] = []
     wrong: list[str] = []
     for index, row in enumerate(values):
@@ -40,16 +40,16 @@ def _finite_row(row: object, columns: int, name: str, row_means: str, greatest: 
     try:
         numbers = np.asarray(row)
     except ValueError:  # rows of unequal length inside
-        raise ProblemError(f"{name} is {row!r}; allowed is {row_means}") from None
+        raise wrong_value(name, row, row_means) from None
     if numbers.dtype.kind not in "iuf":
-        raise ProblemError(f"{name} is {row!r}; allowed is {row_means}")
+        raise wrong_value(name, row, row_means)
     if numbers.shape != (columns,):
-        count = counted(numbers.size, "number") if numbers.ndim == 1 else "no plain list of numbers"
-        raise ProblemError(f"{name} is {_plain(row)}, {count}; allowed is {row_means}")
+        count = counted(numbers.size, "number") if numbers.ndim == 1 else "not a plain list of numbers"
+        raise ProblemError(f"{name} is {_plain(row)}, {count}; it must be {row_means}")
     if not np.isfinite(numbers).all():
         raise ProblemError(f"{name} is {_plain(row)}; all numbers must be finite")
     if (np.abs(numbers) > greatest).any():
-        raise ProblemError(f"{name} is {_plain(row)}; allowed are numbers up to {greatest:g}")
+        raise ProblemError(f"{name} is {_plain(row)}; its numbers must be at most {greatest:g}")
     return numbers.astype(np.float64)
 
 
@@ -82,7 +82,7 @@ def outline(values: npt.ArrayLike, where: str) -> FloatArray:
     """Array of shape (N, 2), the corners of something drawn."""
     corners = finite_rows(values, 2, where, "a corner [x, y]", GREATEST)
     if len(corners) < 2:
-        raise ProblemError(f"{where} has {counted(len(corners), 'corner')}; allowed are two or more")
+        raise ProblemError(f"{where} has {counted(len(corners), 'corner')}; it must have two or more")
     return corners
 
 
@@ -98,19 +98,19 @@ def number_array(values: npt.ArrayLike, message: str, axes: Sequence[int] = rang
 
 
 def finite_number(value: float, where: str) -> float:
-    """`value` as a float, refused when it is no finite number."""
+    """`value` as a float, refused when it is not a finite number."""
     if isinstance(value, Real) and not isinstance(value, bool):
         with suppress(OverflowError):  # a whole number beyond the floats
             if math.isfinite(value):
                 return float(value)
-    raise ProblemError(f"{where} is {reprlib.repr(value)}; allowed is a finite number")
+    raise ProblemError(f"{where} is {reprlib.repr(value)}; it must be a finite number")
 
 
 def positive_number(value: float, where: str) -> float:
     """`value` as a float, refused when it is not greater than zero."""
     number = finite_number(value, where)
     if number <= 0:
-        raise ProblemError(f"{where} is {number:.15g}; allowed are numbers greater than zero")
+        raise ProblemError(f"{where} is {number:.15g}; it must be a number greater than zero")
     return number
 
 
@@ -118,7 +118,7 @@ def number_within(value: float, low: float, high: float, where: str) -> float:
     """`value` as a float, refused outside [low, high]."""
     number = finite_number(value, where)
     if not low <= number <= high:
-        raise ProblemError(f"{where} is {number:.15g}; allowed is {low:g} to {high:g}")
+        raise ProblemError(f"{where} is {number:.15g}; it must be from {low:g} to {high:g}")
     return number
 
 
@@ -126,14 +126,14 @@ def task_size(points: FloatArray, where: str) -> float:
     """Greatest distance between two of N points (N, 2), refused where it is so small that digits are lost."""
     size = span(points)
     if 0 < size < LEAST:
-        raise ProblemError(f"{where} are at most {size:g} apart; allowed is a size from {LEAST:g}")
+        raise ProblemError(f"{where} are at most {size:g} apart; two must be at least {LEAST:g} apart")
     return size
 
 
 def whole_number(value: int, low: int, where: str) -> int:
     """`value` as an int, refused below `low` or when it is not whole."""
     if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < low:
-        raise ProblemError(f"{where} is {value!r}; allowed is a whole number from {low}")
+        raise wrong_value(where, value, f"a whole number from {low}")
     return int(value)
 
 
@@ -142,15 +142,15 @@ def limits(values: Limits, where: str, *, least: float = -np.inf, most: float = 
     try:
         low, high = values
     except (TypeError, ValueError):
-        raise ProblemError(f"{where} is {values!r}; allowed is [lo, hi]") from None
+        raise wrong_value(where, values, "[lo, hi]") from None
     low, high = finite_number(low, f"{where}[0]"), finite_number(high, f"{where}[1]")
     given = f"{where} is [{low:.15g}, {high:.15g}]"
     if low > high:
-        raise ProblemError(f"{given}: lo exceeds hi; allowed is [lo, hi] with lo <= hi")
+        raise ProblemError(f"{given}: lo exceeds hi; it must be [lo, hi] with lo <= hi")
     if high > most:
-        raise ProblemError(f"{given}; allowed is hi up to {most:g}")
+        raise ProblemError(f"{given}; hi must be at most {most:g}")
     if low < least:
-        raise ProblemError(f"{given}; allowed is lo from {least:g}")
+        raise ProblemError(f"{given}; lo must be at least {least:g}")
     return low, high
 
 
@@ -167,9 +167,9 @@ def counted(number: int, noun: str) -> str:
     return f"{number} {noun[:-1]}ies" if noun.endswith("ly") else f"{number} {noun}s"
 
 
-def near_miss(word: str, allowed: Sequence[str]) -> str | None:
-    """The one of `allowed` that `word` may be a misspelling of, if any."""
-    by_folded = {name.casefold(): name for name in allowed}
+def near_miss(word: str, words: Sequence[str]) -> str | None:
+    """The one of `words` that `word` may be a misspelling of, if any."""
+    by_folded = {name.casefold(): name for name in words}
     close = difflib.get_close_matches(word.casefold(), by_folded, n=1)
     return by_folded[close[0]] if close else None
 
@@ -195,12 +195,12 @@ def plain_text(text: str, where: str) -> str:
     >>> plain_text("two\nlines", "title")
     Traceback (most recent call last):
         ...
-    grashof.problems.values.errors.ProblemError: title has control character U+000A; allowed is plain text
+    grashof.problems.values.errors.ProblemError: title has control character U+000A; it must be plain text
     """
     if not isinstance(text, str):
-        raise ProblemError(f"{where} is {reprlib.repr(text)}; allowed is text")
+        raise ProblemError(f"{where} is {reprlib.repr(text)}; it must be text")
     for character in filter(_unprintable, text):
-        raise ProblemError(f"{where} has control character U+{ord(character):04X}; allowed is plain text")
+        raise ProblemError(f"{where} has control character U+{ord(character):04X}; it must be plain text")
     return text
 
 

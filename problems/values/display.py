@@ -1,4 +1,4 @@
-"""How values show themselves in notebooks. What makes the HTML lies above: it registers itself here."""
+"""Display of values in notebooks. What makes the HTML lies in a layer above and registers itself here."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class Displayed:
 
     @staticmethod
     def register(maker: Callable[[Any], str]) -> None:
-        """Say what makes the HTML of every such value."""
+        """Register what makes the HTML of every such value."""
         Displayed._maker = staticmethod(maker)
 
     def _repr_html_(self) -> str | None:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.checks import GREATEST, number_within, positive_number
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.errors import ProblemError, wrong_value
 
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048}
 _STEADY = 30 / np.pi  # rpm: 1 rad/s
@@ -38,8 +38,8 @@ class DynamicsSpec:
     Raises
     ------
     ProblemError
-        Numbers that are not finite or beyond 1e20, negative masses, or links whose masses are said
-        twice or by half.
+        Numbers that are not finite or beyond 1e20, negative masses, or links whose masses are given
+        twice or in part.
 
     Examples
     --------
@@ -66,7 +66,7 @@ class DynamicsSpec:
     ) -> None:
         if mass_per_length is not None and (masses is not None or inertias is not None):
             raise ProblemError(
-                "dynamics.mass_per_length does not go with masses and inertias; allowed is one or the other"
+                "dynamics.mass_per_length does not go with masses and inertias; give one or the other"
             )
         if (masses is None) != (inertias is None):
             absent = "masses" if masses is None else "inertias"
@@ -86,7 +86,7 @@ class DynamicsSpec:
 
     @property
     def stated(self) -> dict[str, Any]:
-        """The arguments that give this value, without those that are not said: a file's table."""
+        """The arguments that give this value, without those that are not given: a file's table."""
         every = {name: getattr(self, name) for name in self.__slots__}
         return {name: value for name, value in every.items() if value is not None}
 
@@ -125,7 +125,7 @@ def metres(length_unit: str) -> float:
     0.0254
     """
     if length_unit not in METRES:
-        raise ProblemError(f"length_unit is {length_unit!r}; with dynamics allowed are {', '.join(METRES)}")
+        raise wrong_value("length_unit", length_unit, f"one of {', '.join(METRES)} with dynamics")
     return METRES[length_unit]
 
 
@@ -133,10 +133,10 @@ def _numbers(values: Sequence[float], count: int, where: str) -> tuple[float, ..
     try:
         numbers = list(values)
     except TypeError:
-        raise ProblemError(f"{where} is {values!r}; allowed are {count} numbers") from None
+        raise wrong_value(where, values, f"{count} numbers") from None
     if len(numbers) != count:
         entries = "1 entry" if len(numbers) == 1 else f"{len(numbers)} entries"
-        raise ProblemError(f"{where} has {entries}; allowed are {count} numbers")
+        raise ProblemError(f"{where} has {entries}; it must have {count} numbers")
     return tuple(_bounded(value, f"{where}[{index}]") for index, value in enumerate(numbers))
 
 
@@ -150,7 +150,7 @@ def _triple(values: Sequence[float] | None, where: str) -> tuple[float, ...] | N
 def _from_zero(value: float, where: str) -> float:
     number = _bounded(value, where)
     if number < 0:
-        raise ProblemError(f"{where} is {number:.15g}; allowed is a number from zero")
+        raise ProblemError(f"{where} is {number:.15g}; it must be a number from zero")
     return number
 
 

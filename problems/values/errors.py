@@ -6,7 +6,12 @@ class GrashofError(Exception):
 
 
 class ProblemError(GrashofError, ValueError):
-    """Bad input: the message names what is wrong, where, and what is allowed."""
+    """Bad input: the message names what is wrong, where, and what it must be."""
+
+
+def wrong_value(where: str, value: object, wanted: str) -> ProblemError:
+    """The error of a value that is not what it must be."""
+    return ProblemError(f"{where} is {value!r}; it must be {wanted}")
 
 
 class AssemblyError(GrashofError):
@@ -14,11 +19,11 @@ class AssemblyError(GrashofError):
 
 
 class NoSolutionError(GrashofError):
-    """No verified design exists in a result; the message says what stood in the way."""
+    """No verified design exists in a result; the message states why."""
 
 
 class SolverError(GrashofError):
-    """The surroundings of the search failed: a worker died, an executor was lost."""
+    """Environment error of a search: a worker died, an executor was lost."""
 
 
 class GrashofWarning(UserWarning):

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.errors import ProblemError, wrong_value
 
 _ENDINGS = {"place": ("_x", "_y"), "arm": ("_u", "_v"), "angle": ("_deg",)}
 
@@ -65,15 +65,15 @@ class Parameter:
         try:
             array = np.asarray(value, dtype=np.float64)
         except (TypeError, ValueError):
-            raise ProblemError(f"{self.name} is {value!r}; allowed are numbers") from None
+            raise wrong_value(self.name, value, "a number") from None
         if not np.isfinite(array).all():
             raise ProblemError(f"{self.name} is {value!r}; all numbers must be finite")
         if self.paired and array.shape[-1:] != (2,):
-            raise ProblemError(f"{self.name} has shape {array.shape}; allowed is (..., 2)")
+            raise ProblemError(f"{self.name} has shape {array.shape}; it must be (..., 2)")
         if self.kind == "length" and np.any(array <= 0):
-            raise ProblemError(f"{self.name} is {value!r}; allowed are lengths greater than zero")
+            raise wrong_value(self.name, value, "greater than zero")
         if self.kind == "sign" and np.any(np.abs(array) != 1):
-            raise ProblemError(f"{self.name} is {value!r}; allowed is +1 or -1")
+            raise wrong_value(self.name, value, "+1 or -1")
         return array
 
 

@@ -1,4 +1,4 @@
-"""A linkage with what its file, or the list it comes from, says besides."""
+"""A linkage with what else its file, or the list it comes from, states."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from grashof.problems.values.problem import Problem
 
 @dataclass(frozen=True, slots=True)
 class LinkageSpec(Displayed):
-    """A linkage with what its file says besides.
+    """A linkage with what else its file states.
 
     Parameters
     ----------
@@ -22,9 +22,9 @@ class LinkageSpec(Displayed):
     name, title, source, length_unit : str
     output_arm : float, length, optional
         Radius about O4 of what the output link drives, such as a horsehead: its stroke and torque
-        factor are told.
+        factor are reported.
     dynamics : DynamicsSpec, optional
-        It need not say masses.
+        It need not have masses.
     problem : Problem, optional
         Of a design out of a list: what it was found for.
     """
@@ -50,7 +50,7 @@ class LinkageSpec(Displayed):
 
 @dataclass(frozen=True, slots=True)
 class ListedDesign:
-    """A design of a candidates list, with what the list says of its targets.
+    """A design of a candidates list, with what the list states of its targets.
 
     Parameters
     ----------
@@ -79,4 +79,4 @@ class ListedDesign:
         counts = {len(self.theta2), len(self.assembly), len(self.position_error)}
         counts |= {len(self.angle_error)} if self.angle_error else set()
         if len(counts) > 1 or 0 in counts or any(sign not in (1, -1) for sign in self.assembly):
-            raise ProblemError("theta2, assembly and errors do not say the same number of targets")
+            raise ProblemError("theta2, assembly and errors have different numbers of targets")

@@ -55,7 +55,7 @@ class Manufacturing:
 def _length(value: float, where: str) -> float:
     length = finite_number(value, where)
     if length <= 0:
-        raise ProblemError(f"{where} is {length:.15g}; allowed is a length greater than zero")
+        raise ProblemError(f"{where} is {length:.15g}; it must be greater than zero")
     if length > GREATEST:
-        raise ProblemError(f"{where} is {length:.15g}; allowed is a length up to {GREATEST:g}")
+        raise ProblemError(f"{where} is {length:.15g}; it must be at most {GREATEST:g}")
     return length

@@ -23,7 +23,7 @@ from grashof.problems.values.checks import (
     refuse,
     task_size,
 )
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.task import Task
 from grashof.problems.values.timing import driver_timing, finite_angles, whole_turn
 from grashof.problems.values.zones import LEAST_ZONE, turn_sizes, zone_sizes
@@ -103,7 +103,7 @@ class MotionTask(Task):
     ) -> None:
         places = _numbers(positions, "positions")
         if places.ndim != 2 or places.shape[1] != 2:
-            raise ProblemError(f"motion.poses has positions of shape {places.shape}; allowed is (N, 2)")
+            raise ProblemError(f"motion.poses has positions of shape {places.shape}; it must be (N, 2)")
         turned = _numbers(angles, "angles")
         if turned.shape != (len(places),):
             raise ProblemError(f"motion.poses has {len(places)} positions and angles of shape {turned.shape}")
@@ -111,19 +111,17 @@ class MotionTask(Task):
             pose = int(np.nanargmax(np.abs(turned)))
             raise ProblemError(
                 f"motion.poses[{pose}] is turned by {np.degrees(turned[pose]):.6g} deg; "
-                f"allowed is up to {np.degrees(_MOST_TURNED):.0f} deg, beyond which digits are lost"
+                f"it must be at most {np.degrees(_MOST_TURNED):.0f} deg, beyond which digits are lost"
             )
         if len(places) < 2:
-            raise ProblemError(f"motion.poses has {counted(len(places), 'pose')}; allowed are two or more")
+            raise ProblemError(f"motion.poses has {counted(len(places), 'pose')}; it must have two or more")
         _refuse_halves(places, turned)
         _refuse_far(places)
         size = task_size(places[~np.isnan(places[:, 0])], "motion.poses")
         _refuse_standing_still(places, turned)
         if angle_length is not None:
             if finite_number(angle_length, "motion.angle_length") <= 0:
-                raise ProblemError(
-                    f"motion.angle_length is {angle_length:g}; allowed is a length greater than zero"
-                )
+                raise ProblemError(f"motion.angle_length is {angle_length:g}; it must be greater than zero")
             number_within(angle_length, LEAST, GREATEST, "motion.angle_length")
         if size == 0 and angle_length is None:
             raise ProblemError(
@@ -156,7 +154,7 @@ class MotionTask(Task):
     ) -> MotionTask:
         """Task from rows [x, y, angle in degrees], or tables of x, y, angle, as problem files write them."""
         if isinstance(poses, (str, bytes, Mapping)) or not isinstance(poses, Iterable):
-            raise ProblemError(f"motion.poses is {poses!r}; allowed is a list of poses")
+            raise wrong_value("motion.poses", poses, "a list of poses")
         given: list[tuple[float, float, float]] = []
         wrong: list[str] = []
         for k, pose in enumerate(poses):
@@ -182,7 +180,7 @@ def _row(pose: object, where: str) -> tuple[float, float, float]:
         for key in pose:
             if key not in ("x", "y", "angle"):
                 meant = near_miss(str(key), ("x", "y", "angle"))
-                hint = f"did you mean {meant}?" if meant else "allowed are x, y, angle"
+                hint = f"did you mean {meant}?" if meant else "the keys are x, y, angle"
                 raise ProblemError(f"{where}.{key} is unknown; {hint}")
         x, y, angle = (
             finite_number(pose[key], f"{where}.{key}") if key in pose else np.nan
@@ -190,10 +188,10 @@ def _row(pose: object, where: str) -> tuple[float, float, float]:
         )
         return x, y, angle
     if isinstance(pose, (str, bytes)) or not isinstance(pose, Iterable):
-        raise ProblemError(f"{where} is {pose!r}; allowed is {_POSE}")
+        raise wrong_value(where, pose, _POSE)
     values = list(pose)
     if len(values) != 3:
-        raise ProblemError(f"{where} is {values}, {counted(len(values), 'number')}; allowed is {_POSE}")
+        raise ProblemError(f"{where} is {values}, {counted(len(values), 'number')}; it must be {_POSE}")
     for value in values:
         if isinstance(value, float) and not np.isfinite(value):
             raise ProblemError(f"{where} is {values}; all numbers must be finite")
@@ -202,10 +200,10 @@ def _row(pose: object, where: str) -> tuple[float, float, float]:
 
 
 def _numbers(values: npt.ArrayLike, what: str) -> FloatArray:
-    numbers = number_array(values, f"motion.poses has {what} {values!r}; allowed are numbers")
+    numbers = number_array(values, f"motion.poses has {what} {values!r}; they must be numbers")
     if np.isinf(numbers).any():
         raise ProblemError(
-            f"motion.poses has {what} that are infinite; allowed are numbers, NaN for free ones"
+            f"motion.poses has {what} that are infinite; they must be finite, or NaN where free"
         )
     return numbers.astype(np.float64)
 
@@ -213,13 +211,13 @@ def _numbers(values: npt.ArrayLike, what: str) -> FloatArray:
 def _weights(values: npt.ArrayLike | None, count: int) -> FloatArray:
     if values is None:
         return frozen_array(np.ones(count))
-    weights = number_array(values, f"motion.weights is {values!r}; allowed is a list of numbers", (1,))
+    weights = number_array(values, f"motion.weights is {values!r}; it must be a list of numbers", (1,))
     if len(weights) != count:
         raise ProblemError(f"motion.weights has {counted(len(weights), 'number')} for {count} poses")
     least, most = _WEIGHTS
     for index in np.flatnonzero(~((weights >= least) & (weights <= most))):
         raise ProblemError(
-            f"motion.weights[{index}] is {weights[index]}; allowed is a number from {least:g} to {most:g}"
+            f"motion.weights[{index}] is {weights[index]}; it must be a number from {least:g} to {most:g}"
         )
     return frozen_array(weights)
 
@@ -227,17 +225,17 @@ def _weights(values: npt.ArrayLike | None, count: int) -> FloatArray:
 def _refuse_far(positions: FloatArray) -> None:
     for index in np.flatnonzero((np.abs(positions) > GREATEST).any(axis=1)):
         x, y = positions[index]
-        raise ProblemError(f"motion.poses[{index}] is at {x:g}, {y:g}; allowed is up to {GREATEST:g}")
+        raise ProblemError(f"motion.poses[{index}] is at {x:g}, {y:g}; x and y must be at most {GREATEST:g}")
 
 
 def _refuse_halves(positions: FloatArray, angles: FloatArray) -> None:
     missing = np.isnan(positions)
     for index in np.flatnonzero(missing.any(axis=1) != missing.all(axis=1)):
-        raise ProblemError(f"motion.poses[{index}] has one of x and y; allowed are both or neither")
+        raise ProblemError(f"motion.poses[{index}] has one of x and y; it must have both or neither")
     for index in np.flatnonzero(missing.all(axis=1) & np.isnan(angles)):
         raise ProblemError(f"motion.poses[{index}] has neither position nor angle")
     if missing.all():
-        raise ProblemError("motion.poses has no position; allowed are poses of which one has x and y")
+        raise ProblemError("motion.poses has no position; one pose or more must have x and y")
 
 
 def _refuse_standing_still(positions: FloatArray, angles: FloatArray) -> None:

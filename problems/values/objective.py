@@ -61,7 +61,7 @@ class Objective:
             where = f"objective.maximise.{name}"
             if name not in GOALS:
                 meant = near_miss(name, list(GOALS))
-                hint = f"did you mean {meant}?" if meant else f"allowed are {', '.join(GOALS)}"
+                hint = f"did you mean {meant}?" if meant else f"the keys are {', '.join(GOALS)}"
                 raise ProblemError(f"{where} is unknown; {hint}")
             weights.append((GOALS[name].key, number_within(weight, 0.0, _HEAVIEST, where)))
         if not any(weight for _, weight in weights):

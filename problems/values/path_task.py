@@ -36,7 +36,7 @@ class PathTask(Task):
     ------
     ProblemError
         Fewer than three points, numbers that are not finite or beyond 1e20, a size below 1e-20, two
-        consecutive equal points (the last may repeat the first), or a timing that is none.
+        consecutive equal points (the last may repeat the first), or a timing that is not one.
 
     Examples
     --------
@@ -63,7 +63,7 @@ class PathTask(Task):
     ) -> None:
         places = finite_rows(points, 2, "path.points", "a point [x, y]", GREATEST)
         if len(places) < 3:
-            raise ProblemError(f"path.points has {counted(len(places), 'point')}; allowed are three or more")
+            raise ProblemError(f"path.points has {counted(len(places), 'point')}; it must have three or more")
         for index in np.flatnonzero(np.abs(np.diff(places, axis=0)).max(axis=1) == 0):
             raise ProblemError(
                 f"path.points[{index}] and path.points[{index + 1}] are equal; consecutive points must differ"

@@ -22,7 +22,7 @@ from grashof.problems.values.checks import (
     whole_number,
 )
 from grashof.problems.values.dynamics_spec import DynamicsSpec, metres
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.manufacturing import Manufacturing
 from grashof.problems.values.motion_task import MotionTask
 from grashof.problems.values.objective import GOALS, Objective
@@ -34,7 +34,7 @@ from grashof.problems.values.task import Task
 
 LEAST_TOLERANCE = 1e-4  # sizes: from here on a tolerance is a zone about each target
 NO_OBJECTIVE = (
-    "objective is of no effect in least squares; allowed is also within (zones about the targets) or "
+    "objective is of no effect in least squares; it needs within (zones about the targets) or "
     "requirements.error_factor"
 )
 EFFORTS = (0.2, 100.0)
@@ -101,9 +101,9 @@ class Problem(ReadOnly):
     outlines : sequence of array_like, shape (M, 2), length
         The scene: drawn, no constraint.
     manufacturing : Manufacturing, optional
-        How exactly linkages are made; without it nothing is said about made ones.
+        How exactly linkages are made; without it there are no columns of made ones.
     dynamics : DynamicsSpec, optional
-        Masses, speed and gravity; without it nothing is said about torque and forces.
+        Masses, speed and gravity; without it there are no torques and forces.
     """
 
     task: Task
@@ -121,11 +121,11 @@ class Problem(ReadOnly):
     def __post_init__(self) -> None:
         for name, kind in _KINDS.items():
             if not isinstance(value := getattr(self, name), kind):
-                raise ProblemError(f"problem.{name} is {reprlib.repr(value)}; allowed is {_named(kind)}")
+                raise ProblemError(f"problem.{name} is {reprlib.repr(value)}; it must be {_named(kind)}")
         for name in ("name", "title", "source", "length_unit"):
             plain_text(getattr(self, name), name)
         if isinstance(self.outlines, str) or not isinstance(self.outlines, Iterable):
-            raise ProblemError(f"scene.outlines is {self.outlines!r}; allowed is a list of outlines")
+            raise wrong_value("scene.outlines", self.outlines, "a list of outlines")
         wrong: list[str] = []
         if self.dynamics is not None:
             with noted(wrong):
@@ -151,7 +151,7 @@ class Problem(ReadOnly):
         missing = {
             Needs.DYNAMICS: "dynamics is missing",
             Needs.MANUFACTURING: "manufacturing is missing",
-            Needs.CLOSED: f"{self.task.kind}.closed is false; allowed is true",
+            Needs.CLOSED: f"{self.task.kind}.closed is false; it must be true",
             Needs.LEAST_SQUARES: "requirements.exact = false is missing",
             Needs.ANGLES: f"{self.task.kind} has no angles",
         }
@@ -162,7 +162,7 @@ class Problem(ReadOnly):
         ]
         if not self.requirements.same_branch:
             wrong += [
-                f"requirements.same_branch is false; allowed is true when {where} is given"
+                f"requirements.same_branch is false; it must be true when {where} is given"
                 for where, quantity in asked.items()
                 if quantity.needs is Needs.DYNAMICS
             ]
@@ -201,7 +201,7 @@ class Problem(ReadOnly):
 
     @property
     def zones(self) -> FloatArray | None:
-        """How far positions (length) and angles (rad) may be missed, shape (2, N), where that is said.
+        """How far positions (length) and angles (rad) may be missed, shape (2, N), where that is given.
 
         Each target's own zone, or a tolerance of `LEAST_TOLERANCE` and more where every target has
         to be met.
@@ -211,12 +211,12 @@ class Problem(ReadOnly):
             return task.zones
         if wanted.tolerance < LEAST_TOLERANCE or not wanted.is_exact(task):
             return None
-        allowed = np.full((2, len(task)), wanted.tolerance * task.size)
-        allowed[1] /= task.angle_length
-        return np.where([task.has_position, task.has_angle], allowed, np.inf)
+        radii = np.full((2, len(task)), wanted.tolerance * task.size)
+        radii[1] /= task.angle_length
+        return np.where([task.has_position, task.has_angle], radii, np.inf)
 
     def without_zones(self, *, exact: bool | None = False) -> Problem:
-        """The same problem with no target to be missed, by least squares unless it says else."""
+        """The same problem with no target to be missed, by least squares unless it states otherwise."""
         task = self.task.without_zones() if self.task.zones is not None else self.task
         tight = min(self.requirements.tolerance, Requirements().tolerance)
         wanted = replace(self.requirements, exact=exact, error_factor=None, tolerance=tight)

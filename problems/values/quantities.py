@@ -1,4 +1,4 @@
-"""Quantities: what can be said of a design. Each is declared here, once, without its formula.
+"""Quantities of a design. Each is declared here, once, without its formula.
 
 Limited, a quantity is a requirement; weighed, an objective; listed, a column; missed, a defect. The judge
 has a measure of each by its key (`grashof.analysis.judge.measures`), the search a formula of those that it
@@ -69,7 +69,7 @@ class Needs(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """Something that can be said of a design.
+    """A quantity of a design.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ class Quantity:
     digits : int
         Significant digits of the largest value in a table; 0 where it is listed in files only.
     about : str
-        What it is, where its label does not say so.
+        What it is, where its label does not show it.
     listed : bool
         Whether it is a column; what has several parts, such as a place, is not.
     words : str

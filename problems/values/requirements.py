@@ -11,7 +11,7 @@ import numpy as np
 
 from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.checks import GREATEST, finite_number, limits, noted, number_within, refuse
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.linkage import FourBar
 from grashof.problems.values.quantities import MEASURED, Kind, Limit, Needs, Over, Quantity, Unit, limit
 from grashof.problems.values.read_only import ReadOnly
@@ -88,7 +88,7 @@ class Requirements(ReadOnly):
     order : bool
         The driver meets the targets in sequence, in one sense, within one turn.
     same_branch : bool
-        One assembly and no dead position over the whole motion used.
+        One assembly and no dead position over the task motion.
     transmission_min_deg : float, deg
         Least min(mu, pi - mu) over `transmission_over`.
     transmission_over : TransmissionOver
@@ -217,12 +217,10 @@ class Requirements(ReadOnly):
 
     def __post_init__(self) -> None:
         if not isinstance(self.exact, bool | None):
-            raise ProblemError(f"requirements.exact is {self.exact!r}; allowed is true or false")
+            raise wrong_value("requirements.exact", self.exact, "true or false")
         for name in ("order", "same_branch"):
             if not isinstance(getattr(self, name), bool):
-                raise ProblemError(
-                    f"requirements.{name} is {getattr(self, name)!r}; allowed is true or false"
-                )
+                raise wrong_value(f"requirements.{name}", getattr(self, name), "true or false")
         for name, kind in (("rotatability", Rotatability), ("transmission_over", TransmissionOver)):
             object.__setattr__(self, name, _member(kind, getattr(self, name), f"requirements.{name}"))
         for name, (low, high) in _RANGES.items():
@@ -261,9 +259,7 @@ class Requirements(ReadOnly):
         if task.zones is not None and self.exact:
             wrong.append(f"{task.kind}.within does not go with requirements.exact = true; it takes its place")
         if task.zones is not None and self.error_factor is not None:
-            wrong.append(
-                f"requirements.error_factor does not go with {task.kind}.within; allowed is one of them"
-            )
+            wrong.append(f"requirements.error_factor does not go with {task.kind}.within; give one of them")
         if self.error_factor is not None and self.is_exact(task):
             wrong.append("requirements.error_factor needs least squares, exact = false")
         if self.keep_out and "body" in self.keep_out_for and task.body is None:
@@ -336,7 +332,7 @@ _ADVANTAGE = Quantity(
     Over.TASK,
     about="omega2 / omega4 where it is least over the task motion, with its sign",
 )
-# All that can be said of a design, by key; those that are listed in the order of the columns.
+# All quantities of a design, by key; those that are listed in the order of the columns.
 QUANTITIES = MEASURED | {limited.quantity.key: limited.quantity for limited in LIMITS.values()}
 QUANTITIES[_ADVANTAGE.key] = _ADVANTAGE
 
@@ -344,14 +340,14 @@ QUANTITIES[_ADVANTAGE.key] = _ADVANTAGE
 def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float | str:
     if limited.kind in (Kind.INSIDE, Kind.ON_BODY):
         if not isinstance(value, Box):
-            raise ProblemError(f"{where} is {value!r}; allowed is a Box")
+            raise wrong_value(where, value, "a Box")
         return value
     low, high = limited.allowed
     if limited.kind is Kind.BETWEEN:
         return limits(value, where, least=low, most=high)
     if limited.kind is Kind.WORD:
         if value not in limited.words:
-            raise ProblemError(f"{where} is {value!r}; allowed is one of {', '.join(limited.words)}")
+            raise wrong_value(where, value, f"one of {', '.join(limited.words)}")
         return str(value)
     if limited.kind is Kind.EQUAL:
         return finite_number(value, where)
@@ -371,26 +367,27 @@ def _areas(values: Sequence[FloatArray]) -> tuple[FloatArray, ...]:
 
 
 def _kept_out(names: Sequence[str]) -> tuple[str, ...]:
-    allowed = f"allowed is a list of {', '.join(MAY_KEEP_OUT[:-1])} and {MAY_KEEP_OUT[-1]}"
+    wanted = f"a list of {', '.join(MAY_KEEP_OUT[:-1])} and {MAY_KEEP_OUT[-1]}"
     if isinstance(names, str) or not isinstance(names, Sequence) or not len(names):
-        raise ProblemError(f"requirements.keep_out_for is {names!r}; {allowed}")
+        raise wrong_value("requirements.keep_out_for", names, wanted)
     for index, name in enumerate(names):
         if name not in MAY_KEEP_OUT:
-            raise ProblemError(f"requirements.keep_out_for[{index}] is {name!r}; {allowed}")
+            where = f"requirements.keep_out_for[{index}]"
+            raise wrong_value(where, name, f"one of {', '.join(MAY_KEEP_OUT)}")
     return tuple(dict.fromkeys(names))
 
 
 def _side(values: Limits, name: str) -> Limits:
-    allowed = "allowed is [lo, hi] with lo <= hi"
+    wanted = "[lo, hi] with lo <= hi"
     try:
         low, high = (float(value) for value in values)
     except (TypeError, ValueError):
-        raise ProblemError(f"{name} is {values!r}; {allowed}") from None
+        raise wrong_value(name, values, wanted) from None
     if not (low <= high and low < np.inf and high > -np.inf):
-        raise ProblemError(f"{name} is [{low:.15g}, {high:.15g}]; {allowed}")
+        raise ProblemError(f"{name} is [{low:.15g}, {high:.15g}]; it must be {wanted}")
     for side in (low, high):
         if GREATEST < abs(side) < np.inf:
-            raise ProblemError(f"{name} is [{low:.15g}, {high:.15g}]; allowed is up to {GREATEST:g}")
+            raise ProblemError(f"{name} is [{low:.15g}, {high:.15g}]; its sides must be at most {GREATEST:g}")
     return low, high
 
 
@@ -398,8 +395,7 @@ def _member(kind: type[StrEnum], value: str, where: str) -> StrEnum:
     try:
         return kind(value)
     except ValueError:
-        allowed = ", ".join(kind)
-        raise ProblemError(f"{where} is {value!r}; allowed is one of {allowed}") from None
+        raise wrong_value(where, value, f"one of {', '.join(kind)}") from None
 
 
 _ANYWHERE = Box()

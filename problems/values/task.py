@@ -105,7 +105,7 @@ class Task(ReadOnly, ABC):
 
     @property
     def stated_zones(self) -> dict[str, FloatArray]:
-        """How far targets may be missed, by the name of the argument that says it, each of shape (N,)."""
+        """How far targets may be missed, by the name of the argument that states it, each of shape (N,)."""
         both = {"within": self.within, "angle_within": self.angle_within}
         return {name: zone for name, zone in both.items() if zone is not None}
 

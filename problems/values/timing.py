@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from grashof.problems.values.arrays import TURN, FloatArray, frozen_array
 from grashof.problems.values.checks import counted, number_array
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.errors import ProblemError, wrong_value
 
 
 def driver_timing(values: npt.ArrayLike | None, count: int, kind: str, target: str) -> FloatArray | None:
@@ -32,23 +32,23 @@ def driver_timing(values: npt.ArrayLike | None, count: int, kind: str, target: s
     if len(timing) != count:
         raise ProblemError(f"{where} has {counted(len(timing), 'angle')} for {count} {target}s")
     if timing[0] != 0:
-        raise ProblemError(f"{where}[0] is {_degrees(timing[0])}; allowed is 0, at the first {target}")
+        raise ProblemError(f"{where}[0] is {_degrees(timing[0])}; it must be 0, at the first {target}")
     sense = np.sign(timing[1])
     for index in np.flatnonzero(sense * np.diff(timing) <= 0) + 1:
         raise ProblemError(
             f"{where}[{index}] is {_degrees(timing[index])} after {_degrees(timing[index - 1])}; "
-            "allowed are angles that only grow, or only fall"
+            "the angles must only grow, or only fall"
         )
     if abs(timing[-1]) > TURN * (1 + 1e-12):
         last = f"{where}[{count - 1}] is {_degrees(timing[-1])}"
-        raise ProblemError(f"{last}; allowed is up to one turn, 360")
+        raise ProblemError(f"{last}; it must be at most one turn, 360")
     return frozen_array(timing)
 
 
 def finite_angles(values: npt.ArrayLike, kind: str) -> FloatArray:
     """A list of finite numbers, as an array."""
     where = f"{kind}.timing_deg"
-    numbers = number_array(values, f"{where} is {values!r}; allowed is a list of angles", (1,))
+    numbers = number_array(values, f"{where} is {values!r}; it must be a list of angles", (1,))
     for index in np.flatnonzero(~np.isfinite(numbers)):
         raise ProblemError(f"{where}[{index}] is {numbers[index]}; all numbers must be finite")
     return numbers.astype(np.float64)
@@ -57,7 +57,7 @@ def finite_angles(values: npt.ArrayLike, kind: str) -> FloatArray:
 def whole_turn(closed: bool, kind: str) -> bool:
     """Whether the motion is a whole turn of the driver, refused when it is not true or false."""
     if not isinstance(closed, (bool, np.bool_)):
-        raise ProblemError(f"{kind}.closed is {closed!r}; allowed is true or false")
+        raise wrong_value(f"{kind}.closed", closed, "true or false")
     return bool(closed)
 
 

@@ -25,7 +25,7 @@ def zone_sizes(
     where : str
         Its key, for messages.
     least, most : float
-        The smallest and the greatest allowed.
+        The least and the greatest that may be given.
 
     Raises
     ------
@@ -39,14 +39,14 @@ def zone_sizes(
     """
     if values is None:
         return None
-    allowed = "allowed is a number greater than zero, or a list of one for each target"
-    numbers = number_array(values, f"{where} is {values!r}; {allowed}", (0, 1))
+    wanted = "it must be a number greater than zero, or a list of one for each target"
+    numbers = number_array(values, f"{where} is {values!r}; {wanted}", (0, 1))
     if numbers.ndim == 1 and len(numbers) != count:
-        raise ProblemError(f"{where} has {counted(len(numbers), 'number')} for {count} targets; {allowed}")
+        raise ProblemError(f"{where} has {counted(len(numbers), 'number')} for {count} targets; {wanted}")
     for index, number in enumerate(np.atleast_1d(numbers)):
         if not least <= number <= most:
             name = f"{where}[{index}]" if numbers.ndim else where
-            raise ProblemError(f"{name} is {number:g}; allowed is {least:g} to {most:g}")
+            raise ProblemError(f"{name} is {number:g}; it must be from {least:g} to {most:g}")
     return frozen_array(np.broadcast_to(numbers, (count,)))
 
 

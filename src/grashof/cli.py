@@ -49,7 +49,7 @@ class _Commands(TyperGroup):
         except _UsageError as error:
             say(f"grashof: {_later(given) or _one_line(error)}", err=True)
             code = Exit.BAD_INPUT
-        except Exception as error:  # noqa: BLE001  (the outermost boundary: nobody else tells what is left)
+        except Exception as error:  # noqa: BLE001  (the outermost boundary: nobody else reports what is left)
             if os.environ.get(TRACEBACK):
                 say(traceback.format_exc(), err=True)
             say(f"grashof: {_unexpected(error)}", err=True)
@@ -101,7 +101,7 @@ def solve(
         Path | None, typer.Option(help="Folder for the results; NAME-designs by default.", show_default=False)
     ] = None,
     starts: Annotated[int | None, typer.Option(min=1, help="Most Ipopt solves.", show_default=False)] = None,
-    seed: Annotated[int | None, typer.Option(min=0, help="Of all randomness.", show_default=False)] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Random seed.", show_default=False)] = None,
     workers: Annotated[int, typer.Option(min=1, help="Processes; they change the time, not the result.")] = 1,
     time_limit: Annotated[
         float | None, typer.Option(help="Seconds after which no new solves begin.", show_default=False)
@@ -114,7 +114,7 @@ def solve(
             show_default=f"{TOP}, or search.enough if more",
         ),
     ] = None,
-    drawings: Annotated[int, typer.Option(min=0, help="How many of them to draw.")] = 3,
+    drawings: Annotated[int, typer.Option(min=0, help="Designs to draw.")] = 3,
     effort: Annotated[
         float | None,
         typer.Option(
@@ -125,9 +125,9 @@ def solve(
         ),
     ] = None,
 ) -> None:
-    """Find designs for PROBLEM; write the ranked list, a page to look at, the record, drawings.
+    """Find designs for PROBLEM; write the ranked list, a page, drawings and the record of the run.
 
-    Exit code 0: at least one verified design; 1: none; 2: bad input; 3: the environment failed;
+    Exit code 0: at least one verified design; 1: none; 2: bad input; 3: environment error;
     130: interrupted.
     """
     with _errors_told():
@@ -147,7 +147,7 @@ def solve(
 
 @app.command()
 def check(problem: ProblemArgument) -> None:
-    """Read PROBLEM and say what will be asked of a design, without solving."""
+    """Read PROBLEM and print what will be required of a design, without solving."""
     from grashof.output.terminal import folded
     from grashof.synth.starts.finder import finder_of
     from grashof.wording.problem import summary
@@ -201,9 +201,9 @@ def analyse(
         typer.Option(help="Of the driver, clockwise below 0; the file's by default.", show_default=False),
     ] = None,
 ) -> None:
-    """Say how LINKAGE moves and what it takes; write tables, a summary, a page to look at and plots.
+    """Report motion and forces of LINKAGE; write tables, a summary, a page and plots.
 
-    Exit code 0: done; 2: bad input; 3: the environment failed.
+    Exit code 0: done; 2: bad input; 3: environment error.
     """
     with _errors_told():
         commands.analyse(linkage, out, speed_rpm)
@@ -218,9 +218,9 @@ def animate(
     seconds: Annotated[float, typer.Option(min=0.1, max=20, help="Length of the motion.")] = 4.0,
     fps: Annotated[float, typer.Option(min=1, max=50, help="Frames a second.")] = 25.0,
 ) -> None:
-    """Write LINKAGE in motion: a turn of its driver, or from limit to limit and back.
+    """Animate LINKAGE over a turn of its driver, or from limit to limit and back.
 
-    Exit code 0: done; 2: bad input; 3: the environment failed.
+    Exit code 0: done; 2: bad input; 3: environment error.
     """
     with _errors_told():
         commands.animate(linkage, out, seconds, fps)
@@ -255,22 +255,22 @@ def export(
     scale: Annotated[str, typer.Option(help="Of a model: 0.05 or 1:20.")] = "1",
     mm_per_unit: Annotated[
         float | None,
-        typer.Option(help="Where the length unit is none of mm, cm, m, in, ft.", show_default=False),
+        typer.Option(help="Where the length unit is not mm, cm, m, in or ft.", show_default=False),
     ] = None,
     theta2_deg: Annotated[
         tuple[float, float] | None,
         typer.Option(
             metavar="LOW HIGH",
-            help="Driver angles of the use; all that the driver reaches by default.",
+            help="Range of driver angles used; all that the driver reaches by default.",
             show_default=False,
         ),
     ] = None,
 ) -> None:
     """Write the parts of LINKAGE for the workshop: plates to cut, stacked so that nothing collides.
 
-    Exit code 0: done; 2: bad input; 3: the environment failed.
+    Exit code 0: done; 2: bad input; 3: environment error.
     """
-    from grashof.workshop.export import Making, export_files, told
+    from grashof.workshop.export import Making, export_files, plan_lines
     from grashof.workshop.plates import PlateSizes
 
     given = {"dxf": dxf, "svg": svg, "xlsx": xlsx}
@@ -278,7 +278,7 @@ def export(
     with _errors_told():
         making = Making(PlateSizes(width, hole, thickness, clearance), scale, mm_per_unit, theta2_deg)
         plan = export_files(linkage, making, files)
-        for line in told(plan) if plan else ():
+        for line in plan_lines(plan) if plan else ():
             say(line)
         say(f"written: {', '.join(map(str, files.values()))}", err=True)
 
@@ -291,7 +291,7 @@ def main() -> None:
 
 
 def _later(given: list[str]) -> str:
-    """What to say of an option that only a later version knows; empty when none is given."""
+    """Message for an option that only a later version knows; empty when none is given."""
     words = [word for word in given if word.partition("=")[0] in _LATER_OPTIONS]
     return f"{words[0].partition('=')[0]} is not in this version" if words else ""
 
@@ -308,7 +308,7 @@ def _unexpected(error: Exception) -> str:
 
 @contextmanager
 def _errors_told() -> Iterator[None]:
-    """Bad input and a failed environment end the program with one line, not with a traceback."""
+    """Bad input and environment errors end the program with one line, not with a traceback."""
     try:
         yield
     except ProblemError as error:

@@ -1,4 +1,4 @@
-"""What the commands do: search, analyse, animate; what they write and say."""
+"""What the commands do: search, analyse, animate; what they write and print."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from grashof.output.streams import say
 from grashof.problems import Problem, load_linkage_spec
 from grashof.problems.values.checks import counted
 
-TOP = 50  # families in a list, where nothing else is said
+TOP = 50  # families in a list by default
 
 
 class Exit(IntEnum):
@@ -30,7 +30,7 @@ class Exit(IntEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Options:
-    """How to search and what to write; None where the problem, or its default, says it.
+    """How to search and what to write; None where the problem, or its default, states it.
 
     Parameters
     ----------

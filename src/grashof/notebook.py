@@ -40,8 +40,8 @@ def html(value: FourBar | LinkageSpec | Candidate | Result) -> str:
         return _side_by_side(_facts(_judged(value)), _drawing(value))
     if isinstance(value, LinkageSpec):
         unit = value.length_unit or "none stated"
-        told = {"name": value.name, "title": value.title, "source": value.source, "length unit": unit}
-        facts = {**told, **_linkage(value.linkage)}
+        named = {"name": value.name, "title": value.title, "source": value.source, "length unit": unit}
+        facts = {**named, **_linkage(value.linkage)}
         return _side_by_side(_facts({name: text for name, text in facts.items() if text}), _drawing(value))
     if value.shape:
         return _batch(value)
@@ -53,11 +53,11 @@ def _result(result: Result) -> str:
         return f"<p>No design. {escape(result.note)}</p>"
     rows = best_rows(result)
     note = f"<p>{escape(result.note)}</p>" if result.note else ""
-    told = "<br>".join(escape(line) for line in heading(result, len(result)).splitlines())
+    summary = "<br>".join(escape(line) for line in heading(result, len(result)).splitlines())
     named = units(result.problem)
     names = (f"{name} ({named[name]})" if name in named else name for name in rows[0])
     table = _table(names, (row.values() for row in rows))
-    return f"<p>{told}</p>{note}{_side_by_side(table, _drawing(result.best, result.problem))}"
+    return f"<p>{summary}</p>{note}{_side_by_side(table, _drawing(result.best, result.problem))}"
 
 
 def _linkage(linkage: FourBar) -> dict[str, str]:
@@ -88,8 +88,8 @@ def _batch(linkages: FourBar) -> str:
     lengths = linkages.lengths.reshape(-1, 4)
     rows = [[f"{length:.6g}" for length in each] for each in lengths[:_ROWS]]
     first = f", the first {_ROWS}" if len(lengths) > _ROWS else ""
-    told = f"batch of {counted(len(lengths), 'linkage')}, shape {linkages.shape}{first}"
-    return f"<p>{told}</p>{_table(linkages.LENGTHS, rows)}"
+    summary = f"batch of {counted(len(lengths), 'linkage')}, shape {linkages.shape}{first}"
+    return f"<p>{summary}</p>{_table(linkages.LENGTHS, rows)}"
 
 
 def _pair(point: FloatArray) -> str:

@@ -20,7 +20,7 @@ LOADS = 10  # numbers that drive torque and forces
 SCREENED = 25  # driver angles where many linkages are compared
 LOOKED_AT = 30 * SCREENED  # driver angles where one linkage is looked at
 AGREES = 2e-3  # share of its bound by which a magnitude may exceed it
-MOST_PEAKS = 4  # that are told of at once
+MOST_PEAKS = 4  # that are reported at once
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +53,7 @@ class Instant:
     def of(cls, ground: Vector, lengths: Any, arm: Vector, assembly: Any, theta2: Any, load: Any) -> Instant:
         """The linkage with ground O2O4, lengths r1 to r4 and coupler point (u, v) at driver angles.
 
-        Where the loop does not close its numbers are none, and Ipopt shortens its step.
+        Where the loop does not close its numbers are NaN, and Ipopt shortens its step.
         """
         r2, r3, r4 = lengths[1], lengths[2], lengths[3]
         crank = r2 * Vector(np.cos(theta2), np.sin(theta2))

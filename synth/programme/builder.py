@@ -1,4 +1,4 @@
-"""A nonlinear programme put together: whatever enters it says itself how a start fills it."""
+"""A nonlinear programme put together: whatever enters it states how a start fills it."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ class Builder:
 
 @dataclass(frozen=True, slots=True)
 class Programme:
-    """A programme built; `places` says where each unknown stands in the column of all."""
+    """A programme built; `places` holds where each unknown stands in the column of all."""
 
     solver: ca.Function
     places: dict[str, slice]

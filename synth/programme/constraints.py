@@ -193,7 +193,7 @@ def stand_nearest(build: Builder, form: Form, x: Unknowns, places: Places, targe
 
 
 def bound_error(build: Builder, form: Form, x: Unknowns, places: Places, targets: Targets) -> None:
-    """The squares as a whole, or each target's, are bounded, as shares of what is allowed."""
+    """The squares as a whole, or each target's, are bounded, as shares of their bounds."""
     if form.most_error:
         most = build.parameter(lambda _, start: min(start.most_error, FAR) ** 2 * form.targets)
         build.row(1 - square(form, x, places, targets) / most)
@@ -208,7 +208,7 @@ def bound_error(build: Builder, form: Form, x: Unknowns, places: Places, targets
 
 
 def bound_transmission(build: Builder, form: Form, x: Unknowns, places: Places) -> None:
-    """cos(tau) bounds |cos(mu)|, which is monotone between the ends of the way and the ground line."""
+    """cos(tau) bounds |cos(mu)|, monotone between the ends of the task motion and the ground line."""
     design = Symbols(form, x, places)
 
     def bound(diagonal2: ca.SX) -> tuple[ca.SX, ca.SX]:

@@ -39,7 +39,7 @@ class View:
     theta2_start : scalar
         Driver angle at the first target.
     driver_turn : scalar
-        Driver rotation from the first target to the last, counted in its sense.
+        Driver rotation from the first target to the last, positive in its sense.
     direction : scalar
         Sense of the driver, +1 or -1.
     output_turn : scalar

@@ -40,7 +40,7 @@ SLIGHT = 1e-6  # weight of the error beside the slack
 
 @dataclass(frozen=True, slots=True)
 class Solve:
-    """What came of one solve; the solver's word is recorded, not believed.
+    """Outcome of one solve; the solver's status is recorded, not trusted.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class Solve:
         Ipopt's return status.
     iterations : int
     peaks : mapping of str to float
-        The greatest magnitude along the motion that the programme knows of, by the key of each quantity that
+        The greatest magnitude along the motion in the programme, by the key of each quantity that
         has a part in it; in `Problem.scale`.
     """
 

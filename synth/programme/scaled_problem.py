@@ -185,7 +185,7 @@ class ScaledProblem:
 
 
 def _turning(wanted: Requirements, task: Task) -> Requirements:
-    """A closed task takes a whole turn of the driver, whatever is said of its rotatability."""
+    """A closed task takes a whole turn of the driver, whatever its rotatability."""
     if wanted.rotatability is not Rotatability.ANY or not task.closed:
         return wanted
     return replace(wanted, rotatability=Rotatability.FULL_CRANK, rotatability_margin=0.0)

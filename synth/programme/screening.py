@@ -50,7 +50,7 @@ class Screened:
     error : ndarray, shape (n,), sizes
         Root mean square distance from the targets.
     body_angle : ndarray, shape (n,), rad
-        From the coupler to the body, where the first pose does not say it; else zero.
+        From the coupler to the body, where the first pose does not fix it; else zero.
     """
 
     points: ComplexArray
@@ -95,7 +95,7 @@ class Configurations:
         In the order of the targets.
     visit : ndarray of int, shape (n, N)
     theta2 : ndarray, shape (n, N), rad
-        In the order of visit, counted on along the motion.
+        In the order of visit, unwrapped along the motion.
     direction : ndarray, shape (n,)
     """
 
@@ -316,7 +316,7 @@ def as_they_come(angle: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
     -------
     visit : ndarray of int, shape (n, N)
     theta2 : ndarray, shape (n, N), rad
-        In that order, counted on, counter-clockwise.
+        In that order, unwrapped, counter-clockwise.
     direction : ndarray, shape (n,)
     """
     count, sense = angle.shape[1], np.ones(len(angle))
@@ -329,13 +329,13 @@ def as_they_come(angle: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
 
 
 def follow(angle: FloatArray, direction: FloatArray) -> FloatArray:
-    """Driver angles (n, N) counted on in the driver's sense, each step less than a turn."""
+    """Driver angles (n, N) unwrapped in the driver's sense, each step less than a turn."""
     steps = direction[:, None] * ((direction[:, None] * np.diff(angle, axis=1)) % TURN)
     return np.concatenate([angle[:, :1], angle[:, :1] + np.cumsum(steps, axis=1)], axis=1)
 
 
 def shorter_way(angle: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Driver angles (n, N) counted on in the sense that takes them the shorter way, and that sense (n,)."""
+    """Driver angles (n, N) unwrapped in the sense that makes them turn less, and that sense (n,)."""
     forth, back = (follow(angle, np.full(len(angle), sense)) for sense in (1.0, -1.0))
     shorter = np.ptp(forth, axis=1) <= np.ptp(back, axis=1)
     return np.where(shorter[:, None], forth, back), np.where(shorter, 1.0, -1.0)
@@ -350,7 +350,7 @@ def met(violations: FloatArray) -> BoolArray:
 def _ways(
     found: Configurations, view: View, violations: FloatArray, ordered: bool
 ) -> tuple[Configurations, FloatArray, FloatArray, FloatArray]:
-    """The way that each linkage lets its driver go, violations, greatest |cos mu| over it and over a turn.
+    """The motion that each linkage allows its driver, violations, greatest |cos mu| over it and over a turn.
 
     Above 1 the linkage does not close. A driver that cannot turn, with all targets in one of its
     ranges, has no way around.

@@ -31,14 +31,14 @@ class Start:
     visit : tuple of int
         Targets in the order in which the driver meets them.
     theta2 : tuple of float, rad
-        Driver angles in that order, counted on along the motion.
+        Driver angles in that order, unwrapped along the motion.
     theta3 : tuple of float, rad
         Coupler angles in that order, each near the last.
     direction, assembly : int
     objective : Objective or None
         What the solve makes best; None for the user's own.
     body_angle : float, rad
-        From the coupler to the body, where the first pose does not say it; else zero.
+        From the coupler to the body, where the first pose does not fix it; else zero.
     radius : float, sizes
         How far it may move each coordinate of the pivots.
     stay : bool
@@ -191,7 +191,7 @@ class Start:
 
 @dataclass(frozen=True, slots=True)
 class Round:
-    """What one round of a search came up with.
+    """The starts of one round of a search.
 
     Parameters
     ----------
@@ -204,7 +204,7 @@ class Round:
     prune : float
         Least squares: starts that promise more than so many times the least error found are not solved.
     free : bool
-        No limit binds: what passes the targets by the same way is the same design or a cognate.
+        No limit binds: what traces the same coupler curve is the same design or a cognate.
     """
 
     starts: list[Start]

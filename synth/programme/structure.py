@@ -161,7 +161,7 @@ def _nearest(scaled: ScaledProblem, start: Start) -> tuple[bool, ...]:
     ends = bool(over_task and (wanted.transmission_min_deg > 0 or start.bounded))
     nearest = np.full(count, every)
     nearest[[0, -1]] |= ends
-    if wanted.theta2_start_deg is not None:  # a pose is met where it is nearest, a point where it is told
+    if wanted.theta2_start_deg is not None:  # a pose is met where it is nearest, a point where it is given
         nearest[start.visit.index(0)] = scaled.has_angles
     return tuple(nearest.tolist())
 

@@ -19,7 +19,7 @@ FAR = 1e3  # sizes: stands for "no limit"
 INSET = 1e-8  # sizes, rad: limits are tightened by this much, so that the polished design keeps them
 SHORTEST = 1e-6  # sizes, of a link
 LEAST_TRANSMISSION = 1e-3  # rad: keeps the motion away from dead positions
-LIFTED = 10 * np.pi  # rad: angles are counted on along the motion
+LIFTED = 10 * np.pi  # rad: angles are unwrapped along the motion
 
 
 @dataclass(frozen=True, slots=True)

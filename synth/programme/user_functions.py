@@ -14,6 +14,7 @@ from grashof.analysis.judge.design import Constraint, Design, OwnObjective, grea
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
+from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.problem import NO_OBJECTIVE
 from grashof.synth.programme.on_symbols import on_symbols
 from grashof.synth.programme.one_at_a_time import one_at_a_time
@@ -47,13 +48,13 @@ def refuse_unusable(scaled: ScaledProblem, *, in_processes: bool) -> None:
     """Raise `ProblemError` for a function that cannot be used on symbols, or not in other processes."""
     for constraint in scaled.constraints:
         if not callable(constraint) or isinstance(constraint, type):
-            raise ProblemError(f"constraints has {constraint!r}; allowed are functions of a design")
+            raise ProblemError(f"constraints has {constraint!r}; they must be functions of a design")
         _refuse(scaled, constraint, _CONSTRAINT, in_processes)
     own = scaled.own_objective
     if own is None:
         return
     if not callable(own) or isinstance(own, type):
-        raise ProblemError(f"objective is {own!r}; allowed is a function of a design")
+        raise wrong_value("objective", own, "a function of a design")
     if not scaled.problem.by_objective:
         raise ProblemError(NO_OBJECTIVE)
     _refuse(scaled, own, _OBJECTIVE, in_processes)
@@ -67,8 +68,8 @@ def _refuse(scaled: ScaledProblem, function: Constraint, kind: _Kind, in_process
         pickle.dumps(function)
     except (pickle.PicklingError, AttributeError, TypeError) as error:
         raise ProblemError(
-            f"{kind.name} {name_of(function)} cannot be sent to other processes ({error}); allowed with "
-            "workers are functions of a module"
+            f"{kind.name} {name_of(function)} cannot be sent to other processes ({error}); with workers it "
+            "must be a function of a module"
         ) from None
 
 
@@ -186,31 +187,31 @@ def _try_on_symbols(function: Constraint, kind: _Kind, targets: int) -> None:
         if "truth value" in reason:
             reason += " (casadi.fmax, casadi.fmin and casadi.if_else do what max, min and if cannot)"
         raise ProblemError(
-            f"{kind.name} {name_of(function)} fails on symbols: {reason}; allowed are functions of a design "
-            "made of arithmetic that works on CasADi symbols"
+            f"{kind.name} {name_of(function)} fails on symbols: {reason}; it must be made of arithmetic "
+            "that works on CasADi symbols"
         ) from error
     _refuse_no_amounts(f"{kind.name} {name_of(function)}", kind, value)
 
 
 def _refuse_no_amounts(name: str, kind: _Kind, value: Any) -> None:
-    """Raise `ProblemError` for what a function gives on symbols, if that is not what its kind gives."""
-    allowed = f"a scalar, {kind.value}" + (", or a list of them" if kind.several else "")
+    """Raise `ProblemError` if what a function gives on symbols is not what its kind has to give."""
+    wanted = f"it must give a scalar, {kind.value}" + (", or a list of them" if kind.several else "")
     several = _several(value)
     for one in several:
         try:
             symbols = ca.SX(one)
         except WRONG:
-            raise ProblemError(f"{name} gives {one!r}; allowed is {allowed}") from None
+            raise ProblemError(f"{name} gives {one!r}; {wanted}") from None
         if any(element.is_constant() and not element.is_regular() for element in symbols.nz):
             raise ProblemError(  # such as float() of a symbol
-                f"{name} fails on symbols: its value is not a number; allowed are functions of a "
-                "design made of arithmetic that works on CasADi symbols"
+                f"{name} fails on symbols: its value is not a number; it must be made of "
+                "arithmetic that works on CasADi symbols"
             )
         if isinstance(one, (bool, np.bool_)) or any(element.op() in _TRUTHS for element in symbols.nz):
             raise ProblemError(
-                f"{name} gives a truth value; allowed is a scalar, {kind.value}: a - b instead of a < b"
+                f"{name} gives a truth value; it must give a scalar, {kind.value}: a - b instead of a < b"
             )
     count = sum(ca.SX(one).numel() for one in several)
     if not count or (count > 1 and not kind.several):
         given = counted(count, "value") if count else "nothing"
-        raise ProblemError(f"{name} gives {given}; allowed is {allowed}")
+        raise ProblemError(f"{name} gives {given}; {wanted}")

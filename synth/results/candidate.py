@@ -41,7 +41,7 @@ class Candidate(Displayed):
     own_objective : float, optional
         What the user's own objective makes of it, less is better; None where there is none.
     values : Values
-        What can be said of it, by the keys of the quantities; each is measured when it is asked for.
+        Its quantities, by their keys; each is measured when it is asked for.
     """
 
     linkage: FourBar

@@ -73,7 +73,7 @@ def least_error(scaled: ScaledProblem, ledger: Ledger) -> float:
 
 
 def why_ended(scaled: ScaledProblem, ledger: Ledger) -> str:
-    """Why the search ended, and that exact designs could be asked for where least squares are."""
+    """Why the search ended, and a hint that exact designs could be asked for where least squares are."""
     fitted = not np.isnan(least_error(scaled, ledger)) and ledger.least <= EXACT_ERROR
     if not (fitted and scaled.problem.task.exact_by_default):
         return ledger.why

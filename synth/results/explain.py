@@ -54,7 +54,7 @@ class _Near:
 
 
 def explain(scaled: ScaledProblem, ledger: Ledger, chosen: Chosen, run: Run) -> Explanation:
-    """Say why a list is empty: what would do instead, and how near designs come."""
+    """State why a list is empty: what changes would give a design, and how near designs come."""
     if chosen.designs:
         return Explanation("")
     if not ledger.complete:
@@ -132,13 +132,13 @@ def _miss(near: _Near, size: float) -> float:
 
 def _ways_note(why: str, words: list[str]) -> str:
     """The note that names single requirements."""
-    said = f"no design: {why}" if why else "no design meets all requirements"
+    reason = f"no design: {why}" if why else "no design meets all requirements"
     alone = "this alone would do" if len(words) == 1 else "each of these alone would do"
-    return f"{said}; {alone}: {'; '.join(words)}"
+    return f"{reason}; {alone}: {'; '.join(words)}"
 
 
 def _comes_within(scaled: ScaledProblem, near: _Near, then: str = "") -> str:
-    """How near a least-squares design comes; figures are rounded up, so that they hold."""
+    """How near a least-squares design comes; numbers are rounded up, so that they hold."""
     unit = f" {scaled.problem.length_unit}" if scaled.problem.length_unit else ""
     text = f"the closest design {then}comes within {up(near.by_squares.error_max):g}{unit}"
     turned = near.by_squares.angle_error

@@ -1,4 +1,4 @@
-"""Judging: what the analysis says of linkages, by the requirements of a scaled problem."""
+"""Judging: verdicts of the analysis on linkages, by the requirements of a scaled problem."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def judged(
         O2, O4, and A, B, P at the first target.
     assembly : int
     body_angle : float, rad
-        Whole poses do not need it: the first one says how the body stands to the coupler.
+        Whole poses do not need it: the first one fixes how the body stands to the coupler.
     start, iterations : int
         What it came from.
     most_error : float, sizes

@@ -49,9 +49,9 @@ def _enlarged(problem: Problem, times: tuple[float, float]) -> tuple[Problem, st
     task, wanted = problem.task, problem.requirements
     if task.zones is None:  # a tolerance
         tolerance = up(wanted.tolerance * max(times))
-        said = f"tolerance {tolerance:g} instead of {wanted.tolerance:g}"
+        words = f"tolerance {tolerance:g} instead of {wanted.tolerance:g}"
         changed = replace(wanted, tolerance=min(tolerance, 1.0))
-        return replace(problem, requirements=changed), said
+        return replace(problem, requirements=changed), words
     given = task.stated_zones
     least = dict(zip(("within", "angle_within"), times, strict=True))
     if len(given) == 1:  # it stands for both

@@ -174,6 +174,6 @@ class Ledger:
 
 
 def _marks(made: Round, start: Start) -> ComplexArray:
-    """What tells starts apart: P at all targets, and where limits bind A and B, too."""
+    """Distinguishing marks of starts: P at all targets, and where limits bind A and B, too."""
     track = start.track[:, np.argsort(start.visit)]
     return track[2:] if made.free else track

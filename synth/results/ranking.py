@@ -39,7 +39,7 @@ def impractical(problem: Problem, verdict: Verdict) -> bool:
 
 
 def ranking_key(problem: Problem, candidate: Candidate) -> tuple[float, ...]:
-    """What designs are sorted by, best first: the one place that says which of two is better.
+    """What designs are sorted by, best first: the one place that decides which of two is better.
 
     The error, none up to `same_error`; the objective; what people build; the smaller size; and
     the dimensions, so that no two designs tie. What nobody would build (`impractical`) counts

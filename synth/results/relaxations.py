@@ -106,7 +106,7 @@ def _loose(scaled: ScaledProblem, key: str) -> ScaledProblem:
 
 
 def _finished(scaled: ScaledProblem, found: Relaxation, run: Run) -> Relaxation:
-    """The same relaxation with an angle in round figures, or a design of smaller error, if there is one.
+    """The same relaxation with an angle rounded, or a design of smaller error, if there is one.
 
     Both are solved under the relaxed requirement, which makes sure of it.
     """

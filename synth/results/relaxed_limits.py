@@ -18,7 +18,7 @@ from grashof.synth.programme.start import UNSMOOTH
 from grashof.synth.results.candidate import Candidate
 
 LEAST_MARGIN = 1e-9  # of full rotation: below it lies a change point
-COARSEST = 0.02  # share of a change that its figure may be rounded by
+COARSEST = 0.02  # share of a change that its value may be rounded by
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +124,7 @@ def relaxation(
 
     Notes
     -----
-    The figure is rounded to the loose side, and the judge has to accept the design with it.
+    The value is rounded to the loose side, and the judge has to accept the design with it.
     """
     missed = [defect for defect in candidate.verdict.defects if defect.requirement == key]
     if key not in ("rotatability", *UNSMOOTH) and len(missed) < len(candidate.verdict.defects):
@@ -139,7 +139,7 @@ def relaxation(
 
 
 def with_rounded_angle(problem: Problem, relaxation: Relaxation) -> Relaxation:
-    """The same with its angle rounded like other figures; whether a design does it has to be seen."""
+    """The same with its angle rounded like other values; whether a design does it has to be seen."""
     key = relaxation.key
     asked: float = getattr(problem.requirements, key)
     angle = _rounded(getattr(relaxation.requirements, key), asked)
@@ -230,7 +230,7 @@ def _reaching(given: Limits, found: list[float]) -> Limits:
 
 
 def _rounded(value: float, asked: float) -> float:
-    """A value rounded away from what is asked, to a power of ten that is a small share of the way."""
+    """A value rounded away from what is asked, to a power of ten that is a small share of the change."""
     way = abs(value - asked)
     if not 0 < way < np.inf:
         return value

@@ -66,7 +66,7 @@ class Result(Displayed):
 
     @property
     def best(self) -> Candidate:
-        """The first design; `NoSolutionError` says what stood in the way when there is none."""
+        """The first design; `NoSolutionError` states why when there is none."""
         if not self.candidates:
             raise NoSolutionError(self.note)
         return self.candidates[0]

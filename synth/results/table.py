@@ -44,7 +44,7 @@ def to_frame(problem: Problem, candidates: tuple[Candidate, ...]) -> pd.DataFram
 
 
 def facts(candidate: Candidate) -> dict[str, Any]:
-    """What a design is called and what it is like, by column; None where there is nothing to say."""
+    """What a design is called and what it is like, by column; None where it is unknown."""
     verdict = candidate.verdict
     return {
         "id": candidate.id,

@@ -102,7 +102,7 @@ def _error(problem: Problem, candidate: Candidate) -> float:
 
 
 def _worth_choosing(problem: Problem, every: list[Candidate], least: float) -> tuple[Candidate, ...]:
-    """What no other design beats, up to twice the least error, each with what it is best at."""
+    """Designs that no other one beats, up to twice the least error, each with what it is best at."""
     near = [one for one in every if _error(problem, one) <= FACTORS[-1] * least * (1 + SLACK)]
     best_first = ranked(problem, near)
     front = pareto_optimal(problem, best_first)

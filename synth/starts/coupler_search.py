@@ -53,7 +53,7 @@ class CouplerSearch:
             free = " where parts are left free, the driver is timed or requirements.exact is false"
             raise ProblemError(
                 f"{task.kind}.{task.target}s has {counted(count, f'distinct {task.target}')}; "
-                f"allowed are three or more{'' if task.only_points else free}"
+                f"it must have three or more{'' if task.only_points else free}"
             )
 
     def degenerate(self) -> str:
@@ -69,12 +69,12 @@ class CouplerSearch:
         return search(self.scaled, NEAR, rng)
 
     def relaxed(self, rng: np.random.Generator) -> list[Start]:
-        """Starts that may miss what stands in the way."""
+        """Starts that may miss what no linkage meets."""
         drawn, free = (search(self.scaled, 1, rng, to_boxes=to_boxes) for to_boxes in (True, False))
         return relaxed_starts(self.scaled, drawn) or relaxed_starts(self.scaled, free)
 
     def obstacle(self, _rng: np.random.Generator, _counts: Mapping[str, int], /) -> str:
-        """Theory says nothing."""
+        """Empty: there is no theory of these targets."""
         return ""
 
 

@@ -90,7 +90,7 @@ def _sides(motion: Displacements, body: complex, dyads: Dyads, wanted: Requireme
 
 
 def _visiting_order(angle: FloatArray, ordered: bool) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
-    """Order of the poses on the driver's way, angles along it, its sense, and how far from in order."""
+    """Order of the poses along the driver's motion, angles along it, its sense, and how far from in order."""
     count = angle.shape[1]
     if not ordered:
         return *as_they_come(angle), np.zeros(len(angle))

@@ -75,7 +75,7 @@ class WholePoses:
             if moved + abs(motion.rotation[i] - motion.rotation[j]) < 1e-12:
                 raise ProblemError(
                     f"motion.poses[{i}] and motion.poses[{j}] are equal; "
-                    "allowed are distinct poses, or requirements.exact = false"
+                    "they must be distinct, or requirements.exact = false"
                 )
 
     def degenerate(self) -> str:
@@ -112,7 +112,7 @@ class Parallelograms(WholePoses):
         return parallelograms(self.scaled, rng)
 
     def relaxed(self, rng: np.random.Generator) -> list[Start]:
-        """Starts that may miss what stands in the way."""
+        """Starts that may miss what no linkage meets."""
         return relaxed_starts(self.scaled, self.near(rng))
 
     def obstacle(self, _rng: np.random.Generator, _counts: Mapping[str, int], /) -> str:
@@ -147,7 +147,7 @@ class DyadPairs(WholePoses, ABC):
         return fully_screened(self.scaled, self.near_pairs(dyads))
 
     def relaxed(self, rng: np.random.Generator) -> list[Start]:
-        """Starts that may miss what stands in the way."""
+        """Starts that may miss what no linkage meets."""
         starts = relaxed_starts(self.scaled, self.near_pairs(self.dyads(rng)))
         return [replace(start, settled=not self.freedom) for start in starts]
 
@@ -186,7 +186,7 @@ class FewPoses(DyadPairs):
         return trace_four_pose_curves(self.motion, reach, LINES, CELL, phase=float(rng.uniform(0.1, 0.9)))
 
     def obstacle(self, rng: np.random.Generator, _counts: Mapping[str, int], /) -> str:
-        """That a fixed ground pivot is not a centre point of four poses; empty where theory says nothing."""
+        """That a fixed ground pivot is not a centre point of four poses; empty where it may be one."""
         scaled, dyads = self.scaled, self.dyads(rng)
         for name, pivot in fixed_pivots(scaled.wanted).items():
             apart = float(np.abs(dyads.ground - pivot).min(initial=np.inf))

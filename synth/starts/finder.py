@@ -48,7 +48,7 @@ class Finder(Protocol):
         """Linkages that meet the requirements, or nearly do."""
 
     def relaxed(self, rng: np.random.Generator) -> list[Start]:
-        """Starts that may miss what stands in the way."""
+        """Starts that may miss what no linkage meets."""
 
     def obstacle(self, rng: np.random.Generator, counts: Mapping[str, int], /) -> str:
         """Why theory, or what the rounds counted, leaves no design; empty where it may leave one."""

@@ -45,7 +45,7 @@ MOST_CURVES = 6  # starts of such a round
 # Times the least error: what promises more is not solved; where the search may shift the ends of the
 # motion, its promise is a little off.
 NEAR_BEST, NEAR_BEST_SHIFTED = 1.6, 2.0
-SAME_ERROR = 1e-3  # share: a feasible find so near to the best one says that no limit binds
+SAME_ERROR = 1e-3  # share: a feasible linkage so near to the best one shows that no limit binds
 SAME_CURVE = 0.1  # of the rms error: two linkages closer at every target are one
 # Where limits bind: how many of the best distinct go on, for how many steps, at what weight of the
 # limits (in sizes).
@@ -122,9 +122,9 @@ def _free_round(scaled: ScaledProblem, batch: Batch, size: int) -> Round | None:
 
 
 def _other_curves(starts: list[Start], most: int) -> list[Start]:
-    """Starts that pass the targets by another way than all before.
+    """Starts that pass the targets along another curve than all before.
 
-    Cognates pass them by the same way; they are added to every design afterwards.
+    Cognates trace the same curve; they are added to every design afterwards.
     """
     chosen, curves = list[Start](), list[ComplexArray]()
     for start in starts:

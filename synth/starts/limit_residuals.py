@@ -158,7 +158,7 @@ def _outside(row: Dual, limits: Limits) -> Dual:
 
 
 def _transmission_rows(target: SearchTargets, loop: Relative) -> Iterator[Dual]:
-    """How far |cos mu| exceeds what is allowed: with O2A along the ground line, and at the ends."""
+    """How far |cos mu| exceeds its limit: with O2A along the ground line, and at the ends."""
     wanted, theta2 = target.wanted, loop.theta2
     least = np.radians(wanted.transmission_min_deg)
     if least <= 0 and wanted.rotatability is not Rotatability.ANY:

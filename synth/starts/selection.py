@@ -56,7 +56,7 @@ def mended_starts(scaled: ScaledProblem, linkages: Screened, enough: int) -> lis
 
 
 def relaxed_starts(scaled: ScaledProblem, linkages: Screened, groups: int = 3, each: int = 5) -> list[Start]:
-    """Starts that may miss what stands in the way: one requirement where one is enough, else a few.
+    """Starts that may miss what no linkage meets: one requirement where one is enough, else a few.
 
     The set of requirements that is missed least comes first.
     """
@@ -80,7 +80,7 @@ def relaxed_starts(scaled: ScaledProblem, linkages: Screened, groups: int = 3, e
 
 
 def closest_starts(scaled: ScaledProblem, linkages: Screened, group: str, most: int) -> list[Start]:
-    """Starts from linkages that lack little of one requirement, and nothing of the others if that can be."""
+    """Starts from linkages that miss one requirement by little, and no other one if that can be."""
     violations = linkages.violations[:, GROUPS.index(group)]
     others = linkages.violations.sum(axis=1) - violations
     return _distinct_starts(scaled, linkages, -violations - OTHERS * others - linkages.error, most)

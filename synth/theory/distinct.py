@@ -13,7 +13,7 @@ DISTINCT = 0.0125
 
 
 def signature(linkage: FourBar, origin: FloatArray | None = None) -> FloatArray:
-    """The numbers that tell designs apart, all in length: O2, O4, r2, r3, r4, u, v; shape (..., 9).
+    """The numbers that distinguish designs, all in length: O2, O4, r2, r3, r4, u, v; shape (..., 9).
 
     Pivots are measured from `origin`, shape (2,), where one is given: with the middle of the task
     there, what is distinct does not depend on where the user's own origin lies.

@@ -202,7 +202,7 @@ class _Frames:
         finite = (np.isfinite(rotation) & np.isfinite(shift)).all(axis=1, keepdims=True)
         rotation, shift = np.where(finite, rotation, 1), np.where(finite, shift, 0)
         turn = rotation - 1
-        # The small number keeps the origin near where turns are too small to say where it is.
+        # The small number keeps the origin near where turns are too small to locate it.
         origin = -(turn.conj() * shift).sum(axis=1) / ((np.abs(turn) ** 2).sum(axis=1) + 1e-4)
         about = shift + turn * origin[:, None]
         length = np.abs(about).max(axis=1) + 1e-3 * np.abs(shift).max(axis=1)

@@ -12,7 +12,7 @@ from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 # derivative by the solutions (n, K, K) and its change along the change of the parameters (n, K).
 System = Callable[[ComplexArray, ComplexArray, ComplexArray], tuple[ComplexArray, ComplexArray, ComplexArray]]
 
-FIRST, LARGEST, SMALLEST = 0.02, 0.25, 1e-9  # steps, as shares of the way
+FIRST, LARGEST, SMALLEST = 0.02, 0.25, 1e-9  # steps, as shares of the path
 GROW_AFTER = 3  # so many good steps on end double the step
 CORRECTIONS = 2  # Newton steps after each prediction
 FAR = 1e7  # a solution so large has gone to infinity

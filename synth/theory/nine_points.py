@@ -91,7 +91,7 @@ def linkages_through(points: ComplexArray, rng: np.random.Generator) -> ComplexA
     points : ndarray of complex, shape (9,)
         Distinct.
     rng : numpy.random.Generator
-        Turns the way from the known solutions, so that it meets no singular point.
+        Turns the path from the known solutions, so that it meets no singular point.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Which rotations and reflections map a task onto itself: what they make of a design does the task, too."""
+"""Rotations and reflections that map a task onto itself: what they make of a design does the task, too."""
 
 from __future__ import annotations
 

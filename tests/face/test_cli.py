@@ -36,7 +36,7 @@ BAD = {
     "no such objective": (
         "[requirements]",
         "[objective]\nmaximise = 'power'\n[requirements]",
-        "allowed is transmission, compactness, torque, another quantity",
+        "it must be transmission, compactness, torque, another quantity",
     ),
     "area that crosses itself": (
         "[requirements]",
@@ -197,7 +197,7 @@ def test_every_error_of_a_file_has_its_line(grashof: Grashof, tmp_path: Path) ->
     done = grashof("check", path)
     assert done.exit_code == 2
     assert done.stderr.splitlines() == [
-        f"grashof: {path}: motion.poses[0] is [1, 2], 2 numbers; allowed is a pose [x, y, angle in degrees]",
-        f"grashof: {path}: motion.poses[2] is 6; allowed is a pose [x, y, angle in degrees]",
-        f"grashof: {path}: search.seed is -1; allowed is a whole number from 0",
+        f"grashof: {path}: motion.poses[0] is [1, 2], 2 numbers; it must be a pose [x, y, angle in degrees]",
+        f"grashof: {path}: motion.poses[2] is 6; it must be a pose [x, y, angle in degrees]",
+        f"grashof: {path}: search.seed is -1; it must be a whole number from 0",
     ]

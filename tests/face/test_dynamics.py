@@ -65,7 +65,9 @@ def test_an_unknown_length_unit_is_one_line(grashof: Grashof, tmp_path: Path) ->
     mine.write_text(problem_text("luggage").replace('length_unit = "m"', 'length_unit = "ell"'))
     done = grashof("solve", mine)
     assert done.exit_code == 2
-    assert done.stderr.strip().endswith("length_unit is 'ell'; with dynamics allowed are mm, cm, m, in, ft")
+    assert done.stderr.strip().endswith(
+        "length_unit is 'ell'; it must be one of mm, cm, m, in, ft with dynamics"
+    )
     assert done.stderr.count("\n") == 1
 
 

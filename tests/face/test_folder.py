@@ -110,7 +110,9 @@ def test_folder_that_cannot_be_made(tmp_path: Path) -> None:
 def test_a_pipe_or_device_in_place_of_the_record_is_not_read(tmp_path: Path, record: str) -> None:
     for place in (lambda path: os.mkfifo(path), lambda path: path.symlink_to("/dev/zero")):
         place(tmp_path / record)
-        with pytest.raises(ProblemError, match=rf"{record} in it is not Grashof's own; allowed is"):
+        with pytest.raises(
+            ProblemError, match=rf"{record} in it is not Grashof's own; name a folder without it"
+        ):
             check_writable(tmp_path, record=record)
         (tmp_path / record).unlink()
 
@@ -118,5 +120,5 @@ def test_a_pipe_or_device_in_place_of_the_record_is_not_read(tmp_path: Path, rec
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes in folders")
 def test_a_pipe_in_place_of_a_list_is_not_read(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "candidates.json")
-    with pytest.raises(ProblemError, match=r"json: is not an ordinary file; allowed is a list of designs"):
+    with pytest.raises(ProblemError, match=r"json: is not an ordinary file; it must be a list of designs"):
         load_linkage(f"{tmp_path / 'candidates.json'}#1")

@@ -187,7 +187,7 @@ def test_zones_that_are_too_small_say_how_large_would_do(
     folder = tmp_path / "mine-designs"
     assert {path.name for path in folder.iterdir()} == {"nearest.csv", "report.html", "run.json"}
     misses = pd.read_csv(folder / "nearest.csv")["misses"][0]
-    assert re.match(r"within: the position error at target \d is \S+, allowed is up to 0\.001; ", misses)
+    assert re.match(r"within: the position error at target \d is \S+, allowed: up to 0\.001; ", misses)
     assert "; angle_within_deg: the angle error in deg at target " in misses
     page = (folder / "report.html").read_text()
     assert f"within {said[1]} instead of 0.001" in page

@@ -15,7 +15,7 @@ A, B = [0, 0, 0], [3, 1, 60]
 )
 def test_two_distinct_poses_are_met_whole_and_exactly(poses: Any, exact: bool) -> None:
     problem = Problem(task=MotionTask.from_degrees(poses), requirements=Requirements(exact=exact))
-    with pytest.raises(ProblemError, match=r"motion.poses has 2 distinct poses; allowed are three or more"):
+    with pytest.raises(ProblemError, match=r"motion.poses has 2 distinct poses; it must have three or more"):
         synthesize(problem)
 
 

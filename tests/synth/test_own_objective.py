@@ -82,14 +82,14 @@ def test_it_holds_beside_a_constraint() -> None:
 @pytest.mark.parametrize(
     ("objective", "message"),
     [
-        (3, "objective is 3; allowed is a function of a design"),
-        ([ground], r"objective is \[.*\]; allowed is a function of a design"),
-        (int, "objective is <class 'int'>; allowed is a function of a design"),
+        (3, "objective is 3; it must be a function of a design"),
+        ([ground], r"objective is \[.*\]; it must be a function of a design"),
+        (int, "objective is <class 'int'>; it must be a function of a design"),
         (
             lambda design: design.r1 < 2,
-            "objective <lambda> gives a truth value; allowed is a scalar, smaller",
+            "objective <lambda> gives a truth value; it must give a scalar, smaller",
         ),
-        (lambda design: [design.r1, design.r2], "objective <lambda> gives 2 values; allowed is a scalar"),
+        (lambda design: [design.r1, design.r2], "objective <lambda> gives 2 values; it must give a scalar"),
         (lambda design: design.r9, "objective <lambda> fails on symbols: .*r9"),
         (lambda design: ca.vertcat(design.o2, design.o4), "objective <lambda> gives 4 values"),
     ],

@@ -125,5 +125,5 @@ def test_timed_zones_are_kept_where_the_judge_finds_the_driver(free: Result) -> 
 
 
 def test_two_timed_poses_are_too_few() -> None:
-    with pytest.raises(ProblemError, match=r"^motion.poses has 2 distinct poses; allowed are three or more"):
+    with pytest.raises(ProblemError, match=r"^motion.poses has 2 distinct poses; it must have three or more"):
         synthesize(Problem(task=planted(0, 2, timed=True)))

@@ -1,4 +1,4 @@
-"""Moving pictures: a linkage over all that its driver can do, as GIF or MP4."""
+"""Animations: a linkage over all that its driver can do, as GIF or MP4."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def animate(
     subject = Subject.of(linkage, problem)
     frames = round(seconds * fps) if np.isfinite(seconds * fps) else 0
     if frames < 2:
-        raise ProblemError(f"seconds * fps is {seconds * fps:g}; allowed are two frames and more")
+        raise ProblemError(f"seconds * fps is {seconds * fps:g}; it must be two frames or more")
     turns = np.arange(frames + 1) / frames
     state = solve_position(subject.linkage, _driver(subject, turns[:-1]))
     trace = smooth_polygon(lambda turn: solve_position(subject.linkage, _driver(subject, turn)).p, turns)
@@ -121,17 +121,17 @@ def check_animation(path: Path) -> None:
     """
     kind = path.suffix.lower()
     if kind not in _WRITERS:
-        raise ProblemError(f"{path}: ends in {kind or 'nothing'}; allowed are {' and '.join(_WRITERS)}")
+        raise ProblemError(f"{path}: ends in {kind or 'nothing'}; it must end in {' or '.join(_WRITERS)}")
     if not writers.is_available(_WRITERS[kind]):
         raise ProblemError(f"{path}: writing {kind} needs ffmpeg, which was not found; .gif works without it")
     if path.is_dir():
-        raise ProblemError(f"{path}: is a folder; allowed is the name of a file")
+        raise ProblemError(f"{path}: is a folder; it must be a file")
     try:
         with tempfile.TemporaryDirectory(dir=path.parent, prefix=".writing-"):
             pass
     except OSError as error:
         reason = error.strerror or "it cannot be written"
-        raise ProblemError(f"{path}: {reason}; allowed is a file in a folder that can be written") from None
+        raise ProblemError(f"{path}: {reason}; it must be a file in a folder that can be written") from None
 
 
 def _driver(subject: Subject, turns: FloatArray) -> FloatArray:

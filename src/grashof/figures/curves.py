@@ -132,10 +132,10 @@ def plot_dynamics(
 def _panels(quantities: str | Sequence[str], known: Mapping[str, Panel]) -> list[Panel]:
     names = [quantities] if isinstance(quantities, str) else list(quantities)
     if not names:
-        raise ProblemError(f"quantities names none; allowed are {', '.join(known)}")
+        raise ProblemError(f"quantities names none; it must name some of {', '.join(known)}")
     for name in names:
         if name not in known:
-            raise ProblemError(f"quantity {name!r} is not known; allowed are {', '.join(known)}")
+            raise ProblemError(f"quantity {name!r} is unknown; it must be one of {', '.join(known)}")
     return [known[name] for name in names]
 
 
@@ -174,7 +174,7 @@ def _rows(count: int, ax: Axes | Iterable[Axes] | None) -> AxesArray:
         return plt.subplots(count, 1, sharex=True, squeeze=False, figsize=size, layout="constrained")[1][:, 0]
     rows = np.atleast_1d(np.array(ax if isinstance(ax, Axes) else list(ax), dtype=object)).ravel()
     if len(rows) != count:
-        raise ProblemError(f"ax has {len(rows)} axes; allowed are {count}, one for each quantity")
+        raise ProblemError(f"ax has {len(rows)} axes; it must have {count}, one for each quantity")
     return rows
 
 

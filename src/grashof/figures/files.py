@@ -1,4 +1,4 @@
-"""The figures that files hold: how they are styled and saved, and the pictures of a design."""
+"""Figures in files: how they are styled and saved, and the pictures of a design."""
 
 from __future__ import annotations
 

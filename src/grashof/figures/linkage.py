@@ -169,7 +169,7 @@ def plot_design_space(
     Raises
     ------
     NoSolutionError
-        There are no designs; it says why.
+        There are no designs; it states why.
     ProblemError
         A key is unknown.
     """
@@ -233,7 +233,7 @@ def figure_of(ax: Axes) -> Figure:
     """The figure that the axes are in."""
     figure = ax.get_figure(root=True)
     if figure is None:
-        raise ProblemError("ax is in no figure; allowed are axes of a figure")
+        raise ProblemError("ax is in no figure; it must be axes of a figure")
     return figure
 
 
@@ -243,7 +243,7 @@ def _positions(subject: Subject, theta2: npt.ArrayLike | None) -> list[dict[str,
     if theta2 is not None:
         angles = np.ravel(np.asarray(theta2, dtype=np.float64))
         if not angles.size:
-            raise ProblemError("theta2 is empty; allowed is one driver angle or more")
+            raise ProblemError("theta2 is empty; it must have one driver angle or more")
     elif subject.problem is not None and subject.verdict is not None:
         shown = targets_shown(subject.problem.task)
         angles, assembly = subject.verdict.theta2[shown], subject.verdict.assembly[shown]

@@ -21,7 +21,7 @@ from grashof.problems import FourBar, Problem, Task
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkage_parts import Link
 
-# Told apart by the colour-blind, too (after Okabe & Ito, *Color Universal Design*, 2008).
+# Distinct to the colour-blind, too (after Okabe & Ito, *Color Universal Design*, 2008).
 DRIVER, COUPLER, OUTPUT, PATH = "#d55e00", "#0072b2", "#009e73", "#8c3f78"
 BODY = TARGET = "#e69f00"  # both are what is asked
 COLOURS = {"driver": DRIVER, "coupler": COUPLER, "output": OUTPUT}
@@ -58,7 +58,7 @@ class Links:
     shade : float
         From 0, invisible, to 1.
     named : bool
-        Whether the legend tells the links; several positions need it once.
+        Whether the legend names the links; several positions need it once.
     """
 
     def __init__(
@@ -182,7 +182,7 @@ def _path_of_p(linkage: FourBar, theta2: FloatArray, assembly: int) -> FloatArra
 
 
 def draw_scene(axes: Axes, problem: Problem) -> None:
-    """Outlines of the scene, and hatched what is kept out; the legend says for what."""
+    """Outlines of the scene, and hatched what is kept out; the legend names for what."""
     for index, outline in enumerate(problem.outlines):
         label = "scene" if index == 0 else None
         axes.plot(*outline.T, color=SCENE, linewidth=3, solid_joinstyle="miter", label=label, zorder=1)

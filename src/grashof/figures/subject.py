@@ -49,10 +49,10 @@ class Subject:
             spec = LinkageSpec(linkage.linkage, linkage.id)
         else:
             raise ProblemError(
-                f"linkage is {reprlib.repr(linkage)}; allowed are a FourBar, a LinkageSpec and a Candidate"
+                f"linkage is {reprlib.repr(linkage)}; it must be a FourBar, a LinkageSpec or a Candidate"
             )
         if spec.linkage.shape:
-            raise ProblemError(f"linkage is a batch of shape {spec.linkage.shape}; allowed is a single one")
+            raise ProblemError(f"linkage is a batch of shape {spec.linkage.shape}; it must be a single one")
         if problem is None:
             return cls(spec)
         if isinstance(linkage, Candidate):
@@ -73,7 +73,7 @@ class Subject:
 
 
 def _posed(spec: LinkageSpec, problem: Problem, verdict: Verdict) -> LinkageSpec:
-    """The linkage with what its problem says of unit and masses."""
+    """The linkage with the unit and masses that its problem states."""
     linkage = replace(spec.linkage, assembly=np.asarray(verdict.assembly[0], dtype=np.float64))
     dynamics = (problem.dynamics or DynamicsSpec()).turning(verdict.direction)
     title = spec.title if problem is spec.problem else problem.title or problem.name

@@ -49,11 +49,9 @@ def check_writable(folder: Path, drawings: int = 0, record: str = RECORD) -> Non
         taken = _taken(folder, drawings, record) if folder.exists() else []
     except OSError as error:
         reason = error.strerror or "it cannot be written"
-        raise ProblemError(f"--out {folder}: {reason}; allowed is a folder that can be written") from None
+        raise ProblemError(f"--out {folder}: {reason}; it must be a folder that can be written") from None
     if taken:
-        raise ProblemError(
-            f"--out {folder}: {taken[0]} in it is not Grashof's own; allowed is a folder without it"
-        )
+        raise ProblemError(f"--out {folder}: {taken[0]} in it is not Grashof's own; name a folder without it")
 
 
 @contextmanager

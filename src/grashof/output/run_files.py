@@ -44,7 +44,7 @@ def write_run(
     drawings : int
         How many of the best designs to draw.
     stop : callable
-        Asked before every drawing; the others are left out when it says True.
+        Asked before every drawing; the others are left out when it returns True.
     problem_text : str
         The problem file, for the page.
 
@@ -139,7 +139,7 @@ def _design(candidate: Candidate, keys: Sequence[str]) -> dict[str, Any]:
 
 
 def _written(problem: Problem) -> list[str]:
-    """Keys of what is said of each design besides its errors, where the problem states what it takes."""
+    """Keys of the quantities of each design besides its errors, where the problem states what they need."""
     over = Over.TASK, Over.CYCLE
     return [
         each.key

@@ -52,7 +52,7 @@ def search_progress(
     name : str
         Of the problem.
     begin : str
-        What the bar says until the first step is done.
+        What the bar shows until the first step is done.
     wanted : bool
         Whether the search ends once it has enough designs.
     """
@@ -171,7 +171,7 @@ def heading(result: Result, verified: int) -> str:
     exact = result.problem.requirements.is_exact(result.problem.task)
     verdicts = [candidate.verdict for candidate in result.candidates]
     error = f"largest position error {max(each.error_max for each in verdicts):.1e}"
-    if not exact:  # as the column says it
+    if not exact:  # as the column shows it
         least = min(each.error(result.problem) for each in result.candidates)
         error = f"smallest error rms {least * result.problem.task.size:.2g}"
     classes = _classes(result)

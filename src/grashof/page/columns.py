@@ -1,4 +1,4 @@
-"""Which figures of a design the page lists, and in which unit each of them is."""
+"""Which quantities of a design the page lists, and in which unit each of them is."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Column:
     better : int
         +1 where more is better, -1 where less is, 0 for neither.
     about : str
-        What it is, where its label does not say so.
+        What it is, where its label does not show it.
     listed : bool
         Whether the table has it; the others are axes that designs may be compared by.
     """

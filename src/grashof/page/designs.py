@@ -58,7 +58,7 @@ def driver_travel(linkage: FourBar, theta2: FloatArray) -> Travel:
     linkage : FourBar
         A single linkage.
     theta2 : ndarray, shape (N,), rad
-        Driver angles at the targets, counted on along the motion.
+        Driver angles at the targets, unwrapped along the motion.
 
     Returns
     -------
@@ -84,7 +84,7 @@ def driver_travel(linkage: FourBar, theta2: FloatArray) -> Travel:
 
 
 def designs_of(problem: Problem, designs: Sequence[Candidate], frame: pd.DataFrame) -> list[dict[str, Any]]:
-    """Designs as JSON, their figures in full precision.
+    """Designs as JSON, their values in full precision.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def _torques(
 
 
 def _plain(value: Any) -> float | int | str | bool | None:
-    """A figure as JSON knows it; null where it is not finite."""
+    """A number as JSON knows it; null where it is not finite."""
     if isinstance(value, str | bool | np.bool_):
         return value if isinstance(value, str) else bool(value)
     if value is None or not np.isfinite(value):

@@ -1,4 +1,4 @@
-"""All that a linkage does and takes: what `grashof analyse` tells, as tables, facts, pages and plots."""
+"""All that a linkage does and takes: what `grashof analyse` reports, as tables, facts, pages and plots."""
 
 from grashof.survey.facts import Fact
 from grashof.survey.quantities import Quantity

@@ -16,7 +16,7 @@ _CONSTANT = 1e-12  # least and largest values apart, as a share: the quantity is
 
 
 def _listed(quantity: Quantity) -> bool:
-    """Extremes are told of every quantity but the components of vectors that have a size."""
+    """Extremes are listed of every quantity but the components of vectors that have a size."""
     return quantity.position or not quantity.key.endswith(("_x", "_y"))
 
 
@@ -61,7 +61,7 @@ def _extreme(sweep: Sweep, quantity: Quantity, low: float, high: float) -> dict[
     if quantity.never_negative:
         usual = np.median(curve(np.linspace(start, end, 101)))
         least = 0.0 if least < 1e-7 * usual else least  # a size that goes through 0
-    told: dict[str, float] = {}
+    found: dict[str, float] = {}
     for name, value, at in (("min", least, found.at_low), ("max", largest, found.at_high)):
         for near, limit, sense, through in ((start, low, 1, passes[0]), (end, high, -1, passes[1])):
             if not still and abs(at - near) < 1e-9:
@@ -71,14 +71,14 @@ def _extreme(sweep: Sweep, quantity: Quantity, low: float, high: float) -> dict[
                     value = np.copysign(np.inf, value)
         if sweep.turns:
             at = at % TURN if TURN - at % TURN > 1e-9 else 0.0
-        told |= {name: float(value), f"theta2_{name}_deg": float(np.round(np.degrees(at), 9) + 0.0)}
+        found |= {name: float(value), f"theta2_{name}_deg": float(np.round(np.degrees(at), 9) + 0.0)}
     if np.isclose(least, largest, rtol=_CONSTANT, atol=0.0):  # rounding alone would choose the angles
-        told |= dict.fromkeys(("theta2_min_deg", "theta2_max_deg"), np.nan)
-    return told
+        found |= dict.fromkeys(("theta2_min_deg", "theta2_max_deg"), np.nan)
+    return found
 
 
 def _passes(linkage: FourBar, limit: float, sense: int) -> bool:
-    """Whether sin(mu) goes to 0 in proportion to the driver's way, and not like its root."""
+    """Whether sin(mu) goes to 0 in proportion to the driver angle left, and not like its root."""
     near = limit + sense * np.array([_WIDE_INSET, _WIDE_INSET / 4])
     far, close = np.sin(transmission_angle(linkage, near))
     return bool(far > 3 * close)

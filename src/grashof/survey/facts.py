@@ -50,7 +50,7 @@ class Fact:
 
 
 def facts_of(sweep: Sweep, masses: Masses | None, tables: Mapping[str, pd.DataFrame]) -> Iterator[Fact]:
-    """The lines of the summary, in the order told."""
+    """The lines of the summary, in their order."""
     spec, ranges, turns = sweep.spec, sweep.ranges, sweep.turns
     linkage, unit = spec.linkage, spec.unit
     kind = grashof_class(linkage)

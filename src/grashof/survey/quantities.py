@@ -164,5 +164,5 @@ def _counted_on(values: FloatArray, period: float) -> FloatArray:
     known = np.isfinite(values)
     values = values.copy()
     values[known] = np.unwrap(values[known], period=period)
-    least = np.min(values[known], initial=np.inf)  # counted so that the least lies in half a period of 0
+    least = np.min(values[known], initial=np.inf)  # unwrapped so that the least lies in half a period of 0
     return values - period * np.floor((least + period / 2) / period) if known.any() else values

@@ -20,12 +20,12 @@ from grashof.survey.sweep import Sweep, dead_positions_unwarned, masses_of
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LinkageReport:
-    """All that is told of a linkage.
+    """All that is reported of a linkage.
 
     Parameters
     ----------
     sweep : Sweep
-        What of its motion is told.
+        The motion that is analysed.
     masses : Masses, optional
     facts : tuple of Fact
     tables : mapping of str to DataFrame

@@ -70,7 +70,7 @@ class Sweep:
 
     @property
     def over(self) -> str:
-        """In words, what its figures are taken over: not a task, as those of a design."""
+        """In words, what its values are taken over: not a task, as those of a design."""
         return "over the turn" if self.turns else "over the travel"
 
     def state(self, theta2: FloatArray) -> Kinematics:
@@ -112,7 +112,7 @@ def _between_dead_positions(linkage: FourBar) -> Iterator[tuple[float, float]]:
 
 @contextmanager
 def dead_positions_unwarned() -> Iterator[None]:
-    """Dead positions are told in a note, not as warnings."""
+    """Dead positions are reported in a note, not as warnings."""
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore", DeadPositionWarning)
         yield

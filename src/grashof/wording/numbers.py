@@ -1,4 +1,4 @@
-"""Figures as people read them in tables."""
+"""Numbers as people read them in tables."""
 
 from __future__ import annotations
 

@@ -67,8 +67,8 @@ def _limit(problem: Problem, wanted: Requirements, name: str) -> str:
     quantity = wanted.meant(wanted.limited[name].quantity)
     sides = {part: quantity.range_text(limits) for part, limits in wanted.ranges(name).items()}
     unit = problem.length_unit if quantity.unit is Unit.LENGTH else quantity.unit
-    said = ", ".join(f"{part} {side}".strip() for part, side in sides.items() if side)
-    return f"{quantity.words}: {said} {unit}".strip()
+    limits = ", ".join(f"{part} {side}".strip() for part, side in sides.items() if side)
+    return f"{quantity.words}: {limits} {unit}".strip()
 
 
 def _best(problem: Problem) -> str:
@@ -95,8 +95,8 @@ def _missed(problem: Problem) -> str:
     if zones is None:
         return ""
     unit = f" {problem.length_unit}" if problem.length_unit else ""
-    said = [_span(zones[0], unit), _span(np.degrees(zones[1]), " deg")]
-    return f"as long as each target is missed by at most {' and '.join(filter(None, said))}"
+    spans = [_span(zones[0], unit), _span(np.degrees(zones[1]), " deg")]
+    return f"as long as each target is missed by at most {' and '.join(filter(None, spans))}"
 
 
 def _span(sizes: FloatArray, unit: str) -> str:

@@ -10,6 +10,7 @@ from grashof.problems import LinkageSpec, ProblemError, load_linkage_spec
 from grashof.problems.files.linkage_file import load_design
 from grashof.problems.values.checks import finite_number, positive_number
 from grashof.problems.values.dynamics_spec import METRES
+from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.linkage_spec import ListedDesign
 from grashof.workshop.dxf import dxf
 from grashof.workshop.files import write_whole
@@ -30,9 +31,9 @@ class Making:
     scale : str
         Of a model: a number, or a ratio such as 1:20.
     mm_per_unit : float, optional
-        Where the length unit is none of mm, cm, m, in, ft.
+        Where the length unit is not mm, cm, m, in or ft.
     theta2_deg : pair of float, optional
-        Driver angles of the use.
+        Range of driver angles used.
     """
 
     sizes: PlateSizes
@@ -65,7 +66,7 @@ def export_files(linkage: str, making: Making, files: dict[str, Path]) -> Plan |
         The disk is full or the folder is lost.
     """
     if not files:
-        raise ProblemError("nothing to write; allowed are --dxf FILE, --svg FILE, --xlsx FILE, or several")
+        raise ProblemError("nothing to write; give --dxf FILE, --svg FILE, --xlsx FILE, or several")
     for kind, path in files.items():
         _refuse_path(kind, path)
     chosen, listed = _chosen(linkage)
@@ -86,7 +87,7 @@ def export_files(linkage: str, making: Making, files: dict[str, Path]) -> Plan |
     return made
 
 
-def told(plan: Plan) -> list[str]:
+def plan_lines(plan: Plan) -> list[str]:
     """The parts list and the notes, as lines for the terminal."""
     rows = plan.rows()
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
@@ -96,13 +97,13 @@ def told(plan: Plan) -> list[str]:
 
 def _refuse_path(kind: str, path: Path) -> None:
     if path.suffix.lower() != f".{kind}":
-        raise ProblemError(f"--{kind} {path}: allowed is a file name that ends in .{kind}")
+        raise ProblemError(f"--{kind} {path}: the file name must end in .{kind}")
     try:
         taken, there = path.is_dir(), path.parent.is_dir()
     except OSError as error:  # a name too long
         raise ProblemError(f"--{kind} {path}: {error.strerror}") from None
     if taken:
-        raise ProblemError(f"--{kind} {path}: is a folder; allowed is a file")
+        raise ProblemError(f"--{kind} {path}: is a folder; it must be a file")
     if not there:
         raise ProblemError(f"--{kind} {path}: there is no folder {path.parent}")
 
@@ -130,7 +131,7 @@ def _plan(one: LinkageSpec | ListedDesign, making: Making) -> Plan:
         notes += (f"{arm}, is not among the parts",)
     if isinstance(one, ListedDesign) and len(set(one.assembly)) > 1:
         both = "the targets need both assemblies"
-        notes += (f"{both}; only the motion on that of the first one is looked at",)
+        notes += (f"{both}; only the motion on that of the first one is considered",)
     return replace(made, notes=notes)
 
 
@@ -140,13 +141,13 @@ def _millimetres(spec: LinkageSpec, making: Making) -> float:
     if unit in METRES:
         if given is not None:
             raise ProblemError(
-                f"mm_per_unit is given, but length_unit of {spec.name} is {unit}; allowed is --scale"
+                f"mm_per_unit is given, but length_unit of {spec.name} is {unit}; give --scale instead"
             )
         given = METRES[unit] * 1000
     elif given is None:
         raise ProblemError(
-            f"length_unit of {spec.name} is {unit!r}, none of {', '.join(METRES)}; allowed is "
-            "--mm-per-unit NUMBER besides, the millimetres of one unit"
+            f"length_unit of {spec.name} is {unit!r}, not one of {', '.join(METRES)}; give "
+            "--mm-per-unit NUMBER, the millimetres of one unit"
         )
     return _ratio(making.scale) * positive_number(given, "mm_per_unit")
 
@@ -156,9 +157,7 @@ def _ratio(scale: str) -> float:
     try:
         return positive_number(float(part), "scale") / positive_number(float(whole or 1), "scale")
     except ValueError:
-        raise ProblemError(
-            f"scale is {scale!r}; allowed is a number above 0 or a ratio such as 1:20"
-        ) from None
+        raise wrong_value("scale", scale, "a number above 0 or a ratio such as 1:20") from None
 
 
 def _heading(one: LinkageSpec | ListedDesign, making: Making) -> str:

@@ -50,7 +50,7 @@ class Plan:
     joints : dict of str to pair of float, mm
         O2, A, B, O4 and P in the assembly, from O2.
     notes : tuple of str
-        What a maker has to know.
+        Notes for the workshop.
     """
 
     sizes: PlateSizes
@@ -100,7 +100,7 @@ def plan_parts(
     mm_per_unit : float
         Millimetres of the plates for one unit of the linkage; a scale goes in here, too.
     within : pair of float, rad, optional
-        Driver angles of its use; by default the whole turn, or all between dead positions.
+        Range of driver angles used; by default the whole turn, or all between dead positions.
     theta2 : float, rad, optional
         Driver angle of the assembly; by default a quarter into the motion. Of a linkage with two ranges
         between dead positions, only that of this angle is used.
@@ -147,7 +147,7 @@ def plan_parts(
 def _in_millimetres(linkage: FourBar, mm_per_unit: float) -> FourBar:
     """The linkage in mm, with O2 at the origin."""
     if linkage.shape:
-        raise ProblemError(f"linkage is a batch of shape {linkage.shape}; allowed is one linkage")
+        raise ProblemError(f"linkage is a batch of shape {linkage.shape}; it must be a single one")
     return linkage.scaled(positive_number(mm_per_unit, "mm_per_unit"), linkage.o2)
 
 
@@ -182,8 +182,8 @@ def _use(
     """Over which motion nothing meets."""
     if within is None and full_rotation(linkage):
         return "free over the whole turn of the driver"
-    stretches = " and ".join(f"{low:.1f} to {high:.1f}" for low, high in np.degrees(ranges))
-    return f"free for theta2 = {stretches} deg" + ("" if within else ", between the dead positions")
+    spans = " and ".join(f"{low:.1f} to {high:.1f}" for low, high in np.degrees(ranges))
+    return f"free for theta2 = {spans} deg" + ("" if within else ", between the dead positions")
 
 
 def _two_bases(order: Stack) -> list[str]:

@@ -53,7 +53,7 @@ class PlateSizes:
         for name in ("width", "hole", "thickness"):
             object.__setattr__(self, name, positive_number(getattr(self, name), f"{name} in mm"))
         if self.hole >= self.width:
-            raise ProblemError(f"hole is {self.hole:g} mm; allowed is less than the width, {self.width:g} mm")
+            raise ProblemError(f"hole is {self.hole:g} mm; it must be less than the width, {self.width:g} mm")
         gap = self.width / 20 if self.clearance is None else self.clearance
         low, high = self.width / 100, self.width
         object.__setattr__(self, "clearance", number_within(gap, low, high, "clearance in mm"))
@@ -144,7 +144,7 @@ def outline(corners: npt.ArrayLike, radius: float) -> FloatArray:
 
 
 def link_plates(linkage: FourBar, sizes: PlateSizes) -> tuple[dict[str, Plate], str]:
-    """Plates of the links `driver`, `coupler` and `output`, and what to say of P.
+    """Plates of the links `driver`, `coupler` and `output`, and a note on P.
 
     Parameters
     ----------
@@ -219,11 +219,11 @@ def _plate(
 def _refuse_length(name: str, length: float, sizes: PlateSizes) -> None:
     if length > _SLENDEREST * sizes.width:
         raise ProblemError(
-            f"{name} is {length:.6g} mm, over {_SLENDEREST} widths of {sizes.width:g} mm; allowed is a "
+            f"{name} is {length:.6g} mm, over {_SLENDEREST} widths of {sizes.width:g} mm; choose a "
             f"width from {length / _SLENDEREST:.4g} mm, or a smaller scale"
         )
     if name != "A-P" and length < sizes.least_spacing:
         raise ProblemError(
-            f"{name} is {length:.4g} mm; allowed for width {sizes.width:g} and hole {sizes.hole:g} mm is at "
+            f"{name} is {length:.4g} mm; for width {sizes.width:g} and hole {sizes.hole:g} mm it must be at "
             f"least {sizes.least_spacing:g} mm: as much between two holes as beside them"
         )

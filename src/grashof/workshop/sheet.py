@@ -146,7 +146,7 @@ def _part(part: Part, thickness: float) -> list[Shape]:
 
 
 def _room(plate: Plate) -> tuple[FloatArray, float, float]:
-    """Where a plate's name fits: the middle of its longest way between two holes, its angle and length."""
+    """Where a plate's name fits: the middle of the longest gap between its holes, its angle and length."""
 
     def length(pair: tuple[int, int]) -> float:
         (start, end), others = plate.holes[list(pair)], np.delete(plate.holes, pair, axis=0)

@@ -26,7 +26,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.workshop.plates import Plate, PlateSizes
 
 LINKS = tuple(link.name for link in FourBar.LINKS[1:])
-# What each pin joins; what is no link is the base.
+# What each pin joins; what is not a link is the base.
 JOINTS = {
     joint.upper(): tuple(FourBar.LINKS[number - 1].name for number in numbers)
     for joint, numbers in FourBar.JOINTS.items()
@@ -101,9 +101,9 @@ def ranges_of_use(
     ----------
     linkage : FourBar
     within : pair of float, rad, optional
-        First and last angle of the use.
+        First and last angle used.
     at : float, rad, optional
-        An angle of the use: of two ranges between dead positions only the one with it counts.
+        An angle used: of two ranges between dead positions only the one with it counts.
 
     Returns
     -------
@@ -124,13 +124,13 @@ def ranges_of_use(
         return whole if number < 0 else (whole[number],)
     low, high = within
     index, inside = range_index(linkage, low)
-    room, allowed = 2 * np.pi, "up to a turn"
+    room, wanted = 2 * np.pi, "at most a turn"
     if not full_rotation(linkage):
         room = whole[int(index)][1] - float(inside) if index >= 0 else 0.0
-        allowed = " or ".join(f"{a:.6g} to {b:.6g} deg" for a, b in np.degrees(whole))
+        wanted = "within " + " or ".join(f"{a:.6g} to {b:.6g} deg" for a, b in np.degrees(whole))
     if not 0 < high - low <= room + 1e-9:
         given = f"{np.degrees(low):.6g} to {np.degrees(high):.6g}"
-        raise ProblemError(f"theta2 from {given} deg: allowed is {allowed}, the lesser first")
+        raise ProblemError(f"theta2 is {given} deg; it must be {wanted}, the lesser first")
     return ((low, high),)
 
 

@@ -98,7 +98,7 @@ def listed_candidates(path: Path, designs: Sequence[ListedDesign]) -> pd.DataFra
     except OSError as error:
         raise ProblemError(f"{table}: cannot be read: {error.strerror}; --xlsx lists it") from None
     except (ValueError, KeyError, TypeError, csv.Error):
-        raise ProblemError(f"{table}: is not a table of designs; allowed is that of grashof solve") from None
+        raise ProblemError(f"{table}: is not a table of designs; it must be that of grashof solve") from None
     for design in designs:
         if ids.get(design.rank) != design.id:
             raise ProblemError(
@@ -108,7 +108,7 @@ def listed_candidates(path: Path, designs: Sequence[ListedDesign]) -> pd.DataFra
 
 
 def _value(text: str) -> bool | int | float | str | None:
-    """What a cell of a CSV file says; pandas would lose the last digit of some numbers."""
+    """Value of a cell of a CSV file; pandas would lose the last digit of some numbers."""
     if text in ("", "True", "False"):
         return None if not text else text == "True"
     for kind in (int, float):
@@ -149,7 +149,7 @@ def _linkage_sheet(page: Worksheet, one: LinkageSpec | ListedDesign) -> None:
 
 
 def _facts(spec: LinkageSpec) -> list[tuple[str, Any, str]]:
-    """What there is to say of a linkage: name, value, unit."""
+    """Properties of a linkage: name, value, unit."""
     linkage, unit = spec.linkage, spec.length_unit
     units = {"assembly": "", "body_angle_deg": "deg"}
     return [

@@ -109,7 +109,7 @@ def test_extremes_of_a_rocking_driver_end_in_its_dead_positions() -> None:
 
 def test_bad_input_is_said() -> None:
     theta4 = QUANTITIES["theta4"]
-    with pytest.raises(ProblemError, match="together"):
+    with pytest.raises(ProblemError, match="give both or neither"):
         extremes(CRANK_ROCKER, theta4, start=1.0)
     with pytest.raises(ProblemError, match="start < end"):
         extremes(CRANK_ROCKER, theta4, start=1.0, end=0.5)

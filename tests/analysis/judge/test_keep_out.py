@@ -97,7 +97,7 @@ def test_ground_pivots(name: str) -> None:
     assert judged([box(x + 0.2, y)], name).ok  # on the boundary
     found = judged([box(x + 0.2 - 1e-6, y)], name).defects[0]
     assert found.miss == pytest.approx(1e-6 / TASK.size, rel=1e-3)
-    assert str(found).startswith(f"keep_out: the depth of {name.upper()} inside is 1e-06, allowed is 0")
+    assert str(found).startswith(f"keep_out: the depth of {name.upper()} inside is 1e-06, allowed: 0")
 
 
 @pytest.mark.parametrize("name", ["a", "b", "p"])

@@ -124,9 +124,7 @@ def test_a_wrong_position_is_not_exact() -> None:
     assert 0 < defect.found <= 5e-4
     assert defect.miss == pytest.approx(defect.found / task.size - 1e-6)
     allowed = f"{1e-6 * task.size:.6g}"
-    assert (
-        str(defect) == f"exact: the largest position error is {defect.found:.6g}, allowed is up to {allowed}"
-    )
+    assert str(defect) == f"exact: the largest position error is {defect.found:.6g}, allowed: up to {allowed}"
 
 
 def test_a_wrong_angle_is_not_exact() -> None:
@@ -159,7 +157,7 @@ def test_targets_out_of_sequence() -> None:
     assert not verdict.order_ok
     assert defect.what == "turns of the driver to meet the targets in sequence"
     assert defect.found == pytest.approx(490 / 360)
-    assert str(defect).endswith("is 1.36111, allowed is up to 1")
+    assert str(defect).endswith("is 1.36111, allowed: up to 1")
     free = verify(CRANK_ROCKER, task, Requirements(order=False))
     assert free.ok
     assert not free.order_ok
@@ -171,7 +169,7 @@ def test_a_rocker_that_has_to_turn_back() -> None:
     task = task_of(ROCKER, [-60, 40, 10, 80])
     verdict = verify(ROCKER, task, replace(ANY, order=True))
     defect = only(verdict, "order")
-    assert str(defect) == "order: the number of reversals of the driver between targets is 2, allowed is 0"
+    assert str(defect) == "order: the number of reversals of the driver between targets is 2, allowed: 0"
     assert verify(ROCKER, task, ANY).ok
     assert verify(ROCKER, task_of(ROCKER, [80, 40, 10, -60]), replace(ANY, order=True)).direction == -1
 
@@ -197,7 +195,7 @@ def test_targets_on_both_assemblies_of_a_crank_are_a_circuit_defect() -> None:
     verdict = verify(CRANK_ROCKER, task, Requirements())
     assert (verdict.circuit_ok, verdict.branch_ok) == (False, False)
     assert verdict.assembly.tolist() == [1, 1, -1, 1]
-    assert str(only(verdict, "same_branch")) == "same_branch: the number of circuits used is 2, allowed is 1"
+    assert str(only(verdict, "same_branch")) == "same_branch: the number of circuits used is 2, allowed: 1"
     assert verify(CRANK_ROCKER, task, Requirements(same_branch=False)).ok
 
 
@@ -207,7 +205,7 @@ def test_targets_on_both_assemblies_of_a_rocker_are_a_branch_defect() -> None:
     assert (verdict.circuit_ok, verdict.branch_ok) == (True, False)
     found = str(only(verdict, "same_branch"))
     assert found == (
-        "same_branch: the number of branches used (a dead position lies between) is 2, allowed is 1"
+        "same_branch: the number of branches used (a dead position lies between) is 2, allowed: 1"
     )
     assert verify(ROCKER, task, replace(ANY, same_branch=False)).ok
 
@@ -232,7 +230,7 @@ def test_the_assembly_declared_is_the_one_that_has_to_do_it(
     assert (verdict.assembly == -1).all()
     assert (verdict.circuit_ok, verdict.branch_ok) == (True, True)
     found = str(only(verdict, "same_branch"))
-    assert found == "same_branch: the assembly at the targets is -1, allowed is +1, the linkage's own"
+    assert found == "same_branch: the assembly at the targets is -1, allowed: +1, the linkage's own"
     assert verify(linkage, task, replace(requirements, same_branch=False)).ok
 
 
@@ -267,7 +265,7 @@ def test_a_rocker_does_not_turn(value: str) -> None:
     margin = found.pop("the margin of full rotation")
     assert margin.requirement == "rotatability"
     assert margin.found == pytest.approx(rotatability(ROCKER).min())
-    assert str(margin).endswith(f"allowed is from 0.001 ({value})")
+    assert str(margin).endswith(f"allowed: from 0.001 ({value})")
     assert set(found) == ({"r1 - r2"} if value == "double-crank" else set())
     assert not verdict.full_rotation
 

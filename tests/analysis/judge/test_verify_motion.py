@@ -129,7 +129,7 @@ def test_a_constraint_of_the_users_own_is_judged_by_its_value() -> None:
     own = [defect for defect in verdict.defects if defect.requirement == "constraints"]
     if value > 0:
         assert [str(defect) for defect in own] == [
-            f"constraints: long_driver is {value:.6g}, allowed is up to 0"
+            f"constraints: long_driver is {value:.6g}, allowed: up to 0"
         ]
         assert own[0].found == own[0].miss == pytest.approx(value, rel=1e-12)
     else:

@@ -29,7 +29,7 @@ def only(verdict: Verdict, key: str, what: str, found: float) -> Defect:
     assert [(defect.requirement, defect.what) for defect in verdict.defects] == [(key, what)]
     defect = verdict.defects[0]
     assert defect.found == pytest.approx(found, rel=1e-9)
-    assert str(defect) == f"{key}: {what} is {found:.6g}, allowed is {defect.allowed}"
+    assert str(defect) == f"{key}: {what} is {found:.6g}, allowed: {defect.allowed}"
     assert defect.miss > 0
     return defect
 

@@ -136,7 +136,7 @@ def test_a_new_figure_only_where_no_axes_are_given() -> None:
 
 @pytest.mark.parametrize(("seconds", "fps"), [(0.01, 10), (np.nan, 10), (1, np.inf), (-1, 25)])
 def test_fewer_than_two_frames_are_refused(seconds: float, fps: float) -> None:
-    with pytest.raises(ProblemError, match="allowed are two frames"):
+    with pytest.raises(ProblemError, match="it must be two frames"):
         animate(ROCKER, seconds=seconds, fps=fps)
 
 
@@ -155,7 +155,7 @@ def test_a_gif_has_the_frames_and_the_time_asked_for(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("a.webm", r"ends in \.webm; allowed are \.gif and \.mp4"),
+        ("a.webm", r"ends in \.webm; it must end in \.gif or \.mp4"),
         ("a", "ends in nothing"),
         ("no/a.gif", "No such file or directory"),
         ("taken.gif", "is a folder"),

@@ -244,13 +244,13 @@ def test_all_quantities_by_default_a_panel_each() -> None:
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: plot_linkage(3), "linkage is 3; allowed are a FourBar, a LinkageSpec and a Candidate"),
+        (lambda: plot_linkage(3), "linkage is 3; it must be a FourBar, a LinkageSpec or a Candidate"),
         (lambda: plot_linkage(FourBar((0, 0), (4, 0), [1, 2], 4, 3)), r"batch of shape \(2,\)"),
         (lambda: plot_linkage(FourBar((0, 0), (9, 0), 1, 1, 1)), "closes at no driver angle"),
-        (lambda: plot_kinematics(CRANK_ROCKER, quantities=("jerk",)), "'jerk' is not known; allowed are a"),
+        (lambda: plot_kinematics(CRANK_ROCKER, quantities=("jerk",)), "'jerk' is unknown; it must be one"),
         (lambda: plot_linkage(CRANK_ROCKER, theta2=[]), "theta2 is empty"),
-        (lambda: plot_kinematics(CRANK_ROCKER, quantities=()), "quantities names none; allowed are angle"),
-        (lambda: plot_kinematics(CRANK_ROCKER, ax=axes()), "ax has 1 axes; allowed are 5"),
+        (lambda: plot_kinematics(CRANK_ROCKER, quantities=()), "quantities names none; it must name"),
+        (lambda: plot_kinematics(CRANK_ROCKER, ax=axes()), "ax has 1 axes; it must have 5"),
         (lambda: plot_dynamics(CRANK_ROCKER), "has no masses"),
     ],
 )  # fmt: skip

@@ -23,8 +23,8 @@ ROCKER = FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1))
 # Its driver just turns; in one degree P moves a fifth of its whole way.
 NEARLY_DEAD = FourBar((0, 0), (1.38, 0), 1.43, 1.7, 1.74, (1, 1))
 # As long as a search may say it, and a word that is too long for any line.
-MISSES = "transmission_min_deg: the worst transmission angle over the turn in deg is 13.4955, allowed is "
-MISSES += f"from 60; constraints: {'a_long_name_' * 20} is 3, allowed is up to 0"
+MISSES = "transmission_min_deg: the worst transmission angle over the turn in deg is 13.4955, allowed: "
+MISSES += f"from 60; constraints: {'a_long_name_' * 20} is 3, allowed: up to 0"
 AS_USUAL: dict[str, Any] = {"media": "screen", "color_scheme": "light", "reduced_motion": "no-preference"}
 
 

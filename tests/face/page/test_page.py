@@ -166,12 +166,12 @@ def test_travel_holds_the_targets() -> None:
 
 def test_an_empty_list_shows_the_closest_miss_as_one(few: Result) -> None:
     missed = replace(few, candidates=(), nearest=few.candidates[:1], note="nothing fits")
-    frame = few.to_frame().iloc[:1].assign(misses="r3: r3 is 9, allowed is 1 to 8")
+    frame = few.to_frame().iloc[:1].assign(misses="r3: r3 is 9, it must be from 1 to 8")
     parts = Parts(search_page(missed, frame, RECORD))
     assert "No design found." in parts.text
     assert "Nothing fits." in parts.text
     assert "Not a design: it misses" in parts.text
-    assert parts.data["designs"][0]["figures"]["misses"] == "r3: r3 is 9, allowed is 1 to 8"
+    assert parts.data["designs"][0]["figures"]["misses"] == "r3: r3 is 9, it must be from 1 to 8"
     assert parts.data["found"] is False
     assert "Pareto-optimal in" not in parts.text
 

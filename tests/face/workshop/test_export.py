@@ -73,27 +73,27 @@ def test_a_design_stands_at_its_first_target(grashof: Grashof, few: Result, tmp_
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        ("", "nothing to write; allowed are --dxf FILE, --svg FILE, --xlsx FILE, or several"),
-        ("--dxf a.dwg", "--dxf a.dwg: allowed is a file name that ends in .dxf"),
-        ("--svg .", "--svg .: allowed is a file name that ends in .svg"),
+        ("", "nothing to write; give --dxf FILE, --svg FILE, --xlsx FILE, or several"),
+        ("--dxf a.dwg", "--dxf a.dwg: the file name must end in .dxf"),
+        ("--svg .", "--svg .: the file name must end in .svg"),
         (f"--svg {'x' * 300}.svg", "File name too long"),
         ("--svg no/a.svg", "--svg no/a.svg: there is no folder no"),
         ("--dxf a.dxf --mm-per-unit 1", "mm_per_unit is given, but length_unit of mine is mm"),
-        ("--dxf a.dxf --hole 20", "hole is 20 mm; allowed is less than the width, 20 mm"),
-        ("--dxf a.dxf --width 0", "width in mm is 0; allowed are numbers greater than zero"),
+        ("--dxf a.dxf --hole 20", "hole is 20 mm; it must be less than the width, 20 mm"),
+        ("--dxf a.dxf --width 0", "width in mm is 0; it must be a number greater than zero"),
         ("--dxf a.dxf --thickness -3", "thickness in mm is -3"),
-        ("--dxf a.dxf --hole nan", "hole in mm is nan; allowed is a finite number"),
-        ("--dxf a.dxf --clearance 0", "clearance in mm is 0; allowed is 0.2 to 20"),
-        ("--dxf a.dxf --width 60", "r2 is 30 mm; allowed for width 60 and hole 6 mm is at least 33 mm"),
-        ("--dxf a.dxf --scale 1:0", "scale is '1:0'; allowed is a number above 0 or a ratio such as 1:20"),
+        ("--dxf a.dxf --hole nan", "hole in mm is nan; it must be a finite number"),
+        ("--dxf a.dxf --clearance 0", "clearance in mm is 0; it must be from 0.2 to 20"),
+        ("--dxf a.dxf --width 60", "r2 is 30 mm; for width 60 and hole 6 mm it must be at least 33 mm"),
+        ("--dxf a.dxf --scale 1:0", "scale is '1:0'; it must be a number above 0 or a ratio such as 1:20"),
         ("--dxf a.dxf --scale small", "scale is 'small'"),
         ("--dxf a.dxf --scale -2", "scale is '-2'"),
         ("--dxf a.dxf --scale 1000", "r1 is 100000 mm, over 1000 widths of 20 mm"),
         (
             "--dxf a.dxf --theta2-deg 90 10",
-            "theta2 from 90 to 10 deg: allowed is up to a turn, the lesser first",
+            "theta2 is 90 to 10 deg; it must be at most a turn, the lesser first",
         ),
-        ("--dxf a.dxf --theta2-deg 0 400", "theta2 from 0 to 400 deg"),
+        ("--dxf a.dxf --theta2-deg 0 400", "theta2 is 0 to 400 deg"),
         ("--dxf a.dxf --theta2-deg 0 nan", "theta2_deg is nan"),
         ("--dxf a.dxf --theta2-deg 0", "theta2-deg"),
     ],
@@ -112,7 +112,7 @@ def test_other_length_units_need_millimetres(grashof: Grashof, tmp_path: Path) -
     (tmp_path / "mine.toml").write_text(f'length_unit = "hand"\n{PLAIN}')
     done = grashof("export", "mine.toml", "--svg", "a.svg")
     assert done.exit_code == 2
-    assert "length_unit of mine is 'hand', none of mm, cm, m, in, ft; allowed is --mm-per-unit" in done.stderr
+    assert "length_unit of mine is 'hand', not one of mm, cm, m, in, ft; give --mm-per-unit" in done.stderr
     done = grashof("export", "mine.toml", "--svg", "a.svg", "--mm-per-unit", "101.6")
     assert done.exit_code == 0
     assert "O2-A 3048" in done.stdout
@@ -178,7 +178,9 @@ def test_part_of_the_motion_may_need_fewer_layers() -> None:
     assert low <= part.theta2 <= high
     assert "free for theta2 = 80.0 to 150.0 deg" in part.notes
     rocker = FourBar((0, 0), (400, 0), 300, 100, 300)
-    with pytest.raises(ProblemError, match=r"allowed is 28.9\d+ to 67.9\d+ deg or -67.9\d+ to -28.9\d+ deg"):
+    with pytest.raises(
+        ProblemError, match=r"it must be within 28.9\d+ to 67.9\d+ deg or -67.9\d+ to -28.9\d+ deg"
+    ):
         plan_parts(rocker, within=(0, 1))
     one = plan_parts(rocker, theta2=float(np.radians(-50)))
     assert "free for theta2 = -68.0 to -29.0 deg, between the dead positions" in one.notes

@@ -118,8 +118,8 @@ def test_missing_file(folder: Path) -> None:
 def test_folder_in_the_place_of_a_file(folder: Path) -> None:
     (folder / "sub").mkdir()
     (folder / "odd.toml").mkdir()
-    assert refused("sub") == "sub: is a folder; allowed is a problem file"
-    assert refused("odd.toml") == "odd.toml: is a folder; allowed is a problem file"
+    assert refused("sub") == "sub: is a folder; it must be a problem file"
+    assert refused("odd.toml") == "odd.toml: is a folder; it must be a problem file"
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root reads everything")

@@ -236,7 +236,7 @@ def test_the_torque_as_an_objective_needs_masses(maximise: str) -> None:
 
 def test_the_torque_as_an_objective_needs_a_motion() -> None:
     text = DRIVEN.format(HEAD, "'torque'") + "[requirements]\nsame_branch = false"
-    with pytest.raises(ProblemError, match=r"requirements\.same_branch is false; allowed is true when"):
+    with pytest.raises(ProblemError, match=r"requirements\.same_branch is false; it must be true when"):
         problem_from(tomllib.loads(text), "test")
 
 
@@ -249,9 +249,9 @@ def test_poses_may_be_timed_and_closed() -> None:
     assert (plain.timing, plain.closed) == (None, False)
     wrong = HEAD + "timing_deg = [0, 20, 10, 90]\nclosed = 1\nwithin = [-1, 1, 1, 1]\n"
     assert message(wrong).splitlines() == [
-        "motion.within[0] is -1; allowed is 3e-12 to 1e+20",
-        "motion.timing_deg[2] is 10 after 20; allowed are angles that only grow, or only fall",
-        "motion.closed is 1; allowed is true or false",
+        "motion.within[0] is -1; it must be from 3e-12 to 1e+20",
+        "motion.timing_deg[2] is 10 after 20; the angles must only grow, or only fall",
+        "motion.closed is 1; it must be true or false",
     ]
 
 
@@ -289,33 +289,33 @@ seed = -1
 
 def test_all_errors_are_told_a_line_each() -> None:
     assert message(SEVERAL).splitlines() == [
-        "title has control character U+0007; allowed is plain text",
-        "motion.poses[1] is [1, 2], 2 numbers; allowed is a pose [x, y, angle in degrees]",
+        "title has control character U+0007; it must be plain text",
+        "motion.poses[1] is [1, 2], 2 numbers; it must be a pose [x, y, angle in degrees]",
         "motion.poses[2].angel is unknown; did you mean angle?",
         "motion.poses[3] is [1, 2, nan]; all numbers must be finite",
-        "motion.weights[1] is 0.0; allowed is a number from 1e-09 to 1e+09",
-        "motion.angle_length is -1; allowed is a length greater than zero",
-        "motion.body has 1 corner; allowed are two or more",
-        "scene.outlines[0] has 1 corner; allowed are two or more",
+        "motion.weights[1] is 0.0; it must be a number from 1e-09 to 1e+09",
+        "motion.angle_length is -1; it must be greater than zero",
+        "motion.body has 1 corner; it must have two or more",
+        "scene.outlines[0] has 1 corner; it must have two or more",
         "scene.outlines[2][1] is [1.0, inf]; all numbers must be finite",
-        "requirements.tolerance is '1'; allowed is a number",
-        "requirements.order is 1; allowed is true or false",
-        "requirements.r1 is [3, 2]: lo exceeds hi; allowed is [lo, hi] with lo <= hi",
-        "requirements.link_ratio_max is 0; allowed is 1 to 1e+06",
-        "requirements.o2.x is [2, 1]; allowed is [lo, hi] with lo <= hi",
-        "requirements.o2.y is [4, 3]; allowed is [lo, hi] with lo <= hi",
-        "requirements.keep_out_for[0] is 'o3'; allowed is a list of o2, o4, a, b, p, links and body",
-        "objective.maximise.compactness is 10000000000; allowed is 0 to 1e+09",
-        "objective.maximise.torque is -1; allowed is 0 to 1e+09",
-        "dynamics.masses[1] is -2; allowed is a number from zero",
-        "dynamics.payload is -1; allowed is a number from zero",
-        "manufacturing.band is 0; allowed is a length greater than zero",
-        "search.starts is 0; allowed is a whole number from 1",
-        "search.seed is -1; allowed is a whole number from 0",
+        "requirements.tolerance is '1'; it must be a number",
+        "requirements.order is 1; it must be true or false",
+        "requirements.r1 is [3, 2]: lo exceeds hi; it must be [lo, hi] with lo <= hi",
+        "requirements.link_ratio_max is 0; it must be from 1 to 1e+06",
+        "requirements.o2.x is [2, 1]; it must be [lo, hi] with lo <= hi",
+        "requirements.o2.y is [4, 3]; it must be [lo, hi] with lo <= hi",
+        "requirements.keep_out_for[0] is 'o3'; it must be one of o2, o4, a, b, p, links, body",
+        "objective.maximise.compactness is 10000000000; it must be from 0 to 1e+09",
+        "objective.maximise.torque is -1; it must be from 0 to 1e+09",
+        "dynamics.masses[1] is -2; it must be a number from zero",
+        "dynamics.payload is -1; it must be a number from zero",
+        "manufacturing.band is 0; it must be greater than zero",
+        "search.starts is 0; it must be a whole number from 1",
+        "search.seed is -1; it must be a whole number from 0",
         "titles is unknown; did you mean title?",
         "manufacturing.length_tolerance is missing",
         'motion does not belong to kind = "path"',
-        "length_unit is 'ell'; with dynamics allowed are mm, cm, m, in, ft",
+        "length_unit is 'ell'; it must be one of mm, cm, m, in, ft with dynamics",
     ]
 
 
@@ -328,7 +328,7 @@ def test_long_values_are_shortened_and_stay_on_one_line() -> None:
 
 @pytest.mark.parametrize("key", ["title", "source", "length_unit"])
 def test_control_characters_are_refused(key: str) -> None:
-    said = f"{key} has control character U+001B; allowed is plain text"
+    said = f"{key} has control character U+001B; it must be plain text"
     assert message(f'{key} = "red \\u001b[31m"\n{HEAD}') == said
 
 
@@ -338,7 +338,7 @@ def test_tables_that_do_not_go_together_are_all_told() -> None:
         + "[dynamics]\nspeed_rpm = -1\n[objective]\nmaximise = 'torque'\n[requirements]\nsame_branch = false"
     )
     assert message("length_unit = 'm'\n" + text).splitlines() == [
-        "dynamics.speed_rpm is -1; allowed are numbers greater than zero",
+        "dynamics.speed_rpm is -1; it must be a number greater than zero",
         "dynamics has no mass; mass_per_length is needed, masses and inertias, or payload",
-        "requirements.same_branch is false; allowed is true when objective.maximise.torque is given",
+        "requirements.same_branch is false; it must be true when objective.maximise.torque is given",
     ]

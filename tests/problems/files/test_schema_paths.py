@@ -54,28 +54,28 @@ PATHS = [
     ('kind = "path"\n[paht]\npoints = [[1, 2]]', "paht is unknown; did you mean path?"),
     (LINE + "timing = [0, 1, 2]", "path.timing is unknown; did you mean timing_deg?"),
     (LINE + "poses = 3", "path.poses is unknown; did you mean motion.poses?"),
-    ('kind = "path"\n[path]\npoints = 5', "path.points is 5; allowed is a list of points [x, y]"),
-    ('kind = "path"\n[path]\npoints = [5]', "path.points[0] is 5; allowed is a point [x, y]"),
+    ('kind = "path"\n[path]\npoints = 5', "path.points is 5; it must be a list of points [x, y]"),
+    ('kind = "path"\n[path]\npoints = [5]', "path.points[0] is 5; it must be a point [x, y]"),
     (
         'kind = "path"\n[path]\npoints = [[1, 2], [3, "4"]]',
-        "path.points[1][1] is '4'; allowed is a number",
+        "path.points[1][1] is '4'; it must be a number",
     ),
     (
         'kind = "path"\n[path]\npoints = [[1, 2], [3, 4, 5], [6, 7]]',
-        "path.points[1] is [3.0, 4.0, 5.0], 3 numbers; allowed is a point [x, y]",
+        "path.points[1] is [3.0, 4.0, 5.0], 3 numbers; it must be a point [x, y]",
     ),
     (
         'kind = "path"\n[path]\npoints = [[1, 2], [3, 4]]',
-        "path.points has 2 points; allowed are three or more",
+        "path.points has 2 points; it must have three or more",
     ),
-    (LINE + "closed = 1", "path.closed is 1; allowed is true or false"),
-    (LINE + "timing_deg = 20", "path.timing_deg is 20; allowed is a list of angles"),
-    (LINE + "timing_deg = [0, '20', 40]", "path.timing_deg[1] is '20'; allowed is a number"),
+    (LINE + "closed = 1", "path.closed is 1; it must be true or false"),
+    (LINE + "timing_deg = 20", "path.timing_deg is 20; it must be a list of angles"),
+    (LINE + "timing_deg = [0, '20', 40]", "path.timing_deg[1] is '20'; it must be a number"),
     (LINE + "timing_deg = [0, 20]", "path.timing_deg has 2 angles for 3 points"),
-    (LINE + "timing_deg = [5, 20, 30]", "path.timing_deg[0] is 5; allowed is 0, at the first point"),
+    (LINE + "timing_deg = [5, 20, 30]", "path.timing_deg[0] is 5; it must be 0, at the first point"),
     (
         LINE + "timing_deg = [0, 20, 10]",
-        "path.timing_deg[2] is 10 after 20; allowed are angles that only grow, or only fall",
+        "path.timing_deg[2] is 10 after 20; the angles must only grow, or only fall",
     ),
 ]
 

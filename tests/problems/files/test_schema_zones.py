@@ -24,22 +24,22 @@ def message(text: str) -> str:
 
 
 KEEP_OUT = {
-    "[[[0, 0], [1, 0]]]": "[0] has 2 distinct corners; allowed are three or more",
+    "[[[0, 0], [1, 0]]]": "[0] has 2 distinct corners; it must have three or more",
     "[[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 0], [2, 0]]]": (
         "[1] has no area: its corners lie on a straight line"
     ),
     "[[[0, 0], [2, 2], [2, 0], [0, 2]]]": (
-        "[0] crosses or touches itself at (1, 1); allowed is a simple polygon"
+        "[0] crosses or touches itself at (1, 1); it must be a simple polygon"
     ),
     "[[[0, 0], [1, nan], [1, 1]]]": "[0][1] is [1.0, nan]; all numbers must be finite",
-    "[[[0, 0], [1, 'a'], [1, 1]]]": "[0][1][1] is 'a'; allowed is a number",
+    "[[[0, 0], [1, 'a'], [1, 1]]]": "[0][1][1] is 'a'; it must be a number",
     "[[[0, 0], [1, 1]], [[0, 0], [2, 0], [1, 1]], [[0, 0], [1, 0], [2, 0]]]": (
-        "[0] has 2 distinct corners; allowed are three or more\n"
+        "[0] has 2 distinct corners; it must have three or more\n"
         "requirements.keep_out[2] has no area: its corners lie on a straight line"
     ),
-    "[[0, 0]]": "[0][0] is 0; allowed is a corner [x, y]\n"
-    "requirements.keep_out[0][1] is 0; allowed is a corner [x, y]",
-    "3": " is 3; allowed is a list of polygons, each a list of corners [x, y]",
+    "[[0, 0]]": "[0][0] is 0; it must be a corner [x, y]\n"
+    "requirements.keep_out[0][1] is 0; it must be a corner [x, y]",
+    "3": " is 3; it must be a list of polygons, each a list of corners [x, y]",
 }
 
 
@@ -49,10 +49,12 @@ def test_bad_areas_are_named(text: str) -> None:
 
 
 def test_what_keeps_out_is_one_of_a_few() -> None:
-    allowed = "allowed is a list of o2, o4, a, b, p, links and body"
-    for text, found in (("['o2', 'o3']", "[1] is 'o3'"), ("[]", " is []")):
-        said = message(HEAD + f"[requirements]\nkeep_out_for = {text}")
-        assert said == f"requirements.keep_out_for{found}; {allowed}"
+    for text, found in (
+        ("['o2', 'o3']", "[1] is 'o3'; it must be one of o2, o4, a, b, p, links, body"),
+        ("[]", " is []; it must be a list of o2, o4, a, b, p, links and body"),
+    ):
+        reported = message(HEAD + f"[requirements]\nkeep_out_for = {text}")
+        assert reported == f"requirements.keep_out_for{found}"
 
 
 LINE = 'kind = "path"\n[path]\npoints = [[20, 20], [20, 25], [21, 30]]\n'
@@ -72,35 +74,35 @@ def test_zones_reach_their_fields() -> None:
     assert path.within.tolist() == [2, 2, 2]
 
 
-NUMBER_OR_LIST = "allowed is a number, or a list of one for each target"
+NUMBER_OR_LIST = "it must be a number, or a list of one for each target"
 BAD_ZONES = [
     ("within = '6'", f"motion.within is '6'; {NUMBER_OR_LIST}"),
     ("within = true", f"motion.within is true; {NUMBER_OR_LIST}"),
     ("within = { x = 1 }", f"motion.within is a table; {NUMBER_OR_LIST}"),
     ("within = [1, 2]", "motion.within has 2 numbers for 4 targets; "),
     ("within = []", "motion.within has 0 numbers for 4 targets; "),
-    ("within = [1, true, 1, 1]", "motion.within[1] is true; allowed is a number"),
-    ("within = [1, [1], 1, 1]", "motion.within[1] is [1]; allowed is a number"),
-    ("within = 0", "motion.within is 0; allowed is "),
-    ("within = -1", "motion.within is -1; allowed is "),
-    ("within = nan", "motion.within is nan; allowed is "),
-    ("within = inf", "motion.within is inf; allowed is "),
-    ("within = 1e300", "motion.within is 1e+300; allowed is "),
-    ("within = [1, 1, 1, 1e-13]", "motion.within[3] is 1e-13; allowed is "),
-    ("angle_within_deg = 181", "motion.angle_within_deg is 181; allowed is 1e-10 to 180"),
-    ("angle_within_deg = [1, 1, 0, 1]", "motion.angle_within_deg[2] is 0; allowed is 1e-10 to 180"),
+    ("within = [1, true, 1, 1]", "motion.within[1] is true; it must be a number"),
+    ("within = [1, [1], 1, 1]", "motion.within[1] is [1]; it must be a number"),
+    ("within = 0", "motion.within is 0; it must be "),
+    ("within = -1", "motion.within is -1; it must be "),
+    ("within = nan", "motion.within is nan; it must be "),
+    ("within = inf", "motion.within is inf; it must be "),
+    ("within = 1e300", "motion.within is 1e+300; it must be "),
+    ("within = [1, 1, 1, 1e-13]", "motion.within[3] is 1e-13; it must be "),
+    ("angle_within_deg = 181", "motion.angle_within_deg is 181; it must be from 1e-10 to 180"),
+    ("angle_within_deg = [1, 1, 0, 1]", "motion.angle_within_deg[2] is 0; it must be from 1e-10 to 180"),
     (
         "within = 1\n[requirements]\nexact = true",
         "motion.within does not go with requirements.exact = true; ",
     ),
     (
         "within = 1\n[requirements]\nerror_factor = 2",
-        "requirements.error_factor does not go with motion.within; allowed is one of them",
+        "requirements.error_factor does not go with motion.within; give one of them",
     ),
     ("[requirements]\nerror_factor = 2", "requirements.error_factor needs least squares, exact = false"),
-    ("[requirements]\nerror_factor = 0.9", "requirements.error_factor is 0.9; allowed is 1 to 1e+06"),
-    ("[search]\neffort = 0.1", "search.effort is 0.1; allowed is 0.2 to 100"),
-    ("[search]\neffort = inf", "search.effort is inf; allowed is a finite number"),
+    ("[requirements]\nerror_factor = 0.9", "requirements.error_factor is 0.9; it must be from 1 to 1e+06"),
+    ("[search]\neffort = 0.1", "search.effort is 0.1; it must be from 0.2 to 100"),
+    ("[search]\neffort = inf", "search.effort is inf; it must be a finite number"),
     (
         "[requirements]\nexact = false\n[objective]\nmaximise = 'transmission'",
         "objective is of no effect in least squares; ",
@@ -117,5 +119,5 @@ def test_bad_zones_are_one_line(text: str, said: str) -> None:
 
 def test_zones_of_a_path_are_told_beside_other_errors() -> None:
     told = message('kind = "path"\n[path]\npoints = [[0, 0], [1, 0]]\nwithin = [1, 2, -3]\n').splitlines()
-    assert told[0] == "path.points has 2 points; allowed are three or more"
-    assert told[1].startswith("path.within[2] is -3; allowed is ")
+    assert told[0] == "path.points has 2 points; it must have three or more"
+    assert told[1].startswith("path.within[2] is -3; it must be ")

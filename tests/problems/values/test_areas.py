@@ -35,11 +35,11 @@ def test_the_area_does_not_depend_on_where_it_lies_or_how_large_it_is() -> None:
         ),
         (
             [[[0, 0], [1e200, 0], [0, 1]]],
-            r"keep_out\[0\]\[1\] is \[1e\+200, 0\]; allowed are numbers up to 1e\+20",
+            r"keep_out\[0\]\[1\] is \[1e\+200, 0\]; its numbers must be at most 1e\+20",
         ),
-        ([[[0, 0, 0], [1, 0, 0], [1, 1, 0]]], r"keep_out\[0\]\[0\] is .*allowed is a corner \[x, y\]"),
-        ("abc", r"keep_out is 'abc'; allowed is a list of polygons"),
-        (7, r"keep_out is 7; allowed is a list of polygons"),
+        ([[[0, 0, 0], [1, 0, 0], [1, 1, 0]]], r"keep_out\[0\]\[0\] is .*it must be a corner \[x, y\]"),
+        ("abc", r"keep_out is 'abc'; it must be a list of polygons"),
+        (7, r"keep_out is 7; it must be a list of polygons"),
     ],
 )
 def test_what_is_no_polygon(values: object, said: str) -> None:

@@ -48,18 +48,18 @@ def test_finite_rows_keeps_the_rows() -> None:
 @pytest.mark.parametrize(
     ("rows", "message"),
     [
-        (5, "here is 5; allowed is a list, each entry a point"),
-        ("ab", "here is 'ab'; allowed is a list, each entry a point"),
-        ([[1, 2], [3]], r"here\[1\] is \[3\], 1 number; allowed is a point"),
-        ([[1, 2, 3]], r"here\[0\] is \[1, 2, 3\], 3 numbers; allowed is a point"),
-        ([[1, 2], 3], r"here\[1\] is 3, no plain list of numbers; allowed is a point"),
-        ([[[1, 2]]], r"here\[0\] is \[\[1, 2\]\], no plain list of numbers"),
-        ([[[1, 2], [3]]], r"here\[0\] is \[\[1, 2\], \[3\]\]; allowed is a point"),
-        ([[1, "2"]], r"here\[0\] is \[1, '2'\]; allowed is a point"),
-        ([["1", "2"]], r"here\[0\] is \['1', '2'\]; allowed is a point"),
-        ([[True, False]], r"here\[0\] is \[True, False\]; allowed is a point"),
-        ([[1, None]], r"here\[0\] is \[1, None\]; allowed is a point"),
-        ([{"x": 1}], r"here\[0\] is {'x': 1}; allowed is a point"),
+        (5, "here is 5; it must be a list, each entry a point"),
+        ("ab", "here is 'ab'; it must be a list, each entry a point"),
+        ([[1, 2], [3]], r"here\[1\] is \[3\], 1 number; it must be a point"),
+        ([[1, 2, 3]], r"here\[0\] is \[1, 2, 3\], 3 numbers; it must be a point"),
+        ([[1, 2], 3], r"here\[1\] is 3, not a plain list of numbers; it must be a point"),
+        ([[[1, 2]]], r"here\[0\] is \[\[1, 2\]\], not a plain list of numbers"),
+        ([[[1, 2], [3]]], r"here\[0\] is \[\[1, 2\], \[3\]\]; it must be a point"),
+        ([[1, "2"]], r"here\[0\] is \[1, '2'\]; it must be a point"),
+        ([["1", "2"]], r"here\[0\] is \['1', '2'\]; it must be a point"),
+        ([[True, False]], r"here\[0\] is \[True, False\]; it must be a point"),
+        ([[1, None]], r"here\[0\] is \[1, None\]; it must be a point"),
+        ([{"x": 1}], r"here\[0\] is {'x': 1}; it must be a point"),
         ([[1, 2], [np.nan, 0]], r"here\[1\] is \[nan, 0\]; all numbers must be finite"),
         (np.array([[1, np.inf]]), r"here\[0\] is \[1.0, inf\]; all numbers must be finite"),
     ],
@@ -71,7 +71,7 @@ def test_finite_rows_names_the_row(rows: Any, message: str) -> None:
 
 def test_outline_needs_two_corners() -> None:
     assert outline([[0, 0], [1, 2]], "here").tolist() == [[0, 0], [1, 2]]
-    with pytest.raises(ProblemError, match=r"^here has 1 corner; allowed are two or more$"):
+    with pytest.raises(ProblemError, match=r"^here has 1 corner; it must have two or more$"):
         outline([[0, 0]], "here")
 
 
@@ -82,7 +82,7 @@ def test_finite_number_takes_every_kind_of_number(value: float) -> None:
 
 @pytest.mark.parametrize("value", [True, np.True_, "3", b"3", None, [3], 3j, np.nan, -np.inf, 10**400])
 def test_finite_number_refuses(value: float) -> None:
-    with pytest.raises(ProblemError, match=r"^here is .*; allowed is a finite number$"):
+    with pytest.raises(ProblemError, match=r"^here is .*; it must be a finite number$"):
         finite_number(value, "here")
 
 
@@ -96,13 +96,13 @@ def test_positive_number_refuses(value: float) -> None:
 def test_number_within_allows_the_ends_and_shows_a_near_excess() -> None:
     assert number_within(0, 0, 90, "here") == 0
     assert number_within(90, 0, 90, "here") == 90
-    with pytest.raises(ProblemError, match=r"^here is 90.000000001; allowed is 0 to 90$"):
+    with pytest.raises(ProblemError, match=r"^here is 90.000000001; it must be from 0 to 90$"):
         number_within(90.000000001, 0, 90, "here")
 
 
 @pytest.mark.parametrize("value", [0, -1, 1.0, True, "1", None])
 def test_whole_number_refuses(value: int) -> None:
-    with pytest.raises(ProblemError, match=r"^here is .*; allowed is a whole number from 1$"):
+    with pytest.raises(ProblemError, match=r"^here is .*; it must be a whole number from 1$"):
         whole_number(value, 1, "here")
 
 
@@ -118,20 +118,20 @@ def test_limits_pass_exactly_when_in_order(low: float, high: float) -> None:
     if low <= high:
         assert limits((low, high), "here") == (low, high)
     else:
-        with pytest.raises(ProblemError, match=r"^here is .*: lo exceeds hi; allowed is"):
+        with pytest.raises(ProblemError, match=r"^here is .*: lo exceeds hi; it must be"):
             limits((low, high), "here")
 
 
 @pytest.mark.parametrize(
     ("pair", "message"),
     [
-        ((1,), r"here is \(1,\); allowed is \[lo, hi\]"),
-        ((1, 2, 3), r"here is \(1, 2, 3\); allowed is \[lo, hi\]"),
-        (5, r"here is 5; allowed is \[lo, hi\]"),
-        ((1, np.inf), r"here\[1\] is inf; allowed is a finite number"),
-        (("a", 1), r"here\[0\] is 'a'; allowed is a finite number"),
-        ((2, 1), r"here is \[2, 1\]: lo exceeds hi; allowed is \[lo, hi\] with lo <= hi"),
-        ((-1, 1), r"here is \[-1, 1\]; allowed is lo from 0"),
+        ((1,), r"here is \(1,\); it must be \[lo, hi\]"),
+        ((1, 2, 3), r"here is \(1, 2, 3\); it must be \[lo, hi\]"),
+        (5, r"here is 5; it must be \[lo, hi\]"),
+        ((1, np.inf), r"here\[1\] is inf; it must be a finite number"),
+        (("a", 1), r"here\[0\] is 'a'; it must be a finite number"),
+        ((2, 1), r"here is \[2, 1\]: lo exceeds hi; it must be \[lo, hi\] with lo <= hi"),
+        ((-1, 1), r"here is \[-1, 1\]; lo must be at least 0"),
     ],
 )
 def test_limits_say_what_is_wrong(pair: tuple[float, float], message: str) -> None:
@@ -153,7 +153,9 @@ def test_counted() -> None:
 
 @pytest.mark.parametrize("character", ["\x00", "\x1b", "\n", "\x7f", "\x9b", "\ud800", "\uffff"])
 def test_text_that_drawings_and_terminals_stumble_over(character: str) -> None:
-    with pytest.raises(ProblemError, match=rf"^title has control character U\+{ord(character):04X}; allowed"):
+    with pytest.raises(
+        ProblemError, match=rf"^title has control character U\+{ord(character):04X}; it must be"
+    ):
         plain_text(f"a{character}b", "title")
     assert readable(f"a{character}b") == "a?b"
 

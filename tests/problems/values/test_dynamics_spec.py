@@ -89,7 +89,7 @@ def test_known_length_units(unit: str, length: float) -> None:
 
 @pytest.mark.parametrize("unit", ["", "M", "furlong", "metre"])
 def test_torque_needs_a_known_length_unit(unit: str) -> None:
-    expected = f"length_unit is {unit!r}; with dynamics allowed are mm, cm, m, in, ft"
+    expected = f"length_unit is {unit!r}; it must be one of mm, cm, m, in, ft with dynamics"
     with pytest.raises(ProblemError) as caught:
         stated(BARS, HEAD.replace('"mm"', f'"{unit}"'))
     assert str(caught.value) == expected
@@ -102,8 +102,8 @@ def test_any_word_is_a_unit_without_dynamics() -> None:
     assert replace(load("luggage"), dynamics=None, length_unit="furlong").length_unit == "furlong"
 
 
-ZERO = "allowed is a number from zero"
-MORE = "allowed are numbers greater than zero"
+ZERO = "it must be a number from zero"
+MORE = "it must be a number greater than zero"
 BAD = [
     (
         "",
@@ -113,30 +113,30 @@ BAD = [
     ("inertias = [1, 2, 3]", "dynamics.masses is missing; masses and inertias are needed together"),
     (
         BARS + "inertias = [1, 2, 3]",
-        "dynamics.mass_per_length does not go with masses and inertias; allowed is one or the other",
+        "dynamics.mass_per_length does not go with masses and inertias; give one or the other",
     ),
     ("mass_per_length = 0", f"dynamics.mass_per_length is 0; {MORE}"),
-    ("mass_per_length = 'a'", "dynamics.mass_per_length is 'a'; allowed is a number"),
-    ("mass_per_length = inf", "dynamics.mass_per_length is inf; allowed is a finite number"),
+    ("mass_per_length = 'a'", "dynamics.mass_per_length is 'a'; it must be a number"),
+    ("mass_per_length = inf", "dynamics.mass_per_length is inf; it must be a finite number"),
     (BARS + "speed_rpm = 0", f"dynamics.speed_rpm is 0; {MORE}"),
     (BARS + "speed_rpm = -10", f"dynamics.speed_rpm is -10; {MORE}"),
     (BARS + "payload = -1", f"dynamics.payload is -1; {ZERO}"),
-    (BARS + "gravity = 9.81", "dynamics.gravity is 9.81; allowed is [x, y] in m/s2"),
-    (BARS + "gravity = [0]", "dynamics.gravity has 1 entry; allowed are 2 numbers"),
-    (BARS + "gravity = [0, nan]", "dynamics.gravity[1] is nan; allowed is a finite number"),
+    (BARS + "gravity = 9.81", "dynamics.gravity is 9.81; it must be [x, y] in m/s2"),
+    (BARS + "gravity = [0]", "dynamics.gravity has 1 entry; it must have 2 numbers"),
+    (BARS + "gravity = [0, nan]", "dynamics.gravity[1] is nan; it must be a finite number"),
     (
         "masses = [1, 2]\ninertias = [1, 2, 3]",
-        "dynamics.masses has 2 entries; allowed are 3 numbers",
+        "dynamics.masses has 2 entries; it must have 3 numbers",
     ),
     ("masses = [1, -2, 3]\ninertias = [1, 2, 3]", f"dynamics.masses[1] is -2; {ZERO}"),
     ("masses = [1, 2, 3]\ninertias = [1, 2, -3]", f"dynamics.inertias[2] is -3; {ZERO}"),
-    ("masses = 3\ninertias = [1, 2, 3]", "dynamics.masses is 3; allowed is [m2, m3, m4]"),
+    ("masses = 3\ninertias = [1, 2, 3]", "dynamics.masses is 3; it must be [m2, m3, m4]"),
     ("masses = [0, 0, 0]\ninertias = [0, 0, 0]", "dynamics.masses are all zero; one at least has a mass"),
     (BARS + "speed = 10", "dynamics.speed is unknown; did you mean speed_rpm?"),
     (
         BARS + "friction = 10",
         "dynamics.friction is unknown; "
-        "allowed are speed_rpm, gravity, mass_per_length, masses, inertias, payload",
+        "the keys are speed_rpm, gravity, mass_per_length, masses, inertias, payload",
     ),
 ]
 

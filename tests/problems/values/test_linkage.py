@@ -141,14 +141,14 @@ def test_a_linkage_does_not_share_memory_with_what_it_was_made_of() -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"r2": 0}, "r2 is 0; allowed are lengths greater than zero"),
-        ({"r4": [1, -2]}, r"r4 is \[1, -2\]; allowed are lengths greater than zero"),
+        ({"r2": 0}, "r2 is 0; it must be greater than zero"),
+        ({"r4": [1, -2]}, r"r4 is \[1, -2\]; it must be greater than zero"),
         ({"r3": np.nan}, "r3 is nan; all numbers must be finite"),
         ({"o2": (0, np.inf)}, r"o2 is \(0, inf\); all numbers must be finite"),
-        ({"o4": (1, 2, 3)}, r"o4 has shape \(3,\); allowed is \(..., 2\)"),
-        ({"coupler_point": 1}, r"coupler_point has shape \(\); allowed is \(..., 2\)"),
-        ({"r2": "long"}, "r2 is 'long'; allowed are numbers"),
-        ({"assembly": 0}, r"assembly is 0; allowed is \+1 or -1"),
+        ({"o4": (1, 2, 3)}, r"o4 has shape \(3,\); it must be \(..., 2\)"),
+        ({"coupler_point": 1}, r"coupler_point has shape \(\); it must be \(..., 2\)"),
+        ({"r2": "long"}, "r2 is 'long'; it must be a number"),
+        ({"assembly": 0}, r"assembly is 0; it must be \+1 or -1"),
         ({"r2": [1, 2], "r3": [1, 2, 3]}, "the fields of a batch have shapes .* that do not fit together"),
     ],
 )

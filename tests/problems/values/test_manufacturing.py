@@ -49,22 +49,22 @@ def test_a_copied_problem_with_the_table_added_comes_back_from_its_file(tmp_path
     assert load(path).manufacturing == Manufacturing(0.02, 0.05)
 
 
-LENGTH = "allowed is a length greater than zero"
+LENGTH = "it must be greater than zero"
 BAD = [
     ("", "manufacturing.length_tolerance is missing"),
     ("band = 0.1", "manufacturing.length_tolerance is missing"),
     ("length_tolerance = 0", f"manufacturing.length_tolerance is 0; {LENGTH}"),
     ("length_tolerance = -0.1", f"manufacturing.length_tolerance is -0.1; {LENGTH}"),
-    ("length_tolerance = '0.1'", "manufacturing.length_tolerance is '0.1'; allowed is a number"),
-    ("length_tolerance = true", "manufacturing.length_tolerance is true; allowed is a number"),
-    ("length_tolerance = inf", "manufacturing.length_tolerance is inf; allowed is a finite number"),
-    ("length_tolerance = nan", "manufacturing.length_tolerance is nan; allowed is a finite number"),
+    ("length_tolerance = '0.1'", "manufacturing.length_tolerance is '0.1'; it must be a number"),
+    ("length_tolerance = true", "manufacturing.length_tolerance is true; it must be a number"),
+    ("length_tolerance = inf", "manufacturing.length_tolerance is inf; it must be a finite number"),
+    ("length_tolerance = nan", "manufacturing.length_tolerance is nan; it must be a finite number"),
     ("length_tolerance = 0.1\nband = 0", f"manufacturing.band is 0; {LENGTH}"),
     ("length_tolerance = 0.1\nband = -2", f"manufacturing.band is -2; {LENGTH}"),
-    ("length_tolerance = 0.1\nband = [1, 2]", "manufacturing.band is [1, 2]; allowed is a number"),
+    ("length_tolerance = 0.1\nband = [1, 2]", "manufacturing.band is [1, 2]; it must be a number"),
     (
         "length_tolerance = 0.1\nsamples = 9",
-        "manufacturing.samples is unknown; allowed are length_tolerance, band",
+        "manufacturing.samples is unknown; the keys are length_tolerance, band",
     ),
     (
         "tolerance = 0.1\nlength_tolerance = 0.1",
@@ -82,7 +82,7 @@ def test_bad_tables(table: str, expected: str) -> None:
 
 def test_no_table_at_all() -> None:
     text = 'manufacturing = 3\nkind = "motion"\nmotion.poses = [[0, 0, 0], [3, 4, 90]]'
-    with pytest.raises(ProblemError, match=r"^manufacturing is 3; allowed is a table$"):
+    with pytest.raises(ProblemError, match=r"^manufacturing is 3; it must be a table$"):
         problem_from(tomllib.loads(text), "test")
 
 

@@ -98,24 +98,24 @@ def test_exact_is_the_count_of_unknowns_and_equations(kinds: list[str]) -> None:
 
 
 BAD_POSES: list[tuple[Any, str]] = [
-    ([[0, 0, 0], [1, 0, 4e6]], r"motion.poses\[1\] is turned by 4e\+06 deg; allowed is up to 3600000 .*"),
-    ("poses", r"motion.poses is 'poses'; allowed is a list of poses"),
-    ({"x": 1}, r"motion.poses is \{'x': 1\}; allowed is a list of poses"),
-    (5, r"motion.poses is 5; allowed is a list of poses"),
-    ([[0, 0, 0], "abc"], r"motion.poses\[1\] is 'abc'; allowed is a pose \[x, y, angle in degrees\]"),
-    ([[0, 0, 0], 3], r"motion.poses\[1\] is 3; allowed is a pose \[x, y, angle in degrees\]"),
-    ([[0, 0, 0], [1, 2, "3"]], r"motion.poses\[1\]\[2\] is '3'; allowed is a finite number"),
-    ([[0, 0, 0], [1, 2, True]], r"motion.poses\[1\]\[2\] is True; allowed is a finite number"),
+    ([[0, 0, 0], [1, 0, 4e6]], r"motion.poses\[1\] is turned by 4e\+06 deg; it must be at most 3600000 .*"),
+    ("poses", r"motion.poses is 'poses'; it must be a list of poses"),
+    ({"x": 1}, r"motion.poses is \{'x': 1\}; it must be a list of poses"),
+    (5, r"motion.poses is 5; it must be a list of poses"),
+    ([[0, 0, 0], "abc"], r"motion.poses\[1\] is 'abc'; it must be a pose \[x, y, angle in degrees\]"),
+    ([[0, 0, 0], 3], r"motion.poses\[1\] is 3; it must be a pose \[x, y, angle in degrees\]"),
+    ([[0, 0, 0], [1, 2, "3"]], r"motion.poses\[1\]\[2\] is '3'; it must be a finite number"),
+    ([[0, 0, 0], [1, 2, True]], r"motion.poses\[1\]\[2\] is True; it must be a finite number"),
     ([[0, 0, 0], {"x": 1, "y": 2, "angel": 3}], r"motion.poses\[1\].angel is unknown; did you mean angle\?"),
-    ([[0, 0, 0], {"q": 3}], r"motion.poses\[1\].q is unknown; allowed are x, y, angle"),
-    ([[0, 0, 0], {"x": 1, "angle": 3}], r"motion.poses\[1\] has one of x and y; allowed are both or neither"),
-    ([[0, 0, 0], {"y": 1}], r"motion.poses\[1\] has one of x and y; allowed are both or neither"),
+    ([[0, 0, 0], {"q": 3}], r"motion.poses\[1\].q is unknown; the keys are x, y, angle"),
+    ([[0, 0, 0], {"x": 1, "angle": 3}], r"motion.poses\[1\] has one of x and y; it must have both or"),
+    ([[0, 0, 0], {"y": 1}], r"motion.poses\[1\] has one of x and y; it must have both or neither"),
     ([[0, 0, 0], {}], r"motion.poses\[1\] has neither position nor angle"),
     ([[0, 0, 0], {"angle": np.nan}], r"motion.poses\[1\].angle is nan; .*"),
     ([[0, 0, 0], {"x": np.inf, "y": 0}], r"motion.poses\[1\].x is inf; .*"),
     (
         [{"angle": 3}, {"angle": 4}],
-        "motion.poses has no position; allowed are poses of which one has x and y",
+        "motion.poses has no position; one pose or more must have x and y",
     ),
 ]  # fmt: skip
 
@@ -127,12 +127,12 @@ def test_bad_tables(poses: Any, message: str) -> None:
 
 
 BAD_ARRAYS: list[tuple[Any, Any, str]] = [
-    ([1, 2], [0, 1], r"motion.poses has positions of shape \(2,\); allowed is \(N, 2\)"),
-    ([[1, 2, 3]] * 2, [0, 1], r"motion.poses has positions of shape \(2, 3\); allowed is \(N, 2\)"),
-    ([[1, 2], [1]], [0, 1], r"motion.poses has positions .*; allowed are numbers"),
+    ([1, 2], [0, 1], r"motion.poses has positions of shape \(2,\); it must be \(N, 2\)"),
+    ([[1, 2, 3]] * 2, [0, 1], r"motion.poses has positions of shape \(2, 3\); it must be \(N, 2\)"),
+    ([[1, 2], [1]], [0, 1], r"motion.poses has positions .*; they must be numbers"),
     ([[1, 2], [1, np.inf]], [0, 1], r"motion.poses has positions that are infinite; .*"),
     ([[1, 2], [3, 4]], [[0], [1]], r"motion.poses has 2 positions and angles of shape \(2, 1\)"),
-    ([[1, 2], [3, np.nan]], [0, 1], r"motion.poses\[1\] has one of x and y; allowed are both or neither"),
+    ([[1, 2], [3, np.nan]], [0, 1], r"motion.poses\[1\] has one of x and y; it must have both or neither"),
 ]
 
 
@@ -144,14 +144,14 @@ def test_bad_arrays(positions: Any, angles: Any, message: str) -> None:
 
 BAD_WEIGHTS: list[tuple[Any, str]] = [
     ([1, 2, 3], "motion.weights has 3 numbers for 4 poses"),
-    ([1, 1, 0, 1], r"motion.weights\[2\] is 0; allowed is a number from 1e-09 to 1e\+09"),
-    ([1, -1, 1, 1], r"motion.weights\[1\] is -1; allowed is a number from 1e-09 to 1e\+09"),
-    ([1, 1, 1, np.nan], r"motion.weights\[3\] is nan; allowed is a number from 1e-09 to 1e\+09"),
-    ([np.inf, 1, 1, 1], r"motion.weights\[0\] is inf; allowed is a number from 1e-09 to 1e\+09"),
-    ("1111", r"motion.weights is '1111'; allowed is a list of numbers"),
-    ([[1], [1, 2]], r"motion.weights is .*; allowed is a list of numbers"),
-    ([[1, 1, 1, 1]], r"motion.weights is .*; allowed is a list of numbers"),
-    ([True, True, True, True], r"motion.weights is .*; allowed is a list of numbers"),
+    ([1, 1, 0, 1], r"motion.weights\[2\] is 0; it must be a number from 1e-09 to 1e\+09"),
+    ([1, -1, 1, 1], r"motion.weights\[1\] is -1; it must be a number from 1e-09 to 1e\+09"),
+    ([1, 1, 1, np.nan], r"motion.weights\[3\] is nan; it must be a number from 1e-09 to 1e\+09"),
+    ([np.inf, 1, 1, 1], r"motion.weights\[0\] is inf; it must be a number from 1e-09 to 1e\+09"),
+    ("1111", r"motion.weights is '1111'; it must be a list of numbers"),
+    ([[1], [1, 2]], r"motion.weights is .*; it must be a list of numbers"),
+    ([[1, 1, 1, 1]], r"motion.weights is .*; it must be a list of numbers"),
+    ([True, True, True, True], r"motion.weights is .*; it must be a list of numbers"),
 ]
 
 
@@ -200,10 +200,10 @@ def test_a_file_states_free_parts_and_weights(tmp_path: Path) -> None:
     [
         (("{ angle = -5 }", "{ angel = -5 }"), "motion.poses[2].angel is unknown; did you mean angle?"),
         (("{ angle = -5 }", "{}"), "motion.poses[2] has neither position nor angle"),
-        (("{ angle = -5 }", "{ x = 5 }"), "motion.poses[2] has one of x and y; allowed are both or neither"),
+        (("{ angle = -5 }", "{ x = 5 }"), "motion.poses[2] has one of x and y; it must have both or neither"),
         (("[1, 2, 0.5, 4]", "[1, 2]"), "motion.weights has 2 numbers for 4 poses"),
-        (("0.5", "0"), "motion.weights[2] is 0.0; allowed is a number from 1e-09 to 1e+09"),
-        (("0.5", '"heavy"'), "motion.weights[2] is 'heavy'; allowed is a number"),
+        (("0.5", "0"), "motion.weights[2] is 0.0; it must be a number from 1e-09 to 1e+09"),
+        (("0.5", '"heavy"'), "motion.weights[2] is 'heavy'; it must be a number"),
     ],
 )  # fmt: skip
 def test_a_wrong_file_is_told_by_its_key(tmp_path: Path, wrong: tuple[str, str], message: str) -> None:

@@ -64,25 +64,25 @@ def test_motion_is_exact_by_default_up_to_five_poses(count: int, exact: bool) ->
 
 
 def test_exact_is_checked() -> None:
-    with pytest.raises(ProblemError, match=r"^requirements.exact is 1; allowed is true or false$"):
+    with pytest.raises(ProblemError, match=r"^requirements.exact is 1; it must be true or false$"):
         Requirements(exact=1)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
     ("points", "message"),
     [
-        ([], "path.points has 0 points; allowed are three or more"),
-        ([[1, 2], [3, 4]], "path.points has 2 points; allowed are three or more"),
-        ([[1, 2], [3], [5, 6]], r"path.points\[1\] is \[3\], 1 number; allowed is a point \[x, y\]"),
+        ([], "path.points has 0 points; it must have three or more"),
+        ([[1, 2], [3, 4]], "path.points has 2 points; it must have three or more"),
+        ([[1, 2], [3], [5, 6]], r"path.points\[1\] is \[3\], 1 number; it must be a point \[x, y\]"),
         ([[1, 2], [3, np.nan], [5, 6]], r"path.points\[1\] is \[3, nan\]; all numbers must be finite"),
         (
             [[1e100, 0], [-1e100, 0], [0, 1]],
-            r"path.points\[0\] is \[1e\+100, 0\]; allowed are numbers up to 1e\+20\n"
-            r"path.points\[1\] is \[-1e\+100, 0\]; allowed are numbers up to 1e\+20",
+            r"path.points\[0\] is \[1e\+100, 0\]; its numbers must be at most 1e\+20\n"
+            r"path.points\[1\] is \[-1e\+100, 0\]; its numbers must be at most 1e\+20",
         ),
         (
             [[0, 0], [1e-150, 0], [0, 1e-150]],
-            r"path.points are at most 1.41421e-150 apart; allowed is a size from 1e-20",
+            r"path.points are at most 1.41421e-150 apart; two must be at least 1e-20 apart",
         ),
         (
             [[1, 2], [1, 2], [5, 6]],
@@ -103,20 +103,20 @@ def test_the_last_point_may_repeat_the_first() -> None:
     ("timing", "message"),
     [
         ([0, 1, 2], "path.timing_deg has 3 angles for 4 points"),
-        ([1, 2, 3, 4], r"path.timing_deg\[0\] is 1; allowed is 0, at the first point"),
-        ([0, 0, 3, 4], r"path.timing_deg\[1\] is 0 after 0; allowed are angles that only grow, or only fall"),
+        ([1, 2, 3, 4], r"path.timing_deg\[0\] is 1; it must be 0, at the first point"),
+        ([0, 0, 3, 4], r"path.timing_deg\[1\] is 0 after 0; the angles must only grow, or only fall"),
         (
             [0, 1, -3, 4],
-            r"path.timing_deg\[2\] is -3 after 1; allowed are angles that only grow, or only fall",
+            r"path.timing_deg\[2\] is -3 after 1; the angles must only grow, or only fall",
         ),
-        ([0, -1, -3, -2], r"path.timing_deg\[3\] is -2 after -3; allowed are .*"),
-        ([0, 1, 3, 360.1], r"path.timing_deg\[3\] is 360.1; allowed is up to one turn, 360"),
-        ([0, -1, -3, -361], r"path.timing_deg\[3\] is -361; allowed is up to one turn, 360"),
+        ([0, -1, -3, -2], r"path.timing_deg\[3\] is -2 after -3; the angles must .*"),
+        ([0, 1, 3, 360.1], r"path.timing_deg\[3\] is 360.1; it must be at most one turn, 360"),
+        ([0, -1, -3, -361], r"path.timing_deg\[3\] is -361; it must be at most one turn, 360"),
         ([0, 1, np.inf, 4], r"path.timing_deg\[2\] is inf; all numbers must be finite"),
-        ([0, "a", 2, 3], "path.timing_deg is .*; allowed is a list of angles"),
-        ([0, [1], 2, 3], "path.timing_deg is .*; allowed is a list of angles"),
-        (7, "path.timing_deg is 7; allowed is a list of angles"),
-        (True, "path.timing_deg is True; allowed is a list of angles"),
+        ([0, "a", 2, 3], "path.timing_deg is .*; it must be a list of angles"),
+        ([0, [1], 2, 3], "path.timing_deg is .*; it must be a list of angles"),
+        (7, "path.timing_deg is 7; it must be a list of angles"),
+        (True, "path.timing_deg is True; it must be a list of angles"),
     ],
 )
 def test_bad_timing(timing: list[float], message: str) -> None:
@@ -125,7 +125,7 @@ def test_bad_timing(timing: list[float], message: str) -> None:
 
 
 def test_closed_is_checked() -> None:
-    with pytest.raises(ProblemError, match=r"^path.closed is 'yes'; allowed is true or false$"):
+    with pytest.raises(ProblemError, match=r"^path.closed is 'yes'; it must be true or false$"):
         PathTask(LINE, closed="yes")  # type: ignore[arg-type]
 
 

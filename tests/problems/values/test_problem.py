@@ -41,10 +41,10 @@ def test_outlines_become_read_only_arrays_of_their_own_length() -> None:
     [
         (
             [[[0, 0], [1, 0]], [[0, 0], [1, 0, 0]]],
-            r"scene.outlines\[1\]\[1\] is \[1, 0, 0\], 3 numbers; allowed is a corner",
+            r"scene.outlines\[1\]\[1\] is \[1, 0, 0\], 3 numbers; it must be a corner",
         ),
         ([[[0, 0], [math.inf, 0]]], r"scene.outlines\[0\]\[1\] is \[inf, 0\]; all numbers must be finite"),
-        ([[[0, 0]]], r"scene.outlines\[0\] has 1 corner; allowed are two or more"),
+        ([[[0, 0]]], r"scene.outlines\[0\] has 1 corner; it must have two or more"),
     ],
 )
 def test_bad_outlines(outlines: list[list[list[float]]], message: str) -> None:
@@ -55,11 +55,11 @@ def test_bad_outlines(outlines: list[list[list[float]]], message: str) -> None:
 @pytest.mark.parametrize(
     ("weights", "message"),
     [
-        ((-1, 2), r"objective.maximise.transmission is -1; allowed is 0 to 1e\+09"),
-        ((1, 1e300), r"objective.maximise.compactness is 1e\+300; allowed is 0 to 1e\+09"),
-        ((1, -0.5), r"objective.maximise.compactness is -0.5; allowed is 0 to 1e\+09"),
-        ((1, math.nan), "objective.maximise.compactness is nan; allowed is a finite number"),
-        ((1, 0, -1), r"objective.maximise.torque is -1; allowed is 0 to 1e\+09"),
+        ((-1, 2), r"objective.maximise.transmission is -1; it must be from 0 to 1e\+09"),
+        ((1, 1e300), r"objective.maximise.compactness is 1e\+300; it must be from 0 to 1e\+09"),
+        ((1, -0.5), r"objective.maximise.compactness is -0.5; it must be from 0 to 1e\+09"),
+        ((1, math.nan), "objective.maximise.compactness is nan; it must be a finite number"),
+        ((1, 0, -1), r"objective.maximise.torque is -1; it must be from 0 to 1e\+09"),
         ((0, 0), "objective.maximise has no weight greater than zero; one at least is needed"),
     ],
 )
@@ -71,9 +71,9 @@ def test_bad_weights(weights: tuple[float, ...], message: str) -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"starts": 0}, "search.starts is 0; allowed is a whole number from 1"),
-        ({"enough": 2.5}, "search.enough is 2.5; allowed is a whole number from 1"),
-        ({"seed": -1}, "search.seed is -1; allowed is a whole number from 0"),
+        ({"starts": 0}, "search.starts is 0; it must be a whole number from 1"),
+        ({"enough": 2.5}, "search.enough is 2.5; it must be a whole number from 1"),
+        ({"seed": -1}, "search.seed is -1; it must be a whole number from 0"),
     ],
 )
 def test_bad_search(change: dict[str, int], message: str) -> None:
@@ -93,11 +93,11 @@ def test_a_problem_pickles() -> None:
 @pytest.mark.parametrize(
     ("parts", "message"),
     [
-        ({"task": 5}, r"problem.task is 5; allowed is MotionTask or PathTask"),
-        ({"requirements": None}, r"problem.requirements is None; allowed is Requirements"),
-        ({"manufacturing": 0.1}, r"problem.manufacturing is 0.1; allowed is Manufacturing or None"),
-        ({"name": 3}, r"problem.name is 3; allowed is str"),
-        ({"outlines": None}, r"scene.outlines is None; allowed is a list of outlines"),
+        ({"task": 5}, r"problem.task is 5; it must be MotionTask or PathTask"),
+        ({"requirements": None}, r"problem.requirements is None; it must be Requirements"),
+        ({"manufacturing": 0.1}, r"problem.manufacturing is 0.1; it must be Manufacturing or None"),
+        ({"name": 3}, r"problem.name is 3; it must be str"),
+        ({"outlines": None}, r"scene.outlines is None; it must be a list of outlines"),
     ],
 )
 def test_parts_of_another_kind_are_refused(parts: dict[str, Any], message: str) -> None:
@@ -107,7 +107,7 @@ def test_parts_of_another_kind_are_refused(parts: dict[str, Any], message: str) 
 
 @pytest.mark.parametrize("key", ["order", "same_branch", "exact"])
 def test_words_are_no_truths(key: str) -> None:
-    with pytest.raises(ProblemError, match=f"^requirements.{key} is 'no'; allowed is true or false$"):
+    with pytest.raises(ProblemError, match=f"^requirements.{key} is 'no'; it must be true or false$"):
         Requirements(**{key: "no"})  # type: ignore[arg-type]
 
 
@@ -119,6 +119,6 @@ def test_words_are_plain_text(name: str) -> None:
     ):
         given: dict[str, Any] = {"name": "n", **rest, name: "bell \a"}
         with pytest.raises(
-            ProblemError, match=rf"^{name} has control character U\+0007; allowed is plain text$"
+            ProblemError, match=rf"^{name} has control character U\+0007; it must be plain text$"
         ):
             kind(**given)

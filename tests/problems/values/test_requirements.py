@@ -57,23 +57,23 @@ def test_words_and_members_are_the_same() -> None:
     [
         (
             {"rotatability": "full"},
-            "rotatability is 'full'; allowed is one of full-crank, crank-rocker, double-crank, any",
+            "rotatability is 'full'; it must be one of full-crank, crank-rocker, double-crank, any",
         ),
-        ({"transmission_over": "turn"}, "transmission_over is 'turn'; allowed is one of task, cycle"),
-        ({"tolerance": 0}, "tolerance is 0; allowed is 1e-12 to 1"),
-        ({"rotatability_margin": 0.3}, "rotatability_margin is 0.3; allowed is 0 to 0.25"),
-        ({"transmission_min_deg": 91}, "transmission_min_deg is 91; allowed is 0 to 90"),
-        ({"transmission_min_deg": math.nan}, "transmission_min_deg is nan; allowed is a finite number"),
-        ({"link_ratio_max": 0.5}, r"link_ratio_max is 0.5; allowed is 1 to 1e\+06"),
+        ({"transmission_over": "turn"}, "transmission_over is 'turn'; it must be one of task, cycle"),
+        ({"tolerance": 0}, "tolerance is 0; it must be from 1e-12 to 1"),
+        ({"rotatability_margin": 0.3}, "rotatability_margin is 0.3; it must be from 0 to 0.25"),
+        ({"transmission_min_deg": 91}, "transmission_min_deg is 91; it must be from 0 to 90"),
+        ({"transmission_min_deg": math.nan}, "transmission_min_deg is nan; it must be a finite number"),
+        ({"link_ratio_max": 0.5}, r"link_ratio_max is 0.5; it must be from 1 to 1e\+06"),
         (
             {"link_length": (8, 0.3)},
-            r"link_length is \[8, 0.3\]: lo exceeds hi; allowed is \[lo, hi\] with lo <= hi",
+            r"link_length is \[8, 0.3\]: lo exceeds hi; it must be \[lo, hi\] with lo <= hi",
         ),
-        ({"r3": (-1, 2)}, r"r3 is \[-1, 2\]; allowed is lo from 0"),
-        ({"coupler_arms": (0, math.inf)}, r"coupler_arms\[1\] is inf; allowed is a finite number"),
-        ({"ground_angle_deg": math.inf}, "ground_angle_deg is inf; allowed is a finite number"),
-        ({"theta2_start_deg": "30"}, "theta2_start_deg is '30'; allowed is a finite number"),
-        ({"o4": (0, 0)}, r"o4 is \(0, 0\); allowed is a Box"),
+        ({"r3": (-1, 2)}, r"r3 is \[-1, 2\]; lo must be at least 0"),
+        ({"coupler_arms": (0, math.inf)}, r"coupler_arms\[1\] is inf; it must be a finite number"),
+        ({"ground_angle_deg": math.inf}, "ground_angle_deg is inf; it must be a finite number"),
+        ({"theta2_start_deg": "30"}, "theta2_start_deg is '30'; it must be a finite number"),
+        ({"o4": (0, 0)}, r"o4 is \(0, 0\); it must be a Box"),
     ],
 )
 def test_bad_values_are_named(change: dict[str, object], message: str) -> None:
@@ -108,10 +108,10 @@ def test_a_box_is_open_where_nothing_is_said() -> None:
     ],
 )
 def test_a_bad_side_is_named(side: tuple[float, float], found: str) -> None:
-    allowed = r"allowed is \[lo, hi\] with lo <= hi"
-    with pytest.raises(ProblemError, match=rf"^x is {found}; {allowed}$"):
+    wanted = r"it must be \[lo, hi\] with lo <= hi"
+    with pytest.raises(ProblemError, match=rf"^x is {found}; {wanted}$"):
         Box(x=side)
-    with pytest.raises(ProblemError, match=rf"^y is {found}; {allowed}$"):
+    with pytest.raises(ProblemError, match=rf"^y is {found}; {wanted}$"):
         Box(y=side)
 
 

@@ -74,11 +74,11 @@ def test_a_task_may_return_to_its_first_target() -> None:
     ("timing", "message"),
     [
         ([0, 20, 40], r"motion.timing_deg has 3 angles for 4 poses"),
-        ([5, 20, 40, 60], r"motion.timing_deg\[0\] is 5; allowed is 0, at the first pose"),
-        ([0, 20, 10, 60], r"motion.timing_deg\[2\] is 10 after 20; allowed are angles that only grow, .*"),
-        ([0, 20, 40, 361], r"motion.timing_deg\[3\] is 361; allowed is up to one turn, 360"),
+        ([5, 20, 40, 60], r"motion.timing_deg\[0\] is 5; it must be 0, at the first pose"),
+        ([0, 20, 10, 60], r"motion.timing_deg\[2\] is 10 after 20; the angles must only grow, .*"),
+        ([0, 20, 40, 361], r"motion.timing_deg\[3\] is 361; it must be at most one turn, 360"),
         ([0, np.nan, 40, 60], r"motion.timing_deg\[1\] is nan; all numbers must be finite"),
-        ("soon", r"motion.timing_deg is 'soon'; allowed is a list of angles"),
+        ("soon", r"motion.timing_deg is 'soon'; it must be a list of angles"),
     ],
 )
 def test_a_bad_timing_of_poses(timing: Any, message: str) -> None:
@@ -87,5 +87,5 @@ def test_a_bad_timing_of_poses(timing: Any, message: str) -> None:
 
 
 def test_closed_is_true_or_false() -> None:
-    with pytest.raises(ProblemError, match=r"^motion.closed is 1; allowed is true or false$"):
+    with pytest.raises(ProblemError, match=r"^motion.closed is 1; it must be true or false$"):
         MotionTask.from_degrees(POSES, closed=1)  # type: ignore[arg-type]

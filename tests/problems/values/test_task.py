@@ -59,16 +59,19 @@ def test_a_task_pickles() -> None:
 @pytest.mark.parametrize(
     ("poses", "message"),
     [
-        ([], "motion.poses has 0 poses; allowed are two or more"),
-        ([[1, 2, 3]], "motion.poses has 1 pose; allowed are two or more"),
+        ([], "motion.poses has 0 poses; it must have two or more"),
+        ([[1, 2, 3]], "motion.poses has 1 pose; it must have two or more"),
         (
             [[1, 2, 3], [1, 2]],
-            r"motion.poses\[1\] is \[1, 2\], 2 numbers; allowed is a pose \[x, y, angle in degrees\]",
+            r"motion.poses\[1\] is \[1, 2\], 2 numbers; it must be a pose \[x, y, angle in degrees\]",
         ),
         ([[1, 2, 3], [np.nan, 2, 3]], r"motion.poses\[1\] is \[nan, 2, 3\]; all numbers must be finite"),
         ([[1, 2, 3], [1, 2, np.inf]], r"motion.poses\[1\] is \[1, 2, inf\]; all numbers must be finite"),
-        ([[0, 0, 0], [0, -1e150, 9]], r"motion.poses\[1\] is at 0, -1e\+150; allowed is up to 1e\+20"),
-        ([[0, 0, 0], [0, 1e-30, 9]], "motion.poses are at most 1e-30 apart; allowed is a size from 1e-20"),
+        ([[0, 0, 0], [0, -1e150, 9]], r"motion.poses\[1\] is at 0, -1e\+150; x and y must be at most 1e\+20"),
+        (
+            [[0, 0, 0], [0, 1e-30, 9]],
+            "motion.poses are at most 1e-30 apart; two must be at least 1e-20 apart",
+        ),
     ],
 )
 def test_bad_poses(poses: list[list[float]], message: str) -> None:
@@ -80,8 +83,8 @@ def test_bad_poses(poses: list[list[float]], message: str) -> None:
     ("angles", "message"),
     [
         ([0], r"motion.poses has 2 positions and angles of shape \(1,\)"),
-        ([0, np.inf], "motion.poses has angles that are infinite; allowed are numbers, NaN for free ones"),
-        ([0, "right"], "motion.poses has angles .*; allowed are numbers"),
+        ([0, np.inf], "motion.poses has angles that are infinite; they must be finite, or NaN where free"),
+        ([0, "right"], "motion.poses has angles .*; they must be numbers"),
     ],
 )
 def test_bad_angles(angles: list[float], message: str) -> None:
@@ -91,16 +94,16 @@ def test_bad_angles(angles: list[float], message: str) -> None:
 
 @pytest.mark.parametrize("angle_length", [0, -1, np.nan, np.inf, "1", True])
 def test_bad_angle_length(angle_length: float) -> None:
-    with pytest.raises(ProblemError, match=r"^motion.angle_length is .*; allowed is a"):
+    with pytest.raises(ProblemError, match=r"^motion.angle_length is .*; it must be "):
         MotionTask.from_degrees(LUGGAGE, angle_length=angle_length)
 
 
 def test_bad_body() -> None:
     with pytest.raises(
-        ProblemError, match=r"^motion.body\[1\] is \[1\], 1 number; allowed is a corner \[x, y\]$"
+        ProblemError, match=r"^motion.body\[1\] is \[1\], 1 number; it must be a corner \[x, y\]$"
     ):
         MotionTask.from_degrees(LUGGAGE, body=[[0, 0], [1]])
-    with pytest.raises(ProblemError, match=r"^motion.body has 0 corners; allowed are two or more$"):
+    with pytest.raises(ProblemError, match=r"^motion.body has 0 corners; it must have two or more$"):
         MotionTask.from_degrees(LUGGAGE, body=[])
 
 

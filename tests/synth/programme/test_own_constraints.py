@@ -18,9 +18,9 @@ THREE = Problem(task=MotionTask.from_degrees([[0, 0, 0], [2, 1, 20], [3, 3, 50]]
         (lambda design: [design.r3 - 2, design.r2 == 1], "gives a truth value"),
         (lambda _: True, "gives a truth value"),
         (lambda _: np.bool_(False), "gives a truth value"),
-        (lambda _: None, "gives None; allowed is a scalar"),
-        (lambda _: "r2", "gives 'r2'; allowed is a scalar"),
-        (lambda _: [], "gives nothing; allowed is a scalar"),
+        (lambda _: None, "gives None; it must give a scalar"),
+        (lambda _: "r2", "gives 'r2'; it must give a scalar"),
+        (lambda _: [], "gives nothing; it must give a scalar"),
         (lambda design: np.max([design.r2, design.r3]), "fails on symbols: .*CasADi"),
         (
             lambda design: max(design.r2, design.r3),
@@ -39,15 +39,15 @@ def test_what_is_no_amount_is_refused_in_one_line(constraint: Any, said: str) ->
 
 @pytest.mark.parametrize("constraints", [lambda design: design.r2 - 1, None, 5, "r2"])
 def test_constraints_are_a_list(constraints: Any) -> None:
-    with pytest.raises(ProblemError, match=r"constraints is .*; allowed is a list of functions of a design"):
+    with pytest.raises(ProblemError, match=r"constraints is .*; it must be a list of functions of a design"):
         synthesize(THREE, constraints=constraints)
 
 
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        ({"time_limit": "a"}, "time_limit is 'a'; allowed is a finite number"),
-        ({"time_limit": True}, "time_limit is True; allowed is a finite number"),
+        ({"time_limit": "a"}, "time_limit is 'a'; it must be a finite number"),
+        ({"time_limit": True}, "time_limit is True; it must be a finite number"),
     ],
 )
 def test_no_time(options: dict[str, Any], said: str) -> None:
@@ -56,5 +56,5 @@ def test_no_time(options: dict[str, Any], said: str) -> None:
 
 
 def test_a_name_is_no_problem() -> None:
-    with pytest.raises(ProblemError, match="problem is a str; allowed is a Problem, such as load gives"):
+    with pytest.raises(ProblemError, match="problem is a str; it must be a Problem, such as load gives"):
         synthesize("luggage")  # type: ignore[arg-type]

@@ -43,7 +43,7 @@ function transmissionAt({ r3, r4 }, s) {
   return Math.acos(Math.min(1, Math.abs(cosine)));
 }
 
-// The driver angle, counted by whole turns into the travel or held at its ends.
+// The driver angle, moved by whole turns into the travel or held at its ends.
 function within(design, theta2) {
   if (design.turns) return design.low + ((((theta2 - design.low) % TURN) + TURN) % TURN);
   return Math.min(Math.max(theta2, design.low), design.high);

@@ -74,7 +74,7 @@ class Player {
     this.button.setAttribute("aria-pressed", String(this.playing));
   }
 
-  // Arrows step, Home and End go to the ends; says whether the key was one of them.
+  // Arrows step, Home and End go to the ends; returns whether the key was one of them.
   key(event) {
     if (event.altKey || event.ctrlKey || event.metaKey) return false;
     const steps = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 };

@@ -1,4 +1,4 @@
-// Designs by two figures, a third as the area of the points; a click picks one.
+// Designs by two quantities, a third as the area of the points; a click picks one.
 class Scatter {
   constructor(root, { columns, designs, onPick }) {
     Object.assign(this, {
@@ -119,11 +119,11 @@ class Scatter {
   point(layer, k) {
     const { figures } = this.designs[k];
     const [cx, cy] = this.place(k);
-    const told = ["x", "y", "area"]
+    const values = ["x", "y", "area"]
       .map((axis) => this.column(axis))
       .filter(Boolean)
       .map(({ key, label, unit }) => `${label} ${figure(figures[key])} ${unit}`.trim());
-    const name = `design ${figures.rank}: ${told.join(", ")}${figures.pareto ? ", Pareto-optimal" : ""}`;
+    const name = `design ${figures.rank}: ${values.join(", ")}${figures.pareto ? ", Pareto-optimal" : ""}`;
     const style = `point${figures.pareto ? " pareto" : ""}${this.visible.has(k) ? "" : " filtered"}`;
     const node = add(layer, "circle", {
       cx,

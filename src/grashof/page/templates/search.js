@@ -1,4 +1,4 @@
-// The page of a search: what is chosen is drawn, marked and told everywhere.
+// The page of a search: what is chosen is drawn, marked and described everywhere.
 class SearchPage {
   constructor({ found, scene, columns, axes, units, designs, torqueUnit }) {
     Object.assign(this, { found, scene, units, designs, torqueUnit, chosen: 0 });
@@ -46,7 +46,7 @@ class SearchPage {
     this.player.set(this.design.theta2[0]);
     this.table.mark(index);
     if (this.scatter) this.scatter.mark(index);
-    this.tell(this.design);
+    this.describe(this.design);
     this.tellCompared();
   }
 
@@ -88,8 +88,8 @@ class SearchPage {
     tellPosition(this.stage, state);
   }
 
-  // Name and figures of the design that is shown.
-  tell({ id, figures }) {
+  // Name and values of the design that is shown.
+  describe({ id, figures }) {
     const { found } = this;
     $("#chosen").textContent = `${found ? "Design" : "Closest miss"} ${figures.rank}`;
     const pareto = figures.pareto && found ? ", Pareto-optimal" : "";
