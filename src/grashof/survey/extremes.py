@@ -61,7 +61,7 @@ def _extreme(sweep: Sweep, quantity: Quantity, low: float, high: float) -> dict[
     if quantity.never_negative:
         usual = np.median(curve(np.linspace(start, end, 101)))
         least = 0.0 if least < 1e-7 * usual else least  # a size that goes through 0
-    found: dict[str, float] = {}
+    extremes: dict[str, float] = {}
     for name, value, at in (("min", least, found.at_low), ("max", largest, found.at_high)):
         for near, limit, sense, through in ((start, low, 1, passes[0]), (end, high, -1, passes[1])):
             if not still and abs(at - near) < 1e-9:
@@ -71,10 +71,10 @@ def _extreme(sweep: Sweep, quantity: Quantity, low: float, high: float) -> dict[
                     value = np.copysign(np.inf, value)
         if sweep.turns:
             at = at % TURN if TURN - at % TURN > 1e-9 else 0.0
-        found |= {name: float(value), f"theta2_{name}_deg": float(np.round(np.degrees(at), 9) + 0.0)}
+        extremes |= {name: float(value), f"theta2_{name}_deg": float(np.round(np.degrees(at), 9) + 0.0)}
     if np.isclose(least, largest, rtol=_CONSTANT, atol=0.0):  # rounding alone would choose the angles
-        found |= dict.fromkeys(("theta2_min_deg", "theta2_max_deg"), np.nan)
-    return found
+        extremes |= dict.fromkeys(("theta2_min_deg", "theta2_max_deg"), np.nan)
+    return extremes
 
 
 def _passes(linkage: FourBar, limit: float, sense: int) -> bool:

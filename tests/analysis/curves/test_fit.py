@@ -78,7 +78,7 @@ def test_equal_values_have_no_r2() -> None:
     "x", [[0, 1, 2, 1.5, 3], [0, 1, 1, 2, 3], [3, 2, 2.5, 1, 0]], ids=["turns back", "stands", "falling"]
 )
 def test_a_warning_tells_that_y_is_no_function_of_x(x: list[float]) -> None:
-    with pytest.warns(NotAFunctionWarning, match="no function of x") as caught:
+    with pytest.warns(NotAFunctionWarning, match="not a function of x") as caught:
         regression(np.column_stack([x, np.arange(5.0)]), 1)
     assert caught[0].filename == __file__
 

@@ -111,7 +111,7 @@ def test_bad_input_is_said() -> None:
     theta4 = QUANTITIES["theta4"]
     with pytest.raises(ProblemError, match="give both or neither"):
         extremes(CRANK_ROCKER, theta4, start=1.0)
-    with pytest.raises(ProblemError, match="start < end"):
+    with pytest.raises(ProblemError, match="start must be less than end"):
         extremes(CRANK_ROCKER, theta4, start=1.0, end=0.5)
     with pytest.raises(ProblemError, match="one value for each angle"):
         extremes(CRANK_ROCKER, lambda state: state.b.position)
