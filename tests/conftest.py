@@ -27,6 +27,17 @@ SMALL: dict[str, dict[str, Any]] = {
 }  # fmt: skip
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Of a test marked `quick` all cases but those named are slow."""
+    for item in items:
+        for mark in item.iter_markers("quick"):
+            cases = set(mark.args)
+            known = {case.removesuffix("]") for case in item.name.split("[", 1)[1:]}
+            if not known <= cases:
+                item.add_marker(pytest.mark.slow)
+
+
 @pytest.fixture
 def small_search(monkeypatch: pytest.MonkeyPatch) -> None:
     """Searches and explanations several times as fast."""

@@ -103,7 +103,7 @@ def linkages_through(points: ComplexArray, rng: np.random.Generator) -> ComplexA
     >>> from grashof import load
     >>> points = load("nine-points").task.points @ [1, 1j]  # near a circle
     >>> found = linkages_through(points, np.random.default_rng(0))
-    >>> len(found), bool(np.abs(np.abs(coupler_turns(found, points)) - 1).max() < 1e-8)
+    >>> len(found), bool(np.abs(np.abs(coupler_turns(found, points)) - 1).max() < 1e-6)
     (21, True)
     """
     size = np.abs(points[:, None] - points).max() / 2

@@ -62,6 +62,7 @@ def test_a_drawing_that_fails_does_not_cost_the_lists(
     assert set(json.loads((folder / "run.json").read_text())["files"]) == names
 
 
+@pytest.mark.quick("True")
 @pytest.mark.skipif(sys.platform == "win32", reason="pipes of another kind")
 @pytest.mark.parametrize("merged", [True, False])
 def test_a_reader_that_leaves_ends_nothing(tmp_path: Path, merged: bool) -> None:

@@ -53,6 +53,7 @@ def test_luggage_states_the_shipped_problem(
     assert (tmp_path / "results" / "luggage-3.svg").exists()
 
 
+@pytest.mark.slow
 def test_benchmark_measures(
     script: Script, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -109,6 +110,7 @@ def test_benchmark_of_the_analysis_agrees_with_the_plain_form(
     assert "50 linkages at 64 angles" in said
 
 
+@pytest.mark.slow
 def test_pictures_of_the_readme_are_made(
     script: Script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -130,6 +132,7 @@ def test_benchmark_of_the_page_measures(script: Script, capsys: pytest.CaptureFi
     assert float(said.split()[-2]) < 1  # MB
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(
     not any(map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))),
     reason="no Chromium on this machine: the picture of the page is not made",

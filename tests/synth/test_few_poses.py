@@ -33,6 +33,7 @@ def test_a_single_place_needs_a_single_pivot(poses: Any, exact: bool) -> None:
     assert result.note == "no design: all positions are at (1, 2): a single pivot there does the job"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("part", ["p", "links"])
 def test_p_keeps_out_where_squares_are_made_least(part: str) -> None:
     task = MotionTask.from_degrees(

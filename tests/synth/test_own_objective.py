@@ -23,6 +23,7 @@ def ground(design: Any) -> Any:
     return np.hypot(design.o4[0] - design.o2[0], design.o4[1] - design.o2[1])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("objective", [ground, lambda design: design.r1 + design.r2 + design.r3 + design.r4])
 def test_nothing_better_is_found_by_screening_alone(objective: Callable[[Any], Any]) -> None:
     """Every verified design of searches for other things is a rival."""
@@ -60,6 +61,7 @@ def of_path(**wanted: Any) -> Result:
     )
 
 
+@pytest.mark.slow
 def test_it_decides_within_an_allowed_error() -> None:
     least, within = of_path(), of_path(error_factor=1.5)
     error: FloatArray = np.array([one.verdict.error_rms for one in (least.best, within.best)])

@@ -34,6 +34,7 @@ def conveyor() -> Problem:
     return Problem(task=MotionTask.from_degrees(poses), requirements=wanted, length_unit="mm")
 
 
+@cache
 def planted(seed: int) -> tuple[MotionTask, FourBar, Verdict]:
     """A linkage that meets five poses with its driver turning fully."""
     task, linkage = planted_motion(np.random.default_rng([12, seed]), poses=5)
@@ -85,18 +86,21 @@ def limited(problem: Problem, **wanted: Any) -> Problem:
 
 def values_of(problem: Problem, key: str, **search: Any) -> list[float]:
     """A quantity of every design of a list, as the judge has it of the linkage alone."""
-    return [each[key] for each in solved(problem, tuple(search.items()))]
-
-
-@cache
-def solved(problem: Problem, search: tuple[tuple[str, Any], ...]) -> list[Values]:
-    found = synthesize(problem, **dict(search)).candidates
+    found = solved(problem, tuple(search.items()))
     wanted = problem.requirements
     verdicts = [verify(each.linkage, problem.task, wanted, problem=problem) for each in found]
     assert [verdict.defects for verdict in verdicts if not verdict.ok] == []
-    return [Values(each.linkage, verdict, problem) for each, verdict in zip(found, verdicts, strict=True)]
+    return [
+        Values(each.linkage, verdict, problem)[key] for each, verdict in zip(found, verdicts, strict=True)
+    ]
 
 
+@cache
+def solved(problem: Problem, search: tuple[tuple[str, Any], ...]) -> tuple[Candidate, ...]:
+    return synthesize(problem, **dict(search)).candidates
+
+
+@pytest.mark.quick("poses met")
 @pytest.mark.parametrize("kind", TASKS)
 def test_the_driver_rotation_is_kept_within_limits(kind: str) -> None:
     problem, search = TASKS[kind]
@@ -107,6 +111,7 @@ def test_the_driver_rotation_is_kept_within_limits(kind: str) -> None:
     assert max(kept) <= most + 1e-6
 
 
+@pytest.mark.quick("poses met-ccw", "poses met-cw", "poses fitted-cw")
 @pytest.mark.parametrize("sense", ["ccw", "cw"])
 @pytest.mark.parametrize("kind", TASKS)
 def test_the_driver_turns_in_the_sense_that_is_asked_for(kind: str, sense: str) -> None:
@@ -125,6 +130,7 @@ def test_the_output_swing_is_that_of_the_whole_turn() -> None:
         assert found == pytest.approx(np.ptp(theta4), abs=1e-6)
 
 
+@pytest.mark.quick("poses met")
 @pytest.mark.parametrize("kind", TASKS)
 def test_the_output_swing_is_kept_within_limits(kind: str) -> None:
     problem, search = TASKS[kind]
@@ -156,6 +162,7 @@ def test_the_time_ratio_is_that_of_a_steady_driver() -> None:
             assert np.isnan(found)
 
 
+@pytest.mark.quick("poses met")
 @pytest.mark.parametrize("kind", TASKS)
 def test_the_time_ratio_is_kept_within_limits(kind: str) -> None:
     problem, search = TASKS[kind]
@@ -177,6 +184,7 @@ def test_the_mechanical_advantage_is_omega2_over_omega4() -> None:
         assert values["mechanical_advantage_min"] == pytest.approx(least, rel=1e-5)
 
 
+@pytest.mark.quick("poses met")
 @pytest.mark.parametrize("kind", ["poses met", "points met"])
 def test_the_mechanical_advantage_is_kept_above_its_limit(kind: str) -> None:
     problem, search = TASKS[kind]
@@ -194,6 +202,7 @@ def test_the_mechanical_advantage_as_a_goal() -> None:
     assert best[0] >= max(free) * (1 - 1e-6)
 
 
+@pytest.mark.quick("a-poses met", "b-poses met")
 @pytest.mark.parametrize("kind", ["poses met", "poses fitted"])
 @pytest.mark.parametrize("joint", ["a", "b"])
 def test_a_joint_sits_on_the_body_where_it_may(kind: str, joint: str) -> None:
@@ -202,7 +211,7 @@ def test_a_joint_sits_on_the_body_where_it_may(kind: str, joint: str) -> None:
     def places(asked: Problem) -> FloatArray:
         """From the positions at every target: the joint less P, turned back with the body."""
         found = []
-        for each in synthesize(asked, **search).candidates:
+        for each in solved(asked, tuple(search.items())):
             state = solve_position(each.linkage, each.verdict.theta2, each.verdict.assembly)
             arm = (getattr(state, joint) - state.p) @ np.array([1, 1j])
             place = arm * np.exp(-1j * (state.theta3 + each.linkage.body_angle))
@@ -217,6 +226,7 @@ def test_a_joint_sits_on_the_body_where_it_may(kind: str, joint: str) -> None:
     assert (np.abs(kept - middle) <= half * (1 + 1e-6)).all()
 
 
+@pytest.mark.slow
 def test_the_body_keeps_out_of_areas() -> None:
     """The outline carried through three poses, against a post that it would sweep; by shapely alone."""
     outline = np.array([[-0.3, -0.3], [0.3, -0.3], [0.3, 0.3], [-0.3, 0.3]])

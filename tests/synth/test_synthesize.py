@@ -90,6 +90,7 @@ PUBLISHED: dict[str, tuple[float, dict[str, Any]]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("limit", PUBLISHED)
 def test_best_worst_case_transmission_over_the_turn(limit: str, independent_judge: Any) -> None:
     least, wanted = PUBLISHED[limit]
@@ -126,6 +127,7 @@ def test_an_objective_of_compactness_gives_small_designs(luggage_result: Result)
     assert sizes[0] < min(candidate.verdict.size for candidate in luggage_result.candidates) * (1 + 1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("small_search")
 def test_too_much_transmission_is_named_with_the_nearest_design(independent_judge: Any) -> None:
     wanted: dict[str, Any] = {"link_length": (0.3, 5), "coupler_arms": (0, 5)}
@@ -170,6 +172,7 @@ IMPOSSIBLE: dict[str, tuple[str, str, Problem]] = {
 }
 
 
+@pytest.mark.quick("order", "start angle")
 @pytest.mark.parametrize("kind", IMPOSSIBLE)
 def test_the_requirement_in_the_way_is_named(kind: str, relaxing_only: Callable[..., None]) -> None:
     key, said, problem = IMPOSSIBLE[kind]

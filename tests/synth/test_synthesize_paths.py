@@ -114,6 +114,7 @@ def test_case_3_reaches_the_best_published_error(seed: int, path_judge: Any, lea
     assert (errors**2).sum() <= 0.0090289
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [0])
 def test_case_5_reaches_the_best_published_error(seed: int, path_judge: Any, least_error: LeastError) -> None:
     within = Box((-80, 80), (-80, 80))
@@ -169,6 +170,7 @@ def curve_of(linkage: FourBar, count: int) -> ComplexArray:
     return traced[np.isfinite(traced)]
 
 
+@pytest.mark.slow
 def test_cognates_trace_the_curve_of_the_design_that_they_name() -> None:
     result = synthesize(case1(rotatability="any", link_length=(3, 90), o2=None, o4=None), enough=24)
     named = {candidate.id: candidate for candidate in result.candidates}
@@ -204,6 +206,7 @@ def csv_of(result: Result, folder: Path) -> bytes:
     return (folder / "out.csv").read_bytes()
 
 
+@pytest.mark.slow
 def test_workers_change_no_byte(tmp_path: Path, other_process: Executor) -> None:
     problem = Problem(task=PathTask(LINE), requirements=case1().requirements)
     few: dict[str, Any] = {"starts": 20, "enough": 16, "seed": 3}

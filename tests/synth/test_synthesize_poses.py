@@ -117,6 +117,7 @@ def closest_poses(candidate: Candidate, task: MotionTask) -> tuple[npt.NDArray[n
     return gap, turned
 
 
+@pytest.mark.quick("0-6")
 @pytest.mark.parametrize("poses", [6, 12])
 @pytest.mark.parametrize("seed", range(3))
 def test_noisy_poses_are_met_no_worse_than_by_the_planted_linkage(
@@ -218,6 +219,7 @@ def test_a_constraint_that_the_only_linkage_breaks_is_named() -> None:
     assert "; this alone would do: constraint too_long up to 1010 instead of 0" in result.note
 
 
+@pytest.mark.slow
 def test_workers_change_nothing(tmp_path: Any, other_process: Executor) -> None:
     problem, _ = noisy(1, 6)
     for name, executor in (("here", None), ("there", other_process)):

@@ -82,6 +82,7 @@ def test_closed_poses_are_met_on_a_whole_turn(poses: int, mixed: bool, again: bo
     assert {"hausdorff", "frechet"} <= set(result.to_frame().columns)
 
 
+@pytest.mark.quick("a", "keep_out")
 @pytest.mark.parametrize(
     "limit", ["a", "transmission_min_deg", "o2", "theta2_start_deg", "keep_out", "error_factor"]
 )

@@ -32,6 +32,7 @@ SPRUNG = Loads(
 )
 
 
+@pytest.mark.quick("loads0-2")
 @pytest.mark.parametrize(("loads", "turns"), [(Loads(), 2), (SPRUNG, 10)])
 def test_free_motion_keeps_its_energy(loads: Loads, turns: int) -> None:
     free = free_response(JACK, BARS, np.linspace(0, 0.7 * turns, 100), 0.3, 10.0, loads=loads)

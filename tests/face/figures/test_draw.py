@@ -113,6 +113,7 @@ def test_same_design_same_bytes(few: Result, tmp_path: Path) -> None:
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
 
 
+@pytest.mark.quick("title0")
 @pytest.mark.parametrize("title", ["Luggage over a staircase, carried " * 8, "W" * 500, "title", "階 " * 99])
 def test_no_title_is_cut_at_the_edge_of_the_picture(few: Result, title: str) -> None:
     problem = replace(few.problem, title=title, dynamics=None)

@@ -172,6 +172,7 @@ def test_the_programme_agrees_with_the_judge(driven: Problem) -> None:
         assert made.values["torque_peak"] * (1 - GRID_ERROR) < peak < made.values["torque_peak"] * (1 + 1e-6)
 
 
+@pytest.mark.quick("0.3")
 @pytest.mark.parametrize("weight", [0.3, 3.0])
 def test_a_weight_beside_the_transmission(driven: Problem, lightest: Result, weight: float) -> None:
     both = replace(driven, objective=Objective(transmission=1, torque=weight))
@@ -192,6 +193,7 @@ def test_backwards_the_torque_is_the_same(driven: Problem, lightest: Result) -> 
     assert best.values["torque_peak"] == pytest.approx(lightest.best.values["torque_peak"], rel=GRID_ERROR)
 
 
+@pytest.mark.quick("True")
 @pytest.mark.parametrize("closed", [False, True])
 def test_paths(closed: bool) -> None:
     task, _ = planted_path(np.random.default_rng(4), points=5)
@@ -210,6 +212,7 @@ def test_paths(closed: bool) -> None:
         )
 
 
+@pytest.mark.slow
 def test_the_bound_holds_between_the_angles_of_the_grid() -> None:
     """On quick paths torque peaks hide between them; those that are found are added."""
     task, _ = planted_path(np.random.default_rng([3, 0]), points=6)
@@ -230,6 +233,7 @@ def test_the_bound_holds_between_the_angles_of_the_grid() -> None:
     assert again.max() < 0.005
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("small_search")
 def test_an_objective_of_least_squares_wants_a_bound_of_the_error() -> None:
     task, _ = planted_path(np.random.default_rng(3), points=10)

@@ -79,6 +79,7 @@ def rival_from(begin: Floats, problem: Problem, side: float) -> Verdict | None:
     return verdict if verdict.ok and crank == was_crank else None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("poses", [6, 12])
 def test_no_worse_than_least_squares_by_another_method(poses: int) -> None:
     """From the same start, and there is nothing to gain from where it ends."""

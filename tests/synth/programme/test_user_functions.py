@@ -158,6 +158,7 @@ def test_an_impossible_constraint_is_named(relaxing_only: Callable[..., None]) -
     assert defects[0].found == pytest.approx(float(linkage.r2 + linkage.r4) + 1.0, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_least_squares_keeps_it_at_a_price(least_error: Callable[..., Result]) -> None:
     rng = np.random.default_rng([81, 0])
     task, _ = planted_motion(rng, 7)

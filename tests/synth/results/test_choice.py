@@ -96,6 +96,7 @@ ZONED: dict[str, dict[str, Any]] = {
 }
 
 
+@pytest.mark.quick("a zone each", "timed", "a tolerance")
 @pytest.mark.parametrize("name", ZONED)
 def test_every_design_keeps_its_zones_and_the_objective_uses_them(
     name: str, least_error: Callable[..., Result]
@@ -112,6 +113,7 @@ def test_every_design_keeps_its_zones_and_the_objective_uses_them(
         assert values[0] >= squares.best.objective(problem) - 1e-9
 
 
+@pytest.mark.slow
 def test_the_error_factor_bounds_the_error() -> None:
     task = MotionTask.from_degrees(POSES)
     best = []

@@ -34,6 +34,7 @@ def check_nearest(result: Result, said_unit: str) -> float:
     return float(said[1])
 
 
+@pytest.mark.slow
 def test_eight_closed_points_without_a_linkage_come_with_the_closest() -> None:
     task = PathTask(EIGHT, closed=True)
     result = synthesize(Problem(task=task, length_unit="mm"), starts=16)
@@ -55,6 +56,7 @@ def test_more_poses_than_there_are_exact_ones_for() -> None:
     assert squares == sorted(squares)
 
 
+@pytest.mark.slow
 def test_where_least_squares_finds_nothing_either_it_is_not_promised() -> None:
     """Fixed pivots 60 apart and r1 up to 50: no linkage at all, near or not."""
     task = PathTask([[0, 0], [10, 5], [20, 7]])

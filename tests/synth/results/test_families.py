@@ -120,6 +120,7 @@ def test_designs_without_families_stand_for_themselves(luggage_result: Result) -
     assert len(replace(luggage_result, candidates=plain).families) == len(plain)
 
 
+@pytest.mark.slow
 def test_mirrored_designs_and_cognates_of_a_symmetric_closed_path() -> None:
     """Designs for the ellipse, their cognates and the mirror images of all, each judged anew."""
     loaded = load("path-ellipse")

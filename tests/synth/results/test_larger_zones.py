@@ -25,6 +25,7 @@ def task(**zones: Any) -> MotionTask:
     return MotionTask.from_degrees(POSES, **zones)
 
 
+@pytest.mark.slow
 def test_larger_zones_that_are_named_would_do(least_error: Callable[..., Result]) -> None:
     """Down to the least zone, what is named depends on the poses alone."""
     named = []
@@ -47,6 +48,7 @@ def test_larger_zones_that_are_named_would_do(least_error: Callable[..., Result]
     assert named[0] <= max(squares.error_max, length * squares.angle_error.max())
 
 
+@pytest.mark.slow
 def test_each_zone_is_named_with_its_own_figure() -> None:
     each = task(within=1e-3, angle_within_deg=[1, 1, 1, 1, 1, 2])
     result = synthesize(Problem(task=each, requirements=LOOSE), effort=0.2)
@@ -78,6 +80,7 @@ def test_a_larger_tolerance_is_named(relaxing_only: Callable[..., None]) -> None
     assert len(synthesize(Problem(task=task(), requirements=loose), effort=0.2)) > 0
 
 
+@pytest.mark.slow
 def test_zones_beyond_all_reason_still_leave_the_objective_a_good_design() -> None:
     for zone in (1e3, 1e19):
         for goal, least in ((Objective(), 0.9), (Objective(0, 1), -2.0)):
@@ -85,6 +88,7 @@ def test_zones_beyond_all_reason_still_leave_the_objective_a_good_design() -> No
             assert result.best.objective(result.problem) > least
 
 
+@pytest.mark.slow
 def test_two_poses_may_be_missed_too(relaxing_only: Callable[..., None]) -> None:
     relaxing_only("link_length")
     poses = [[0, 0, 0], [30, 10, 40]]
@@ -99,6 +103,7 @@ def test_two_poses_may_be_missed_too(relaxing_only: Callable[..., None]) -> None
     assert result.note.startswith("no design")
 
 
+@pytest.mark.slow
 def test_exact_poses_that_repeat_are_left_to_least_squares() -> None:
     poses = [[0, 0, 0], [30, 10, 10], [60, 5, 25], [30, 10, 10.0]]
     problem = Problem(task=MotionTask.from_degrees(poses, within=2), requirements=Requirements(exact=False))

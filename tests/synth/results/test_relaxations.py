@@ -139,6 +139,7 @@ LUGGAGE: dict[str, tuple[dict[str, Any], str, float]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", LUGGAGE)
 def test_a_limit_of_the_luggage_problem_is_relaxed_by_what_is_known_to_do(kind: str) -> None:
     """Links and arms up to 5 allow 13.44 deg: so a limit moved past that need be moved back no farther."""
@@ -162,6 +163,7 @@ def test_a_hint_can_be_followed() -> None:
 FAR = {"o2": Box((40, 41), (0, 1)), "o4": Box((0, 1), (0, 1)), "link_length": (1, 20)}
 
 
+@pytest.mark.slow
 def test_either_of_two_contradictory_limits_would_do_for_least_squares(
     relaxing_only: Callable[..., None],
 ) -> None:
@@ -176,6 +178,7 @@ def test_either_of_two_contradictory_limits_would_do_for_least_squares(
     assert found["link_length"].words.startswith("link_length up to 39")
 
 
+@pytest.mark.slow
 def test_neither_workers_nor_repetition_change_an_explanation(
     other_process: Executor, relaxing_only: Callable[..., None]
 ) -> None:
@@ -227,6 +230,7 @@ def notes(result: Result) -> str:
     return result.note
 
 
+@pytest.mark.slow
 def test_where_no_single_requirement_does_it_is_said() -> None:
     far = Box((900, 901), (900, 901))
     result = synthesize(

@@ -90,6 +90,7 @@ def leg(objective: str, least_deg: float) -> Problem:
     return problem_of(text, "here", "leg")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("objective", "least_deg"), [("transmission", 35), ("compactness", 40)])
 def test_zones_of_the_walking_leg(objective: str, least_deg: float) -> None:
     result = synthesize(leg(objective, least_deg), effort=0.2)
@@ -107,6 +108,7 @@ def test_zones_of_the_walking_leg(objective: str, least_deg: float) -> None:
             assert np.hypot(*(track - point).T).min() <= 6.01
 
 
+@pytest.mark.slow
 def test_an_error_factor_bounds_the_error_and_lets_the_objective_decide(dshape: Result) -> None:
     wanted = replace(dshape.problem.requirements, error_factor=1.2)
     result = synthesize(replace(dshape.problem, requirements=wanted), effort=0.2)
@@ -117,6 +119,7 @@ def test_an_error_factor_bounds_the_error_and_lets_the_objective_decide(dshape: 
     assert synthesize(small, effort=0.2).best.verdict.size <= 334.5
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("small_search")
 def test_a_wide_tolerance_works_as_zones(least_error: Search) -> None:
     problem = problem_of(
@@ -154,6 +157,7 @@ def test_least_squares_that_meets_every_target_says_what_would_find_more() -> No
     )
 
 
+@pytest.mark.slow
 def test_workers_change_nothing_of_a_list_to_choose_from(other_process: Executor) -> None:
     problem = problem_of(stated("knee"), "here", "knee")
     one, two = (synthesize(problem, effort=0.2, executor=executor) for executor in (None, other_process))

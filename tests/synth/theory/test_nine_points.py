@@ -120,6 +120,7 @@ def computed_once():
         yield linkages
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("computed_once")
 def test_points_near_a_circle_have_the_published_21_triplets_and_none_without_defect():
     problem = load("nine-points")
@@ -132,6 +133,7 @@ def test_points_near_a_circle_have_the_published_21_triplets_and_none_without_de
     assert not any(verify(c.linkage, problem.task, strict).ok for c in result.candidates)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("computed_once", "small_search")
 def test_where_every_linkage_has_a_defect_the_note_says_so_and_the_closest_comes_as_near_as_it_says():
     problem = replace(load("nine-points"), requirements=Requirements(same_branch=True, order=True))
@@ -144,6 +146,7 @@ def test_where_every_linkage_has_a_defect_the_note_says_so_and_the_closest_comes
     assert loose.error_max <= float(said[1]) <= loose.error_max * 1.02
 
 
+@pytest.mark.slow
 def test_the_examples_are_right(computed_once):
     failed, tried = doctest.testmod(nine_points, extraglobs={"np": np, "linkages_through": computed_once})
     assert (failed, tried) == (0, 4)
