@@ -7,6 +7,7 @@ from grashof.problems.files.linkage_file import (
     load_linkage_spec,
 )
 from grashof.problems.files.problem_file import catalogue, load, load_with_text, problem_text
+from grashof.problems.values.box import Box
 from grashof.problems.values.dynamics_spec import DynamicsSpec
 from grashof.problems.values.errors import (
     AssemblyError,
@@ -24,7 +25,7 @@ from grashof.problems.values.motion_task import MotionTask
 from grashof.problems.values.objective import Objective
 from grashof.problems.values.path_task import PathTask
 from grashof.problems.values.problem import Problem, Search
-from grashof.problems.values.requirements import Box, Requirements, Rotatability, TransmissionOver
+from grashof.problems.values.requirements import Requirements, Rotatability, TransmissionOver
 from grashof.problems.values.task import Task
 
 __all__ = [

@@ -26,6 +26,7 @@ from grashof.problems.files.tables import (
     tag,
 )
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.box import Box
 from grashof.problems.values.checks import near_miss, noted, outline, refuse, refused
 from grashof.problems.values.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.values.errors import ProblemError
@@ -35,7 +36,7 @@ from grashof.problems.values.objective import GOALS, Objective
 from grashof.problems.values.path_task import PathTask
 from grashof.problems.values.problem import NO_OBJECTIVE, Problem, Search
 from grashof.problems.values.quantities import Kind
-from grashof.problems.values.requirements import LIMITS, MAY_KEEP_OUT, Box, Requirements
+from grashof.problems.values.requirements import LIMITS, MAY_KEEP_OUT, Requirements
 from grashof.problems.values.task import Task
 
 

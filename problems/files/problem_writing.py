@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.box import Box
 from grashof.problems.values.problem import Problem
-from grashof.problems.values.requirements import Box, Requirements
+from grashof.problems.values.requirements import Requirements
 from grashof.problems.values.task import Task
 
 

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray, Limits
-from grashof.problems.values.checks import GREATEST, finite_number, limits, noted, number_within, refuse
-from grashof.problems.values.errors import ProblemError, wrong_value
+from grashof.problems.values.box import ANYWHERE, Box
+from grashof.problems.values.checks import GREATEST, finite_number, limits, number_within
+from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.linkage import FourBar
 from grashof.problems.values.quantities import MEASURED, Kind, Limit, Needs, Over, Quantity, Unit, limit
 from grashof.problems.values.read_only import ReadOnly
@@ -32,21 +33,6 @@ class TransmissionOver(StrEnum):
 
     TASK = "task"
     CYCLE = "cycle"
-
-
-@dataclass(frozen=True, slots=True)
-class Box:
-    """An upright rectangle x[0] <= x <= x[1], y[0] <= y <= y[1]; an infinite side is open."""
-
-    x: Limits = (-np.inf, np.inf)
-    y: Limits = (-np.inf, np.inf)
-
-    def __post_init__(self) -> None:
-        wrong: list[str] = []
-        for axis in ("x", "y"):
-            with noted(wrong):
-                object.__setattr__(self, axis, _side(getattr(self, axis), axis))
-        refuse(wrong)
 
 
 _SWING = "of link 4 between its limit positions, over the task where the driver cannot turn"
@@ -294,7 +280,7 @@ class Requirements(ReadOnly):
             if limited.usual is not None and getattr(self, name) is None
         }
         anywhere: dict[str, Any] = {
-            name: _ANYWHERE
+            name: ANYWHERE
             for name, limited in LIMITS.items()
             if limited.kind is Kind.INSIDE and getattr(self, name) is None
         }
@@ -304,7 +290,7 @@ class Requirements(ReadOnly):
     def limited(self) -> dict[str, Limit]:
         """What is limited, by field: the fields that are stated."""
         return {
-            name: limited for name, limited in LIMITS.items() if getattr(self, name) not in (None, _ANYWHERE)
+            name: limited for name, limited in LIMITS.items() if getattr(self, name) not in (None, ANYWHERE)
         }
 
     def meant(self, quantity: Quantity) -> Quantity:
@@ -315,7 +301,7 @@ class Requirements(ReadOnly):
     def ranges(self, name: str) -> dict[str, Limits]:
         """What a field allows (see `Limit.ranges`); empty where it limits nothing."""
         value = getattr(self, name) if name in LIMITS else None
-        return {} if value in (None, _ANYWHERE) else LIMITS[name].ranges(value)
+        return {} if value in (None, ANYWHERE) else LIMITS[name].ranges(value)
 
 
 _RANGES = {"tolerance": (1e-12, 1.0), "error_factor": (1.0, 1e6), "rotatability_margin": (0.0, 0.25)}
@@ -377,25 +363,8 @@ def _kept_out(names: Sequence[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names))
 
 
-def _side(values: Limits, name: str) -> Limits:
-    wanted = "[lo, hi] with lo <= hi"
-    try:
-        low, high = (float(value) for value in values)
-    except (TypeError, ValueError):
-        raise wrong_value(name, values, wanted) from None
-    if not (low <= high and low < np.inf and high > -np.inf):
-        raise ProblemError(f"{name} is [{low:.15g}, {high:.15g}]; it must be {wanted}")
-    for side in (low, high):
-        if GREATEST < abs(side) < np.inf:
-            raise ProblemError(f"{name} is [{low:.15g}, {high:.15g}]; its sides must be at most {GREATEST:g}")
-    return low, high
-
-
 def _member(kind: type[StrEnum], value: str, where: str) -> StrEnum:
     try:
         return kind(value)
     except ValueError:
         raise wrong_value(where, value, f"one of {', '.join(kind)}") from None
-
-
-_ANYWHERE = Box()

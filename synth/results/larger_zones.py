@@ -57,7 +57,7 @@ def _enlarged(problem: Problem, times: tuple[float, float]) -> tuple[Problem, st
     if len(given) == 1:  # it stands for both
         (only,) = given
         least = {only: max(times)}
-    larger, words = dict[str, FloatArray](), list[str]()
+    larger, changes = dict[str, FloatArray](), list[str]()
     for name, zone in given.items():
         if least[name] <= 1:
             continue
@@ -65,14 +65,14 @@ def _enlarged(problem: Problem, times: tuple[float, float]) -> tuple[Problem, st
         if np.ptp(zone) == 0:
             size = up(float(zone[0] * unit * least[name]))
             larger[name] = np.full(len(zone), size / unit)
-            words.append(f"{key} {size:g} instead of {zone[0] * unit:.6g}")
+            changes.append(f"{key} {size:g} instead of {zone[0] * unit:.6g}")
         else:
             factor = up(least[name])
             larger[name] = zone * factor
-            words.append(f"{key} {factor:g} times as large")
+            changes.append(f"{key} {factor:g} times as large")
     if "angle_within" in larger:
         larger["angle_within"] = np.minimum(larger["angle_within"], np.pi)
-    return replace(problem, task=task.with_zones(**larger)), " and ".join(words)
+    return replace(problem, task=task.with_zones(**larger)), " and ".join(changes)
 
 
 def up(value: float) -> float:

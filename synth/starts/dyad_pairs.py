@@ -11,13 +11,12 @@ import numpy as np
 
 from grashof.problems import Requirements
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.synth.programme.driver_angles import as_they_come, follow
 from grashof.synth.programme.screening import (
     GROUPS,
     Configurations,
     Screened,
-    as_they_come,
     dyad_violations,
-    follow,
     judge,
     keep_out_violation,
     met,

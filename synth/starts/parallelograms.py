@@ -15,14 +15,13 @@ import numpy as np
 
 from grashof.problems import Box, Rotatability
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, Limits
+from grashof.synth.programme.driver_angles import as_they_come, shorter_way
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import (
     GROUPS,
     Configurations,
     Screened,
-    as_they_come,
     judge,
-    shorter_way,
     violations_apart,
 )
 from grashof.synth.programme.start import Start

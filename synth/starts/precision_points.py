@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.synth.programme.driver_angles import shorter_way
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import shorter_way
 from grashof.synth.programme.start import Round
 from grashof.synth.starts.closed_loop import SearchTargets
 from grashof.synth.starts.coupler_search import CouplerSearch, has_family, search

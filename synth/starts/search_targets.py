@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.synth.programme.driver_angles import as_they_come
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import (
     Configurations,
     Screened,
-    as_they_come,
     judge,
     violations_apart,
 )
