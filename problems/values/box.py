@@ -1,0 +1,43 @@
+"""Boxes: where a joint may be."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from grashof.problems.values.arrays import Limits
+from grashof.problems.values.checks import GREATEST, noted, refuse
+from grashof.problems.values.errors import ProblemError, wrong_value
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """An upright rectangle x[0] <= x <= x[1], y[0] <= y <= y[1]; an infinite side is open."""
+
+    x: Limits = (-np.inf, np.inf)
+    y: Limits = (-np.inf, np.inf)
+
+    def __post_init__(self) -> None:
+        wrong: list[str] = []
+        for axis in ("x", "y"):
+            with noted(wrong):
+                object.__setattr__(self, axis, _side(getattr(self, axis), axis))
+        refuse(wrong)
+
+
+def _side(values: Limits, name: str) -> Limits:
+    wanted = "[lo, hi] with lo <= hi"
+    try:
+        low, high = (float(value) for value in values)
+    except (TypeError, ValueError):
+        raise wrong_value(name, values, wanted) from None
+    if not (low <= high and low < np.inf and high > -np.inf):
+        raise ProblemError(f"{name} is [{low:.15g}, {high:.15g}]; it must be {wanted}")
+    for side in (low, high):
+        if GREATEST < abs(side) < np.inf:
+            raise ProblemError(f"{name} is [{low:.15g}, {high:.15g}]; its sides must be at most {GREATEST:g}")
+    return low, high
+
+
+ANYWHERE = Box()  # limits nothing
