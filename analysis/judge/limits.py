@@ -48,7 +48,7 @@ def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
                 miss = _miss(value, allowed, limit, values.problem)
                 if miss > SLACK:
                     found = value * quantity.unit.shown
-                    yield Defect(name, _what(quantity, part), found, quantity.range_text(allowed), miss)
+                    yield Defect(name, _what(quantity, part), found, limit.range_text(allowed), miss)
 
 
 def _miss(value: float, allowed: Limits, limit: Limit, problem: Problem) -> float:

@@ -109,15 +109,6 @@ class Quantity:
         for name in ("words", "short"):
             object.__setattr__(self, name, getattr(self, name) or self.label)
 
-    def range_text(self, limits: Limits) -> str:
-        """Limits as files state them: "0.3 to 8", "from 15", "up to 20", "30"; empty where none are."""
-        low, high = (f"{side * self.unit.shown:.6g}" for side in limits)
-        if np.isinf(limits[0]):
-            return "" if np.isinf(limits[1]) else f"up to {high}"
-        if np.isinf(limits[1]):
-            return f"from {low}"
-        return low if low == high else f"{low} to {high}"
-
     @property
     def column(self) -> str:
         """Its name in candidates.csv."""
@@ -247,6 +238,18 @@ class Limit:
         if self.kind is Kind.AT_MOST:
             low = -np.inf
         return {"": (float(low / self.quantity.unit.shown), float(high / self.quantity.unit.shown))}
+
+    def range_text(self, limits: Limits) -> str:
+        """Limits as files state them: "0.3 to 8", "from 15", "up to 20", "30", "ccw"; empty where none are."""
+        for word, allowed in self.words.items():
+            if allowed == limits:
+                return word
+        low, high = (f"{side * self.quantity.unit.shown:.6g}" for side in limits)
+        if np.isinf(limits[0]):
+            return "" if np.isinf(limits[1]) else f"up to {high}"
+        if np.isinf(limits[1]):
+            return f"from {low}"
+        return low if low == high else f"{low} to {high}"
 
 
 def limit(

@@ -206,7 +206,12 @@ def test_progress_lines(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_summary_names_every_requirement_given() -> None:
     wanted = Requirements(
-        o2=Box(x=(0, 1)), b=Box(y=(2, 3)), ground_angle_deg=30, theta2_start_deg=-20, r3=(1, 2)
+        o2=Box(x=(0, 1)),
+        b=Box(y=(2, 3)),
+        ground_angle_deg=30,
+        theta2_start_deg=-20,
+        r3=(1, 2),
+        driver_sense="cw",
     )
     text = "\n".join(summary(replace(load("luggage"), requirements=wanted)))
     for said in (
@@ -215,6 +220,7 @@ def test_summary_names_every_requirement_given() -> None:
         "direction of O2O4: 30 deg",
         "driver angle at the first target: -20 deg",
         "r3: 1 to 2 m",
+        "sense of the driver: cw",
     ):
         assert said in text
 
