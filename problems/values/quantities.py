@@ -240,7 +240,7 @@ class Limit:
         return {"": (float(low / self.quantity.unit.shown), float(high / self.quantity.unit.shown))}
 
     def range_text(self, limits: Limits) -> str:
-        """Limits as files state them: "0.3 to 8", "from 15", "up to 20", "30", "ccw"; empty where none are."""
+        """Limits as files state them: "0.3 to 8", "from 15", "up to 20", "ccw"; empty where none are."""
         for word, allowed in self.words.items():
             if allowed == limits:
                 return word
