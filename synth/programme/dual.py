@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,11 +11,17 @@ from numpy.lib.mixins import NDArrayOperatorsMixin
 from grashof.problems.values.arrays import FloatArray
 
 
-@dataclass(frozen=True, slots=True, eq=False)
 class Dual(NDArrayOperatorsMixin):
     """Values (n, K) and their slopes (n, K, M) by M unknowns; K may be 1 in either where it is broadcast.
 
-    Forward differentiation (Griewank & Walther, *Evaluating Derivatives*, 2008, chapter 3).
+    Forward differentiation (Griewank & Walther, *Evaluating Derivatives*, 2008, chapter 3). Slopes are
+    computed when they are asked for: of limits that are kept nobody does.
+
+    Parameters
+    ----------
+    value : ndarray, shape (n, K)
+    slope : ndarray, shape (n, K, M), or callable
+        Callable: computes it.
 
     Examples
     --------
@@ -26,24 +31,38 @@ class Dual(NDArrayOperatorsMixin):
     [[[0.6, 1.6]]]
     """
 
-    value: FloatArray
-    slope: FloatArray
+    __slots__ = ("_slope", "value")
+
+    def __init__(self, value: FloatArray, slope: FloatArray | Callable[[], FloatArray]) -> None:
+        self.value, self._slope = value, slope
+
+    @property
+    def slope(self) -> FloatArray:
+        """Derivatives by the unknowns."""
+        if callable(self._slope):
+            self._slope = self._slope()
+        return self._slope
 
     def column(self, k: int) -> Dual:
         """One column, as one."""
-        return Dual(self.value[:, [k]], self.slope[:, [k]])
+        return Dual(self.value[:, [k]], lambda: self.slope[:, [k]])
 
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **others: Any) -> Any:
         if method != "__call__" or others or ufunc not in _SLOPES:
             return NotImplemented
         values = [each.value if isinstance(each, Dual) else each for each in inputs]
         value = ufunc(*values)
-        slopes = [
-            each.slope if by_it is ONE else np.asarray(by_it)[..., None] * each.slope
-            for each, by_it in zip(inputs, _SLOPES[ufunc](value, *values), strict=True)
-            if isinstance(each, Dual)
-        ]
-        return Dual(value, slopes[0] if len(slopes) == 1 else slopes[0] + slopes[1])
+
+        def slope() -> FloatArray:
+            slopes = [
+                each.slope if by_it is ONE else np.asarray(by_it)[..., None] * each.slope
+                for each, by_it in zip(inputs, _SLOPES[ufunc](value, *values), strict=True)
+                if isinstance(each, Dual)
+            ]
+            total: FloatArray = slopes[0] if len(slopes) == 1 else slopes[0] + slopes[1]
+            return total
+
+        return Dual(value, slope)
 
 
 ONE = 1.0  # its product with a slope is that slope

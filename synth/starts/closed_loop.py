@@ -6,12 +6,13 @@ taken with r1 = 1 along the real axis.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from grashof.problems import Requirements, Rotatability
-from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, Limits
+from grashof.synth.programme.formulas import Part, parts_of, range_of
 
 SHORTEST = 1e-3  # of the longest step between targets: no step counts as less
 
@@ -36,6 +37,8 @@ class SearchTargets:
         In the frame of the points. Its limits draw the search inwards.
     closed : bool
         The task motion is a whole turn.
+    limited : tuple
+        Field, part and range of all that is limited and has a formula.
     """
 
     points: ComplexArray
@@ -45,6 +48,12 @@ class SearchTargets:
     timing: FloatArray
     wanted: Requirements
     closed: bool = False
+    limited: tuple[tuple[str, Part, Limits], ...] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        limited = parts_of(self.wanted.limited)
+        rows = tuple((name, part, range_of(self.wanted, name, part)) for name, part in limited)
+        object.__setattr__(self, "limited", rows)
 
     @property
     def timed(self) -> bool:

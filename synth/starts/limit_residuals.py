@@ -18,8 +18,6 @@ from grashof.synth.programme.formulas import (
     at_angle,
     cos_mu,
     folded,
-    parts_of,
-    range_of,
     stretched,
     turns_fully,
 )
@@ -128,20 +126,23 @@ def oversteps(target: SearchTargets, at: Placement) -> tuple[FloatArray, FloatAr
     ndarray, shape (n, L, M)
     """
     rows = [*_limit_rows(target, at), *_transmission_rows(target, at.relative)]
-    return (
-        np.concatenate([row.value for row in rows], axis=1),
-        np.concatenate([row.slope for row in rows], axis=1),
-    )
+    over = np.concatenate([row.value for row in rows], axis=1)
+    by_unknowns, first = np.zeros((*over.shape, at.by_theta3.shape[2])), 0
+    for row in rows:
+        last = first + row.value.shape[1]
+        if row.value.any():
+            by_unknowns[:, first:last] = row.slope
+        first = last
+    return over, by_unknowns
 
 
 def _limit_rows(target: SearchTargets, at: Placement) -> Iterator[Dual]:
-    for name, part in parts_of(target.wanted.limited):
+    for name, part, (low, high) in target.limited:
         if part.fixed:
             continue
-        low, high = range_of(target.wanted, name, part)
         value = np.sqrt(part.of(at)) if part.squared else part.of(at)
         if LIMITS[name].kind is Kind.EQUAL:
-            yield Dual(np.angle(np.exp(1j * (value.value - low))), value.slope)
+            yield Dual(np.angle(np.exp(1j * (value.value - low))), lambda value=value: value.slope)
         elif LIMITS[name].quantity.key in LOGARITHMIC:
             value = np.log(value if part.per is None else value / part.per(at))
             least = LEAST_LENGTH if part.per is None else 1.0
@@ -154,7 +155,12 @@ def _outside(row: Dual, limits: Limits) -> Dual:
     """Signed amount by which values lie above (positive) or below (negative) limits."""
     low, high = limits
     over = np.maximum(row.value - high, 0.0) - np.maximum(low - row.value, 0.0)
-    return Dual(over, np.where((over != 0)[..., None], row.slope, 0.0))
+    return Dual(over, lambda: np.where((over != 0)[..., None], row.slope, 0.0))
+
+
+def _where(rows: BoolArray, row: Dual) -> Dual:
+    """Zero where `rows` are false."""
+    return Dual(np.where(rows, row.value, 0.0), lambda: np.where(rows[..., None], row.slope, 0.0))
 
 
 def _transmission_rows(target: SearchTargets, loop: Relative) -> Iterator[Dual]:
@@ -165,11 +171,10 @@ def _transmission_rows(target: SearchTargets, loop: Relative) -> Iterator[Dual]:
         return  # a full crank has no dead position
     most = np.cos(max(least, LEAST_TRANSMISSION))
     for diagonal2, passes in zip((folded, stretched), passed(target, theta2.value), strict=True):
-        row, rows = _outside(cos_mu(loop, diagonal2(loop)), (-most, most)), passes[:, None]
-        yield Dual(np.where(rows, row.value, 0.0), np.where(rows[..., None], row.slope, 0.0))
+        yield _where(passes[:, None], _outside(cos_mu(loop, diagonal2(loop)), (-most, most)))
     if wanted.transmission_over is TransmissionOver.TASK and not target.closed:
         ends = slice(None) if target.jumbled else [0, -1]
-        angle = Dual(theta2.value[:, ends], theta2.slope[:, ends])
+        angle = Dual(theta2.value[:, ends], lambda: theta2.slope[:, ends])
         yield _outside(cos_mu(loop, at_angle(loop, angle)), (-most, most))
 
 
