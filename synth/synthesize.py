@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
+from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -17,6 +18,7 @@ from grashof.synth.programme.user_functions import refuse_unusable
 from grashof.synth.results.choice import choose, least_error, why_ended
 from grashof.synth.results.explain import explain
 from grashof.synth.results.families import listed
+from grashof.synth.results.journal import journal_of
 from grashof.synth.results.result import Result
 from grashof.synth.results.search import Progress, Run, searches
 from grashof.synth.results.tally import CHOICE, DISTINCT
@@ -38,6 +40,7 @@ def synthesize(
     time_limit: float | None = None,
     progress: Callable[[Progress], object] | None = None,
     stop: Callable[[], bool] | None = None,
+    record: Path | None = None,
 ) -> Result:
     """Find, verify and rank linkages for a problem.
 
@@ -58,11 +61,15 @@ def synthesize(
     executor : concurrent.futures.Executor, optional
         Where to solve instead; not shut down. Threads gain nothing: one of them solves at a time.
     time_limit : float, s, optional
-        No new batch is begun after it.
+        The search ends soon after it.
     progress : callable, optional
         Called with a `Progress` after every batch.
     stop : callable, optional
-        Asked before every batch; the search ends when it returns True.
+        Asked often; the search ends soon after it returns True.
+    record : Path, optional
+        Folder in which a search of more than two seconds is recorded as it goes; it goes on from the
+        record of the same search, and removes it at its end unless it was stopped. Not with
+        constraints or an objective of your own.
 
     Returns
     -------
@@ -92,6 +99,8 @@ def synthesize(
     whole_number(workers, 1, "workers")
     if time_limit is not None and finite_number(time_limit, "time_limit") <= 0:
         raise wrong_value("time_limit", time_limit, "a time in s greater than zero")
+    if record is not None and (constraints or objective is not None):
+        raise ProblemError("record does not go with constraints or an objective of your own")
     finder_of(problem).refuse()
     begun = perf_counter()
     scaled = ScaledProblem.of(problem, constraints, objective)
@@ -103,11 +112,12 @@ def synthesize(
         out_of_time = time_limit is not None and perf_counter() - begun > time_limit
         return out_of_time or (stop is not None and stop())
 
-    with solving(workers, executor) as solve:
-        run = Run(search, solve, ended, progress)
+    with journal_of(record, problem, search) as journal, solving(workers, executor) as attempts:
+        run = Run(search, attempts, ended, journal, progress)
         ledgers = searches(scaled, run)  # starts, solves, verified designs
         chosen = choose(scaled, ledgers, run)
         explanation = explain(scaled, ledgers[-1], chosen, run)
+        run.ended()
     ledger, designs = ledgers[-1], listed(problem, chosen.designs or explanation.designs)
     ledger.tally.totals.update({CHOICE: chosen.solved, DISTINCT: len(designs)})
     return Result(

@@ -20,8 +20,10 @@ from grashof.synth.results.relaxations import relaxations
 from grashof.synth.results.search import Run, search_designs
 from grashof.synth.results.trade_offs import Chosen
 from grashof.synth.starts.finder import finder_for
+from grashof.synth.theory.stopping import Stopped, stopping
 
 STOPPED = "no design: the search was stopped before it found one"
+UNEXPLAINED = "no design: the search for the reason was stopped"
 SHOWN = 8  # least-squares designs that stand for the nearest
 ALTERNATIVES = 6  # that the note names
 NEAR_EFFORT, NEAR = 0.35, 8  # of a search for designs that come near
@@ -59,8 +61,12 @@ def explain(scaled: ScaledProblem, ledger: Ledger, chosen: Chosen, run: Run) -> 
         return Explanation("")
     if not ledger.complete:
         return Explanation(STOPPED)
-    with run.timed("explaining"):  # two poses met nearly are designs of two poses met
-        return _explained(ledger.scaled if len(scaled.targets) < 3 else scaled, ledger, chosen.rejected, run)
+    asked = ledger.scaled if len(scaled.targets) < 3 else scaled  # two poses nearly met are two that are met
+    try:
+        with run.timed("explaining"), stopping(run.asked_to_stop):
+            return _explained(asked, ledger, chosen.rejected, run)
+    except Stopped:
+        return Explanation(UNEXPLAINED)
 
 
 def _explained(scaled: ScaledProblem, ledger: Ledger, rejected: list[Attempt], run: Run) -> Explanation:
@@ -113,7 +119,7 @@ def _by_least_squares(scaled: ScaledProblem, run: Run) -> list[_Near]:
     wanted = replace(scaled.problem.requirements, exact=False)
     problem = replace(scaled.problem, requirements=wanted)
     search = replace(run.search, effort=NEAR_EFFORT, enough=min(run.search.enough, NEAR))
-    alone = Run(search, run.solve, run.ended)
+    alone = replace(run, search=search, progress=None, seconds=dict(run.seconds))
     found = search_designs(scaled.of_problem(problem), alone).best
     return [_Near(one.verdict, judged_again(scaled, one)) for one in listed(problem, found)[:SHOWN]]
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import count
 from time import perf_counter
+from typing import TypeVar
 
 import numpy as np
 
@@ -15,13 +17,18 @@ from grashof.synth.programme.nonlinear_programme import MOST_ITERATIONS
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.programme.user_functions import mended
+from grashof.synth.results.attempt import Attempt
+from grashof.synth.results.journal import Journal, Unrecorded
 from grashof.synth.results.ledger import SAME, Ledger
 from grashof.synth.results.workers import Solver
-from grashof.synth.starts.finder import Finder, asked_first, finder_for
+from grashof.synth.starts.finder import Finder, asked_first, finder_for, rounds
+from grashof.synth.theory.stopping import Stopped, stopping
 
 # Solves between two looks at what is verified, fixed, so that workers change nothing: of exact designs,
 # and of least squares, where every look may spare solves.
 BATCH, BATCH_LEAST_SQUARES = 16, 8
+LAST = 8  # solves at most of a search that is stopped before it has a design
+T = TypeVar("T")
 LARGER = 2  # times the draws and starts of a usual round: rounds that more effort adds
 FEW = 8  # exact designs: with fewer, zones are filled from those of least squares, too
 CONTINUED = 3  # times at most that the solve of the least error goes on
@@ -52,10 +59,11 @@ class Run:
     Parameters
     ----------
     search : Search
-    solve : callable
+    attempts : callable
         Attempts from starts (`Solver`).
-    ended : callable
+    asked_to_stop : callable
         Asked between solves: to be content with what there is.
+    journal : Journal
     progress : callable, optional
         Called with a `Progress` after every batch.
     seconds : dict
@@ -63,17 +71,52 @@ class Run:
     """
 
     search: Search
-    solve: Solver
-    ended: Callable[[], bool]
+    attempts: Solver
+    asked_to_stop: Callable[[], bool]
+    journal: Journal = field(default_factory=Unrecorded)
     progress: Callable[[Progress], object] | None = None
     seconds: dict[str, float] = field(default_factory=lambda: {"screening": 0.0, "solving": 0.0})
+
+    def ended(self) -> bool:
+        """Whether to be content with what there is; nothing is recorded any more then."""
+        if not self.asked_to_stop():
+            return False
+        self.journal.close()
+        return True
+
+    def whole(self, result: T) -> T:
+        """A result, which is recorded only if it was not cut short."""
+        self.ended()
+        return result
+
+    def solve(self, scaled: ScaledProblem, starts: list[Start], first: int) -> list[Attempt]:
+        """Attempts from starts, numbered from a first one, in their order."""
+        if not starts:
+            return []
+        step = ("solve", (first, *starts), scaled.problem)
+        return self.journal.done(*step, lambda: self.whole(self.attempts(scaled, starts, first)))
+
+    def screened(self, finder: Finder, scaled: ScaledProblem, effort: int, number: int) -> Round | None:
+        """One round of a finder; rounds of more effort are larger."""
+        seed = np.random.SeedSequence(
+            self.search.seed, spawn_key=(effort, number) if effort or number else ()
+        )
+        size, enough = LARGER if effort else 1, self.search.enough
+
+        def screen() -> Round | None:
+            with stopping(self.asked_to_stop):
+                return self.whole(finder.round(number, enough, np.random.default_rng(seed), size))
+
+        return self.journal.done("screen", (effort, number, enough), scaled.problem, screen)
 
     @contextmanager
     def timed(self, stage: str) -> Iterator[None]:
         """Add the time of what is inside to a stage."""
         since = perf_counter()
-        yield
-        self.seconds[stage] = self.seconds.get(stage, 0.0) + perf_counter() - since
+        try:
+            yield
+        finally:
+            self.seconds[stage] = self.seconds.get(stage, 0.0) + perf_counter() - since
 
 
 def searches(scaled: ScaledProblem, run: Run) -> list[Ledger]:
@@ -98,12 +141,7 @@ def search_designs(scaled: ScaledProblem, run: Run) -> Ledger:
     """Find starts, solve from them, and keep what is verified, round by round until there is enough."""
     finder = finder_for(scaled)
     ledger = Ledger(scaled, run.search, finder.exhausted)
-    rounds = _rounds(finder, ledger)
-    while True:
-        with run.timed("screening"):
-            found = next(rounds, None)
-        if found is None:
-            break
+    for found in _rounds(finder, ledger, run):
         with run.timed("solving"):
             _solve_round(found, ledger, run)
         if run.ended():
@@ -114,20 +152,29 @@ def search_designs(scaled: ScaledProblem, run: Run) -> Ledger:
     return ledger
 
 
-def _rounds(finder: Finder, ledger: Ledger) -> Iterator[Round]:
+def _rounds(finder: Finder, ledger: Ledger, run: Run) -> Iterator[Round]:
     """Rounds until what the effort asks for is done: those of ``effort = 1`` first, then larger ones."""
-    for number in count():
-        seed = np.random.SeedSequence(ledger.search.seed, spawn_key=(number,) if number else ())
-        rng, size, any_starts = np.random.default_rng(seed), LARGER if number else 1, False
-        for found in finder.rounds(ledger.search.enough, rng, size):
+    for effort in count():
+        any_starts = False
+        for found in rounds(finder, partial(_timed_round, finder, ledger, run, effort)):
             any_starts = any_starts or bool(found.starts)
             yield found
-            if ledger.done or (not number and ledger.ended):
+            if ledger.done or (not effort and ledger.ended):
                 break
-        if not number:
+        if not effort:
             ledger.plan_more()
         if ledger.done or not any_starts:
             return
+
+
+def _timed_round(finder: Finder, ledger: Ledger, run: Run, effort: int, number: int) -> Round | None:
+    """One round; none where it was stopped before it had any start."""
+    with run.timed("screening"):
+        try:
+            return run.screened(finder, ledger.scaled, effort, number)
+        except Stopped:
+            ledger.complete = False
+            return None
 
 
 def _solve_round(found: Round, ledger: Ledger, run: Run) -> None:
@@ -137,9 +184,10 @@ def _solve_round(found: Round, ledger: Ledger, run: Run) -> None:
     starts = mended(scaled, found.starts)
     batch = min(BATCH, enough) if scaled.exact else BATCH_LEAST_SQUARES
     for begin in range(0, len(starts), batch):
-        if run.ended() or not ledger.within_round:
+        ended = run.ended()
+        if not ledger.within_round or (ended and (ledger.best or begin)):
             return
-        some = ledger.worthwhile(found, starts[begin : begin + batch], first=begin == 0)
+        some = ledger.worthwhile(found, starts[begin : begin + (LAST if ended else batch)], first=begin == 0)
         if some:
             _solve(some[: ledger.starts - ledger.solved], ledger, run)
         if run.progress is not None:

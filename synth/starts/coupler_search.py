@@ -37,6 +37,7 @@ class CouplerSearch:
 
     beginning: ClassVar[str] = "searching"
     freedom: ClassVar[bool] = True
+    patience: ClassVar[float] = np.inf
     exhausted: ClassVar[str] = "there are no other starts"
 
     @property

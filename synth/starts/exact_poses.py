@@ -8,7 +8,7 @@ among the dyads of five of them.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations, zip_longest
 from typing import ClassVar
@@ -49,6 +49,7 @@ class WholePoses:
 
     beginning: ClassVar[str] = "tracing dyads and judging pairs"
     cognates: ClassVar[bool] = False
+    patience: ClassVar[float] = np.inf
 
     @property
     def motion(self) -> Displacements:
@@ -101,11 +102,12 @@ class Parallelograms(WholePoses):
         """Three whole poses or more, all of one angle."""
         return scaled.motion is not None and len(scaled.targets) > 2 and translate(scaled.motion)
 
-    def rounds(self, enough: int, rng: np.random.Generator, size: int, /) -> Iterator[Round]:
-        """One round."""
-        if self.freedom or size == 1:
-            starts = parallelogram_starts(self.scaled, enough, rng)
-            yield Round(starts, {"feasible finds": len(starts)})
+    def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
+        """A single round."""
+        if number or not (self.freedom or size == 1):
+            return None
+        starts = parallelogram_starts(self.scaled, enough, rng)
+        return Round(starts, {"feasible finds": len(starts)})
 
     def near(self, rng: np.random.Generator) -> Screened:
         """Parallelogram linkages, feasible or not."""
@@ -161,8 +163,10 @@ class FewPoses(DyadPairs):
         """Two to four whole poses, all to be met."""
         return scaled.motion is not None and len(scaled.targets) < 5
 
-    def rounds(self, enough: int, rng: np.random.Generator, _size: int, /) -> Iterator[Round]:
-        """One round; of two translated poses parallelogram linkages alternate with the others."""
+    def round(self, number: int, enough: int, rng: np.random.Generator, _size: int, /) -> Round | None:
+        """A single round; of two translated poses parallelogram linkages alternate with the others."""
+        if number:
+            return None
         scaled = self.scaled
         sideways = parallelogram_starts(scaled, enough, rng) if translate(self.motion) else []
         dyads = self.dyads(rng)
@@ -173,7 +177,7 @@ class FewPoses(DyadPairs):
             only_own = len(pairs) > len(feasible)  # nothing but the user's own constraints is violated
             starts += mended_starts(scaled, pairs if only_own else self.near_pairs(dyads), enough)
         alternating = [start for both in zip_longest(sideways, starts) for start in both if start]
-        yield Round(alternating, {"feasible finds": len(feasible), "exact dyads": 0})
+        return Round(alternating, {"feasible finds": len(feasible), "exact dyads": 0})
 
     def dyads(self, rng: np.random.Generator) -> Dyads:
         """Dyads all along the curves of four poses; random ones of fewer."""
@@ -208,15 +212,15 @@ class ManyPoses(DyadPairs):
         """Five whole poses or more, all to be met."""
         return scaled.motion is not None and len(scaled.targets) > 4
 
-    def rounds(self, _enough: int, rng: np.random.Generator, size: int, /) -> Iterator[Round]:
-        """One round of all linkages that there are; a second one would hold the same."""
-        if size > 1:
-            return
+    def round(self, number: int, _enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
+        """A single round of all linkages that there are; a second one would hold the same."""
+        if number or size > 1:
+            return None
         dyads = self.dyads(rng)
         pairs = self.pairs(dyads)
         starts = starts_of(self.scaled, pairs, np.argsort(-merits(self.scaled, pairs), kind="stable"))
         counts = {"feasible finds": int(pairs.feasible.sum()), "exact dyads": len(dyads)}
-        yield Round([replace(start, settled=True) for start in starts], counts)
+        return Round([replace(start, settled=True) for start in starts], counts)
 
     def dyads(self, rng: np.random.Generator) -> Dyads:
         """Dyads of five of the poses that meet all of them; of several fives where there are more."""

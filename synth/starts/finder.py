@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from itertools import count
 from typing import Protocol
 
 import numpy as np
@@ -41,8 +42,15 @@ class Finder(Protocol):
     def degenerate(self) -> str:
         """Why the targets need no linkage; empty where they need one."""
 
-    def rounds(self, enough: int, rng: np.random.Generator, size: int, /) -> Iterator[Round]:
-        """Rounds of starts for `enough` designs, with `size` times the usual draws where that helps."""
+    @property
+    def patience(self) -> float:
+        """So many rounds on end without a start end the search."""
+
+    def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
+        """One round of starts for `enough` designs, which depends on no other one; None after the last.
+
+        With `size` times the usual draws where that helps.
+        """
 
     def near(self, rng: np.random.Generator) -> Screened:
         """Linkages that meet the requirements, or nearly do."""
@@ -52,6 +60,19 @@ class Finder(Protocol):
 
     def obstacle(self, rng: np.random.Generator, counts: Mapping[str, int], /) -> str:
         """Why theory, or what the rounds counted, leaves no design; empty where it may leave one."""
+
+
+def rounds(finder: Finder, made: Callable[[int], Round | None]) -> Iterator[Round]:
+    """Rounds of a finder, as `made` makes them, until there is none or too many are barren."""
+    barren = 0
+    for number in count():
+        found = made(number)
+        if found is None:
+            return
+        barren = 0 if found.starts else barren + 1
+        yield found
+        if barren >= finder.patience:
+            return
 
 
 def finder_for(scaled: ScaledProblem) -> Finder:

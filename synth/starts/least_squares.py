@@ -8,7 +8,6 @@ programme does, whichever limits are active.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -72,15 +71,14 @@ UNLIMITED = (
 class LeastSquares(CouplerSearch):
     """Targets that may be missed."""
 
-    def rounds(self, _enough: int, rng: np.random.Generator, size: int, /) -> Iterator[Round]:
-        """Rounds without end, of `size` times the usual number of draws and starts."""
+    def round(self, _number: int, _enough: int, rng: np.random.Generator, size: int, /) -> Round:
+        """A round of `size` times the usual number of draws and starts; there is always another one."""
         scaled, target = self.scaled, search_targets(self.scaled)
         some, index = thinned(target, FEW_TARGETS)
-        while True:
-            drawn = draw(some, size * (TIMED_DRAWS if target.timed else DRAWS), rng, ASTRAY)
-            best = _best_fitting(some, drawn, size)
-            free = _free_round(scaled, _on_all_targets(target, index, best), size)
-            yield free or _limited_round(scaled, rng, drawn, best, size)
+        drawn = draw(some, size * (TIMED_DRAWS if target.timed else DRAWS), rng, ASTRAY)
+        best = _best_fitting(some, drawn, size)
+        free = _free_round(scaled, _on_all_targets(target, index, best), size)
+        return free or _limited_round(scaled, rng, drawn, best, size)
 
 
 def _best_fitting(some: SearchTargets, drawn: Batch, size: int) -> Batch:

@@ -27,6 +27,7 @@ from grashof.synth.starts.closed_loop import (
     by_unknowns,
 )
 from grashof.synth.starts.limit_residuals import Placement, oversteps
+from grashof.synth.theory.stopping import asked_to_stop
 
 # So many steps on end that take less than this share of its error away end the work on a linkage.
 LOOK, STALL = 5, 1e-3
@@ -159,7 +160,7 @@ def improve(
         jacobian = np.where(better[:, None, None], new_jacobian, jacobian)
         damping = np.clip(np.where(better, damping * 0.3, damping * 5), 1e-14, 1e6)
         result.unknowns[rows], least[rows] = batch.unknowns, error
-        if np.count_nonzero(least <= tolerance) >= until:
+        if np.count_nonzero(least <= tolerance) >= until or asked_to_stop():
             break
         if number % LOOK == 0:
             untried = (error == marked) & (damping < HEAVY)  # all too far: shorter steps may do

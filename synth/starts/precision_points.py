@@ -5,8 +5,9 @@ Exact paths through nine points have it followed by all linkages that there are.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -31,20 +32,18 @@ THROUGH = "linkages through the points"  # counted
 class PrecisionPoints(CouplerSearch):
     """Any targets to be met exactly."""
 
+    patience: ClassVar[float] = BARREN
+
     @staticmethod
     def suits(scaled: ScaledProblem) -> bool:
         """Whatever has to be met."""
         return scaled.exact
 
-    def rounds(self, enough: int, rng: np.random.Generator, _size: int, /) -> Iterator[Round]:
-        """Rounds of the search until several on end are barren."""
-        barren = 0
-        while barren < BARREN:
-            found = self._round(enough, rng)
-            barren = 0 if found.starts else barren + 1
-            yield found
+    def round(self, _number: int, enough: int, rng: np.random.Generator, _size: int, /) -> Round | None:
+        """A round of the search."""
+        return self._searched(enough, rng)
 
-    def _round(self, enough: int, rng: np.random.Generator) -> Round:
+    def _searched(self, enough: int, rng: np.random.Generator) -> Round:
         linkages = search(self.scaled, enough, rng)
         feasible = linkages[linkages.feasible]
         starts = feasible_starts(self.scaled, feasible, enough)
@@ -59,6 +58,8 @@ class PrecisionPoints(CouplerSearch):
 class NinePoints(PrecisionPoints):
     """Nine distinct points of a path without timing: finitely many linkages, all of which can be computed."""
 
+    patience: ClassVar[float] = np.inf
+
     @staticmethod
     def suits(scaled: ScaledProblem) -> bool:
         """So many points, to be met exactly."""
@@ -68,11 +69,12 @@ class NinePoints(PrecisionPoints):
         apart = np.abs(points[:, None] - points) + np.eye(len(points))
         return len(points) == 9 and bool(apart.min() > 1e-9)
 
-    def rounds(self, enough: int, rng: np.random.Generator, _size: int, /) -> Iterator[Round]:
-        """Rounds of the search, which for points in order is most often sooner there, then all linkages."""
-        for _ in range(SEARCHES if self.scaled.wanted.order else 0):
-            yield self._round(enough, rng)
-        yield self._all_linkages(rng)
+    def round(self, number: int, enough: int, rng: np.random.Generator, _size: int, /) -> Round | None:
+        """A round of the search, which for points in order is most often sooner there; then all linkages."""
+        searched = SEARCHES if self.scaled.wanted.order else 0
+        if number < searched:
+            return self._searched(enough, rng)
+        return self._all_linkages(rng) if number == searched else None
 
     def _all_linkages(self, rng: np.random.Generator) -> Round:
         """Of every triplet of cognates through the points the first feasible one; the others follow."""

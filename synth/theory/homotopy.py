@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
+from grashof.synth.theory.stopping import give_way
 
 # Solutions (n, K), parameters (n, M) and their change (n, M) give the residual (n, K), its
 # derivative by the solutions (n, K, K) and its change along the change of the parameters (n, K).
@@ -68,6 +69,7 @@ def follow(
     for _ in range(STEPS):
         if not len(active):
             break
+        give_way()
         here, length = done[active], np.minimum(step[active], 1 - done[active])
         with np.errstate(all="ignore"):
             tried, correction = _stepped(system, solutions[active], here, length, start, way)

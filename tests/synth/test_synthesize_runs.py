@@ -165,18 +165,27 @@ def test_stop_ends_the_search_between_batches(luggage: Problem) -> None:
 
 
 def test_stopped_before_anything_was_found(luggage: Problem) -> None:
-    result = synthesize(luggage, stop=lambda: True)
+    """What the screening found is tried, and no more."""
+    executor = Inline()
+    result = synthesize(luggage, stop=lambda: True, executor=executor)
+    assert executor.jobs == 8
+    assert 1 <= len(result) <= 8
+    assert not result.complete
+    assert result.ended == "the search ended after 8 of 200 solves: it was stopped"
+
+
+def test_stopped_with_nothing(luggage: Problem) -> None:
+    few = replace(luggage, requirements=replace(luggage.requirements, link_length=(0.1, 0.2)))
+    result = synthesize(few, stop=lambda: True)
     assert (len(result), result.complete, result.nearest) == (0, False, ())
     assert "stopped" in result.note
-    assert result.ended == "the search ended after 0 of 200 solves: it was stopped"
-    assert "solver: Solve_Succeeded" not in result.counts
 
 
 def test_a_time_limit_ends_the_search(luggage: Problem) -> None:
     executor = Inline()
     result = synthesize(luggage, time_limit=1e-6, executor=executor)
     assert not result.complete
-    assert executor.jobs == 0
+    assert executor.jobs == 8
     assert synthesize(luggage, starts=3, time_limit=1000).complete
 
 

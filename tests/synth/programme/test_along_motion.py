@@ -164,7 +164,7 @@ def test_no_pair_of_dyads_needs_less(lightest: Result, driven: Problem) -> None:
 
 def test_the_programme_agrees_with_the_judge(driven: Problem) -> None:
     scaled = ScaledProblem.of(driven)
-    starts = next(finder_for(scaled).rounds(8, np.random.default_rng(0), 1)).starts[:12:3]
+    starts = finder_for(scaled).round(0, 8, np.random.default_rng(0), 1).starts[:12:3]
     for start in starts:
         made = attempt(scaled, start, 0).candidate
         assert made is not None
@@ -204,7 +204,7 @@ def test_paths(closed: bool) -> None:
     best = synthesize(light, starts=2, enough=2).best
     assert best.values["torque_peak"] < 0.5 * min(each.values["torque_peak"] for each in others)
     scaled = ScaledProblem.of(light)
-    for start in next(iter(finder_for(scaled).rounds(4, np.random.default_rng(0), 1))).starts[:2]:
+    for start in finder_for(scaled).round(0, 4, np.random.default_rng(0), 1).starts[:2]:
         solved, made = solve_by_exchange(scaled, start), attempt(scaled, start, 0).candidate
         assert made is not None
         assert solved.peaks["torque_peak"] * light.reference_torque == pytest.approx(
@@ -219,7 +219,7 @@ def test_the_bound_holds_between_the_angles_of_the_grid() -> None:
     spec = DynamicsSpec(mass_per_length=1.0, payload=1.0, speed_rpm=120)
     quick = Problem(task=task, length_unit="m", objective=TORQUE, dynamics=spec)
     scaled, short = ScaledProblem.of(quick), []
-    for start in next(iter(finder_for(scaled).rounds(8, np.random.default_rng(0), 1))).starts[:8]:
+    for start in finder_for(scaled).round(0, 8, np.random.default_rng(0), 1).starts[:8]:
         for solved in (solve(scaled, start), solve_by_exchange(scaled, start)):
             made = polished_and_judged(scaled, start, solved, 0).candidate
             assert made is not None

@@ -182,7 +182,7 @@ def starts_as_screened(starts: list[Start]) -> Screened:
 @pytest.mark.usefixtures("small_search")
 def test_a_look_at_the_way_agrees_with_the_judge(luggage_scaled: Callable[..., ScaledProblem]) -> None:
     scaled = luggage_scaled(rotatability="any")
-    made = next(finder_for(scaled).rounds(40, np.random.default_rng(0), 1))
+    made = finder_for(scaled).round(0, 40, np.random.default_rng(0), 1)
     points = np.array([start.points for start in made.starts])
     assembly = np.array([float(start.assembly) for start in made.starts])
     linkages = starts_as_screened(made.starts)

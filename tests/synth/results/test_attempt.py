@@ -20,7 +20,7 @@ SetupOf = Callable[..., ScaledProblem]
 
 
 def first_starts(scaled: ScaledProblem, count: int) -> list[Start]:
-    return next(finder_for(scaled).rounds(50, np.random.default_rng(0), 1)).starts[:count]
+    return finder_for(scaled).round(0, 50, np.random.default_rng(0), 1).starts[:count]
 
 
 def off_circles(linkage: FourBar, scaled: ScaledProblem) -> float:

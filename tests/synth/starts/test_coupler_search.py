@@ -13,7 +13,7 @@ from grashof.synth.programme.screening import GROUPS, Screened
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.starts import precision_points
 from grashof.synth.starts.coupler_search import search
-from grashof.synth.starts.finder import finder_for
+from grashof.synth.starts.finder import finder_for, rounds
 from grashof.synth.starts.search_targets import search_targets
 
 PathSetup = Callable[..., tuple[ScaledProblem, FourBar]]
@@ -33,7 +33,8 @@ def setup_of(
 
 
 def first_rounds(scaled: ScaledProblem, count: int, enough: int = 5, seed: int = 0) -> list[Round]:
-    return list(islice(finder_for(scaled).rounds(enough, np.random.default_rng(seed), 1), count))
+    finder, rng = finder_for(scaled), np.random.default_rng(seed)
+    return list(islice(rounds(finder, lambda number: finder.round(number, enough, rng, 1)), count))
 
 
 def finds_of(scaled: ScaledProblem, enough: int = 5, seed: int = 0) -> Screened:
@@ -209,6 +210,6 @@ def test_rounds_without_a_start_end(monkeypatch: pytest.MonkeyPatch) -> None:
     scaled = setup_of(LINE)
     none = finds_of(scaled)[:0]
     monkeypatch.setattr(precision_points, "search", lambda *_: none)
-    found = list(finder_for(scaled).rounds(5, np.random.default_rng(0), 1))
+    found = first_rounds(scaled, 1000)
     assert 1 < len(found) < 100
     assert all(not each.starts for each in found)

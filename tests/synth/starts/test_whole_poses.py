@@ -21,7 +21,7 @@ SetupOf = Callable[..., ScaledProblem]
 
 
 def queue_of(scaled: ScaledProblem, enough: int = 50, seed: int = 0) -> tuple[list[Start], int]:
-    (queue,) = finder_for(scaled).rounds(enough, np.random.default_rng(seed), 1)
+    queue = finder_for(scaled).round(0, enough, np.random.default_rng(seed), 1)
     return queue.starts, queue.counts["feasible finds"]
 
 

@@ -94,7 +94,7 @@ def test_starts_of_two_and_three_poses_meet_them_with_their_pivots_in_place(
 ) -> None:
     rows = [[0.0, 0, 0], [2, 1, 20], [3, 3, 50]][:poses]
     scaled = posed(rows, link_length=(0.1, 20), **BOXES[kind])
-    (queue,) = finder_for(scaled).rounds(10, rng(), 1)
+    queue = finder_for(scaled).round(0, 10, rng(), 1)
     assert len(queue.starts) >= 5
     for start in queue.starts:
         pair = Dyads(np.array([start.a, start.b]), np.array([start.o2, start.o4]))
@@ -129,7 +129,7 @@ def test_starts_of_five_poses_and_more_are_settled_pairs_of_dyads(
     usable = 0
     for seed in range(10):
         scaled, task, _ = planted(seed, poses)
-        (queue,) = finder_for(scaled).rounds(50, rng(), 1)
+        queue = finder_for(scaled).round(0, 50, rng(), 1)
         dyads = dyads_of(scaled)
         assert queue.counts["exact dyads"] == len(dyads)
         assert queue.counts["feasible finds"] == len(queue.starts) <= len(dyads) * (len(dyads) - 1)
@@ -203,7 +203,7 @@ def five_without_dyads() -> ScaledProblem:
 def test_five_poses_without_dyads_say_so() -> None:
     scaled = five_without_dyads()
     assert finder_for(scaled).obstacle(rng(), {}) == "the 5 poses have no real dyad, and a linkage needs two"
-    (queue,) = finder_for(scaled).rounds(50, rng(), 1)
+    queue = finder_for(scaled).round(0, 50, rng(), 1)
     assert queue.starts == []
     assert finder_for(scaled).relaxed(rng()) == []
 
@@ -273,7 +273,7 @@ def test_two_poses_are_never_degenerate(turn: float) -> None:
     """A translation or a rotation is what two poses always are; four-bars do it."""
     scaled = posed([[0, 0, 0], [2, 1, turn]], link_length=(0.2, 20))
     assert finder_for(scaled).degenerate() == ""
-    (queue,) = finder_for(scaled).rounds(5, rng(), 1)
+    queue = finder_for(scaled).round(0, 5, rng(), 1)
     assert len(queue.starts) >= 5
 
 

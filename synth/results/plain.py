@@ -1,0 +1,118 @@
+"""Value types of a search as JSON and back, to the last bit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from enum import Enum
+from typing import Any
+
+import numpy as np
+
+from grashof.analysis import Verdict
+from grashof.analysis.four_bar.mobility import GrashofClass
+from grashof.analysis.judge.verdict import Defect
+from grashof.problems import FourBar, Objective, Problem
+from grashof.synth.programme.start import Round, Start
+from grashof.synth.results.attempt import Attempt
+from grashof.synth.results.candidate import Candidate
+
+# What may be written and read: values alone, so that a file is data.
+KINDS: dict[str, Any] = {
+    kind.__name__: kind for kind in (Attempt, Candidate, Defect, FourBar, Objective, Round, Start, Verdict)
+}
+WORDS: dict[str, Any] = {"GrashofClass": GrashofClass}
+_LEFT_OUT = {"Candidate": {"problem", "values"}}  # known, or measured again
+
+
+def plain(value: Any) -> Any:
+    """A value as what JSON has.
+
+    Tuples are lists there; whatever else has no form of its own is an object whose one key names it.
+
+    Examples
+    --------
+    >>> plain((1, 2j)), plain(np.array([0.5]))
+    ([1, {'complex': [0.0, 2.0]}], {'array': ['<f8', [1], [0.5]]})
+    """
+    if isinstance(value, Enum):
+        return {"word": [type(value).__name__, value.value]}
+    if value is None or isinstance(value, (bool, int, float, str)):
+        return value.item() if isinstance(value, np.generic) else value
+    if isinstance(value, complex):
+        return {"complex": [value.real, value.imag]}
+    if isinstance(value, (np.ndarray, np.generic)):
+        return _plain_array(np.asarray(value))
+    if isinstance(value, tuple):
+        return [plain(each) for each in value]
+    if isinstance(value, list):
+        return {"list": [plain(each) for each in value]}
+    if isinstance(value, Mapping):
+        return {"map": [[plain(key), plain(each)] for key, each in value.items()]}
+    if is_dataclass(value) and type(value).__name__ in KINDS:
+        name = type(value).__name__
+        left_out = _LEFT_OUT.get(name, set())
+        named = {f.name: plain(getattr(value, f.name)) for f in fields(value) if f.name not in left_out}
+        return {name: named}
+    raise TypeError(f"{type(value).__name__} has no plain form")
+
+
+def restored(value: Any, problem: Problem) -> Any:
+    """The value of a plain form; designs are for `problem`.
+
+    Raises
+    ------
+    ValueError, KeyError, TypeError
+        It is not the plain form of a value.
+
+    Examples
+    --------
+    >>> from grashof import load
+    >>> restored(plain((1, 2j, float("inf"))), load("luggage"))
+    (1, 2j, inf)
+    """
+    if isinstance(value, list):
+        return tuple(restored(each, problem) for each in value)
+    if not isinstance(value, dict):
+        return value
+    ((name, content),) = value.items()
+    if name == "complex":
+        return complex(*content)
+    if name == "array":
+        return _restored_array(*content)
+    if name == "list":
+        return [restored(each, problem) for each in content]
+    if name == "map":
+        return {restored(key, problem): restored(each, problem) for key, each in content}
+    if name == "word":
+        kind, word = content
+        return WORDS[kind](word)
+    named = {key: restored(each, problem) for key, each in content.items()}
+    if name == "Candidate":
+        return Candidate(problem=problem, **named)
+    return _made(KINDS[name], named)
+
+
+def _made(kind: Any, named: dict[str, Any]) -> Any:
+    """A value with its fields as they were: what a constructor makes of them, it made before."""
+    made = object.__new__(kind)
+    for each in fields(kind):
+        object.__setattr__(made, each.name, named[each.name])
+    return made
+
+
+def _plain_array(array: np.ndarray[Any, Any]) -> dict[str, Any]:
+    numbers = array.astype(np.complex128).view(np.float64) if np.iscomplexobj(array) else array
+    return {"array": [array.dtype.str, list(array.shape), numbers.ravel().tolist()]}
+
+
+def _restored_array(dtype: str, shape: list[int], numbers: list[Any]) -> np.ndarray[Any, Any]:
+    if np.dtype(dtype).kind not in "biufc":
+        raise ValueError(f"an array of {dtype} is not one of numbers")
+    if np.dtype(dtype).kind == "c":
+        array = np.array(numbers, dtype=np.float64).view(np.complex128)
+    else:
+        array = np.array(numbers, dtype=dtype)
+    array = array.reshape(shape)
+    array.setflags(write=False)
+    return array
