@@ -32,7 +32,7 @@ from grashof.problems.values.problem import EFFORTS
 
 TRACEBACK = "GRASHOF_TRACEBACK"  # environment variable: unexpected errors with their traceback
 # Options of the contract that later versions bring.
-_LATER_OPTIONS = ("--resume", "--scheduler")
+_LATER_OPTIONS = ("--scheduler",)
 # Typer makes the base of its usage errors public only through this one.
 _UsageError: type[Exception] = typer.BadParameter.__bases__[0]
 
@@ -124,11 +124,14 @@ def solve(
             show_default=False,
         ),
     ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with the unfinished search in --out.")
+    ] = False,
 ) -> None:
     """Find designs for PROBLEM; write the ranked list, a page, drawings and the record of the run.
 
     Exit code 0: at least one verified design; 1: none; 2: bad input; 3: environment error;
-    130: interrupted.
+    130: interrupted (Ctrl-C); 143: terminated (SIGTERM).
     """
     with _errors_told():
         loaded, text = load_with_text(problem)
@@ -141,6 +144,7 @@ def solve(
             time_limit=time_limit,
             top=top,
             drawings=drawings,
+            resume=resume,
         )
         raise typer.Exit(commands.solve(loaded, text, options))
 

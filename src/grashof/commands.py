@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import shutil
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from enum import IntEnum
 from pathlib import Path
-from threading import Event
 from types import FrameType
 
 from grashof.output.streams import say
@@ -26,6 +26,7 @@ class Exit(IntEnum):
     BAD_INPUT = 2
     SURROUNDINGS = 3
     INTERRUPTED = 130
+    TERMINATED = 143
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,6 +44,8 @@ class Options:
     top : int, optional
         Most families in the list.
     drawings : int
+    resume : bool
+        Go on with the search that the folder has a record of.
     """
 
     out: Path | None = None
@@ -53,11 +56,21 @@ class Options:
     time_limit: float | None = None
     top: int | None = None
     drawings: int = 3
+    resume: bool = False
 
 
 def solve(problem: Problem, text: str, options: Options) -> Exit:
     """Search for designs and write them; `text` is the problem file."""
-    from grashof.output.folder import PAGE, check_writable
+    from grashof.output.folder import check_writable, in_use
+
+    folder = options.out if options.out is not None else Path(f"{problem.name}-designs")
+    check_writable(folder, options.drawings)
+    with in_use(folder):
+        return _solve(problem, text, options, folder)
+
+
+def _solve(problem: Problem, text: str, options: Options, folder: Path) -> Exit:
+    from grashof.output.folder import PAGE, SEARCH
     from grashof.output.run_files import write_run
     from grashof.output.terminal import print_table, search_progress
     from grashof.synth import synthesize
@@ -68,9 +81,8 @@ def solve(problem: Problem, text: str, options: Options) -> Exit:
     search = replace(problem.search, **{name: value for name, value in given.items() if value is not None})
     search = replace(search, enough=max(search.enough, options.top or 0))
     top = options.top or max(TOP, search.enough)
-    folder = options.out if options.out is not None else Path(f"{problem.name}-designs")
-    check_writable(folder, options.drawings)
-    with _interruptible() as interrupted:
+    _begin_record(folder, resume=options.resume)
+    with interruptible() as interrupted:
         wanted = ends_with_enough(problem)
         with search_progress(problem.name, finder_of(problem).beginning, wanted=wanted) as progress:
             found = synthesize(
@@ -80,9 +92,12 @@ def solve(problem: Problem, text: str, options: Options) -> Exit:
                 time_limit=options.time_limit,
                 progress=progress,
                 stop=interrupted,
+                record=folder / SEARCH,
             )
         if found.ended:
             say(found.ended, err=True)
+        if (folder / SEARCH).exists():
+            say(f"{folder / SEARCH}: the search so far; --resume goes on with it", err=True)
         result = found.top(top)
         if result.candidates or result.complete:  # an interrupted search with nothing replaces nothing
             run = {"workers": options.workers, "time_limit": options.time_limit, "top": top}
@@ -96,8 +111,21 @@ def solve(problem: Problem, text: str, options: Options) -> Exit:
         if result.candidates or result.complete:
             _point_to(folder / PAGE)
     if interrupted():
-        return Exit.INTERRUPTED
+        return interrupted.code
     return Exit.OK if result.candidates else Exit.NO_DESIGN
+
+
+def _begin_record(folder: Path, *, resume: bool) -> None:
+    """Keep the record of a search that is not gone on with; say where there is none to go on with."""
+    from grashof.output.folder import OLD_SEARCH, SEARCH
+
+    record, kept = folder / SEARCH, folder / OLD_SEARCH
+    if resume and not record.exists():
+        say(f"{record}: has no record of a search; it begins anew", err=True)
+    elif record.exists() and not resume:
+        shutil.rmtree(kept, ignore_errors=True)
+        record.replace(kept)
+        say(f"{record}: the record of an unfinished search is kept as {kept.name}", err=True)
 
 
 def analyse(linkage: str, out: Path | None, speed_rpm: float | None) -> None:
@@ -143,17 +171,34 @@ def _point_to(page: Path) -> None:
     say(f"Open {page} in a browser to look at it.", err=True)
 
 
+class Interruption:
+    """Whether the user, or the system, has asked the program to end, and its exit code then."""
+
+    def __init__(self) -> None:
+        self.code = Exit.OK
+
+    def __call__(self) -> bool:
+        """Whether it was asked for."""
+        return self.code is not Exit.OK
+
+
 @contextmanager
-def _interruptible() -> Iterator[Callable[[], bool]]:
-    """Turn the first Ctrl-C into a request to stop between batches; the second one ends at once."""
-    asked = Event()
+def interruptible() -> Iterator[Interruption]:
+    """Turn the first Ctrl-C or SIGTERM into a request to end soon; the second one ends at once."""
+    asked = Interruption()
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
 
-    def ask(_signal: int, _frame: FrameType | None) -> None:
-        asked.set()
-        signal.signal(signal.SIGINT, before)
+    def ask(number: int, _frame: FrameType | None) -> None:
+        asked.code = Exit.INTERRUPTED if number == signal.SIGINT else Exit.TERMINATED
+        restore()
 
-    before = signal.signal(signal.SIGINT, ask)
+    def restore() -> None:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+    for number in before:
+        signal.signal(number, ask)
     try:
-        yield asked.is_set
+        yield asked
     finally:
-        signal.signal(signal.SIGINT, before)
+        restore()

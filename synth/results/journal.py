@@ -184,11 +184,12 @@ def refuse_other(folder: Path, head: Mapping[str, Any]) -> None:
         known = {key: found[key] for key in head}
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         raise ProblemError(f"{folder / HEAD}: is not the record of a search; delete {folder}") from None
+    if known["problem"] != head["problem"]:
+        raise ProblemError(f"{folder}: is the record of a search for another problem; name another folder")
     for key, value in head.items():
         if known[key] != value:
-            there = "another problem" if key == "problem" else f"{key} {json.dumps(known[key])}"
-            here = "" if key == "problem" else f", here {json.dumps(value)}"
-            raise ProblemError(f"{folder}: is the record of a search with {there}{here}")
+            there = f"{folder}: is the record of a search with {key} {known[key]}"
+            raise ProblemError(f"{there}; here it is {value}")
 
 
 def _head(problem: Problem, search: Search) -> dict[str, Any]:
@@ -196,9 +197,9 @@ def _head(problem: Problem, search: Search) -> dict[str, Any]:
     stated = problem_toml(problem).partition("\n[search]")[0]
     return {
         "format": FORMAT,
-        "versions": {name: version(name) for name in PACKAGES},
         "problem": hashlib.sha256(stated.encode()).hexdigest(),
-        "search": asdict(search),
+        **asdict(search),
+        **{f"{name} version": version(name) for name in PACKAGES},
     }
 
 

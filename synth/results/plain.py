@@ -37,12 +37,14 @@ def plain(value: Any) -> Any:
     """
     if isinstance(value, Enum):
         return {"word": [type(value).__name__, value.value]}
+    if isinstance(value, np.generic):  # np.float64 is a float, too, but not only that
+        return {"scalar": _plain_array(np.asarray(value))}
+    if isinstance(value, np.ndarray):
+        return {"array": _plain_array(value)}
     if value is None or isinstance(value, (bool, int, float, str)):
-        return value.item() if isinstance(value, np.generic) else value
+        return value
     if isinstance(value, complex):
         return {"complex": [value.real, value.imag]}
-    if isinstance(value, (np.ndarray, np.generic)):
-        return _plain_array(np.asarray(value))
     if isinstance(value, tuple):
         return [plain(each) for each in value]
     if isinstance(value, list):
@@ -78,8 +80,9 @@ def restored(value: Any, problem: Problem) -> Any:
     ((name, content),) = value.items()
     if name == "complex":
         return complex(*content)
-    if name == "array":
-        return _restored_array(*content)
+    if name in ("array", "scalar"):
+        array = _restored_array(*content)
+        return array[()] if name == "scalar" else array
     if name == "list":
         return [restored(each, problem) for each in content]
     if name == "map":
@@ -87,10 +90,9 @@ def restored(value: Any, problem: Problem) -> Any:
     if name == "word":
         kind, word = content
         return WORDS[kind](word)
+    kind = KINDS[name]
     named = {key: restored(each, problem) for key, each in content.items()}
-    if name == "Candidate":
-        return Candidate(problem=problem, **named)
-    return _made(KINDS[name], named)
+    return Candidate(problem=problem, **named) if kind is Candidate else _made(kind, named)
 
 
 def _made(kind: Any, named: dict[str, Any]) -> Any:
@@ -101,9 +103,10 @@ def _made(kind: Any, named: dict[str, Any]) -> Any:
     return made
 
 
-def _plain_array(array: np.ndarray[Any, Any]) -> dict[str, Any]:
-    numbers = array.astype(np.complex128).view(np.float64) if np.iscomplexobj(array) else array
-    return {"array": [array.dtype.str, list(array.shape), numbers.ravel().tolist()]}
+def _plain_array(array: np.ndarray[Any, Any]) -> list[Any]:
+    flat = array.ravel()
+    numbers = flat.astype(np.complex128).view(np.float64) if np.iscomplexobj(array) else flat
+    return [array.dtype.str, list(array.shape), numbers.tolist()]
 
 
 def _restored_array(dtype: str, shape: list[int], numbers: list[Any]) -> np.ndarray[Any, Any]:

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 import re
+import shutil
+import sys
 import tempfile
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager, suppress
@@ -11,7 +14,12 @@ from pathlib import Path
 
 from grashof.problems import ProblemError
 
+if sys.platform != "win32":
+    import fcntl
+
 RECORD = "run.json"
+SEARCH, OLD_SEARCH = "search", "search-old"  # folders: the search as it goes, and one that was not finished
+UNFINISHED = ".writing-"  # files of a run that is not done
 ANALYSIS_RECORD = "analysis.json"
 PAGE = "report.html"
 ANALYSIS_PAGE = "analysis.html"
@@ -44,7 +52,7 @@ def check_writable(folder: Path, drawings: int = 0, record: str = RECORD) -> Non
         It cannot be made or written, or a file would be replaced that no run of Grashof wrote.
     """
     try:
-        with _made(folder), tempfile.TemporaryDirectory(dir=folder, prefix=".writing-") as name:
+        with _made(folder), tempfile.TemporaryDirectory(dir=folder, prefix=UNFINISHED) as name:
             (Path(name) / "candidates.json").touch()
         taken = _taken(folder, drawings, record) if folder.exists() else []
     except OSError as error:
@@ -52,6 +60,45 @@ def check_writable(folder: Path, drawings: int = 0, record: str = RECORD) -> Non
         raise ProblemError(f"--out {folder}: {reason}; it must be a folder that can be written") from None
     if taken:
         raise ProblemError(f"--out {folder}: {taken[0]} in it is not Grashof's own; name a folder without it")
+
+
+@contextmanager
+def in_use(folder: Path) -> Iterator[None]:
+    """The folder for this run alone; it is made, and goes again if it stays empty.
+
+    What a run that was killed left unfinished in it is removed. The lock ends with its process,
+    however that ends; where the system has none (Windows), two runs are not kept apart.
+
+    Raises
+    ------
+    ProblemError
+        Another run uses it.
+    """
+    with _made(folder), _locked(folder):
+        for left in folder.glob(f"{UNFINISHED}*"):
+            shutil.rmtree(left, ignore_errors=True)
+        yield
+
+
+@contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    if sys.platform == "win32":
+        yield
+        return
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(handle)
+        raise ProblemError(
+            f"--out {folder}: another run uses it; wait for its end, or name another folder"
+        ) from None
+    except OSError:  # a file system without locks
+        pass
+    try:
+        yield
+    finally:
+        os.close(handle)
 
 
 @contextmanager
@@ -77,7 +124,7 @@ def replacing_own_files(folder: Path, keep: Collection[str] = (), record: str = 
     """
     with _made(folder):
         before = own_files(folder, record)
-        with tempfile.TemporaryDirectory(dir=folder, prefix=".writing-") as name:
+        with tempfile.TemporaryDirectory(dir=folder, prefix=UNFINISHED) as name:
             fresh = Path(name)
             yield fresh
             written = sorted(path.name for path in fresh.iterdir())

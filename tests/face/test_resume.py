@@ -1,0 +1,137 @@
+"""Runs that are killed, interrupted or ended, and gone on with."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from grashof.output.folder import in_use
+
+Grashof = Callable[..., Any]
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
+
+# Some seconds of search: a drawn curve, fitted by crank-rockers.
+LONG = """
+kind = "path"
+[path]
+points = [[0, 0], [1, 2], [3, 3], [5, 2.5], [6, 1], [7, -1], [5, -2], [3, -2.2], [1, -1.5], [-0.4, -0.3]]
+[requirements]
+transmission_min_deg = 25
+"""
+
+
+def running(folder: Path, *options: str) -> subprocess.Popen[str]:
+    (folder / "long.toml").write_text(LONG, encoding="utf-8")
+    # Each step in a file of its own, as if it had taken two seconds.
+    program = (
+        "import grashof.synth.results.journal as journal; journal.EVERY = 0.0; "
+        "from grashof.cli import main; main()"
+    )
+    command = [
+        sys.executable,
+        "-c",
+        program,
+        "solve",
+        "long.toml",
+        "--drawings",
+        "0",
+        "--out",
+        "out",
+        *options,
+    ]
+    return subprocess.Popen(command, cwd=folder, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+
+
+def finished(folder: Path, *options: str) -> bytes:
+    process = running(folder, *options)
+    _, said = process.communicate(timeout=240)
+    assert process.returncode == 0, said
+    return (folder / "out" / "candidates.csv").read_bytes()
+
+
+def killed_and_resumed(folder: Path, moments: list[float]) -> bytes:
+    for number, moment in enumerate(moments):
+        process = running(folder, *(["--resume"] if number else []))
+        try:
+            process.wait(timeout=moment)
+        except subprocess.TimeoutExpired:
+            process.kill()
+        process.communicate()
+    return finished(folder, "--resume")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("moments", [2, 20])
+def test_a_run_that_was_killed_goes_on_to_the_same_list(tmp_path: Path, moments: int) -> None:
+    whole, killed = tmp_path / "whole", tmp_path / "killed"
+    whole.mkdir()
+    killed.mkdir()
+    begun = time.monotonic()
+    table = finished(whole)
+    seconds = time.monotonic() - begun
+    at = (np.random.default_rng(moments).uniform(0.3, 1.0, moments) * seconds).tolist()
+    assert killed_and_resumed(killed, at) == table
+    assert sorted(path.name for path in (killed / "out").iterdir()) == [
+        *("candidates.csv", "candidates.json", "report.html", "run.json")
+    ]
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_signal_ends_the_search_and_writes_what_it_has(tmp_path: Path, number: int, code: int) -> None:
+    process = running(tmp_path)
+    out = tmp_path / "out"
+    while len(list((out / "search").glob("0*.json"))) < 2:
+        time.sleep(0.05)
+    begun = time.monotonic()
+    process.send_signal(number)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == code
+    assert time.monotonic() - begun < 6  # of which 2 are the search's; machines are busy
+    assert "--resume goes on with it" in said
+    assert len(pd.read_csv(out / "candidates.csv")) > 0
+    assert (out / "search" / "search.json").exists()
+
+
+def test_a_record_that_is_not_gone_on_with_is_kept(grashof: Grashof, tmp_path: Path) -> None:
+    record = tmp_path / "luggage-designs" / "search"
+    record.mkdir(parents=True)
+    (record / "search.json").write_text("{}", encoding="utf-8")
+    refused = grashof("solve", "luggage", "--starts", "4", "--drawings", "0", "--resume")
+    assert refused.exit_code == 2
+    assert "search.json: is not the record of a search" in refused.stderr
+    done = grashof("solve", "luggage", "--starts", "4", "--drawings", "0")
+    assert done.exit_code == 0
+    assert "the record of an unfinished search is kept as search-old" in done.stderr
+    assert (tmp_path / "luggage-designs" / "search-old" / "search.json").read_text() == "{}"
+
+
+def test_without_a_record_the_search_begins_anew(grashof: Grashof, tmp_path: Path) -> None:
+    done = grashof("solve", "luggage", "--starts", "4", "--drawings", "0", "--resume")
+    assert done.exit_code == 0
+    assert "has no record of a search; it begins anew" in done.stderr
+
+
+def test_two_runs_do_not_share_a_folder(grashof: Grashof, tmp_path: Path) -> None:
+    folder = tmp_path / "luggage-designs"
+    with in_use(folder):
+        done = grashof("solve", "luggage", "--starts", "4", "--drawings", "0")
+    assert done.exit_code == 2
+    assert done.stderr.splitlines()[-1].endswith("name another folder")
+    assert grashof("solve", "luggage", "--starts", "4", "--drawings", "0").exit_code == 0
+
+
+def test_what_a_killed_run_left_is_removed(grashof: Grashof, tmp_path: Path) -> None:
+    left = tmp_path / "luggage-designs" / ".writing-abc"
+    left.mkdir(parents=True)
+    (left / "candidates.csv").touch()
+    assert grashof("solve", "luggage", "--starts", "4", "--drawings", "0").exit_code == 0
+    assert not left.exists()

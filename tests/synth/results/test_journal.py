@@ -1,0 +1,128 @@
+"""Records of searches: wherever a search ended, it goes on to the same list."""
+
+import json
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import grashof.synth.results.journal as journal_module
+import grashof.synth.results.workers as workers_module
+from grashof import load, synthesize
+from grashof.problems import MotionTask, PathTask, Problem, ProblemError, Requirements
+from grashof.synth import Result
+
+LINE = [[20.0, 20 + 5.0 * k] for k in range(6)]
+CONVEYOR = MotionTask.from_degrees([[0, 0, 0], [60, 90, 15], [180, 140, 40], [300, 90, 70], [360, 0, 90]])
+KINDS = {
+    "poses": (load("luggage"), {"starts": 60, "enough": 50}),
+    "poses fitted": (Problem(task=CONVEYOR, requirements=Requirements(exact=False)), {"effort": 0.35}),
+    "points met": (load("path-vertical-line"), {"starts": 30, "enough": 6}),
+    "points fitted": (load("path-ellipse"), {"effort": 0.35}),
+    "none": (
+        Problem(task=PathTask(LINE), requirements=Requirements(link_length=(1.0, 12.0))),
+        {"starts": 10, "enough": 2, "effort": 0.2},
+    ),
+}
+
+
+class Killed(BaseException):
+    """As if the process had been killed."""
+
+
+@pytest.fixture(autouse=True)
+def every_step_in_a_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(journal_module, "EVERY", 0.0)
+
+
+def table(result: Result) -> str:
+    return result.to_frame().to_csv() + result.note + result.ended
+
+
+@pytest.mark.usefixtures("small_search")
+@pytest.mark.quick("poses", "poses fitted", "points met")
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_search_that_was_killed_goes_on_to_the_same_list(
+    kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem, options = KINDS[kind]
+    whole, folder = synthesize(problem, **options), tmp_path / "search"
+    attempt, left = workers_module.attempt, [0]
+
+    def mortal(*given: object) -> object:
+        left[0] -= 1
+        if left[0] < 0:
+            raise Killed
+        return attempt(*given)
+
+    monkeypatch.setattr(workers_module, "attempt", mortal)
+    result, tries = None, 0
+    while result is None:
+        left[0], tries = 20, tries + 1
+        try:
+            result = synthesize(problem, **options, record=folder)
+        except Killed:
+            assert tries < 40
+    assert tries > (kind == "poses")
+    assert table(result) == table(whole)
+    assert not folder.exists()
+
+
+def recorded(folder: Path) -> Path:
+    """The record of a search that was stopped after a few solves."""
+    problem, options = KINDS["poses fitted"]
+    synthesize(problem, **options, record=folder, stop=lambda: len(list(folder.glob("0*.json"))) > 1)
+    return folder
+
+
+@pytest.mark.parametrize("stop", [0.1, 0.4, 0.8])
+def test_a_search_that_was_stopped_goes_on_to_the_same_list(tmp_path: Path, stop: float) -> None:
+    problem, options = KINDS["poses fitted"]
+    begun = time.monotonic()
+    whole = synthesize(problem, **options)
+    end = time.monotonic() + stop * (time.monotonic() - begun)
+    synthesize(problem, **options, record=tmp_path / "search", stop=lambda: time.monotonic() > end)
+    assert table(synthesize(problem, **options, record=tmp_path / "search")) == table(whole)
+
+
+@pytest.mark.parametrize("damage", ["truncated", "other", "empty"])
+def test_what_is_damaged_is_done_again(tmp_path: Path, damage: str) -> None:
+    problem, options = KINDS["poses fitted"]
+    folder = recorded(tmp_path / "search")
+    first = min(folder.glob("0*.json"))
+    text = first.read_text(encoding="utf-8")
+    harmed = {"truncated": text[: len(text) // 2], "other": json.dumps({"steps": [{"step": 1}]}), "empty": ""}
+    first.write_text(harmed[damage], encoding="utf-8")
+    assert table(synthesize(problem, **options, record=folder)) == table(synthesize(problem, **options))
+
+
+def test_the_record_of_another_search_is_refused(tmp_path: Path) -> None:
+    problem, options = KINDS["poses fitted"]
+    folder = recorded(tmp_path / "search")
+    with pytest.raises(ProblemError, match="is the record of a search for another problem"):
+        synthesize(load("path-ullah"), **options, record=folder)
+    with pytest.raises(ProblemError, match="a search with seed 0; here it is 3"):
+        synthesize(problem, **options, seed=3, record=folder)
+    head = json.loads((folder / "search.json").read_text(encoding="utf-8"))
+    for changed, said in (
+        (head | {"casadi version": "1.0"}, "a search with casadi version 1.0; here it is 3"),
+        (head | {"format": 0}, "a search with format 0; here it is 1"),
+        ([], "is not the record of a search"),
+    ):
+        (folder / "search.json").write_text(json.dumps(changed), encoding="utf-8")
+        with pytest.raises(ProblemError, match=said):
+            synthesize(problem, **options, record=folder)
+    assert list(folder.glob("0*.json"))
+
+
+def test_functions_of_the_user_are_not_recorded(tmp_path: Path) -> None:
+    with pytest.raises(ProblemError, match="record does not go with constraints or an objective"):
+        synthesize(load("luggage"), constraints=[lambda d: d.r2 - 3], record=tmp_path / "search")
+
+
+def test_a_short_search_leaves_no_record(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(journal_module, "EVERY", 1000.0)
+    problem = replace(load("luggage"))
+    synthesize(problem, starts=4, record=tmp_path / "search")
+    assert not (tmp_path / "search").exists()

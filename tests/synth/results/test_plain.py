@@ -1,0 +1,73 @@
+"""Values written as JSON come back to the last bit."""
+
+import json
+
+import numpy as np
+import pytest
+
+from grashof import load
+from grashof.synth import Candidate, Result
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.results.attempt import Attempt
+from grashof.synth.results.plain import plain, restored
+from grashof.synth.results.table import to_frame
+from grashof.synth.starts.finder import finder_for
+
+
+def back(value: object, name: str = "luggage") -> object:
+    return restored(json.loads(json.dumps(plain(value))), load(name))
+
+
+@pytest.mark.parametrize(
+    "value",
+    [None, True, 3, -0.0, 1e-308, "text", (1, (2.5, "a")), [1, 2], {"a": 1, 2: (3,)}, 1 - 2j, float("inf")],
+)
+def test_values_come_back(value: object) -> None:
+    assert repr(back(value)) == repr(value)
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.float32, np.int64, np.bool_, np.complex128])
+@pytest.mark.parametrize("shape", [(), (0,), (3,), (2, 2)])
+def test_arrays_come_back(dtype: type, shape: tuple[int, ...]) -> None:
+    numbers = np.random.default_rng(0).normal(size=(2, *shape))
+    array = np.asarray(numbers[0] + (1j * numbers[1] if dtype is np.complex128 else 0)).astype(dtype)
+    found = back(array)
+    assert isinstance(found, np.ndarray)
+    assert (found.dtype, found.shape) == (array.dtype, array.shape)
+    assert found.tobytes() == array.tobytes()
+    assert not found.flags.writeable
+
+
+def test_a_scalar_is_no_array() -> None:
+    assert type(back(np.float64(0.1))) is np.float64
+
+
+def test_designs_come_back(luggage_result: Result) -> None:
+    some = luggage_result.candidates[:5]
+    found = back(tuple(Attempt("Solve_Succeeded", each) for each in some))
+    again = tuple(one.candidate for one in found)  # type: ignore[attr-defined]
+    assert all(isinstance(each, Candidate) for each in again)
+    problem = luggage_result.problem
+    assert to_frame(problem, again).to_csv() == to_frame(problem, some).to_csv()
+
+
+@pytest.mark.parametrize("name", ["luggage", "path-ellipse"])
+def test_rounds_come_back(name: str) -> None:
+    scaled = ScaledProblem.of(load(name))
+    made = finder_for(scaled).round(0, 5, np.random.default_rng(0), 1)
+    assert repr(back(made, name)) == repr(made)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '{"eval": ["1"]}',
+        '{"array": ["O", [1], [1]]}',
+        '{"Start": {}}',
+        '{"word": ["os", 1]}',
+        '{"a": 1, "b": 2}',
+    ],
+)
+def test_what_is_no_value_is_refused(text: str) -> None:
+    with pytest.raises((ValueError, KeyError, TypeError)):
+        restored(json.loads(text), load("luggage"))
