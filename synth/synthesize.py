@@ -22,8 +22,9 @@ from grashof.synth.results.journal import journal_of
 from grashof.synth.results.result import Result
 from grashof.synth.results.search import Progress, Run, searches
 from grashof.synth.results.tally import CHOICE, DISTINCT
-from grashof.synth.results.workers import solving
+from grashof.synth.results.workers import working
 from grashof.synth.starts.finder import finder_for, finder_of
+from grashof.synth.theory.stopping import stopping
 
 
 def synthesize(
@@ -59,7 +60,8 @@ def synthesize(
     workers : int
         Processes. The result does not depend on it; a search of a second or two gains nothing.
     executor : concurrent.futures.Executor, optional
-        Where to solve instead; not shut down. Threads gain nothing: one of them solves at a time.
+        Where to work instead; not shut down. State by `workers` how many it has: so much is begun ahead.
+        Threads gain nothing: one of them solves at a time.
     time_limit : float, s, optional
         The search ends soon after it.
     progress : callable, optional
@@ -112,8 +114,12 @@ def synthesize(
         out_of_time = time_limit is not None and perf_counter() - begun > time_limit
         return out_of_time or (stop is not None and stop())
 
-    with journal_of(record, problem, search) as journal, solving(workers, executor) as attempts:
-        run = Run(search, attempts, ended, journal, progress)
+    with (
+        stopping(ended),
+        journal_of(record, problem, search) as journal,
+        working(workers, executor) as work,
+    ):
+        run = Run(search, work, ended, journal, progress)
         ledgers = searches(scaled, run)  # starts, solves, verified designs
         chosen = choose(scaled, ledgers, run)
         explanation = explain(scaled, ledgers[-1], chosen, run)

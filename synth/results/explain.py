@@ -20,7 +20,7 @@ from grashof.synth.results.relaxations import relaxations
 from grashof.synth.results.search import Run, search_designs
 from grashof.synth.results.trade_offs import Chosen
 from grashof.synth.starts.finder import finder_for
-from grashof.synth.theory.stopping import Stopped, stopping
+from grashof.synth.theory.stopping import Stopped
 
 STOPPED = "no design: the search was stopped before it found one"
 UNEXPLAINED = "no design: the search for the reason was stopped"
@@ -63,7 +63,7 @@ def explain(scaled: ScaledProblem, ledger: Ledger, chosen: Chosen, run: Run) -> 
         return Explanation(STOPPED)
     asked = ledger.scaled if len(scaled.targets) < 3 else scaled  # two poses nearly met are two that are met
     try:
-        with run.timed("explaining"), stopping(run.asked_to_stop):
+        with run.timed("explaining"):
             return _explained(asked, ledger, chosen.rejected, run)
     except Stopped:
         return Explanation(UNEXPLAINED)

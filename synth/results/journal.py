@@ -30,6 +30,10 @@ T = TypeVar("T")
 class Journal(Protocol):
     """What has been done in a search, in its order."""
 
+    @property
+    def recorded(self) -> bool:
+        """Whether the next step is recorded, or may be."""
+
     def done(self, kind: str, of: Any, problem: Problem, do: Callable[[], T], /) -> T:
         """The result of the next step: as recorded, else done now.
 
@@ -51,6 +55,8 @@ class Journal(Protocol):
 
 class Unrecorded:
     """No journal: every step is done."""
+
+    recorded = False
 
     def done(self, _kind: str, _of: Any, _problem: Problem, do: Callable[[], T], /) -> T:
         """The result of a step."""
@@ -113,6 +119,11 @@ class Recorded:
         if self._open and self._fresh:
             self._write()
         self._open = False
+
+    @property
+    def recorded(self) -> bool:
+        """Whether the next step may be recorded."""
+        return bool(self._recorded or self._unread)
 
     @property
     def is_open(self) -> bool:

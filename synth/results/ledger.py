@@ -75,6 +75,10 @@ class Ledger:
                 self._begun.append(marks)
         return chosen
 
+    def promising(self, made: Round, starts: list[Start]) -> list[Start]:
+        """Starts that may be worthwhile when it is their turn."""
+        return [start for start in starts if self.scaled.exact or not self._too_far(made, start)]
+
     def take(self, attempts: list[Attempt]) -> None:
         """Count a batch, and keep what is verified."""
         self.tally.add(attempts)

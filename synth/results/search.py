@@ -20,13 +20,14 @@ from grashof.synth.programme.user_functions import mended
 from grashof.synth.results.attempt import Attempt
 from grashof.synth.results.journal import Journal, Unrecorded
 from grashof.synth.results.ledger import SAME, Ledger
-from grashof.synth.results.workers import Solver
+from grashof.synth.results.workers import Work
 from grashof.synth.starts.finder import Finder, asked_first, finder_for, rounds
-from grashof.synth.theory.stopping import Stopped, stopping
+from grashof.synth.theory.stopping import Stopped
 
 # Solves between two looks at what is verified, fixed, so that workers change nothing: of exact designs,
 # and of least squares, where every look may spare solves.
 BATCH, BATCH_LEAST_SQUARES = 16, 8
+EXPECTED = 3  # rounds that most searches take: so many are begun ahead
 LAST = 8  # solves at most of a search that is stopped before it has a design
 T = TypeVar("T")
 LARGER = 2  # times the draws and starts of a usual round: rounds that more effort adds
@@ -59,8 +60,8 @@ class Run:
     Parameters
     ----------
     search : Search
-    attempts : callable
-        Attempts from starts (`Solver`).
+    work : Work
+        Where screenings and attempts are made.
     asked_to_stop : callable
         Asked between solves: to be content with what there is.
     journal : Journal
@@ -71,7 +72,7 @@ class Run:
     """
 
     search: Search
-    attempts: Solver
+    work: Work
     asked_to_stop: Callable[[], bool]
     journal: Journal = field(default_factory=Unrecorded)
     progress: Callable[[Progress], object] | None = None
@@ -94,20 +95,22 @@ class Run:
         if not starts:
             return []
         step = ("solve", (first, *starts), scaled.problem)
-        return self.journal.done(*step, lambda: self.whole(self.attempts(scaled, starts, first)))
+        return self.journal.done(*step, lambda: self.whole(self.work.attempts(scaled, starts, first)))
 
-    def screened(self, finder: Finder, scaled: ScaledProblem, effort: int, number: int) -> Round | None:
-        """One round of a finder; rounds of more effort are larger."""
-        seed = np.random.SeedSequence(
-            self.search.seed, spawn_key=(effort, number) if effort or number else ()
+    def screened(self, scaled: ScaledProblem, effort: int, number: int) -> Round | None:
+        """One round of a search; those that more effort adds are larger."""
+        which = (effort, number, self.search.enough, self.search.seed, LARGER)
+        if not self.journal.recorded:
+            for later in range(number + 1, min(number + self.work.width, EXPECTED)):
+                self.work.begin_screening(scaled, effort, later, *which[2:])
+        return self.journal.done(
+            "screen", which, scaled.problem, lambda: self.whole(self.work.screened(scaled, *which))
         )
-        size, enough = LARGER if effort else 1, self.search.enough
 
-        def screen() -> Round | None:
-            with stopping(self.asked_to_stop):
-                return self.whole(finder.round(number, enough, np.random.default_rng(seed), size))
-
-        return self.journal.done("screen", (effort, number, enough), scaled.problem, screen)
+    def begin(self, scaled: ScaledProblem, starts: list[Start]) -> None:
+        """Begin solves that may be wanted, where that costs no time."""
+        if not self.journal.recorded:
+            self.work.begin_attempts(scaled, starts)
 
     @contextmanager
     def timed(self, stage: str) -> Iterator[None]:
@@ -156,7 +159,7 @@ def _rounds(finder: Finder, ledger: Ledger, run: Run) -> Iterator[Round]:
     """Rounds until what the effort asks for is done: those of ``effort = 1`` first, then larger ones."""
     for effort in count():
         any_starts = False
-        for found in rounds(finder, partial(_timed_round, finder, ledger, run, effort)):
+        for found in rounds(finder, partial(_timed_round, ledger, run, effort)):
             any_starts = any_starts or bool(found.starts)
             yield found
             if ledger.done or (not effort and ledger.ended):
@@ -167,11 +170,11 @@ def _rounds(finder: Finder, ledger: Ledger, run: Run) -> Iterator[Round]:
             return
 
 
-def _timed_round(finder: Finder, ledger: Ledger, run: Run, effort: int, number: int) -> Round | None:
+def _timed_round(ledger: Ledger, run: Run, effort: int, number: int) -> Round | None:
     """One round; none where it was stopped before it had any start."""
     with run.timed("screening"):
         try:
-            return run.screened(finder, ledger.scaled, effort, number)
+            return run.screened(ledger.scaled, effort, number)
         except Stopped:
             ledger.complete = False
             return None
@@ -188,6 +191,7 @@ def _solve_round(found: Round, ledger: Ledger, run: Run) -> None:
         if not ledger.within_round or (ended and (ledger.best or begin)):
             return
         some = ledger.worthwhile(found, starts[begin : begin + (LAST if ended else batch)], first=begin == 0)
+        run.begin(scaled, some + ledger.promising(found, starts[begin + batch :]))
         if some:
             _solve(some[: ledger.starts - ledger.solved], ledger, run)
         if run.progress is not None:

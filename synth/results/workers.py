@@ -1,61 +1,275 @@
-"""Where attempts are made: here, or in other processes."""
+"""Where screenings and attempts are made: here, or in other processes."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator
-from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor
+from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
-from multiprocessing import get_context
+from dataclasses import replace
+from multiprocessing import connection, get_context, parent_process
 from signal import SIG_IGN, SIGINT, signal
-from typing import TypeAlias
+from threading import Thread
+from typing import Any, Protocol
+
+import numpy as np
 
 from grashof.problems import SolverError
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.start import Start
+from grashof.synth.programme.start import Round, Start
 from grashof.synth.results.attempt import Attempt, attempt
+from grashof.synth.starts.finder import finder_for
+from grashof.synth.theory.stopping import Stopped, asked_to_stop, stop_when
 
-# Attempts from starts, numbered from a first one, in their order.
-Solver: TypeAlias = Callable[[ScaledProblem, list[Start], int], list[Attempt]]
+AHEAD = 4  # solves begun for each process before it is known that they are wanted
+LOOK = 0.1  # s between two looks whether to stop
+# Status of a start that ends the process that solves it, and of one that was not waited for.
+CRASHED, STOPPED = "Crashed", "Stopped"
+
+STOP, OVER = 1, 2  # what the processes are told: to be content with what there is, and to end
+
+
+class Work(Protocol):
+    """Screenings and attempts of a search: functions of what they are given, wherever they are made."""
+
+    @property
+    def width(self) -> int:
+        """So many can be made at a time."""
+
+    def attempts(self, scaled: ScaledProblem, starts: list[Start], first: int, /) -> list[Attempt]:
+        """Attempts from starts, numbered from a first one, in their order."""
+
+    def screened(self, scaled: ScaledProblem, *which: int) -> Round | None:
+        """A round, as `screen` makes it."""
+
+    def begin_attempts(self, scaled: ScaledProblem, starts: list[Start], /) -> None:
+        """Begin attempts that may be wanted."""
+
+    def begin_screening(self, scaled: ScaledProblem, *which: int) -> None:
+        """Begin a round that may be wanted."""
+
+
+def screen(
+    scaled: ScaledProblem, effort: int, number: int, enough: int, seed: int, larger: int
+) -> Round | None:
+    """One round of the search for starts; it depends on no other one.
+
+    Parameters
+    ----------
+    scaled : ScaledProblem
+    effort, number : int
+        Which one: of the usual rounds (0), or of those that a greater effort adds.
+    enough, seed : int
+    larger : int
+        Times the draws and starts of a usual round, of those that more effort adds.
+    """
+    key = (effort, number) if effort or number else ()
+    rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=key))
+    return finder_for(scaled).round(number, enough, rng, larger if effort else 1)
+
+
+class Here:
+    """One after the other in this process, when it is wanted."""
+
+    width = 1
+
+    def attempts(self, scaled: ScaledProblem, starts: list[Start], first: int, /) -> list[Attempt]:
+        """Attempts from starts."""
+        return [attempt(scaled, start, number) for number, start in enumerate(starts, first)]
+
+    def screened(self, scaled: ScaledProblem, *which: int) -> Round | None:
+        """A round."""
+        return screen(scaled, *which)
+
+    def begin_attempts(self, scaled: ScaledProblem, starts: list[Start], /) -> None:
+        """Nothing is begun early."""
+
+    def begin_screening(self, scaled: ScaledProblem, *which: int) -> None:
+        """Nothing is begun early."""
+
+
+class Elsewhere:
+    """On an executor; what may be wanted is begun early, and dropped where it is not.
+
+    Parameters
+    ----------
+    executor : Executor
+    width : int
+        How many it works on at a time.
+    """
+
+    def __init__(self, executor: Executor, width: int) -> None:
+        self._executor, self.width = executor, width
+        # By what identifies a piece of work, which is kept so that no other one gets its identity.
+        self._begun: dict[tuple[Any, ...], tuple[Future[Any], Any]] = {}
+
+    def attempts(self, scaled: ScaledProblem, starts: list[Start], first: int, /) -> list[Attempt]:
+        """Attempts from starts; one that ends the process that makes it is given up."""
+        for start in starts:
+            self._submit((id(start),), attempt, scaled, start, 0)
+        made = []
+        for number, start in enumerate(starts, first):
+            try:
+                one = self._result((id(start),), attempt, scaled, start, 0)
+            except CrashError:
+                one = Attempt(CRASHED, None)
+            except Stopped:
+                one = Attempt(STOPPED, None)
+            made.append(_numbered(one, number))
+        return made
+
+    def screened(self, scaled: ScaledProblem, *which: int) -> Round | None:
+        """A round."""
+        found: Round | None = self._result((id(scaled), *which), screen, scaled, *which)
+        return found
+
+    def begin_attempts(self, scaled: ScaledProblem, starts: list[Start], /) -> None:
+        """Begin as many as there may soon be processes for."""
+        if self.width > 1:
+            for start in starts[: AHEAD * self.width]:
+                self._submit((id(start),), attempt, scaled, start, 0)
+
+    def begin_screening(self, scaled: ScaledProblem, *which: int) -> None:
+        """Begin a round."""
+        if self.width > 1:
+            self._submit((id(scaled), *which), screen, scaled, *which)
+
+    def drop(self) -> None:
+        """Cancel what is not wanted any more."""
+        for future, _ in self._begun.values():
+            future.cancel()
+        self._begun.clear()
+
+    def _submit(self, key: tuple[Any, ...], function: Callable[..., Any], *given: Any) -> None:
+        if key not in self._begun:
+            try:
+                self._begun[key] = (self._executor.submit(function, *given), given)
+            except BrokenExecutor as error:
+                self._lost(error)
+                self._begun[key] = (self._executor.submit(function, *given), given)
+
+    def _result(self, key: tuple[Any, ...], function: Callable[..., Any], *given: Any) -> Any:
+        self._submit(key, function, *given)
+        future, _ = self._begun.pop(key)
+        try:
+            return self._waited_for(future)
+        except BrokenExecutor as error:
+            self._lost(error)
+        try:  # alone, so that it is known whose fault it is
+            return self._waited_for(self._executor.submit(function, *given))
+        except BrokenExecutor as error:
+            self._lost(error)
+            raise CrashError(f"a worker process was lost twice: {error}") from error
+
+    def _waited_for(self, future: Future[Any]) -> Any:
+        while not wait([future], LOOK).done:
+            self._look()
+        return future.result()
+
+    def _look(self) -> None:
+        if asked_to_stop():
+            raise Stopped
+
+    def _lost(self, error: BrokenExecutor) -> None:
+        raise SolverError(f"a worker process was lost: {error}") from error
+
+
+class CrashError(SolverError):
+    """A piece of work ends the process that does it."""
+
+
+class Processes(Elsewhere):
+    """In processes of its own, which end with this one; one that is lost is replaced."""
+
+    def __init__(self, count: int) -> None:
+        self._context = get_context("spawn")
+        # Without a lock: one that a killed process holds would never be free again.
+        self._state = self._context.RawValue("b", 0)
+        super().__init__(self._started(count), count)
+        self._warm = False
+
+    def end(self) -> None:
+        """End the processes, and what they do."""
+        self._state.value = OVER
+        self.drop()
+        self._executor.shutdown(cancel_futures=True)
+
+    def _started(self, count: int) -> ProcessPoolExecutor:
+        return ProcessPoolExecutor(
+            count, mp_context=self._context, initializer=_begin_worker, initargs=(self._state,)
+        )
+
+    def _result(self, key: tuple[Any, ...], function: Callable[..., Any], *given: Any) -> Any:
+        self._submit(key, function, *given)
+        if not self._warm and self._begun[key][0].cancel():  # while the processes start, it is done here
+            del self._begun[key]
+            return function(*given)
+        self._warm = True
+        return super()._result(key, function, *given)
+
+    def _look(self) -> None:
+        if asked_to_stop():
+            self._state.value = STOP
+
+    def _lost(self, error: BrokenExecutor) -> None:  # noqa: ARG002  (what was lost is done again)
+        self.drop()
+        self._executor.shutdown(cancel_futures=True)
+        self._executor = self._started(self.width)
 
 
 @contextmanager
-def solving(workers: int, executor: Executor | None) -> Iterator[Solver]:
-    """A function that makes attempts, in the order of their starts, here or in other processes.
+def working(workers: int, executor: Executor | None) -> Iterator[Work]:
+    """Where screenings and attempts are made, in the order asked for.
 
     Parameters
     ----------
     workers : int
-        Processes of its own, which end with it; none for one.
+        Processes of its own, which end with it; none for one. How many an `executor` has.
     executor : concurrent.futures.Executor, optional
-        Where to solve instead; not shut down.
+        Where to work instead; not shut down.
 
     Raises
     ------
     SolverError
-        A process was lost.
+        The executor was lost.
     """
-    own = None
-    if executor is None and workers > 1:
-        own = executor = ProcessPoolExecutor(
-            workers, mp_context=get_context("spawn"), initializer=_ignore_interrupt
-        )
-
-    def solve(scaled: ScaledProblem, batch: list[Start], first: int) -> list[Attempt]:
-        numbers = range(first, first + len(batch))
-        if executor is None:
-            return [attempt(scaled, start, number) for start, number in zip(batch, numbers, strict=True)]
+    if executor is not None:
+        elsewhere = Elsewhere(executor, workers)
         try:
-            return list(executor.map(attempt, [scaled] * len(batch), batch, numbers))
-        except BrokenExecutor as error:
-            raise SolverError(f"a worker process was lost: {error}") from error
+            yield elsewhere
+        finally:
+            elsewhere.drop()
+    elif workers > 1:
+        processes = Processes(workers)
+        try:
+            yield processes
+        finally:
+            processes.end()
+    else:
+        yield Here()
 
-    try:
-        yield solve
-    finally:
-        if own is not None:
-            own.shutdown(cancel_futures=True)
+
+def _numbered(one: Attempt, number: int) -> Attempt:
+    """An attempt with the number of its start."""
+    if one.candidate is None:
+        return one
+    cognates = tuple(replace(each, start=number) for each in one.cognates)
+    return replace(one, candidate=replace(one.candidate, start=number), cognates=cognates)
 
 
-def _ignore_interrupt() -> None:
-    """Ctrl-C reaches every process of a terminal; the parent alone decides what it means."""
+def _begin_worker(state: Any) -> None:
+    """Ctrl-C reaches every process of a terminal, and the parent alone decides what it means.
+
+    A worker ends once the search is over, whatever it does then, and with its parent, however that ends.
+    """
     signal(SIGINT, SIG_IGN)
+    stop_when(lambda: state.value >= STOP)
+    Thread(target=_end_in_time, args=(state,), daemon=True).start()
+
+
+def _end_in_time(state: Any) -> None:
+    parent = parent_process()
+    sentinels = [parent.sentinel] if parent is not None else []
+    while state.value < OVER and not connection.wait(sentinels, LOOK):
+        pass
+    os._exit(0)

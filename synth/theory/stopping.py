@@ -24,6 +24,11 @@ def stopping(asked: Callable[[], bool]) -> Iterator[None]:
         _ASKED.reset(token)
 
 
+def stop_when(asked: Callable[[], bool]) -> None:
+    """As `stopping`, for all that this thread computes from now on."""
+    _ASKED.set(asked)
+
+
 def asked_to_stop() -> bool:
     """Whether to be content with what there is."""
     return _ASKED.get()()

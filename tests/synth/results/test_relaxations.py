@@ -14,14 +14,13 @@ from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, FourBar, MotionTask, PathTask, Problem, Requirements
 from grashof.synth import Result
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.start import Start
-from grashof.synth.results.attempt import attempt
 from grashof.synth.results.explain import explain
 from grashof.synth.results.ledger import Ledger
 from grashof.synth.results.relaxations import relaxations
 from grashof.synth.results.relaxed_limits import Relaxation, limiting, loosest, relaxation
 from grashof.synth.results.search import Run
 from grashof.synth.results.trade_offs import Chosen
+from grashof.synth.results.workers import Here
 
 pytestmark = pytest.mark.usefixtures("small_search")
 
@@ -32,10 +31,7 @@ def ways(problem: Problem, constraints: tuple[Any, ...] = ()) -> dict[str, Relax
     """The relaxations of a problem, each checked by the judge."""
     scaled = ScaledProblem.of(problem, constraints)
 
-    def solve(scaled: ScaledProblem, starts: list[Start], first: int) -> list[Any]:
-        return [attempt(scaled, start, first + k) for k, start in enumerate(starts)]
-
-    run = Run(problem.search, solve, lambda: False)
+    run = Run(problem.search, Here(), lambda: False)
     found = relaxations(scaled, [], np.random.default_rng(0), run)
     assert [way.miss for way in found] == sorted(way.miss for way in found)
     for way in found:
@@ -216,10 +212,11 @@ def test_it_can_be_stopped() -> None:
     problem = replace(load("luggage"), requirements=Requirements(link_length=(0.3, 1.5)))
     scaled = ScaledProblem.of(problem)
 
-    def none(*_: Any) -> Any:
-        raise AssertionError("asked although stopped")
+    class NoWork(Here):
+        def attempts(self, *_: Any) -> Any:
+            raise AssertionError("asked although stopped")
 
-    run = Run(problem.search, none, lambda: True)
+    run = Run(problem.search, NoWork(), lambda: True)
     said = explain(scaled, Ledger(scaled, problem.search, ""), Chosen((), [], 0), run)
     assert said.note.startswith("no design")
     assert said.nearest == ()
