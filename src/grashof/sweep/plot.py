@@ -1,0 +1,185 @@
+"""The trade-off of a sweep as a plot: over one varied number, over two, or of the best designs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib import colormaps, rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from grashof.figures.files import STYLE, shortened
+from grashof.figures.linkage import figure_of
+from grashof.figures.parts import COUPLER, DRIVER, GROUND, KEPT_OUT, OUTPUT
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.requirements import QUANTITIES
+from grashof.sweep.result import Sweep
+
+_WRITTEN = 144  # cells of a grid up to which each has its number
+_NAMED = 60  # points up to which each has the number of its combination
+
+
+def plot_sweep(done: Sweep, frame: pd.DataFrame) -> Figure:
+    """The trade-off of a sweep.
+
+    Over one varied number what decides and the size of the best designs; over two the same as grids; else
+    one against the other, with the Pareto-optimal ones joined.
+
+    Parameters
+    ----------
+    done : Sweep
+    frame : DataFrame
+        Its table.
+    """
+    with rc_context(STYLE):
+        best = frame.drop_duplicates("combination")
+        decides, size = _measures(done)
+        keys = number_axes(done)
+        if len(keys) == 1:
+            figure = _over_one(best, keys[0], decides, size)
+        elif len(keys) == 2:
+            figure = _over_two(best, keys, decides, size)
+        else:
+            figure = _front(best, decides, size)
+        figure.suptitle(shortened(done.study.title or done.study.name), fontsize=10, parse_math=False)
+    return figure
+
+
+def number_axes(done: Sweep) -> tuple[str, ...]:
+    """The one or two keys that the plot is over, all numbers; empty for other sweeps.
+
+    Of keys that vary in step it is the first that has numbers.
+    """
+    axes = [keys for keys in done.study.axes if len(done.study.vary[keys[0]]) > 1]
+    numeric = [next((key for key in keys if _is_numeric(done.study.vary[key])), "") for keys in axes]
+    return tuple(numeric) if all(numeric) and len(done.study.sources) == 1 and len(numeric) <= 2 else ()
+
+
+def _is_numeric(values: Sequence[Any]) -> bool:
+    return all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values)
+
+
+def _measures(done: Sweep) -> tuple[Mapping[str, Any], Mapping[str, Any]]:
+    """What decides in all combinations, or else the transmission angle; and the size."""
+    stated = [result["decides"] for result in done.results.values() if result["decides"] is not None]
+    size = {"column": "size", "label": _with_unit("size", stated), "better": -1}
+    if stated and all(each["column"] == stated[0]["column"] for each in stated):
+        same = all(each["label"] == stated[0]["label"] for each in stated)
+        return stated[0] if same else {**stated[0], "label": stated[0]["label"].partition(" (")[0]}, size
+    quantity = QUANTITIES["transmission_min_task"]
+    return {"column": quantity.column, "label": f"{quantity.words} (deg)", "better": 1}, size
+
+
+def _with_unit(label: str, stated: Sequence[Mapping[str, Any]]) -> str:
+    units = {each["length_unit"] for each in stated}
+    unit = units.pop() if len(units) == 1 else ""
+    return f"{label} ({unit})" if unit else label
+
+
+def _over_one(best: pd.DataFrame, key: str, decides: Mapping[str, Any], size: Mapping[str, Any]) -> Figure:
+    figure = Figure(figsize=(7.0, 6.0), layout="constrained")
+    panels = figure.subplots(2, sharex=True)
+    rows = best.sort_values(key, kind="stable")
+    places = rows[key].to_numpy(dtype=np.float64)
+    for axes, measure, colour in zip(panels, (decides, size), (COUPLER, DRIVER), strict=True):
+        values = rows[measure["column"]].to_numpy(dtype=np.float64)
+        axes.plot(places, np.where(np.isfinite(values), values, np.nan), marker="o", color=colour)
+        axes.set_ylabel(measure["label"], parse_math=False)
+        without = places[~np.isfinite(values)]
+        axes.plot(
+            without, np.full(len(without), 0.03), "x", color=GROUND, label="no design",
+            transform=axes.get_xaxis_transform(), clip_on=False,
+        )  # fmt: skip
+        axes.margins(y=0.12)
+        if len(without):
+            axes.legend(loc="best", fontsize="small")
+    panels[1].set_xlabel(key, parse_math=False)
+    return figure
+
+
+def _over_two(
+    best: pd.DataFrame, keys: Sequence[str], decides: Mapping[str, Any], size: Mapping[str, Any]
+) -> Figure:
+    figure = Figure(figsize=(11.0, 4.8), layout="constrained")
+    for axes, measure in zip(figure.subplots(1, 2), (decides, size), strict=True):
+        _grid(axes, best, keys, measure)
+    return figure
+
+
+def _grid(axes: Axes, best: pd.DataFrame, keys: Sequence[str], measure: Mapping[str, Any]) -> None:
+    """Values as colours, the better ones bright, the first key to the right and the second one up."""
+    across, up = (sorted(set(best[key])) for key in keys)
+    values = np.full((len(up), len(across)), np.nan)
+    for x, y, value in zip(*(best[name] for name in (*keys, measure["column"])), strict=True):
+        values[up.index(y), across.index(x)] = value if np.isfinite(value) else np.nan
+    scale = colormaps["viridis" if measure["better"] > 0 else "viridis_r"].with_extremes(bad="none")
+    axes.set_facecolor("#e4e6e8")
+    shown = axes.imshow(np.ma.masked_invalid(values), cmap=scale, origin="lower", aspect="auto")
+    axes.grid(visible=False)
+    for index, name, numbers in ((0, "x", across), (1, "y", up)):
+        labels = [f"{number:g}" for number in numbers]
+        every = max(1, -(-len(labels) // 12))
+        getattr(axes, f"set_{name}ticks")(range(0, len(labels), every), labels[::every])
+        getattr(axes, f"set_{name}label")(keys[index], parse_math=False)
+    if values.size <= _WRITTEN:
+        _write(axes, values)
+    if np.isfinite(values).any():
+        figure_of(axes).colorbar(shown, ax=axes).set_label(measure["label"], parse_math=False)
+
+
+def _write(axes: Axes, values: FloatArray) -> None:
+    known = values[np.isfinite(values)]
+    middle = (known.min() + known.max()) / 2 if known.size else 0.0
+    dark_is_low = axes.images[0].cmap.name == "viridis"
+    for (row, column), value in np.ndenumerate(values):
+        if np.isfinite(value):
+            colour = "white" if (value < middle) == dark_is_low else "black"
+            text = f"{value:.3g}"
+        else:
+            colour, text = GROUND, "none"
+        axes.text(column, row, text, ha="center", va="center", color=colour, fontsize="small")
+
+
+def _front(best: pd.DataFrame, decides: Mapping[str, Any], size: Mapping[str, Any]) -> Figure:
+    figure = Figure(figsize=(7.0, 5.8), layout="constrained")
+    axes = figure.subplots()
+    rows = best[best[decides["column"]].notna() & best["size"].notna()]
+    costs = rows[["size", decides["column"]]].to_numpy(dtype=np.float64)
+    finite = np.isfinite(costs).all(axis=1)
+    numbers, costs = rows["combination"].to_numpy()[finite], costs[finite]
+    axes.plot(*costs.T, "o", color=COUPLER, markersize=5, label="best design of a combination", zorder=3)
+    front = costs[not_beaten(costs * [1.0, -decides["better"]])]
+    front = front[np.argsort(front[:, 0])]
+    axes.plot(
+        *front.T, "o--", color=OUTPUT, markersize=10, fillstyle="none", linewidth=1, label="Pareto-optimal"
+    )
+    if len(costs) <= _NAMED:
+        for number, place in zip(numbers, costs, strict=True):
+            axes.annotate(
+                f"{number}",
+                tuple(place),
+                (6, 5),
+                textcoords="offset points",
+                fontsize="small",
+                color=KEPT_OUT,
+            )
+    axes.set_xlabel(size["label"], parse_math=False)
+    axes.set_ylabel(decides["label"], parse_math=False)
+    axes.legend(loc="best", fontsize="small")
+    return figure
+
+
+def not_beaten(costs: FloatArray) -> FloatArray:
+    """Which rows of costs (N, K) no other row beats; shape (N,) of bool.
+
+    Examples
+    --------
+    >>> not_beaten(np.array([[1.0, 3.0], [2.0, 2.0], [2.0, 3.0]])).tolist()
+    [True, True, False]
+    """
+    no_worse = (costs[:, None] <= costs[None]).all(axis=2)
+    better = (costs[:, None] < costs[None]).any(axis=2)
+    return ~np.any(no_worse & better, axis=0)
