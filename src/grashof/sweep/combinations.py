@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import reduce
 from itertools import product
 from math import prod
 from typing import Any
@@ -29,6 +28,8 @@ class Combination:
         Values of the varied keys, and what names the source, by column of the table.
     name : str
         What the problem is called.
+    label : str
+        What distinguishes it, in words.
     text : str
         The problem file; empty where it states no problem.
     wrong : tuple of str
@@ -37,13 +38,9 @@ class Combination:
 
     cells: Mapping[str, Any]
     name: str
+    label: str
     text: str = ""
     wrong: tuple[str, ...] = ()
-
-    @property
-    def label(self) -> str:
-        """What distinguishes it, in words."""
-        return ", ".join(f"{key} = {value}" for key, value in self.cells.items()) or self.name
 
 
 def combinations(study: Study) -> tuple[Combination, ...]:
@@ -71,7 +68,7 @@ def _varied(study: Study) -> Iterator[dict[str, Any]]:
         for keys in study.axes
     ]
     for steps in product(*axes):
-        given = reduce(lambda one, other: {**one, **other}, steps, {})
+        given = {key: value for step in steps for key, value in step.items()}
         yield {key: given[key] for key in study.vary}
 
 
@@ -80,11 +77,14 @@ def _combined(study: Study, source: Source, values: Mapping[str, Any]) -> Combin
     wrong: list[str] = [source.wrong] if source.wrong else []
     text = ""
     if not wrong:
+        document = source.document
+        options = {("search", key): value for key, value in (study.search or {}).items()}
+        for parts, value in [*options.items(), *((key_parts(key), value) for key, value in values.items())]:
+            with noted(wrong):
+                document = assigned(document, parts, value)
         with noted(wrong):
-            document = source.document
-            for key, value in (study.search or {}).items():
-                document = assigned(document, ("search", key), value)
-            for key, value in values.items():
-                document = assigned(document, key_parts(key), value)
             text = problem_toml(problem_from(document, source.name))
-    return Combination(cells, source.name, text, tuple(wrong))
+        text = "" if wrong else text
+    words = [source.label] if source.label else []
+    label = ", ".join([*words, *(f"{key} = {value}" for key, value in values.items())])
+    return Combination(cells, source.name, label or source.name, text, tuple(wrong))

@@ -63,7 +63,8 @@ def _assigned(old: Any, parts: Parts, value: Any, where: str) -> Any:
         index = _COORDINATES.get(head, -1) if isinstance(head, str) else head
         place = _joined(where, head)
         if not 0 <= index < len(old):
-            raise ProblemError(f"{place} is missing; {where} has {len(old)} entries, the first is [0]")
+            last = f"ends with [{len(old) - 1}]" if old else "is empty"
+            raise ProblemError(f"{place} is missing; {where} {last}")
         return [*old[:index], _assigned(old[index], rest, value, place), *old[index + 1 :]]
     if isinstance(head, int):
         raise ProblemError(f"{_joined(where, head)} is missing; {where} is no list")

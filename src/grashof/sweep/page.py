@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from pandas.api.types import is_numeric_dtype
 
 from grashof.page.render import render
 from grashof.page.scene import scene_of
@@ -22,8 +23,7 @@ from grashof.synth.results.table import LISTED
 _SCRIPTS = ("linkage.js", "svg.js", "stage.js", "player.js", "table.js", "sweep.js")
 _ROWS = 1000  # that a browser shows at once without delay
 _DIGITS = 5
-_LONG = ("note",)
-_TEXTS = ("status", "grashof_class", "id", *_LONG)
+_TEXTS = ("status", "grashof_class")
 # Beside what varies, what decides and these: lengths, then what is known of the design.
 _SHOWN = (
     "transmission_min_task_deg", "transmission_min_cycle_deg", "error", "torque_peak", "size", "r1", "r2",
@@ -40,7 +40,6 @@ class Heading:
     unit: str = ""
     better: int = 0
     text: bool = False
-    long: bool = False
 
 
 def sweep_page(done: Sweep, frame: pd.DataFrame, picture: bytes, record: Mapping[str, Any]) -> str:
@@ -69,7 +68,8 @@ def sweep_page(done: Sweep, frame: pd.DataFrame, picture: bytes, record: Mapping
             {
                 "drawing": done.results[place]["drawing"],
                 "scene": of_place.get(place),
-                "about": _about(done, place),
+                "about": done.combinations[place].label,
+                "note": done.results[place]["note"],
             }
             for place in places
         ],
@@ -83,8 +83,14 @@ def sweep_page(done: Sweep, frame: pd.DataFrame, picture: bytes, record: Mapping
         picture=b64encode(picture).decode("ascii"),
         moves=any(done.results[place]["drawing"] for place in places),
         columns=columns,
+        given=[column.key for column in columns].index("designs") + 1,
         rows=[
-            {"index": index, "found": done.results[place]["found"] > 0, "cells": list(map(_text, row))}
+            {
+                "index": index,
+                "found": done.results[place]["found"] > 0,
+                "note": done.results[place]["note"],
+                "cells": list(map(_text, row)),
+            }
             for index, (place, row) in enumerate(zip(places, rows, strict=True))
         ],
         shown=len(shown),
@@ -118,11 +124,13 @@ def _columns(done: Sweep, shown: pd.DataFrame) -> list[Heading]:
     ]
     return [
         Heading("combination", "#"),
-        *(Heading(key, key, text=shown[key].dtype == object) for key in varied),
+        *(
+            Heading(key, key.removeprefix("requirements."), text=not is_numeric_dtype(shown[key]))
+            for key in varied
+        ),
         Heading("status", "status", text=True),
         Heading("designs", "designs", better=1),
         *named,
-        Heading("note", "what stood in the way", text=True, long=True),
     ]
 
 
@@ -139,11 +147,6 @@ def _scenes(done: Sweep, places: Sequence[int]) -> tuple[list[dict[str, Any]], d
             scenes.setdefault(key, scene)
             of_place[place] = numbers.setdefault(key, len(numbers))
     return list(scenes.values()), of_place
-
-
-def _about(done: Sweep, place: int) -> str:
-    found = done.results[place]["found"]
-    return f"{done.combinations[place].label}{'' if found else ': no design'}"
 
 
 def _value(value: Any) -> float | int | str | bool | None:

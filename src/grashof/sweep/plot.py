@@ -10,15 +10,17 @@ import pandas as pd
 from matplotlib import colormaps, rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
 
 from grashof.figures.files import STYLE, shortened
 from grashof.figures.linkage import figure_of
 from grashof.figures.parts import COUPLER, DRIVER, GROUND, KEPT_OUT, OUTPUT
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.arrays import BoolArray, FloatArray
 from grashof.problems.values.requirements import QUANTITIES
 from grashof.sweep.result import Sweep
 
 _WRITTEN = 144  # cells of a grid up to which each has its number
+_ROUNDING = 1e-6  # of a value
 _NAMED = 60  # points up to which each has the number of its combination
 
 
@@ -36,7 +38,7 @@ def plot_sweep(done: Sweep, frame: pd.DataFrame) -> Figure:
     """
     with rc_context(STYLE):
         best = frame.drop_duplicates("combination")
-        decides, size = _measures(done)
+        decides, size = _measures(done, best)
         keys = number_axes(done)
         if len(keys) == 1:
             figure = _over_one(best, keys[0], decides, size)
@@ -62,11 +64,16 @@ def _is_numeric(values: Sequence[Any]) -> bool:
     return all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values)
 
 
-def _measures(done: Sweep) -> tuple[Mapping[str, Any], Mapping[str, Any]]:
-    """What decides in all combinations, or else the transmission angle; and the size."""
+def _measures(done: Sweep, best: pd.DataFrame) -> tuple[Mapping[str, Any], Mapping[str, Any]]:
+    """What decides in all combinations, or else the transmission angle; and the size.
+
+    An error that is nothing but rounding decides nothing.
+    """
     stated = [result["decides"] for result in done.results.values() if result["decides"] is not None]
     size = {"column": "size", "label": _with_unit("size", stated), "better": -1}
-    if stated and all(each["column"] == stated[0]["column"] for each in stated):
+    met = (best["error"].fillna(0.0) <= _ROUNDING * best["size"].fillna(1.0)).all()
+    columns = {each["column"] for each in stated}
+    if len(columns) == 1 and not (met and columns == {"error"}):
         same = all(each["label"] == stated[0]["label"] for each in stated)
         return stated[0] if same else {**stated[0], "label": stated[0]["label"].partition(" (")[0]}, size
     quantity = QUANTITIES["transmission_min_task"]
@@ -89,12 +96,14 @@ def _over_one(best: pd.DataFrame, key: str, decides: Mapping[str, Any], size: Ma
         axes.plot(places, np.where(np.isfinite(values), values, np.nan), marker="o", color=colour)
         axes.set_ylabel(measure["label"], parse_math=False)
         without = places[~np.isfinite(values)]
-        axes.plot(
-            without, np.full(len(without), 0.03), "x", color=GROUND, label="no design",
-            transform=axes.get_xaxis_transform(), clip_on=False,
-        )  # fmt: skip
         axes.margins(y=0.12)
+        axes.ticklabel_format(useOffset=False)
+        if _alike(values):
+            axes.set_ylim(*_about(values))
         if len(without):
+            low = np.full(len(without), 0.03)
+            at_bottom = {"transform": axes.get_xaxis_transform(), "label": "no design"}
+            axes.plot(without, low, "x", color=GROUND, **at_bottom)
             axes.legend(loc="best", fontsize="small")
     panels[1].set_xlabel(key, parse_math=False)
     return figure
@@ -103,10 +112,22 @@ def _over_one(best: pd.DataFrame, key: str, decides: Mapping[str, Any], size: Ma
 def _over_two(
     best: pd.DataFrame, keys: Sequence[str], decides: Mapping[str, Any], size: Mapping[str, Any]
 ) -> Figure:
-    figure = Figure(figsize=(11.0, 4.8), layout="constrained")
-    for axes, measure in zip(figure.subplots(1, 2), (decides, size), strict=True):
+    figure = Figure(figsize=(7.0, 8.0), layout="constrained")
+    for axes, measure in zip(figure.subplots(2, 1), (decides, size), strict=True):
         _grid(axes, best, keys, measure)
     return figure
+
+
+def _alike(values: FloatArray) -> bool:
+    """Whether values differ by no more than a search leaves open: an axis would show that alone."""
+    known = values[np.isfinite(values)]
+    return bool(known.size) and float(np.ptp(known)) <= _ROUNDING * float(np.abs(known).max())
+
+
+def _about(values: FloatArray) -> tuple[float, float]:
+    """Limits of an axis about values that are alike."""
+    middle = float(np.nanmean(np.where(np.isfinite(values), values, np.nan)))
+    return middle - 0.05 * (abs(middle) or 1.0), middle + 0.05 * (abs(middle) or 1.0)
 
 
 def _grid(axes: Axes, best: pd.DataFrame, keys: Sequence[str], measure: Mapping[str, Any]) -> None:
@@ -117,7 +138,9 @@ def _grid(axes: Axes, best: pd.DataFrame, keys: Sequence[str], measure: Mapping[
         values[up.index(y), across.index(x)] = value if np.isfinite(value) else np.nan
     scale = colormaps["viridis" if measure["better"] > 0 else "viridis_r"].with_extremes(bad="none")
     axes.set_facecolor("#e4e6e8")
-    shown = axes.imshow(np.ma.masked_invalid(values), cmap=scale, origin="lower", aspect="auto")
+    low, high = _about(values) if _alike(values) else (None, None)
+    masked = np.ma.masked_invalid(values)
+    shown = axes.imshow(masked, cmap=scale, vmin=low, vmax=high, origin="lower", aspect="auto")
     axes.grid(visible=False)
     for index, name, numbers in ((0, "x", across), (1, "y", up)):
         labels = [f"{number:g}" for number in numbers]
@@ -125,21 +148,19 @@ def _grid(axes: Axes, best: pd.DataFrame, keys: Sequence[str], measure: Mapping[
         getattr(axes, f"set_{name}ticks")(range(0, len(labels), every), labels[::every])
         getattr(axes, f"set_{name}label")(keys[index], parse_math=False)
     if values.size <= _WRITTEN:
-        _write(axes, values)
+        _write(axes, values, shown)
     if np.isfinite(values).any():
         figure_of(axes).colorbar(shown, ax=axes).set_label(measure["label"], parse_math=False)
 
 
-def _write(axes: Axes, values: FloatArray) -> None:
-    known = values[np.isfinite(values)]
-    middle = (known.min() + known.max()) / 2 if known.size else 0.0
-    dark_is_low = axes.images[0].cmap.name == "viridis"
+def _write(axes: Axes, values: FloatArray, shown: AxesImage) -> None:
+    colours = shown.to_rgba(np.ma.masked_invalid(values))
     for (row, column), value in np.ndenumerate(values):
+        text, colour = "none", GROUND
         if np.isfinite(value):
-            colour = "white" if (value < middle) == dark_is_low else "black"
-            text = f"{value:.3g}"
-        else:
-            colour, text = GROUND, "none"
+            red, green, blue = colours[row, column, :3]
+            text = f"{value:.4g}"
+            colour = "white" if 0.3 * red + 0.59 * green + 0.11 * blue < 0.5 else "black"
         axes.text(column, row, text, ha="center", va="center", color=colour, fontsize="small")
 
 
@@ -168,11 +189,12 @@ def _front(best: pd.DataFrame, decides: Mapping[str, Any], size: Mapping[str, An
             )
     axes.set_xlabel(size["label"], parse_math=False)
     axes.set_ylabel(decides["label"], parse_math=False)
+    axes.ticklabel_format(useOffset=False)
     axes.legend(loc="best", fontsize="small")
     return figure
 
 
-def not_beaten(costs: FloatArray) -> FloatArray:
+def not_beaten(costs: FloatArray) -> BoolArray:
     """Which rows of costs (N, K) no other row beats; shape (N,) of bool.
 
     Examples
@@ -182,4 +204,5 @@ def not_beaten(costs: FloatArray) -> FloatArray:
     """
     no_worse = (costs[:, None] <= costs[None]).all(axis=2)
     better = (costs[:, None] < costs[None]).any(axis=2)
-    return ~np.any(no_worse & better, axis=0)
+    beaten: BoolArray = np.any(no_worse & better, axis=0)
+    return ~beaten

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from contextlib import closing
 from dataclasses import asdict, replace
@@ -16,7 +16,7 @@ from grashof.problems.values.checks import whole_number
 from grashof.sweep.checkpoints import Checkpoints, fingerprint
 from grashof.sweep.combinations import Combination, combinations
 from grashof.sweep.result import Step, Sweep
-from grashof.sweep.solving import Finished, solved
+from grashof.sweep.solving import solved
 from grashof.sweep.study import Study, load_study
 from grashof.sweep.task import Options, invalid, task_key
 
@@ -87,10 +87,11 @@ def sweep(
     }
     try:
         with closing(solved(tuple(tasks.values()), asdict(options), stop, executor, workers)) as ended:
-            for key, result in _kept(ended, kept):
+            for key, result in ended:
+                if kept is not None:
+                    kept.write(key, result)
                 results |= _of_combinations(made, keys, {key: result})
-                number = keys.index(key)
-                tell(Step(len(results), len(made), made[number], result))
+                tell(Step(len(results), len(made), made[keys.index(key)], result))
     finally:
         done = Sweep(stated, made, results, perf_counter() - begun)
         if kept is not None:
@@ -130,13 +131,6 @@ def _of_combinations(
     known = {number: finished[key] for number, key in enumerate(keys) if key in finished}
     wrong = {number: invalid(one.wrong) for number, one in enumerate(made) if not one.text}
     return known | wrong
-
-
-def _kept(ended: Iterator[Finished], kept: Checkpoints | None) -> Iterator[Finished]:
-    for key, result in ended:
-        if kept is not None:
-            kept.write(key, result)
-        yield key, result
 
 
 def _write(folder: Path, done: Sweep, keys: Sequence[str]) -> None:

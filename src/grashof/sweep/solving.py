@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from multiprocessing import get_context, parent_process
 from multiprocessing.synchronize import Event
@@ -26,7 +26,7 @@ def solved(
     stop: Callable[[], bool],
     executor: Executor | None = None,
     workers: int = 1,
-) -> Iterator[Finished]:
+) -> Generator[Finished, None, None]:
     """Key and result of every task as it ends, in no order; those that were stopped are left out.
 
     Parameters
@@ -60,7 +60,7 @@ def solved(
 
 def _in_processes(
     workers: int, tasks: Sequence[Task], options: Mapping[str, Any], stop: Callable[[], bool]
-) -> Iterator[Finished]:
+) -> Generator[Finished, None, None]:
     context = get_context("spawn")
     stopped = context.Event()
     own = ProcessPoolExecutor(workers, mp_context=context, initializer=_begin, initargs=(stopped,))
@@ -77,7 +77,7 @@ def _elsewhere(
     tasks: Sequence[Task],
     options: Mapping[str, Any],
     stop: Callable[[], bool],
-) -> Iterator[Finished]:
+) -> Generator[Finished, None, None]:
     left: dict[Future[dict[str, Any] | None], str] = {}
     try:
         for key, name, text in tasks:

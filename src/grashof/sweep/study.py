@@ -27,7 +27,7 @@ from grashof.problems.values.checks import (
 from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.problem import Search
 from grashof.sweep.keys import key_parts, overlap
-from grashof.sweep.target_table import target_rows
+from grashof.sweep.target_table import NAME, target_rows
 
 _RANGE = ("from", "to", "steps")
 _RANGE_SHAPE = "a list of values or { from = a, to = b, steps = n }"
@@ -46,6 +46,8 @@ class Source:
         What distinguishes it from the other sources, by column of the table; empty for a single one.
     document : dict
         The parsed problem file.
+    label : str
+        The same in words.
     wrong : str
         Why the file is none; empty where it is one.
     """
@@ -53,6 +55,7 @@ class Source:
     name: str
     cells: Mapping[str, Any]
     document: dict[str, Any]
+    label: str = ""
     wrong: str = ""
 
 
@@ -254,7 +257,11 @@ def _sources(document: Mapping[str, Any], folder: Path) -> tuple[Source, ...]:
     if not isinstance(table, str):
         return (base,)
     rows = target_rows(folder / table, base.document)
-    return tuple(Source(base.name, cells, laid) for cells, laid in rows)
+    return tuple(Source(base.name, cells, laid, _row_label(cells)) for cells, laid in rows)
+
+
+def _row_label(cells: Mapping[str, Any]) -> str:
+    return f"row {cells['row']}{f' ({cells[NAME]})' if cells.get(NAME) else ''}"
 
 
 def _base(named: str, folder: Path) -> Source:
@@ -281,7 +288,7 @@ def _problems_in(folder: Path) -> tuple[Source, ...]:
         wrong: list[str] = []
         with noted(wrong):
             document = document_of(file_text(path, "a problem file"), path.name)
-        found.append(Source(name, {"problem": name}, document, "; ".join(wrong)))
+        found.append(Source(name, {"problem": name}, document, name, "; ".join(wrong)))
     if not found:
         raise ProblemError(f"{folder}: has no file *.toml")
     return tuple(found)

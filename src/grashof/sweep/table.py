@@ -64,7 +64,7 @@ def _series(name: str, values: list[Any], varied: Sequence[str]) -> pd.Series[An
         return _of_any(values)
     if name in _NUMBERS:
         return pd.Series([None if value is None else float(value) for value in values], dtype="float64")
-    kind = "Int64" if name in _WHOLE else "boolean" if name in _TRUTH else "object"
+    kind = "Int64" if name in _WHOLE else "boolean" if name in _TRUTH else "string"
     return pd.Series(values, dtype=kind)
 
 
@@ -77,7 +77,7 @@ def _of_any(values: list[Any]) -> pd.Series[Any]:
         return pd.Series(values, dtype="Int64")
     if known and kinds <= {int, float}:
         return pd.Series([None if value is None else float(value) for value in values], dtype="float64")
-    return pd.Series([value if value is None else _text(value) for value in values], dtype="object")
+    return pd.Series([value if value is None else _text(value) for value in values], dtype="string")
 
 
 def _cell(value: Any) -> Any:

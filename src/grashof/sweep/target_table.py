@@ -13,7 +13,7 @@ from typing import Any
 
 from grashof.problems import ProblemError
 from grashof.problems.files.toml_file import file_text
-from grashof.problems.values.checks import noted, refuse
+from grashof.problems.values.checks import located, noted, refuse
 from grashof.sweep.keys import assigned, key_parts
 
 NAME = "name"
@@ -55,12 +55,21 @@ def target_rows(path: Path, base: Mapping[str, Any]) -> list[tuple[dict[str, Any
     for number, line in enumerate(lines[1:], start=2):
         if any(cell.strip() for cell in line):
             with noted(wrong):
-                cells = _cells(f"{path}: line {number}", header, line)
-                rows.append(({"row": len(rows) + 1, **cells}, _laid_over(base, kind, header, cells)))
+                rows.append(_row(f"{path}: line {number}", base, header, line))
     refuse(wrong)
     if not rows:
         raise ProblemError(f"{path}: has no rows; it must have a line for each task")
-    return rows
+    return [({"row": number, **cells}, laid) for number, (cells, laid) in enumerate(rows, start=1)]
+
+
+def _row(
+    where: str, base: Mapping[str, Any], header: Sequence[str], line: Sequence[str]
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    cells = _cells(where, header, line)
+    try:
+        return cells, _laid_over(base, str(base["kind"]), header, cells)
+    except ProblemError as error:
+        raise located(error, where) from None
 
 
 def _check_header(path: Path, header: Sequence[str], kind: str) -> None:
@@ -106,7 +115,7 @@ def _cells(where: str, header: Sequence[str], line: Sequence[str]) -> dict[str, 
 
 def _cell(where: str, name: str, text: str) -> Any:
     if not text:
-        return None
+        return None  # judged with the others of its target
     if _TARGET.fullmatch(name):
         with suppress(ValueError):
             if math.isfinite(number := float(text)):
@@ -122,7 +131,12 @@ def _laid_over(
     base: Mapping[str, Any], kind: str, header: Sequence[str], cells: Mapping[str, Any]
 ) -> dict[str, Any]:
     """The problem file with the targets of a row, and with its other keys."""
-    targets = [_target(kind, cells, number) for number in range(1, _count(header) + 1)]
+    wrong: list[str] = []
+    targets: list[Any] = []
+    for number in range(1, _count(header) + 1):
+        with noted(wrong):
+            targets.append(_target(kind, cells, number))
+    refuse(wrong)
     stated = base.get(kind)
     table = {**(stated if isinstance(stated, dict) else {}), _TARGETS[kind]: [t for t in targets if t]}
     document = {**base, kind: table}
@@ -135,7 +149,10 @@ def _target(kind: str, cells: Mapping[str, Any], number: int) -> Any:
     """A target of the file: a list, a table where a part is free, nothing where it is left out."""
     given = {part: cells[_column(part, number)] for part in _LAYOUTS[kind]}
     known = {part: value for part, value in given.items() if value is not None}
-    return list(given.values()) if (kind == "path" and known) or len(known) == len(given) else known
+    for part in given:
+        if kind == "path" and known and part not in known:
+            raise ProblemError(f"{_column(part, number)} is empty; it must be a finite number")
+    return list(known.values()) if len(known) == len(given) else known
 
 
 def _others(cells: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:

@@ -47,9 +47,11 @@ class SweepPage {
       each.classList.toggle("chosen", each === row);
       $("[data-pick]", each).setAttribute("aria-pressed", String(each === row));
     }
-    const { drawing, scene, about } = this.designs[index];
+    const { drawing, scene, about, note } = this.designs[index];
     $("#chosen").textContent = `Combination ${$("[data-pick]", row).textContent}`;
     $("#about").textContent = about;
+    $("#note").textContent = note;
+    $("#note").hidden = !note;
     if (this.player) this.player.pause();
     $("#stage").style.visibility = scene === null ? "hidden" : "visible"; // no problem, nothing to draw
     if ($("#player")) $("#player").style.visibility = drawing ? "visible" : "hidden";
