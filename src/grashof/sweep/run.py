@@ -77,21 +77,21 @@ def sweep(
     keys = tuple(task_key(one.name, one.text, options) if one.text else "" for one in made)
     kept, finished = _opened(stated, made, keys, out, resume)
     results = _of_combinations(made, keys, finished)
+    places: dict[str, list[int]] = {}
+    for number, key in enumerate(keys):
+        places.setdefault(key, []).append(number)
     tell = progress or (lambda _: None)
-    for number in [place for place, key in enumerate(keys) if not key]:
+    for number in places.pop("", []):
         tell(Step(len(results), len(made), made[number], results[number]))
-    tasks = {
-        key: (key, one.name, one.text)
-        for key, one in zip(keys, made, strict=True)
-        if key and key not in finished
-    }
+    firsts = {key: made[numbers[0]] for key, numbers in places.items() if key not in finished}
+    tasks = [(key, one.name, one.text) for key, one in firsts.items()]
     try:
-        with closing(solved(tuple(tasks.values()), asdict(options), stop, executor, workers)) as ended:
+        with closing(solved(tasks, asdict(options), stop, executor, workers)) as ended:
             for key, result in ended:
                 if kept is not None:
                     kept.write(key, result)
-                results |= _of_combinations(made, keys, {key: result})
-                tell(Step(len(results), len(made), made[keys.index(key)], result))
+                results |= dict.fromkeys(places[key], result)
+                tell(Step(len(results), len(made), made[places[key][0]], result))
     finally:
         done = Sweep(stated, made, results, perf_counter() - begun)
         if kept is not None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
+from itertools import islice
 from multiprocessing import get_context, parent_process
 from multiprocessing.synchronize import Event
 from signal import SIG_IGN, SIGINT, signal
@@ -17,6 +18,7 @@ from grashof.sweep.task import solve_task
 # Key, name and text of a problem.
 Task: TypeAlias = tuple[str, str, str]
 Finished: TypeAlias = tuple[str, dict[str, Any]]
+_AHEAD = 1000  # tasks that an executor has at once
 _ASKED = 0.2  # s: how often `stop` is asked while others solve
 
 
@@ -80,11 +82,12 @@ def _elsewhere(
 ) -> Generator[Finished, None, None]:
     left: dict[Future[dict[str, Any] | None], str] = {}
     try:
-        for key, name, text in tasks:
-            left[executor.submit(solve, name, text, dict(options))] = key
+        waiting = iter(tasks)
         ended = False
-        while left and not ended:
-            ended = stop()  # what is finished by then is taken along
+        while not ended:
+            for key, name, text in islice(waiting, _AHEAD - len(left)):
+                left[executor.submit(solve, name, text, dict(options))] = key
+            ended = not left or stop()  # what is finished by then is taken along
             timeout = 0 if ended else _ASKED
             for future in wait(left, timeout=timeout, return_when=FIRST_COMPLETED).done:
                 key = left.pop(future)

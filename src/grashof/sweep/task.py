@@ -6,6 +6,7 @@ import hashlib
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import cache
 from importlib.metadata import version
 from math import isfinite, isnan
 from time import perf_counter
@@ -38,6 +39,7 @@ class Options:
     time_limit: float | None = None
 
 
+@cache
 def versions() -> dict[str, str]:
     """Of the packages that decide which designs are found."""
     return {name: version(name) for name in PACKAGES}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from io import StringIO
 from pathlib import Path
 from typing import Any
@@ -14,10 +15,11 @@ import pandas as pd
 import pytest
 
 from grashof import synthesize
-from grashof.problems import ProblemError
+from grashof.problems import ProblemError, SolverError
 from grashof.problems.files.problem_file import problem_of
 from grashof.sweep import Step, load_study, sweep
 from grashof.sweep.combinations import combinations
+from grashof.sweep.task import versions
 from grashof.synth.results.table import COLUMNS
 
 Write = Callable[..., Path]
@@ -121,8 +123,9 @@ def test_what_is_not_gone_on_with(write: Write, tmp_path: Path, monkeypatch: pyt
         assert words in str(refused.value)
         assert str(refused.value).count("\n") == 0
     with monkeypatch.context() as patched:
-        patched.setattr("grashof.sweep.task.version", lambda name: "9.9" if name == "casadi" else "0")
-        with pytest.raises(ProblemError, match=r"holds a sweep made with .*casadi .* \(now 9.9\)"):
+        others = {**versions(), "casadi": "9.9"}
+        patched.setattr("grashof.sweep.checkpoints.versions", lambda: others)
+        with pytest.raises(ProblemError, match=r"holds a sweep made with casadi [\d.]+ \(now 9.9\)"):
             sweep(study, out=out, resume=True)
     assert sorted((out / "tasks").iterdir()) == kept
     assert sweep(study, out=out, resume=True).complete
@@ -169,6 +172,23 @@ def test_a_finished_sweep_is_done_again_and_other_files_stay(
     (out / "sweep.json").write_text("{}")
     with pytest.raises(ProblemError, match="name a folder without it"):
         sweep(study, out=out)
+
+
+@pytest.mark.usefixtures("told")
+def test_a_lost_process_keeps_what_is_finished(write: Write, tmp_path: Path) -> None:
+    class Losing(ThreadPoolExecutor):
+        left = 3
+
+        def submit(self, *arguments: Any, **named: Any) -> Any:
+            self.left -= 1
+            if self.left < 0:
+                raise BrokenProcessPool("gone")
+            return super().submit(*arguments, **named)
+
+    with Losing(1) as executor, pytest.raises(SolverError, match="a worker process was lost: gone; --resume"):
+        sweep(write(), out=tmp_path / "out", executor=executor)
+    assert json.loads((tmp_path / "out" / "sweep.json").read_text())["complete"] is False
+    assert sweep(write(), out=tmp_path / "out", resume=True).complete
 
 
 @pytest.mark.usefixtures("told")

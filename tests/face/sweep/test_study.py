@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from grashof.problems import ProblemError
+from grashof.problems import ProblemError, problem_text
 from grashof.sweep import load_study
+from grashof.sweep.combinations import combinations
+from grashof.sweep.study import SearchOptions, StudyFile
 
 Write = Callable[..., Path]
 
@@ -75,6 +78,21 @@ def test_all_that_is_wrong_is_stated(write: Write, text: str, lines: list[str]) 
     assert len(stated) == len(lines)
     for line, words in zip(stated, lines, strict=True):
         assert words in line
+
+
+def test_the_studies_of_the_readme(write: Write) -> None:
+    root = Path(__file__).parents[3]
+    section = (root / "README.md").read_text(encoding="utf-8").split("\n## Sweeps\n")[1].split("\n## ")[0]
+    first, whole = re.findall(r"^```toml\n(.*?)^```", section, re.MULTILINE | re.DOTALL)
+    assert (root / "docs" / "longer-links.toml").read_text(encoding="utf-8").endswith(first)
+    assert len(combinations(load_study(write(first)))) == 25
+    write(problem_text("luggage"), "mine.toml")
+    study = load_study(write(whole))
+    made = combinations(study)
+    assert len(made) == 6
+    assert not any(one.wrong for one in made)
+    options = {"time_limit", *SearchOptions.model_fields, *StudyFile.model_fields} - {"title"}
+    assert [name for name in options if not re.search(rf"\b{name}\b", whole)] == []
 
 
 def test_problems_of_a_folder_are_sorted(write: Write) -> None:
