@@ -130,7 +130,7 @@ def _columns(done: Sweep, shown: pd.DataFrame) -> list[Heading]:
         ),
         Heading("status", "status", text=True),
         Heading("designs", "designs", better=1),
-        *named,
+        *(named or [Heading("note", "what stood in the way", text=True)]),
     ]
 
 

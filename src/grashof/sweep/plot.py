@@ -45,7 +45,8 @@ def plot_sweep(done: Sweep, frame: pd.DataFrame) -> Figure:
         elif len(keys) == 2:
             figure = _over_two(best, keys, decides, size)
         else:
-            figure = _front(best, decides, size)
+            stated = [result["decides"] for result in done.results.values() if result["decides"] is not None]
+            figure = _front(best, decides, size, joined=len({each["length_unit"] for each in stated}) == 1)
         figure.suptitle(shortened(done.study.title or done.study.name), fontsize=10, parse_math=False)
     return figure
 
@@ -164,45 +165,42 @@ def _write(axes: Axes, values: FloatArray, shown: AxesImage) -> None:
         axes.text(column, row, text, ha="center", va="center", color=colour, fontsize="small")
 
 
-def _front(best: pd.DataFrame, decides: Mapping[str, Any], size: Mapping[str, Any]) -> Figure:
+def _front(
+    best: pd.DataFrame, decides: Mapping[str, Any], size: Mapping[str, Any], *, joined: bool
+) -> Figure:
     figure = Figure(figsize=(7.0, 5.8), layout="constrained")
     axes = figure.subplots()
-    rows = best[best[decides["column"]].notna() & best["size"].notna()]
-    costs = rows[["size", decides["column"]]].to_numpy(dtype=np.float64)
-    finite = np.isfinite(costs).all(axis=1)
-    numbers, costs = rows["combination"].to_numpy()[finite], costs[finite]
+    costs = np.array(best[["size", decides["column"]]], dtype=np.float64)
+    known = np.isfinite(costs).all(axis=1)
+    numbers, costs = best["combination"].to_numpy()[known], costs[known]
     axes.plot(*costs.T, "o", color=COUPLER, markersize=5, label="best design of a combination", zorder=3)
     front = costs[not_beaten(costs * [1.0, -decides["better"]])]
-    front = front[np.argsort(front[:, 0])]
-    axes.plot(
-        *front.T, "o--", color=OUTPUT, markersize=10, fillstyle="none", linewidth=1, label="Pareto-optimal"
-    )
+    if joined:  # sizes in different units do not compare
+        style: dict[str, Any] = {"markersize": 10, "fillstyle": "none", "linewidth": 1}
+        axes.plot(*front[np.argsort(front[:, 0])].T, "o--", color=OUTPUT, label="Pareto-optimal", **style)
     if len(costs) <= _NAMED:
+        look: dict[str, Any] = {"textcoords": "offset points", "fontsize": "small", "color": KEPT_OUT}
         for number, place in zip(numbers, costs, strict=True):
-            axes.annotate(
-                f"{number}",
-                tuple(place),
-                (6, 5),
-                textcoords="offset points",
-                fontsize="small",
-                color=KEPT_OUT,
-            )
+            axes.annotate(f"{number}", tuple(place), (6, 5), **look)
     axes.set_xlabel(size["label"], parse_math=False)
     axes.set_ylabel(decides["label"], parse_math=False)
     axes.ticklabel_format(useOffset=False)
-    axes.legend(loc="best", fontsize="small")
+    if len(costs):
+        axes.legend(loc="best", fontsize="small")
+    else:
+        axes.text(0.5, 0.5, "no design", ha="center", transform=axes.transAxes)
     return figure
 
 
 def not_beaten(costs: FloatArray) -> BoolArray:
-    """Which rows of costs (N, K) no other row beats; shape (N,) of bool.
+    """Which rows of costs (N, 2) no other row beats; shape (N,).
 
     Examples
     --------
-    >>> not_beaten(np.array([[1.0, 3.0], [2.0, 2.0], [2.0, 3.0]])).tolist()
-    [True, True, False]
+    >>> not_beaten(np.array([[1.0, 3.0], [2.0, 2.0], [2.0, 3.0], [1.0, 3.0]])).tolist()
+    [True, True, False, True]
     """
-    no_worse = (costs[:, None] <= costs[None]).all(axis=2)
-    better = (costs[:, None] < costs[None]).any(axis=2)
-    beaten: BoolArray = np.any(no_worse & better, axis=0)
-    return ~beaten
+    rows, places = np.unique(costs, axis=0, return_inverse=True)
+    least = np.minimum.accumulate(np.append(np.inf, rows[:, 1]))[:-1]  # of the rows before each
+    kept: BoolArray = (rows[:, 1] < least)[places.ravel()]
+    return kept

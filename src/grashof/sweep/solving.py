@@ -106,7 +106,7 @@ _stopped: Event | None = None
 
 def _begin(stopped: Event) -> None:
     """Of a process: the parent alone decides what Ctrl-C means, and nothing goes on without it."""
-    global _stopped
+    global _stopped  # an event reaches a process only when it begins
     _stopped = stopped
     signal(SIGINT, SIG_IGN)
     Thread(target=_end_with_parent, daemon=True).start()
