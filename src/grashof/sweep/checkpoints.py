@@ -142,16 +142,16 @@ class Checkpoints:
         return result
 
     def begin(self, record: dict[str, Any], kept: Collection[str]) -> None:
-        """Make the folder, write the record of a sweep begun, remove tasks of the last one but those kept."""
-        before = own_files(self.folder, RECORD)
-        with replacing_own_files(self.folder, keep=before, record=RECORD) as fresh:
-            write_json(fresh / RECORD, {**record, "files": sorted({*before, RECORD})})
+        """Make the folder, remove tasks of the last sweep but those kept, write the record of one begun."""
         tasks = self.folder / TASKS
-        tasks.mkdir(exist_ok=True)
+        tasks.mkdir(parents=True, exist_ok=True)
         for path in tasks.iterdir():
             finished = _OURS.fullmatch(path.name) and path.stem not in kept
             if finished or _WRITING.fullmatch(path.name):
                 path.unlink()
+        before = own_files(self.folder, RECORD)
+        with replacing_own_files(self.folder, keep=before, record=RECORD) as fresh:
+            write_json(fresh / RECORD, {**record, "files": sorted({*before, RECORD})})
 
     def write(self, key: str, result: dict[str, Any]) -> None:
         """Put a finished task on disk: to another name, flushed, renamed."""

@@ -31,6 +31,8 @@ def run(study: str, out: Path | None, workers: int, resume: bool, top: int | Non
             stop=interrupted,
         )
     say(done.headline)
+    if done.best:
+        say(f"best: {done.best}")
     if done.results:
         say(f"Open {folder / SWEEP_PAGE} in a browser to look at it; sweep.csv has the table.", err=True)
     if not done.complete:

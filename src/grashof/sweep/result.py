@@ -84,6 +84,20 @@ class Sweep:
         text += f", {self.with_designs} with designs"
         return f"{text}, {self.invalid} invalid" if self.invalid else text
 
+    @property
+    def best(self) -> str:
+        """Which combination has the best design, in words; empty where they are not decided by the same."""
+        told = [(number, one) for number, one in sorted(self.results.items()) if one["designs"]]
+        if len({(one["decides"]["column"], one["decides"]["label"]) for _, one in told}) != 1:
+            return ""
+        decides = told[0][1]["decides"]
+        values = {number: one["designs"][0].get(decides["column"]) for number, one in told}
+        known = {number: float(value) for number, value in values.items() if value is not None}
+        if not known:
+            return ""
+        number = max(known, key=lambda each: decides["better"] * known[each])
+        return f"{self.combinations[number].label}: {decides['label']} {known[number]:.4g}"
+
     def to_frame(self) -> pd.DataFrame:
         """A row for each combination and listed design; the columns are those of ``sweep.csv``."""
         from grashof.sweep.table import sweep_frame  # pandas takes half a second to import

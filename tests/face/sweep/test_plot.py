@@ -92,3 +92,9 @@ def test_none_beats_those_that_are_not_beaten() -> None:
     costs = np.random.default_rng(0).integers(0, 5, (40, 2)).astype(float)
     beaten = [any((one <= each).all() and (one < each).any() for one in costs) for each in costs]
     assert (~not_beaten(costs)).tolist() == beaten
+
+
+def test_the_best_combination(done: Callable[..., Sweep]) -> None:
+    sweep = done("[vary]\n'path.points[1].y' = [3, 1, 2]\n", [(30, 3), (40, 1), None])
+    assert sweep.best == "path.points[1].y = 1: worst transmission angle over the task (deg) 40"
+    assert done("[vary]\nsearch.seed = [3]\n", [None]).best == ""
