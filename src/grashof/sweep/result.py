@@ -92,7 +92,8 @@ class Sweep:
             return ""
         decides = told[0][1]["decides"]
         values = {number: one["designs"][0].get(decides["column"]) for number, one in told}
-        known = {number: float(value) for number, value in values.items() if value is not None}
+        # Six digits: differences that a search leaves open do not decide, the first of them does.
+        known = {number: float(f"{float(x):.6g}") for number, x in values.items() if x is not None}
         if not known:
             return ""
         number = max(known, key=lambda each: decides["better"] * known[each])
