@@ -1,4 +1,4 @@
-"""The command line: solve, check, problems, linkages, analyse, animate, export."""
+"""The command line: solve, sweep, check, problems, linkages, analyse, animate, export."""
 
 from __future__ import annotations
 
@@ -150,6 +150,31 @@ def solve(
 
 
 @app.command()
+def sweep(
+    study: Annotated[str, typer.Argument(metavar="STUDY", help="A TOML file that states what varies.")],
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the results; NAME-sweep by default.", show_default=False)
+    ] = None,
+    workers: Annotated[int, typer.Option(min=1, help="Processes; they change the time, not the result.")] = 1,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with what the folder holds.")] = False,
+    top: Annotated[
+        int | None, typer.Option(min=1, help="Best designs listed of each combination.", show_default=False)
+    ] = None,
+) -> None:
+    """Solve every combination of STUDY; write a table, a plot, a page and the record of the sweep.
+
+    Exit code 0: at least one verified design; 1: none; 2: bad input; 3: environment error;
+    130: interrupted.
+    """
+    from grashof.sweep.command import run
+
+    with _errors_told():
+        done = run(study, out, workers, resume, top)
+        code = Exit.OK if done.with_designs else Exit.NO_DESIGN
+        raise typer.Exit(code if done.complete else Exit.INTERRUPTED)
+
+
+@app.command()
 def check(problem: ProblemArgument) -> None:
     """Read PROBLEM and print what will be required of a design, without solving."""
     from grashof.output.terminal import folded
@@ -296,7 +321,8 @@ def main() -> None:
 
 def _later(given: list[str]) -> str:
     """Message for an option that only a later version knows; empty when none is given."""
-    words = [word for word in given if word.partition("=")[0] in _LATER_OPTIONS]
+    known = ("--resume",) if "sweep" in given[:1] else ()
+    words = [word for word in given if word.partition("=")[0] in _LATER_OPTIONS and word not in known]
     return f"{words[0].partition('=')[0]} is not in this version" if words else ""
 
 

@@ -21,8 +21,10 @@ RECORD = "run.json"
 SEARCH, OLD_SEARCH = "search", "search-old"  # folders: the search as it goes, and one that was not finished
 UNFINISHED = ".writing-"  # files of a run that is not done
 ANALYSIS_RECORD = "analysis.json"
+SWEEP_RECORD = "sweep.json"
 PAGE = "report.html"
 ANALYSIS_PAGE = "analysis.html"
+SWEEP_PAGE = "sweep.html"
 # Every name that a run writes, by its record; a drawing's carries its rank.
 _NAMES = {
     RECORD: re.compile(
@@ -32,6 +34,7 @@ _NAMES = {
         r"(kinematics|dynamics|extremes|summary)\.csv|(summary|analysis)\.json|analysis\.html"
         r"|(path|angles|velocities|accelerations|torque|forces)\.(png|svg)(?P<rank>)"
     ),
+    SWEEP_RECORD: re.compile(r"sweep\.(csv|parquet|png|html|json)(?P<rank>)"),
 }
 
 
@@ -44,7 +47,8 @@ def check_writable(folder: Path, drawings: int = 0, record: str = RECORD) -> Non
     drawings : int
         How many designs may be drawn.
     record : str
-        `RECORD` of a search, `ANALYSIS_RECORD` of an analysis; their files do not mix.
+        `RECORD` of a search, `ANALYSIS_RECORD` of an analysis, `SWEEP_RECORD` of a sweep; their files do
+        not mix.
 
     Raises
     ------

@@ -1,0 +1,118 @@
+// The page of a sweep: a table of combinations, and the best design of the one that is chosen.
+class SweepPage {
+  constructor({ scenes, designs, values }) {
+    Object.assign(this, { scenes, designs, values, chosen: null });
+    this.body = $("#combinations tbody");
+    this.rows = $$("tr", this.body);
+    this.headers = $$("#combinations th[aria-sort]");
+    this.form = $("#combinations form");
+    for (const [place, header] of this.headers.entries()) {
+      $("button", header).addEventListener("click", () => this.sort(place));
+    }
+    this.body.addEventListener("click", (event) => {
+      const row = event.target.closest("tr");
+      if (row) this.choose(Number(row.dataset.index));
+    });
+    this.form.addEventListener("input", () => this.filter());
+    this.form.addEventListener("submit", (event) => event.preventDefault());
+    this.moves = Boolean($("#player"));
+    const scene = scenes[0] || {};
+    if (this.moves) {
+      this.stage = new Stage($("#stage"), scene, {
+        onDrive: (angle) => this.turnTo(angle),
+        onDraw: (state) => tellPosition(this.stage, state),
+      });
+      this.player = new Player($("#player"), { onMove: (angle) => this.stage.move(angle) });
+      for (const name of ["trace", "ghosts"]) {
+        $(`#${name}`).addEventListener("change", (event) => {
+          this.stage[name] = event.target.checked;
+          this.stage.draw();
+        });
+      }
+      listenToKeys(this.stage, this.player);
+      listenOnPage(() => this.player);
+    } else {
+      this.stage = new Stage($("#stage"), scene);
+    }
+    this.pictures();
+    this.filter();
+    const first = this.rows.find((row) => row.dataset.found === "1") || this.rows[0];
+    this.choose(Number(first.dataset.index));
+  }
+
+  choose(index) {
+    this.chosen = index;
+    const row = this.rows.find((each) => Number(each.dataset.index) === index);
+    for (const each of this.rows) {
+      each.classList.toggle("chosen", each === row);
+      $("[data-pick]", each).setAttribute("aria-pressed", String(each === row));
+    }
+    const { drawing, scene, about, note } = this.designs[index];
+    $("#chosen").textContent = `Combination ${$("[data-pick]", row).textContent}`;
+    $("#about").textContent = about;
+    $("#note").textContent = note;
+    $("#note").hidden = !note;
+    if (this.player) this.player.pause();
+    $("#stage").style.visibility = scene === null ? "hidden" : "visible"; // no problem, nothing to draw
+    if ($("#player")) $("#player").style.visibility = drawing ? "visible" : "hidden";
+    for (const node of $$(".readout, .legend")) node.style.visibility = drawing ? "visible" : "hidden";
+    if (scene === null) return;
+    this.stage.scene = this.scenes[scene];
+    this.stage.show(drawing);
+    if (!drawing) return;
+    const { low, high, turns, direction, theta2 } = drawing;
+    this.player.travel({ low, high, wraps: turns, sense: direction, step: 1 / DEG });
+    tellTravel(this.stage, low, high);
+    this.player.set(theta2[0]);
+  }
+
+  turnTo(theta2) {
+    this.player.pause();
+    this.player.set(theta2);
+  }
+
+  // By a column, the other way round when it is sorted already; what is not known goes last.
+  sort(place) {
+    const header = this.headers[place];
+    const now = header.getAttribute("aria-sort");
+    const turned = now === "ascending" ? "descending" : "ascending";
+    const order = now === "none" ? header.dataset.first : turned;
+    for (const each of this.headers) each.setAttribute("aria-sort", each === header ? order : "none");
+    const sign = order === "ascending" ? 1 : -1;
+    const value = (row) => this.values[Number(row.dataset.index)][place];
+    const compared = (a, b) => {
+      if (a === null || b === null) return (a === null) - (b === null);
+      return sign * (typeof a === "number" && typeof b === "number" ? a - b : String(a).localeCompare(String(b)));
+    };
+    this.rows.sort((a, b) => compared(value(a), value(b)) || a.dataset.index - b.dataset.index);
+    this.body.append(...this.rows);
+  }
+
+  filter() {
+    const wanted = new FormData(this.form);
+    const text = wanted.get("text").trim().toLowerCase();
+    for (const row of this.rows) {
+      const passes = row.textContent.toLowerCase().includes(text);
+      row.hidden = !passes || (wanted.get("found") && row.dataset.found !== "1");
+    }
+    $("output", this.form).textContent = `${this.listed().length} of ${this.rows.length}`;
+  }
+
+  listed() {
+    return this.rows.filter((row) => !row.hidden).map((row) => Number(row.dataset.index));
+  }
+
+  pictures() {
+    for (const row of this.rows) {
+      const { drawing } = this.designs[Number(row.dataset.index)];
+      if (drawing) $(".thumb", row).replaceWith(thumbnail(drawing));
+    }
+  }
+
+  state() {
+    return { chosen: this.chosen, listed: this.listed(), ...this.stage.state };
+  }
+}
+
+const page = new SweepPage(JSON.parse($("#data").textContent));
+window.grashof = Object.freeze({ state: () => page.state() });

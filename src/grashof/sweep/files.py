@@ -1,0 +1,94 @@
+"""What a sweep writes: the table as CSV and Parquet, the plot, the page, the record."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Mapping
+from importlib.metadata import version
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from grashof.output.folder import SWEEP_PAGE, SWEEP_RECORD, check_writable, own_files, replacing_own_files
+from grashof.output.run_files import write_csv, write_json, write_page
+from grashof.problems import ProblemError
+from grashof.sweep.result import Sweep
+from grashof.sweep.study import Study
+from grashof.sweep.task import versions
+
+TABLE, PARQUET, PLOT = "sweep.csv", "sweep.parquet", "sweep.png"
+_ENGINES = ("pyarrow", "fastparquet")  # of pandas, in the order in which it tries them
+
+
+def check_folder(folder: Path | None, study: Study) -> None:
+    """Refuse, before any work is done, what could not be written in the end."""
+    if study.parquet and not any(map(find_spec, _ENGINES)):
+        raise ProblemError(
+            "parquet needs pyarrow: pip install 'grashof[parquet]' (in a clone '.[parquet]'), or leave it out"
+        )
+    if folder is not None:
+        check_writable(folder, record=SWEEP_RECORD)
+
+
+def record_of(done: Sweep, mark: str, *, complete: bool) -> dict[str, Any]:
+    """The record of a sweep, but for its files.
+
+    Parameters
+    ----------
+    done : Sweep
+    mark : str
+        Fingerprint of the study, by which `Checkpoints` knows it again.
+    complete : bool
+    """
+    return {
+        "study": mark,
+        "name": done.study.name,
+        "study_toml": done.study.text,
+        "versions": {"python": platform.python_version(), **versions(), "pandas": version("pandas")},
+        "designs_listed": done.study.designs,
+        "complete": complete,
+        "combinations": len(done.combinations),
+        "tasks": len({(one.name, one.text) for one in done.combinations if one.text}),
+        "done": len(done.results),
+        "with_designs": done.with_designs,
+        "invalid": done.invalid,
+        "seconds": {
+            "this_run": round(done.seconds, 3),
+            "combinations": {
+                str(number + 1): result["seconds"] for number, result in sorted(done.results.items())
+            },
+        },
+    }
+
+
+def write_sweep(folder: Path, done: Sweep, mark: str) -> list[str]:
+    """Write all files of a sweep; of one without any result the record alone.
+
+    Returns
+    -------
+    list of str
+        Names of the files, sorted.
+    """
+    record = record_of(done, mark, complete=done.complete)
+    if not done.results:
+        before = own_files(folder, SWEEP_RECORD)
+        with replacing_own_files(folder, keep=before, record=SWEEP_RECORD) as fresh:
+            return _write_record(fresh, record, before)
+    from grashof.figures.files import save  # matplotlib takes half a second to import
+    from grashof.sweep.page import sweep_page
+    from grashof.sweep.plot import plot_sweep
+
+    frame = done.to_frame()
+    with replacing_own_files(folder, record=SWEEP_RECORD) as fresh:
+        write_csv(fresh / TABLE, frame)
+        if done.study.parquet:
+            frame.to_parquet(fresh / PARQUET, index=False)
+        save(plot_sweep(done, frame), [fresh / PLOT])
+        write_page(fresh / SWEEP_PAGE, sweep_page(done, frame, (fresh / PLOT).read_bytes(), record))
+        return _write_record(fresh, record)
+
+
+def _write_record(folder: Path, record: Mapping[str, Any], others: set[str] | None = None) -> list[str]:
+    files = sorted({*(path.name for path in folder.iterdir()), *(others or ()), SWEEP_RECORD})
+    write_json(folder / SWEEP_RECORD, {**record, "files": files})
+    return files

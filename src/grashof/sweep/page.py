@@ -1,0 +1,167 @@
+"""The page of a sweep: the trade-off, all combinations, and the best design of each in motion."""
+
+from __future__ import annotations
+
+import json
+from base64 import b64encode
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from pandas.api.types import is_numeric_dtype
+
+from grashof.page.render import render
+from grashof.page.scene import scene_of
+from grashof.problems.files.problem_file import problem_of
+from grashof.sweep.result import Sweep
+from grashof.sweep.table import varied_columns
+from grashof.synth.results.table import LISTED
+
+_SCRIPTS = ("linkage.js", "svg.js", "stage.js", "player.js", "table.js", "sweep.js")
+_ROWS = 1000  # that a browser shows at once without delay
+_DIGITS = 5
+_TEXTS = ("status", "grashof_class")
+# Beside what varies, what decides and these: lengths, then what is known of the design.
+_SHOWN = (
+    "transmission_min_task_deg", "transmission_min_cycle_deg", "error", "torque_peak", "size", "r1", "r2",
+    "r3", "r4", "grashof_class",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Heading:
+    """A column of the page."""
+
+    key: str
+    label: str
+    unit: str = ""
+    better: int = 0
+    text: bool = False
+
+
+def sweep_page(done: Sweep, frame: pd.DataFrame, picture: bytes, record: Mapping[str, Any]) -> str:
+    """The page of a sweep as HTML.
+
+    Parameters
+    ----------
+    done : Sweep
+    frame : DataFrame
+        Its table.
+    picture : bytes
+        Its plot, PNG.
+    record : mapping
+        "versions" and counts of the sweep.
+    """
+    best = frame.drop_duplicates("combination")
+    shown = best.iloc[:_ROWS]
+    columns = _columns(done, shown)
+    places = [int(number) - 1 for number in shown["combination"]]
+    scenes, of_place = _scenes(done, places)
+    rows = [[_value(row[column.key]) for column in columns] for row in shown.to_dict("records")]
+    data = {
+        "scenes": scenes,
+        "values": rows,
+        "designs": [
+            {
+                "drawing": done.results[place]["drawing"],
+                "scene": of_place.get(place),
+                "about": done.combinations[place].label,
+                "note": done.results[place]["note"],
+            }
+            for place in places
+        ],
+    }
+    return render(
+        "sweep.html",
+        _SCRIPTS,
+        data,
+        title=done.study.title or done.study.name,
+        headline=done.headline,
+        picture=b64encode(picture).decode("ascii"),
+        moves=any(done.results[place]["drawing"] for place in places),
+        columns=columns,
+        given=[column.key for column in columns].index("designs") + 1,
+        rows=[
+            {
+                "index": index,
+                "found": done.results[place]["found"] > 0,
+                "note": done.results[place]["note"],
+                "cells": list(map(_text, row)),
+            }
+            for index, (place, row) in enumerate(zip(places, rows, strict=True))
+        ],
+        shown=len(shown),
+        total=len(best),
+        text=done.study.text,
+        record={
+            "versions": record["versions"],
+            "settings": {"designs": done.study.designs, "time_limit": done.study.time_limit},
+        },
+    )
+
+
+def _columns(done: Sweep, shown: pd.DataFrame) -> list[Heading]:
+    """What varies, what became of it, and what any of the designs has of the main quantities."""
+    quantities = {quantity.column: quantity for quantity in LISTED}
+    units = {one["decides"]["length_unit"] for one in done.results.values() if one["decides"]}
+    unit = units.pop() if len(units) == 1 else ""
+    decides = {one["decides"]["column"] for one in done.results.values() if one["decides"]}
+    keys = dict.fromkeys([*decides, *_SHOWN] if len(decides) == 1 else _SHOWN)
+    known = [key for key in keys if key in shown and shown[key].notna().any()]
+    varied = [key for key in varied_columns(done.combinations) if len(set(shown[key])) > 1]
+    named = [
+        Heading(
+            key,
+            quantities[key].label.replace("mu ", "μ ") if key in quantities else key.replace("_", " "),
+            quantities[key].unit.of(unit) if key in quantities else "",
+            quantities[key].better if key in quantities else 0,
+            key in _TEXTS,
+        )
+        for key in known
+    ]
+    return [
+        Heading("combination", "#"),
+        *(
+            Heading(key, key.removeprefix("requirements."), text=not is_numeric_dtype(shown[key]))
+            for key in varied
+        ),
+        Heading("status", "status", text=True),
+        Heading("designs", "designs", better=1),
+        *(named or [Heading("note", "what stood in the way", text=True)]),
+    ]
+
+
+def _scenes(done: Sweep, places: Sequence[int]) -> tuple[list[dict[str, Any]], dict[int, int]]:
+    """What is drawn of the problems, each different scene once, and which one belongs to each place."""
+    scenes: dict[str, dict[str, Any]] = {}
+    of_place: dict[int, int] = {}
+    numbers: dict[str, int] = {}
+    for place in places:
+        one = done.combinations[place]
+        if one.text:
+            scene = scene_of(problem_of(one.text, one.name, one.name))
+            key = json.dumps(scene)
+            scenes.setdefault(key, scene)
+            of_place[place] = numbers.setdefault(key, len(numbers))
+    return list(scenes.values()), of_place
+
+
+def _value(value: Any) -> float | int | str | bool | None:
+    """A cell as JSON knows it."""
+    if value is None or value is pd.NA:
+        return None
+    if isinstance(value, np.generic):
+        value = value.item()
+    return None if isinstance(value, float) and not isfinite(value) else value
+
+
+def _text(value: Any) -> str:
+    """A cell as the page shows it."""
+    if value is None:
+        return "–"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return f"{value + 0.0:.{_DIGITS}g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,122 @@
+"""Tasks solved here, in processes of their own, or by anybody's executor."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Generator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
+from itertools import islice
+from multiprocessing import get_context, parent_process
+from multiprocessing.synchronize import Event
+from signal import SIG_IGN, SIGINT, signal
+from threading import Thread
+from typing import Any, TypeAlias
+
+from grashof.problems import SolverError
+from grashof.sweep.task import solve_task
+
+# Key, name and text of a problem.
+Task: TypeAlias = tuple[str, str, str]
+Finished: TypeAlias = tuple[str, dict[str, Any]]
+_AHEAD = 1000  # tasks that an executor has at once
+_ASKED = 0.2  # s: how often `stop` is asked while others solve
+
+
+def solved(
+    tasks: Sequence[Task],
+    options: Mapping[str, Any],
+    stop: Callable[[], bool],
+    executor: Executor | None = None,
+    workers: int = 1,
+) -> Generator[Finished, None, None]:
+    """Key and result of every task as it ends, in no order; those that were stopped are left out.
+
+    Parameters
+    ----------
+    tasks : sequence of (str, str, str)
+    options : mapping
+        Of `grashof.sweep.task.Options`.
+    stop : callable
+        Asked while tasks are solved; no other task begins once it returns True.
+    executor : concurrent.futures.Executor, optional
+        Where to solve; not shut down. It gets text and plain values only.
+    workers : int
+        Processes of its own without one; 1 solves here.
+
+    Raises
+    ------
+    SolverError
+        A process was lost, though nobody asked to stop.
+    """
+    if executor is not None:
+        yield from _elsewhere(executor, solve_task, tasks, options, stop)
+    elif workers > 1 and len(tasks) > 1:
+        yield from _in_processes(min(workers, len(tasks)), tasks, options, stop)
+    else:
+        for key, name, text in tasks:
+            if stop():
+                return
+            if (result := solve_task(name, text, options, stop)) is not None:
+                yield key, result
+
+
+def _in_processes(
+    workers: int, tasks: Sequence[Task], options: Mapping[str, Any], stop: Callable[[], bool]
+) -> Generator[Finished, None, None]:
+    context = get_context("spawn")
+    stopped = context.Event()
+    own = ProcessPoolExecutor(workers, mp_context=context, initializer=_begin, initargs=(stopped,))
+    try:
+        yield from _elsewhere(own, _solve_until_stopped, tasks, options, stop)
+    finally:
+        stopped.set()
+        own.shutdown(cancel_futures=True)
+
+
+def _elsewhere(
+    executor: Executor,
+    solve: Callable[[str, str, Mapping[str, Any]], dict[str, Any] | None],
+    tasks: Sequence[Task],
+    options: Mapping[str, Any],
+    stop: Callable[[], bool],
+) -> Generator[Finished, None, None]:
+    left: dict[Future[dict[str, Any] | None], str] = {}
+    try:
+        waiting = iter(tasks)
+        ended = False
+        while not ended:
+            for key, name, text in islice(waiting, _AHEAD - len(left)):
+                left[executor.submit(solve, name, text, dict(options))] = key
+            ended = not left or stop()  # what is finished by then is taken along
+            timeout = 0 if ended else _ASKED
+            for future in wait(left, timeout=timeout, return_when=FIRST_COMPLETED).done:
+                key = left.pop(future)
+                if (result := future.result()) is not None:
+                    yield key, result
+    except BrokenExecutor as error:
+        if not stop():  # who ends a group of processes ends these, too
+            raise SolverError(f"a worker process was lost: {error}; --resume goes on") from error
+    finally:
+        for future in left:
+            future.cancel()
+
+
+_stopped: Event | None = None
+
+
+def _begin(stopped: Event) -> None:
+    """Of a process: the parent alone decides what Ctrl-C means, and nothing goes on without it."""
+    global _stopped  # an event reaches a process only when it begins
+    _stopped = stopped
+    signal(SIGINT, SIG_IGN)
+    Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    if (parent := parent_process()) is not None:
+        parent.join()
+        os._exit(1)
+
+
+def _solve_until_stopped(name: str, text: str, options: Mapping[str, Any]) -> dict[str, Any] | None:
+    return solve_task(name, text, options, lambda: _stopped is not None and _stopped.is_set())

@@ -1,0 +1,139 @@
+"""One combination solved: from the text of its problem to plain values, in any process."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from functools import cache
+from importlib.metadata import version
+from math import isfinite, isnan
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+from grashof.problems import Problem, ProblemError
+from grashof.problems.files.problem_file import problem_of
+
+if TYPE_CHECKING:
+    from grashof.synth import Result
+
+# What decides which designs are found, besides the problem and how it is searched.
+PACKAGES = ("grashof", "casadi", "numpy", "scipy")
+OK, NONE, CUT, INVALID = "ok", "no design", "time limit", "invalid"
+OBJECTIVE = "objective"  # column of what several goals amount to
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """How a task is solved.
+
+    Parameters
+    ----------
+    designs : int
+        Best designs that are kept.
+    time_limit : float, s, optional
+    """
+
+    designs: int = 1
+    time_limit: float | None = None
+
+
+@cache
+def versions() -> dict[str, str]:
+    """Of the packages that decide which designs are found."""
+    return {name: version(name) for name in PACKAGES}
+
+
+def task_key(name: str, text: str, options: Options) -> str:
+    """Name of a task: the same for the same problem, options and versions only.
+
+    Examples
+    --------
+    >>> task_key("a", "", Options()) == task_key("a", "", Options(designs=2))
+    False
+    """
+    content = json.dumps([name, text, asdict(options), versions()], sort_keys=True)
+    return hashlib.sha256(content.encode()).hexdigest()[:32]
+
+
+def solve_task(
+    name: str, text: str, options: Mapping[str, Any], stop: Callable[[], bool] = lambda: False
+) -> dict[str, Any] | None:
+    """Solve a problem; what it gives is JSON, None where it was stopped.
+
+    Parameters
+    ----------
+    name, text : str
+        The problem's name and its file.
+    options : mapping
+        Of `Options`.
+    stop : callable
+        Asked between batches.
+    """
+    from grashof.synth import synthesize
+
+    begun = perf_counter()
+    try:
+        result = synthesize(problem_of(text, name, name), time_limit=options["time_limit"], stop=stop)
+    except ProblemError as error:  # what only a search can tell
+        return invalid(str(error).splitlines())
+    if not result.complete and stop():
+        return None
+    return {**_told(result, options["designs"]), "seconds": round(perf_counter() - begun, 3)}
+
+
+def invalid(wrong: Sequence[str]) -> dict[str, Any]:
+    """What there is to tell of a problem that is none."""
+    return {**_empty(INVALID), "note": "; ".join(wrong), "seconds": 0.0}
+
+
+def _empty(status: str) -> dict[str, Any]:
+    return {"status": status, "found": 0, "note": "", "decides": None, "designs": [], "drawing": None}
+
+
+def _told(result: Result, most: int) -> dict[str, Any]:
+    """What the table, the plot and the page need of a result."""
+    from grashof.page.designs import designs_of
+    from grashof.synth.results.ranking import pareto_optimal
+    from grashof.synth.results.table import to_frame
+
+    status = CUT if not result.complete else OK if result.candidates else NONE
+    told = {**_empty(status), "found": len(result), "note": result.note}
+    listed = result.candidates[:most]
+    if not listed:
+        return told
+    problem = result.problem
+    decides = decides_of(problem)
+    frame = to_frame(problem, listed).assign(pareto=pareto_optimal(problem, result.candidates)[:most])
+    rows = [{str(key): _plain(value) for key, value in row.items()} for row in frame.to_dict("records")]
+    if decides["column"] == OBJECTIVE:
+        for row, candidate in zip(rows, listed, strict=True):
+            row[OBJECTIVE] = _plain(candidate.objective(problem))
+    drawing = designs_of(problem, listed[:1], frame.iloc[:1])[0]
+    return {**told, "decides": decides, "designs": rows, "drawing": {key: drawing[key] for key in _DRAWN}}
+
+
+_DRAWN = ("id", "linkage", "low", "high", "turns", "direction", "theta2", "assemblies", "task")
+
+
+def decides_of(problem: Problem) -> dict[str, Any]:
+    """What decides which design is best: its column, what it is called, and which way is better."""
+    from grashof.problems.values.requirements import QUANTITIES
+
+    goals, lengths = problem.goals, {"length_unit": problem.length_unit}
+    if problem.by_objective and len(goals) > 1:
+        return {"column": OBJECTIVE, "label": "objective", "better": 1, **lengths}
+    quantity = goals[0][0] if problem.by_objective else QUANTITIES["error"]
+    unit = quantity.unit.of(problem.length_unit)
+    label = f"{quantity.words} ({unit})" if unit else quantity.words
+    return {"column": quantity.column, "label": label, "better": quantity.better, **lengths}
+
+
+def _plain(value: Any) -> Any:
+    """A value as JSON knows it: null where there is none, words for what has no limit."""
+    if hasattr(value, "item"):
+        value = value.item()
+    if isinstance(value, float) and not isfinite(value):
+        return None if isnan(value) else str(value)
+    return value

@@ -1,0 +1,63 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grashof.sweep.task import solve_task
+
+Write = Callable[..., Path]
+
+BASE = """\
+kind = "path"
+length_unit = "mm"
+[path]
+points = [[0, 0], [1, 1], [2, 0]]
+[search]
+starts = 1
+enough = 1
+effort = 0.2
+"""
+# What no linkage does, for tests that no search has to be run for.
+STUDY = """\
+problem = "base.toml"
+[vary]
+"path.points[1].y" = { from = 0.5, to = 1.6, steps = 12 }
+"""
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Write:
+    """Write a study beside the base problem; its path."""
+    (tmp_path / "base.toml").write_text(BASE, encoding="utf-8")
+
+    def to(text: str = STUDY, name: str = "study.toml") -> Path:
+        path = tmp_path / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return to
+
+
+@pytest.fixture(scope="session")
+def solved() -> dict[str, Any]:
+    """What a task gives."""
+    result = solve_task("base", BASE, {"designs": 1, "time_limit": None})
+    assert result is not None
+    return result
+
+
+@pytest.fixture
+def told(monkeypatch: pytest.MonkeyPatch, solved: dict[str, Any]) -> list[str]:
+    """Problems that were solved, by a solver that takes no time and names the problem in its note."""
+    texts: list[str] = []
+
+    def solve(name: str, text: str, options: Any, stop: object = None) -> dict[str, Any]:
+        texts.append(text)
+        return {**solved, "note": text.splitlines()[6]}
+
+    monkeypatch.setattr("grashof.sweep.solving.solve_task", solve)
+    return texts

@@ -1,0 +1,104 @@
+"""Study files: what is read, and what is refused."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from grashof.problems import ProblemError, problem_text
+from grashof.sweep import load_study
+from grashof.sweep.combinations import combinations
+from grashof.sweep.study import SearchOptions, StudyFile
+
+Write = Callable[..., Path]
+
+
+def test_lists_and_ranges(write: Write) -> None:
+    study = load_study(
+        write(
+            'problem = "base.toml"\n[vary]\n"search.seed" = { from = 0, to = 4, steps = 3 }\n'
+            '"requirements.o2.x" = { from = 0.0, to = 0.3, steps = 4 }\nrequirements.order = [true, false]\n'
+        )
+    )
+    assert study.vary == {
+        "search.seed": [0, 2, 4],
+        "requirements.o2.x": [0.0, 0.1, 0.2, 0.3],
+        "requirements.order": [True, False],
+    }
+    assert all(isinstance(seed, int) for seed in study.vary["search.seed"])
+    assert study.axes == (("search.seed",), ("requirements.o2.x",), ("requirements.order",))
+
+
+def test_keys_in_step_are_one_axis(write: Write) -> None:
+    study = load_study(
+        write('problem = "luggage"\ntogether = [["a.b", "e"]]\n[vary]\na.b = [1, 2]\nc = [1]\ne = [3, 4]\n')
+    )
+    assert study.axes == (("a.b", "e"), ("c",))
+
+
+@pytest.mark.parametrize(
+    ("text", "lines"),
+    [
+        ("", ["a study needs problem", "vary is missing"]),
+        ('problem = "luggage"\n', ["vary is missing"]),
+        ('problem = "luggage"\nproblems = "."\n[vary]\na=[1]', ["it must have one of them"]),
+        ('problem = "lugage"\n[vary]\na=[1]', ["'lugage' is neither a problem of the catalogue nor a file"]),
+        ('problems = "none"\n', ["none: is no folder"]),
+        ('problem = "luggage"\n[vary]\na = 1', ["vary.a is 1; it must be a list of values or { from"]),
+        ('problem = "luggage"\n[vary]\na = []', ["vary.a is []; it must be a list of values or { from"]),
+        ('problem = "luggage"\n[vary]\na = {from = 1, to = 2, steps = 1}', ["vary.a.steps is 1; it must be"]),
+        ('problem = "luggage"\n[vary]\na = {from = 1, to = 2, step = 1}', ["vary.a is {"]),
+        ('problem = "luggage"\n[vary]\n"a b" = [1]', ["vary: a key is 'a b'"]),
+        (
+            'problem = "luggage"\n[vary]\n"a" = [1]\n"a[0]" = [1]',
+            ["vary has a key and another one within it"],
+        ),
+        (
+            'problem = "luggage"\ntogether = [["a", "c"]]\n[vary]\na = [1]\nb = [1]',
+            ["together[0] has c, which is not in vary"],
+        ),
+        (
+            'problem = "luggage"\ntogether = [["a", "b"]]\n[vary]\na = [1]\nb = [1, 2]',
+            ["together[0] has keys with different numbers of values: a 1, b 2"],
+        ),
+        (
+            'problem = "luggage"\nsteps = 3\ndesigns = 0\n'
+            "[search]\nseed = -1\ntime_limit = 0\n[vary]\na = [1]",
+            ["designs is 0", "search.seed is -1", "search.time_limit is 0", "steps is unknown"],
+        ),
+    ],
+)
+def test_all_that_is_wrong_is_stated(write: Write, text: str, lines: list[str]) -> None:
+    with pytest.raises(ProblemError) as refused:
+        load_study(write(text))
+    stated = str(refused.value).splitlines()
+    assert len(stated) == len(lines)
+    for line, words in zip(stated, lines, strict=True):
+        assert words in line
+
+
+def test_the_studies_of_the_readme(write: Write) -> None:
+    root = Path(__file__).parents[3]
+    section = (root / "README.md").read_text(encoding="utf-8").split("\n## Sweeps\n")[1].split("\n## ")[0]
+    first, whole = re.findall(r"^```toml\n(.*?)^```", section, re.MULTILINE | re.DOTALL)
+    assert (root / "docs" / "longer-links.toml").read_text(encoding="utf-8").endswith(first)
+    assert len(combinations(load_study(write(first)))) == 25
+    write(problem_text("luggage"), "mine.toml")
+    study = load_study(write(whole))
+    made = combinations(study)
+    assert len(made) == 6
+    assert not any(one.wrong for one in made)
+    options = {"time_limit", *SearchOptions.model_fields, *StudyFile.model_fields} - {"title"}
+    assert [name for name in options if not re.search(rf"\b{name}\b", whole)] == []
+
+
+def test_problems_of_a_folder_are_sorted(write: Write) -> None:
+    write('kind = "path"', "many/b.toml")
+    write("no TOML", "many/a.toml")
+    sources = load_study(write('problems = "many"')).sources
+    assert [source.name for source in sources] == ["a", "b"]
+    assert sources[0].wrong.startswith("a.toml: is not TOML")
+    assert sources[1].document == {"kind": "path"}

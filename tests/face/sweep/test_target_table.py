@@ -1,0 +1,66 @@
+"""Tables of points and poses, laid over a problem."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grashof.problems import ProblemError
+from grashof.sweep.target_table import target_rows
+
+PATH = {"kind": "path", "path": {"points": [[0, 0]], "closed": True}, "title": "t"}
+MOTION = {"kind": "motion"}
+
+
+def rows(
+    tmp_path: Path, text: str, base: dict[str, Any] = PATH
+) -> list[tuple[dict[str, Any], dict[str, Any]]]:
+    path = tmp_path / "points.csv"
+    path.write_text(text, encoding="utf-8-sig")
+    return target_rows(path, base)
+
+
+def test_points(tmp_path: Path) -> None:
+    (first, laid), (_, second) = rows(tmp_path, "name,x1,y1,x2,y2\na,1,2,3,4\n\n007,5,6\n")
+    assert first == {"row": 1, "name": "a", "x1": 1.0, "y1": 2.0, "x2": 3.0, "y2": 4.0}
+    assert laid == {"kind": "path", "path": {"points": [[1, 2], [3, 4]], "closed": True}, "title": "t"}
+    assert second["path"]["points"] == [[5, 6]]
+
+
+def test_poses_with_free_parts_and_other_keys(tmp_path: Path) -> None:
+    text = "x1,y1,angle1_deg,x2,y2,angle2_deg,requirements.o2.x,requirements.rotatability\n"
+    (cells, laid), (_, other) = rows(tmp_path, f"{text}1,2,30,4,5,,2.5,any\n1,2,3,,,60,,\n", MOTION)
+    assert laid["motion"] == {"poses": [[1, 2, 30], {"x": 4, "y": 5}]}
+    assert laid["requirements"] == {"o2": {"x": [2.5, 2.5]}, "rotatability": "any"}
+    assert cells["requirements.rotatability"] == "any"
+    assert other["motion"]["poses"] == [[1, 2, 3], {"angle": 60}]
+    assert "requirements" not in other
+
+
+@pytest.mark.parametrize(
+    ("text", "base", "lines"),
+    [
+        ("x1,y1\n1,b\n1,inf\n", PATH, ["line 2: y1 is 'b'; it must be", "line 3: y1 is 'inf'"]),
+        ("x1,y1\n1,\n", PATH, ["line 2: y1 is empty"]),
+        ("x1,y1\n1,2,3\n", PATH, ["line 2 has 3 cells; it must have 2"]),
+        ("x1,y1\n", PATH, ["has no rows"]),
+        ("", PATH, ["has no columns x1,y1"]),
+        ("x1,y1,x2\n1,2,3\n", PATH, ["column y2 is missing"]),
+        ("x1,y1,x1\n1,2,3\n", PATH, ["column x1 stands there 2 times"]),
+        ("x1,y1,colour\n1,2,3\n", PATH, ["column 'colour' is unknown; for a path they are x1,y1,x2,y2"]),
+        ("x1,y1\n1,2\n", MOTION, ["column angle1_deg is missing"]),
+        ("x1,y1\n1,2\n", {}, ['has no kind = "path" or "motion"']),
+        ("x1,y1,a.b[\n1,2,3\n", PATH, ["column is 'a.b['; it must be a dotted key"]),
+    ],
+)
+def test_all_that_is_wrong_is_stated(
+    tmp_path: Path, text: str, base: dict[str, Any], lines: list[str]
+) -> None:
+    with pytest.raises(ProblemError) as refused:
+        rows(tmp_path, text, base)
+    stated = str(refused.value).splitlines()
+    assert len(stated) == len(lines), stated
+    for line, words in zip(stated, lines, strict=True):
+        assert words in line
