@@ -164,14 +164,12 @@ def sweep(
     """Solve every combination of STUDY; write a table, a plot, a page and the record of the sweep.
 
     Exit code 0: at least one verified design; 1: none; 2: bad input; 3: environment error;
-    130: interrupted.
+    130: interrupted (Ctrl-C); 143: terminated (SIGTERM).
     """
     from grashof.sweep.command import run
 
     with _errors_told():
-        done = run(study, out, workers, resume, top)
-        code = Exit.OK if done.with_designs else Exit.NO_DESIGN
-        raise typer.Exit(code if done.complete else Exit.INTERRUPTED)
+        raise typer.Exit(run(study, out, workers, resume, top))
 
 
 @app.command()
@@ -321,8 +319,7 @@ def main() -> None:
 
 def _later(given: list[str]) -> str:
     """Message for an option that only a later version knows; empty when none is given."""
-    known = ("--resume",) if "sweep" in given[:1] else ()
-    words = [word for word in given if word.partition("=")[0] in _LATER_OPTIONS and word not in known]
+    words = [word for word in given if word.partition("=")[0] in _LATER_OPTIONS]
     return f"{words[0].partition('=')[0]} is not in this version" if words else ""
 
 

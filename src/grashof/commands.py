@@ -3,30 +3,15 @@
 from __future__ import annotations
 
 import shutil
-import signal
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
-from enum import IntEnum
 from pathlib import Path
-from types import FrameType
 
+from grashof.output.ending import Exit, interruptible
 from grashof.output.streams import say
 from grashof.problems import Problem, load_linkage_spec
 from grashof.problems.values.checks import counted
 
 TOP = 50  # families in a list by default
-
-
-class Exit(IntEnum):
-    """Exit codes."""
-
-    OK = 0
-    NO_DESIGN = 1
-    BAD_INPUT = 2
-    SURROUNDINGS = 3
-    INTERRUPTED = 130
-    TERMINATED = 143
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -169,36 +154,3 @@ def _report(note: str, files: list[str], folder: Path) -> None:
 
 def _point_to(page: Path) -> None:
     say(f"Open {page} in a browser to look at it.", err=True)
-
-
-class Interruption:
-    """Whether the user, or the system, has asked the program to end, and its exit code then."""
-
-    def __init__(self) -> None:
-        self.code = Exit.OK
-
-    def __call__(self) -> bool:
-        """Whether it was asked for."""
-        return self.code is not Exit.OK
-
-
-@contextmanager
-def interruptible() -> Iterator[Interruption]:
-    """Turn the first Ctrl-C or SIGTERM into a request to end soon; the second one ends at once."""
-    asked = Interruption()
-    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
-
-    def ask(number: int, _frame: FrameType | None) -> None:
-        asked.code = Exit.INTERRUPTED if number == signal.SIGINT else Exit.TERMINATED
-        restore()
-
-    def restore() -> None:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-
-    for number in before:
-        signal.signal(number, ask)
-    try:
-        yield asked
-    finally:
-        restore()

@@ -79,7 +79,7 @@ def test_a_signal_leaves_what_is_finished(
     before = signal.getsignal(number)
     monkeypatch.setattr("grashof.sweep.solving.solve_task", solve)
     ended = grashof("sweep", write(), "--out", tmp_path / "out")
-    assert ended.exit_code == 130
+    assert ended.exit_code == 128 + number
     assert "3 of 12 combinations done" in ended.stdout
     assert "--resume goes on" in ended.stderr
     assert signal.getsignal(number) is before
@@ -117,8 +117,8 @@ def test_two_hundred_tasks_interrupted_in_every_way(write: Write, tmp_path: Path
     study, out = write(MANY), tmp_path / "out"
     ways: list[tuple[signal.Signals, bool, int]] = [
         (signal.SIGINT, True, 130),
-        (signal.SIGTERM, False, 130),
-        (signal.SIGTERM, True, 130),
+        (signal.SIGTERM, False, 143),
+        (signal.SIGTERM, True, 143),
         (signal.SIGKILL, False, -signal.SIGKILL),
     ]
     for number, (way, group, code) in enumerate(ways):
