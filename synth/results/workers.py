@@ -182,10 +182,8 @@ class Processes(Elsewhere):
     """In processes of its own, which end with this one; one that is lost is replaced."""
 
     def __init__(self, count: int) -> None:
-        self._context = get_context("spawn")
-        # Without a lock: one that a killed process holds would never be free again.
-        self._state = self._context.RawValue("b", 0)
-        super().__init__(self._started(count), count)
+        self._state = new_state()
+        super().__init__(processes(count, self._state), count)
         self._warm = False
 
     def end(self) -> None:
@@ -193,11 +191,6 @@ class Processes(Elsewhere):
         self._state.value = OVER
         self.drop()
         self._executor.shutdown(cancel_futures=True)
-
-    def _started(self, count: int) -> ProcessPoolExecutor:
-        return ProcessPoolExecutor(
-            count, mp_context=self._context, initializer=_begin_worker, initargs=(self._state,)
-        )
 
     def _result(self, key: tuple[Any, ...], function: Callable[..., Any], *given: Any) -> Any:
         self._submit(key, function, *given)
@@ -214,7 +207,7 @@ class Processes(Elsewhere):
     def _lost(self, error: BrokenExecutor) -> None:  # noqa: ARG002  (what was lost is done again)
         self.drop()
         self._executor.shutdown(cancel_futures=True)
-        self._executor = self._started(self.width)
+        self._executor = processes(self.width, self._state)
 
 
 @contextmanager
@@ -240,11 +233,11 @@ def working(workers: int, executor: Executor | None) -> Iterator[Work]:
         finally:
             elsewhere.drop()
     elif workers > 1:
-        processes = Processes(workers)
+        own = Processes(workers)
         try:
-            yield processes
+            yield own
         finally:
-            processes.end()
+            own.end()
     else:
         yield Here()
 
@@ -257,11 +250,22 @@ def _numbered(one: Attempt, number: int) -> Attempt:
     return replace(one, candidate=replace(one.candidate, start=number), cognates=cognates)
 
 
-def _begin_worker(state: Any) -> None:
-    """Ctrl-C reaches every process of a terminal, and the parent alone decides what it means.
+def new_state() -> Any:
+    """What `processes` are told, by its value: nothing, `STOP` or `OVER`.
 
-    A worker ends once the search is over, whatever it does then, and with its parent, however that ends.
+    It has no lock: one that a killed process holds would never be free again.
     """
+    return get_context("spawn").RawValue("b", 0)
+
+
+def processes(count: int, state: Any) -> ProcessPoolExecutor:
+    """Processes that end once `state` is `OVER`, whatever they do then, and with this one."""
+    context = get_context("spawn")
+    return ProcessPoolExecutor(count, mp_context=context, initializer=_begin_worker, initargs=(state,))
+
+
+def _begin_worker(state: Any) -> None:
+    """Ctrl-C reaches every process of a terminal, and the parent alone decides what it means."""
     signal(SIGINT, SIG_IGN)
     stop_when(lambda: state.value >= STOP)
     Thread(target=_end_in_time, args=(state,), daemon=True).start()

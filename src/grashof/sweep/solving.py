@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Generator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from itertools import islice
-from multiprocessing import get_context, parent_process
-from multiprocessing.synchronize import Event
-from signal import SIG_IGN, SIGINT, signal
-from threading import Thread
 from typing import Any, TypeAlias
 
 from grashof.problems import SolverError
 from grashof.sweep.task import solve_task
+from grashof.synth.results.workers import OVER, new_state, processes
+from grashof.synth.theory.stopping import asked_to_stop
 
 # Key, name and text of a problem.
 Task: TypeAlias = tuple[str, str, str]
@@ -63,13 +60,12 @@ def solved(
 def _in_processes(
     workers: int, tasks: Sequence[Task], options: Mapping[str, Any], stop: Callable[[], bool]
 ) -> Generator[Finished, None, None]:
-    context = get_context("spawn")
-    stopped = context.Event()
-    own = ProcessPoolExecutor(workers, mp_context=context, initializer=_begin, initargs=(stopped,))
+    state = new_state()
+    own = processes(workers, state)
     try:
         yield from _elsewhere(own, _solve_until_stopped, tasks, options, stop)
     finally:
-        stopped.set()
+        state.value = OVER
         own.shutdown(cancel_futures=True)
 
 
@@ -101,22 +97,5 @@ def _elsewhere(
             future.cancel()
 
 
-_stopped: Event | None = None
-
-
-def _begin(stopped: Event) -> None:
-    """Of a process: the parent alone decides what Ctrl-C means, and nothing goes on without it."""
-    global _stopped  # an event reaches a process only when it begins
-    _stopped = stopped
-    signal(SIGINT, SIG_IGN)
-    Thread(target=_end_with_parent, daemon=True).start()
-
-
-def _end_with_parent() -> None:
-    if (parent := parent_process()) is not None:
-        parent.join()
-        os._exit(1)
-
-
 def _solve_until_stopped(name: str, text: str, options: Mapping[str, Any]) -> dict[str, Any] | None:
-    return solve_task(name, text, options, lambda: _stopped is not None and _stopped.is_set())
+    return solve_task(name, text, options, asked_to_stop)
