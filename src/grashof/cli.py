@@ -31,8 +31,6 @@ from grashof.problems import (
 from grashof.problems.values.problem import EFFORTS
 
 TRACEBACK = "GRASHOF_TRACEBACK"  # environment variable: unexpected errors with their traceback
-# Options of the contract that later versions bring.
-_LATER_OPTIONS = ("--scheduler",)
 # Typer makes the base of its usage errors public only through this one.
 _UsageError: type[Exception] = typer.BadParameter.__bases__[0]
 
@@ -47,7 +45,7 @@ class _Commands(TyperGroup):
         try:
             code = super().main(given, *rest, **{**options, "standalone_mode": False})
         except _UsageError as error:
-            say(f"grashof: {_later(given) or _one_line(error)}", err=True)
+            say(f"grashof: {_one_line(error)}", err=True)
             code = Exit.BAD_INPUT
         except Exception as error:  # noqa: BLE001  (the outermost boundary: nobody else reports what is left)
             if os.environ.get(TRACEBACK):
@@ -127,6 +125,10 @@ def solve(
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with the unfinished search in --out.")
     ] = False,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(help="Dask scheduler to work on, such as tcp://host:8786.", show_default=False),
+    ] = None,
 ) -> None:
     """Find designs for PROBLEM; write the ranked list, a page, drawings and the record of the run.
 
@@ -145,6 +147,7 @@ def solve(
             top=top,
             drawings=drawings,
             resume=resume,
+            scheduler=scheduler,
         )
         raise typer.Exit(commands.solve(loaded, text, options))
 
@@ -315,12 +318,6 @@ def main() -> None:
     # Drawings go to files: a backend meant for windows, or a misspelt one, must not stand in the way.
     os.environ["MPLBACKEND"] = "agg"
     app(prog_name="grashof")
-
-
-def _later(given: list[str]) -> str:
-    """Message for an option that only a later version knows; empty when none is given."""
-    words = [word for word in given if word.partition("=")[0] in _LATER_OPTIONS]
-    return f"{words[0].partition('=')[0]} is not in this version" if words else ""
 
 
 def _one_line(error: Exception) -> str:

@@ -29,6 +29,8 @@ class Options:
     top : int, optional
         Most families in the list.
     drawings : int
+    scheduler : str, optional
+        Address of a Dask scheduler, where to work instead.
     resume : bool
         Go on with the search that the folder has a record of.
     """
@@ -41,6 +43,7 @@ class Options:
     time_limit: float | None = None
     top: int | None = None
     drawings: int = 3
+    scheduler: str | None = None
     resume: bool = False
 
 
@@ -55,6 +58,7 @@ def solve(problem: Problem, text: str, options: Options) -> Exit:
 
 
 def _solve(problem: Problem, text: str, options: Options, folder: Path) -> Exit:
+    from grashof.output.cluster import cluster
     from grashof.output.folder import PAGE, SEARCH
     from grashof.output.run_files import write_run
     from grashof.output.terminal import print_table, search_progress
@@ -68,12 +72,16 @@ def _solve(problem: Problem, text: str, options: Options, folder: Path) -> Exit:
     top = options.top or max(TOP, search.enough)
     _begin_record(folder, resume=options.resume)
     with interruptible() as interrupted:
-        wanted = ends_with_enough(problem)
-        with search_progress(problem.name, finder_of(problem).beginning, wanted=wanted) as progress:
+        wanted, beginning = ends_with_enough(problem), finder_of(problem).beginning
+        with (
+            cluster(options.scheduler, options.workers) as (executor, workers),
+            search_progress(problem.name, beginning, wanted=wanted) as progress,
+        ):
             found = synthesize(
                 problem,
                 **asdict(search),
-                workers=options.workers,
+                workers=workers,
+                executor=executor,
                 time_limit=options.time_limit,
                 progress=progress,
                 stop=interrupted,

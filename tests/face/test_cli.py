@@ -84,8 +84,7 @@ def test_missing_file_and_misspelt_name(grashof: Grashof) -> None:
         ("solve luggage --effort nan", "--effort"),
         ("solve", "PROBLEM"),
         ("solv luggage", "solve"),
-        ("solve luggage --scheduler x", "--scheduler is not in this version"),
-        ("solve luggage --scheduler=here", "--scheduler is not in this version"),
+        ("solve luggage --scheduler x", "--scheduler x: missing port number"),
         (f"solve luggage --out {'x' * 300}", "File name too long"),
     ],
 )
