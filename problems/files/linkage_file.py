@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import reprlib
 from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
@@ -22,7 +21,7 @@ from grashof.problems.values.checks import (
     readable,
 )
 from grashof.problems.values.dynamics_spec import DynamicsSpec
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.errors import ProblemError, shown
 from grashof.problems.values.linkage import FourBar
 from grashof.problems.values.linkage_spec import LinkageSpec, ListedDesign
 from grashof.problems.values.problem import Problem
@@ -203,7 +202,7 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
     except ProblemError as error:
         raise located(error, where) from None
     if direction not in (1, -1):
-        raise ProblemError(f"{where}: direction is {reprlib.repr(direction)}; it must be +1 or -1")
+        raise ProblemError(f"{where}: direction is {shown(direction)}; it must be +1 or -1")
     driven = (spec.dynamics or DynamicsSpec()).turning(direction)
     title, source = f"{spec.title}: design {rank}", readable(str(path))
     problem = _listed_problem(content, path)
@@ -214,7 +213,7 @@ def _listed_problem(content: dict[str, Any], path: Path) -> Problem | None:
     """The problem that a list was made for; None where a list, made by hand, does not state it."""
     if (text := content.get("problem_toml")) is None:
         return None
-    wrong = f"{reprlib.repr(text)} is not text"
+    wrong = f"{shown(text)} is not text"
     if isinstance(text, str):
         try:
             return problem_of(text, "problem_toml", readable(str(content.get("problem", path.stem))))
