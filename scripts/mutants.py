@@ -10,6 +10,7 @@ import copy
 import json
 import math
 import random
+import sys
 import tempfile
 import tomllib
 from collections.abc import Callable, Iterator
@@ -329,12 +330,13 @@ class Mutator:
 
 
 def _json_text(document: dict[str, Any]) -> str:
+    """The same as JSON; Python writes no number of thousands of digits unless it is told to."""
+    before = sys.get_int_max_str_digits()
+    sys.set_int_max_str_digits(0)
     try:
         return json.dumps(document, default=str)
-    except ValueError:  # a number of thousands of digits, which Python reads as little as it writes it
-        return json.dumps({**document, "designs": None}, default=lambda _: None, skipkeys=True).replace(
-            "null", "9" * 6000, 1
-        )
+    finally:
+        sys.set_int_max_str_digits(before)
 
 
 def toml_text(document: dict[str, Any]) -> str:

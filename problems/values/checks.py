@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
+import re
 import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -19,6 +20,8 @@ from grashof.problems.values.errors import ProblemError, shown, wrong_value
 GREATEST = 1e20  # of lengths, masses and speeds: squares of torques stay within the floats
 LEAST = 1e-20  # size of a task, for the same reason
 _MANY = 500  # points
+# What a spreadsheet calculates, in the wide forms of Japanese and Chinese, too, and what it may skip before.
+_FORMULA = re.compile(r"(^|;)(?=\s*[=+\-@＝＋－＠]|[\t\r\n])")
 
 
 def finite_rows(
@@ -191,6 +194,19 @@ def readable(text: str) -> str:
     'caf?'
     """
     return "".join("?" if _unprintable(character) else character for character in text)
+
+
+def no_formula(text: str) -> str:
+    r"""Text that no spreadsheet takes for a formula and runs: a quotation mark before what begins like one.
+
+    Also behind a semicolon, at which many spreadsheets divide the lines of a CSV file.
+
+    Examples
+    --------
+    >>> no_formula("=1+1"), no_formula("\t@SUM(A1)"), no_formula("m; -1"), no_formula("1-2")
+    ("'=1+1", "'\t@SUM(A1)", "m;' -1", '1-2')
+    """
+    return _FORMULA.sub(r"\1'", text)
 
 
 def plain_text(text: str, where: str) -> str:
