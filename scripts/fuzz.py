@@ -42,7 +42,7 @@ from grashof.synth import Result
 from grashof.synth.starts.finder import finder_of
 from grashof.wording.problem import summary
 
-LOADING, WORKING = 5, 60  # s, after which it counts as a hang
+LOADING, WORKING = 5, 180  # s, after which it counts as a hang
 MOST_TARGETS = 100  # of a task that is searched: the time grows with them
 LONGEST = 1500  # characters of a line of an error, beside the name of the file
 TRACEBACK, HANG, WRONG, UNCLEAR = "tracebacks", "hangs", "wrong designs", "unclear messages"
