@@ -216,7 +216,7 @@ def fuzz(count: int, seed: int, share: float, out: Path, files: list[Seed]) -> C
             path = Path(folder) / f"mutant{mutant.suffix}"
             path.write_bytes(mutant.content)
             # What hangs in compiled code ends the program, with a traceback; the mutant then stays.
-            faulthandler.dump_traceback_later(10 * WORKING, exit=True, file=sys.__stderr__)
+            faulthandler.dump_traceback_later(10 * WORKING, exit=True, file=sys.__stderr__ or 2)
             found = examine(path, mutant.kind, figures, lambda: rng.random() < share)
             if found is not None:
                 figures[found.kind] += 1

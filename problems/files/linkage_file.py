@@ -27,6 +27,8 @@ from grashof.problems.values.linkage_spec import LinkageSpec, ListedDesign
 from grashof.problems.values.problem import Problem
 
 _LINKAGES = Catalogue("linkage", "linkages")
+_LAST_RANK = 10**9
+_LONGEST_VERSION = 30  # characters
 
 
 def load_linkage(linkage: str | os.PathLike[str]) -> FourBar:
@@ -103,7 +105,7 @@ def load_design(path: Path, which: str) -> ListedDesign:
     try:
         return ListedDesign(
             spec=spec,
-            rank=int(design["rank"]),
+            rank=_rank(design["rank"]),
             id=readable(str(design["id"])),
             theta2=tuple(number_within(angle, -GREATEST, GREATEST, "theta2") for angle in design["theta2"]),
             assembly=tuple(design["assembly"]),
@@ -169,7 +171,7 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
         raise ProblemError(f"{path}: is not an ordinary file; it must be a list of designs")
     try:
         content = json.loads(file_text(path, "a list of designs"))
-        designs = {int(design["rank"]): design for design in content["designs"]}
+        designs = {_rank(design["rank"]): design for design in content["designs"]}
         ranks = {
             str(name): rank for rank, design in designs.items() for name in (rank, design.get("id", rank))
         }
@@ -219,7 +221,8 @@ def _listed_problem(content: dict[str, Any], path: Path) -> Problem | None:
             return problem_of(text, "problem_toml", readable(str(content.get("problem", path.stem))))
         except ProblemError as error:
             wrong = str(error).splitlines()[0]
-    writer = content.get("grashof", "of unknown version")
+    writer = content.get("grashof")
+    writer = readable(writer)[:_LONGEST_VERSION] if isinstance(writer, str) else "of unknown version"
     raise ProblemError(
         f"{path}: was written by grashof {writer}, and grashof {version('grashof')} cannot read its problem: "
         f"{wrong}; solve it again"
@@ -227,4 +230,11 @@ def _listed_problem(content: dict[str, Any], path: Path) -> Problem | None:
 
 
 def _errors(given: list[float | None]) -> tuple[float | None, ...]:
-    return tuple(None if error is None else float(error) for error in given)
+    return tuple(None if error is None else number_within(error, 0.0, GREATEST, "error") for error in given)
+
+
+def _rank(given: object) -> int:
+    """A rank; `ValueError` for what is none."""
+    if isinstance(given, bool) or not isinstance(given, int) or not 1 <= given <= _LAST_RANK:
+        raise ValueError
+    return given
