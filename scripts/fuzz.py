@@ -37,10 +37,16 @@ from grashof.problems import FourBar, LinkageSpec, Problem, ProblemError, load_l
 from grashof.problems.files.linkage_file import load_design
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.problem_writing import problem_toml
+from grashof.problems.values.linkage_spec import ListedDesign
 from grashof.survey import report_on
 from grashof.synth import Result
 from grashof.synth.starts.finder import finder_of
 from grashof.wording.problem import summary
+from grashof.workshop.plan import plan_parts
+from grashof.workshop.plates import PlateSizes
+from grashof.workshop.sheet import sheet
+from grashof.workshop.svg import svg
+from grashof.workshop.workbook import workbook
 
 LOADING, WORKING = 5, 180  # s, after which it counts as a hang
 MOST_TARGETS = 100  # of a task that is searched: the time grows with them
@@ -58,6 +64,9 @@ class Finding:
     what: str
 
 
+Work = Callable[[], bool]
+
+
 class BrokenError(Exception):
     """A promise that is not kept."""
 
@@ -70,7 +79,7 @@ class TooLongError(BaseException):
     """What runs into a limit of time; nothing that handles errors catches it."""
 
 
-def examine(path: Path, kind: Kind, figures: Counter[str], work: Callable[[], bool]) -> Finding | None:
+def examine(path: Path, kind: Kind, figures: Counter[str], work: Work) -> Finding | None:
     """What a file breaks, if anything.
 
     Parameters
@@ -96,8 +105,8 @@ def examine(path: Path, kind: Kind, figures: Counter[str], work: Callable[[], bo
     return None
 
 
-def _examined(path: Path, kind: Kind, figures: Counter[str], work: Callable[[], bool]) -> None:
-    loaded: list[Problem | LinkageSpec]
+def _examined(path: Path, kind: Kind, figures: Counter[str], work: Work) -> None:
+    loaded: list[Problem | LinkageSpec | ListedDesign]
     try:
         with _limit(LOADING):
             loaded = _loaded(path, kind)
@@ -113,13 +122,13 @@ def _examined(path: Path, kind: Kind, figures: Counter[str], work: Callable[[], 
             _examine_linkage(one, path.parent, figures, work)
 
 
-def _loaded(path: Path, kind: Kind) -> list[Problem | LinkageSpec]:
+def _loaded(path: Path, kind: Kind) -> list[Problem | LinkageSpec | ListedDesign]:
     if kind == "problem":
         return [load(path)]
     if kind == "linkage":
         return [load_linkage_spec(path)]
     spec, design = load_linkage_spec(f"{path}#1"), load_design(path, "1")
-    return [spec, design.spec, *([spec.problem] if spec.problem else [])]
+    return [spec, design, *([spec.problem] if spec.problem else [])]
 
 
 def _refuse_unclear(error: ProblemError, where: str = "") -> None:
@@ -132,7 +141,7 @@ def _refuse_unclear(error: ProblemError, where: str = "") -> None:
         raise BrokenError(UNCLEAR, f"a line comes twice: {error}")
 
 
-def _examine_problem(problem: Problem, folder: Path, figures: Counter[str], work: Callable[[], bool]) -> None:
+def _examine_problem(problem: Problem, folder: Path, figures: Counter[str], work: Work) -> None:
     with _limit(LOADING):
         written = problem_toml(problem)
         if problem_toml(problem_of(written, "written", problem.name)) != written:
@@ -169,12 +178,18 @@ def _judge_again(result: Result, figures: Counter[str]) -> None:
 
 
 def _examine_linkage(
-    spec: LinkageSpec, folder: Path, figures: Counter[str], work: Callable[[], bool]
+    one: LinkageSpec | ListedDesign, folder: Path, figures: Counter[str], work: Work
 ) -> None:
     if not work():
         return
+    spec = one.spec if isinstance(one, ListedDesign) else one
     figures["reports"] += 1
     with _limit(WORKING):
+        try:
+            workbook([one])
+            svg(sheet(plan_parts(spec.linkage, PlateSizes(), 50.0 / float(spec.linkage.lengths.min()))))
+        except ProblemError as error:
+            _refuse_unclear(error)
         try:
             report = report_on(spec)
         except ProblemError as error:
@@ -202,8 +217,8 @@ def _limit(seconds: float) -> Iterator[None]:
 
 
 def seeds() -> list[Seed]:
-    """All files that mutants are made of; half of them problems."""
-    return [*problem_seeds(), *linkage_seeds(), *linkage_seeds(), *list_seeds()]
+    """All files that mutants are made of, the few linkages and lists more than once."""
+    return [*problem_seeds(), *2 * linkage_seeds(), *3 * list_seeds()]
 
 
 def fuzz(count: int, seed: int, share: float, out: Path, files: list[Seed]) -> Counter[str]:

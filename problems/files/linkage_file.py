@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
@@ -28,7 +29,7 @@ from grashof.problems.values.problem import Problem
 
 _LINKAGES = Catalogue("linkage", "linkages")
 _LAST_RANK = 10**9
-_LONGEST_VERSION = 30  # characters
+_VERSION = r"[0-9A-Za-z.+!_-]{1,40}"
 
 
 def load_linkage(linkage: str | os.PathLike[str]) -> FourBar:
@@ -222,9 +223,9 @@ def _listed_problem(content: dict[str, Any], path: Path) -> Problem | None:
         except ProblemError as error:
             wrong = str(error).splitlines()[0]
     writer = content.get("grashof")
-    writer = readable(writer)[:_LONGEST_VERSION] if isinstance(writer, str) else "of unknown version"
+    known = isinstance(writer, str) and re.fullmatch(_VERSION, writer)
     raise ProblemError(
-        f"{path}: was written by grashof {writer}, and grashof {version('grashof')} cannot read its problem: "
+        f"{path}: was written by grashof {writer if known else 'of unknown version'}, and grashof {version('grashof')} cannot read its problem: "
         f"{wrong}; solve it again"
     )
 

@@ -318,13 +318,14 @@ def test_a_list_of_another_version_is_refused_in_one_line(tmp_path: Path, text: 
     assert "\n" not in told
 
 
-@pytest.mark.parametrize("writer", ["9\n9" * 50, 5, None, "x" * 5000, "\x1b[31m"])
+@pytest.mark.parametrize("writer", ["9\n9" * 50, 5, None, "x" * 5000, "\x1b[31m", "\u2028", "é"])
 def test_whatever_wrote_a_list_is_told_in_one_line(tmp_path: Path, writer: Any) -> None:
     path = tmp_path / "candidates.json"
     path.write_text(json.dumps(json.loads(listed()) | {"grashof": writer, "problem_toml": 5}))
     with pytest.raises(ProblemError) as refused:
         load_linkage_spec(f"{path}#3")
     said = str(refused.value).removeprefix(str(path))
-    assert "cannot read its problem: 5 is not text; solve it again" in said
+    assert said.startswith(": was written by grashof of unknown version, and grashof ")
+    assert said.endswith("cannot read its problem: 5 is not text; solve it again")
     assert said.isprintable()
     assert len(said) < 200
