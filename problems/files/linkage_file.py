@@ -223,9 +223,10 @@ def _listed_problem(content: dict[str, Any], path: Path) -> Problem | None:
         except ProblemError as error:
             wrong = str(error).splitlines()[0]
     writer = content.get("grashof")
-    known = isinstance(writer, str) and re.fullmatch(_VERSION, writer)
+    if not (isinstance(writer, str) and re.fullmatch(_VERSION, writer)):
+        writer = "of unknown version"
     raise ProblemError(
-        f"{path}: was written by grashof {writer if known else 'of unknown version'}, and grashof {version('grashof')} cannot read its problem: "
+        f"{path}: was written by grashof {writer}, and grashof {version('grashof')} cannot read its problem: "
         f"{wrong}; solve it again"
     )
 
