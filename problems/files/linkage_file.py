@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-import reprlib
+import re
 from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
@@ -22,12 +22,14 @@ from grashof.problems.values.checks import (
     readable,
 )
 from grashof.problems.values.dynamics_spec import DynamicsSpec
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.errors import ProblemError, shown
 from grashof.problems.values.linkage import FourBar
 from grashof.problems.values.linkage_spec import LinkageSpec, ListedDesign
 from grashof.problems.values.problem import Problem
 
 _LINKAGES = Catalogue("linkage", "linkages")
+_LAST_RANK = 10**9
+_VERSION = r"[0-9A-Za-z.+!_-]{1,40}"
 
 
 def load_linkage(linkage: str | os.PathLike[str]) -> FourBar:
@@ -104,7 +106,7 @@ def load_design(path: Path, which: str) -> ListedDesign:
     try:
         return ListedDesign(
             spec=spec,
-            rank=int(design["rank"]),
+            rank=_rank(design["rank"]),
             id=readable(str(design["id"])),
             theta2=tuple(number_within(angle, -GREATEST, GREATEST, "theta2") for angle in design["theta2"]),
             assembly=tuple(design["assembly"]),
@@ -170,7 +172,7 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
         raise ProblemError(f"{path}: is not an ordinary file; it must be a list of designs")
     try:
         content = json.loads(file_text(path, "a list of designs"))
-        designs = {int(design["rank"]): design for design in content["designs"]}
+        designs = {_rank(design["rank"]): design for design in content["designs"]}
         ranks = {
             str(name): rank for rank, design in designs.items() for name in (rank, design.get("id", rank))
         }
@@ -203,7 +205,7 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
     except ProblemError as error:
         raise located(error, where) from None
     if direction not in (1, -1):
-        raise ProblemError(f"{where}: direction is {reprlib.repr(direction)}; it must be +1 or -1")
+        raise ProblemError(f"{where}: direction is {shown(direction)}; it must be +1 or -1")
     driven = (spec.dynamics or DynamicsSpec()).turning(direction)
     title, source = f"{spec.title}: design {rank}", readable(str(path))
     problem = _listed_problem(content, path)
@@ -214,13 +216,15 @@ def _listed_problem(content: dict[str, Any], path: Path) -> Problem | None:
     """The problem that a list was made for; None where a list, made by hand, does not state it."""
     if (text := content.get("problem_toml")) is None:
         return None
-    wrong = f"{reprlib.repr(text)} is not text"
+    wrong = f"{shown(text)} is not text"
     if isinstance(text, str):
         try:
             return problem_of(text, "problem_toml", readable(str(content.get("problem", path.stem))))
         except ProblemError as error:
             wrong = str(error).splitlines()[0]
-    writer = content.get("grashof", "of unknown version")
+    writer = content.get("grashof")
+    if not (isinstance(writer, str) and re.fullmatch(_VERSION, writer)):
+        writer = "of unknown version"
     raise ProblemError(
         f"{path}: was written by grashof {writer}, and grashof {version('grashof')} cannot read its problem: "
         f"{wrong}; solve it again"
@@ -228,4 +232,11 @@ def _listed_problem(content: dict[str, Any], path: Path) -> Problem | None:
 
 
 def _errors(given: list[float | None]) -> tuple[float | None, ...]:
-    return tuple(None if error is None else float(error) for error in given)
+    return tuple(None if error is None else number_within(error, 0.0, GREATEST, "error") for error in given)
+
+
+def _rank(given: object) -> int:
+    """A rank; `ValueError` for what is none."""
+    if isinstance(given, bool) or not isinstance(given, int) or not 1 <= given <= _LAST_RANK:
+        raise ValueError
+    return given

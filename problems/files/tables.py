@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import reprlib
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Self, TypeAlias, TypeVar
 
@@ -20,12 +19,13 @@ from pydantic import (
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from grashof.problems.values.checks import near_miss, plain_text
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.errors import ProblemError, shown
 
 # Type of a validator's error; its message is what the value must be.
 WRONG = "wrong"
 # Tags distinguish the shapes of a value. They enter the location of an error and are left out of its path.
 TABLE, LIST, WORD, NUMBER = "<table>", "<list>", "<word>", "<number>"
+_LONGEST_KEY = 60  # characters that messages show
 _WANTED = {
     "float_type": "a number",
     "int_type": "a whole number",
@@ -138,7 +138,7 @@ def _described(error: ErrorDetails, tables: Mapping[str, type[Table]]) -> str:
         lines = str(error["ctx"]["error"]).splitlines()
         # A value type names its key from the top of the file; a box cannot know whose it is.
         return "\n".join(line if line.startswith(path) else f"{path}.{line}" for line in lines)
-    return f"{path} is {_shown(error['input'])}; it must be {_WANTED.get(kind, error['msg'])}"
+    return f"{path} is {_given(error['input'])}; it must be {_WANTED.get(kind, error['msg'])}"
 
 
 def _unknown(location: tuple[int | str, ...], tables: Mapping[str, type[Table]]) -> str:
@@ -155,12 +155,13 @@ def _path(location: tuple[int | str, ...]) -> str:
         if isinstance(part, int):
             path += f"[{part}]"
         elif part not in (TABLE, LIST, WORD, NUMBER):
+            part = part if len(part) <= _LONGEST_KEY else f"{part[:_LONGEST_KEY]}..."
             key = part if re.fullmatch(r"[A-Za-z0-9_-]+", part) else json.dumps(part)
             path += f".{key}" if path else key
     return path
 
 
-def _shown(value: object) -> str:
+def _given(value: object) -> str:
     if isinstance(value, dict):
         return "a table"
-    return str(value).lower() if isinstance(value, bool) else reprlib.repr(value)
+    return str(value).lower() if isinstance(value, bool) else shown(value)

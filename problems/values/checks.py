@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
-import reprlib
+import re
 import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -15,10 +15,13 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.values.arrays import FloatArray, Limits, frozen_array
-from grashof.problems.values.errors import ProblemError, wrong_value
+from grashof.problems.values.errors import ProblemError, shown, wrong_value
 
 GREATEST = 1e20  # of lengths, masses and speeds: squares of torques stay within the floats
 LEAST = 1e-20  # size of a task, for the same reason
+_MANY = 500  # points
+# What a spreadsheet calculates, in the wide forms of Japanese and Chinese, too, and what it may skip before.
+_FORMULA = re.compile(r"(^|;)(?=\s*[=+\-@＝＋－＠]|[\t\r\n])")
 
 
 def finite_rows(
@@ -103,7 +106,7 @@ def finite_number(value: float, where: str) -> float:
         with suppress(OverflowError):  # a whole number beyond the floats
             if math.isfinite(value):
                 return float(value)
-    raise ProblemError(f"{where} is {reprlib.repr(value)}; it must be a finite number")
+    raise ProblemError(f"{where} is {shown(value)}; it must be a finite number")
 
 
 def positive_number(value: float, where: str) -> float:
@@ -156,8 +159,16 @@ def limits(values: Limits, where: str, *, least: float = -np.inf, most: float = 
 
 def span(points: FloatArray) -> float:
     """Greatest distance between two of N points (N, 2)."""
-    separation = points[:, None] - points[None]
-    return float(np.hypot(separation[..., 0], separation[..., 1]).max(initial=0.0))
+    if len(points) > _MANY:
+        # Here, not above: shapely takes a while to import, and few tasks have so many targets.
+        import shapely
+
+        points = shapely.get_coordinates(shapely.convex_hull(shapely.MultiPoint(points)))
+    greatest = 0.0
+    for first in range(0, len(points), _MANY):  # not all pairs at once, which memory may not hold
+        separation = points[first : first + _MANY, None] - points[None]
+        greatest = max(greatest, float(np.hypot(separation[..., 0], separation[..., 1]).max(initial=0.0)))
+    return greatest
 
 
 def counted(number: int, noun: str) -> str:
@@ -185,6 +196,19 @@ def readable(text: str) -> str:
     return "".join("?" if _unprintable(character) else character for character in text)
 
 
+def no_formula(text: str) -> str:
+    r"""Text that no spreadsheet takes for a formula and runs: a quotation mark before what begins like one.
+
+    Also behind a semicolon, at which many spreadsheets divide the lines of a CSV file.
+
+    Examples
+    --------
+    >>> no_formula("=1+1"), no_formula("\t@SUM(A1)"), no_formula("m; -1"), no_formula("1-2")
+    ("'=1+1", "'\t@SUM(A1)", "m;' -1", '1-2')
+    """
+    return _FORMULA.sub(r"\1'", text)
+
+
 def plain_text(text: str, where: str) -> str:
     r"""`text`, refused where a terminal, SVG or HTML would stumble over it: control characters, half ones.
 
@@ -198,7 +222,7 @@ def plain_text(text: str, where: str) -> str:
     grashof.problems.values.errors.ProblemError: title has control character U+000A; it must be plain text
     """
     if not isinstance(text, str):
-        raise ProblemError(f"{where} is {reprlib.repr(text)}; it must be text")
+        raise ProblemError(f"{where} is {shown(text)}; it must be text")
     for character in filter(_unprintable, text):
         raise ProblemError(f"{where} has control character U+{ord(character):04X}; it must be plain text")
     return text
@@ -210,4 +234,4 @@ def _unprintable(character: str) -> bool:
 
 
 def _plain(row: object) -> str:
-    return str(row.tolist()) if isinstance(row, np.ndarray) else str(row)
+    return shown(row.tolist() if isinstance(row, np.ndarray) else row)

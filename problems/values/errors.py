@@ -1,5 +1,9 @@
 """The errors Grashof raises, all under `GrashofError`."""
 
+from __future__ import annotations
+
+import reprlib
+
 
 class GrashofError(Exception):
     """Base of every error that Grashof raises on purpose."""
@@ -11,7 +15,37 @@ class ProblemError(GrashofError, ValueError):
 
 def wrong_value(where: str, value: object, wanted: str) -> ProblemError:
     """The error of a value that is not what it must be."""
-    return ProblemError(f"{where} is {value!r}; it must be {wanted}")
+    return ProblemError(f"{where} is {shown(value)}; it must be {wanted}")
+
+
+def shown(value: object) -> str:
+    """A value as a message shows it: Python, and short whatever it is.
+
+    Examples
+    --------
+    >>> shown([1, "two"]), shown(16**5000), len(shown("x" * 10_000))
+    ("[1, 'two']", 'a whole number of about 6021 digits', 80)
+    """
+    text = " ".join(_SHORT.repr(value).splitlines())
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 43]}...{text[-40:]}"
+
+
+class _Short(reprlib.Repr):
+    """Python's own, of values that a file may state."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.maxlist = self.maxtuple = self.maxdict = 12
+        self.maxstring, self.maxlong, self.maxother = 80, 60, 200
+
+    def repr_int(self, x: int, level: int) -> str:
+        # Python refuses to write thousands of digits, which hexadecimal numbers may have.
+        if x.bit_length() > _LONGEST_INT:
+            return f"a whole number of about {round(x.bit_length() * 0.30103)} digits"
+        return super().repr_int(x, level)
+
+
+_SHORT, _LONGEST, _LONGEST_INT = _Short(), 240, 10_000  # characters, bits
 
 
 class AssemblyError(GrashofError):

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.errors import ProblemError, wrong_value
+from grashof.problems.values.errors import ProblemError, shown, wrong_value
 
 _ENDINGS = {"place": ("_x", "_y"), "arm": ("_u", "_v"), "angle": ("_deg",)}
 
@@ -64,10 +64,10 @@ class Parameter:
         """
         try:
             array = np.asarray(value, dtype=np.float64)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             raise wrong_value(self.name, value, "a number") from None
         if not np.isfinite(array).all():
-            raise ProblemError(f"{self.name} is {value!r}; all numbers must be finite")
+            raise ProblemError(f"{self.name} is {shown(value)}; all numbers must be finite")
         if self.paired and array.shape[-1:] != (2,):
             raise ProblemError(f"{self.name} has shape {array.shape}; it must be (..., 2)")
         if self.kind == "length" and np.any(array <= 0):

@@ -23,7 +23,7 @@ from grashof.problems.values.checks import (
     refuse,
     task_size,
 )
-from grashof.problems.values.errors import ProblemError, wrong_value
+from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.task import Task
 from grashof.problems.values.timing import driver_timing, finite_angles, whole_turn
 from grashof.problems.values.zones import LEAST_ZONE, turn_sizes, zone_sizes
@@ -191,16 +191,18 @@ def _row(pose: object, where: str) -> tuple[float, float, float]:
         raise wrong_value(where, pose, _POSE)
     values = list(pose)
     if len(values) != 3:
-        raise ProblemError(f"{where} is {values}, {counted(len(values), 'number')}; it must be {_POSE}")
+        raise ProblemError(
+            f"{where} is {shown(values)}, {counted(len(values), 'number')}; it must be {_POSE}"
+        )
     for value in values:
         if isinstance(value, float) and not np.isfinite(value):
-            raise ProblemError(f"{where} is {values}; all numbers must be finite")
+            raise ProblemError(f"{where} is {shown(values)}; all numbers must be finite")
     x, y, angle = (finite_number(value, f"{where}[{k}]") for k, value in enumerate(values))
     return x, y, angle
 
 
 def _numbers(values: npt.ArrayLike, what: str) -> FloatArray:
-    numbers = number_array(values, f"motion.poses has {what} {values!r}; they must be numbers")
+    numbers = number_array(values, f"motion.poses has {what} {shown(values)}; they must be numbers")
     if np.isinf(numbers).any():
         raise ProblemError(
             f"motion.poses has {what} that are infinite; they must be finite, or NaN where free"
@@ -211,7 +213,7 @@ def _numbers(values: npt.ArrayLike, what: str) -> FloatArray:
 def _weights(values: npt.ArrayLike | None, count: int) -> FloatArray:
     if values is None:
         return frozen_array(np.ones(count))
-    weights = number_array(values, f"motion.weights is {values!r}; it must be a list of numbers", (1,))
+    weights = number_array(values, f"motion.weights is {shown(values)}; it must be a list of numbers", (1,))
     if len(weights) != count:
         raise ProblemError(f"motion.weights has {counted(len(weights), 'number')} for {count} poses")
     least, most = _WEIGHTS

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import reprlib
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -22,7 +21,7 @@ from grashof.problems.values.checks import (
     whole_number,
 )
 from grashof.problems.values.dynamics_spec import DynamicsSpec, metres
-from grashof.problems.values.errors import ProblemError, wrong_value
+from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.manufacturing import Manufacturing
 from grashof.problems.values.motion_task import MotionTask
 from grashof.problems.values.objective import GOALS, Objective
@@ -121,7 +120,7 @@ class Problem(ReadOnly):
     def __post_init__(self) -> None:
         for name, kind in _KINDS.items():
             if not isinstance(value := getattr(self, name), kind):
-                raise ProblemError(f"problem.{name} is {reprlib.repr(value)}; it must be {_named(kind)}")
+                raise ProblemError(f"problem.{name} is {shown(value)}; it must be {_named(kind)}")
         for name in ("name", "title", "source", "length_unit"):
             plain_text(getattr(self, name), name)
         if isinstance(self.outlines, str) or not isinstance(self.outlines, Iterable):

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.checks import GREATEST, counted, number_array
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.errors import ProblemError, shown
 
 LEAST_ZONE = 1e-12  # below, digits are lost
 ANGLES_DEG = (1e-10, 180.0)  # least and greatest zone of an angle
@@ -40,7 +40,7 @@ def zone_sizes(
     if values is None:
         return None
     wanted = "it must be a number greater than zero, or a list of one for each target"
-    numbers = number_array(values, f"{where} is {values!r}; {wanted}", (0, 1))
+    numbers = number_array(values, f"{where} is {shown(values)}; {wanted}", (0, 1))
     if numbers.ndim == 1 and len(numbers) != count:
         raise ProblemError(f"{where} has {counted(len(numbers), 'number')} for {count} targets; {wanted}")
     for index, number in enumerate(np.atleast_1d(numbers)):

@@ -10,6 +10,8 @@ import pytest
 
 from grashof.output.folder import ANALYSIS_RECORD, RECORD, check_writable, own_files, replacing_own_files
 from grashof.problems import ProblemError, load_linkage
+from grashof.workshop.export import Making, export_files
+from grashof.workshop.plates import PlateSizes
 
 CSV = "candidates.csv"
 
@@ -122,3 +124,77 @@ def test_a_pipe_in_place_of_a_list_is_not_read(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "candidates.json")
     with pytest.raises(ProblemError, match=r"json: is not an ordinary file; it must be a list of designs"):
         load_linkage(f"{tmp_path / 'candidates.json'}#1")
+
+
+@pytest.fixture
+def outside(tmp_path: Path) -> Path:
+    """A file that no run may touch."""
+    path = tmp_path / "outside" / "thesis.txt"
+    path.parent.mkdir()
+    path.write_text("mine")
+    return path
+
+
+@pytest.mark.skipif(os.name == "nt", reason="links need leave there")
+@pytest.mark.parametrize("again", [True, False])
+def test_links_are_replaced_and_not_followed(tmp_path: Path, outside: Path, again: bool) -> None:
+    folder = tmp_path / "out"
+    write(folder, CSV, "design-01.png")
+    for name in (CSV, "design-01.png"):  # the record says that they are ours
+        (folder / name).unlink()
+        (folder / name).symlink_to(outside)
+    check_writable(folder, drawings=1)
+    write(folder, *([CSV, "design-01.png"] if again else []))
+    assert outside.read_text() == "mine"
+    assert not any(path.is_symlink() for path in folder.iterdir())
+    assert {path.name for path in folder.iterdir()} == ({CSV, "design-01.png", RECORD} if again else {RECORD})
+    assert list(outside.parent.iterdir()) == [outside]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="links need leave there")
+def test_a_record_that_is_a_link_is_replaced_itself(tmp_path: Path, outside: Path) -> None:
+    folder = tmp_path / "out"
+    write(folder, CSV)
+    record = (folder / RECORD).read_text()
+    outside.write_text(record)
+    (folder / RECORD).unlink()
+    (folder / RECORD).symlink_to(outside)
+    write(folder, CSV)
+    assert outside.read_text() == record
+    assert not (folder / RECORD).is_symlink()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="links need leave there")
+def test_a_link_that_leads_nowhere_is_no_folder(tmp_path: Path) -> None:
+    (tmp_path / "out").symlink_to(tmp_path / "outside" / "new")
+    with pytest.raises(ProblemError, match="it must be a folder that can be written"):
+        check_writable(tmp_path / "out")
+    assert {path.name for path in tmp_path.iterdir()} == {"out"}
+    assert (tmp_path / "out").is_symlink()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="links need leave there")
+def test_exports_replace_links_and_do_not_follow_them(tmp_path: Path, outside: Path) -> None:
+    files = {kind: tmp_path / f"parts.{kind}" for kind in ("dxf", "svg", "xlsx")}
+    for path in files.values():
+        path.symlink_to(outside)
+    export_files("pumpjack", Making(PlateSizes(), "1:20"), files)
+    assert outside.read_text() == "mine"
+    assert all(path.is_file() and not path.is_symlink() for path in files.values())
+
+
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="no folder that not even root can write")
+@pytest.mark.parametrize("record", [RECORD, ANALYSIS_RECORD])
+def test_a_folder_that_cannot_be_written(record: str) -> None:
+    for folder in (Path("/proc"), Path("/proc/designs")):
+        with pytest.raises(ProblemError, match=rf"--out {folder}: .*; it must be a folder"):
+            check_writable(folder, record=record)
+
+
+def test_an_error_without_a_file_names_the_folder(tmp_path: Path) -> None:
+    def full() -> None:
+        with replacing_own_files(tmp_path / "new"):
+            raise OSError(28, "No space left on device")
+
+    with pytest.raises(OSError, match=r"No space left on device: '.*new'"):
+        full()

@@ -108,6 +108,8 @@ def save_animation(animation: FuncAnimation, path: str | os.PathLike[str]) -> No
                 animation.save(fresh, writer=_WRITERS[path.suffix.lower()], dpi=100)
         except subprocess.CalledProcessError as error:
             raise OSError(f"{path}: ffmpeg ended with code {error.returncode}") from None
+        except OSError as error:
+            raise OSError(error.errno, error.strerror, str(path)) from None
         fresh.replace(path)
 
 

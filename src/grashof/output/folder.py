@@ -110,7 +110,8 @@ def replacing_own_files(folder: Path, keep: Collection[str] = (), record: str = 
     """A folder to write files into, which at the end take the place of those of the last run.
 
     What the last run wrote and this one does not is removed; other files are left alone. If
-    anything fails, the folder stays as it was, and goes if it was made here.
+    anything fails, the folder stays as it was, and goes if it was made here. Links in it are replaced or
+    removed themselves, not what they lead to.
 
     Parameters
     ----------
@@ -125,8 +126,13 @@ def replacing_own_files(folder: Path, keep: Collection[str] = (), record: str = 
     ------
     Path
         Empty folder beside the files, on the same disk.
+
+    Raises
+    ------
+    OSError
+        The disk is full or the folder is lost.
     """
-    with _made(folder):
+    with _named(folder), _made(folder):
         before = own_files(folder, record)
         with tempfile.TemporaryDirectory(dir=folder, prefix=UNFINISHED) as name:
             fresh = Path(name)
@@ -163,6 +169,17 @@ def _taken(folder: Path, drawings: int, record: str) -> list[str]:
     return sorted(
         name for name, ours in found if ours and name not in own and int(ours["rank"] or 0) <= drawings
     )
+
+
+@contextmanager
+def _named(folder: Path) -> Iterator[None]:
+    """Errors that name no file, such as of a full disk, name the folder."""
+    try:
+        yield
+    except OSError as error:
+        if error.filename is not None or error.strerror is None:
+            raise
+        raise OSError(error.errno, error.strerror, str(folder)) from None
 
 
 @contextmanager

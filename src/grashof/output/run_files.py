@@ -15,6 +15,7 @@ from grashof.output.folder import PAGE, RECORD, replacing_own_files
 from grashof.problems import Problem
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.checks import no_formula
 from grashof.problems.values.quantities import Needs, Over
 from grashof.synth import Candidate, Result
 from grashof.synth.results.table import LISTED, facts, to_frame
@@ -179,13 +180,10 @@ _GUARDS = ("Maximum_Iterations_Exceeded", "Maximum_WallTime_Exceeded")
 def write_csv(path: Path, frame: pd.DataFrame) -> None:
     """A table with floats in full precision; no text in it is a formula to a spreadsheet."""
     texts = frame.select_dtypes(exclude=["number", "bool"]).columns
-    frame = frame.assign(**{name: frame[name].map(_no_formula) for name in texts})
+    plain = {name: frame[name].map(lambda x: no_formula(x) if isinstance(x, str) else x) for name in texts}
+    frame = frame.assign(**plain)
     with path.open("w", encoding="utf-8", newline="") as file:  # pandas would read ~ as a home
         frame.to_csv(file, index=False, lineterminator="\n")
-
-
-def _no_formula(value: Any) -> Any:
-    return f"'{value}" if isinstance(value, str) and value.startswith(("=", "+", "-", "@")) else value
 
 
 def write_json(path: Path, content: dict[str, Any]) -> None:

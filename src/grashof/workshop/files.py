@@ -69,13 +69,16 @@ def write_whole(contents: Mapping[Path, bytes]) -> None:
     Raises
     ------
     OSError
-        The disk is full or a folder is lost; every file is then as it was before.
+        The disk is full or a folder is lost, named by the file; every file is then as it was before.
     """
     with ExitStack() as folders:
         fresh = {}
         for path, content in contents.items():
-            beside = tempfile.TemporaryDirectory(dir=path.parent, prefix=".writing-")
-            fresh[path] = Path(folders.enter_context(beside)) / path.name
-            fresh[path].write_bytes(content)
+            try:
+                beside = tempfile.TemporaryDirectory(dir=path.parent, prefix=".writing-")
+                fresh[path] = Path(folders.enter_context(beside)) / path.name
+                fresh[path].write_bytes(content)
+            except OSError as error:
+                raise OSError(error.errno, error.strerror, str(path)) from None
         for path, file in fresh.items():
             file.replace(path)

@@ -25,6 +25,7 @@ from grashof.analysis import (
 )
 from grashof.analysis.four_bar.transmission import quality
 from grashof.problems import LinkageSpec, ProblemError
+from grashof.problems.values.checks import no_formula
 from grashof.problems.values.linkage_spec import ListedDesign
 from grashof.workshop.sheet import printable
 
@@ -232,7 +233,7 @@ def _put(page: Worksheet, row: int, column: int, value: Any) -> Cell | MergedCel
     if isinstance(value, str):
         cell.value = printable(value)
         cell.data_type = "s"
-        cell.quotePrefix = value[:1] in "=+-@"
+        cell.quotePrefix = no_formula(value) != value
     elif isinstance(value, float) and not np.isfinite(value):
         cell.value = None if np.isnan(value) else str(value)
     else:

@@ -212,6 +212,10 @@ def edited(**changes: Any) -> str:
         ),
         ({"length_unit": None}, "#3: length_unit is"),
         ({"rank": float("inf")}, "is not a list of designs"),
+        ({"rank": -1}, "is not a list of designs"),
+        ({"rank": 1.5}, "is not a list of designs"),
+        ({"rank": True}, "is not a list of designs"),
+        ({"rank": 10**40}, "is not a list of designs"),
         ({"linkage": 5}, "states no linkage"),
     ],
 )
@@ -232,7 +236,8 @@ TARGETS = {"id": "x", "theta2": [0.1, 0.2], "assembly": [1, 1], "position_error"
     [
         {"theta2": []}, {"theta2": [0.1]}, {"theta2": [0.1, float("inf")]}, {"theta2": [0.1, 1e300]},
         {"assembly": [1, 0]}, {"assembly": [1, float("inf")]}, {"assembly": [1]}, {"assembly": None},
-        {"position_error": []}, {"angle_error": [0.1]}, {"angle_error": None},
+        {"position_error": []}, {"position_error": [10**400, None]}, {"position_error": [0.0, float("nan")]},
+        {"position_error": "12"}, {"angle_error": [0.1, "x"]}, {"angle_error": [0.1]}, {"angle_error": None},
     ],
 )  # fmt: skip
 def test_targets_edited_by_hand(tmp_path: Path, changes: dict[str, Any]) -> None:
@@ -311,3 +316,16 @@ def test_a_list_of_another_version_is_refused_in_one_line(tmp_path: Path, text: 
     begin = f"{path}: was written by grashof 9.8, and grashof {version('grashof')} cannot read its problem: "
     assert told.startswith(begin + said)
     assert "\n" not in told
+
+
+@pytest.mark.parametrize("writer", ["9\n9" * 50, 5, None, "x" * 5000, "\x1b[31m", "\u2028", "é"])
+def test_whatever_wrote_a_list_is_told_in_one_line(tmp_path: Path, writer: Any) -> None:
+    path = tmp_path / "candidates.json"
+    path.write_text(json.dumps(json.loads(listed()) | {"grashof": writer, "problem_toml": 5}))
+    with pytest.raises(ProblemError) as refused:
+        load_linkage_spec(f"{path}#3")
+    said = str(refused.value).removeprefix(str(path))
+    assert said.startswith(": was written by grashof of unknown version, and grashof ")
+    assert said.endswith("cannot read its problem: 5 is not text; solve it again")
+    assert said.isprintable()
+    assert len(said) < 200

@@ -214,3 +214,40 @@ UNKNOWN = [
 @pytest.mark.parametrize(("text", "expected"), UNKNOWN)
 def test_unknown_keys(text: str, expected: str) -> None:
     assert message(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            "[requirements]\nlink_ratio_max = 0x{}",
+            "requirements.link_ratio_max is a whole number of about 6021 digits",
+        ),
+        (
+            "[search]\nstarts = [0x{}]",
+            "search.starts is [a whole number of about 6021 digits]; it must be a whole",
+        ),
+        ("[requirements]\nr1 = [0, 0x{}]", "requirements.r1"),
+        ("title = 0x{}", "motion.title is unknown"),
+    ],
+)
+def test_numbers_of_thousands_of_digits(text: str, said: str) -> None:
+    assert message(HEAD + text.format("f" * 5000)).startswith(said)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "weights = {}".format(["a"] * 5000),
+        f"weights = {[[1]] * 5000}",
+        f"timing_deg = {[0] * 5000}",
+        f"within = {'9' * 4000}",
+        f"[requirements]\nlink_length = {[1] * 5000}",
+        f"[requirements]\nrotatability = '{'x' * 100_000}'",
+        f"[requirements]\n{'x' * 100_000} = 1",
+        f"[requirements.o2]\n{'x' * 100_000} = 1",
+        f"{'y' * 100_000} = 1",
+    ],
+)
+def test_a_message_is_short_whatever_it_is_about(text: str) -> None:
+    assert max(map(len, message(HEAD + text).splitlines())) < 1500

@@ -20,6 +20,7 @@ from grashof.problems.values.checks import (
     plain_text,
     positive_number,
     readable,
+    span,
     whole_number,
 )
 
@@ -163,3 +164,18 @@ def test_text_that_drawings_and_terminals_stumble_over(character: str) -> None:
 def test_text_of_all_languages_is_plain() -> None:
     for text in ("", "Étage \u2082", '階段 <&> "$x$"', "\U0001f9f3"):
         assert plain_text(text, "title") == readable(text) == text
+
+
+@pytest.mark.parametrize("size", [1e-20, 1.0, 1e20])
+def test_span_of_many_points_is_the_greatest_distance(size: float) -> None:
+    rng = np.random.default_rng(0)
+    on_a_circle = np.exp(1j * rng.uniform(0, 6, 700))
+    for points in (rng.normal(size=700) + 1j * rng.normal(size=700), rng.normal(size=700) + 0j, on_a_circle):
+        rows = size * np.column_stack([points.real, points.imag])
+        assert span(rows) == pytest.approx(np.abs(np.subtract.outer(points, points)).max() * size, rel=1e-14)
+
+
+def test_span_of_as_many_points_as_no_memory_holds_the_pairs_of() -> None:
+    points = np.random.default_rng(0).uniform(-0.7, 0.7, (200_000, 2))
+    points[[77, 777]] = [[-3, -4], [3, 4]]
+    assert span(points) == 10

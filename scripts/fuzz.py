@@ -1,0 +1,272 @@
+"""Bad input at scale: mutated problem files, linkage files and lists, each refused in clear lines or right.
+
+    python scripts/fuzz.py                    # 10 000 mutants
+    python scripts/fuzz.py --show FILE        # what becomes of a file that it wrote as a finding
+
+Every mutant loads, or `ProblemError` states what is wrong, in a line for each error. A problem that loads
+reads back the same from what is written of it. A share of the problems, of up to a hundred targets, are
+searched, a little, and every design is judged once more from its numbers alone; a share of the linkages are
+reported on. Exit code 1: something was found.
+"""
+
+from __future__ import annotations
+
+import argparse
+import faulthandler
+import json
+import random
+import signal
+import sys
+import tempfile
+import traceback
+import warnings
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from types import FrameType
+
+from mutants import KINDS, Kind, Mutant, Mutator, Seed, linkage_seeds, list_seeds, problem_seeds
+
+from grashof import load, synthesize
+from grashof.analysis import verify
+from grashof.output.analysis_files import write_report
+from grashof.output.run_files import write_run
+from grashof.problems import FourBar, LinkageSpec, Problem, ProblemError, load_linkage_spec
+from grashof.problems.files.linkage_file import load_design
+from grashof.problems.files.problem_file import problem_of
+from grashof.problems.files.problem_writing import problem_toml
+from grashof.problems.values.linkage_spec import ListedDesign
+from grashof.survey import report_on
+from grashof.synth import Result
+from grashof.synth.starts.finder import finder_of
+from grashof.wording.problem import summary
+from grashof.workshop.plan import plan_parts
+from grashof.workshop.plates import PlateSizes
+from grashof.workshop.sheet import sheet
+from grashof.workshop.svg import svg
+from grashof.workshop.workbook import workbook
+
+LOADING, WORKING = 5, 180  # s, after which it counts as a hang
+MOST_TARGETS = 100  # of a task that is searched: the time grows with them
+LONGEST = 1500  # characters of a line of an error, beside the name of the file
+TRACEBACK, HANG, WRONG, UNCLEAR = "tracebacks", "hangs", "wrong designs", "unclear messages"
+FINDINGS = (TRACEBACK, HANG, WRONG, UNCLEAR)
+COUNTED = ("files", "refused", "accepted", "searched", "designs judged", "reports", *FINDINGS)
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """A promise that a file breaks: which kind, and what happened."""
+
+    kind: str
+    what: str
+
+
+Work = Callable[[], bool]
+
+
+class BrokenError(Exception):
+    """A promise that is not kept."""
+
+    def __init__(self, kind: str, what: str) -> None:
+        super().__init__(what)
+        self.finding = Finding(kind, what)
+
+
+class TooLongError(BaseException):
+    """What runs into a limit of time; nothing that handles errors catches it."""
+
+
+def examine(path: Path, kind: Kind, figures: Counter[str], work: Work) -> Finding | None:
+    """What a file breaks, if anything.
+
+    Parameters
+    ----------
+    path : Path
+    kind : {"problem", "linkage", "list"}
+    figures : Counter
+        Of what became of the files; grows.
+    work : callable
+        Whether what loads is searched or reported on, too.
+    """
+    figures["files"] += 1
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            _examined(path, kind, figures, work)
+    except BrokenError as broken:
+        return broken.finding
+    except TooLongError:
+        return Finding(HANG, traceback.format_exc())
+    except Exception:  # noqa: BLE001  (this is what is looked for)
+        return Finding(TRACEBACK, traceback.format_exc())
+    return None
+
+
+def _examined(path: Path, kind: Kind, figures: Counter[str], work: Work) -> None:
+    loaded: list[Problem | LinkageSpec | ListedDesign]
+    try:
+        with _limit(LOADING):
+            loaded = _loaded(path, kind)
+    except ProblemError as error:
+        figures["refused"] += 1
+        _refuse_unclear(error, str(path))
+        return
+    figures["accepted"] += 1
+    for one in loaded:
+        if isinstance(one, Problem):
+            _examine_problem(one, path.parent, figures, work)
+        else:
+            _examine_linkage(one, path.parent, figures, work)
+
+
+def _loaded(path: Path, kind: Kind) -> list[Problem | LinkageSpec | ListedDesign]:
+    if kind == "problem":
+        return [load(path)]
+    if kind == "linkage":
+        return [load_linkage_spec(path)]
+    spec, design = load_linkage_spec(f"{path}#1"), load_design(path, "1")
+    return [spec, design, *([spec.problem] if spec.problem else [])]
+
+
+def _refuse_unclear(error: ProblemError, where: str = "") -> None:
+    lines = str(error).split("\n")
+    for line in lines:
+        words = line.removeprefix(where)
+        if not words.strip() or len(words) > LONGEST or not words.isprintable() or (where and words == line):
+            raise BrokenError(UNCLEAR, f"{type(error).__name__}: {line}")
+    if len(set(lines)) < len(lines):
+        raise BrokenError(UNCLEAR, f"a line comes twice: {error}")
+
+
+def _examine_problem(problem: Problem, folder: Path, figures: Counter[str], work: Work) -> None:
+    with _limit(LOADING):
+        written = problem_toml(problem)
+        if problem_toml(problem_of(written, "written", problem.name)) != written:
+            raise BrokenError(WRONG, "what is written of the problem reads back as another one")
+        summary(problem)
+        try:
+            finder_of(problem).refuse()
+        except ProblemError as error:
+            _refuse_unclear(error)
+            return
+    if len(problem.task) > MOST_TARGETS or not work():
+        return
+    figures["searched"] += 1
+    with _limit(WORKING):
+        try:
+            result = synthesize(problem, starts=4, enough=1, effort=0.2, time_limit=2.0)
+        except ProblemError as error:
+            _refuse_unclear(error)
+            return
+        _judge_again(result, figures)
+        with tempfile.TemporaryDirectory(dir=folder) as out:
+            write_run(Path(out), result, {}, drawings=0, problem_text=written)
+
+
+def _judge_again(result: Result, figures: Counter[str]) -> None:
+    problem = result.problem
+    most = len(problem.task) * result.most_error**2 * (1 + 1e-9)  # NaN is no limit
+    for design in result.candidates:
+        figures["designs judged"] += 1
+        linkage = FourBar(**json.loads(json.dumps(design.linkage.stated)))
+        verdict = verify(linkage, problem.task, problem.requirements, problem=problem)
+        if not verdict.ok or verdict.square > most:
+            raise BrokenError(WRONG, f"{linkage!r}: {verdict.defects}, {verdict.square} against {most}")
+
+
+def _examine_linkage(
+    one: LinkageSpec | ListedDesign, folder: Path, figures: Counter[str], work: Work
+) -> None:
+    if not work():
+        return
+    spec = one.spec if isinstance(one, ListedDesign) else one
+    figures["reports"] += 1
+    with _limit(WORKING):
+        try:
+            workbook([one])
+            svg(sheet(plan_parts(spec.linkage, PlateSizes(), 50.0 / float(spec.linkage.lengths.min()))))
+        except ProblemError as error:
+            _refuse_unclear(error)
+        try:
+            report = report_on(spec)
+        except ProblemError as error:
+            _refuse_unclear(error)
+            return
+        if work():
+            with tempfile.TemporaryDirectory(dir=folder) as out:
+                write_report(Path(out), report)
+
+
+@contextmanager
+def _limit(seconds: float) -> Iterator[None]:
+    """Interrupt what takes longer."""
+
+    def stop(_signal: int, _frame: FrameType | None) -> None:
+        raise TooLongError
+
+    before = signal.signal(signal.SIGALRM, stop)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def seeds() -> list[Seed]:
+    """All files that mutants are made of, the few linkages and lists more than once."""
+    return [*problem_seeds(), *2 * linkage_seeds(), *3 * list_seeds()]
+
+
+def fuzz(count: int, seed: int, share: float, out: Path, files: list[Seed]) -> Counter[str]:
+    """Examine so many mutants; the figures. Findings go into a folder, and a line of each to stdout."""
+    rng = random.Random(seed)  # noqa: S311
+    mutator, figures = Mutator(files, rng), Counter[str]()
+    with tempfile.TemporaryDirectory() as folder:
+        for number in range(count):
+            mutant = mutator.mutant()
+            path = Path(folder) / f"mutant{mutant.suffix}"
+            path.write_bytes(mutant.content)
+            # What hangs in compiled code ends the program, with a traceback; the mutant then stays.
+            faulthandler.dump_traceback_later(10 * WORKING, exit=True, file=sys.__stderr__ or 2)
+            found = examine(path, mutant.kind, figures, lambda: rng.random() < share)
+            if found is not None:
+                figures[found.kind] += 1
+                print(_kept(out, f"{mutant.kind}-{seed}-{number}", mutant, found), flush=True)
+    faulthandler.cancel_dump_traceback_later()
+    return figures
+
+
+def _kept(out: Path, name: str, mutant: Mutant, found: Finding) -> str:
+    out.mkdir(parents=True, exist_ok=True)
+    path = out / f"{name}{mutant.suffix}"
+    path.write_bytes(mutant.content)
+    path.with_suffix(".txt").write_text(f"{found.kind}, {mutant.made_by}\n{found.what}\n", encoding="utf-8")
+    return f"{path}: {found.kind}: {found.what.strip().splitlines()[-1][:200]}"
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Entry point."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n", maxsplit=1)[0])
+    parser.add_argument("--mutants", type=int, default=10_000)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--share", type=float, default=0.1, help="of what loads, for more than loading")
+    parser.add_argument("--out", type=Path, default=Path("fuzz-findings"), help="folder for findings")
+    parser.add_argument("--show", type=Path, help="a finding to look at again; its name begins with its kind")
+    given = parser.parse_args(arguments)
+    if given.show:
+        kind = next(kind for kind in KINDS if given.show.name.startswith(kind))
+        found = examine(given.show, kind, Counter(), lambda: True)
+        print("nothing wrong" if found is None else f"{found.kind}\n{found.what}")
+        return int(found is not None)
+    figures = fuzz(given.mutants, given.seed, given.share, given.out, seeds())
+    for name in COUNTED:
+        print(f"{name:18}{figures[name]:8}")
+    return int(any(figures[kind] for kind in FINDINGS))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

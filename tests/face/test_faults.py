@@ -1,0 +1,153 @@
+"""Full disks, closed streams, folders for files: one clear line, the right exit code, nothing old is lost."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from matplotlib.animation import FuncAnimation
+
+from grashof.cli import main
+from grashof.output.analysis_files import write_report
+from grashof.output.streams import say
+from grashof.problems import load_linkage_spec
+from grashof.survey import report_on
+
+Grashof = Callable[..., Any]
+FULL = OSError(28, "No space left on device")
+QUICK = ("--starts", "2", "--drawings", "0")
+
+
+def in_shell(streams: str, *arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    """The command in a process of its own, with streams as a shell states them."""
+    program = f"from {main.__module__} import main; main()"
+    command = ["sh", "-c", f'exec "$0" "$@" {streams}', sys.executable, "-c", program, *arguments]
+    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=120)
+
+
+def told(done: Any, code: int, *words: str) -> None:
+    """The exit code, and one line on stderr that says this."""
+    assert done.exit_code == code
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("grashof: ")
+    for word in words:
+        assert word in line
+
+
+@pytest.fixture
+def full(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A disk on which no bytes have room, though names have."""
+
+    def write(*_: object, **__: object) -> None:
+        raise FULL
+
+    monkeypatch.setattr(Path, "write_bytes", write)
+    monkeypatch.setattr(Path, "write_text", write)
+    monkeypatch.setattr(FuncAnimation, "save", write)
+
+
+@pytest.fixture
+def analysed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[dict[Path, bytes]]:
+    """What an older analysis left; it is there afterwards, too."""
+    monkeypatch.setattr("grashof.figures.survey_plots.plots", lambda _: [])
+    folder = tmp_path / "pumpjack-analysis"
+    write_report(folder, report_on(load_linkage_spec("pumpjack")))
+    before = {path: path.read_bytes() for path in folder.iterdir()}
+    yield before
+    assert {path: path.read_bytes() for path in folder.iterdir()} == before
+
+
+def test_a_full_disk_keeps_the_older_analysis(
+    grashof: Grashof, analysed: dict[Path, bytes], full: None
+) -> None:
+    assert len(analysed) > 5
+    told(grashof("analyse", "pumpjack"), 3, "No space left on device", "pumpjack-analysis")
+
+
+@pytest.mark.usefixtures("full")
+@pytest.mark.parametrize(
+    ("name", "arguments"),
+    [
+        ("motion.gif", ("animate", "pumpjack", "--seconds", "0.1", "--out")),
+        ("parts.svg", ("export", "pumpjack", "--scale", "1:20", "--svg")),
+        ("parts.dxf", ("export", "pumpjack", "--scale", "1:20", "--dxf")),
+    ],
+)
+def test_a_full_disk_keeps_the_older_file(
+    grashof: Grashof, tmp_path: Path, name: str, arguments: tuple[str, ...]
+) -> None:
+    with (tmp_path / name).open("w") as file:
+        file.write("old")
+    told(grashof(*arguments, name), 3, "No space left on device", name)
+    assert (tmp_path / name).read_text() == "old"
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ("solve folder", "folder: is a folder; it must be a problem file"),
+        ("check folder.toml", "folder.toml: is a folder; it must be a problem file"),
+        ("analyse folder", "folder: is a folder; it must be a linkage file"),
+        ("analyse folder.json#1", "folder.json: is a folder; it must be a list of designs"),
+        ("animate pumpjack --out folder.gif", "folder.gif: is a folder; it must be a file"),
+        ("export pumpjack --svg folder.svg", "folder.svg: is a folder; it must be a file"),
+        ("solve luggage --out file", "--out file: File exists; it must be a folder"),
+        ("analyse pumpjack --out file", "--out file: File exists; it must be a folder"),
+        ("analyse pumpjack --out file/below", "it must be a folder that can be written"),
+        ("animate pumpjack --out file/below.gif", "it must be a file in a folder that can be written"),
+        ("export pumpjack --svg file/below.svg", "there is no folder file"),
+    ],
+)
+def test_a_folder_for_a_file_and_a_file_for_a_folder(
+    grashof: Grashof, tmp_path: Path, arguments: str, said: str
+) -> None:
+    for kind in ("", ".toml", ".json", ".gif", ".svg"):
+        (tmp_path / f"folder{kind}").mkdir()
+    (tmp_path / "file").write_text("mine")
+    before = set(tmp_path.rglob("*"))
+    told(grashof(*arguments.split()), 2, said)
+    assert set(tmp_path.rglob("*")) == before
+    assert (tmp_path / "file").read_text() == "mine"
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+def test_stdout_that_takes_nothing_is_told_in_one_line(tmp_path: Path) -> None:
+    done = in_shell(">/dev/full", "problems", cwd=tmp_path)
+    assert done.returncode == 3
+    assert done.stderr == "grashof: standard output: No space left on device\n"
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+def test_stderr_that_takes_nothing_costs_no_result(tmp_path: Path) -> None:
+    done = in_shell("2>/dev/full", "solve", "luggage", *QUICK, cwd=tmp_path)
+    assert done.returncode == 0
+    assert "verified" in done.stdout
+    assert json.loads((tmp_path / "luggage-designs" / "run.json").read_text())["designs"] > 0
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a shell of another kind")
+@pytest.mark.parametrize("streams", [">&-", pytest.param(">&- 2>&-", marks=pytest.mark.slow)])
+def test_closed_streams_cost_no_result(tmp_path: Path, streams: str) -> None:
+    done = in_shell(streams, "solve", "luggage", *QUICK, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "Error" not in done.stderr
+    assert json.loads((tmp_path / "luggage-designs" / "run.json").read_text())["designs"] > 0
+
+
+def test_a_line_that_stdout_cannot_take_is_an_error(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    def fail(*_: object, **__: object) -> None:
+        raise FULL
+
+    monkeypatch.setattr("typer.echo", fail)
+    with (tmp_path / "out").open("w") as stream:
+        monkeypatch.setattr(sys, "stdout", stream)
+        monkeypatch.setattr(sys, "stderr", stream)
+        say("progress", err=True)
+        with pytest.raises(OSError, match="standard output: No space left on device"):
+            say("a result")

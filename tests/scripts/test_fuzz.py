@@ -1,0 +1,113 @@
+"""Mutated files: refused in clear lines or right, and none of them brings the program down."""
+
+# ruff: noqa: S311
+
+from __future__ import annotations
+
+import random
+import signal
+import tomllib
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import replace
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from grashof import load
+from grashof.problems import ProblemError
+from grashof.problems.files.linkage_schema import _TABLES as LINKAGE_TABLES
+from grashof.problems.files.problem_schema import _TABLES as PROBLEM_TABLES
+
+SCRIPTS = Path(__file__).parents[2] / "scripts"
+pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGALRM"), reason="no alarms: hangs are not found")
+
+
+@pytest.fixture
+def script(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], ModuleType]:
+    monkeypatch.syspath_prepend(SCRIPTS)
+    return import_module
+
+
+def test_the_seeds_are_right_and_use_every_key(script: Callable[[str], ModuleType], tmp_path: Path) -> None:
+    mutants, fuzz = script("mutants"), script("fuzz")
+    for seeds, tables in (
+        (mutants.problem_seeds(), PROBLEM_TABLES),
+        (mutants.linkage_seeds(), LINKAGE_TABLES),
+    ):
+        used: dict[str, set[str]] = {}
+        for seed in seeds:
+            text = mutants.toml_text(seed.document)
+            assert tomllib.loads(text) == seed.document
+            (tmp_path / "seed.toml").write_text(text, encoding="utf-8")
+            figures: Counter[str] = Counter()
+            assert fuzz.examine(tmp_path / "seed.toml", seed.kind, figures, lambda: False) is None
+            assert figures["accepted"] == 1, text
+            for path, table in mutants.tables_of(seed.document):
+                used.setdefault(path, set()).update(table)
+        for path, table in tables.items():
+            if path.count(".") == 0:
+                assert set(table.model_fields) - {"weights"} <= used[path], path
+
+
+def test_mutants_are_refused_or_right(
+    script: Callable[[str], ModuleType], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mutants, fuzz = script("mutants"), script("fuzz")
+    seeds = [*mutants.problem_seeds(), *mutants.linkage_seeds()]
+    figures = fuzz.fuzz(500, 7, 0.0, tmp_path / "findings", seeds)
+    assert not any(figures[kind] for kind in fuzz.FINDINGS), capsys.readouterr().out
+    assert figures["files"] == figures["refused"] + figures["accepted"] == 500
+    assert min(figures["refused"], figures["accepted"]) > 100
+
+
+@pytest.mark.slow
+def test_designs_and_reports_of_mutants_are_right(
+    script: Callable[[str], ModuleType], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fuzz = script("fuzz")
+    figures = fuzz.fuzz(400, 11, 0.1, tmp_path / "findings", fuzz.seeds())
+    assert not any(figures[kind] for kind in fuzz.FINDINGS), capsys.readouterr().out
+    assert min(figures["designs judged"], figures["reports"]) > 0
+
+
+def test_the_same_seed_makes_the_same_mutants(script: Callable[[str], ModuleType]) -> None:
+    mutants = script("mutants")
+    seeds = mutants.problem_seeds()
+    first, second = (
+        [mutator.mutant() for _ in range(50)]
+        for mutator in (mutants.Mutator(seeds, random.Random(3)) for _ in range(2))
+    )
+    assert first == second
+
+
+def test_what_is_wrong_is_found(
+    script: Callable[[str], ModuleType], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fuzz, path = script("fuzz"), tmp_path / "mutant.toml"
+    path.write_text('kind = "path"\n[path]\npoints = [[0, 0], [1, 0], [2, 1]]\n')
+
+    def found(*, searched: bool = False) -> str | None:
+        finding = fuzz.examine(path, "problem", Counter(), lambda: searched)
+        return None if finding is None else str(finding.kind)
+
+    def endless(_: Path) -> None:
+        while True:
+            pass
+
+    def unclear(_: Path) -> None:
+        raise ProblemError("something is wrong")
+
+    assert found() is None
+    for loads, kind in ((len, fuzz.TRACEBACK), (endless, fuzz.HANG), (unclear, fuzz.UNCLEAR)):
+        with monkeypatch.context() as patched:
+            patched.setattr(fuzz, "load", loads)
+            patched.setattr(fuzz, "LOADING", 0.1)
+            assert found() == kind
+    asked = load("luggage")
+    designs = fuzz.synthesize(asked, starts=2, enough=1)
+    stricter = replace(asked, requirements=replace(asked.requirements, transmission_min_deg=80))
+    monkeypatch.setattr(fuzz, "synthesize", lambda *_, **__: replace(designs, problem=stricter))
+    assert found(searched=True) == fuzz.WRONG
