@@ -15,11 +15,12 @@ from distributed import Client, LocalCluster
 
 from grashof import load, synthesize
 
-KINDS = {"poses met": ("luggage", {"starts": 400, "enough": 200}), "points fitted": ("path-ellipse", {"effort": 0.6})}
+SEARCHES = {"luggage": {"starts": 400, "enough": 200}, "path-ellipse": {"effort": 0.6}}
 
 if __name__ == "__main__":
-    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:
-        for name, options in KINDS.values():
+    started = LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None)
+    with started as cluster, Client(cluster) as client:
+        for name, options in SEARCHES.items():
             alone = synthesize(load(name), **options)
             lost = Timer(1.0, os.kill, (cluster.workers[0].pid, signal.SIGKILL))
             lost.start()
