@@ -47,6 +47,9 @@ class _Commands(TyperGroup):
         except _UsageError as error:
             say(f"grashof: {_one_line(error)}", err=True)
             code = Exit.BAD_INPUT
+        except OSError as error:  # of the help or the version: commands report their own
+            say(f"grashof: {f'standard output: {error.strerror}' if error.strerror else error}", err=True)
+            code = Exit.SURROUNDINGS
         except Exception as error:  # noqa: BLE001  (the outermost boundary: nobody else reports what is left)
             if os.environ.get(TRACEBACK):
                 say(traceback.format_exc(), err=True)

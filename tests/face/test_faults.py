@@ -117,8 +117,9 @@ def test_a_folder_for_a_file_and_a_file_for_a_folder(
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
-def test_stdout_that_takes_nothing_is_told_in_one_line(tmp_path: Path) -> None:
-    done = in_shell(">/dev/full", "problems", cwd=tmp_path)
+@pytest.mark.parametrize("command", ["problems", "--version", "--help"])
+def test_stdout_that_takes_nothing_is_told_in_one_line(tmp_path: Path, command: str) -> None:
+    done = in_shell(">/dev/full", command, cwd=tmp_path)
     assert done.returncode == 3
     assert done.stderr == "grashof: standard output: No space left on device\n"
 
