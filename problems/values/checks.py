@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from grashof.problems.values.arrays import FloatArray, Limits, frozen_array
 from grashof.problems.values.errors import ProblemError, wrong_value
+from grashof.problems.values.extent import span
 
 GREATEST = 1e20  # of lengths, masses and speeds: squares of torques stay within the floats
 LEAST = 1e-20  # size of a task, for the same reason
@@ -152,12 +153,6 @@ def limits(values: Limits, where: str, *, least: float = -np.inf, most: float = 
     if low < least:
         raise ProblemError(f"{given}; lo must be at least {least:g}")
     return low, high
-
-
-def span(points: FloatArray) -> float:
-    """Greatest distance between two of N points (N, 2)."""
-    separation = points[:, None] - points[None]
-    return float(np.hypot(separation[..., 0], separation[..., 1]).max(initial=0.0))
 
 
 def counted(number: int, noun: str) -> str:

@@ -9,7 +9,7 @@ from typing import ClassVar, Self
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, FloatArray
-from grashof.problems.values.checks import span
+from grashof.problems.values.extent import span
 from grashof.problems.values.read_only import ReadOnly
 
 _SAME = 1e-12  # sizes, rad

@@ -22,6 +22,7 @@ from grashof.synth.programme.screening import GROUPS, Screened
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.starts.closed_loop import Batch, SearchTargets, joined
 from grashof.synth.starts.coupler_search import FOUND, CouplerSearch
+from grashof.synth.starts.every_target import fitted_to_all
 from grashof.synth.starts.loop_search import (
     PLACES,
     Placed,
@@ -51,6 +52,7 @@ SAME_CURVE = 0.1  # of the rms error: two linkages closer at every target are on
 # limits (in sizes).
 STAGES = ((400, 8, 0.3), (200, 10, 1.0), (80, 20, 5.0), (40, 40, 5.0))
 LONG, LONG_STEPS = 24, 20  # of a thinned task so many are improved on all targets
+LAST_STEPS = 300  # and the best of them until little is gained
 COPY = 0.01  # sizes: two linkages closer at three targets are one
 # Starts of a round: the best, some of the others, and some of before the limits bear fully; fewer on
 # tasks of more targets than `AMPLE`, whose solves take longer.
@@ -79,7 +81,7 @@ class LeastSquares(CouplerSearch):
         while True:
             drawn = draw(some, size * (TIMED_DRAWS if target.timed else DRAWS), rng, ASTRAY)
             best = _best_fitting(some, drawn, size)
-            free = _free_round(scaled, _on_all_targets(target, index, best), size)
+            free = _free_round(scaled, _on_all_targets(target, index, best, size), size)
             yield free or _limited_round(scaled, rng, drawn, best, size)
 
 
@@ -94,12 +96,18 @@ def _best_fitting(some: SearchTargets, drawn: Batch, size: int) -> Batch:
         return batch[np.argsort(error, kind="stable")]
 
 
-def _on_all_targets(target: SearchTargets, index: IntArray, batch: Batch) -> Batch:
+def _on_all_targets(target: SearchTargets, index: IntArray, batch: Batch, size: int) -> Batch:
     """Linkages that know the targets `index` with driver angles at every one, improved there."""
     if len(index) == len(target.points):
         return batch
+    batch = refined(target, index, batch)
     with np.errstate(all="ignore"):
-        return improve(fitting(target), refined(target, index, batch), LONG_STEPS, 0.0)[0]
+        if target.timed:
+            return improve(fitting(target), batch, LONG_STEPS, 0.0)[0]
+        batch = fitted_to_all(target, batch)
+        best = np.argsort(place(target, batch).error, kind="stable")
+        few, rest = best[: size * MOST_CURVES], best[size * MOST_CURVES :]
+        return joined(fitted_to_all(target, batch[few], LAST_STEPS), batch[rest])
 
 
 def _free_round(scaled: ScaledProblem, batch: Batch, size: int) -> Round | None:
@@ -116,6 +124,8 @@ def _free_round(scaled: ScaledProblem, batch: Batch, size: int) -> Round | None:
         return None
     order = np.argsort(feasible.error, kind="stable")
     starts = [_start(scaled, feasible, feasible.error, int(k)) for k in order]
+    if len(target.points) > FEW_TARGETS and not target.jumbled:  # fitted to all of them, and no limit binds
+        starts = [replace(start, settled=True) for start in starts]
     counts = {"feasible finds": len(feasible)}
     most = size * MOST_CURVES * (2 if scaled.of_use else 1)
     return Round(_other_curves(starts, most), counts, size, NEAR_BEST, free=True)

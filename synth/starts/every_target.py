@@ -1,0 +1,191 @@
+"""Linkages of a long task fitted to every target: each target touches its own driver angle only.
+
+So the normal equations are a small block that all targets share, bordered by one number a target, which
+is eliminated target by target (Schur complement). A step takes time and memory as the targets are many.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import isotonic_regression
+
+from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
+from grashof.synth.starts.closed_loop import Batch, Loop, SearchTargets, body_turns, by_theta3_of
+from grashof.synth.starts.loop_search import missed_places, project
+
+STEPS = 60
+DONE = 1e-10  # share of its error: a linkage that gains less is done
+PASSES = 1
+LONGEST = 0.3  # rad: no driver angle moves farther in a step
+LEAST_GAP = 1e-9  # share of a turn, between driver angles that are the same
+HEAVY = 1e6  # damping under which no step is worth trying
+
+
+@dataclass(frozen=True, slots=True)
+class _Model:
+    """Misses of every target, linearised: gap - common @ what all share - own * its driver angle.
+
+    `gap` and `own` have the shape (n, N, 3), `common` (n, N, 3, C), `error` (n,).
+    """
+
+    error: FloatArray
+    gap: FloatArray
+    common: FloatArray
+    own: FloatArray
+
+    def where(self, better: BoolArray, fresh: _Model) -> _Model:
+        """The fresh one of the linkages that are better."""
+        return _Model(
+            *(
+                np.where(better.reshape(-1, *[1] * (new.ndim - 1)), new, old)
+                for new, old in zip(
+                    (fresh.error, fresh.gap, fresh.common, fresh.own),
+                    (self.error, self.gap, self.common, self.own),
+                    strict=True,
+                )
+            )
+        )
+
+
+def fitted_to_all(target: SearchTargets, batch: Batch, steps: int = STEPS) -> Batch:
+    """Linkages with the least squares over all targets, met in order, by the Gauss-Newton method.
+
+    Parameters
+    ----------
+    target : SearchTargets
+        Untimed, in order.
+    batch : Batch
+        With driver angles at every target, near the best ones.
+    steps : int
+        At most.
+
+    Returns
+    -------
+    Batch
+
+    Notes
+    -----
+    Damped as Levenberg and Marquardt do. Driver angles that would go back are projected on the order by
+    weighted isotonic regression, which is the solution of the step for given proportions; those that
+    stand together are eliminated together.
+    """
+    free = replace(target, wanted=replace(target.wanted, order=False))
+    angles = Loop.of(target, batch).theta2
+    now = replace(batch, unknowns=np.concatenate([batch.unknowns[:, :3], angles], axis=1))
+    model = _linearised(free, now)
+    damping, idle = np.full(len(batch), 1e-3), np.zeros(len(batch), dtype=np.int64)
+    for _ in range(steps):
+        tried = _stepped(now, model, damping)
+        fresh = _linearised(free, tried)
+        better = fresh.error < model.error
+        idle = np.where(better & (fresh.error < (1 - DONE) * model.error), 0, idle + better)
+        now = replace(now, unknowns=np.where(better[:, None], tried.unknowns, now.unknowns))
+        model = model.where(better, fresh)
+        damping = np.clip(np.where(better, damping / 5, damping * 8), 1e-12, 10 * HEAVY)
+        if ((idle > 1) | (damping > HEAVY)).all():
+            break
+    return _by_gaps(batch, now)
+
+
+def _linearised(free: SearchTargets, batch: Batch) -> _Model:
+    """How linkages stand to every target, placed best."""
+    count = len(free.points)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        loop = Loop.of(free, batch)
+        z, _, _, error = project(free, loop)
+        by_theta2 = np.zeros((len(batch), count, 4))
+        by_theta2[..., 3] = 1
+        by_theta3 = by_theta3_of(loop, by_theta2)
+        residual, slope = missed_places(free, loop, z, by_theta2, by_theta3)
+        turned, _ = body_turns(free, loop)
+    root = np.sqrt(free.weights)
+    spans = [root * each for e in (np.ones_like(loop.e2), loop.e2, loop.e3) for each in (e, 1j * e)]
+    columns = [*np.moveaxis(slope[..., :3], -1, 0), *spans]
+    rows = [np.stack([each.real for each in columns], -1), np.stack([each.imag for each in columns], -1)]
+    gaps, own = [residual.real, residual.imag], [slope[..., 3].real, slope[..., 3].imag]
+    if free.has_angles:
+        root = np.sqrt(free.turn_weights)
+        by_turn = root[:, None] * by_theta3
+        still, body = np.zeros((*loop.theta2.shape, 6)), np.broadcast_to(root, loop.theta2.shape)
+        rows = [np.concatenate([row, np.zeros((*row.shape[:2], 1))], axis=-1) for row in rows]
+        rows.append(np.concatenate([by_turn[..., :3], still, body[..., None]], axis=-1))
+        gaps.append(turned)
+        own.append(by_turn[..., 3])
+    error = error + (turned**2).sum(axis=1)
+    parts = (np.stack(part, axis=2) for part in (gaps, rows, own))
+    return _Model(np.where(np.isfinite(error), error, np.inf), *(np.nan_to_num(part) for part in parts))
+
+
+def _stepped(batch: Batch, model: _Model, damping: FloatArray) -> Batch:
+    """Linkages after a damped step."""
+    theta2, common, own, gap = batch.unknowns[:, 3:], model.common, model.own, model.gap
+    flat, transposed = _flat(common), np.swapaxes(_flat(common), 1, 2)
+    normal, right = transposed @ flat, (transposed @ gap.reshape(len(batch), -1, 1))[..., 0]
+    diagonal = np.einsum("sii->si", normal)
+    ridge = damping[:, None] * (diagonal + 1e-12 * diagonal.max(axis=1, keepdims=True)) + 1e-300
+    normal = normal + ridge[..., None] * np.eye(normal.shape[1])
+    heavy = (1 + damping)[:, None] * _weights(own)
+    border, pull = (own[..., None] * common).sum(axis=2), (own * gap).sum(axis=2)
+    parts = np.concatenate([border, heavy[..., None]], axis=2)
+    together = _summed(parts, np.diff(theta2, axis=1, prepend=np.nan) == 0)
+    share = np.swapaxes(together[..., :-1] / together[..., -1:], 1, 2)
+    step = np.clip(_solved(normal - share @ border, right - (share @ pull[..., None])[..., 0]), -1.5, 1.5)
+    angles = _moved(batch, (pull - (border @ step[..., None])[..., 0]) / heavy, heavy)
+    unknowns = np.concatenate([batch.unknowns[:, :3] + step[:, :3], angles], axis=1)
+    return replace(batch, unknowns=unknowns)
+
+
+def _weights(own: FloatArray) -> FloatArray:
+    """How much each driver angle resists being moved, shape (n, N)."""
+    square: FloatArray = (own**2).sum(axis=2)
+    return np.maximum(square, 1e-12 * square.max(axis=1, keepdims=True)) + 1e-300
+
+
+def _moved(batch: Batch, step: FloatArray, weights: FloatArray) -> FloatArray:
+    """Driver angles after a step (n, N), in order."""
+    sense = batch.direction[:, None]
+    wish = sense * (batch.unknowns[:, 3:] + np.clip(step, -LONGEST, LONGEST))
+    angles: FloatArray = np.stack([_in_order(*row) for row in zip(wish, weights, strict=True)])
+    return sense * angles
+
+
+def _flat(common: FloatArray) -> FloatArray:
+    return common.reshape(len(common), -1, common.shape[-1])
+
+
+def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
+    """Solutions (n, C) of small equations; none where the numbers are not finite."""
+    sound: BoolArray = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=1)
+    matrix = np.where(sound[:, None, None], matrix, np.eye(matrix.shape[1]))
+    found: FloatArray = np.linalg.solve(matrix, np.where(sound[:, None], right, 0.0)[..., None])[..., 0]
+    return found
+
+
+def _summed(parts: FloatArray, together: BoolArray) -> FloatArray:
+    """Of each target the sum of parts (n, N, C) of those that stand `together` (n, N: with the last)."""
+    if not together.any():
+        return parts
+    first = np.flatnonzero(~together.ravel())
+    sums = np.add.reduceat(parts.reshape(-1, parts.shape[2]), first, axis=0)
+    count = np.diff(np.append(first, together.size))
+    every: FloatArray = np.repeat(sums, count, axis=0).reshape(parts.shape)
+    return every
+
+
+def _in_order(angle: FloatArray, weight: FloatArray) -> FloatArray:
+    """The nearest angles, by weight, that do not go back, within one turn."""
+    if (np.diff(angle) < 0).any():
+        angle = isotonic_regression(angle, weights=weight).x
+    over = angle[-1] - angle[0] - TURN * (1 - LEAST_GAP)
+    return np.clip(angle, angle[0] + over / 2, angle[-1] - over / 2) if over > 0 else angle
+
+
+def _by_gaps(batch: Batch, found: Batch) -> Batch:
+    """Linkages with driver angles as the ordered search has them: the first one, and gaps."""
+    angles = found.unknowns[:, 3:]
+    gone = batch.direction[:, None] * (angles - angles[:, :1]) / TURN
+    gaps = np.concatenate([np.diff(gone, axis=1), 1 - gone[:, -1:]], axis=1)
+    logs = np.log(np.maximum(gaps, LEAST_GAP))
+    return replace(batch, unknowns=np.concatenate([found.unknowns[:, :4], logs], axis=1))
