@@ -140,7 +140,8 @@ def _stepped(batch: Batch, model: _Model, damping: FloatArray) -> Batch:
 def _weights(own: FloatArray) -> FloatArray:
     """How much each driver angle resists being moved, shape (n, N)."""
     square: FloatArray = (own**2).sum(axis=2)
-    return np.maximum(square, 1e-12 * square.max(axis=1, keepdims=True)) + 1e-300
+    least: FloatArray = np.maximum(square, 1e-12 * square.max(axis=1, keepdims=True)) + 1e-300
+    return least
 
 
 def _moved(batch: Batch, step: FloatArray, weights: FloatArray) -> FloatArray:
@@ -157,9 +158,9 @@ def _flat(common: FloatArray) -> FloatArray:
 
 def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
     """Solutions (n, C) of small equations; none where the numbers are not finite."""
-    sound: BoolArray = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=1)
-    matrix = np.where(sound[:, None, None], matrix, np.eye(matrix.shape[1]))
-    found: FloatArray = np.linalg.solve(matrix, np.where(sound[:, None], right, 0.0)[..., None])[..., 0]
+    both = np.concatenate([matrix, right[..., None]], axis=2)
+    both[~np.isfinite(both).all(axis=(1, 2))] = np.eye(*both.shape[1:])
+    found: FloatArray = np.linalg.solve(both[..., :-1], both[..., -1:])[..., 0]
     return found
 
 
