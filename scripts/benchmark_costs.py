@@ -118,7 +118,8 @@ def exponent(sizes: Sequence[float], costs: Sequence[float]) -> float:
     known = np.array([(size, cost) for size, cost in zip(sizes, costs, strict=True) if cost > 0])
     if len(known) < 2:
         return np.nan
-    return float(np.polyfit(*np.log(known).T, 1)[0])
+    across, up = np.log(known).T
+    return float(np.polyfit(across, up, 1)[0])
 
 
 def curve(axis: str, kind: str, sizes: Sequence[int]) -> None:

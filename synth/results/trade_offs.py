@@ -50,7 +50,7 @@ def trade_offs(scaled: ScaledProblem, ledger: Ledger, run: Run) -> Chosen:
     """
     problem, least = scaled.problem, max(ledger.least, same_error(scaled.problem))
     seeds = seeds_of(problem, ledger.verified, FACTORS[-1] * least, SEEDS)
-    stand_in = StandIn.of(scaled, seeds[0], ledger.least)
+    stand_in = StandIn.of(scaled, seeds[0], ledger.least) if seeds else StandIn(scaled)
     begun_from = [(_error(problem, one), stand_in.taken(one)) for one in seeds]
     found, attempts, latest = list[Candidate](), list[Attempt](), dict[str, list[Candidate]]()
     factors = FACTORS if ledger.least > same_error(problem) else FACTORS[:1]

@@ -17,7 +17,7 @@ from grashof.synth.starts.limit_residuals import Placement, oversteps
 from grashof.synth.starts.loop_search import PLACES, PULL, missed_places, project
 
 STEPS = 30
-DONE = 1e-7  # share of its error: a linkage that gains less is done
+DONE = 1e-8  # share of its error: a linkage that gains less is done
 PASSES = 1
 LONGEST = 0.3  # rad: no driver angle moves farther in a step
 LEAST_GAP = 1e-9  # share of a turn, between driver angles that are the same

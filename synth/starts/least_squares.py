@@ -52,7 +52,7 @@ SAME_CURVE = 0.1  # of the rms error: two linkages closer at every target are on
 # limits (in sizes).
 STAGES = ((400, 8, 0.3), (200, 10, 1.0), (80, 20, 5.0), (40, 40, 5.0))
 LONG, LONG_STEPS = 24, 20  # of a thinned task so many are improved on all targets
-LAST_STEPS = 300  # and the best of them until little is gained
+LAST_STEPS = 200  # and the best of them until little is gained
 LAST_WEIGHT = 300.0  # of limits, which then are kept but for rounding
 COPY = 0.01  # sizes: two linkages closer at three targets are one
 # Starts of a round: the best, some of the others, and some of before the limits bear fully; fewer on
@@ -107,7 +107,7 @@ def _on_all_targets(target: SearchTargets, index: IntArray, batch: Batch, size: 
             return improve(fitting(target), batch, LONG_STEPS, 0.0)[0]
         batch = fitted_to_all(target, batch)
         best = np.argsort(place(target, batch).error, kind="stable")
-        few, rest = best[: size * MOST_CURVES], best[size * MOST_CURVES :]
+        few, rest = np.split(best, [size * MOST_CURVES])
         return joined(fitted_to_all(target, batch[few], LAST_STEPS), batch[rest])
 
 
@@ -190,9 +190,11 @@ def _search(scaled: ScaledProblem, drawn: Batch, best: Batch, size: int) -> tupl
             if target.timed:
                 batch, _ = improve(within_limits(target, weight), batch, LONG_STEPS, 0.0)
             else:
-                for heavier in (weight, LAST_WEIGHT):
-                    batch = fitted_to_all(target, batch, weight=heavier, placed=True)
-            early = _with_places_refined(target, index, early)
+                batch = fitted_to_all(target, batch, weight=weight, placed=True)
+                order = np.argsort(costs_of_all(target, batch, weight), kind="stable")
+                few = batch[order[: size * MOST_CURVES]]
+                batch = fitted_to_all(target, few, LAST_STEPS, weight=LAST_WEIGHT, placed=True)
+            early = _with_places_refined(target, index, early[:: -(-len(early) // LONG) or 1])
         return early, batch
 
 

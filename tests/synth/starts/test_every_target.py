@@ -42,7 +42,7 @@ def test_a_task_without_noise_is_met(path: bool) -> None:
     assert error < 1e-12 * len(target.points)
 
 
-@pytest.mark.parametrize("path", [False, True])
+@pytest.mark.parametrize("path", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_it_comes_as_low_as_steps_in_all_angles_at_once(path: bool) -> None:
     """On average: where points have to share driver angles, the valleys found may be others."""
     gained = []
