@@ -13,7 +13,7 @@ import numpy as np
 
 from grashof.analysis import solve_position
 from grashof.problems import ProblemError, Task
-from grashof.problems.values.arrays import IntArray
+from grashof.problems.values.arrays import TURN, IntArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.results.judging import judged_again
@@ -71,19 +71,11 @@ def met_by(best: Candidate, task: Task, index: IntArray) -> Task:
     """Some targets of a task, those that `index` has in order, where a design meets them."""
     linkage, verdict = best.linkage, best.verdict
     state = solve_position(linkage, verdict.theta2[index], verdict.assembly[index])
-    places = np.where(task.has_position[index, None], state.p, np.nan)
+    places, turned = np.array(state.p), state.theta3 + float(linkage.body_angle)
+    turned += TURN * np.round((np.nan_to_num(task.angles[index]) - turned) / TURN)
     if task.returns:
-        places[-1] = places[0]
-    given: dict[str, object] = {"points" if hasattr(task, "points") else "positions": places}
-    if task.kind == "motion":
-        turned = state.theta3 + float(linkage.body_angle)
-        turned += 2 * np.pi * np.round((task.angles[index] - turned) / (2 * np.pi))
-        if task.returns:
-            turned[-1] = turned[0]
-        given |= {"angles": turned, "weights": task.weights[index], "angle_length": task.angle_length}
-    if task.timing is not None:
-        given["timing"] = task.timing[index]
-    return replace(task, **given)  # type: ignore[type-var]
+        places[-1], turned[-1] = places[0], turned[0]
+    return task.some(index, places, turned)
 
 
 def on_all_targets(scaled: ScaledProblem, found: list[Candidate], most: float) -> list[Candidate]:
