@@ -5,13 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 
 from grashof.analysis.curves.coupler_curve import Track
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
 
 _KEPT = 4
-_STRIDE = 5
+_STRIDE, _MOST_CUTS = 5, 72  # pieces from cut to cut; more of them where there are very many pieces
 _SAGITTA = 5e-4  # of the length of the curve: no piece bulges farther from its chord
 _NEAR = 0.1  # rad: guesses that agree so well lead to the same place
 _ALIKE = 1e-6  # assignments whose costs differ by a smaller share are the same one
@@ -144,12 +143,16 @@ def _distances(
     )
 
 
-def _least_costs(windows: FloatArray) -> FloatArray:
-    """Least sum over pieces that never go back, for windows of shape (N, L, C); shape (C,)."""
-    total = windows[0].copy()
-    for squared in windows[1:]:
+def _least_costs(around: FloatArray, cuts: IntArray, length: int) -> FloatArray:
+    """Least sums over pieces that never go back, `length` of them from each cut (C,) on; shape (C,).
+
+    `around`, shape (N, 2 M), is what N targets cost on the pieces of two turns.
+    """
+    places = cuts + np.arange(length)[:, None]
+    total = around[0][places]
+    for squared in around[1:]:
         np.minimum.accumulate(total, axis=0, out=total)
-        total += squared
+        total += squared[places]
     least: FloatArray = total.min(axis=0)
     return least
 
@@ -205,13 +208,12 @@ def assigned_around(squared: FloatArray) -> tuple[IntArray, FloatArray, IntArray
     """
     count = squared.shape[1]
     # One piece more than the turn has: the last target may repeat the first.
-    around = np.concatenate([squared, squared], axis=1)
-    windows = sliding_window_view(around, count + 1, axis=1)[:, :count].swapaxes(1, 2)
-    cuts = np.arange(0, count, _STRIDE)
-    cuts = _best_cuts(cuts, _least_costs(windows[:, :, cuts]))
-    cuts = np.unique((cuts[:, None] + np.arange(1 - _STRIDE, _STRIDE)) % count)
-    cuts = _best_cuts(cuts, _least_costs(windows[:, :, cuts]))
-    chosen, costs = assigned(windows[:, :, cuts])
+    around, stride = np.concatenate([squared, squared], axis=1), max(_STRIDE, count // _MOST_CUTS)
+    cuts = np.arange(0, count, stride)
+    cuts = _best_cuts(cuts, _least_costs(around, cuts, count + 1))
+    cuts = np.unique((cuts[:, None] + np.arange(1 - stride, stride)) % count)
+    cuts = _best_cuts(cuts, _least_costs(around, cuts, count + 1))
+    chosen, costs = assigned(around[:, cuts + np.arange(count + 1)[:, None]])
     return chosen, costs, cuts
 
 

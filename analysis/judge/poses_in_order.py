@@ -15,6 +15,7 @@ from grashof.problems import FourBar, Task
 from grashof.problems.values.arrays import TURN, FloatArray
 
 SAMPLES = 120  # of a turn of the driver, or of a range
+PLACES = 360  # driver angles at most; the valleys of many poses lie so close together that some stand for all
 NEAR = 2.0  # times the least sum on the samples: such guesses are followed
 FREE = np.array(np.inf)
 
@@ -100,10 +101,18 @@ def _by_range(linkage: FourBar, task: Task) -> list[tuple[FloatArray, FloatArray
         ]
     judged = []
     for places, low, high in ranges:
-        places = np.unique(places)
+        places = _some(np.unique(places))
         miss = misses(linkage, task, places[:, None], np.asarray(int(linkage.assembly)))
         judged.append((places, (miss * task.weights).T, low, high))
     return judged
+
+
+def _some(places: FloatArray) -> FloatArray:
+    """Driver angles in order, of too many at most `PLACES` that lie as evenly as can be."""
+    if len(places) <= PLACES:
+        return places
+    cells = np.floor((places - places[0]) / (places[-1] - places[0]) * PLACES)
+    return places[np.unique(np.minimum(cells, PLACES - 1), return_index=True)[1]]
 
 
 def _guesses(places: FloatArray, miss: FloatArray, *, turns: bool) -> FloatArray:

@@ -16,10 +16,10 @@ import numpy.typing as npt
 
 from grashof.problems.values.arrays import FloatArray, Limits, frozen_array
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
+from grashof.problems.values.extent import span
 
 GREATEST = 1e20  # of lengths, masses and speeds: squares of torques stay within the floats
 LEAST = 1e-20  # size of a task, for the same reason
-_MANY = 500  # points
 # What a spreadsheet calculates, in the wide forms of Japanese and Chinese, too, and what it may skip before.
 _FORMULA = re.compile(r"(^|;)(?=\s*[=+\-@＝＋－＠]|[\t\r\n])")
 
@@ -155,20 +155,6 @@ def limits(values: Limits, where: str, *, least: float = -np.inf, most: float = 
     if low < least:
         raise ProblemError(f"{given}; lo must be at least {least:g}")
     return low, high
-
-
-def span(points: FloatArray) -> float:
-    """Greatest distance between two of N points (N, 2)."""
-    if len(points) > _MANY:
-        # Here, not above: shapely takes a while to import, and few tasks have so many targets.
-        import shapely
-
-        points = shapely.get_coordinates(shapely.convex_hull(shapely.MultiPoint(points)))
-    greatest = 0.0
-    for first in range(0, len(points), _MANY):  # not all pairs at once, which memory may not hold
-        separation = points[first : first + _MANY, None] - points[None]
-        greatest = max(greatest, float(np.hypot(separation[..., 0], separation[..., 1]).max(initial=0.0)))
-    return greatest
 
 
 def counted(number: int, noun: str) -> str:

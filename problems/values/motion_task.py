@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, Literal
 
 import numpy as np
 import numpy.typing as npt
 
-from grashof.problems.values.arrays import FloatArray, frozen_array
+from grashof.problems.values.arrays import FloatArray, IntArray, frozen_array
 from grashof.problems.values.checks import (
     GREATEST,
     LEAST,
@@ -24,7 +24,7 @@ from grashof.problems.values.checks import (
     task_size,
 )
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
-from grashof.problems.values.task import Task
+from grashof.problems.values.task import Task, some_columns
 from grashof.problems.values.timing import driver_timing, finite_angles, whole_turn
 from grashof.problems.values.zones import LEAST_ZONE, turn_sizes, zone_sizes
 
@@ -138,6 +138,15 @@ class MotionTask(Task):
         object.__setattr__(self, "weights", _weights(weights, len(places)))
         object.__setattr__(self, "angle_length", size if angle_length is None else float(angle_length))
         object.__setattr__(self, "body", None if body is None else outline(body, "motion.body"))
+
+    def some(self, index: IntArray, positions: FloatArray, angles: FloatArray) -> MotionTask:
+        """Some of the targets, moved."""
+        return replace(
+            self,
+            positions=np.where(self.has_position[index, None], positions, np.nan),
+            angles=np.where(self.has_angle[index], angles, np.nan),
+            **some_columns(self, index, "weights", "timing", "within", "angle_within"),
+        )
 
     @classmethod
     def from_degrees(

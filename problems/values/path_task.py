@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, Literal
 
 import numpy as np
 import numpy.typing as npt
 
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.checks import GREATEST, counted, finite_rows, task_size
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.task import Task
+from grashof.problems.values.task import Task, some_columns
 from grashof.problems.values.timing import driver_timing, finite_angles, whole_turn
 from grashof.problems.values.zones import LEAST_ZONE, zone_sizes
 
@@ -87,6 +87,10 @@ class PathTask(Task):
         """Task with its timing in degrees, as problem files write it."""
         timing = None if timing_deg is None else np.radians(finite_angles(timing_deg, "path"))
         return cls(points, timing=timing, closed=closed, within=within)
+
+    def some(self, index: IntArray, positions: FloatArray, angles: FloatArray) -> PathTask:  # noqa: ARG002
+        """Some of the points, moved; they have no angles."""
+        return replace(self, points=positions, **some_columns(self, index, "timing", "within"))
 
     @property
     def positions(self) -> FloatArray:

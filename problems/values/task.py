@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import replace
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from grashof.problems.values.arrays import BoolArray, FloatArray
-from grashof.problems.values.checks import span
+from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
+from grashof.problems.values.extent import span
 from grashof.problems.values.read_only import ReadOnly
 
 _SAME = 1e-12  # sizes, rad
@@ -129,6 +129,13 @@ class Task(ReadOnly, ABC):
         """The same targets, none of them to be missed."""
         return self.with_zones(**dict.fromkeys(self.stated_zones))
 
+    @abstractmethod
+    def some(self, index: IntArray, positions: FloatArray, angles: FloatArray) -> Self:
+        """Some of the targets in order, `index` (K,), moved to other positions (K, 2) and angles (K,).
+
+        What a target leaves free stays free.
+        """
+
     @property
     def exact_by_default(self) -> bool:
         """Whether linkages that meet every target can be expected.
@@ -144,3 +151,9 @@ class Task(ReadOnly, ABC):
 
     def __len__(self) -> int:
         return len(self.positions)
+
+
+def some_columns(task: Task, index: IntArray, *names: str) -> dict[str, Any]:
+    """What some of the targets have in columns, by name; None where a task has no such column."""
+    columns = {name: getattr(task, name) for name in names}
+    return {name: None if column is None else column[index] for name, column in columns.items()}

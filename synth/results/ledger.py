@@ -14,7 +14,7 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.results.attempt import Attempt
 from grashof.synth.results.candidate import Candidate
-from grashof.synth.results.ranking import ranked
+from grashof.synth.results.leaders import Leaders
 from grashof.synth.results.tally import Tally
 
 FRUITLESS = 64  # so many solves without one verified exact design end the search
@@ -54,6 +54,10 @@ class Ledger:
     _errors: list[float] = field(default_factory=list)  # the least of each round, sizes
     _stale: int = 0  # rounds on end without a new design
     _begun: list[ComplexArray] = field(default_factory=list)  # marks of starts that were solved
+    _leaders: Leaders = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._leaders = Leaders(self.scaled.problem)
 
     def begin(self, made: Round) -> None:
         """Open a round."""
@@ -92,7 +96,8 @@ class Ledger:
 
     def rank(self) -> None:
         """Rank what is verified and distinct."""
-        before, self.best = len(self.best), ranked(self.scaled.problem, self.verified)
+        self._leaders.add(self.verified[len(self._leaders) :])
+        before, self.best = len(self.best), self._leaders.distinct
         if len(self.best) > before:
             self._stale = 0
 

@@ -10,13 +10,14 @@ import numpy as np
 from grashof.analysis import Design, Verdict
 from grashof.analysis.judge.limits import SLACK
 from grashof.problems import Problem
-from grashof.problems.values.arrays import BoolArray
+from grashof.problems.values.arrays import BoolArray, FloatArray
 from grashof.problems.values.quantities import Quantity
 from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth.programme.merit import same_error
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.theory.distinct import DISTINCT, pick_apart, signature
 
+BLOCK = 256  # designs compared with all others at once
 DIGITS = 9  # decimals of errors (in sizes) and objectives that count; the others are rounding noise
 
 
@@ -116,7 +117,14 @@ def pareto_optimal(problem: Problem, candidates: tuple[Candidate, ...]) -> BoolA
         for candidate in candidates
     ]).reshape(-1, 2 + len(goals))  # fmt: skip
     costs[np.isnan(costs)] = np.inf
-    no_worse = (costs[:, None] <= costs[None]).all(axis=2)
-    better = (costs[:, None] < costs[None]).any(axis=2)
-    beaten: BoolArray = np.any(no_worse & better, axis=0)
-    return ~beaten
+    return ~_beaten(costs)
+
+
+def _beaten(costs: FloatArray) -> BoolArray:
+    """Which rows of costs (n, C) another one is no worse than in any and better than in some; shape (n,)."""
+    beaten: BoolArray = np.zeros(len(costs), dtype=bool)
+    for first in range(0, len(costs), BLOCK):  # all pairs at once take memory with the square of the list
+        some = costs[first : first + BLOCK, None]
+        no_worse, better = (some <= costs).all(axis=2), (some < costs).any(axis=2)
+        beaten |= (no_worse & better).any(axis=0)
+    return beaten

@@ -16,6 +16,7 @@ from grashof.synth.results.candidate import Candidate
 from grashof.synth.results.ledger import Ledger
 from grashof.synth.results.ranking import distinct, pareto_optimal, ranked
 from grashof.synth.results.search import Run
+from grashof.synth.results.stand_in import StandIn, on_all_targets
 
 FACTORS = (1.02, 1.2, 1.5, 2.0)  # times the least error: so much is offered for other virtues
 GOALS = {"mu": Objective(), "size": Objective(transmission=0.0, compactness=1.0)}
@@ -49,32 +50,44 @@ def trade_offs(scaled: ScaledProblem, ledger: Ledger, run: Run) -> Chosen:
     """
     problem, least = scaled.problem, max(ledger.least, same_error(scaled.problem))
     seeds = seeds_of(problem, ledger.verified, FACTORS[-1] * least, SEEDS)
-    every, attempts = list(ledger.verified), list[Attempt]()
-    latest = dict[str, list[Candidate]]({goal: [] for goal in GOALS})
+    stand_in = StandIn.of(scaled, seeds[0], ledger.least) if seeds else StandIn(scaled)
+    begun_from = [(_error(problem, one), stand_in.taken(one)) for one in seeds]
+    found, attempts, latest = list[Candidate](), list[Attempt](), dict[str, list[Candidate]]()
     factors = FACTORS if ledger.least > same_error(problem) else FACTORS[:1]
     there_and_back = (*factors, *factors[-2::-1])  # what much error allows may lead to more at little, too
     for before, factor in zip((0.0, *there_and_back), there_and_back, strict=False):
         if run.ended():
             break
-        new = [one for one in seeds if before * least < _error(problem, one) <= factor * least]
+        new = [one for error, one in begun_from if before * least < error <= factor * least]
+        most = stand_in.most_error(factor * least, problem.task.size)
         begun = [
-            (goal, started_at(scaled, one, objective, most_error=factor * least))
+            (goal, started_at(stand_in.scaled, one, objective, most_error=most))
             for goal, objective in GOALS.items()
-            for one in (*latest[goal], *new)
+            for one in (*latest.get(goal, ()), *new)
         ]
-        made = run.solve(scaled, [start for _, start in begun], ledger.solved + len(attempts))
+        made = run.solve(stand_in.scaled, [start for _, start in begun], ledger.solved + len(attempts))
         attempts += made
-        for goal, objective in GOALS.items():
+        for goal in GOALS:
             mine = zip(begun, made, strict=True)
             good = [each for (aim, _), one in mine if aim == goal for each in one.verified]
-            every += good
-            wanted = replace(problem.requirements, error_factor=factor)
-            valued = replace(problem, requirements=wanted, objective=objective)
-            most = factor * least * (1 + SLACK)
-            within = [one for one in (*good, *latest[goal]) if _error(problem, one) <= most]
-            latest[goal] = list(ranked(valued, within)[:1]) or latest[goal]
-    designs = _worth_choosing(problem, every, least)
+            every = (*good, *latest.get(goal, ()))
+            latest[goal] = _best_at(stand_in, goal, every, factor, most) or latest.get(goal, [])
+            found += good if stand_in.is_itself else latest[goal]
+    if not stand_in.is_itself:
+        found = on_all_targets(scaled, found, FACTORS[-1] * least)
+    designs = _worth_choosing(problem, [*ledger.verified, *found], least)
     return Chosen(designs, [one for one in attempts if not one.verified], len(attempts))
+
+
+def _best_at(
+    stand_in: StandIn, goal: str, found: Sequence[Candidate], factor: float, most: float
+) -> list[Candidate]:
+    """The best design at a goal up to some error; none where all have more."""
+    problem = stand_in.scaled.problem
+    wanted = replace(problem.requirements, error_factor=factor)
+    valued = replace(problem, requirements=wanted, objective=GOALS[goal])
+    within = [one for one in found if _error(problem, one) <= most * (1 + SLACK)]
+    return list(ranked(valued, within)[:1])
 
 
 def started_at(

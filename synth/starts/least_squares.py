@@ -21,6 +21,7 @@ from grashof.synth.programme.screening import GROUPS, Screened
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.starts.closed_loop import Batch, SearchTargets, joined
 from grashof.synth.starts.coupler_search import FOUND, CouplerSearch
+from grashof.synth.starts.every_target import costs_of_all, fitted_to_all
 from grashof.synth.starts.loop_search import (
     PLACES,
     Placed,
@@ -50,6 +51,8 @@ SAME_CURVE = 0.1  # of the rms error: two linkages closer at every target are on
 # limits (in sizes).
 STAGES = ((400, 8, 0.3), (200, 10, 1.0), (80, 20, 5.0), (40, 40, 5.0))
 LONG, LONG_STEPS = 24, 20  # of a thinned task so many are improved on all targets
+LAST_STEPS = 200  # and the best of them until little is gained
+LAST_WEIGHT = 300.0  # of limits, which then are kept but for rounding
 COPY = 0.01  # sizes: two linkages closer at three targets are one
 # Starts of a round: the best, some of the others, and some of before the limits bear fully; fewer on
 # tasks of more targets than `AMPLE`, whose solves take longer.
@@ -77,7 +80,7 @@ class LeastSquares(CouplerSearch):
         some, index = thinned(target, FEW_TARGETS)
         drawn = draw(some, size * (TIMED_DRAWS if target.timed else DRAWS), rng, ASTRAY)
         best = _best_fitting(some, drawn, size)
-        free = _free_round(scaled, _on_all_targets(target, index, best), size)
+        free = _free_round(scaled, _on_all_targets(target, index, best, size), size)
         return free or _limited_round(scaled, rng, drawn, best, size)
 
 
@@ -92,12 +95,18 @@ def _best_fitting(some: SearchTargets, drawn: Batch, size: int) -> Batch:
         return batch[np.argsort(error, kind="stable")]
 
 
-def _on_all_targets(target: SearchTargets, index: IntArray, batch: Batch) -> Batch:
+def _on_all_targets(target: SearchTargets, index: IntArray, batch: Batch, size: int) -> Batch:
     """Linkages that know the targets `index` with driver angles at every one, improved there."""
     if len(index) == len(target.points):
         return batch
+    batch = refined(target, index, batch)
     with np.errstate(all="ignore"):
-        return improve(fitting(target), refined(target, index, batch), LONG_STEPS, 0.0)[0]
+        if target.timed:
+            return improve(fitting(target), batch, LONG_STEPS, 0.0)[0]
+        batch = fitted_to_all(target, batch)
+        best = np.argsort(place(target, batch).error, kind="stable")
+        few, rest = np.split(best, [size * MOST_CURVES])
+        return joined(fitted_to_all(target, batch[few], LAST_STEPS), batch[rest])
 
 
 def _free_round(scaled: ScaledProblem, batch: Batch, size: int) -> Round | None:
@@ -114,6 +123,8 @@ def _free_round(scaled: ScaledProblem, batch: Batch, size: int) -> Round | None:
         return None
     order = np.argsort(feasible.error, kind="stable")
     starts = [_start(scaled, feasible, feasible.error, int(k)) for k in order]
+    if target.timed and len(target.points) > FEW_TARGETS and not scaled.constraints:
+        starts = [replace(start, settled=True) for start in starts]  # as `_start` has it of the untimed
     counts = {"feasible finds": len(feasible)}
     most = size * MOST_CURVES * (2 if scaled.of_use else 1)
     return Round(_other_curves(starts, most), counts, size, NEAR_BEST, free=True)
@@ -150,7 +161,7 @@ def _limited_round(
     if _ends_bind(scaled):  # the search may shift the ends of the motion, the programme may not
         early, error = _ranked(scaled, before_limits)
         some = _some(rng, np.arange(len(error)), before)
-        chosen += [replace(_start(scaled, early, error, k), promise=0.0) for k in some]
+        chosen += [replace(_start(scaled, early, error, k), promise=0.0, settled=False) for k in some]
         prune = NEAR_BEST_SHIFTED
     return Round(chosen, {"feasible finds": int(linkages.feasible.sum())}, size, prune)
 
@@ -173,8 +184,15 @@ def _search(scaled: ScaledProblem, drawn: Batch, best: Batch, size: int) -> tupl
         batch = _best_distinct(some, batch, error, len(batch), drawn=False)
         if len(index) < len(target.points):
             batch = _with_places_refined(target, index, batch[: size * LONG])
-            batch, _ = improve(within_limits(target, STAGES[-1][2]), batch, LONG_STEPS, 0.0)
-            early = _with_places_refined(target, index, early)
+            weight = STAGES[-1][2]
+            if target.timed:
+                batch, _ = improve(within_limits(target, weight), batch, LONG_STEPS, 0.0)
+            else:
+                batch = fitted_to_all(target, batch, weight=weight, placed=True)
+                order = np.argsort(costs_of_all(target, batch, weight), kind="stable")
+                few = batch[order[: size * MOST_CURVES]]
+                batch = fitted_to_all(target, few, LAST_STEPS, weight=LAST_WEIGHT, placed=True)
+            early = _with_places_refined(target, index, early[:: -(-len(early) // LONG) or 1])
         return early, batch
 
 
@@ -189,7 +207,11 @@ def _ranked(scaled: ScaledProblem, batch: Batch) -> tuple[Screened, FloatArray]:
     """Linkages of the search, best first, and their errors with what limits add (n,), sizes."""
     target = search_targets(scaled)
     placed = standing(target, batch)
-    error, _, _ = within_limits(target, STAGES[-1][2])(batch)
+    if _all_fitted(target):
+        with np.errstate(all="ignore"):
+            error = costs_of_all(target, batch, STAGES[-1][2])
+    else:
+        error, _, _ = within_limits(target, STAGES[-1][2])(batch)
     sound = np.flatnonzero(np.isfinite(error) & np.isfinite(placed.error))
     linkages = judged(scaled, target, placed[sound], batch.direction[sound])
     unlimited = [GROUPS.index(name) for name in UNLIMITED]
@@ -226,8 +248,14 @@ def _distinct(placed: Placed) -> IntArray:
 
 def _start(scaled: ScaledProblem, linkages: Screened, error: FloatArray, index: int) -> Start:
     start = Start.of_screened(linkages, index, scaled.objective)
+    fitted = _all_fitted(search_targets(scaled)) and not scaled.constraints
     met = bool(linkages.feasible[index]) and linkages.error[index] < FOUND
-    return replace(start, promise=float(error[index]), settled=met)
+    return replace(start, promise=float(error[index]), settled=met or fitted)
+
+
+def _all_fitted(target: SearchTargets) -> bool:
+    """Whether the search itself fits linkages to all of many targets, so that a programme gains nothing."""
+    return len(target.points) > FEW_TARGETS and not target.jumbled and not target.timed
 
 
 def _some(rng: np.random.Generator, every: IntArray, count: int) -> list[int]:

@@ -104,7 +104,7 @@ def draw(target: SearchTargets, count: int, rng: np.random.Generator, astray: fl
 def place(target: SearchTargets, batch: Batch) -> Placed:
     """Where the linkages of a batch fit the points best."""
     loop = Loop.of(target, batch)
-    z, _, _, error = _project(target, loop)
+    z, _, _, error = project(target, loop)
     return _standing(target, loop, z, error)
 
 
@@ -186,9 +186,7 @@ def _step(residual: FloatArray, jacobian: FloatArray, damping: FloatArray) -> Fl
     return step
 
 
-def _project(
-    target: SearchTargets, loop: Loop
-) -> tuple[ComplexArray, ComplexArray, ComplexArray, FloatArray]:
+def project(target: SearchTargets, loop: Loop) -> tuple[ComplexArray, ComplexArray, ComplexArray, FloatArray]:
     """Best z0, z1, z2 (n, 3), the QR factors of what they span (n, N, 3) and (n, 3, 3), and the error."""
     root = np.sqrt(target.weights)
     basis = np.stack([np.ones_like(loop.e2), loop.e2, loop.e3], axis=-1) * root[:, None]
@@ -217,10 +215,10 @@ def fitting(target: SearchTargets) -> Model:
     def model(batch: Batch) -> tuple[FloatArray, FloatArray, FloatArray]:
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             loop = Loop.of(target, batch)
-            z, q, r, error = _project(target, loop)
+            z, q, r, error = project(target, loop)
             by_theta2 = by_unknowns(target, batch)
             by_theta3 = by_theta3_of(loop, by_theta2)
-            residual, slope = _missed(target, loop, z, by_theta2, by_theta3)
+            residual, slope = missed_places(target, loop, z, by_theta2, by_theta3)
             share = np.swapaxes(q.conj(), 1, 2) @ slope
             slope -= q @ share
             at = Placement(target, loop, by_theta2, by_theta3, z, -_back_substituted(r, share))
@@ -250,7 +248,7 @@ def within_limits(target: SearchTargets, weight: float) -> Model:
             by_z = np.zeros((n, 3, width), dtype=np.complex128)
             for k in range(3):
                 by_z[:, k, width - PLACES + 2 * k], by_z[:, k, width - PLACES + 2 * k + 1] = 1, 1j
-            residual, slope = _missed(target, loop, z, by_theta2, by_theta3)
+            residual, slope = missed_places(target, loop, z, by_theta2, by_theta3)
             root = np.sqrt(target.weights)
             for k, spanned in enumerate((np.ones_like(loop.e2), loop.e2, loop.e3)):
                 slope[..., width - PLACES + 2 * k] = root * spanned
@@ -269,7 +267,7 @@ PLACES = 6  # unknowns that place a linkage: real and imaginary parts of z0, z1,
 def with_places(target: SearchTargets, batch: Batch) -> Batch:
     """A batch with z0, z1, z2 as six more unknowns, where the linkages fit the points best."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        z, _, _, error = _project(target, Loop.of(target, batch))
+        z, _, _, error = project(target, Loop.of(target, batch))
     sound = np.isfinite(error)
     parts = np.stack([z.real, z.imag], axis=-1).reshape(len(batch), PLACES)
     return replace(batch, unknowns=np.concatenate([batch.unknowns, parts], axis=1))[sound]
@@ -290,7 +288,7 @@ def _loop_and_places(target: SearchTargets, batch: Batch) -> tuple[Loop, Complex
     return loop, parts[..., 0] + 1j * parts[..., 1]
 
 
-def _missed(
+def missed_places(
     target: SearchTargets, loop: Loop, z: ComplexArray, by_theta2: FloatArray, by_theta3: FloatArray
 ) -> tuple[ComplexArray, ComplexArray]:
     """From P to the points, weighted (n, N), and the derivative of P with z held (n, N, M)."""

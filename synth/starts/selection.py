@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.requirements import QUANTITIES
@@ -103,10 +104,21 @@ def _spread(
             break
     points = linkages.points[picked]
     coordinates = np.concatenate([points.real, points.imag], axis=1)
-    gap = np.abs(coordinates[:, None] - coordinates).max(axis=2)
-    nearest = np.where(np.eye(len(picked)) > 0, np.inf, gap).min(axis=1, initial=1.0)
+    nearest = to_nearest(coordinates)
     starts = starts_of(scaled, linkages, picked)
     return [replace(one, radius=float(0.4 * gap)) for one, gap in zip(starts, nearest, strict=True)]
+
+
+def to_nearest(coordinates: FloatArray) -> FloatArray:
+    """How far points (n, C) are from the nearest others, by the coordinate that differs most; up to 1.
+
+    A tree holds them, in place of all pairs.
+    """
+    if len(coordinates) < 2:
+        return np.ones(len(coordinates))
+    apart = np.asarray(cKDTree(coordinates).query(coordinates, k=2, p=np.inf)[0])[:, 1]
+    nearest: FloatArray = np.minimum(apart, 1.0)
+    return nearest
 
 
 def _distinct_starts(scaled: ScaledProblem, linkages: Screened, merit: FloatArray, most: int) -> list[Start]:

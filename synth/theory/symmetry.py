@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -61,10 +62,9 @@ def symmetries(task: Task) -> tuple[Symmetry, ...]:
     [(1.0, False), (1.0, True), (-1.0, False), (-1.0, True)]
     """
     places = (_once(task) - middle_of(task)) @ np.array([1, 1j])
-    orders = _orders(task, len(places))
     found = [Symmetry(1 + 0j, False)]
-    for order in orders:
-        for mirrored in (False, True):
+    for order, able in _orders(task, places):
+        for mirrored in able:
             turn = _turn(places, order, mirrored, EVEN * task.size)
             if turn is None or not _agrees(task, order, mirrored):
                 continue
@@ -86,11 +86,27 @@ def _once(task: Task) -> FloatArray:
     return places[:-1] if again else places
 
 
-def _orders(task: Task, count: int) -> IntArray:
-    """Orders in which the targets may be met, shape (k, count)."""
-    forth = np.arange(count)
-    first = forth[:, None] if task.closed else np.zeros((1, 1), dtype=np.int64)
-    return np.concatenate([(first + forth) % count, (first - 1 - forth) % count])
+def _orders(task: Task, places: ComplexArray) -> Iterator[tuple[IntArray, list[bool]]]:
+    """Orders in which the targets may be met, shape (count,), each with the ways it may be: mirrored or not.
+
+    A closed path of N points has 2 N of them. Those are left out after which no turn lays the points on
+    the others, as their correlation tells (by Fourier transform, so that N log N steps tell all).
+    """
+    count = len(places)
+    forth, first = np.arange(count), np.arange(count if task.closed else 1)
+    able = np.ones((2, 2, len(first)), dtype=bool)
+    if task.closed:
+        z = np.nan_to_num(places)
+        enough = (np.abs(z) ** 2).sum() - count * (EVEN * task.size) ** 2
+        for mirrored, image in enumerate((z, z.conj())):
+            for back, other in enumerate((image, image[::-1])):
+                # Over k of z[first + k] conj(other[k]), for every first.
+                product = np.fft.ifft(np.fft.fft(z) * np.fft.fft(other).conj())
+                able[back, mirrored] = np.abs(product) >= enough
+    for back in (0, 1):
+        for begin in first[able[back].any(axis=0)]:
+            order = (begin - 1 - forth if back else begin + forth) % count
+            yield order, [way for way in (False, True) if able[back, int(way), begin]]
 
 
 def _turn(places: ComplexArray, order: IntArray, mirrored: bool, least: float) -> complex | None:

@@ -1,5 +1,6 @@
 """Poses met in order: against minimisation by another method, and against every order on a grid."""
 
+import tracemalloc
 from collections.abc import Callable
 
 import numpy as np
@@ -178,3 +179,21 @@ def test_a_linkage_that_cannot_close_stays_as_it_is() -> None:
     targets, same = poses_in_order(apart, task, nearest, way)
     assert targets is nearest
     assert same is way
+
+
+def test_hundreds_of_poses_are_in_order_in_little_memory(close_loop: Brute) -> None:
+    """Valleys of many poses are thinned to begin with; no way on a grid is better all the same."""
+    for seed in range(3):
+        rng = np.random.default_rng([22, seed])
+        task, linkage = planted_motion(rng, 150)
+        noise = rng.normal(0, 0.02, (150, 3))
+        task = MotionTask(task.positions + task.size * noise[:, :2], task.angles + noise[:, 2])
+        tracemalloc.start()
+        answer = in_order(linkage, task)
+        peak = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        assert answer is not None
+        targets, way = answer
+        assert way.in_order
+        assert square_of(task, targets) <= least_of_grid(close_loop, linkage, task, 180) * (1 + 1e-9)
+        assert peak < 40e6  # bytes; half a gigabyte where every valley counts

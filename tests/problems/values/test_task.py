@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grashof.problems import MotionTask, ProblemError
+from grashof.problems import MotionTask, PathTask, ProblemError
 
 LUGGAGE: list[list[float]] = [[5, 4, 0], [3.5, 4, -5], [2, 3, -5], [1, 0, 0]]
 
@@ -125,3 +125,26 @@ def test_equal_poses_that_are_not_neighbours_are_allowed() -> None:
 def test_a_move_without_a_turn_and_a_turn_without_a_move_are_poses() -> None:
     task = MotionTask.from_degrees([[0, 0, 5], [1, 0, 5], [1, 0, 5.001]])
     assert len(task) == 3
+
+
+def test_some_targets_keep_their_columns_and_what_they_leave_free() -> None:
+    poses = MotionTask(
+        [[0, 0], [1, 0], [np.nan, np.nan], [3, 1]],
+        [0.0, np.nan, 0.2, 0.3],
+        weights=[1, 2, 3, 4],
+        timing=[0, 1, 2, 3],
+        within=[0.1, 0.2, 0.3, 0.4],
+    )
+    index = np.array([0, 2, 3])
+    some = poses.some(index, np.array([[5.0, 5], [6, 6], [7, 7]]), np.array([0.5, 0.6, 0.7]))
+    np.testing.assert_array_equal(some.positions, [[5, 5], [np.nan, np.nan], [7, 7]])
+    np.testing.assert_array_equal(some.angles, [0.5, 0.6, 0.7])
+    np.testing.assert_array_equal(some.weights, [1, 3, 4])
+    np.testing.assert_array_equal(some.timing, [0, 2, 3])
+    np.testing.assert_array_equal(some.within, [0.1, 0.3, 0.4])
+    assert some.angle_length == poses.angle_length
+    path = PathTask([[0, 0], [3, 0], [3, 4], [0, 4]], closed=True)
+    fewer = path.some(np.array([0, 1, 3]), np.array([[1.0, 1], [2, 1], [1, 2]]), np.zeros(3))
+    assert fewer.points.tolist() == [[1, 1], [2, 1], [1, 2]]
+    assert fewer.closed
+    assert fewer.timing is None

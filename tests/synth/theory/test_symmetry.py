@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from typing import Any
 
 import numpy as np
@@ -78,3 +79,20 @@ def test_a_mirrored_linkage_does_the_mirrored_task(seed: int) -> None:
         again = verify(other, task, wanted)
         assert again.error_sse == pytest.approx(verdict.error_sse, rel=1e-3)
         assert again.transmission_min_cycle == pytest.approx(verdict.transmission_min_cycle)
+
+
+@pytest.mark.parametrize("sides", [1, 2, 3, 12])
+def test_symmetries_of_long_closed_paths_take_no_square_of_their_points(sides: int) -> None:
+    """A star with so many points has as many rotations, each with a reflection; 2.3 GB of orders else."""
+    count = 12_000
+    angle = np.linspace(0, 2 * np.pi, count, endpoint=False)
+    radius = 1 + 0.3 * np.cos(sides * angle)
+    shift = 0.2 * np.exp(2j * angle) if sides == 1 else 0.0  # the star with one point is mirrored alone
+    points = radius * np.exp(1j * angle) + shift
+    tracemalloc.start()
+    found = symmetries(closed(np.column_stack([points.real, points.imag])))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    turns = {(round(each.turn.real, 1), round(each.turn.imag, 1), each.mirrored) for each in found}
+    assert len(turns) == 2 * sides
+    assert peak < 50e6

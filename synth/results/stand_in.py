@@ -1,0 +1,85 @@
+"""A long task of least squares stood in for by a short one, where solves only look for other virtues.
+
+Of all targets a few are kept, and moved to where the design of the least error e meets them. At that
+design the errors are orthogonal to whatever the linkage can do, so that another one misses all targets by
+the square e^2 + d^2, where d is what it misses the moved ones by. What is found is judged on all targets.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from grashof.analysis import solve_position
+from grashof.problems import ProblemError, Task
+from grashof.problems.values.arrays import TURN, IntArray
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.results.candidate import Candidate
+from grashof.synth.results.judging import judged_again
+
+LONG, FEW = 40, 24  # more targets than the first are stood in for by so many
+KEPT = 0.98  # of the error that may be added: the judge looks at all targets
+
+
+@dataclass(frozen=True, slots=True)
+class StandIn:
+    """The problem whose targets stand in for those of another one; that problem itself where it is short.
+
+    Parameters
+    ----------
+    scaled : ScaledProblem
+    least : float, sizes
+        The least error of all targets; zero where the problem stands for itself.
+    """
+
+    scaled: ScaledProblem
+    least: float = 0.0
+
+    @classmethod
+    def of(cls, scaled: ScaledProblem, best: Candidate, least: float) -> StandIn:
+        """What stands in for a problem; the user's own functions may look at any target."""
+        count = len(scaled.problem.task)
+        if count <= LONG or scaled.constraints or scaled.own_objective is not None:
+            return cls(scaled)
+        index = np.unique(np.round(np.linspace(0, count - 1, FEW)).astype(np.int64))
+        try:
+            task = met_by(best, scaled.problem.task, index)
+        except ProblemError:  # two of them are equal, or none has a position
+            return cls(scaled)
+        wanted = replace(scaled.problem.requirements.resolved(scaled.problem.task.size), exact=False)
+        return cls(scaled.of_problem(replace(scaled.problem, task=task, requirements=wanted)), least)
+
+    @property
+    def is_itself(self) -> bool:
+        """Whether the problem stands for itself."""
+        return self.least == 0
+
+    def most_error(self, most: float, size: float) -> float:
+        """Error of the stand-in, its sizes, that makes `most` of all targets, whose task has this size."""
+        if self.is_itself:
+            return most
+        added = KEPT * float(np.sqrt(max(most**2 - self.least**2, 0.0)))
+        return added * size / self.scaled.problem.task.size
+
+    def taken(self, candidate: Candidate) -> Candidate:
+        """A design of the whole problem, judged by the stand-in."""
+        return candidate if self.is_itself else judged_again(self.scaled, candidate)
+
+
+def met_by(best: Candidate, task: Task, index: IntArray) -> Task:
+    """Some targets of a task, those that `index` has in order, where a design meets them."""
+    linkage, verdict = best.linkage, best.verdict
+    state = solve_position(linkage, verdict.theta2[index], verdict.assembly[index])
+    places, turned = np.array(state.p), state.theta3 + float(linkage.body_angle)
+    turned += TURN * np.round((np.nan_to_num(task.angles[index]) - turned) / TURN)
+    if task.returns:
+        places[-1], turned[-1] = places[0], turned[0]
+    return task.some(index, places, turned)
+
+
+def on_all_targets(scaled: ScaledProblem, found: list[Candidate], most: float) -> list[Candidate]:
+    """Designs of a stand-in that the judge accepts on all targets, up to some error (sizes)."""
+    once = {one.id: one for one in found}
+    judged = [judged_again(scaled, one, most) for one in once.values()]
+    return [one for one in judged if one.verdict.ok]

@@ -1,0 +1,239 @@
+"""Linkages of a long task fitted to every target: each target touches its own driver angle only.
+
+So the normal equations are a small block that all targets share, bordered by one number a target, which
+is eliminated target by target (Schur complement). A step takes time and memory as the targets are many.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import isotonic_regression
+
+from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray
+from grashof.synth.starts.closed_loop import Batch, Loop, SearchTargets, body_turns, by_theta3_of
+from grashof.synth.starts.limit_residuals import Placement, oversteps
+from grashof.synth.starts.loop_search import PLACES, PULL, missed_places, project
+
+STEPS = 30
+DONE = 1e-8  # share of its error: a linkage that gains less is done
+PASSES = 1
+LONGEST = 0.3  # rad: no driver angle moves farther in a step
+LEAST_GAP = 1e-9  # share of a turn, between driver angles that are the same
+HEAVY = 1e6  # damping under which no step is worth trying
+
+
+@dataclass(frozen=True, slots=True)
+class _Model:
+    """Misses of every target, linearised: gap - common @ what all share - own * its driver angle.
+
+    `gap` and `own` have the shape (n, N, 3), `common` (n, N, 3, C), `error` (n,). Limits are overstepped by
+    `over` (n, L), with derivatives `by_over` (n, L, C + 2) by what all share and by the first and the last
+    driver angle.
+    """
+
+    error: FloatArray
+    gap: FloatArray
+    common: FloatArray
+    own: FloatArray
+    over: FloatArray
+    by_over: FloatArray
+
+    def where(self, better: BoolArray, fresh: _Model) -> _Model:
+        """The fresh one of the linkages that are better."""
+        pairs = ((getattr(fresh, name), getattr(self, name)) for name in self.__slots__)
+        return _Model(*(np.where(better.reshape(-1, *[1] * (new.ndim - 1)), new, old) for new, old in pairs))
+
+
+def fitted_to_all(
+    target: SearchTargets, batch: Batch, steps: int = STEPS, *, weight: float = PULL, placed: bool = False
+) -> Batch:
+    """Linkages with the least squares over all targets, met in order, by the Gauss-Newton method.
+
+    Parameters
+    ----------
+    target : SearchTargets
+        Untimed, in order.
+    batch : Batch
+        With driver angles at every target, near the best ones.
+    steps : int
+        At most.
+    weight : float, sizes
+        Error that overstepping a limit by one unit counts as.
+    placed : bool
+        The batch has places (`with_places`); otherwise linkages stand where they fit the targets best.
+
+    Returns
+    -------
+    Batch
+
+    Notes
+    -----
+    Damped as Levenberg and Marquardt do. Driver angles that would go back are projected on the order by
+    weighted isotonic regression, which is the solution of the step for given proportions; those that
+    stand together are eliminated together.
+    """
+    now = _with_angles(target, batch, PLACES * placed)
+    model = _linearised(target, now, weight)
+    damping, idle = np.full(len(batch), 1e-3), np.zeros(len(batch), dtype=np.int64)
+    for _ in range(steps):
+        tried = _stepped(now, model, damping)
+        fresh = _linearised(target, tried, weight)
+        better = fresh.error < model.error
+        idle = np.where(better & (fresh.error < (1 - DONE) * model.error), 0, idle + better)
+        now = replace(now, unknowns=np.where(better[:, None], tried.unknowns, now.unknowns))
+        model = model.where(better, fresh)
+        damping = np.clip(np.where(better, damping / 5, damping * 8), 1e-12, 10 * HEAVY)
+        if ((idle > 3) | (damping > HEAVY)).all():
+            break
+    return _by_gaps(now, len(target.points))
+
+
+def costs_of_all(target: SearchTargets, batch: Batch, weight: float) -> FloatArray:
+    """Squared errors with what limits add, of linkages with places, shape (n,), sizes squared."""
+    return _linearised(target, _with_angles(target, batch, PLACES), weight).error
+
+
+def _with_angles(target: SearchTargets, batch: Batch, places: int) -> Batch:
+    """Linkages with driver angles in place of the gaps between them, before so many columns of places."""
+    inner, last = np.split(batch.unknowns, [batch.unknowns.shape[1] - places], axis=1)
+    angles = Loop.of(target, replace(batch, unknowns=inner)).theta2
+    return replace(batch, unknowns=np.concatenate([inner[:, :3], angles, last], axis=1))
+
+
+def _linearised(target: SearchTargets, batch: Batch, weight: float) -> _Model:
+    """How linkages stand to every target: where they are placed, or else fit best."""
+    count = len(target.points)
+    free = replace(target, wanted=replace(target.wanted, order=False))
+    inner = replace(batch, unknowns=batch.unknowns[:, : 3 + count])
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        loop = Loop.of(free, inner)
+        if batch.unknowns.shape[1] > 3 + count:
+            parts = batch.unknowns[:, 3 + count :].reshape(-1, 3, 2)
+            z = parts[..., 0] + 1j * parts[..., 1]
+        else:
+            z = project(free, loop)[0]
+        by_theta2 = np.zeros((len(batch), count, 4))
+        by_theta2[..., 3] = 1
+        by_theta3 = by_theta3_of(loop, by_theta2)
+        residual, slope = missed_places(free, loop, z, by_theta2, by_theta3)
+        turned, _ = body_turns(free, loop)
+        over, by_over = _overstepped(target, loop, z)
+    root = np.sqrt(free.weights)
+    spans = [root * each for e in (np.ones_like(loop.e2), loop.e2, loop.e3) for each in (e, 1j * e)]
+    columns = [*np.moveaxis(slope[..., :3], -1, 0), *spans]
+    rows = [np.stack([each.real for each in columns], -1), np.stack([each.imag for each in columns], -1)]
+    gaps, own = [residual.real, residual.imag], [slope[..., 3].real, slope[..., 3].imag]
+    if free.has_angles:
+        root = np.sqrt(free.turn_weights)
+        by_turn = root[:, None] * by_theta3
+        still, body = np.zeros((*loop.theta2.shape, 6)), np.broadcast_to(root, loop.theta2.shape)
+        rows = [np.concatenate([row, np.zeros((*row.shape[:2], 1))], axis=-1) for row in rows]
+        rows.append(np.concatenate([by_turn[..., :3], still, body[..., None]], axis=-1))
+        by_over = np.insert(by_over, 9, 0.0, axis=2)
+        gaps.append(turned)
+        own.append(by_turn[..., 3])
+    error = (np.abs(residual) ** 2).sum(axis=1) + (turned**2).sum(axis=1) + weight**2 * (over**2).sum(axis=1)
+    made = (np.stack(part, axis=2) for part in (gaps, rows, own))
+    return _Model(
+        np.where(loop.closes & np.isfinite(error), error, np.inf),
+        *(np.nan_to_num(part) for part in (*made, weight * over, weight * by_over)),
+    )
+
+
+def _overstepped(target: SearchTargets, loop: Loop, z: ComplexArray) -> tuple[FloatArray, FloatArray]:
+    """How far limits are overstepped (n, L); by what all share and the first and last angle (n, L, 11)."""
+    n, count = loop.theta2.shape
+    by_theta2 = np.zeros((n, count, 11))
+    by_theta2[:, 0, 9] = by_theta2[:, -1, 10] = 1
+    by_z = np.zeros((n, 3, 11), dtype=np.complex128)
+    for k in range(3):
+        by_z[:, k, 3 + 2 * k], by_z[:, k, 4 + 2 * k] = 1, 1j
+    return oversteps(target, Placement(target, loop, by_theta2, by_theta3_of(loop, by_theta2), z, by_z))
+
+
+def _stepped(batch: Batch, model: _Model, damping: FloatArray) -> Batch:
+    """Linkages after a damped step."""
+    common, own, gap, count = model.common, model.own, model.gap, model.gap.shape[1]
+    flat, transposed = _flat(common), np.swapaxes(_flat(common), 1, 2)
+    normal, right = transposed @ flat, (transposed @ gap.reshape(len(batch), -1, 1))[..., 0]
+    border, pull = (own[..., None] * common).sum(axis=2), (own * gap).sum(axis=2)
+    by_common, by_ends = model.by_over[..., :-2], model.by_over[..., -2:]
+    normal += np.swapaxes(by_common, 1, 2) @ by_common
+    right -= (np.swapaxes(by_common, 1, 2) @ model.over[..., None])[..., 0]
+    border[:, [0, -1]] += np.swapaxes(by_ends, 1, 2) @ by_common
+    pull[:, [0, -1]] -= (np.swapaxes(by_ends, 1, 2) @ model.over[..., None])[..., 0]
+    diagonal = np.einsum("sii->si", normal)
+    ridge = damping[:, None] * (diagonal + 1e-12 * diagonal.max(axis=1, keepdims=True)) + 1e-300
+    normal = normal + ridge[..., None] * np.eye(normal.shape[1])
+    heavy = _weights(own)
+    heavy[:, [0, -1]] += (by_ends**2).sum(axis=1)
+    heavy *= (1 + damping)[:, None]
+    parts = np.concatenate([border, heavy[..., None]], axis=2)
+    angles = batch.unknowns[:, 3 : 3 + count]
+    together = _summed(parts, np.diff(angles, axis=1, prepend=np.nan) == 0)
+    share = np.swapaxes(together[..., :-1] / together[..., -1:], 1, 2)
+    step = np.clip(_solved(normal - share @ border, right - (share @ pull[..., None])[..., 0]), -1.5, 1.5)
+    moved = _moved(batch, (pull - (border @ step[..., None])[..., 0]) / heavy, heavy)
+    places = batch.unknowns[:, 3 + count :]
+    places = places + step[:, 3 : 3 + places.shape[1]]
+    return replace(
+        batch, unknowns=np.concatenate([batch.unknowns[:, :3] + step[:, :3], moved, places], axis=1)
+    )
+
+
+def _weights(own: FloatArray) -> FloatArray:
+    """How much each driver angle resists being moved, shape (n, N)."""
+    square: FloatArray = (own**2).sum(axis=2)
+    least: FloatArray = np.maximum(square, 1e-12 * square.max(axis=1, keepdims=True)) + 1e-300
+    return least
+
+
+def _moved(batch: Batch, step: FloatArray, weights: FloatArray) -> FloatArray:
+    """Driver angles after a step (n, N), in order."""
+    sense = batch.direction[:, None]
+    angles = batch.unknowns[:, 3 : 3 + step.shape[1]]
+    wish = sense * (angles + np.clip(step, -LONGEST, LONGEST))
+    ordered: FloatArray = np.stack([_in_order(*row) for row in zip(wish, weights, strict=True)])
+    return sense * ordered
+
+
+def _flat(common: FloatArray) -> FloatArray:
+    return common.reshape(len(common), -1, common.shape[-1])
+
+
+def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
+    """Solutions (n, C) of small equations; none where the numbers are not finite."""
+    both = np.concatenate([matrix, right[..., None]], axis=2)
+    both[~np.isfinite(both).all(axis=(1, 2))] = np.eye(*both.shape[1:])
+    found: FloatArray = np.linalg.solve(both[..., :-1], both[..., -1:])[..., 0]
+    return found
+
+
+def _summed(parts: FloatArray, together: BoolArray) -> FloatArray:
+    """Of each target the sum of parts (n, N, C) of those that stand `together` (n, N: with the last)."""
+    if not together.any():
+        return parts
+    first = np.flatnonzero(~together.ravel())
+    sums = np.add.reduceat(parts.reshape(-1, parts.shape[2]), first, axis=0)
+    count = np.diff(np.append(first, together.size))
+    every: FloatArray = np.repeat(sums, count, axis=0).reshape(parts.shape)
+    return every
+
+
+def _in_order(angle: FloatArray, weight: FloatArray) -> FloatArray:
+    """The nearest angles, by weight, that do not go back, within one turn."""
+    if (np.diff(angle) < 0).any():
+        angle = isotonic_regression(angle, weights=weight).x
+    over = angle[-1] - angle[0] - TURN * (1 - LEAST_GAP)
+    return np.clip(angle, angle[0] + over / 2, angle[-1] - over / 2) if over > 0 else angle
+
+
+def _by_gaps(found: Batch, count: int) -> Batch:
+    """Linkages with driver angles as the ordered search has them: the first one, and gaps."""
+    angles, places = found.unknowns[:, 3 : 3 + count], found.unknowns[:, 3 + count :]
+    gone = found.direction[:, None] * (angles - angles[:, :1]) / TURN
+    gaps = np.concatenate([np.diff(gone, axis=1), 1 - gone[:, -1:]], axis=1)
+    logs = np.log(np.maximum(gaps, LEAST_GAP))
+    return replace(found, unknowns=np.concatenate([found.unknowns[:, :4], logs, places], axis=1))
