@@ -29,6 +29,11 @@ def stop_when(asked: Callable[[], bool]) -> None:
     _ASKED.set(asked)
 
 
+def who_asks() -> Callable[[], bool]:
+    """What is asked here and now; inside `stopping`, `asked_to_stop` asks something else."""
+    return _ASKED.get()
+
+
 def asked_to_stop() -> bool:
     """Whether to be content with what there is."""
     return _ASKED.get()()

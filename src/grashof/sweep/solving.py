@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 from grashof.problems import SolverError
 from grashof.sweep.task import solve_task
 from grashof.synth.results.workers import OVER, new_state, processes
-from grashof.synth.theory.stopping import asked_to_stop
+from grashof.synth.theory.stopping import who_asks
 
 # Key, name and text of a problem.
 Task: TypeAlias = tuple[str, str, str]
@@ -98,4 +98,4 @@ def _elsewhere(
 
 
 def _solve_until_stopped(name: str, text: str, options: Mapping[str, Any]) -> dict[str, Any] | None:
-    return solve_task(name, text, options, asked_to_stop)
+    return solve_task(name, text, options, who_asks())
