@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import pickle
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import lru_cache
 from multiprocessing import connection, get_context, parent_process
 from signal import SIG_IGN, SIGINT, signal
 from threading import Thread
@@ -68,6 +70,23 @@ def screen(
     return finder_for(scaled).round(number, enough, rng, larger if effort else 1)
 
 
+@lru_cache(maxsize=8)
+def _unpacked(packed: bytes) -> ScaledProblem:
+    """The same object each time: what is known of it stays known."""
+    scaled: ScaledProblem = pickle.loads(packed)  # noqa: S301  (from the parent process, as all that it sends)
+    return scaled
+
+
+def solved_there(packed: bytes, start: Start) -> Attempt:
+    """An attempt, in a process that gets the problem in bytes."""
+    return attempt(_unpacked(packed), start, 0)
+
+
+def screened_there(packed: bytes, *which: int) -> Round | None:
+    """A round, in a process that gets the problem in bytes."""
+    return screen(_unpacked(packed), *which)
+
+
 class Here:
     """One after the other in this process, when it is wanted."""
 
@@ -100,17 +119,18 @@ class Elsewhere:
 
     def __init__(self, executor: Executor, width: int) -> None:
         self._executor, self.width = executor, width
-        # By what identifies a piece of work, which is kept so that no other one gets its identity.
+        self._last: tuple[ScaledProblem, bytes] | None = None
+        # Rounds by problem and number; attempts by the identity of the start, which is kept with them.
         self._begun: dict[tuple[Any, ...], tuple[Future[Any], Any]] = {}
 
     def attempts(self, scaled: ScaledProblem, starts: list[Start], first: int, /) -> list[Attempt]:
         """Attempts from starts; one that ends the process that makes it is given up."""
         for start in starts:
-            self._submit((id(start),), attempt, scaled, start, 0)
+            self._submit((id(start),), solved_there, self._packed(scaled), start)
         made = []
         for number, start in enumerate(starts, first):
             try:
-                one = self._result((id(start),), attempt, scaled, start, 0)
+                one = self._result((id(start),), solved_there, self._packed(scaled), start)
             except CrashError:
                 one = Attempt(CRASHED, None)
             except Stopped:
@@ -120,19 +140,27 @@ class Elsewhere:
 
     def screened(self, scaled: ScaledProblem, *which: int) -> Round | None:
         """A round."""
-        found: Round | None = self._result((id(scaled), *which), screen, scaled, *which)
+        packed = self._packed(scaled)
+        found: Round | None = self._result((packed, *which), screened_there, packed, *which)
         return found
 
     def begin_attempts(self, scaled: ScaledProblem, starts: list[Start], /) -> None:
         """Begin as many as there may soon be processes for."""
         if self.width > 1:
             for start in starts[: AHEAD * self.width]:
-                self._submit((id(start),), attempt, scaled, start, 0)
+                self._submit((id(start),), solved_there, self._packed(scaled), start)
 
     def begin_screening(self, scaled: ScaledProblem, *which: int) -> None:
         """Begin a round."""
         if self.width > 1:
-            self._submit((id(scaled), *which), screen, scaled, *which)
+            packed = self._packed(scaled)
+            self._submit((packed, *which), screened_there, packed, *which)
+
+    def _packed(self, scaled: ScaledProblem) -> bytes:
+        """The problem as one string of bytes, the same for each piece of work."""
+        if self._last is None or self._last[0] is not scaled:
+            self._last = (scaled, pickle.dumps(scaled))
+        return self._last[1]
 
     def drop(self) -> None:
         """Cancel what is not wanted any more."""
@@ -184,7 +212,7 @@ class Processes(Elsewhere):
     def __init__(self, count: int) -> None:
         self._state = new_state()
         super().__init__(processes(count, self._state), count)
-        self._warm = False
+        self._ready = self._executor.submit(abs, 0)
 
     def end(self) -> None:
         """End the processes, and what they do."""
@@ -192,13 +220,23 @@ class Processes(Elsewhere):
         self.drop()
         self._executor.shutdown(cancel_futures=True)
 
-    def _result(self, key: tuple[Any, ...], function: Callable[..., Any], *given: Any) -> Any:
-        self._submit(key, function, *given)
-        if not self._warm and self._begun[key][0].cancel():  # while the processes start, it is done here
-            del self._begun[key]
-            return function(*given)
-        self._warm = True
-        return super()._result(key, function, *given)
+    def attempts(self, scaled: ScaledProblem, starts: list[Start], first: int, /) -> list[Attempt]:
+        """Attempts from starts; here as long as the processes begin."""
+        made = list[Attempt]()
+        while len(made) < len(starts) and not self._ready.done():
+            made.append(attempt(scaled, starts[len(made)], first + len(made)))
+        return made + super().attempts(scaled, starts[len(made) :], first + len(made))
+
+    def screened(self, scaled: ScaledProblem, *which: int) -> Round | None:
+        """A round; here as long as the processes begin, unless one of them has it already."""
+        if self._ready.done() or (self._packed(scaled), *which) in self._begun:
+            return super().screened(scaled, *which)
+        return screen(scaled, *which)
+
+    def begin_attempts(self, scaled: ScaledProblem, starts: list[Start], /) -> None:
+        """Begin as many as there may soon be processes for, once they are there."""
+        if self._ready.done():
+            super().begin_attempts(scaled, starts)
 
     def _look(self) -> None:
         if asked_to_stop():
@@ -208,6 +246,7 @@ class Processes(Elsewhere):
         self.drop()
         self._executor.shutdown(cancel_futures=True)
         self._executor = processes(self.width, self._state)
+        self._ready = self._executor.submit(abs, 0)
 
 
 @contextmanager

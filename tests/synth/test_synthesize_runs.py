@@ -16,8 +16,8 @@ from grashof import synthesize
 from grashof.problems import Box, Problem, ProblemError, Search, SolverError
 from grashof.problems.values.checks import counted
 from grashof.synth import Progress, Result
-from grashof.synth.results.attempt import attempt
 from grashof.synth.results.explain import Explanation
+from grashof.synth.results.workers import solved_there
 
 pytestmark = pytest.mark.usefixtures("small_search")
 
@@ -53,7 +53,7 @@ class Inline(Executor):
         self.jobs, self.closed = 0, False
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        self.jobs += fn is attempt
+        self.jobs += fn is solved_there
         done: Future[Any] = Future()
         done.set_result(fn(*args, **kwargs))
         return done

@@ -42,7 +42,6 @@ def test_workers_change_no_byte(kind: str) -> None:
 @pytest.fixture
 def processes() -> Processes:
     made = Processes(1)
-    made._warm = True  # nothing is done here meanwhile
     yield made
     made.end()
 
