@@ -19,11 +19,9 @@ from grashof.analysis import Verdict, verify
 from grashof.problems import Box, FourBar, Problem, Requirements, Rotatability
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 
-TURN = 2 * np.pi
-STARTS = 800
-POLISHED = 40
-INSIDE = 2e-7  # so far inside its limits a design is made, sizes and rad: the judge forgives 1e-9
-NUDGE = 1e-7
+TURN, STARTS, POLISHED = 2 * np.pi, 800, 40
+# So far inside its limits a design is made, sizes and rad (the judge forgives 1e-9); step of differences.
+INSIDE, NUDGE = 2e-7, 1e-7
 STAGES = ((1.0, 0.3, 20), (0.6, 1.0, 30), (0.4, 10.0, 60))  # share kept, weight of a limit, steps
 
 

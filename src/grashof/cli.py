@@ -15,7 +15,8 @@ import typer
 from typer.core import TyperGroup
 
 from grashof import commands
-from grashof.commands import TOP, Exit, Options
+from grashof.commands import TOP, Options
+from grashof.output.ending import Exit
 from grashof.output.streams import say
 from grashof.problems import (
     ProblemError,

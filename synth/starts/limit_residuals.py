@@ -142,7 +142,7 @@ def _limit_rows(target: SearchTargets, at: Placement) -> Iterator[Dual]:
             continue
         value = np.sqrt(part.of(at)) if part.squared else part.of(at)
         if LIMITS[name].kind is Kind.EQUAL:
-            yield Dual(np.angle(np.exp(1j * (value.value - low))), lambda value=value: value.slope)
+            yield _turned(value, low)
         elif LIMITS[name].quantity.key in LOGARITHMIC:
             value = np.log(value if part.per is None else value / part.per(at))
             least = LEAST_LENGTH if part.per is None else 1.0
@@ -156,6 +156,11 @@ def _outside(row: Dual, limits: Limits) -> Dual:
     low, high = limits
     over = np.maximum(row.value - high, 0.0) - np.maximum(low - row.value, 0.0)
     return Dual(over, lambda: np.where((over != 0)[..., None], row.slope, 0.0))
+
+
+def _turned(row: Dual, angle: float) -> Dual:
+    """By how much angles differ from one, within half a turn."""
+    return Dual(np.angle(np.exp(1j * (row.value - angle))), lambda: row.slope)
 
 
 def _where(rows: BoolArray, row: Dual) -> Dual:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
+from importlib import import_module
 
 from grashof.problems import ProblemError, SolverError
 
@@ -26,11 +27,11 @@ def cluster(scheduler: str | None, workers: int) -> Iterator[tuple[Executor | No
         yield None, workers
         return
     try:
-        from distributed import Client
+        distributed = import_module("distributed")  # without types
     except ImportError:
         raise ProblemError("--scheduler needs Dask; pip install 'grashof[cluster]' installs it") from None
     try:
-        client = Client(scheduler, timeout=PATIENCE)
+        client = distributed.Client(scheduler, timeout=PATIENCE)
     except OSError:
         raise SolverError(f"--scheduler {scheduler}: no Dask scheduler answers there") from None
     except ValueError as error:
