@@ -130,11 +130,9 @@ class Programme:
         """What the solver takes for a start."""
         given = [value(scaled, start) for value in self.parameters]
         low, high = self._unknown_limits(scaled, start)
+        rows = [(count, limits(scaled, start)) for count, limits in self.rows]
         lbg, ubg = (
-            np.concatenate(
-                [np.broadcast_to(limits(scaled, start)[side], count) for count, limits in self.rows]
-            )
-            for side in (0, 1)
+            np.concatenate([np.broadcast_to(sides[side], count) for count, sides in rows]) for side in (0, 1)
         )
         guess = np.concatenate([np.ravel(each.guess(scaled, start)) for each in self.unknowns])
         return {
