@@ -145,9 +145,9 @@ class Task(ReadOnly, ABC):
         target, or one where they are timed. So up to nine points, five timed ones, five whole poses
         (Burmester), three timed ones.
         """
-        angles = np.count_nonzero(self.has_angle)
-        equations = 2 * np.count_nonzero(self.has_position) + angles
-        return equations <= 9 + (angles > 0) + (1 if self.is_timed else len(self))
+        equations = 2 * np.count_nonzero(self.has_position) + np.count_nonzero(self.has_angle)
+        unknowns = 9 + self.has_angle.any() + (1 if self.is_timed else len(self))
+        return bool(equations <= unknowns)
 
     def __len__(self) -> int:
         return len(self.positions)
