@@ -2,7 +2,7 @@
 
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.results.result import Result
-from grashof.synth.results.search import Progress
+from grashof.synth.results.run import Progress
 from grashof.synth.synthesize import synthesize
 
 __all__ = ["Candidate", "Progress", "Result", "synthesize"]

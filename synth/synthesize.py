@@ -4,26 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
-from dataclasses import replace
 from pathlib import Path
-from time import perf_counter
-from typing import Any
 
 from grashof.analysis.judge.design import Constraint, OwnObjective
 from grashof.problems import Problem, ProblemError
-from grashof.problems.values.checks import finite_number, whole_number
 from grashof.problems.values.errors import wrong_value
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.user_functions import refuse_unusable
-from grashof.synth.results.choice import choose, least_error, why_ended
-from grashof.synth.results.explain import explain
-from grashof.synth.results.families import listed
+from grashof.synth.results.asked import ending, search_of
+from grashof.synth.results.conclusion import conclude
 from grashof.synth.results.journal import journal_of
 from grashof.synth.results.result import Result
-from grashof.synth.results.search import Progress, Run, searches
-from grashof.synth.results.tally import CHOICE, DISTINCT
+from grashof.synth.results.run import Progress, Run
+from grashof.synth.results.search import searches
 from grashof.synth.results.workers import working
-from grashof.synth.starts.finder import finder_for, finder_of
+from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.stopping import stopping
 
 
@@ -92,48 +87,20 @@ def synthesize(
     >>> result.best.verdict.ok, bool(result.best.verdict.error_max < 1e-9)
     (True, True)
     """
-    if not isinstance(problem, Problem):
-        raise ProblemError(f"problem is a {type(problem).__name__}; it must be a Problem, such as load gives")
+    ended = ending(time_limit, stop)
+    search = search_of(problem, workers, starts=starts, enough=enough, seed=seed, effort=effort)
     if isinstance(constraints, str) or not isinstance(constraints, Sequence):
         raise wrong_value("constraints", constraints, "a list of functions of a design")
-    given: dict[str, Any] = {"starts": starts, "enough": enough, "seed": seed, "effort": effort}
-    search = replace(problem.search, **{name: n for name, n in given.items() if n is not None})
-    whole_number(workers, 1, "workers")
-    if time_limit is not None and finite_number(time_limit, "time_limit") <= 0:
-        raise wrong_value("time_limit", time_limit, "a time in s greater than zero")
     if record is not None and (constraints or objective is not None):
         raise ProblemError("record does not go with constraints or an objective of your own")
-    finder_of(problem).refuse()
-    begun = perf_counter()
     scaled = ScaledProblem.of(problem, constraints, objective)
     refuse_unusable(scaled, in_processes=workers > 1 or executor is not None)
     if reason := finder_for(scaled).degenerate():
-        return Result(problem, seconds={"total": perf_counter() - begun}, note=f"no design: {reason}")
-
-    def ended() -> bool:
-        out_of_time = time_limit is not None and perf_counter() - begun > time_limit
-        return out_of_time or (stop is not None and stop())
-
+        return Result(problem, note=f"no design: {reason}")
     with (
         stopping(ended),
         journal_of(record, problem, search) as journal,
         working(workers, executor) as work,
     ):
         run = Run(search, work, ended, journal, progress)
-        ledgers = searches(scaled, run)  # starts, solves, verified designs
-        chosen = choose(scaled, ledgers, run)
-        explanation = explain(scaled, ledgers[-1], chosen, run)
-        run.ended()
-    ledger, designs = ledgers[-1], listed(problem, chosen.designs or explanation.designs)
-    ledger.tally.totals.update({CHOICE: chosen.solved, DISTINCT: len(designs)})
-    return Result(
-        problem=problem,
-        candidates=designs,
-        nearest=explanation.nearest,
-        tally=ledger.tally,
-        seconds={**run.seconds, "total": perf_counter() - begun},
-        note=explanation.note,
-        complete=ledger.complete,
-        ended=why_ended(scaled, ledger),
-        least_error=least_error(scaled, ledger),
-    )
+        return conclude(scaled, searches(scaled, run), run)

@@ -36,7 +36,7 @@ NO_OBJECTIVE = (
     "objective is of no effect in least squares; it needs within (zones about the targets) or "
     "requirements.error_factor"
 )
-EFFORTS = (0.2, 100.0)
+EFFORTS = (0.2, 10_000.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ class Search:
     seed : int
         Random seed.
     effort : float
-        How long to look for better designs before giving up, 0.2 to 100: the rounds of a search with
+        How long to look for better designs before giving up, 0.2 to 10 000: the rounds of a search with
         1 come first and unchanged.
     """
 

@@ -1,4 +1,4 @@
-"""The command line: solve, sweep, check, problems, linkages, analyse, animate, export."""
+"""The command line: solve, merge, sweep, check, problems, linkages, analyse, animate, export."""
 
 from __future__ import annotations
 
@@ -80,6 +80,19 @@ LinkageArgument = Annotated[
     ),
 ]
 
+WorkersOption = Annotated[int, typer.Option(min=1, help="Processes; they change the time, not the result.")]
+
+TopOption = Annotated[
+    int | None,
+    typer.Option(
+        min=1,
+        help="Most families of like designs in the list.",
+        show_default=f"{TOP}, or search.enough if more",
+    ),
+]
+
+DrawingsOption = Annotated[int, typer.Option(min=0, help="Designs to draw.")]
+
 
 def _tell_version(wanted: bool) -> None:
     if wanted:
@@ -104,19 +117,12 @@ def solve(
     ] = None,
     starts: Annotated[int | None, typer.Option(min=1, help="Most Ipopt solves.", show_default=False)] = None,
     seed: Annotated[int | None, typer.Option(min=0, help="Random seed.", show_default=False)] = None,
-    workers: Annotated[int, typer.Option(min=1, help="Processes; they change the time, not the result.")] = 1,
+    workers: WorkersOption = 1,
     time_limit: Annotated[
         float | None, typer.Option(help="Seconds after which no new solves begin.", show_default=False)
     ] = None,
-    top: Annotated[
-        int | None,
-        typer.Option(
-            min=1,
-            help="Most families of like designs in the list.",
-            show_default=f"{TOP}, or search.enough if more",
-        ),
-    ] = None,
-    drawings: Annotated[int, typer.Option(min=0, help="Designs to draw.")] = 3,
+    top: TopOption = None,
+    drawings: DrawingsOption = 3,
     effort: Annotated[
         float | None,
         typer.Option(
@@ -132,6 +138,12 @@ def solve(
     scheduler: Annotated[
         str | None,
         typer.Option(help="Dask scheduler to work on, such as tcp://host:8786.", show_default=False),
+    ] = None,
+    shard: Annotated[
+        str | None,
+        typer.Option(
+            metavar="I/N", help="Part I of N of the whole search; grashof merge follows.", show_default=False
+        ),
     ] = None,
 ) -> None:
     """Find designs for PROBLEM; write the ranked list, a page, drawings and the record of the run.
@@ -153,7 +165,28 @@ def solve(
             resume=resume,
             scheduler=scheduler,
         )
+        if shard is not None:
+            raise typer.Exit(commands.solve_shard(loaded, text, shard, options))
         raise typer.Exit(commands.solve(loaded, text, options))
+
+
+@app.command()
+def merge(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="The --out of the shards.")],
+    partial: Annotated[
+        bool, typer.Option("--partial", help="Be content with the shards that are done.")
+    ] = False,
+    workers: WorkersOption = 1,
+    top: TopOption = None,
+    drawings: DrawingsOption = 3,
+) -> None:
+    """Make the list of a search from the shards in DIR; write it there, as solve does.
+
+    Exit code 0: at least one verified design; 1: none; 2: bad input, or shards are missing;
+    3: environment error; 130: interrupted (Ctrl-C); 143: terminated (SIGTERM).
+    """
+    with _errors_told():
+        raise typer.Exit(commands.merge(folder, partial=partial, top=top, drawings=drawings, workers=workers))
 
 
 @app.command()
@@ -162,7 +195,7 @@ def sweep(
     out: Annotated[
         Path | None, typer.Option(help="Folder for the results; NAME-sweep by default.", show_default=False)
     ] = None,
-    workers: Annotated[int, typer.Option(min=1, help="Processes; they change the time, not the result.")] = 1,
+    workers: WorkersOption = 1,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with what the folder holds.")] = False,
     top: Annotated[
         int | None, typer.Option(min=1, help="Best designs listed of each combination.", show_default=False)

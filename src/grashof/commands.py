@@ -5,11 +5,15 @@ from __future__ import annotations
 import shutil
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from grashof.output.ending import Exit, interruptible
+from grashof.output.ending import Exit, Interruption, interruptible
 from grashof.output.streams import say
-from grashof.problems import Problem, load_linkage_spec
+from grashof.problems import Problem, ProblemError, load_linkage_spec
 from grashof.problems.values.checks import counted
+
+if TYPE_CHECKING:
+    from grashof.synth import Result
 
 TOP = 50  # families in a list by default
 
@@ -59,9 +63,8 @@ def solve(problem: Problem, text: str, options: Options) -> Exit:
 
 def _solve(problem: Problem, text: str, options: Options, folder: Path) -> Exit:
     from grashof.output.cluster import cluster
-    from grashof.output.folder import PAGE, SEARCH
-    from grashof.output.run_files import write_run
-    from grashof.output.terminal import print_table, search_progress
+    from grashof.output.folder import SEARCH
+    from grashof.output.terminal import search_progress
     from grashof.synth import synthesize
     from grashof.synth.starts.finder import finder_of
     from grashof.wording.problem import ends_with_enough
@@ -87,25 +90,102 @@ def _solve(problem: Problem, text: str, options: Options, folder: Path) -> Exit:
                 stop=interrupted,
                 record=folder / SEARCH,
             )
-        if found.ended:
-            say(found.ended, err=True)
         if (folder / SEARCH).exists():
             say(f"{folder / SEARCH}: the search so far; --resume goes on with it", err=True)
-        result = found.top(top)
-        if result.candidates or result.complete:  # an interrupted search with nothing replaces nothing
-            run = {"workers": options.workers, "time_limit": options.time_limit, "top": top}
-            settings = {**asdict(search), **run}
-            files = write_run(folder, result, settings, options.drawings, stop=interrupted, problem_text=text)
-            _report(result.note, files, folder)
-        else:
-            say(result.note, err=True)
-        if result.candidates:
-            print_table(result, len(found))
-        if result.candidates or result.complete:
-            _point_to(folder / PAGE)
+        run = {"workers": options.workers, "time_limit": options.time_limit, "top": top}
+        settings = {**asdict(search), **run}
+        return _deliver(found, text, settings, folder, options.drawings, interrupted)
+
+
+def _deliver(
+    found: Result,
+    text: str,
+    settings: dict[str, Any],
+    folder: Path,
+    drawings: int,
+    interrupted: Interruption,
+) -> Exit:
+    """Write what a search found, and print the list."""
+    from grashof.output.folder import PAGE
+    from grashof.output.run_files import write_run
+    from grashof.output.terminal import print_table
+
+    if found.ended:
+        say(found.ended, err=True)
+    result = found.top(settings["top"])
+    if result.candidates or result.complete:  # an interrupted search with nothing replaces nothing
+        files = write_run(folder, result, settings, drawings, stop=interrupted, problem_text=text)
+        _report(result.note, files, folder)
+    else:
+        say(result.note, err=True)
+    if result.candidates:
+        print_table(result, len(found))
+    if result.candidates or result.complete:
+        _point_to(folder / PAGE)
     if interrupted():
         return interrupted.code
     return Exit.OK if result.candidates else Exit.NO_DESIGN
+
+
+def solve_shard(problem: Problem, text: str, stated: str, options: Options) -> Exit:
+    """Make a shard of a search, such as 7/200; what its folder has of it is not done again."""
+    from grashof.output.cluster import cluster
+    from grashof.output.folder import check_writable, in_use
+    from grashof.output.terminal import search_progress
+    from grashof.synth.shards import SHARDS, Shard, solve_shard
+
+    if options.top is not None:
+        raise ProblemError("--top does not go with --shard; it is for grashof merge")
+    shard = Shard.stated(stated)
+    folder = options.out if options.out is not None else Path(f"{problem.name}-designs")
+    check_writable(folder)
+    with (
+        in_use(folder / SHARDS / shard.folder),
+        interruptible() as interrupted,
+        cluster(options.scheduler, options.workers) as (executor, workers),
+        search_progress(problem.name, f"shard {shard}", wanted=False) as progress,
+    ):
+        made = solve_shard(
+            problem,
+            shard,
+            folder,
+            text=text,
+            starts=options.starts,
+            seed=options.seed,
+            effort=options.effort,
+            workers=workers,
+            executor=executor,
+            time_limit=options.time_limit,
+            progress=progress,
+            stop=interrupted,
+        )
+    counts = f"{counted(made.solved, 'solve')}, {counted(made.designs, 'verified design')}"
+    next_step = f"grashof merge {folder} makes the list" if made.whole else "the same command goes on with it"
+    say(f"shard {shard}: {made.chunks} of {counted(made.of, 'chunk')}, {counts}; {next_step}", err=True)
+    if interrupted():
+        return interrupted.code
+    return Exit.OK if made.whole else Exit.NO_DESIGN
+
+
+def merge(folder: Path, *, partial: bool, top: int | None, drawings: int, workers: int) -> Exit:
+    """Make the list of a search from its shards, and write it into the same folder."""
+    from grashof.output.folder import check_writable, in_use
+    from grashof.output.terminal import search_progress
+    from grashof.synth.merging import Shards, merge_shards
+
+    shards = Shards.found(folder)
+    check_writable(folder, drawings)
+    with in_use(folder), interruptible() as interrupted:
+        with search_progress(shards.problem.name, "merging", wanted=False) as progress:
+            found = merge_shards(
+                folder, partial=partial, workers=workers, progress=progress, stop=interrupted
+            )
+        if shards.lacking:
+            say(f"{folder}: without {shards.lacking}", err=True)
+        most = top or max(TOP, shards.search.enough)
+        settings = {**asdict(shards.search), "workers": workers, "top": most, "shards": shards.of}
+        settings["without"] = shards.lacking
+        return _deliver(found, shards.text, settings, folder, drawings, interrupted)
 
 
 def _begin_record(folder: Path, *, resume: bool) -> None:

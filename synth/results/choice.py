@@ -15,7 +15,8 @@ from grashof.synth.results.judging import judged_again
 from grashof.synth.results.larger_zones import shares
 from grashof.synth.results.ledger import EXACT_ERROR, Ledger
 from grashof.synth.results.ranking import ranked
-from grashof.synth.results.search import Run, error_of_use
+from grashof.synth.results.run import Run
+from grashof.synth.results.search import error_of_use
 from grashof.synth.results.trade_offs import Chosen, seeds_of, started_at, trade_offs
 
 NEAR = 1.6  # times the error that is allowed: least-squares designs up to there are begun from

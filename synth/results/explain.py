@@ -17,7 +17,8 @@ from grashof.synth.results.judging import judged_again
 from grashof.synth.results.larger_zones import up, wider
 from grashof.synth.results.ledger import Ledger
 from grashof.synth.results.relaxations import relaxations
-from grashof.synth.results.search import Run, search_designs
+from grashof.synth.results.run import Run
+from grashof.synth.results.search import search_designs
 from grashof.synth.results.trade_offs import Chosen
 from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.stopping import Stopped

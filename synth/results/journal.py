@@ -4,25 +4,23 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
-import tempfile
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
-from importlib.metadata import version
 from pathlib import Path
 from time import monotonic
 from typing import Any, Protocol, TypeVar
 
 from grashof.problems import Problem, ProblemError, Search
+from grashof.problems.files.on_disk import WRITING, versions, write_whole
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.synth.results.plain import plain, restored
 
-FORMAT = 1
+FORMAT = 2
 HEAD = "search.json"
+WHOLE = "whole"  # in the head: nothing is left to be done
 EVERY = 2.0  # s of work that a file holds
-PACKAGES = ("grashof", "casadi", "numpy", "scipy")  # whose versions may change a digit
 
 T = TypeVar("T")
 
@@ -78,9 +76,8 @@ class Recorded:
     ----------
     folder : Path
         Goes on from the record in it, if there is one; made with the first file.
-    problem : Problem
-    search : Search
-        The options that change designs.
+    head : mapping
+        Of which search (see `head_of`).
 
     Raises
     ------
@@ -88,9 +85,9 @@ class Recorded:
         The record is of another search, or of another version of a package.
     """
 
-    def __init__(self, folder: Path, problem: Problem, search: Search) -> None:
-        self._folder, self._head = folder, _head(problem, search)
-        self._recorded: deque[dict[str, Any]] = deque()
+    def __init__(self, folder: Path, head: Mapping[str, Any]) -> None:
+        self._folder, self._head = folder, head
+        self._recorded, self._taken = deque[dict[str, Any]](), list[dict[str, Any]]()  # of one file
         self._unread, self._fresh = deque[Path](), list[dict[str, Any]]()
         self._written, self._since, self._open = 0, monotonic(), True
         if (folder / HEAD).exists():
@@ -101,7 +98,7 @@ class Recorded:
         """The result of the next step: as recorded, else done now and recorded."""
         if not self._open:
             return do()
-        name = f"{kind} {hashlib.sha256(json.dumps(plain(of)).encode()).hexdigest()[:16]}"
+        name = step_name(kind, of)
         found = self._next(name, problem)
         if found is not None:
             known: T = found[0]
@@ -130,10 +127,21 @@ class Recorded:
         """Whether steps are recorded: the search was not stopped."""
         return self._open
 
+    def begin(self) -> None:
+        """Write the head, of a search that is not whole."""
+        self._folder.mkdir(parents=True, exist_ok=True)
+        write_whole(self._folder / HEAD, self._head)
+
+    def finish(self) -> None:
+        """State in the head that the search is whole, and keep the record; nothing more is recorded."""
+        self.close()
+        write_whole(self._folder / HEAD, {**self._head, WHOLE: True})
+
     def remove(self) -> None:
         """Delete the record, and its folder if nothing else is in it; nothing more is recorded."""
         self._open = False
-        for path in (*self._folder.glob("[0-9]*.json"), self._folder / HEAD):
+        every = (*self._folder.glob("[0-9]*.json"), *self._folder.glob(f"{WRITING}*"))
+        for path in (*every, self._folder / HEAD):
             path.unlink(missing_ok=True)
         with suppress(OSError):
             self._folder.rmdir()
@@ -142,13 +150,15 @@ class Recorded:
         while not self._recorded and self._unread:
             path = self._unread.popleft()
             self._recorded.extend(_steps(path))
-            self._written = int(path.stem)
+            self._taken, self._written = [], int(path.stem)
         if not self._recorded:
             return None
         step = self._recorded.popleft()
         try:
             if step["step"] == name:
-                return (restored(step["result"], problem),)
+                found = restored(step["result"], problem)
+                self._taken.append(step)
+                return (found,)
         except (ValueError, KeyError, TypeError):  # what is damaged is done again
             pass
         self._forget()
@@ -157,16 +167,22 @@ class Recorded:
     def _forget(self) -> None:
         """Drop the rest of the record: it is not that of this search any more."""
         self._recorded.clear()
-        for path in self._unread:
+        self._fresh = self._taken
+        for path in (self._path, *self._unread):
             path.unlink(missing_ok=True)
         self._unread.clear()
+        self._written -= 1
+
+    @property
+    def _path(self) -> Path:
+        """The last file that was written or read."""
+        return self._folder / f"{self._written:06}.json"
 
     def _write(self) -> None:
-        self._folder.mkdir(exist_ok=True)
         if not (self._folder / HEAD).exists():
-            _write_whole(self._folder / HEAD, self._head)
+            self.begin()
         self._written += 1
-        _write_whole(self._folder / f"{self._written:06}.json", {"steps": self._fresh})
+        write_whole(self._path, content_of(self._fresh))
         self._fresh, self._since = [], monotonic()
 
 
@@ -179,7 +195,7 @@ def journal_of(folder: Path | None, problem: Problem, search: Search) -> Iterato
     if folder is None:
         yield Unrecorded()
         return
-    journal = Recorded(folder, problem, search)
+    journal = Recorded(folder, head_of(problem, search))
     try:
         yield journal
         if journal.is_open:
@@ -188,47 +204,69 @@ def journal_of(folder: Path | None, problem: Problem, search: Search) -> Iterato
         journal.close()
 
 
-def refuse_other(folder: Path, head: Mapping[str, Any]) -> None:
-    """Raise `ProblemError` unless a record is of the search that a head states."""
-    try:
-        found = json.loads((folder / HEAD).read_text(encoding="utf-8"))
-        known = {key: found[key] for key in head}
-    except (OSError, ValueError, KeyError, TypeError, RecursionError):
-        raise ProblemError(f"{folder / HEAD}: is not the record of a search; delete {folder}") from None
-    if known["problem"] != head["problem"]:
-        raise ProblemError(f"{folder}: is the record of a search for another problem; name another folder")
-    for key, value in head.items():
-        if known[key] != value:
-            there = f"{folder}: is the record of a search with {key} {known[key]}"
-            raise ProblemError(f"{there}; here it is {value}")
-
-
-def _head(problem: Problem, search: Search) -> dict[str, Any]:
+def head_of(problem: Problem, search: Search, **more: Any) -> dict[str, Any]:
     """What a record is of: the same head, the same search."""
     stated = problem_toml(problem).partition("\n[search]")[0]
     return {
         "format": FORMAT,
         "problem": hashlib.sha256(stated.encode()).hexdigest(),
         **asdict(search),
-        **{f"{name} version": version(name) for name in PACKAGES},
+        **more,
+        **{f"{name} version": number for name, number in versions().items()},
     }
 
 
-def _steps(path: Path) -> list[dict[str, Any]]:
-    """Steps of a file; none where it is damaged."""
+def read_head(folder: Path) -> dict[str, Any]:
+    """The head of a record.
+
+    Raises
+    ------
+    ProblemError
+        There is none.
+    """
     try:
-        steps = json.loads(path.read_text(encoding="utf-8"))["steps"]
-    except (OSError, ValueError, KeyError, TypeError, RecursionError):
-        return [{"step": "damaged"}]
-    return steps if isinstance(steps, list) else [{"step": "damaged"}]
+        found = json.loads((folder / HEAD).read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        found = None
+    if not isinstance(found, dict):
+        raise ProblemError(f"{folder / HEAD}: is not the record of a search; delete {folder}")
+    return found
 
 
-def _write_whole(path: Path, content: Mapping[str, Any]) -> None:
-    """A JSON file that is there whole or not at all, whenever the machine stops."""
-    with tempfile.NamedTemporaryFile(
-        "w", encoding="utf-8", dir=path.parent, prefix=".writing-", delete=False
-    ) as file:
-        json.dump(content, file)
-        file.flush()
-        os.fsync(file.fileno())
-    Path(file.name).replace(path)
+def refuse_other(folder: Path, head: Mapping[str, Any]) -> None:
+    """Raise `ProblemError` unless a record is of the search that a head states."""
+    found = read_head(folder)
+    if not head.keys() <= found.keys():
+        raise ProblemError(f"{folder / HEAD}: is not the record of a search; delete {folder}")
+    if found["problem"] != head["problem"]:
+        raise ProblemError(f"{folder}: is the record of a search for another problem; name another folder")
+    for key, value in head.items():
+        if found[key] != value:
+            there = f"{folder}: is the record of a search with {key} {found[key]}"
+            raise ProblemError(f"{there}; here it is {value}")
+
+
+def step_name(kind: str, of: Any) -> str:
+    """Name of a step of a kind, by what it is done with (see `plain`)."""
+    return f"{kind} {hashlib.sha256(json.dumps(plain(of)).encode()).hexdigest()[:16]}"
+
+
+def recorded_steps(folder: Path) -> Iterator[dict[str, Any]]:
+    """Steps of a record, in their order; one that has no name where a file is damaged."""
+    for path in sorted(folder.glob("[0-9]*.json")):
+        yield from _steps(path)
+
+
+def content_of(steps: list[dict[str, Any]]) -> dict[str, Any]:
+    """What a file of a record holds: steps, and a sum by which damage is noticed."""
+    return {"sha256": hashlib.sha256(json.dumps(steps).encode()).hexdigest(), "steps": steps}
+
+
+def _steps(path: Path) -> list[dict[str, Any]]:
+    """Steps of a file; one that has no name where it is damaged."""
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return [{}]
+    steps = content.get("steps") if isinstance(content, dict) else None
+    return steps if isinstance(steps, list) and content == content_of(steps) else [{}]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from bisect import insort
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
 from math import ceil
 
 import numpy as np
@@ -25,6 +27,30 @@ SAME = 1e-3  # share: errors closer to the best one are the best one
 COPY = 0.1  # of the promise: starts closer at all targets end alike
 COPY_FLOOR = 1e-3  # sizes: where limits bind, closer than that at least
 EXACT_ERROR = 1e-7  # sizes: no error to speak of
+# Designs that a search remembers, or twice as many as are enough, and misses of each kind.
+MOST_KEPT, OF_KIND = 2000, 8
+
+
+@dataclass(frozen=True, slots=True)
+class Chunk:
+    """What came of one round, for a ledger that saw nothing else of it.
+
+    Parameters
+    ----------
+    tally : Tally
+    designs : tuple of Candidate
+        Verified; of those that are not distinct the best.
+    misses : tuple of Attempt
+        Rejected; the nearest of each kind.
+    solved, size : int
+        Solves, and the work of the round, in usual rounds.
+    """
+
+    tally: Tally
+    designs: tuple[Candidate, ...]
+    misses: tuple[Attempt, ...]
+    solved: int
+    size: int
 
 
 @dataclass(slots=True)
@@ -37,11 +63,14 @@ class Ledger:
     search : Search
     exhausted : str
         Why a search ends that has gone through all its rounds.
+    known : float, sizes
+        Least error of what others have found.
     """
 
     scaled: ScaledProblem
     search: Search
     exhausted: str
+    known: float = np.inf
     verified: list[Candidate] = field(default_factory=list)
     rejected: list[Attempt] = field(default_factory=list)
     best: tuple[Candidate, ...] = ()
@@ -95,11 +124,40 @@ class Ledger:
                 self.rejected.append(one)
 
     def rank(self) -> None:
-        """Rank what is verified and distinct."""
+        """Rank what is verified and distinct, and forget what is of no use."""
         self._leaders.add(self.verified[len(self._leaders) :])
         before, self.best = len(self.best), self._leaders.distinct
         if len(self.best) > before:
             self._stale = 0
+        self._forget()
+
+    def absorb(self, one: Chunk) -> None:
+        """Take in the next chunk."""
+        self.tally.update(one.tally)
+        problem = self.scaled.problem
+        designs = [replace(each, problem=problem, start=self.solved + each.start) for each in one.designs]
+        self.verified += designs
+        self.rejected += one.misses
+        self.solved += one.solved
+        self.work += one.size
+        if one.size:
+            self._errors.append(min((each.error(problem) for each in designs), default=np.inf))
+        self.rank()
+
+    @property
+    def chunk(self) -> Chunk:
+        """All of it as a chunk."""
+        return Chunk(self.tally, self.best, nearest_of_kinds(self.rejected), self.solved, self.work)
+
+    def _forget(self) -> None:
+        """Keep memory bounded: of very many designs and misses the best stay."""
+        most = max(MOST_KEPT, 2 * self.search.enough)
+        if len(self.rejected) > 2 * most:
+            self.rejected = list(nearest_of_kinds(self.rejected))
+        if len(self.verified) > 2 * most:
+            self.verified = list(self.best[:most])
+            self._leaders = Leaders(self.scaled.problem)
+            self._leaders.add(self.verified)
 
     def plan_more(self) -> None:
         """End the rounds of ``effort = 1``; what is left of a greater effort follows."""
@@ -114,7 +172,7 @@ class Ledger:
     @property
     def least(self) -> float:
         """Least error of all verified designs, sizes."""
-        return min(self._errors, default=np.inf)
+        return min([self.known, *self._errors])
 
     @property
     def within_round(self) -> bool:
@@ -180,6 +238,19 @@ class Ledger:
         return any(
             other.shape == marks.shape and float(np.abs(other - marks).max()) < near for other in self._begun
         )
+
+
+def nearest_of_kinds(attempts: Iterable[Attempt]) -> tuple[Attempt, ...]:
+    """Of rejected designs that miss the same requirements the few nearest, in their order."""
+    kinds: dict[frozenset[str], list[tuple[float, int, Attempt]]] = {}
+    for number, one in enumerate(attempts):
+        if one.candidate is not None:
+            defects = one.candidate.verdict.defects
+            kind = kinds.setdefault(frozenset(each.requirement for each in defects), [])
+            insort(kind, (sum(each.miss for each in defects), number, one))
+            del kind[OF_KIND:]
+    kept = sorted((number, one) for kind in kinds.values() for _, number, one in kind)
+    return tuple(one for _, one in kept)
 
 
 def _marks(made: Round, start: Start) -> ComplexArray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
@@ -14,14 +15,17 @@ from grashof.analysis.four_bar.mobility import GrashofClass
 from grashof.analysis.judge.verdict import Defect
 from grashof.problems import FourBar, Objective, Problem
 from grashof.synth.programme.start import Round, Start
-from grashof.synth.results.attempt import Attempt
+from grashof.synth.results.attempt import Attempt, Outcome
 from grashof.synth.results.candidate import Candidate
+from grashof.synth.results.ledger import Chunk
+from grashof.synth.results.tally import Tally
 
 # What may be written and read: values alone, so that a file is data.
 KINDS: dict[str, Any] = {
-    kind.__name__: kind for kind in (Attempt, Candidate, Defect, FourBar, Objective, Round, Start, Verdict)
+    kind.__name__: kind
+    for kind in (Attempt, Candidate, Chunk, Defect, FourBar, Objective, Round, Start, Tally, Verdict)
 }
-WORDS: dict[str, Any] = {"GrashofClass": GrashofClass}
+WORDS: dict[str, Any] = {"GrashofClass": GrashofClass, "Outcome": Outcome}
 _LEFT_OUT = {"Candidate": {"problem", "values"}}  # known, or measured again
 
 
@@ -49,6 +53,8 @@ def plain(value: Any) -> Any:
         return [plain(each) for each in value]
     if isinstance(value, list):
         return {"list": [plain(each) for each in value]}
+    if isinstance(value, Counter):
+        return {"counter": [[plain(key), number] for key, number in value.items()]}
     if isinstance(value, Mapping):
         return {"map": [[plain(key), plain(each)] for key, each in value.items()]}
     if is_dataclass(value) and type(value).__name__ in KINDS:
@@ -85,6 +91,8 @@ def restored(value: Any, problem: Problem) -> Any:
         return array[()] if name == "scalar" else array
     if name == "list":
         return [restored(each, problem) for each in content]
+    if name == "counter":
+        return Counter({restored(key, problem): number for key, number in content})
     if name == "map":
         return {restored(key, problem): restored(each, problem) for key, each in content}
     if name == "word":

@@ -27,7 +27,7 @@ from grashof.synth.results.relaxed_limits import (
     relaxation,
     with_rounded_angle,
 )
-from grashof.synth.results.search import Run
+from grashof.synth.results.run import Run
 from grashof.synth.starts.finder import finder_for
 from grashof.synth.starts.selection import closest_starts
 

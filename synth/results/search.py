@@ -1,201 +1,108 @@
-"""One search: rounds of starts, solved batch by batch until the ledger has enough."""
+"""One search: rounds of starts, solved until the ledger has enough, then what more effort adds, in chunks."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
-from itertools import count
-from time import perf_counter
-from typing import TypeVar
+from math import ceil
 
 import numpy as np
 
-from grashof.problems import Problem, Search
 from grashof.synth.programme.nonlinear_programme import MOST_ITERATIONS
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Round, Start
-from grashof.synth.programme.user_functions import mended
-from grashof.synth.results.attempt import Attempt
-from grashof.synth.results.journal import Journal, Unrecorded
+from grashof.synth.results.chunks import chunks
 from grashof.synth.results.ledger import SAME, Ledger
-from grashof.synth.results.workers import Work
+from grashof.synth.results.rounds import solve, solve_round
+from grashof.synth.results.run import Run
+from grashof.synth.results.workers import LARGER
 from grashof.synth.starts.finder import Finder, asked_first, finder_for, rounds
 from grashof.synth.theory.stopping import Stopped
 
-# Solves between two looks at what is verified, fixed, so that workers change nothing: of exact designs,
-# and of least squares, where every look may spare solves.
-BATCH, BATCH_LEAST_SQUARES = 16, 8
-EXPECTED = 3  # rounds that most searches take: so many are begun ahead
-LAST = 8  # solves at most of a search that is stopped before it has a design
-T = TypeVar("T")
-LARGER = 2  # times the draws and starts of a usual round: rounds that more effort adds
 FEW = 8  # exact designs: with fewer, zones are filled from those of least squares, too
 CONTINUED = 3  # times at most that the solve of the least error goes on
-
-
-@dataclass(frozen=True, slots=True)
-class Progress:
-    """How far a search is.
-
-    Parameters
-    ----------
-    solved, starts : int
-        Solves done, and most that there can be.
-    verified, enough : int
-        Distinct verified designs, and how many are enough.
-    """
-
-    solved: int
-    starts: int
-    verified: int
-    enough: int
-
-
-@dataclass(frozen=True, slots=True)
-class Run:
-    """How a search is run.
-
-    Parameters
-    ----------
-    search : Search
-    work : Work
-        Where screenings and attempts are made.
-    asked_to_stop : callable
-        Asked between solves: to be content with what there is.
-    journal : Journal
-    progress : callable, optional
-        Called with a `Progress` after every batch.
-    seconds : dict
-        Time by stage.
-    """
-
-    search: Search
-    work: Work
-    asked_to_stop: Callable[[], bool]
-    journal: Journal = field(default_factory=Unrecorded)
-    progress: Callable[[Progress], object] | None = None
-    seconds: dict[str, float] = field(default_factory=lambda: {"screening": 0.0, "solving": 0.0})
-
-    def ended(self) -> bool:
-        """Whether to be content with what there is; nothing is recorded any more then."""
-        if not self.asked_to_stop():
-            return False
-        self.journal.close()
-        return True
-
-    def whole(self, result: T) -> T:
-        """A result, which is recorded only if it was not cut short."""
-        self.ended()
-        return result
-
-    def solve(self, scaled: ScaledProblem, starts: list[Start], first: int) -> list[Attempt]:
-        """Attempts from starts, numbered from a first one, in their order."""
-        if not starts:
-            return []
-        step = ("solve", (first, *starts), scaled.problem)
-        return self.journal.done(*step, lambda: self.whole(self.work.attempts(scaled, starts, first)))
-
-    def screened(self, scaled: ScaledProblem, effort: int, number: int) -> Round | None:
-        """One round of a search; those that more effort adds are larger."""
-        which = (effort, number, self.search.enough, self.search.seed, LARGER)
-        if not self.journal.recorded:
-            for later in range(number + 1, min(number + self.work.width, EXPECTED)):
-                self.work.begin_screening(scaled, effort, later, *which[2:])
-        return self.journal.done(
-            "screen", which, scaled.problem, lambda: self.whole(self.work.screened(scaled, *which))
-        )
-
-    def begin(self, scaled: ScaledProblem, starts: list[Start]) -> None:
-        """Begin solves that may be wanted, where that costs no time."""
-        if not self.journal.recorded:
-            self.work.begin_attempts(scaled, starts)
-
-    @contextmanager
-    def timed(self, stage: str) -> Iterator[None]:
-        """Add the time of what is inside to a stage."""
-        since = perf_counter()
-        try:
-            yield
-        finally:
-            self.seconds[stage] = self.seconds.get(stage, 0.0) + perf_counter() - since
 
 
 def searches(scaled: ScaledProblem, run: Run) -> list[Ledger]:
     """The search as it is asked; where targets may be missed, one or two without.
 
-    First with all of them met, where that can be expected; then by least squares, where few do. Two
-    poses leave least squares nothing to make small.
+    First with all of them met, where that can be expected; then by least squares, where few do.
     """
+    first, *second = asked_in_turn(scaled)
+    ledger = search_designs(first, run)
+    if second and ledger.complete and found_few(ledger):
+        return [ledger, search_designs(second[0], run)]
+    return [ledger]
 
-    def search(problem: Problem) -> Ledger:
-        asked = scaled.of_problem(problem)
-        return search_designs(replace(asked, of_use=error_of_use(scaled)), run)
 
-    first = search(asked_first(scaled.problem))
-    met_by_few = first.scaled.exact and len(first.best) < FEW
-    if scaled.bounded and met_by_few and first.complete and len(scaled.targets) > 2:
-        return [first, search(scaled.problem.without_zones())]
-    return [first]
+def asked_in_turn(scaled: ScaledProblem) -> tuple[ScaledProblem, ...]:
+    """The problem as it is searched: as it is, or without zones, and then, perhaps, by least squares.
+
+    Two poses leave least squares nothing to make small.
+    """
+    problems = [asked_first(scaled.problem)]
+    first = scaled.of_problem(problems[0])
+    if scaled.bounded and first.exact and len(scaled.targets) > 2:
+        problems.append(scaled.problem.without_zones())
+    return tuple(replace(scaled.of_problem(each), of_use=error_of_use(scaled)) for each in problems)
+
+
+def found_few(ledger: Ledger) -> bool:
+    """Whether exact designs are so few that least squares is tried, too, where it may be."""
+    return len(ledger.best) < FEW
 
 
 def search_designs(scaled: ScaledProblem, run: Run) -> Ledger:
     """Find starts, solve from them, and keep what is verified, round by round until there is enough."""
     finder = finder_for(scaled)
     ledger = Ledger(scaled, run.search, finder.exhausted)
-    for found in _rounds(finder, ledger, run):
+    for found in rounds(finder, partial(_timed_round, ledger, run)):
         with run.timed("solving"):
-            _solve_round(found, ledger, run)
+            solve_round(found, ledger, run)
         if run.ended():
-            ledger.complete = ledger.done or ledger.ended
+            ledger.complete = ledger.ended
             break
-    if not scaled.exact:
+        if ledger.ended:
+            break
+    if ledger.complete and not run.ended():
+        _do_more(finder, ledger, run)
+    return finished(ledger, run)
+
+
+def finished(ledger: Ledger, run: Run) -> Ledger:
+    """A ledger of all that was searched, the best of least squares gone on with."""
+    if not ledger.scaled.exact:
         _continue_best(ledger, run)
     return ledger
 
 
-def _rounds(finder: Finder, ledger: Ledger, run: Run) -> Iterator[Round]:
-    """Rounds until what the effort asks for is done: those of ``effort = 1`` first, then larger ones."""
-    for effort in count():
-        any_starts = False
-        for found in rounds(finder, partial(_timed_round, ledger, run, effort)):
-            any_starts = any_starts or bool(found.starts)
-            yield found
-            if ledger.done or (not effort and ledger.ended):
-                break
-        if not effort:
-            ledger.plan_more()
-        if ledger.done or not any_starts:
-            return
+def _do_more(finder: Finder, ledger: Ledger, run: Run) -> None:
+    """Do what more effort asks for: the same work so many times again, in chunks."""
+    more = run.search.effort - 1
+    size = 1 if ledger.scaled.exact else LARGER
+    count = ceil(more * ledger.work / size) if more > 0 and ledger.solved else 0
+    ledger.plan_more()
+    if not count:
+        return
+    starts = max(1, round(more * run.search.starts / count))
+    numbers = range(finder.rounds_a_pass, finder.rounds_a_pass + count)
+    with run.timed("more effort"):
+        try:
+            for one in chunks(ledger.scaled, run, numbers, starts, ledger.least):
+                ledger.absorb(one)
+                run.tell(ledger)
+        except Stopped:
+            pass  # what the usual effort asks for is done
 
 
-def _timed_round(ledger: Ledger, run: Run, effort: int, number: int) -> Round | None:
+def _timed_round(ledger: Ledger, run: Run, number: int) -> Round | None:
     """One round; none where it was stopped before it had any start."""
     with run.timed("screening"):
         try:
-            return run.screened(ledger.scaled, effort, number)
+            return run.screened(ledger.scaled, number)
         except Stopped:
             ledger.complete = False
             return None
-
-
-def _solve_round(found: Round, ledger: Ledger, run: Run) -> None:
-    """Solve starts batch by batch until enough is found or the search is ended."""
-    ledger.begin(found)
-    scaled, enough = ledger.scaled, run.search.enough
-    starts = mended(scaled, found.starts)
-    batch = min(BATCH, enough) if scaled.exact else BATCH_LEAST_SQUARES
-    for begin in range(0, len(starts), batch):
-        ended = run.ended()
-        if not ledger.within_round or (ended and (ledger.best or begin)):
-            return
-        some = ledger.worthwhile(found, starts[begin : begin + (LAST if ended else batch)], first=begin == 0)
-        run.begin(scaled, some + ledger.promising(found, starts[begin + batch :]))
-        if some:
-            _solve(some[: ledger.starts - ledger.solved], ledger, run)
-        if run.progress is not None:
-            run.progress(Progress(ledger.solved, ledger.starts, len(ledger.best), enough))
 
 
 def _continue_best(ledger: Ledger, run: Run) -> None:
@@ -206,15 +113,9 @@ def _continue_best(ledger: Ledger, run: Run) -> None:
         if best is None or best.iterations < MOST_ITERATIONS or run.ended():
             return
         before = ledger.least
-        _solve([Start.of_linkage(scaled, best.linkage, best.verdict)], ledger, run)
+        solve([Start.of_linkage(scaled, best.linkage, best.verdict)], ledger, run)
         if ledger.least > before * (1 - SAME):
             return
-
-
-def _solve(starts: list[Start], ledger: Ledger, run: Run) -> None:
-    """Solve and verify, then rank what is verified."""
-    ledger.take(run.solve(ledger.scaled, starts, ledger.solved))
-    ledger.rank()
 
 
 def error_of_use(scaled: ScaledProblem) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 from grashof.synth.results.attempt import Attempt, Outcome
 
@@ -44,6 +44,11 @@ class Tally:
                 self.totals[COGNATES] += len(one.cognates)
             elif one.candidate is not None:
                 self.rejected[one.candidate.verdict.defects[0].requirement] += 1
+
+    def update(self, other: Tally) -> None:
+        """Add the counts of another part of the search."""
+        for mine in fields(self):
+            getattr(self, mine.name).update(getattr(other, mine.name))
 
     @property
     def general(self) -> dict[str, int]:

@@ -15,7 +15,7 @@ from grashof.synth.results.attempt import Attempt
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.results.ledger import Ledger
 from grashof.synth.results.ranking import distinct, pareto_optimal, ranked
-from grashof.synth.results.search import Run
+from grashof.synth.results.run import Run
 from grashof.synth.results.stand_in import StandIn, on_all_targets
 
 FACTORS = (1.02, 1.2, 1.5, 2.0)  # times the least error: so much is offered for other virtues

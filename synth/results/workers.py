@@ -12,7 +12,7 @@ from functools import lru_cache
 from multiprocessing import connection, get_context, parent_process
 from signal import SIG_IGN, SIGINT, signal
 from threading import Thread
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -24,11 +24,16 @@ from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.stopping import Stopped, asked_to_stop, stop_when
 
 AHEAD = 4  # solves begun for each process before it is known that they are wanted
+LARGER = 2  # times the draws and starts of a usual round: rounds that more effort adds
 LOOK = 0.1  # s between two looks whether to stop
 # Status of a start that ends the process that solves it, and of one that was not waited for.
 CRASHED, STOPPED = "Crashed", "Stopped"
 
 STOP, OVER = 1, 2  # what the processes are told: to be content with what there is, and to end
+
+T = TypeVar("T")
+# Makes something of the problem and some numbers: what, depends on nothing else.
+Make: TypeAlias = Callable[..., T]
 
 
 class Work(Protocol):
@@ -41,33 +46,29 @@ class Work(Protocol):
     def attempts(self, scaled: ScaledProblem, starts: list[Start], first: int, /) -> list[Attempt]:
         """Attempts from starts, numbered from a first one, in their order."""
 
-    def screened(self, scaled: ScaledProblem, *which: int) -> Round | None:
-        """A round, as `screen` makes it."""
+    def made(self, make: Make[T], scaled: ScaledProblem, /, *which: float) -> T:
+        """What a function of a module makes of the problem and some numbers, such as a round."""
 
     def begin_attempts(self, scaled: ScaledProblem, starts: list[Start], /) -> None:
         """Begin attempts that may be wanted."""
 
-    def begin_screening(self, scaled: ScaledProblem, *which: int) -> None:
-        """Begin a round that may be wanted."""
+    def begin(self, make: Make[Any], scaled: ScaledProblem, /, *which: float) -> bool:
+        """Begin what may be wanted by `made`; whether it is begun only now."""
 
 
-def screen(
-    scaled: ScaledProblem, effort: int, number: int, enough: int, seed: int, larger: int
-) -> Round | None:
+def screen(scaled: ScaledProblem, effort: int, number: int, enough: int, seed: int) -> Round | None:
     """One round of the search for starts; it depends on no other one.
 
     Parameters
     ----------
     scaled : ScaledProblem
     effort, number : int
-        Which one: of the usual rounds (0), or of those that a greater effort adds.
+        Which one: of the usual rounds (0), or of those that a greater effort adds, which are larger.
     enough, seed : int
-    larger : int
-        Times the draws and starts of a usual round, of those that more effort adds.
     """
     key = (effort, number) if effort or number else ()
     rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=key))
-    return finder_for(scaled).round(number, enough, rng, larger if effort else 1)
+    return finder_for(scaled).round(number, enough, rng, LARGER if effort else 1)
 
 
 @lru_cache(maxsize=8)
@@ -82,9 +83,9 @@ def solved_there(packed: bytes, start: Start) -> Attempt:
     return attempt(_unpacked(packed), start, 0)
 
 
-def screened_there(packed: bytes, *which: int) -> Round | None:
-    """A round, in a process that gets the problem in bytes."""
-    return screen(_unpacked(packed), *which)
+def made_there(make: Make[T], packed: bytes, *which: float) -> T:
+    """What `Work.made` gives, in a process that gets the problem in bytes."""
+    return make(_unpacked(packed), *which)
 
 
 class Here:
@@ -96,15 +97,16 @@ class Here:
         """Attempts from starts."""
         return [attempt(scaled, start, number) for number, start in enumerate(starts, first)]
 
-    def screened(self, scaled: ScaledProblem, *which: int) -> Round | None:
-        """A round."""
-        return screen(scaled, *which)
+    def made(self, make: Make[T], scaled: ScaledProblem, *which: float) -> T:
+        """What a function makes."""
+        return make(scaled, *which)
 
     def begin_attempts(self, scaled: ScaledProblem, starts: list[Start], /) -> None:
         """Nothing is begun early."""
 
-    def begin_screening(self, scaled: ScaledProblem, *which: int) -> None:
+    def begin(self, _make: Make[Any], _scaled: ScaledProblem, *_which: float) -> bool:
         """Nothing is begun early."""
+        return False
 
 
 class Elsewhere:
@@ -120,7 +122,8 @@ class Elsewhere:
     def __init__(self, executor: Executor, width: int) -> None:
         self._executor, self.width = executor, width
         self._last: tuple[ScaledProblem, bytes] | None = None
-        # Rounds by problem and number; attempts by the identity of the start, which is kept with them.
+        # What is made by its function, problem and numbers; attempts by the identity of the start, which is
+        # kept with them.
         self._begun: dict[tuple[Any, ...], tuple[Future[Any], Any]] = {}
 
     def attempts(self, scaled: ScaledProblem, starts: list[Start], first: int, /) -> list[Attempt]:
@@ -138,10 +141,10 @@ class Elsewhere:
             made.append(_numbered(one, number))
         return made
 
-    def screened(self, scaled: ScaledProblem, *which: int) -> Round | None:
-        """A round."""
+    def made(self, make: Make[T], scaled: ScaledProblem, *which: float) -> T:
+        """What a function makes."""
         packed = self._packed(scaled)
-        found: Round | None = self._result((packed, *which), screened_there, packed, *which)
+        found: T = self._result((make, packed, *which), made_there, make, packed, *which)
         return found
 
     def begin_attempts(self, scaled: ScaledProblem, starts: list[Start], /) -> None:
@@ -150,11 +153,13 @@ class Elsewhere:
             for start in starts[: AHEAD * self.width]:
                 self._submit((id(start),), solved_there, self._packed(scaled), start)
 
-    def begin_screening(self, scaled: ScaledProblem, *which: int) -> None:
-        """Begin a round."""
-        if self.width > 1:
-            packed = self._packed(scaled)
-            self._submit((packed, *which), screened_there, packed, *which)
+    def begin(self, make: Make[Any], scaled: ScaledProblem, *which: float) -> bool:
+        """Begin what a function makes; whether it is begun only now."""
+        key = (make, self._packed(scaled), *which)
+        if self.width == 1 or key in self._begun:
+            return False
+        self._submit(key, made_there, *key)
+        return True
 
     def _packed(self, scaled: ScaledProblem) -> bytes:
         """The problem as one string of bytes, the same for each piece of work."""
@@ -227,11 +232,11 @@ class Processes(Elsewhere):
             made.append(attempt(scaled, starts[len(made)], first + len(made)))
         return made + super().attempts(scaled, starts[len(made) :], first + len(made))
 
-    def screened(self, scaled: ScaledProblem, *which: int) -> Round | None:
-        """A round; here as long as the processes begin, unless one of them has it already."""
-        if self._ready.done() or (self._packed(scaled), *which) in self._begun:
-            return super().screened(scaled, *which)
-        return screen(scaled, *which)
+    def made(self, make: Make[T], scaled: ScaledProblem, *which: float) -> T:
+        """What a function makes; here as long as the processes begin, unless one of them has it already."""
+        if self._ready.done() or (make, self._packed(scaled), *which) in self._begun:
+            return super().made(make, scaled, *which)
+        return make(scaled, *which)
 
     def begin_attempts(self, scaled: ScaledProblem, starts: list[Start], /) -> None:
         """Begin as many as there may soon be processes for, once they are there."""

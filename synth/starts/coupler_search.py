@@ -38,6 +38,7 @@ class CouplerSearch:
     beginning: ClassVar[str] = "searching"
     freedom: ClassVar[bool] = True
     patience: ClassVar[float] = np.inf
+    rounds_a_pass: ClassVar[int] = 1
     exhausted: ClassVar[str] = "there are no other starts"
 
     @property

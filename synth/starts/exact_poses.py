@@ -50,6 +50,7 @@ class WholePoses:
     beginning: ClassVar[str] = "tracing dyads and judging pairs"
     cognates: ClassVar[bool] = False
     patience: ClassVar[float] = np.inf
+    rounds_a_pass: ClassVar[int] = 1
 
     @property
     def motion(self) -> Displacements:

@@ -46,6 +46,10 @@ class Finder(Protocol):
     def patience(self) -> float:
         """So many rounds on end without a start end the search."""
 
+    @property
+    def rounds_a_pass(self) -> int:
+        """After so many rounds they may begin again, with other random numbers."""
+
     def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
         """One round of starts for `enough` designs, which depends on no other one; None after the last.
 

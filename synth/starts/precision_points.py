@@ -60,6 +60,11 @@ class NinePoints(PrecisionPoints):
 
     patience: ClassVar[float] = np.inf
 
+    @property
+    def rounds_a_pass(self) -> int:  # type: ignore[override]
+        """Some searches, then all linkages."""
+        return 1 + (SEARCHES if self.scaled.wanted.order else 0)
+
     @staticmethod
     def suits(scaled: ScaledProblem) -> bool:
         """So many points, to be met exactly."""
@@ -69,12 +74,14 @@ class NinePoints(PrecisionPoints):
         apart = np.abs(points[:, None] - points) + np.eye(len(points))
         return len(points) == 9 and bool(apart.min() > 1e-9)
 
-    def round(self, number: int, enough: int, rng: np.random.Generator, _size: int, /) -> Round | None:
-        """A round of the search, which for points in order is most often sooner there; then all linkages."""
-        searched = SEARCHES if self.scaled.wanted.order else 0
-        if number < searched:
+    def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
+        """A round of the search, which for points in order is most often sooner there; then all linkages.
+
+        These are not computed again, however large the round.
+        """
+        if number < self.rounds_a_pass - 1:
             return self._searched(enough, rng)
-        return self._all_linkages(rng) if number == searched else None
+        return self._all_linkages(rng) if number < self.rounds_a_pass and size == 1 else None
 
     def _all_linkages(self, rng: np.random.Generator) -> Round:
         """Of every triplet of cognates through the points the first feasible one; the others follow."""

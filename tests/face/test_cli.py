@@ -79,7 +79,7 @@ def test_missing_file_and_misspelt_name(grashof: Grashof) -> None:
         ("solve luggage --time-limit nan", "time_limit is nan"),
         ("solve luggage --sed 1", "--seed"),
         ("solve luggage --effort 0.1", "--effort"),
-        ("solve luggage --effort 101", "--effort"),
+        ("solve luggage --effort 10001", "--effort"),
         ("solve luggage --effort much", "--effort"),
         ("solve luggage --effort nan", "--effort"),
         ("solve", "PROBLEM"),

@@ -67,9 +67,12 @@ def test_it_finds_poses_as_well_as_the_planted_linkage_does(independent: ModuleT
     assert found.error <= np.sqrt(planted.square / 6)
 
 
-def test_a_limit_that_cuts_the_planted_linkage_off_is_active(independent: ModuleType) -> None:
+def test_a_limit_that_cuts_the_planted_linkage_off_is_active(
+    independent: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(independent, "POLISHED", 40)  # other minima, which machines meet or not, are near
     problem = Problem(task=closed_path(0.0), requirements=Requirements(**LIMITS, link_length=(30, 105)))
-    found = independent.search(problem, starts=100)
+    found = independent.search(problem, starts=400)
     assert found.verdict.ok
     assert found.linkage.lengths.max() == pytest.approx(105, abs=1e-3)
     assert found.error > 0.01

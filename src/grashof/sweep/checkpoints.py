@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import re
 from collections.abc import Collection, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,12 +13,11 @@ from typing import Any
 from grashof.output.folder import SWEEP_RECORD, own_files, replacing_own_files
 from grashof.output.run_files import write_json
 from grashof.problems import ProblemError
-from grashof.sweep.task import versions
+from grashof.problems.files.on_disk import WRITING, versions, write_whole
 
 RECORD = SWEEP_RECORD
 TASKS = "tasks"
 _OURS = re.compile(r"[0-9a-f]{32}\.json")
-_WRITING = re.compile(r"[0-9a-f]{32}\.json\.writing")
 
 
 def fingerprint(combinations: Sequence[Any]) -> str:
@@ -147,7 +144,7 @@ class Checkpoints:
         tasks.mkdir(parents=True, exist_ok=True)
         for path in tasks.iterdir():
             finished = _OURS.fullmatch(path.name) and path.stem not in kept
-            if finished or _WRITING.fullmatch(path.name):
+            if finished or path.name.startswith(WRITING):
                 path.unlink()
         before = own_files(self.folder, RECORD)
         with replacing_own_files(self.folder, keep=before, record=RECORD) as fresh:
@@ -156,18 +153,7 @@ class Checkpoints:
     def write(self, key: str, result: dict[str, Any]) -> None:
         """Put a finished task on disk: to another name, flushed, renamed."""
         path = self.folder / TASKS / f"{key}.json"
-        beside = path.with_name(f"{path.name}.writing")
-        text = json.dumps({"task": key, "result": result}, allow_nan=False)
-        try:
-            with beside.open("w", encoding="utf-8") as file:
-                file.write(text)
-                file.flush()
-                os.fsync(file.fileno())
-            beside.replace(path)
-        except OSError:
-            with suppress(OSError):
-                beside.unlink()
-            raise
+        write_whole(path, {"task": key, "result": result})
 
 
 _SHAPE = {"status", "found", "note", "decides", "designs", "drawing", "seconds"}

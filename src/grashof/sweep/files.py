@@ -12,9 +12,9 @@ from typing import Any
 from grashof.output.folder import SWEEP_PAGE, SWEEP_RECORD, check_writable, own_files, replacing_own_files
 from grashof.output.run_files import write_csv, write_json, write_page
 from grashof.problems import ProblemError
+from grashof.problems.files.on_disk import versions
 from grashof.sweep.result import Sweep
 from grashof.sweep.study import Study
-from grashof.sweep.task import versions
 
 TABLE, PARQUET, PLOT = "sweep.csv", "sweep.parquet", "sweep.png"
 _ENGINES = ("pyarrow", "fastparquet")  # of pandas, in the order in which it tries them

@@ -6,20 +6,17 @@ import hashlib
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from functools import cache
-from importlib.metadata import version
 from math import isfinite, isnan
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from grashof.problems import Problem, ProblemError
+from grashof.problems.files.on_disk import versions
 from grashof.problems.files.problem_file import problem_of
 
 if TYPE_CHECKING:
     from grashof.synth import Result
 
-# What decides which designs are found, besides the problem and how it is searched.
-PACKAGES = ("grashof", "casadi", "numpy", "scipy")
 OK, NONE, CUT, INVALID = "ok", "no design", "time limit", "invalid"
 OBJECTIVE = "objective"  # column of what several goals amount to
 
@@ -37,12 +34,6 @@ class Options:
 
     designs: int = 1
     time_limit: float | None = None
-
-
-@cache
-def versions() -> dict[str, str]:
-    """Of the packages that decide which designs are found."""
-    return {name: version(name) for name in PACKAGES}
 
 
 def task_key(name: str, text: str, options: Options) -> str:

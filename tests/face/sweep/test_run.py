@@ -16,10 +16,10 @@ import pytest
 
 from grashof import synthesize
 from grashof.problems import ProblemError, SolverError
+from grashof.problems.files.on_disk import versions
 from grashof.problems.files.problem_file import problem_of
 from grashof.sweep import Step, load_study, sweep
 from grashof.sweep.combinations import combinations
-from grashof.sweep.task import versions
 from grashof.synth.results.table import COLUMNS
 
 Write = Callable[..., Path]
@@ -159,7 +159,7 @@ def test_a_finished_sweep_is_done_again_and_other_files_stay(
     study, out = write(), tmp_path / "out"
     sweep(study, out=out)
     (out / "notes.txt").write_text("mine")
-    (out / "tasks" / f"{32 * 'b'}.json.writing").write_text("half")
+    (out / "tasks" / ".writing-abc").write_text("half")
     (out / "tasks" / "mine.txt").write_text("mine")
     sweep(study, out=out)
     assert len(told) == 24

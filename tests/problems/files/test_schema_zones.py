@@ -101,7 +101,7 @@ BAD_ZONES = [
     ),
     ("[requirements]\nerror_factor = 2", "requirements.error_factor needs least squares, exact = false"),
     ("[requirements]\nerror_factor = 0.9", "requirements.error_factor is 0.9; it must be from 1 to 1e+06"),
-    ("[search]\neffort = 0.1", "search.effort is 0.1; it must be from 0.2 to 100"),
+    ("[search]\neffort = 0.1", "search.effort is 0.1; it must be from 0.2 to 10000"),
     ("[search]\neffort = inf", "search.effort is inf; it must be a finite number"),
     (
         "[requirements]\nexact = false\n[objective]\nmaximise = 'transmission'",

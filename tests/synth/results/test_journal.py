@@ -107,7 +107,7 @@ def test_the_record_of_another_search_is_refused(tmp_path: Path) -> None:
     head = json.loads((folder / "search.json").read_text(encoding="utf-8"))
     for changed, said in (
         (head | {"casadi version": "1.0"}, "a search with casadi version 1.0; here it is 3"),
-        (head | {"format": 0}, "a search with format 0; here it is 1"),
+        (head | {"format": 0}, "a search with format 0; here it is 2"),
         ([], "is not the record of a search"),
     ):
         (folder / "search.json").write_text(json.dumps(changed), encoding="utf-8")

@@ -18,7 +18,7 @@ from grashof.synth.results.explain import explain
 from grashof.synth.results.ledger import Ledger
 from grashof.synth.results.relaxations import relaxations
 from grashof.synth.results.relaxed_limits import Relaxation, limiting, loosest, relaxation
-from grashof.synth.results.search import Run
+from grashof.synth.results.run import Run
 from grashof.synth.results.trade_offs import Chosen
 from grashof.synth.results.workers import Here
 

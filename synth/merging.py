@@ -1,0 +1,187 @@
+"""Shards merged: the list of the whole search."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+from grashof.problems import Problem, ProblemError, Search
+from grashof.problems.files.problem_file import problem_of
+from grashof.problems.files.toml_file import file_text
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.results.asked import ending
+from grashof.synth.results.chunks import CHUNK, which
+from grashof.synth.results.conclusion import conclude
+from grashof.synth.results.journal import WHOLE, head_of, read_head, recorded_steps, refuse_other, step_name
+from grashof.synth.results.judging import judged_again
+from grashof.synth.results.ledger import Chunk, Ledger
+from grashof.synth.results.plain import plain, restored
+from grashof.synth.results.result import Result
+from grashof.synth.results.run import Progress, Run
+from grashof.synth.results.search import finished, found_few
+from grashof.synth.results.workers import working
+from grashof.synth.shards import PROBLEM, SHARDS, Plan, Shard
+from grashof.synth.starts.finder import finder_for
+from grashof.synth.theory.stopping import stopping
+
+NAMED = 12  # shards that a message names
+
+
+@dataclass(frozen=True, slots=True)
+class Shards:
+    """The shards that a folder holds.
+
+    Parameters
+    ----------
+    folder : Path
+    of : int
+        How many the search has.
+    done : tuple of Shard
+        Those of which nothing is left to be done.
+    problem : Problem
+    text : str
+        The problem file.
+    search : Search
+    """
+
+    folder: Path
+    of: int
+    done: tuple[Shard, ...]
+    problem: Problem
+    text: str
+    search: Search
+
+    @classmethod
+    def found(cls, folder: Path) -> Shards:
+        """What is there.
+
+        Raises
+        ------
+        ProblemError
+            There is none, or they are not of one search made with these versions.
+        """
+        there = sorted(_named(folder), key=lambda shard: (shard.of, shard.number))
+        if not there:
+            raise ProblemError(
+                f"{folder}: has no shards; grashof solve PROBLEM --shard I/N --out {folder} makes them"
+            )
+        if there[0].of != there[-1].of:
+            both = f"{there[0].of} and of {there[-1].of}"
+            raise ProblemError(f"{folder / SHARDS}: has shards of {both}; they must be of one search")
+        first = folder / SHARDS / there[0].folder
+        head, path = read_head(first), first / PROBLEM
+        text = file_text(path, "a problem file", "")
+        problem = problem_of(text, str(path), str(head.get("name")))
+        search = Search(**{field.name: head.get(field.name) for field in fields(Search)})  # type: ignore[arg-type]
+        done = []
+        for shard in there:
+            own = folder / SHARDS / shard.folder
+            refuse_other(own, head_of(problem, search, name=problem.name, shard=str(shard)))
+            if read_head(own).get(WHOLE) is True:
+                done.append(shard)
+        return cls(folder, there[0].of, tuple(done), problem, text, search)
+
+    @property
+    def lacking(self) -> str:
+        """Which are not done, in words; empty where all are."""
+        done = {shard.number for shard in self.done}
+        numbers = [str(number) for number in range(1, self.of + 1) if number not in done]
+        if not numbers:
+            return ""
+        more = f" and {len(numbers) - NAMED} more" if len(numbers) > NAMED else ""
+        several = "s" if len(numbers) > 1 else ""
+        return f"shard{several} {', '.join(numbers[:NAMED])}{more} of {self.of}"
+
+    def chunks(self, ledgers: list[Ledger], plan: Plan) -> Iterator[tuple[Ledger, Chunk]]:
+        """All chunks in their order, each with the ledger of its problem."""
+        steps = {shard.number: recorded_steps(self.folder / SHARDS / shard.folder) for shard in self.done}
+        for turn, ledger in enumerate(ledgers):
+            for number in range(plan.count):
+                shard = Shard((turn * plan.count + number) % self.of + 1, self.of)
+                if shard.number not in steps:
+                    continue
+                name = step_name(CHUNK, (number, *which(self.search, plan.starts)))
+                step = next(steps[shard.number], {})
+                try:
+                    if step["step"] != name:
+                        raise ValueError(name)
+                    chunk = restored(step["result"], ledger.scaled.problem)
+                    if not isinstance(chunk, Chunk):
+                        raise TypeError(name)
+                except (ValueError, KeyError, TypeError):
+                    raise _damaged(self.folder / SHARDS / shard.folder) from None
+                yield ledger, chunk
+
+
+def merge_shards(
+    folder: Path,
+    *,
+    partial: bool = False,
+    workers: int = 1,
+    progress: Callable[[Progress], object] | None = None,
+    stop: Callable[[], bool] | None = None,
+) -> Result:
+    """The list of a search whose shards are in a folder: the same, however many they are.
+
+    Parameters
+    ----------
+    folder : Path
+    partial : bool
+        Be content with those that are done.
+    workers, progress, stop
+        As in `synthesize`.
+
+    Raises
+    ------
+    ProblemError
+        Shards are missing or not done, or they are not of one search made with these versions.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from grashof import load
+    >>> from grashof.synth.shards import solve_shard
+    >>> with tempfile.TemporaryDirectory() as name:
+    ...     made = solve_shard(load("luggage"), Shard(1, 2), Path(name), starts=8)
+    ...     merge_shards(Path(name), partial=True).best.verdict.ok
+    True
+    """
+    shards = Shards.found(folder)
+    if shards.lacking and not partial:
+        raise ProblemError(f"{folder}: {shards.lacking} to be done; --partial merges the others")
+    plan = Plan(ScaledProblem.of(shards.problem), shards.search)
+    if not plan.problems:
+        return Result(shards.problem, note=f"no design: {finder_for(plan.scaled).degenerate()}")
+    ended = ending(None, stop)
+    with stopping(ended), working(workers, None) as work:
+        run = Run(shards.search, work, ended, progress=progress)
+        ledgers = [plan.ledger(scaled, plan.count) for scaled in plan.problems]
+        with run.timed("merging"):
+            for ledger, chunk in shards.chunks(ledgers, plan):
+                ledger.absorb(chunk)
+                run.tell(ledger)
+            for ledger in ledgers:
+                _refuse_unverified(folder, ledger)
+        used = ledgers if found_few(ledgers[0]) else ledgers[:1]
+        return conclude(plan.scaled, [finished(ledger, run) for ledger in used], run)
+
+
+def _named(folder: Path) -> Iterator[Shard]:
+    """Shards whose folders are there."""
+    for path in (folder / SHARDS).glob("*-of-*"):
+        with suppress(ValueError):  # not ours
+            yield Shard.named(path.name)
+
+
+def _refuse_unverified(folder: Path, ledger: Ledger) -> None:
+    """Judge once more what may be listed: a file may say anything."""
+    for one in ledger.best:
+        verdict = judged_again(ledger.scaled, one).verdict
+        if not verdict.ok or repr(plain(verdict)) != repr(plain(one.verdict)):
+            raise _damaged(folder / SHARDS)
+
+
+def _damaged(path: Path) -> ProblemError:
+    return ProblemError(f"{path}: is damaged; delete it, and run the shard again")

@@ -1,0 +1,48 @@
+"""What is asked of a search besides the problem, checked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from time import perf_counter
+
+from grashof.problems import Problem, ProblemError, Search
+from grashof.problems.values.checks import finite_number, whole_number
+from grashof.problems.values.errors import wrong_value
+from grashof.synth.starts.finder import finder_of
+
+
+def search_of(problem: Problem, workers: int, **given: float | None) -> Search:
+    """The problem's own search options, or those given.
+
+    Raises
+    ------
+    ProblemError
+        The problem, or an option, is invalid.
+    """
+    if not isinstance(problem, Problem):
+        raise ProblemError(f"problem is a {type(problem).__name__}; it must be a Problem, such as load gives")
+    options = {name: number for name, number in given.items() if number is not None}
+    search = replace(problem.search, **options)  # type: ignore[arg-type]  # checked there
+    whole_number(workers, 1, "workers")
+    finder_of(problem).refuse()
+    return search
+
+
+def ending(time_limit: float | None, stop: Callable[[], bool] | None) -> Callable[[], bool]:
+    """What is asked whether to end: after a time from now on, s, or because somebody wants it.
+
+    Raises
+    ------
+    ProblemError
+        The time is invalid.
+    """
+    if time_limit is not None and finite_number(time_limit, "time_limit") <= 0:
+        raise wrong_value("time_limit", time_limit, "a time in s greater than zero")
+    begun = perf_counter()
+
+    def ended() -> bool:
+        out_of_time = time_limit is not None and perf_counter() - begun > time_limit
+        return out_of_time or (stop is not None and stop())
+
+    return ended

@@ -1,0 +1,99 @@
+"""A search in chunks: rounds of starts with all that comes of them, none of which depends on another one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from grashof.problems import Search
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.results.ledger import Chunk, Ledger
+from grashof.synth.results.rounds import solve_round
+from grashof.synth.results.run import Run
+from grashof.synth.results.workers import CrashError, Here, Work, screen
+from grashof.synth.starts.finder import finder_for
+from grashof.synth.theory.stopping import asked_to_stop, give_way
+
+CHUNK = "chunk"  # kind of step
+AHEAD = 3  # chunks begun for each process before it is known that they are wanted
+
+
+def chunk(scaled: ScaledProblem, number: int, enough: int, seed: int, starts: int, least: float) -> Chunk:
+    """One chunk of a search, wherever it is made; a function of what it is given.
+
+    Parameters
+    ----------
+    scaled : ScaledProblem
+    number : int
+    enough, seed : int
+    starts : int
+        Most solves.
+    least : float, sizes
+        Error that is known to be reached.
+
+    Raises
+    ------
+    Stopped
+        It was asked to end before it was done.
+    """
+    return _made_by(Here(), scaled, number, enough, seed, starts, least)
+
+
+def _made_by(
+    work: Work, scaled: ScaledProblem, number: int, enough: int, seed: int, starts: int, least: float
+) -> Chunk:
+    search = Search(starts=starts, enough=enough, seed=seed)
+    ledger = Ledger(scaled, search, "", known=least)
+    ledger.plan_more()  # nothing but the number of starts ends it
+    effort, of_pass = divmod(number, finder_for(scaled).rounds_a_pass)
+    found = work.made(screen, scaled, effort, of_pass, enough, seed)
+    if found is not None:
+        solve_round(found, ledger, Run(search, work, asked_to_stop))
+    give_way()
+    return ledger.chunk
+
+
+def chunks(
+    scaled: ScaledProblem, run: Run, numbers: Sequence[int], starts: int, least: float = np.inf
+) -> Iterator[Chunk]:
+    """Chunks in the order of their numbers, several of them made at a time.
+
+    Parameters
+    ----------
+    scaled : ScaledProblem
+    run : Run
+    numbers : sequence of int
+    starts : int
+        Most solves of each.
+    least : float, sizes
+        Error that is known to be reached.
+
+    Raises
+    ------
+    Stopped
+        It was asked to end before all are done.
+    """
+    rest = which(run.search, starts, least)
+    for place, number in enumerate(numbers):
+        if not run.journal.recorded:
+            first, *later = numbers[place : place + AHEAD * run.work.width]
+            anew = run.work.begin(chunk, scaled, first, *rest)  # at the beginning, or after a loss
+            for each in later if anew else later[-1:]:
+                run.work.begin(chunk, scaled, each, *rest)
+        yield run.step(CHUNK, (number, *rest), scaled, partial(_made, run.work, scaled, number, *rest))
+
+
+def which(search: Search, starts: int, least: float = np.inf) -> tuple[float, ...]:
+    """All that `chunk` is given but the problem and the number."""
+    return search.enough, search.seed, starts, least
+
+
+def _made(work: Work, scaled: ScaledProblem, *given: Any) -> Chunk:
+    """A chunk; solve by solve where it ends the process that makes it, so that one start alone is lost."""
+    try:
+        return work.made(chunk, scaled, *given)
+    except CrashError:
+        return _made_by(work, scaled, *given)

@@ -1,0 +1,36 @@
+"""A round of starts, solved batch by batch."""
+
+from __future__ import annotations
+
+from grashof.synth.programme.start import Round, Start
+from grashof.synth.programme.user_functions import mended
+from grashof.synth.results.ledger import Ledger
+from grashof.synth.results.run import Run
+
+# Solves between two looks at what is verified, fixed, so that workers change nothing: of exact designs,
+# and of least squares, where every look may spare solves.
+BATCH, BATCH_LEAST_SQUARES = 16, 8
+LAST = 8  # solves at most of a search that is stopped before it has a design
+
+
+def solve_round(found: Round, ledger: Ledger, run: Run) -> None:
+    """Solve starts batch by batch until enough is found or the search is ended."""
+    ledger.begin(found)
+    scaled = ledger.scaled
+    starts = mended(scaled, found.starts)
+    batch = min(BATCH, run.search.enough) if scaled.exact else BATCH_LEAST_SQUARES
+    for begin in range(0, len(starts), batch):
+        ended = run.ended()
+        if not ledger.within_round or (ended and (ledger.best or begin)):
+            return
+        some = ledger.worthwhile(found, starts[begin : begin + (LAST if ended else batch)], first=begin == 0)
+        run.begin(scaled, some + ledger.promising(found, starts[begin + batch :]))
+        if some:
+            solve(some[: ledger.starts - ledger.solved], ledger, run)
+        run.tell(ledger)
+
+
+def solve(starts: list[Start], ledger: Ledger, run: Run) -> None:
+    """Solve and verify, then rank what is verified."""
+    ledger.take(run.solve(ledger.scaled, starts, ledger.solved))
+    ledger.rank()

@@ -1,0 +1,213 @@
+"""A search in shards, which share nothing but a folder: for batch clusters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from grashof.problems import Problem, Search
+from grashof.problems.files.on_disk import write_whole
+from grashof.problems.files.problem_writing import problem_toml
+from grashof.problems.values.errors import wrong_value
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.results.asked import ending, search_of
+from grashof.synth.results.chunks import chunks
+from grashof.synth.results.journal import Recorded, head_of
+from grashof.synth.results.ledger import Ledger
+from grashof.synth.results.run import Progress, Run
+from grashof.synth.results.search import asked_in_turn
+from grashof.synth.results.workers import working
+from grashof.synth.starts.finder import finder_for
+from grashof.synth.theory.stopping import Stopped, stopping
+
+SHARDS = "shards"  # folder of theirs
+PROBLEM = "problem.toml"
+MOST = 100_000  # shards of a search
+CHUNKS = 4  # of a search of effort 1
+
+
+@dataclass(frozen=True, slots=True)
+class Shard:
+    """One of so many parts of a search.
+
+    Parameters
+    ----------
+    number, of : int
+        The first is 1.
+    """
+
+    number: int
+    of: int
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.number <= self.of <= MOST:
+            raise wrong_value("--shard", str(self), f"I/N with I from 1 to N, and N up to {MOST}")
+
+    @classmethod
+    def stated(cls, text: str) -> Shard:
+        """The shard that a text such as 7/200 states."""
+        number, _, of = text.partition("/")
+        if not (number.isdecimal() and of.isdecimal() and len(text) < 2 * len(str(MOST)) + 2):
+            raise wrong_value("--shard", text, "I/N, such as 7/200")
+        return cls(int(number), int(of))
+
+    @classmethod
+    def named(cls, name: str) -> Shard:
+        """The shard whose folder has a name; `ValueError` for any other name."""
+        number, of = name.split("-of-")
+        shard = cls(int(number), int(of))
+        if shard.folder != name:
+            raise ValueError(name)
+        return shard
+
+    def __str__(self) -> str:
+        return f"{self.number}/{self.of}"
+
+    @property
+    def folder(self) -> str:
+        """Name of its folder."""
+        return f"{self.number:04}-of-{self.of:04}"
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """What a shard has come to.
+
+    Parameters
+    ----------
+    chunks, of : int
+        Chunks that are done, and that it has.
+    solved, designs : int
+        Solves, and distinct verified designs.
+    whole : bool
+        Nothing is left to be done.
+    """
+
+    chunks: int
+    of: int
+    solved: int
+    designs: int
+    whole: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """All chunks of a search: `count` of each of its problems.
+
+    Parameters
+    ----------
+    scaled : ScaledProblem
+        As it is asked.
+    search : Search
+    """
+
+    scaled: ScaledProblem
+    search: Search
+
+    @property
+    def problems(self) -> tuple[ScaledProblem, ...]:
+        """The problem as it is searched; none where its targets need no linkage."""
+        return () if finder_for(self.scaled).degenerate() else asked_in_turn(self.scaled)
+
+    def ledger(self, scaled: ScaledProblem, chunks: int) -> Ledger:
+        """Bookkeeping of so many chunks of a problem, which nothing ends before all are done."""
+        search = replace(self.search, starts=max(1, chunks * self.starts), effort=1.0)
+        ledger = Ledger(scaled, search, "all its chunks are done")
+        ledger.plan_more()
+        return ledger
+
+    @property
+    def count(self) -> int:
+        """Chunks of each problem."""
+        return max(1, round(CHUNKS * self.search.effort))
+
+    @property
+    def starts(self) -> int:
+        """Most solves of a chunk."""
+        return max(1, round(self.search.starts * max(1.0, self.search.effort) / self.count))
+
+    def numbers(self, shard: Shard) -> list[range]:
+        """The chunks of a shard, those of each problem: every so many of all."""
+        begins = [shard.number - 1 - turn * self.count for turn in range(len(self.problems))]
+        return [range(begin % shard.of, self.count, shard.of) for begin in begins]
+
+
+def solve_shard(
+    problem: Problem,
+    shard: Shard,
+    folder: Path,
+    *,
+    text: str | None = None,
+    starts: int | None = None,
+    enough: int | None = None,
+    seed: int | None = None,
+    effort: float | None = None,
+    workers: int = 1,
+    executor: Executor | None = None,
+    time_limit: float | None = None,
+    progress: Callable[[Progress], object] | None = None,
+    stop: Callable[[], bool] | None = None,
+) -> Made:
+    """Make all chunks of a shard and leave them in a folder, for `merge_shards`.
+
+    What the folder has of them is not done again. The whole search has four chunks for each unit of
+    effort: rounds of starts that do not depend on each other; none of them ends it early.
+
+    Parameters
+    ----------
+    problem : Problem
+    shard : Shard
+    folder : Path
+        The same for all shards.
+    text : str, optional
+        The problem file.
+    starts, enough, seed, effort, workers, executor, time_limit, progress, stop
+        As in `synthesize`; the first four have to be the same for all shards.
+
+    Raises
+    ------
+    ProblemError
+        The problem, or another argument, is invalid; or the folder has this shard of another search.
+    SolverError
+        A worker process or the executor was lost.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from grashof import load
+    >>> from grashof.synth.merging import merge_shards
+    >>> with tempfile.TemporaryDirectory() as name:
+    ...     for number in (1, 2):
+    ...         made = solve_shard(load("luggage"), Shard(number, 2), Path(name), starts=8)
+    ...     len(merge_shards(Path(name))) >= made.designs > 0
+    True
+    """
+    ended = ending(time_limit, stop)
+    search = search_of(problem, workers, starts=starts, enough=enough, seed=seed, effort=effort)
+    plan, own = Plan(ScaledProblem.of(problem), search), folder / SHARDS / shard.folder
+    numbers = plan.numbers(shard)
+    head = head_of(problem, search, name=problem.name, shard=str(shard))
+    journal = Recorded(own, head)  # refuses another search
+    own.mkdir(parents=True, exist_ok=True)
+    write_whole(own / PROBLEM, problem_toml(problem) if text is None else text)
+    journal.begin()
+    done = 0
+    ledgers = [plan.ledger(*each) for each in zip(plan.problems, map(len, numbers), strict=True)]
+    with stopping(ended), working(workers, executor) as work:
+        run = Run(search, work, ended, journal, progress)
+        try:
+            for ledger, mine in zip(ledgers, numbers, strict=True):
+                for one in chunks(ledger.scaled, run, mine, plan.starts):
+                    ledger.absorb(one)
+                    done += 1
+                    run.tell(ledger)
+        except Stopped:
+            journal.close()
+        whole = journal.is_open
+        if whole:
+            journal.finish()
+        journal.close()
+    solved, designs = (sum(each.solved for each in ledgers), sum(len(each.best) for each in ledgers))
+    return Made(done, sum(map(len, numbers)), solved, designs, whole)

@@ -1,0 +1,214 @@
+"""Shards: however a search is divided, interrupted and merged, its list is the same."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import grashof.synth.results.journal as journal_module
+import grashof.synth.results.workers as workers_module
+from grashof import load
+from grashof.problems import MotionTask, Objective, Problem, ProblemError, Requirements
+from grashof.synth import Result
+from grashof.synth.merging import merge_shards
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.results.chunks import chunk, chunks
+from grashof.synth.results.journal import content_of
+from grashof.synth.results.plain import plain
+from grashof.synth.results.run import Run
+from grashof.synth.results.workers import CrashError, Here
+from grashof.synth.shards import PROBLEM, SHARDS, Made, Shard, solve_shard
+
+FOUR = [[0, 0, 0], [60, 90, 15], [180, 140, 40], [300, 90, 70]]
+FIVE = [*FOUR, [360, 0, 90]]
+ZONES = MotionTask.from_degrees(FIVE, within=12.0, angle_within_deg=3.0)
+ROTATION = MotionTask.from_degrees([[0, 0, 0], [0, 0, 30], [0, 0, 50]], angle_length=1.0)
+KINDS: dict[str, tuple[Problem, dict[str, Any]]] = {
+    "poses": (load("luggage"), {"starts": 32}),
+    "five poses": (Problem(task=MotionTask.from_degrees(FIVE)), {"starts": 16}),
+    "points met": (load("path-vertical-line"), {"starts": 16, "enough": 6}),
+    "points fitted": (load("path-ellipse"), {"effort": 0.5, "starts": 30}),
+    "zones": (Problem(task=ZONES, objective=Objective()), {"effort": 0.5, "starts": 30}),
+    "none": (
+        Problem(
+            task=MotionTask.from_degrees(FIVE),
+            requirements=Requirements(link_length=(30.0, 400.0), transmission_min_deg=35.0),
+        ),
+        {"effort": 0.2, "starts": 10},
+    ),
+    "degenerate": (Problem(task=ROTATION), {}),
+}
+
+
+def table(result: Result) -> str:
+    return result.to_frame().to_csv() + result.note + result.ended + str(result.counts)
+
+
+def divided(kind: str, folder: Path, of: int, **more: Any) -> list[Made]:
+    problem, options = KINDS[kind]
+    return [solve_shard(problem, Shard(n, of), folder, **options, **more) for n in range(of, 0, -1)]
+
+
+@pytest.mark.usefixtures("small_search")
+@pytest.mark.quick("poses", "zones", "degenerate")
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_list_does_not_depend_on_the_number_of_shards(kind: str, tmp_path: Path) -> None:
+    merged = []
+    for of in (1, 3):
+        made = divided(kind, tmp_path / str(of), of)
+        assert all(one.whole and one.chunks == one.of for one in made)
+        merged.append(merge_shards(tmp_path / str(of)))
+    one, several = merged
+    assert table(one) == table(several)
+    assert (len(one) > 0) == (kind not in ("none", "degenerate"))
+    assert all(design.verdict.ok for design in one.candidates)
+
+
+def test_all_chunks_are_made_and_nothing_ends_them_early(tmp_path: Path) -> None:
+    problem = load("luggage")
+    made = solve_shard(problem, Shard(1, 1), tmp_path, enough=1, starts=12, effort=1.5)
+    assert made.chunks == made.of == 6
+    assert made.solved == 18  # starts times effort
+    assert len(merge_shards(tmp_path)) == made.designs
+
+
+def test_a_shard_that_was_killed_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Killed(BaseException):
+        """As if the process had been killed."""
+
+    monkeypatch.setattr(journal_module, "EVERY", 0.0)
+    whole = tmp_path / "whole"
+    divided("poses", whole, 1)
+    attempt, left = workers_module.attempt, [0]
+
+    def mortal(*given: Any) -> object:
+        left[0] -= 1
+        if left[0] < 0:
+            raise Killed
+        return attempt(*given)
+
+    monkeypatch.setattr(workers_module, "attempt", mortal)
+    problem, options = KINDS["poses"]
+    tries = 0
+    while True:
+        left[0], tries = 12, tries + 1  # of eight a chunk: one a try is made
+        try:
+            solve_shard(problem, Shard(1, 1), tmp_path / "killed", **options)
+            break
+        except Killed:
+            with pytest.raises(ProblemError, match=r"shard 1 of 1 to be done; --partial merges the others"):
+                merge_shards(tmp_path / "killed")
+    assert tries == 4
+    assert table(merge_shards(tmp_path / "killed")) == table(merge_shards(whole))
+
+
+def test_a_shard_that_was_stopped_is_not_whole(tmp_path: Path) -> None:
+    problem, options = KINDS["poses"]
+    seen: list[int] = []
+    made = solve_shard(
+        problem,
+        Shard(1, 1),
+        tmp_path,
+        **options,
+        progress=lambda step: seen.append(step.solved),
+        stop=lambda: len(seen) > 1,
+    )
+    assert not made.whole
+    assert seen[:2] == [8, 16]
+    assert solve_shard(problem, Shard(1, 1), tmp_path, **options).whole
+
+
+def test_processes_change_no_byte(tmp_path: Path) -> None:
+    divided("poses", tmp_path / "alone", 1)
+    divided("poses", tmp_path / "two", 1, workers=2)
+    assert table(merge_shards(tmp_path / "two")) == table(merge_shards(tmp_path / "alone"))
+
+
+class Mortal(Here):
+    """Chunks end the process that makes them; starts do not."""
+
+    def made(self, make: Any, scaled: ScaledProblem, *which: float) -> Any:
+        if make is chunk:
+            raise CrashError("a worker process was lost twice")
+        return super().made(make, scaled, *which)
+
+
+def test_a_chunk_that_ends_its_process_is_made_start_by_start() -> None:
+    scaled = ScaledProblem.of(load("luggage"))
+    search = scaled.problem.search
+    known, again = (
+        list(chunks(scaled, Run(search, work, lambda: False), range(2), 5)) for work in (Here(), Mortal())
+    )
+    assert repr(plain(tuple(known))) == repr(plain(tuple(again)))
+    assert np.shape(known) == (2,)
+
+
+def test_missing_shards_are_named_or_left_out(tmp_path: Path) -> None:
+    problem, options = KINDS["poses"]
+    for number in (1, 4):
+        solve_shard(problem, Shard(number, 4), tmp_path, **options)
+    with pytest.raises(ProblemError, match=r"shards 2, 3 of 4 to be done"):
+        merge_shards(tmp_path)
+    some = merge_shards(tmp_path, partial=True)
+    for number in (2, 3):
+        solve_shard(problem, Shard(number, 4), tmp_path, **options)
+    assert 0 < some.counts["verified"] < merge_shards(tmp_path).counts["verified"]
+
+
+def test_shards_of_other_searches_are_refused(tmp_path: Path) -> None:
+    problem, options = KINDS["poses"]
+    solve_shard(problem, Shard(1, 2), tmp_path, **options)
+    with pytest.raises(ProblemError, match="a search with seed 0; here it is 3"):
+        solve_shard(problem, Shard(1, 2), tmp_path, **options, seed=3)
+    with pytest.raises(ProblemError, match="for another problem"):
+        solve_shard(load("path-ullah"), Shard(1, 2), tmp_path)
+    solve_shard(problem, Shard(2, 2), tmp_path, **options, seed=3)
+    with pytest.raises(ProblemError, match="a search with seed 3; here it is 0"):
+        merge_shards(tmp_path)
+    solve_shard(problem, Shard(1, 3), tmp_path, **options)
+    with pytest.raises(ProblemError, match="has shards of 2 and of 3; they must be of one search"):
+        merge_shards(tmp_path)
+
+
+@pytest.mark.parametrize("damage", ["truncated", "another figure", "a verdict that is wrong"])
+def test_what_is_damaged_is_not_merged_and_done_again(damage: str, tmp_path: Path) -> None:
+    (made,) = divided("poses", tmp_path, 1)
+    whole = table(merge_shards(tmp_path))
+    path = tmp_path / SHARDS / Shard(1, 1).folder / "000001.json"
+    text = path.read_text(encoding="utf-8")
+    first = json.loads(text)["steps"][0]["result"]["Chunk"]["designs"][0]["Candidate"]
+    worst = json.dumps(first["verdict"]["Verdict"]["transmission_min_task"])
+    better = text.replace(worst, "1.5")
+    assert better != text
+    harmed = {
+        "truncated": text[: len(text) // 2],
+        "another figure": better,
+        "a verdict that is wrong": json.dumps(content_of(json.loads(better)["steps"])),
+    }
+    path.write_text(harmed[damage], encoding="utf-8")
+    with pytest.raises(ProblemError, match=r"is damaged; delete it, and run the shard again"):
+        merge_shards(tmp_path)
+    if damage == "a verdict that is wrong":  # noticed by the judge alone
+        path.unlink()
+    assert divided("poses", tmp_path, 1) == [made]
+    assert table(merge_shards(tmp_path)) == whole
+
+
+def test_the_problem_file_is_kept(tmp_path: Path) -> None:
+    problem, options = KINDS["poses"]
+    text = "# mine\n" + (Path(__file__).parents[2] / "problems/data/luggage.toml").read_text(encoding="utf-8")
+    solve_shard(problem, Shard(1, 1), tmp_path, text=text, **options)
+    assert (tmp_path / SHARDS / "0001-of-0001" / PROBLEM).read_text(encoding="utf-8") == text
+    assert merge_shards(tmp_path).problem.name == "luggage"
+
+
+@pytest.mark.parametrize(
+    "text", ["3", "0/2", "3/2", "1/0", "-1/2", "1/2/3", "one/2", "1/999999999", "²/3", ""]
+)
+def test_what_is_no_shard_is_refused(text: str) -> None:
+    with pytest.raises(ProblemError, match=r"^--shard is '.*'; it must be I/N"):
+        Shard.stated(text)
