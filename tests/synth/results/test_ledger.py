@@ -1,0 +1,94 @@
+"""Ledgers: what a search remembers is bounded, and it is the best."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import grashof.synth.results.ledger as ledger_module
+from grashof import load
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.results.attempt import Attempt
+from grashof.synth.results.chunks import chunk, which
+from grashof.synth.results.judging import judged, judged_again
+from grashof.synth.results.ledger import Chunk, Ledger, nearest_of_kinds
+from grashof.synth.starts.finder import finder_for
+
+
+@pytest.fixture(scope="module")
+def scaled() -> ScaledProblem:
+    return ScaledProblem.of(load("luggage"))
+
+
+@pytest.fixture(scope="module")
+def attempts(scaled: ScaledProblem) -> list[Attempt]:
+    """Designs of many kinds, each as if it had been solved for."""
+    found = finder_for(scaled).near(np.random.default_rng(0))
+    picked = np.linspace(0, len(found) - 1, 240).astype(int).tolist()
+    made = (
+        judged(scaled, found.points[k], int(found.assembly[k]), 0.0, start=k, iterations=0) for k in picked
+    )
+    return [Attempt("Solve_Succeeded", one) for one in made if one is not None]
+
+
+def filled(scaled: ScaledProblem, attempts: list[Attempt]) -> Ledger:
+    ledger = Ledger(scaled, replace(scaled.problem.search, enough=5), "")
+    ledger._errors.append(np.inf)
+    for begin in range(0, len(attempts), 16):
+        ledger.take(attempts[begin : begin + 16])
+        ledger.rank()
+    return ledger
+
+
+def test_the_best_stay_of_very_many(
+    scaled: ScaledProblem, attempts: list[Attempt], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    every = filled(scaled, attempts)
+    monkeypatch.setattr(ledger_module, "MOST_KEPT", 20)
+    some = filled(scaled, attempts)
+    assert len(every.best) > 60
+    assert len(some.verified) <= 2 * 20 + 16 < len(every.verified)
+    assert [one.id for one in some.best[:20]] == [one.id for one in every.best[:20]]
+    assert some.tally == every.tally
+
+
+def test_misses_are_bounded_by_kind(
+    scaled: ScaledProblem, attempts: list[Attempt], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    strict = replace(scaled.problem.requirements, transmission_min_deg=27.25, r1=(1.0, 7.0))
+    asked = scaled.of_problem(replace(scaled.problem, requirements=strict))
+    designs = [judged_again(asked, one.candidate) for one in attempts if one.candidate is not None]
+    missed = [Attempt("", one) for one in designs if not one.verdict.ok]
+    kinds = {frozenset(each.requirement for each in one.verdict.defects) for one in designs} - {frozenset()}
+    kept = nearest_of_kinds([*missed, Attempt("Infeasible_Problem_Detected", None)])
+    assert len(kinds) > 1
+    assert len(kinds) < len(kept) <= 8 * len(kinds) < len(missed)
+    for kind in kinds:
+        of_kind = [
+            one
+            for one in missed
+            if one.candidate and kind == {d.requirement for d in one.candidate.verdict.defects}
+        ]
+        nearest = min(of_kind, key=lambda one: sum(d.miss for d in one.candidate.verdict.defects))
+        assert nearest in kept
+    monkeypatch.setattr(ledger_module, "MOST_KEPT", 20)
+    assert len(filled(asked, missed).rejected) <= 2 * 20 + 16
+
+
+def test_chunks_add_up_to_what_they_hold(scaled: ScaledProblem) -> None:
+    search = scaled.problem.search
+    some = [chunk(scaled, number, *which(search, 5)) for number in range(3)]
+    ledger = Ledger(scaled, search, "")
+    for one in some:
+        ledger.absorb(one)
+    whole = ledger.chunk
+    assert isinstance(whole, Chunk)
+    assert whole.solved == 15
+    assert whole.size == 3
+    assert whole.tally.statuses == sum(
+        (one.tally.statuses for one in some), start=type(whole.tally.statuses)()
+    )
+    assert {each.id for each in whole.designs} <= {each.id for one in some for each in one.designs}
+    assert sorted(each.start for each in ledger.verified)[-1] >= 10
