@@ -23,7 +23,9 @@ from grashof.synth.results.attempt import Attempt, attempt
 from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.stopping import Stopped, asked_to_stop, stop_when
 
-AHEAD = 4  # solves begun for each process before it is known that they are wanted
+# Solves begun for each process before it is known that they are wanted: of least squares, and exact ones, of
+# which a piece of work has several.
+AHEAD, AHEAD_EXACT, BUNDLE = 4, 16, 4
 LARGER = 2  # times the draws and starts of a usual round: rounds that more effort adds
 LOOK = 0.1  # s between two looks whether to stop
 # Status of a start that ends the process that solves it, and of one that was not waited for.
@@ -78,9 +80,9 @@ def _unpacked(packed: bytes) -> ScaledProblem:
     return scaled
 
 
-def solved_there(packed: bytes, start: Start) -> Attempt:
-    """An attempt, in a process that gets the problem in bytes."""
-    return attempt(_unpacked(packed), start, 0)
+def solved_there(packed: bytes, *starts: Start) -> list[Attempt]:
+    """Attempts, in a process that gets the problem in bytes."""
+    return [attempt(_unpacked(packed), start, 0) for start in starts]
 
 
 def made_there(make: Make[T], packed: bytes, *which: float) -> T:
@@ -122,44 +124,53 @@ class Elsewhere:
     def __init__(self, executor: Executor, width: int) -> None:
         self._executor, self.width = executor, width
         self._last: tuple[ScaledProblem, bytes] | None = None
-        # What is made by its function, problem and numbers; attempts by the identity of the start, which is
-        # kept with them.
-        self._begun: dict[tuple[Any, ...], tuple[Future[Any], Any]] = {}
+        # What is made, by its function, problem and numbers; attempts with their place in a bundle, by the
+        # identity of the start, which is kept with them.
+        self._begun: dict[tuple[Any, ...], Future[Any]] = {}
+        self._solves: dict[int, tuple[Future[list[Attempt]], int, Start]] = {}
 
     def attempts(self, scaled: ScaledProblem, starts: list[Start], first: int, /) -> list[Attempt]:
         """Attempts from starts; one that ends the process that makes it is given up."""
-        for start in starts:
-            self._submit((id(start),), solved_there, self._packed(scaled), start)
         made = []
-        for number, start in enumerate(starts, first):
+        for number, start in enumerate(starts):
             try:
-                one = self._result((id(start),), solved_there, self._packed(scaled), start)
+                one = self._solved(scaled, start, starts[number:])
             except CrashError:
                 one = Attempt(CRASHED, None)
             except Stopped:
                 one = Attempt(STOPPED, None)
-            made.append(_numbered(one, number))
+            made.append(_numbered(one, first + number))
         return made
 
-    def made(self, make: Make[T], scaled: ScaledProblem, *which: float) -> T:
+    def made(self, make: Make[T], scaled: ScaledProblem, /, *which: float) -> T:
         """What a function makes."""
-        packed = self._packed(scaled)
-        found: T = self._result((make, packed, *which), made_there, make, packed, *which)
-        return found
+        key = (make, self._packed(scaled), *which)
+        future = self._begun.pop(key, None) or self._submit(made_there, *key)
+        try:
+            return self._waited_for(future)
+        except BrokenExecutor as error:
+            self._lost(error)
+        return self._alone(made_there, *key)
 
     def begin_attempts(self, scaled: ScaledProblem, starts: list[Start], /) -> None:
         """Begin as many as there may soon be processes for."""
         if self.width > 1:
-            for start in starts[: AHEAD * self.width]:
-                self._submit((id(start),), solved_there, self._packed(scaled), start)
+            self._begin_solves(scaled, starts[: (AHEAD_EXACT if scaled.exact else AHEAD) * self.width])
 
-    def begin(self, make: Make[Any], scaled: ScaledProblem, *which: float) -> bool:
+    def begin(self, make: Make[Any], scaled: ScaledProblem, /, *which: float) -> bool:
         """Begin what a function makes; whether it is begun only now."""
         key = (make, self._packed(scaled), *which)
         if self.width == 1 or key in self._begun:
             return False
-        self._submit(key, made_there, *key)
+        self._begun[key] = self._submit(made_there, *key)
         return True
+
+    def drop(self) -> None:
+        """Cancel what is not wanted any more."""
+        for future in (*self._begun.values(), *(future for future, _, _ in self._solves.values())):
+            future.cancel()
+        self._begun.clear()
+        self._solves.clear()
 
     def _packed(self, scaled: ScaledProblem) -> bytes:
         """The problem as one string of bytes, the same for each piece of work."""
@@ -167,35 +178,44 @@ class Elsewhere:
             self._last = (scaled, pickle.dumps(scaled))
         return self._last[1]
 
-    def drop(self) -> None:
-        """Cancel what is not wanted any more."""
-        for future, _ in self._begun.values():
-            future.cancel()
-        self._begun.clear()
+    def _begin_solves(self, scaled: ScaledProblem, starts: list[Start]) -> None:
+        """Begin attempts: exact ones, which take milliseconds each, some in one piece of work."""
+        fresh = [start for start in starts if id(start) not in self._solves]
+        size = BUNDLE if scaled.exact and self.width > 1 else 1
+        for begin in range(0, len(fresh), size):
+            bundle = fresh[begin : begin + size]
+            future = self._submit(solved_there, self._packed(scaled), *bundle)
+            self._solves |= {id(start): (future, place, start) for place, start in enumerate(bundle)}
 
-    def _submit(self, key: tuple[Any, ...], function: Callable[..., Any], *given: Any) -> None:
-        if key not in self._begun:
-            try:
-                self._begun[key] = (self._executor.submit(function, *given), given)
-            except BrokenExecutor as error:
-                self._lost(error)
-                self._begun[key] = (self._executor.submit(function, *given), given)
-
-    def _result(self, key: tuple[Any, ...], function: Callable[..., Any], *given: Any) -> Any:
-        self._submit(key, function, *given)
-        future, _ = self._begun.pop(key)
+    def _solved(self, scaled: ScaledProblem, start: Start, starts: list[Start]) -> Attempt:
+        """The attempt from the first of some starts."""
+        if id(start) not in self._solves:
+            self._begin_solves(scaled, starts)
+        future, place, _ = self._solves.pop(id(start))
         try:
-            return self._waited_for(future)
+            return self._waited_for(future)[place]
         except BrokenExecutor as error:
             self._lost(error)
-        try:  # alone, so that it is known whose fault it is
-            return self._waited_for(self._executor.submit(function, *given))
+        (one,) = self._alone(solved_there, self._packed(scaled), start)
+        return one
+
+    def _submit(self, function: Callable[..., T], *given: Any) -> Future[T]:
+        try:
+            return self._executor.submit(function, *given)
+        except BrokenExecutor as error:
+            self._lost(error)
+            return self._executor.submit(function, *given)
+
+    def _alone(self, function: Callable[..., T], *given: Any) -> T:
+        """What is done once more alone, so that it is known whose fault a loss is."""
+        try:
+            return self._waited_for(self._submit(function, *given))
         except BrokenExecutor as error:
             self._lost(error)
             raise CrashError(f"a worker process was lost twice: {error}") from error
 
-    def _waited_for(self, future: Future[Any]) -> Any:
-        while not wait([future], LOOK).done:
+    def _waited_for(self, future: Future[T]) -> T:
+        while not future.done() and not wait([future], LOOK).done:
             self._look()
         return future.result()
 

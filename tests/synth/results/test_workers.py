@@ -6,15 +6,21 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
+from concurrent.futures import BrokenExecutor, Executor, Future
 from pathlib import Path
 from threading import Thread
+from typing import Any
 
 import pytest
 
 from grashof import load, synthesize
 from grashof.problems import MotionTask, Problem, Requirements
 from grashof.synth import Result
-from grashof.synth.results.workers import CrashError, Processes
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.start import Start
+from grashof.synth.results.plain import plain
+from grashof.synth.results.workers import CrashError, Elsewhere, Here, Processes, screen
 
 CONVEYOR = MotionTask.from_degrees([[0, 0, 0], [60, 90, 15], [180, 140, 40], [300, 90, 70], [360, 0, 90]])
 SEARCHES = {
@@ -40,21 +46,34 @@ def test_workers_change_no_byte(kind: str) -> None:
 
 
 @pytest.fixture
-def processes() -> Processes:
-    made = Processes(1)
+def processes(monkeypatch: pytest.MonkeyPatch) -> Iterator[Processes]:
+    """Two of them, which know the functions of this module."""
+    monkeypatch.syspath_prepend(Path(__file__).parents[3])
+    made = Processes(2)
     yield made
     made.end()
 
 
-def test_a_start_that_ends_its_process_is_given_up_and_the_next_is_not(processes: Processes) -> None:
+def crash(_scaled: ScaledProblem, code: int) -> None:
+    os._exit(code)
+
+
+def nap(_scaled: ScaledProblem, seconds: float) -> float:
+    time.sleep(seconds)
+    return seconds
+
+
+def test_what_ends_its_process_is_given_up_and_the_next_is_not(processes: Processes) -> None:
+    scaled = ScaledProblem.of(load("luggage"))
     with pytest.raises(CrashError, match="a worker process was lost twice"):
-        processes._result(("crash",), os._exit, 7)
-    assert processes._result(("sound",), abs, -3) == 3
+        processes.made(crash, scaled, 7)
+    assert processes.made(nap, scaled, 0.1) == 0.1
 
 
 def test_what_a_lost_process_did_is_done_again(processes: Processes) -> None:
-    processes._submit(("slow",), time.sleep, 0.5)
-    processes._submit(("next",), abs, -5)
+    scaled = ScaledProblem.of(load("luggage"))
+    naps = (0.5, 2.5, 0.1)
+    assert [processes.begin(nap, scaled, seconds) for seconds in (*naps, 0.5)] == [True, True, True, False]
     before = multiprocessing.active_children()
 
     def kill() -> None:
@@ -63,10 +82,46 @@ def test_what_a_lost_process_did_is_done_again(processes: Processes) -> None:
             child.kill()
 
     Thread(target=kill).start()
-    processes._submit(("long",), time.sleep, 2.5)
-    assert processes._result(("slow",), time.sleep, 0.5) is None
-    assert processes._result(("long",), time.sleep, 2.5) is None
-    assert processes._result(("next",), abs, -5) == 5
+    assert [processes.made(nap, scaled, seconds) for seconds in naps] == list(naps)
+
+
+class Killing(Executor):
+    """An executor whose process ends with certain starts."""
+
+    def __init__(self, fatal: list[Start]) -> None:
+        self.fatal = fatal
+
+    def submit(self, function: Any, /, *given: Any, **named: Any) -> Future[Any]:
+        future = Future[Any]()
+        if any(start is fatal for fatal in self.fatal for start in given):
+            future.set_exception(BrokenExecutor("lost"))
+        else:
+            future.set_result(function(*given, **named))
+        return future
+
+
+class Replaced(Elsewhere):
+    """Work whose lost processes are replaced at once."""
+
+    def _lost(self, _error: BrokenExecutor) -> None:
+        self.drop()
+
+
+def test_of_a_bundle_only_the_start_at_fault_is_given_up() -> None:
+    scaled = ScaledProblem.of(load("luggage"))
+    found = screen(scaled, 0, 0, 50, 0)
+    assert found is not None
+    starts = found.starts[:10]
+    alone = Here().attempts(scaled, starts, 5)
+    work = Replaced(Killing([starts[2], starts[9]]), 2)
+    work.begin_attempts(scaled, starts)
+    made = work.attempts(scaled, starts, 5)
+    assert [one.status for one in made] == [
+        "Crashed" if k in (2, 9) else one.status for k, one in enumerate(alone)
+    ]
+    for k, (one, other) in enumerate(zip(made, alone, strict=True)):
+        if k not in (2, 9):
+            assert repr(plain(one)) == repr(plain(other))
 
 
 PARENT = """
