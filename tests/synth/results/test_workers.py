@@ -65,8 +65,10 @@ def nap(_scaled: ScaledProblem, seconds: float) -> float:
 
 def test_what_ends_its_process_is_given_up_and_the_next_is_not(processes: Processes) -> None:
     scaled = ScaledProblem.of(load("luggage"))
+    assert processes.begin(crash, scaled, 7)  # else it is done here as long as they begin
     with pytest.raises(CrashError, match="a worker process was lost twice"):
         processes.made(crash, scaled, 7)
+    assert processes.begin(nap, scaled, 0.1)
     assert processes.made(nap, scaled, 0.1) == 0.1
 
 
