@@ -85,6 +85,11 @@ def synthesize(
     SolverError
         A worker process or the executor was lost.
 
+    Notes
+    -----
+    Several threads may search at once, each with its own `stop` and `time_limit`, and judge designs by
+    functions of your own; they solve in turn, and must not use CasADi beside that meanwhile.
+
     Examples
     --------
     >>> from grashof import load
