@@ -18,6 +18,7 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.programme.user_functions import mended
 from grashof.synth.results.attempt import Attempt
+from grashof.synth.results.candidate import Candidate
 from grashof.synth.results.journal import Journal, Unrecorded
 from grashof.synth.results.ledger import SAME, Ledger
 from grashof.synth.results.workers import Work
@@ -43,14 +44,23 @@ class Progress:
     ----------
     solved, starts : int
         Solves done, and most that there can be.
-    verified, enough : int
-        Distinct verified designs, and how many are enough.
+    enough : int
+        How many distinct verified designs are enough.
+    designs : tuple of Candidate
+        Those found so far, best first: accepted under what this search asks for (`Candidate.problem`),
+        all targets met or least squares, before a choice is made of them. ``Result(problem, designs)``
+        makes a list of them.
     """
 
     solved: int
     starts: int
-    verified: int
     enough: int
+    designs: tuple[Candidate, ...] = field(default=(), repr=False)
+
+    @property
+    def verified(self) -> int:
+        """How many distinct verified designs there are."""
+        return len(self.designs)
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,8 +204,7 @@ def _solve_round(found: Round, ledger: Ledger, run: Run) -> None:
         run.begin(scaled, some + ledger.promising(found, starts[begin + batch :]))
         if some:
             _solve(some[: ledger.starts - ledger.solved], ledger, run)
-        if run.progress is not None:
-            run.progress(Progress(ledger.solved, ledger.starts, len(ledger.best), enough))
+        _tell(ledger, run)
 
 
 def _continue_best(ledger: Ledger, run: Run) -> None:
@@ -207,8 +216,14 @@ def _continue_best(ledger: Ledger, run: Run) -> None:
             return
         before = ledger.least
         _solve([Start.of_linkage(scaled, best.linkage, best.verdict)], ledger, run)
+        _tell(ledger, run)
         if ledger.least > before * (1 - SAME):
             return
+
+
+def _tell(ledger: Ledger, run: Run) -> None:
+    if run.progress is not None:
+        run.progress(Progress(ledger.solved, ledger.starts, run.search.enough, ledger.best))
 
 
 def _solve(starts: list[Start], ledger: Ledger, run: Run) -> None:
