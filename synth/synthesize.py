@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
@@ -11,7 +12,7 @@ from typing import Any
 
 from grashof.analysis.judge.design import Constraint, OwnObjective
 from grashof.problems import Problem, ProblemError
-from grashof.problems.values.checks import finite_number, whole_number
+from grashof.problems.values.checks import finite_number, readable, whole_number
 from grashof.problems.values.errors import wrong_value
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.user_functions import refuse_unusable
@@ -21,10 +22,13 @@ from grashof.synth.results.families import listed
 from grashof.synth.results.journal import journal_of
 from grashof.synth.results.result import Result
 from grashof.synth.results.search import Progress, Run, searches
+from grashof.synth.results.story import Asking, Story, now
 from grashof.synth.results.tally import CHOICE, DISTINCT
 from grashof.synth.results.workers import working
 from grashof.synth.starts.finder import finder_for, finder_of
 from grashof.synth.theory.stopping import stopping
+
+_LOG = logging.getLogger(__name__)
 
 
 def synthesize(
@@ -109,36 +113,51 @@ def synthesize(
     if record is not None and (constraints or objective is not None):
         raise ProblemError("record does not go with constraints or an objective of your own")
     finder_of(problem).refuse()
-    begun = perf_counter()
+    since, begun, asked = now(), perf_counter(), Asking(time_limit, stop)
+    how = problem.task.kind, search.seed, search.effort, search.starts, workers
+    _LOG.info("%s: %s; seed %d, effort %g, at most %d starts, %d at a time", readable(problem.name), *how)
     scaled = ScaledProblem.of(problem, constraints, objective)
     refuse_unusable(scaled, in_processes=workers > 1 or executor is not None)
     if reason := finder_for(scaled).degenerate():
-        return Result(problem, seconds={"total": perf_counter() - begun}, note=f"no design: {reason}")
-
-    def ended() -> bool:
-        out_of_time = time_limit is not None and perf_counter() - begun > time_limit
-        return out_of_time or (stop is not None and stop())
-
+        told = Story(begun=since, ended=now(), ending=asked.ending)
+        return Result(
+            problem, seconds={"total": perf_counter() - begun}, note=f"no design: {reason}", story=told
+        )
     with (
-        stopping(ended),
+        stopping(asked),
         journal_of(record, problem, search) as journal,
         working(workers, executor) as work,
     ):
-        run = Run(search, work, ended, journal, progress)
+        run = Run(search, work, asked, journal, progress)
         ledgers = searches(scaled, run)  # starts, solves, verified designs
         chosen = choose(scaled, ledgers, run)
+        _LOG.info("choice: %d designs, %d solves for it", len(chosen.designs), chosen.solved)
         explanation = explain(scaled, ledgers[-1], chosen, run)
+        if explanation.note:
+            _LOG.info("explanation: %s", explanation.note)
         run.ended()
     ledger, designs = ledgers[-1], listed(problem, chosen.designs or explanation.designs)
     ledger.tally.totals.update({CHOICE: chosen.solved, DISTINCT: len(designs)})
+    story = Story(
+        begun=since,
+        ended=now(),
+        ending=asked.ending,
+        resumed=journal.resumed,
+        steps_recorded=journal.taken,
+        processes_lost=work.lost,
+        starts_crashed=tuple(run.crashed),
+    )
+    ended, total = why_ended(scaled, ledger), perf_counter() - begun
+    _LOG.info("ended after %.1f s, %s: %d designs; %s", total, story.ending, len(designs), ended or "enough")
     return Result(
         problem=problem,
         candidates=designs,
         nearest=explanation.nearest,
         tally=ledger.tally,
-        seconds={**run.seconds, "total": perf_counter() - begun},
+        seconds={**run.seconds, "total": total},
         note=explanation.note,
         complete=ledger.complete,
-        ended=why_ended(scaled, ledger),
+        ended=ended,
         least_error=least_error(scaled, ledger),
+        story=story,
     )

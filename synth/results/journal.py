@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import logging
 import os
 import tempfile
 from collections import deque
@@ -19,6 +20,7 @@ from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.synth.results.plain import plain, restored
 
+_LOG = logging.getLogger(__name__)
 FORMAT = 1
 HEAD = "search.json"
 EVERY = 2.0  # s of work that a file holds
@@ -33,6 +35,14 @@ class Journal(Protocol):
     @property
     def recorded(self) -> bool:
         """Whether the next step is recorded, or may be."""
+
+    @property
+    def resumed(self) -> int:
+        """How often the search was gone on with."""
+
+    @property
+    def taken(self) -> int:
+        """How many steps were taken from the record."""
 
     def done(self, kind: str, of: Any, problem: Problem, do: Callable[[], T], /) -> T:
         """The result of the next step: as recorded, else done now.
@@ -56,7 +66,7 @@ class Journal(Protocol):
 class Unrecorded:
     """No journal: every step is done."""
 
-    recorded = False
+    recorded, resumed, taken = False, 0, 0
 
     def done(self, _kind: str, _of: Any, _problem: Problem, do: Callable[[], T], /) -> T:
         """The result of a step."""
@@ -93,8 +103,11 @@ class Recorded:
         self._recorded: deque[dict[str, Any]] = deque()
         self._unread, self._fresh = deque[Path](), list[dict[str, Any]]()
         self._written, self._since, self._open = 0, monotonic(), True
+        self.resumed = self.taken = 0
         if (folder / HEAD).exists():
             refuse_other(folder, self._head)
+            self.resumed = _resumed(folder) + 1
+            self._write_head()
             self._unread.extend(sorted(folder.glob("[0-9]*.json")))
 
     def done(self, kind: str, of: Any, problem: Problem, do: Callable[[], T], /) -> T:
@@ -148,9 +161,14 @@ class Recorded:
         step = self._recorded.popleft()
         try:
             if step["step"] == name:
-                return (restored(step["result"], problem),)
+                known = (restored(step["result"], problem),)
+                self.taken += 1
+                if not self.recorded:
+                    _LOG.info("resumed from a record of %d steps", self.taken)
+                return known
         except (ValueError, KeyError, TypeError):  # what is damaged is done again
             pass
+        _LOG.info("resumed from a record of %d steps; what follows in it is done again", self.taken)
         self._forget()
         return None
 
@@ -164,10 +182,13 @@ class Recorded:
     def _write(self) -> None:
         self._folder.mkdir(exist_ok=True)
         if not (self._folder / HEAD).exists():
-            _write_whole(self._folder / HEAD, self._head)
+            self._write_head()
         self._written += 1
         _write_whole(self._folder / f"{self._written:06}.json", {"steps": self._fresh})
         self._fresh, self._since = [], monotonic()
+
+    def _write_head(self) -> None:
+        _write_whole(self._folder / HEAD, {**self._head, "resumed": self.resumed})
 
 
 @contextmanager
@@ -201,6 +222,12 @@ def refuse_other(folder: Path, head: Mapping[str, Any]) -> None:
         if known[key] != value:
             there = f"{folder}: is the record of a search with {key} {known[key]}"
             raise ProblemError(f"{there}; here it is {value}")
+
+
+def _resumed(folder: Path) -> int:
+    """How often the search of a record was gone on with."""
+    count = json.loads((folder / HEAD).read_text(encoding="utf-8")).get("resumed")
+    return count if isinstance(count, int) else 0
 
 
 def _head(problem: Problem, search: Search) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -21,10 +22,11 @@ from grashof.synth.results.attempt import Attempt
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.results.journal import Journal, Unrecorded
 from grashof.synth.results.ledger import SAME, Ledger
-from grashof.synth.results.workers import Work
+from grashof.synth.results.workers import CRASHED, Work
 from grashof.synth.starts.finder import Finder, asked_first, finder_for, rounds
 from grashof.synth.theory.stopping import Stopped
 
+_LOG = logging.getLogger(__name__)
 # Solves between two looks at what is verified, fixed, so that workers change nothing: of exact designs,
 # and of least squares, where every look may spare solves.
 BATCH, BATCH_LEAST_SQUARES = 16, 8
@@ -79,6 +81,8 @@ class Run:
         Called with a `Progress` after every batch.
     seconds : dict
         Time by stage.
+    crashed : list of int
+        Numbers of the starts that end the process that solves them.
     """
 
     search: Search
@@ -87,6 +91,7 @@ class Run:
     journal: Journal = field(default_factory=Unrecorded)
     progress: Callable[[Progress], object] | None = None
     seconds: dict[str, float] = field(default_factory=lambda: {"screening": 0.0, "solving": 0.0})
+    crashed: list[int] = field(default_factory=list)
 
     def ended(self) -> bool:
         """Whether to be content with what there is; nothing is recorded any more then."""
@@ -105,7 +110,17 @@ class Run:
         if not starts:
             return []
         step = ("solve", (first, *starts), scaled.problem)
-        return self.journal.done(*step, lambda: self.whole(self.work.attempts(scaled, starts, first)))
+        made = self.journal.done(*step, lambda: self.whole(self.work.attempts(scaled, starts, first)))
+        self._log(made, first)
+        return made
+
+    def _log(self, made: list[Attempt], first: int) -> None:
+        for number, one in enumerate(made, first):
+            if one.status == CRASHED:
+                self.crashed.append(number)
+                _LOG.warning("start %d ends the process that solves it, and is given up", number)
+            elif _LOG.isEnabledFor(logging.DEBUG):
+                _LOG.debug("start %d: %s, %s", number, one.outcome, one.status)
 
     def screened(self, scaled: ScaledProblem, effort: int, number: int) -> Round | None:
         """One round of a search; those that more effort adds are larger."""
@@ -154,9 +169,13 @@ def search_designs(scaled: ScaledProblem, run: Run) -> Ledger:
     """Find starts, solve from them, and keep what is verified, round by round until there is enough."""
     finder = finder_for(scaled)
     ledger = Ledger(scaled, run.search, finder.exhausted)
-    for found in _rounds(finder, ledger, run):
+    _LOG.info("search begun: %s, %d targets", type(finder).__name__, len(scaled.targets))
+    for number, found in enumerate(_rounds(finder, ledger, run), start=1):
         with run.timed("solving"):
             _solve_round(found, ledger, run)
+        error = "" if scaled.exact else f", least error {ledger.least:.3g} sizes"
+        told = number, len(found.starts), ledger.solved, ledger.starts, len(ledger.best), error
+        _LOG.info("round %d: %d starts; %d of %d solves, %d designs%s", *told)
         if run.ended():
             ledger.complete = ledger.done or ledger.ended
             break

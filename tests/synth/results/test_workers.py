@@ -50,6 +50,7 @@ def test_a_start_that_ends_its_process_is_given_up_and_the_next_is_not(processes
     with pytest.raises(CrashError, match="a worker process was lost twice"):
         processes._result(("crash",), os._exit, 7)
     assert processes._result(("sound",), abs, -3) == 3
+    assert processes.lost == 2
 
 
 def test_what_a_lost_process_did_is_done_again(processes: Processes) -> None:
