@@ -133,6 +133,10 @@ def solve(
         str | None,
         typer.Option(help="Dask scheduler to work on, such as tcp://host:8786.", show_default=False),
     ] = None,
+    log: Annotated[
+        Path | None,
+        typer.Option(help="File to append a log to: rounds, every start, what was lost.", show_default=False),
+    ] = None,
 ) -> None:
     """Find designs for PROBLEM; write the ranked list, a page, drawings and the record of the run.
 
@@ -152,6 +156,7 @@ def solve(
             drawings=drawings,
             resume=resume,
             scheduler=scheduler,
+            log=log,
         )
         raise typer.Exit(commands.solve(loaded, text, options))
 

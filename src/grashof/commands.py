@@ -33,6 +33,8 @@ class Options:
         Address of a Dask scheduler, where to work instead.
     resume : bool
         Go on with the search that the folder has a record of.
+    log : Path, optional
+        File that the log goes to.
     """
 
     out: Path | None = None
@@ -45,22 +47,24 @@ class Options:
     drawings: int = 3
     scheduler: str | None = None
     resume: bool = False
+    log: Path | None = None
 
 
 def solve(problem: Problem, text: str, options: Options) -> Exit:
     """Search for designs and write them; `text` is the problem file."""
     from grashof.output.folder import check_writable, in_use
+    from grashof.output.log_file import logged
 
     folder = options.out if options.out is not None else Path(f"{problem.name}-designs")
     check_writable(folder, options.drawings)
-    with in_use(folder):
+    with in_use(folder), logged(options.log, folder):
         return _solve(problem, text, options, folder)
 
 
 def _solve(problem: Problem, text: str, options: Options, folder: Path) -> Exit:
     from grashof.output.cluster import cluster
     from grashof.output.folder import PAGE, SEARCH
-    from grashof.output.run_files import write_run
+    from grashof.output.run_files import left_out, write_run
     from grashof.output.terminal import print_table, search_progress
     from grashof.synth import synthesize
     from grashof.synth.starts.finder import finder_of
@@ -93,10 +97,14 @@ def _solve(problem: Problem, text: str, options: Options, folder: Path) -> Exit:
             say(f"{folder / SEARCH}: the search so far; --resume goes on with it", err=True)
         result = found.top(top)
         if result.candidates or result.complete:  # an interrupted search with nothing replaces nothing
-            run = {"workers": options.workers, "time_limit": options.time_limit, "top": top}
+            dask = None if options.scheduler is None else "Dask"  # not where: that names machines
+            run = {"workers": workers, "scheduler": dask, "time_limit": options.time_limit, "top": top}
             settings = {**asdict(search), **run}
             files = write_run(folder, result, settings, options.drawings, stop=interrupted, problem_text=text)
             _report(result.note, files, folder)
+            if left := left_out(result, options.drawings, files):
+                signal = "SIGTERM" if interrupted.code is Exit.TERMINATED else "Ctrl-C"
+                say(f"drawings are left out: {signal} came before {left} of them were made", err=True)
         else:
             say(result.note, err=True)
         if result.candidates:
