@@ -172,6 +172,10 @@ def sweep(
     top: Annotated[
         int | None, typer.Option(min=1, help="Best designs listed of each combination.", show_default=False)
     ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(help="Dask scheduler to work on, such as tcp://host:8786.", show_default=False),
+    ] = None,
 ) -> None:
     """Solve every combination of STUDY; write a table, a plot, a page and the record of the sweep.
 
@@ -181,7 +185,7 @@ def sweep(
     from grashof.sweep.command import run
 
     with _errors_told():
-        raise typer.Exit(run(study, out, workers, resume, top))
+        raise typer.Exit(run(study, out, workers, resume, top, scheduler))
 
 
 @app.command()
