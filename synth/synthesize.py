@@ -148,7 +148,8 @@ def synthesize(
         starts_crashed=tuple(run.crashed),
     )
     ended, total = why_ended(scaled, ledger), perf_counter() - begun
-    _LOG.info("ended after %.1f s, %s: %d designs; %s", total, story.ending, len(designs), ended or "enough")
+    why = f"; {ended}" if ended else ""
+    _LOG.info("ended after %.1f s, %s: %d designs%s", total, story.ending, len(designs), why)
     return Result(
         problem=problem,
         candidates=designs,
