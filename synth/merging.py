@@ -11,9 +11,9 @@ from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.toml_file import file_text
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.results.asked import ending
+from grashof.synth.results.asked import asking
 from grashof.synth.results.chunks import CHUNK, which
-from grashof.synth.results.conclusion import conclude
+from grashof.synth.results.conclusion import conclude, needless
 from grashof.synth.results.journal import WHOLE, head_of, read_head, recorded_steps, refuse_other, step_name
 from grashof.synth.results.judging import judged_again
 from grashof.synth.results.ledger import Chunk, Ledger
@@ -23,7 +23,6 @@ from grashof.synth.results.run import Progress, Run
 from grashof.synth.results.search import finished, found_few
 from grashof.synth.results.workers import working
 from grashof.synth.shards import PROBLEM, SHARDS, Plan, Shard
-from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.stopping import stopping
 
 NAMED = 12  # shards that a message names
@@ -148,15 +147,14 @@ def merge_shards(
     ...     merge_shards(Path(name), partial=True).best.verdict.ok
     True
     """
-    shards = Shards.found(folder)
+    asked, shards = asking(None, stop), Shards.found(folder)
     if shards.lacking and not partial:
         raise ProblemError(f"{folder}: {shards.lacking} to be done; --partial merges the others")
     plan = Plan(ScaledProblem.of(shards.problem), shards.search)
     if not plan.problems:
-        return Result(shards.problem, note=f"no design: {finder_for(plan.scaled).degenerate()}")
-    ended = ending(None, stop)
-    with stopping(ended), working(workers, None) as work:
-        run = Run(shards.search, work, ended, progress=progress)
+        return needless(plan.scaled, asked)
+    with stopping(asked), working(workers, None) as work:
+        run = Run(shards.search, work, asked, progress=progress)
         ledgers = [plan.ledger(scaled, plan.count) for scaled in plan.problems]
         with run.timed("merging"):
             for ledger, chunk in shards.chunks(ledgers, plan):
@@ -165,7 +163,7 @@ def merge_shards(
             for ledger in ledgers:
                 _refuse_unverified(folder, ledger)
         used = ledgers if found_few(ledgers[0]) else ledgers[:1]
-        return conclude(plan.scaled, [finished(ledger, run) for ledger in used], run)
+        return conclude(plan.scaled, [finished(ledger, run) for ledger in used], run, asked)
 
 
 def _named(folder: Path) -> Iterator[Shard]:

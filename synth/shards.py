@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
@@ -12,7 +13,7 @@ from grashof.problems.files.on_disk import write_whole
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.errors import wrong_value
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.results.asked import ending, search_of
+from grashof.synth.results.asked import asking, search_of
 from grashof.synth.results.chunks import chunks
 from grashof.synth.results.journal import Recorded, head_of
 from grashof.synth.results.ledger import Ledger
@@ -22,6 +23,7 @@ from grashof.synth.results.workers import working
 from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.stopping import Stopped, stopping
 
+_LOG = logging.getLogger(__name__)
 SHARDS = "shards"  # folder of theirs
 PROBLEM = "problem.toml"
 MOST = 100_000  # shards of a search
@@ -184,7 +186,7 @@ def solve_shard(
     ...     len(merge_shards(Path(name))) >= made.designs > 0
     True
     """
-    ended = ending(time_limit, stop)
+    asked = asking(time_limit, stop)
     search = search_of(problem, workers, starts=starts, enough=enough, seed=seed, effort=effort)
     plan, own = Plan(ScaledProblem.of(problem), search), folder / SHARDS / shard.folder
     numbers = plan.numbers(shard)
@@ -195,14 +197,16 @@ def solve_shard(
     journal.begin()
     done = 0
     ledgers = [plan.ledger(*each) for each in zip(plan.problems, map(len, numbers), strict=True)]
-    with stopping(ended), working(workers, executor) as work:
-        run = Run(search, work, ended, journal, progress)
+    with stopping(asked), working(workers, executor) as work:
+        run = Run(search, work, asked, journal, progress)
         try:
             for ledger, mine in zip(ledgers, numbers, strict=True):
                 for one in chunks(ledger.scaled, run, mine, plan.starts):
                     ledger.absorb(one)
                     done += 1
                     run.tell(ledger)
+                    told = shard, done, ledger.solved, len(ledger.best)
+                    _LOG.info("shard %s: %d chunks, %d solves, %d designs", *told)
         except Stopped:
             journal.close()
         whole = journal.is_open

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from pathlib import Path
 
 from grashof.analysis.judge.design import Constraint, OwnObjective
 from grashof.problems import Problem, ProblemError
+from grashof.problems.values.checks import readable
 from grashof.problems.values.errors import wrong_value
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.user_functions import refuse_unusable
-from grashof.synth.results.asked import ending, search_of
-from grashof.synth.results.conclusion import conclude
+from grashof.synth.results.asked import asking, search_of
+from grashof.synth.results.conclusion import conclude, needless
 from grashof.synth.results.journal import journal_of
 from grashof.synth.results.result import Result
 from grashof.synth.results.run import Progress, Run
@@ -20,6 +22,8 @@ from grashof.synth.results.search import searches
 from grashof.synth.results.workers import working
 from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.stopping import stopping
+
+_LOG = logging.getLogger(__name__)
 
 
 def synthesize(
@@ -80,6 +84,11 @@ def synthesize(
     SolverError
         A worker process or the executor was lost.
 
+    Notes
+    -----
+    Several threads may search at once, each with its own `stop` and `time_limit`, and judge designs by
+    functions of your own; they solve in turn, and must not use CasADi beside that meanwhile.
+
     Examples
     --------
     >>> from grashof import load
@@ -87,20 +96,22 @@ def synthesize(
     >>> result.best.verdict.ok, bool(result.best.verdict.error_max < 1e-9)
     (True, True)
     """
-    ended = ending(time_limit, stop)
+    asked = asking(time_limit, stop)
     search = search_of(problem, workers, starts=starts, enough=enough, seed=seed, effort=effort)
     if isinstance(constraints, str) or not isinstance(constraints, Sequence):
         raise wrong_value("constraints", constraints, "a list of functions of a design")
     if record is not None and (constraints or objective is not None):
         raise ProblemError("record does not go with constraints or an objective of your own")
+    how = problem.task.kind, search.seed, search.effort, search.starts, workers
+    _LOG.info("%s: %s; seed %d, effort %g, at most %d starts, %d at a time", readable(problem.name), *how)
     scaled = ScaledProblem.of(problem, constraints, objective)
     refuse_unusable(scaled, in_processes=workers > 1 or executor is not None)
-    if reason := finder_for(scaled).degenerate():
-        return Result(problem, note=f"no design: {reason}")
+    if finder_for(scaled).degenerate():
+        return needless(scaled, asked)
     with (
-        stopping(ended),
+        stopping(asked),
         journal_of(record, problem, search) as journal,
         working(workers, executor) as work,
     ):
-        run = Run(search, work, ended, journal, progress)
-        return conclude(scaled, searches(scaled, run), run)
+        run = Run(search, work, asked, journal, progress)
+        return conclude(scaled, searches(scaled, run), run, asked)

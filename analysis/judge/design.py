@@ -10,6 +10,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.judge.one_at_a_time import one_at_a_time
 from grashof.analysis.judge.verdict import Verdict
 from grashof.problems import FourBar, ProblemError
 from grashof.problems.values.arrays import FloatArray, IntArray
@@ -77,6 +78,7 @@ Constraint: TypeAlias = Callable[[Design], Any]  # zero or negative where it is 
 OwnObjective: TypeAlias = Callable[[Design], Any]  # smaller is better; a scalar
 
 
+@one_at_a_time
 def greatest(constraint: Constraint, design: Design, what: str = "constraint") -> float:
     """The greatest of the values of a constraint, or objective, on the numbers of a design; NaN when one is.
 

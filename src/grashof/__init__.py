@@ -1,5 +1,6 @@
 """Grashof finds planar linkages that do a job, proves that they do it, and ranks them."""
 
+import logging
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -28,6 +29,8 @@ __all__ = [
     "plot_linkage",
     "synthesize",
 ]
+
+logging.getLogger(__name__).addHandler(logging.NullHandler())  # who uses the library decides what is logged
 
 # Loaded on first use: `import grashof.analysis` must not pay for, or depend on, CasADi.
 _HOMES = {

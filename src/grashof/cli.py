@@ -145,6 +145,10 @@ def solve(
             metavar="I/N", help="Part I of N of the whole search; grashof merge follows.", show_default=False
         ),
     ] = None,
+    log: Annotated[
+        Path | None,
+        typer.Option(help="File to append a log to: rounds, every start, what was lost.", show_default=False),
+    ] = None,
 ) -> None:
     """Find designs for PROBLEM; write the ranked list, a page, drawings and the record of the run.
 
@@ -164,6 +168,7 @@ def solve(
             drawings=drawings,
             resume=resume,
             scheduler=scheduler,
+            log=log,
         )
         if shard is not None:
             raise typer.Exit(commands.solve_shard(loaded, text, shard, options))
@@ -200,6 +205,10 @@ def sweep(
     top: Annotated[
         int | None, typer.Option(min=1, help="Best designs listed of each combination.", show_default=False)
     ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(help="Dask scheduler to work on, such as tcp://host:8786.", show_default=False),
+    ] = None,
 ) -> None:
     """Solve every combination of STUDY; write a table, a plot, a page and the record of the sweep.
 
@@ -209,7 +218,7 @@ def sweep(
     from grashof.sweep.command import run
 
     with _errors_told():
-        raise typer.Exit(run(study, out, workers, resume, top))
+        raise typer.Exit(run(study, out, workers, resume, top, scheduler))
 
 
 @app.command()

@@ -37,6 +37,8 @@ class Options:
         Address of a Dask scheduler, where to work instead.
     resume : bool
         Go on with the search that the folder has a record of.
+    log : Path, optional
+        File that the log goes to.
     """
 
     out: Path | None = None
@@ -49,15 +51,17 @@ class Options:
     drawings: int = 3
     scheduler: str | None = None
     resume: bool = False
+    log: Path | None = None
 
 
 def solve(problem: Problem, text: str, options: Options) -> Exit:
     """Search for designs and write them; `text` is the problem file."""
     from grashof.output.folder import check_writable, in_use
+    from grashof.output.log_file import logged
 
     folder = options.out if options.out is not None else Path(f"{problem.name}-designs")
     check_writable(folder, options.drawings)
-    with in_use(folder):
+    with in_use(folder), logged(options.log, folder):
         return _solve(problem, text, options, folder)
 
 
@@ -92,7 +96,8 @@ def _solve(problem: Problem, text: str, options: Options, folder: Path) -> Exit:
             )
         if (folder / SEARCH).exists():
             say(f"{folder / SEARCH}: the search so far; --resume goes on with it", err=True)
-        run = {"workers": options.workers, "time_limit": options.time_limit, "top": top}
+        dask = None if options.scheduler is None else "Dask"  # not where: that names machines
+        run = {"workers": workers, "scheduler": dask, "time_limit": options.time_limit, "top": top}
         settings = {**asdict(search), **run}
         return _deliver(found, text, settings, folder, options.drawings, interrupted)
 
@@ -107,7 +112,7 @@ def _deliver(
 ) -> Exit:
     """Write what a search found, and print the list."""
     from grashof.output.folder import PAGE
-    from grashof.output.run_files import write_run
+    from grashof.output.run_files import left_out, write_run
     from grashof.output.terminal import print_table
 
     if found.ended:
@@ -116,6 +121,9 @@ def _deliver(
     if result.candidates or result.complete:  # an interrupted search with nothing replaces nothing
         files = write_run(folder, result, settings, drawings, stop=interrupted, problem_text=text)
         _report(result.note, files, folder)
+        if left := left_out(result, drawings, files):
+            signal = "SIGTERM" if interrupted.code is Exit.TERMINATED else "Ctrl-C"
+            say(f"drawings are left out: {signal} came before {left} of them were made", err=True)
     else:
         say(result.note, err=True)
     if result.candidates:
@@ -131,6 +139,7 @@ def solve_shard(problem: Problem, text: str, stated: str, options: Options) -> E
     """Make a shard of a search, such as 7/200; what its folder has of it is not done again."""
     from grashof.output.cluster import cluster
     from grashof.output.folder import check_writable, in_use
+    from grashof.output.log_file import logged
     from grashof.output.terminal import search_progress
     from grashof.synth.shards import SHARDS, Shard, solve_shard
 
@@ -139,8 +148,10 @@ def solve_shard(problem: Problem, text: str, stated: str, options: Options) -> E
     shard = Shard.stated(stated)
     folder = options.out if options.out is not None else Path(f"{problem.name}-designs")
     check_writable(folder)
+    own = folder / SHARDS / shard.folder
     with (
-        in_use(folder / SHARDS / shard.folder),
+        in_use(own),
+        logged(options.log, own),
         interruptible() as interrupted,
         cluster(options.scheduler, options.workers) as (executor, workers),
         search_progress(problem.name, f"shard {shard}", wanted=False) as progress,

@@ -11,6 +11,7 @@ import casadi as ca
 import numpy as np
 
 from grashof.analysis.judge.design import Constraint, OwnObjective
+from grashof.analysis.judge.one_at_a_time import one_at_a_time
 from grashof.synth.programme.builder import Builder, Programme, always
 from grashof.synth.programme.constraints import (
     Targets,
@@ -27,7 +28,6 @@ from grashof.synth.programme.constraints import (
 )
 from grashof.synth.programme.limits import cost_of_goals, peak_unit, require_limits
 from grashof.synth.programme.on_symbols import numpy_on_symbols
-from grashof.synth.programme.one_at_a_time import one_at_a_time
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import Form

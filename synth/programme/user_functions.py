@@ -11,13 +11,13 @@ import casadi as ca
 import numpy as np
 
 from grashof.analysis.judge.design import Constraint, Design, OwnObjective, greatest, name_of
+from grashof.analysis.judge.one_at_a_time import one_at_a_time
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.problem import NO_OBJECTIVE
 from grashof.synth.programme.on_symbols import on_symbols
-from grashof.synth.programme.one_at_a_time import one_at_a_time
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Start

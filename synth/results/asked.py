@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from time import perf_counter
 
 from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.values.checks import finite_number, whole_number
 from grashof.problems.values.errors import wrong_value
+from grashof.synth.results.story import Asking
 from grashof.synth.starts.finder import finder_of
 
 
@@ -29,7 +29,7 @@ def search_of(problem: Problem, workers: int, **given: float | None) -> Search:
     return search
 
 
-def ending(time_limit: float | None, stop: Callable[[], bool] | None) -> Callable[[], bool]:
+def asking(time_limit: float | None, stop: Callable[[], bool] | None) -> Asking:
     """What is asked whether to end: after a time from now on, s, or because somebody wants it.
 
     Raises
@@ -39,10 +39,4 @@ def ending(time_limit: float | None, stop: Callable[[], bool] | None) -> Callabl
     """
     if time_limit is not None and finite_number(time_limit, "time_limit") <= 0:
         raise wrong_value("time_limit", time_limit, "a time in s greater than zero")
-    begun = perf_counter()
-
-    def ended() -> bool:
-        out_of_time = time_limit is not None and perf_counter() - begun > time_limit
-        return out_of_time or (stop is not None and stop())
-
-    return ended
+    return Asking(time_limit, stop)

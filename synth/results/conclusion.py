@@ -1,6 +1,8 @@
-"""What a search comes to: what is chosen of its designs, or why there is none."""
+"""What a search comes to: what is chosen of its designs, or why there is none, and what happened."""
 
 from __future__ import annotations
+
+import logging
 
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.results.choice import choose, least_error, why_ended
@@ -9,25 +11,52 @@ from grashof.synth.results.families import listed
 from grashof.synth.results.ledger import Ledger
 from grashof.synth.results.result import Result
 from grashof.synth.results.run import Run
+from grashof.synth.results.story import Asking, Story, now
 from grashof.synth.results.tally import CHOICE, DISTINCT
+from grashof.synth.starts.finder import finder_for
+
+_LOG = logging.getLogger(__name__)
 
 
-def conclude(scaled: ScaledProblem, ledgers: list[Ledger], run: Run) -> Result:
+def conclude(scaled: ScaledProblem, ledgers: list[Ledger], run: Run, asked: Asking) -> Result:
     """The ranked list of what one or two searches found, or why it is empty."""
     chosen = choose(scaled, ledgers, run)
+    _LOG.info("choice: %d designs, %d solves for it", len(chosen.designs), chosen.solved)
     explanation = explain(scaled, ledgers[-1], chosen, run)
+    if explanation.note:
+        _LOG.info("explanation: %s", explanation.note)
     run.ended()
     problem, ledger = scaled.problem, ledgers[-1]
     designs = listed(problem, chosen.designs or explanation.designs)
     ledger.tally.totals.update({CHOICE: chosen.solved, DISTINCT: len(designs)})
+    story = Story(
+        begun=asked.begun,
+        ended=now(),
+        ending=asked.ending,
+        resumed=run.journal.resumed,
+        steps_recorded=run.journal.taken,
+        processes_lost=run.work.lost,
+        starts_crashed=tuple(run.crashed),
+    )
+    ended, seconds = why_ended(scaled, ledger), run.times
+    why = f"; {ended}" if ended else ""
+    _LOG.info("ended after %.1f s, %s: %d designs%s", seconds["total"], story.ending, len(designs), why)
     return Result(
         problem=problem,
         candidates=designs,
         nearest=explanation.nearest,
         tally=ledger.tally,
-        seconds=run.times,
+        seconds=seconds,
         note=explanation.note,
         complete=ledger.complete,
-        ended=why_ended(scaled, ledger),
+        ended=ended,
         least_error=least_error(scaled, ledger),
+        story=story,
     )
+
+
+def needless(scaled: ScaledProblem, asked: Asking) -> Result:
+    """The empty list of targets that need no linkage."""
+    story = Story(begun=asked.begun, ended=now(), ending=asked.ending)
+    note = f"no design: {finder_for(scaled).degenerate()}"
+    return Result(scaled.problem, seconds={"total": 0.0}, note=note, story=story)

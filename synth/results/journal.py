@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import logging
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -17,9 +18,10 @@ from grashof.problems.files.on_disk import WRITING, versions, write_whole
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.synth.results.plain import plain, restored
 
+_LOG = logging.getLogger(__name__)
 FORMAT = 2
 HEAD = "search.json"
-WHOLE = "whole"  # in the head: nothing is left to be done
+RESUMED, WHOLE = "resumed", "whole"  # in the head: how often it was; whether nothing is left to be done
 EVERY = 2.0  # s of work that a file holds
 
 T = TypeVar("T")
@@ -31,6 +33,14 @@ class Journal(Protocol):
     @property
     def recorded(self) -> bool:
         """Whether the next step is recorded, or may be."""
+
+    @property
+    def resumed(self) -> int:
+        """How often the search was gone on with."""
+
+    @property
+    def taken(self) -> int:
+        """How many steps were taken from the record."""
 
     def done(self, kind: str, of: Any, problem: Problem, do: Callable[[], T], /) -> T:
         """The result of the next step: as recorded, else done now.
@@ -54,7 +64,7 @@ class Journal(Protocol):
 class Unrecorded:
     """No journal: every step is done."""
 
-    recorded = False
+    recorded, resumed, taken = False, 0, 0
 
     def done(self, _kind: str, _of: Any, _problem: Problem, do: Callable[[], T], /) -> T:
         """The result of a step."""
@@ -87,11 +97,15 @@ class Recorded:
 
     def __init__(self, folder: Path, head: Mapping[str, Any]) -> None:
         self._folder, self._head = folder, head
-        self._recorded, self._taken = deque[dict[str, Any]](), list[dict[str, Any]]()  # of one file
+        self._recorded, self._read = deque[dict[str, Any]](), list[dict[str, Any]]()  # of one file
         self._unread, self._fresh = deque[Path](), list[dict[str, Any]]()
         self._written, self._since, self._open = 0, monotonic(), True
+        self.resumed = self.taken = 0
         if (folder / HEAD).exists():
             refuse_other(folder, self._head)
+            count = read_head(folder).get(RESUMED)
+            self.resumed = count + 1 if isinstance(count, int) else 1
+            self.begin()
             self._unread.extend(sorted(folder.glob("[0-9]*.json")))
 
     def done(self, kind: str, of: Any, problem: Problem, do: Callable[[], T], /) -> T:
@@ -130,12 +144,12 @@ class Recorded:
     def begin(self) -> None:
         """Write the head, of a search that is not whole."""
         self._folder.mkdir(parents=True, exist_ok=True)
-        write_whole(self._folder / HEAD, self._head)
+        write_whole(self._folder / HEAD, {**self._head, RESUMED: self.resumed})
 
     def finish(self) -> None:
         """State in the head that the search is whole, and keep the record; nothing more is recorded."""
         self.close()
-        write_whole(self._folder / HEAD, {**self._head, WHOLE: True})
+        write_whole(self._folder / HEAD, {**self._head, RESUMED: self.resumed, WHOLE: True})
 
     def remove(self) -> None:
         """Delete the record, and its folder if nothing else is in it; nothing more is recorded."""
@@ -150,24 +164,28 @@ class Recorded:
         while not self._recorded and self._unread:
             path = self._unread.popleft()
             self._recorded.extend(_steps(path))
-            self._taken, self._written = [], int(path.stem)
+            self._read, self._written = [], int(path.stem)
         if not self._recorded:
             return None
         step = self._recorded.popleft()
         try:
             if step["step"] == name:
-                found = restored(step["result"], problem)
-                self._taken.append(step)
-                return (found,)
+                known = (restored(step["result"], problem),)
+                self._read.append(step)
+                self.taken += 1
+                if not self.recorded:
+                    _LOG.info("resumed from a record of %d steps", self.taken)
+                return known
         except (ValueError, KeyError, TypeError):  # what is damaged is done again
             pass
+        _LOG.info("resumed from a record of %d steps; what follows in it is done again", self.taken)
         self._forget()
         return None
 
     def _forget(self) -> None:
         """Drop the rest of the record: it is not that of this search any more."""
         self._recorded.clear()
-        self._fresh = self._taken
+        self._fresh = self._read
         for path in (self._path, *self._unread):
             path.unlink(missing_ok=True)
         self._unread.clear()

@@ -14,6 +14,7 @@ from grashof.problems.values.checks import counted
 from grashof.problems.values.display import Displayed
 from grashof.synth.programme.merit import same_error
 from grashof.synth.results.candidate import Candidate
+from grashof.synth.results.story import Story
 from grashof.synth.results.tally import Tally
 
 if TYPE_CHECKING:
@@ -43,6 +44,8 @@ class Result(Displayed):
         Why the search ended: of exact designs, before it had as many as were asked for; else empty.
     least_error : float, length
         Least squares: the least error that was found, as `Candidate.error` has it; NaN otherwise.
+    story : Story, optional
+        What happened to the search that it is of.
     """
 
     problem: Problem
@@ -54,6 +57,7 @@ class Result(Displayed):
     complete: bool = True
     ended: str = ""
     least_error: float = np.nan
+    story: Story | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         for name in ("candidates", "nearest"):

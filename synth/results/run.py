@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -12,10 +13,12 @@ from grashof.problems import Search
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.results.attempt import Attempt
+from grashof.synth.results.candidate import Candidate
 from grashof.synth.results.journal import Journal, Unrecorded
 from grashof.synth.results.ledger import Ledger
-from grashof.synth.results.workers import Work, screen
+from grashof.synth.results.workers import CRASHED, Work, screen
 
+_LOG = logging.getLogger(__name__)
 EXPECTED = 3  # rounds that most searches take: so many are begun ahead
 T = TypeVar("T")
 
@@ -28,14 +31,23 @@ class Progress:
     ----------
     solved, starts : int
         Solves done, and most that there can be.
-    verified, enough : int
-        Distinct verified designs, and how many are enough.
+    enough : int
+        How many distinct verified designs are enough.
+    designs : tuple of Candidate
+        Those found so far, best first: accepted under what this search asks for (`Candidate.problem`),
+        all targets met or least squares, before a choice is made of them. ``Result(problem, designs)``
+        makes a list of them.
     """
 
     solved: int
     starts: int
-    verified: int
     enough: int
+    designs: tuple[Candidate, ...] = field(default=(), repr=False)
+
+    @property
+    def verified(self) -> int:
+        """How many distinct verified designs there are."""
+        return len(self.designs)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +68,8 @@ class Run:
         Time by stage.
     since : float, s
         When it began.
+    crashed : list of int
+        Numbers of the starts that end the process that solves them.
     """
 
     search: Search
@@ -65,6 +79,7 @@ class Run:
     progress: Callable[[Progress], object] | None = None
     seconds: dict[str, float] = field(default_factory=lambda: {"screening": 0.0, "solving": 0.0})
     since: float = field(default_factory=perf_counter)
+    crashed: list[int] = field(default_factory=list)
 
     @property
     def times(self) -> dict[str, float]:
@@ -87,7 +102,18 @@ class Run:
         """Attempts from starts, numbered from a first one, in their order."""
         if not starts:
             return []
-        return self.step("solve", (first, *starts), scaled, lambda: self.work.attempts(scaled, starts, first))
+        of = (first, *starts)
+        made = self.step("solve", of, scaled, lambda: self.work.attempts(scaled, starts, first))
+        self._log(made, first)
+        return made
+
+    def _log(self, made: list[Attempt], first: int) -> None:
+        for number, one in enumerate(made, first):
+            if one.status == CRASHED:
+                self.crashed.append(number)
+                _LOG.warning("start %d ends the process that solves it, and is given up", number)
+            elif _LOG.isEnabledFor(logging.DEBUG):
+                _LOG.debug("start %d: %s, %s", number, one.outcome, one.status)
 
     def screened(self, scaled: ScaledProblem, number: int) -> Round | None:
         """One round of a search."""
@@ -109,8 +135,7 @@ class Run:
     def tell(self, ledger: Ledger) -> None:
         """Report how far the search is to who wants to know."""
         if self.progress is not None:
-            enough = self.search.enough
-            self.progress(Progress(ledger.solved, ledger.starts, len(ledger.best), enough))
+            self.progress(Progress(ledger.solved, ledger.starts, self.search.enough, ledger.best))
 
     @contextmanager
     def timed(self, stage: str) -> Iterator[None]:

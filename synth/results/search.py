@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from dataclasses import replace
 from functools import partial
 from math import ceil
@@ -19,6 +20,7 @@ from grashof.synth.results.workers import LARGER
 from grashof.synth.starts.finder import Finder, asked_first, finder_for, rounds
 from grashof.synth.theory.stopping import Stopped
 
+_LOG = logging.getLogger(__name__)
 FEW = 8  # exact designs: with fewer, zones are filled from those of least squares, too
 CONTINUED = 3  # times at most that the solve of the least error goes on
 
@@ -56,9 +58,11 @@ def search_designs(scaled: ScaledProblem, run: Run) -> Ledger:
     """Find starts, solve from them, and keep what is verified, round by round until there is enough."""
     finder = finder_for(scaled)
     ledger = Ledger(scaled, run.search, finder.exhausted)
-    for found in rounds(finder, partial(_timed_round, ledger, run)):
+    _LOG.info("search begun: %s, %d targets", type(finder).__name__, len(scaled.targets))
+    for number, found in enumerate(rounds(finder, partial(_timed_round, ledger, run)), start=1):
         with run.timed("solving"):
             solve_round(found, ledger, run)
+        _log(f"round {number}", len(found.starts), ledger)
         if run.ended():
             ledger.complete = ledger.ended
             break
@@ -88,11 +92,18 @@ def _do_more(finder: Finder, ledger: Ledger, run: Run) -> None:
     numbers = range(finder.rounds_a_pass, finder.rounds_a_pass + count)
     with run.timed("more effort"):
         try:
-            for one in chunks(ledger.scaled, run, numbers, starts, ledger.least):
+            for number, one in enumerate(chunks(ledger.scaled, run, numbers, starts, ledger.least), start=1):
                 ledger.absorb(one)
                 run.tell(ledger)
+                _log(f"chunk {number} of {count}", one.solved, ledger)
         except Stopped:
             pass  # what the usual effort asks for is done
+
+
+def _log(what: str, starts: int, ledger: Ledger) -> None:
+    error = "" if ledger.scaled.exact else f", least error {ledger.least:.3g} sizes"
+    told = what, starts, ledger.solved, ledger.starts, len(ledger.best), error
+    _LOG.info("%s: %d starts; %d of %d solves, %d designs%s", *told)
 
 
 def _timed_round(ledger: Ledger, run: Run, number: int) -> Round | None:
@@ -114,6 +125,7 @@ def _continue_best(ledger: Ledger, run: Run) -> None:
             return
         before = ledger.least
         solve([Start.of_linkage(scaled, best.linkage, best.verdict)], ledger, run)
+        run.tell(ledger)
         if ledger.least > before * (1 - SAME):
             return
 

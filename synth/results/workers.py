@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import pickle
 from collections.abc import Callable, Iterator
@@ -23,6 +24,7 @@ from grashof.synth.results.attempt import Attempt, attempt
 from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.stopping import Stopped, asked_to_stop, stop_when
 
+_LOG = logging.getLogger(__name__)
 # Solves begun for each process before it is known that they are wanted: of least squares, and exact ones, of
 # which a piece of work has several.
 AHEAD, AHEAD_EXACT, BUNDLE = 4, 16, 4
@@ -44,6 +46,10 @@ class Work(Protocol):
     @property
     def width(self) -> int:
         """So many can be made at a time."""
+
+    @property
+    def lost(self) -> int:
+        """How often a process was lost and replaced."""
 
     def attempts(self, scaled: ScaledProblem, starts: list[Start], first: int, /) -> list[Attempt]:
         """Attempts from starts, numbered from a first one, in their order."""
@@ -93,7 +99,7 @@ def made_there(make: Make[T], packed: bytes, *which: float) -> T:
 class Here:
     """One after the other in this process, when it is wanted."""
 
-    width = 1
+    width, lost = 1, 0
 
     def attempts(self, scaled: ScaledProblem, starts: list[Start], first: int, /) -> list[Attempt]:
         """Attempts from starts."""
@@ -122,7 +128,7 @@ class Elsewhere:
     """
 
     def __init__(self, executor: Executor, width: int) -> None:
-        self._executor, self.width = executor, width
+        self._executor, self.width, self.lost = executor, width, 0
         self._last: tuple[ScaledProblem, bytes] | None = None
         # What is made, by its function, problem and numbers; attempts with their place in a bundle, by the
         # identity of the start, which is kept with them.
@@ -267,7 +273,9 @@ class Processes(Elsewhere):
         if asked_to_stop():
             self._state.value = STOP
 
-    def _lost(self, error: BrokenExecutor) -> None:  # noqa: ARG002  (what was lost is done again)
+    def _lost(self, error: BrokenExecutor) -> None:  # what was lost is done again
+        self.lost += 1
+        _LOG.warning("a worker process was lost and is replaced: %s", error)
         self.drop()
         self._executor.shutdown(cancel_futures=True)
         self._executor = processes(self.width, self._state)

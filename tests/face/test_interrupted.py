@@ -44,7 +44,11 @@ def test_interrupt_while_drawing_leaves_drawings_out(
     names |= {f"design-0{rank}.{kind}" for rank in (1, 2) for kind in ("png", "svg")}
     folder = tmp_path / "luggage-designs"
     assert {path.name for path in folder.iterdir()} == names
-    assert set(json.loads((folder / "run.json").read_text())["files"]) == names
+    record = json.loads((folder / "run.json").read_text())
+    assert set(record["files"]) == names
+    assert (record["complete"], record["run"]["ending"]) == (True, "interrupted")
+    assert (record["run"]["drawings_left_out"], record["run"]["why_left_out"]) == (1, "interrupted")
+    assert "drawings are left out: Ctrl-C came before 1 of them were made" in done.stderr.splitlines()
 
 
 @pytest.mark.parametrize(("error", "code"), [(OSError(28, "disk full"), 3), (KeyboardInterrupt(), 130)])
@@ -59,7 +63,10 @@ def test_a_drawing_that_fails_does_not_cost_the_lists(
     folder = tmp_path / "luggage-designs"
     names = {"candidates.csv", "candidates.json", "report.html", "run.json"}
     assert {path.name for path in folder.iterdir()} == names
-    assert set(json.loads((folder / "run.json").read_text())["files"]) == names
+    record = json.loads((folder / "run.json").read_text())
+    assert set(record["files"]) == names
+    assert record["run"]["drawings_left_out"] == min(3, record["designs"]) > 0
+    assert record["run"]["why_left_out"] == "the run ended before they were drawn"
 
 
 @pytest.mark.quick("True")
@@ -108,8 +115,11 @@ def test_interrupt_writes_what_was_verified(tmp_path: Path) -> None:
         seen = running.stderr.readline()
     time.sleep(0.2)
     running.send_signal(signal.SIGINT)
-    running.communicate(timeout=60)
+    _, said = running.communicate(timeout=60)
     assert running.returncode == 130
     table = pd.read_csv(tmp_path / "long-designs" / "candidates.csv")
     assert len(table) > 0
-    assert json.loads((tmp_path / "long-designs" / "run.json").read_text())["complete"] is False
+    record = json.loads((tmp_path / "long-designs" / "run.json").read_text())
+    assert record["complete"] is False
+    assert record["run"]["ending"] == "interrupted"
+    assert "drawings are left out" not in said  # none were asked for

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import signal
 import subprocess
 import sys
@@ -85,9 +86,14 @@ def test_a_run_that_was_killed_goes_on_to_the_same_list(tmp_path: Path, moments:
     ]
 
 
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
-def test_a_signal_ends_the_search_and_writes_what_it_has(tmp_path: Path, number: int, code: int) -> None:
-    process = running(tmp_path)
+SIGNALS = [(signal.SIGINT, 130, "Ctrl-C", "interrupted"), (signal.SIGTERM, 143, "SIGTERM", "terminated")]
+
+
+@pytest.mark.parametrize(("number", "code", "name", "ending"), SIGNALS)
+def test_a_signal_ends_the_search_and_writes_what_it_has(
+    tmp_path: Path, number: int, code: int, name: str, ending: str
+) -> None:
+    process = running(tmp_path, "--drawings", "1")
     out = tmp_path / "out"
     while len(list((out / "search").glob("0*.json"))) < 2:
         time.sleep(0.05)
@@ -97,6 +103,9 @@ def test_a_signal_ends_the_search_and_writes_what_it_has(tmp_path: Path, number:
     assert process.returncode == code
     assert time.monotonic() - begun < 6  # of which 2 are the search's; machines are busy
     assert "--resume goes on with it" in said
+    assert f"drawings are left out: {name} came before 1 of them were made" in said.splitlines()
+    told = json.loads((out / "run.json").read_text())["run"]
+    assert told["ending"] == told["why_left_out"] == ending
     assert len(pd.read_csv(out / "candidates.csv")) > 0
     assert (out / "search" / "search.json").exists()
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable
+from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -48,6 +49,11 @@ def test_solve_writes_a_verified_list(grashof: Grashof, tmp_path: Path) -> None:
     assert set(record["files"]) == expected
     assert record["designs"] == len(table)
     assert record["settings"]["seed"] == 0
+    told = record["run"]
+    assert (told["ending"], told["resumed"], told["drawings_left_out"]) == ("complete", 0, 0)
+    begun, ended = (datetime.fromisoformat(told[name]) for name in ("begun", "ended"))
+    assert timedelta(0) < ended - begun < timedelta(minutes=5)
+    assert ended.utcoffset() == timedelta(0)
     assert record["counts"]["verified and distinct"] >= len(table)
     assert "distinct" in done.stdout
     assert done.output.splitlines()[-1] == "Open luggage-designs/report.html in a browser to look at it."

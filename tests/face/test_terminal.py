@@ -170,9 +170,11 @@ def test_the_best_of_each_family_stands_for_all(alike: Result, capsys: pytest.Ca
     )
 
 
-def test_only_exact_designs_are_counted_until_there_are_enough(capsys: pytest.CaptureFixture[str]) -> None:
+def test_only_exact_designs_are_counted_until_there_are_enough(
+    few: Result, capsys: pytest.CaptureFixture[str]
+) -> None:
     with search_progress("mine", wanted=False) as show:
-        show(Progress(solved=16, starts=78, verified=9, enough=50))
+        show(Progress(solved=16, starts=78, enough=50, designs=few.candidates[:1] * 9))
     assert capsys.readouterr().err == "mine: 9 designs verified, 16 of 78 starts solved\n"
     problem = load("luggage")
     path = PathTask([[k, k * k] for k in range(12)])
@@ -194,10 +196,10 @@ def test_the_summary_tells_the_effort() -> None:
     assert summary(replace(problem, search=Search(effort=2.5)))[-1].endswith(", effort 2.5")
 
 
-def test_progress_lines(capsys: pytest.CaptureFixture[str]) -> None:
+def test_progress_lines(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
     with search_progress("mine") as show:
-        show(Progress(solved=16, starts=78, verified=9, enough=50))
-        show(Progress(solved=64, starts=78, verified=56, enough=50))
+        show(Progress(solved=16, starts=78, enough=50, designs=few.candidates[:1] * 9))
+        show(Progress(solved=64, starts=78, enough=50, designs=few.candidates[:1] * 56))
     assert capsys.readouterr().err.splitlines() == [
         "mine: 9 designs verified (50 wanted), 16 of 78 starts solved",
         "mine: 56 designs verified (50 wanted), 64 of 78 starts solved",

@@ -2,7 +2,7 @@
 
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
@@ -10,13 +10,20 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
 import pytest
 
-from grashof import synthesize
+from grashof import load, synthesize
+from grashof.analysis import verify
 from grashof.problems import Box, Problem, ProblemError, Search, SolverError
 from grashof.problems.values.checks import counted
-from grashof.synth import Progress, Result
+from grashof.synth import Candidate, Progress, Result
+from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.results.explain import Explanation
+from grashof.synth.results.ledger import Ledger
+from grashof.synth.results.ranking import ranked
+from grashof.synth.results.search import Run
+from grashof.synth.results.trade_offs import Chosen
 from grashof.synth.results.workers import solved_there
 
 pytestmark = pytest.mark.usefixtures("small_search")
@@ -107,6 +114,40 @@ def test_progress_grows_until_enough(luggage: Problem) -> None:
     assert all(step.solved <= step.starts and step.enough == 25 for step in seen)
     assert seen[-1].verified == len(result) >= 25
     assert seen[-2].verified < 25
+
+
+def same_designs(first: Sequence[Candidate], second: Sequence[Candidate]) -> bool:
+    return [one.id for one in first] == [one.id for one in second]
+
+
+@pytest.mark.parametrize("name", ["luggage", "path-18-timed"])
+def test_progress_has_the_designs_that_are_chosen_from(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Exact designs are all listed; of least squares a choice is made of them."""
+    module, chosen_from = import_module("grashof.synth.results.conclusion"), list[tuple[Candidate, ...]]()
+    choose = module.choose
+
+    def watched(scaled: ScaledProblem, ledgers: list[Ledger], run: Run) -> Chosen:
+        chosen_from.append(ledgers[-1].best)
+        return choose(scaled, ledgers, run)
+
+    monkeypatch.setattr(module, "choose", watched)
+    problem, seen = load(name), list[Progress]()
+    result = synthesize(problem, starts=32, effort=0.2, progress=seen.append)
+    assert same_designs(seen[-1].designs, chosen_from[0])
+    assert same_designs(seen[-1].designs, ranked(problem, seen[-1].designs))
+    if result.problem.requirements.is_exact(problem.task):
+        assert {one.id for one in seen[-1].designs} == {one.id for one in result.candidates}
+
+
+def test_what_was_seen_of_a_stopped_search_is_of_use(luggage: Problem, tmp_path: Path) -> None:
+    seen: list[Progress] = []
+    stopped = synthesize(luggage, progress=seen.append, stop=lambda: len(seen) > 1)
+    assert not stopped.complete
+    designs = seen[1].designs
+    assert len(designs) > len(seen[0].designs) > 0
+    assert all(verify(one.linkage, luggage.task, luggage.requirements).ok for one in designs)
+    csv_of(Result(luggage, designs), tmp_path)
+    assert pd.read_csv(tmp_path / "out.csv")["id"].tolist() == [one.id for one in designs]
 
 
 def test_enough_is_enough(luggage: Problem) -> None:

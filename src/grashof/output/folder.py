@@ -145,6 +145,11 @@ def replacing_own_files(folder: Path, keep: Collection[str] = (), record: str = 
             (folder / file).unlink(missing_ok=True)
 
 
+def is_own_name(name: str, record: str = RECORD) -> bool:
+    """Whether a run writes files of this name into its folder."""
+    return _NAMES[record].fullmatch(name) is not None
+
+
 def own_files(folder: Path, record: str = RECORD) -> set[str]:
     """Names of the files that the last run wrote into a folder; empty where there was none."""
     if not (folder / record).is_file():  # a pipe or a device may never end

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import json
+import os
 import platform
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from grashof.output.ending import Exit, Interruption
 from grashof.output.folder import PAGE, RECORD, replacing_own_files
 from grashof.problems import Problem
 from grashof.problems.files.problem_writing import problem_toml
@@ -18,6 +21,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import no_formula
 from grashof.problems.values.quantities import Needs, Over
 from grashof.synth import Candidate, Result
+from grashof.synth.results.story import Ending, now
 from grashof.synth.results.table import LISTED, facts, to_frame
 
 if TYPE_CHECKING:
@@ -31,7 +35,7 @@ def write_run(
     result: Result,
     settings: dict[str, Any],
     drawings: int,
-    stop: Callable[[], bool] = lambda: False,
+    stop: Interruption | None = None,
     problem_text: str = "",
 ) -> list[str]:
     """Write all files of a run, the lists first: a drawing that fails does not cost them.
@@ -44,8 +48,8 @@ def write_run(
         How the search was run; goes into the record.
     drawings : int
         How many of the best designs to draw.
-    stop : callable
-        Asked before every drawing; the others are left out when it returns True.
+    stop : Interruption, optional
+        Asked before every drawing; the others are left out once it is asked for.
     problem_text : str
         The problem file, for the page.
 
@@ -61,6 +65,7 @@ def write_run(
     """
     from grashof.page import search_page  # only a run needs the templates
 
+    stop = Interruption() if stop is None else stop
     frame = result.to_frame()
     with replacing_own_files(folder) as fresh:
         if result.candidates:
@@ -71,15 +76,20 @@ def write_run(
             frame = to_frame(result.problem, result.nearest).assign(misses=misses)
             write_csv(fresh / "nearest.csv", frame)
         write_page(fresh / PAGE, search_page(result, frame, _about(settings), problem_text))
-        files = _write_record(fresh, result, settings)
+        files = _write_record(fresh, result, settings, drawings, stop)
     if drawings and result.candidates and not stop():
         with replacing_own_files(folder, keep=files) as fresh:
             _draw(fresh, result, drawings, stop)
-            files = _write_record(fresh, result, settings, files)
+            files = _write_record(fresh, result, settings, drawings, stop, files)
     return files
 
 
-def _draw(folder: Path, result: Result, drawings: int, stop: Callable[[], bool]) -> None:
+def left_out(result: Result, drawings: int, files: Iterable[str]) -> int:
+    """How many drawings that were asked for are not among the files of a run."""
+    return min(drawings, len(result)) - sum(name.endswith(".png") for name in files)
+
+
+def _draw(folder: Path, result: Result, drawings: int, stop: Interruption) -> None:
     from grashof.figures.files import draw_design, save  # matplotlib takes half a second to import
 
     for rank, candidate in enumerate(result.candidates[:drawings], start=1):
@@ -91,11 +101,17 @@ def _draw(folder: Path, result: Result, drawings: int, stop: Callable[[], bool])
 
 
 def _write_record(
-    folder: Path, result: Result, settings: dict[str, Any], others: Iterable[str] = ()
+    folder: Path,
+    result: Result,
+    settings: dict[str, Any],
+    drawings: int,
+    stop: Interruption,
+    others: Iterable[str] = (),
 ) -> list[str]:
     """Write the record of the files in a folder and of others, and return their names, sorted."""
     files = sorted({*(path.name for path in folder.iterdir()), *others, RECORD})
-    write_json(folder / RECORD, _record(result, settings, files))
+    story = _story(result, left_out(result, drawings, files), stop)
+    write_json(folder / RECORD, _record(result, settings, story, files))
     return files
 
 
@@ -155,12 +171,35 @@ def _about(settings: dict[str, Any]) -> dict[str, Any]:
     return {"versions": versions, "settings": settings}
 
 
-def _record(result: Result, settings: dict[str, Any], files: list[str]) -> dict[str, Any]:
+_ENDINGS = {Exit.INTERRUPTED: Ending.INTERRUPTED, Exit.TERMINATED: Ending.TERMINATED}
+
+
+def _story(result: Result, undrawn: int, stop: Interruption) -> dict[str, Any] | None:
+    """What happened to the run until now; None of a list that no search made."""
+    if result.story is None:
+        return None
+    ending = _ENDINGS.get(stop.code, result.story.ending)
+    why = ending if stop() else "the run ended before they were drawn"
+    told = replace(
+        result.story,
+        ended=now(),
+        ending=ending,
+        drawings_left_out=undrawn,
+        why_left_out=why if undrawn else "",
+    )
+    times = {name: getattr(told, name).isoformat(timespec="seconds") for name in ("begun", "ended")}
+    return {**asdict(told), **times, "processors": os.cpu_count()}
+
+
+def _record(
+    result: Result, settings: dict[str, Any], story: dict[str, Any] | None, files: list[str]
+) -> dict[str, Any]:
     errors = {name: getattr(result, name) for name in ("least_error", "most_error")}
     guards = {name: result.tally.statuses[name] for name in _GUARDS}
     return {
         "problem": result.problem.name,
         **_about(settings),
+        "run": story,
         "complete": result.complete,
         "ended": result.ended,
         **{name: None if np.isnan(error) else error for name, error in errors.items()},

@@ -51,6 +51,14 @@ def test_bad_input_ends_it_with_a_line_for_each_error(write: Write, tmp_path: Pa
     ]
 
 
+def test_an_address_that_is_none_is_refused(write: Write, tmp_path: Path) -> None:
+    done = grashof("sweep", write(), "--out", tmp_path / "out", "--scheduler", "x")
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert done.stderr.startswith("grashof: --scheduler x: missing port number")
+    assert done.stderr.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
 def test_nothing_but_invalid_combinations_is_no_design(write: Write, tmp_path: Path) -> None:
     study = write('problem = "base.toml"\n[vary]\nrequirements.transmission_min_deg = [95, 96]\n')
     done = grashof("sweep", study, "--out", tmp_path / "out")

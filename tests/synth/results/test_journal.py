@@ -44,8 +44,9 @@ def table(result: Result) -> str:
 @pytest.mark.quick("poses", "poses fitted", "points met")
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_search_that_was_killed_goes_on_to_the_same_list(
-    kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
+    caplog.set_level("INFO", logger="grashof")
     problem, options = KINDS[kind]
     whole, folder = synthesize(problem, **options), tmp_path / "search"
     attempt, left = workers_module.attempt, [0]
@@ -66,6 +67,9 @@ def test_a_search_that_was_killed_goes_on_to_the_same_list(
             assert tries < 40
     assert tries > (kind == "poses")
     assert table(result) == table(whole)
+    assert result.story.resumed == tries - 1
+    assert (result.story.steps_recorded > 0) is (tries > 1)
+    assert (f"resumed from a record of {result.story.steps_recorded} steps" in caplog.messages) is (tries > 1)
     assert not folder.exists()
 
 

@@ -70,6 +70,7 @@ def test_what_ends_its_process_is_given_up_and_the_next_is_not(processes: Proces
         processes.made(crash, scaled, 7)
     assert processes.begin(nap, scaled, 0.1)
     assert processes.made(nap, scaled, 0.1) == 0.1
+    assert processes.lost == 2
 
 
 def test_what_a_lost_process_did_is_done_again(processes: Processes) -> None:

@@ -1,0 +1,70 @@
+"""A log of a run in a file, for who asks for one."""
+
+from __future__ import annotations
+
+import logging
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from grashof.output.folder import is_own_name
+from grashof.output.streams import say
+from grashof.problems import ProblemError
+
+LAYOUT = "%(asctime)s.%(msecs)03dZ %(levelname)s %(name)s: %(message)s"
+
+
+class _File(logging.FileHandler):
+    """Says once that it cannot be written any more: that never costs a result."""
+
+    failed = False
+
+    def handleError(self, record: logging.LogRecord) -> None:  # noqa: N802, ARG002  (logging's name)
+        error = sys.exc_info()[1]
+        if not self.failed:
+            reason = getattr(error, "strerror", None) or error
+            say(f"--log {self.baseFilename}: {reason}; the log is not whole", err=True)
+        self.failed = True
+
+
+@contextmanager
+def logged(path: Path | None, folder: Path) -> Iterator[None]:
+    """What Grashof logs inside goes to the end of a file, too: every start, time in UTC.
+
+    Parameters
+    ----------
+    path : Path, optional
+    folder : Path
+        Where the run writes; the file may be in it, under another name than the run's own.
+
+    Raises
+    ------
+    ProblemError
+        It cannot be written.
+    """
+    if path is None:
+        yield
+        return
+    if path.parent.resolve() == folder.resolve() and is_own_name(path.name):
+        raise ProblemError(f"--log {path}: the run writes this file itself; name another one")
+    try:
+        file = _File(path, encoding="utf-8", errors="replace")
+    except OSError as error:
+        reason = error.strerror or "it cannot be written"
+        raise ProblemError(f"--log {path}: {reason}; it must be a file that can be written") from None
+    layout = logging.Formatter(LAYOUT, "%Y-%m-%dT%H:%M:%S")
+    layout.converter = time.gmtime
+    file.setFormatter(layout)
+    logger = logging.getLogger("grashof")
+    level = logger.level
+    logger.addHandler(file)
+    logger.setLevel(logging.DEBUG)
+    try:
+        yield
+    finally:
+        logger.setLevel(level)
+        logger.removeHandler(file)
+        with suppress(OSError):
+            file.close()

@@ -1,0 +1,95 @@
+"""What happened to a run, besides its designs."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from enum import StrEnum
+from time import perf_counter
+
+_LOG = logging.getLogger(__name__)
+
+
+class Ending(StrEnum):
+    """What ended a run."""
+
+    COMPLETE = "complete"
+    TIME_LIMIT = "time limit"
+    STOPPED = "stopped"
+    INTERRUPTED = "interrupted"
+    TERMINATED = "terminated"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Story:
+    """What happened to a run, besides its designs.
+
+    Parameters
+    ----------
+    begun, ended : datetime
+        UTC; of the search, in ``run.json`` with what is written.
+    ending : Ending
+    resumed : int
+        How often it was gone on with from its record.
+    steps_recorded : int
+        Screenings and solves taken from the record.
+    processes_lost : int
+        How often a process was lost and replaced.
+    starts_crashed : tuple of int
+        Numbers of the starts that end the process that solves them.
+    drawings_left_out : int
+    why_left_out : str
+        Empty where none is.
+    """
+
+    begun: datetime
+    ended: datetime
+    ending: Ending
+    resumed: int = 0
+    steps_recorded: int = 0
+    processes_lost: int = 0
+    starts_crashed: tuple[int, ...] = ()
+    drawings_left_out: int = 0
+    why_left_out: str = ""
+
+
+def now() -> datetime:
+    """The time of day, UTC."""
+    return datetime.now(UTC)
+
+
+@dataclass(slots=True)
+class Asking:
+    """Whether a search is asked to end, and what asks; once it is asked, it stays so.
+
+    Parameters
+    ----------
+    time_limit : float, s, optional
+        From now on.
+    stop : callable, optional
+        Asks it by True.
+    ending : Ending
+    begun : datetime
+        UTC.
+    """
+
+    time_limit: float | None
+    stop: Callable[[], bool] | None
+    ending: Ending = Ending.COMPLETE
+    begun: datetime = field(default_factory=now)
+    _since: float = field(default_factory=perf_counter)
+
+    def __call__(self) -> bool:
+        """Whether it is asked to end."""
+        if self.ending is Ending.COMPLETE:
+            self.ending = self._asked()
+            if self.ending is not Ending.COMPLETE:
+                _LOG.info("asked to end after %.1f s: %s", perf_counter() - self._since, self.ending)
+        return self.ending is not Ending.COMPLETE
+
+    def _asked(self) -> Ending:
+        if self.time_limit is not None and perf_counter() - self._since > self.time_limit:
+            return Ending.TIME_LIMIT
+        return Ending.STOPPED if self.stop is not None and self.stop() else Ending.COMPLETE

@@ -1,0 +1,85 @@
+"""What happened to a run: what ended it, what was taken from its record, what is logged of it."""
+
+import logging
+from datetime import UTC, datetime, timedelta
+
+import pytest
+
+from grashof import load, synthesize
+from grashof.problems import Search
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.start import Start
+from grashof.synth.results.attempt import Attempt
+from grashof.synth.results.search import Run
+from grashof.synth.results.story import Asking, Ending
+from grashof.synth.results.workers import CRASHED, Here
+
+pytestmark = pytest.mark.usefixtures("small_search")
+ENDINGS = {
+    "whole": ({}, Ending.COMPLETE),
+    "late": ({"time_limit": 1e-6}, Ending.TIME_LIMIT),
+    "stopped": ({"stop": lambda: True}, Ending.STOPPED),
+    "late, not stopped": ({"time_limit": 1e-6, "stop": lambda: False}, Ending.TIME_LIMIT),
+}
+
+
+@pytest.mark.parametrize("how", ENDINGS)
+def test_the_story_tells_what_ended_the_search(how: str) -> None:
+    options, ending = ENDINGS[how]
+    before = datetime.now(UTC)
+    story = synthesize(load("luggage"), starts=8, **options).story
+    assert story.ending is ending
+    assert before <= story.begun <= story.ended <= datetime.now(UTC)
+    assert story.ended - story.begun > timedelta(milliseconds=10)
+    assert (story.resumed, story.steps_recorded, story.processes_lost, story.starts_crashed) == (0, 0, 0, ())
+
+
+def test_once_asked_to_end_it_stays_so() -> None:
+    """What was cut short by an answer must not count as whole because of the next one."""
+    answers = iter([False, True, False])
+    asked = Asking(None, lambda: next(answers))
+    assert [asked(), asked(), asked()] == [False, True, True]
+    assert list(answers) == [False]  # not asked any more
+    assert asked.ending is Ending.STOPPED
+
+
+class Crashing(Here):
+    """Two starts of each batch end the process that solves them."""
+
+    def attempts(self, scaled: ScaledProblem, starts: list[Start], first: int, /) -> list[Attempt]:
+        made = super().attempts(scaled, starts, first)
+        return [Attempt(CRASHED, None) if number in (1, 3) else one for number, one in enumerate(made)]
+
+
+def test_starts_that_crash_are_named(caplog: pytest.LogCaptureFixture) -> None:
+    scaled = ScaledProblem.of(load("luggage"))
+    run = Run(Search(), Crashing(), lambda: False)
+    found = run.screened(scaled, 0)
+    assert found is not None
+    run.solve(scaled, found.starts[:5], 10)
+    assert run.crashed == [11, 13]
+    assert [each.getMessage() for each in caplog.records if each.levelno == logging.WARNING] == [
+        f"start {number} ends the process that solves it, and is given up" for number in (11, 13)
+    ]
+
+
+def test_the_log_tells_rounds_and_starts(caplog: pytest.LogCaptureFixture) -> None:
+    with caplog.at_level(logging.DEBUG, logger="grashof"):
+        result = synthesize(load("luggage"), starts=20)
+    told = [each.getMessage() for each in caplog.records]
+    assert told[0] == "luggage: motion; seed 0, effort 1, at most 20 starts, 1 at a time"
+    assert told[1] == "search begun: FewPoses, 4 targets"
+    solved = [line.partition(":")[0] for line in told if line.startswith("start ")]
+    assert solved == [f"start {number}" for number in range(20)]
+    (ended,) = [line for line in told if line.startswith("round ")]
+    assert ended.endswith(f"; 20 of 20 solves, {len(result)} designs")
+    assert told[-1].endswith(f", complete: {len(result)} designs; {result.ended}")
+    assert all(each.name.startswith("grashof.synth.") for each in caplog.records)
+
+
+def test_the_log_tells_what_stopped_it(caplog: pytest.LogCaptureFixture) -> None:
+    with caplog.at_level(logging.INFO, logger="grashof"):
+        synthesize(load("luggage"), time_limit=1e-6)
+    told = [each.getMessage() for each in caplog.records]
+    assert sum(line.startswith("asked to end after ") and line.endswith(": time limit") for line in told) == 1
+    assert not any(line.startswith("start ") for line in told)
