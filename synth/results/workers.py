@@ -151,12 +151,13 @@ class Elsewhere:
     def made(self, make: Make[T], scaled: ScaledProblem, /, *which: float) -> T:
         """What a function makes."""
         key = (make, self._packed(scaled), *which)
-        future = self._begun.pop(key, None) or self._submit(made_there, *key)
+        future: Future[T] = self._begun.pop(key, None) or self._submit(made_there, *key)
         try:
             return self._waited_for(future)
         except BrokenExecutor as error:
             self._lost(error)
-        return self._alone(made_there, *key)
+        done: T = self._alone(made_there, *key)
+        return done
 
     def begin_attempts(self, scaled: ScaledProblem, starts: list[Start], /) -> None:
         """Begin as many as there may soon be processes for."""
