@@ -151,7 +151,8 @@ class Elsewhere:
     def made(self, make: Make[T], scaled: ScaledProblem, /, *which: float) -> T:
         """What a function makes."""
         key = (make, self._packed(scaled), *which)
-        future: Future[T] = self._begun.pop(key, None) or self._submit(made_there, *key)
+        begun = self._begun.pop(key, None)
+        future: Future[T] = self._submit(made_there, *key) if begun is None else begun
         try:
             return self._waited_for(future)
         except BrokenExecutor as error:
