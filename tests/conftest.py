@@ -29,13 +29,19 @@ SMALL: dict[str, dict[str, Any]] = {
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Of a test marked `quick` all cases but those named are slow."""
+    """Of a test marked `quick` all cases but those named are slow; a name that no case has is an error."""
+    known: dict[str, set[str]] = {}
+    named: dict[str, set[str]] = {}
     for item in items:
+        test, _, case = item.nodeid.removesuffix("]").partition("[")
         for mark in item.iter_markers("quick"):
-            cases = set(mark.args)
-            known = {case.removesuffix("]") for case in item.name.split("[", 1)[1:]}
-            if not known <= cases:
+            known.setdefault(test, set()).add(case)
+            named[test] = set(mark.args)
+            if case and case not in mark.args:
                 item.add_marker(pytest.mark.slow)
+    for test, cases in known.items():
+        if len(cases) > 1 and not named[test] <= cases:  # not where one case alone is collected
+            raise pytest.UsageError(f"{test}: no cases {named[test] - cases}, which `quick` names")
 
 
 @pytest.fixture

@@ -209,7 +209,7 @@ def wrenches(state: Kinematics, loads: Loads) -> dict[int, Wrench]:
             value = turned(value, state.angular(force.link)[0])
         _push(found, state, force.link, state.point(force.link, force.at).position, value)
     for moment in loads.moments:
-        state.angular(moment.link)  # names a link that is none
+        state.angular(moment.link)  # raises for a link that the linkage has not
         found[moment.link].moment = found[moment.link].moment + _value(moment.moment, state)
     for spring in loads.springs:
         first, second = spring_ends(state, spring)

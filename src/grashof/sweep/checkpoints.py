@@ -127,14 +127,12 @@ class Checkpoints:
             content = json.loads(path.read_text(encoding="utf-8"))
         except (OSError, ValueError, RecursionError):
             content = None
-        if not (isinstance(content, dict) and content.get("task") == path.stem):
-            raise ProblemError(
-                f"{path}: is no finished task of this sweep; remove it to have it solved again"
-            )
-        result = content.get("result")
+        result = (
+            content.get("result") if isinstance(content, dict) and content.get("task") == path.stem else None
+        )
         if not isinstance(result, dict) or not result.keys() >= _SHAPE:
             raise ProblemError(
-                f"{path}: is no finished task of this sweep; remove it to have it solved again"
+                f"{path}: is not a finished task of this sweep; remove it to have it solved again"
             )
         return result
 

@@ -42,7 +42,7 @@ def assigned(document: dict[str, Any], parts: Parts, value: Any) -> dict[str, An
     Raises
     ------
     ProblemError
-        A list on the way has no such entry, or something on the way is no table.
+        A list on the way has no such entry, or something on the way is not a table.
 
     Examples
     --------
@@ -67,10 +67,10 @@ def _assigned(old: Any, parts: Parts, value: Any, where: str) -> Any:
             raise ProblemError(f"{place} is missing; {where} {last}")
         return [*old[:index], _assigned(old[index], rest, value, place), *old[index + 1 :]]
     if isinstance(head, int):
-        raise ProblemError(f"{_joined(where, head)} is missing; {where} is no list")
+        raise ProblemError(f"{_joined(where, head)} is missing; {where} is not a list")
     table = {} if old is None else old
     if not isinstance(table, dict):
-        raise ProblemError(f"{_joined(where, head)} is missing; {where} is {old!r}, which is no table")
+        raise ProblemError(f"{_joined(where, head)} is missing; {where} is {old!r}, which is not a table")
     if not rest and _fixes(where, head, value):
         value = [value, value]
     return {**table, head: _assigned(table.get(head), rest, value, _joined(where, head))}

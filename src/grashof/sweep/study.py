@@ -281,7 +281,7 @@ def _base(named: str, folder: Path) -> Source:
 def _problems_in(folder: Path) -> tuple[Source, ...]:
     """The problem files of a folder, sorted by name; one that cannot be read is a source, too."""
     if not folder.is_dir():
-        raise ProblemError(f"{folder}: is no folder; problems must be a folder of problem files")
+        raise ProblemError(f"{folder}: is not a folder; problems must be a folder of problem files")
     found: list[Source] = []
     for path in sorted(folder.glob("*.toml")):
         name, document = readable(path.stem), {}

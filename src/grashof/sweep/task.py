@@ -75,7 +75,7 @@ def solve_task(
 
 
 def invalid(wrong: Sequence[str]) -> dict[str, Any]:
-    """What there is to tell of a problem that is none."""
+    """What is told of a combination that states no problem."""
     return {**_empty(INVALID), "note": "; ".join(wrong), "seconds": 0.0}
 
 

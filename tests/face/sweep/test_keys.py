@@ -34,8 +34,8 @@ def test_a_value_at_a_key(document: dict[str, Any], key: str, value: Any, wanted
     [
         ({"a": [1]}, "a[1]", "a[1] is missing; a ends with [0]"),
         ({"a": [1]}, "a.z", "a.z is missing; a ends with [0]"),
-        ({"a": 1}, "a.b", "a.b is missing; a is 1, which is no table"),
-        ({}, "a[0]", "a[0] is missing; a is no list"),
+        ({"a": 1}, "a.b", "a.b is missing; a is 1, which is not a table"),
+        ({}, "a[0]", "a[0] is missing; a is not a list"),
     ],
 )
 def test_keys_that_lead_nowhere(document: dict[str, Any], key: str, words: str) -> None:

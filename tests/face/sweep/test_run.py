@@ -135,9 +135,9 @@ def test_what_is_not_gone_on_with(write: Write, tmp_path: Path, monkeypatch: pyt
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("{", "is no finished task of this sweep"),
-        ('{"task": "other", "result": {}}', "is no finished task"),
-        ("[]", "is no finished task"),
+        ("{", "is not a finished task of this sweep"),
+        ('{"task": "other", "result": {}}', "is not a finished task"),
+        ("[]", "is not a finished task"),
     ],
 )
 def test_a_spoilt_checkpoint_is_refused(write: Write, tmp_path: Path, text: str, words: str) -> None:

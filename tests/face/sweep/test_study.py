@@ -46,7 +46,7 @@ def test_keys_in_step_are_one_axis(write: Write) -> None:
         ('problem = "luggage"\n', ["vary is missing"]),
         ('problem = "luggage"\nproblems = "."\n[vary]\na=[1]', ["it must have one of them"]),
         ('problem = "lugage"\n[vary]\na=[1]', ["'lugage' is neither a problem of the catalogue nor a file"]),
-        ('problems = "none"\n', ["none: is no folder"]),
+        ('problems = "none"\n', ["none: is not a folder"]),
         ('problem = "luggage"\n[vary]\na = 1', ["vary.a is 1; it must be a list of values or { from"]),
         ('problem = "luggage"\n[vary]\na = []', ["vary.a is []; it must be a list of values or { from"]),
         ('problem = "luggage"\n[vary]\na = {from = 1, to = 2, steps = 1}', ["vary.a.steps is 1; it must be"]),
