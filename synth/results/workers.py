@@ -202,6 +202,8 @@ class Elsewhere:
         future, place, _ = self._solves.pop(id(start))
         try:
             return self._waited_for(future)[place]
+        except CrashError:  # by any of the bundle
+            pass
         except BrokenExecutor as error:
             self._lost(error)
         (one,) = self._alone(solved_there, self._packed(scaled), start)

@@ -2,14 +2,49 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from concurrent.futures import Executor
+from collections.abc import Callable, Iterator
+from concurrent.futures import BrokenExecutor, Executor, Future
 from contextlib import contextmanager
 from importlib import import_module
+from typing import Any
 
 from grashof.problems import ProblemError, SolverError
+from grashof.synth.results.workers import CrashError
 
 PATIENCE = 10  # s to wait for an answer
+
+
+class _Cluster(Executor):
+    """Dask's executor, for which a task that ends one worker after the other is a `CrashError`.
+
+    Parameters
+    ----------
+    dask : Executor
+    killed : type of Exception
+        What Dask raises then.
+    """
+
+    def __init__(self, dask: Executor, killed: type[Exception]) -> None:
+        self._dask, self._killed = dask, killed
+
+    def submit(self, function: Callable[..., Any], /, *given: Any, **named: Any) -> Future[Any]:
+        """Begin a task."""
+        theirs, ours = self._dask.submit(function, *given, **named), Future[Any]()
+
+        def pass_on(done: Future[Any]) -> None:
+            if not ours.set_running_or_notify_cancel():
+                return
+            error = BrokenExecutor("the scheduler was lost") if done.cancelled() else done.exception()
+            if isinstance(error, self._killed):
+                error = CrashError(f"a task ends the workers that do it: {error}")
+            if error is None:
+                ours.set_result(done.result())
+            else:
+                ours.set_exception(error)
+
+        theirs.add_done_callback(pass_on)
+        ours.add_done_callback(lambda done: done.cancelled() and theirs.cancel())
+        return ours
 
 
 @contextmanager
@@ -37,4 +72,7 @@ def cluster(scheduler: str | None, workers: int) -> Iterator[tuple[Executor | No
     except ValueError as error:
         raise ProblemError(f"--scheduler {scheduler}: {error}; it must be like tcp://host:8786") from None
     with client:
-        yield client.get_executor(), max(2, sum(client.nthreads().values()))
+        yield (
+            _Cluster(client.get_executor(), distributed.KilledWorker),
+            max(2, sum(client.nthreads().values())),
+        )
