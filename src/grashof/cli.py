@@ -91,6 +91,11 @@ TopOption = Annotated[
     ),
 ]
 
+SchedulerOption = Annotated[
+    str | None,
+    typer.Option(help="Dask scheduler to work on, such as tcp://host:8786.", show_default=False),
+]
+
 DrawingsOption = Annotated[int, typer.Option(min=0, help="Designs to draw.")]
 
 
@@ -122,7 +127,12 @@ def solve(
         float | None, typer.Option(help="Seconds after which no new solves begin.", show_default=False)
     ] = None,
     top: TopOption = None,
-    drawings: DrawingsOption = 3,
+    drawings: SchedulerOption = Annotated[
+    str | None,
+    typer.Option(help="Dask scheduler to work on, such as tcp://host:8786.", show_default=False),
+]
+
+DrawingsOption = 3,
     effort: Annotated[
         float | None,
         typer.Option(
@@ -135,10 +145,7 @@ def solve(
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with the unfinished search in --out.")
     ] = False,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(help="Dask scheduler to work on, such as tcp://host:8786.", show_default=False),
-    ] = None,
+    scheduler: SchedulerOption = None,
     shard: Annotated[
         str | None,
         typer.Option(
@@ -183,7 +190,12 @@ def merge(
     ] = False,
     workers: WorkersOption = 1,
     top: TopOption = None,
-    drawings: DrawingsOption = 3,
+    drawings: SchedulerOption = Annotated[
+    str | None,
+    typer.Option(help="Dask scheduler to work on, such as tcp://host:8786.", show_default=False),
+]
+
+DrawingsOption = 3,
 ) -> None:
     """Make the list of a search from the shards in DIR; write it there, as solve does.
 
@@ -205,10 +217,7 @@ def sweep(
     top: Annotated[
         int | None, typer.Option(min=1, help="Best designs listed of each combination.", show_default=False)
     ] = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(help="Dask scheduler to work on, such as tcp://host:8786.", show_default=False),
-    ] = None,
+    scheduler: SchedulerOption = None,
 ) -> None:
     """Solve every combination of STUDY; write a table, a plot, a page and the record of the sweep.
 
