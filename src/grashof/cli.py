@@ -127,12 +127,7 @@ def solve(
         float | None, typer.Option(help="Seconds after which no new solves begin.", show_default=False)
     ] = None,
     top: TopOption = None,
-    drawings: SchedulerOption = Annotated[
-    str | None,
-    typer.Option(help="Dask scheduler to work on, such as tcp://host:8786.", show_default=False),
-]
-
-DrawingsOption = 3,
+    drawings: DrawingsOption = 3,
     effort: Annotated[
         float | None,
         typer.Option(
@@ -190,12 +185,7 @@ def merge(
     ] = False,
     workers: WorkersOption = 1,
     top: TopOption = None,
-    drawings: SchedulerOption = Annotated[
-    str | None,
-    typer.Option(help="Dask scheduler to work on, such as tcp://host:8786.", show_default=False),
-]
-
-DrawingsOption = 3,
+    drawings: DrawingsOption = 3,
 ) -> None:
     """Make the list of a search from the shards in DIR; write it there, as solve does.
 
