@@ -1,4 +1,4 @@
-"""Measure how cost grows, one axis at a time: positions of a task, starts of a search, length of a list.
+"""Measure how cost grows, one axis at a time: positions of a task, designs asked for, effort, length of a list.
 
 Prints processor time and peak memory (above that of the imports) of a process for each size, and the exponent
 with which each grows: the slope of a line through the logarithms. Run it on a quiet machine.
@@ -29,6 +29,7 @@ FEWEST = 12  # positions of least squares: of fewer, every target can be met
 SIZES = {
     "positions": (4, 12, 40, 120, 400, 1000),
     "starts": (100, 1000, 10_000, 100_000),
+    "effort": (1, 4, 16, 64, 256),
     "list": (10, 100, 1000, 5000),
 }
 
@@ -77,7 +78,7 @@ KINDS: dict[str, Callable[[np.random.Generator, int], Problem]] = {
     "timed-path": timed_points,
     "closed-path": closed_points,
 }
-CASES = {"positions": tuple(KINDS), "starts": ("luggage",), "list": ("luggage",)}
+CASES = {"positions": tuple(KINDS), "starts": ("luggage",), "effort": ("luggage", "path-ellipse"), "list": ("luggage",)}
 
 
 def prepared(axis: str, kind: str, size: int) -> Callable[[], object]:
@@ -85,7 +86,9 @@ def prepared(axis: str, kind: str, size: int) -> Callable[[], object]:
     if axis == "positions":
         problem = KINDS[kind](np.random.default_rng([61, size]), size)
         return lambda: synthesize(problem)
-    problem = load("luggage")
+    problem = load(kind)
+    if axis == "effort":
+        return lambda: synthesize(problem, effort=size)
     if axis == "starts":
         return lambda: synthesize(problem, starts=size, enough=max(size // 2, 1))
     scaled = ScaledProblem.of(problem)

@@ -155,7 +155,7 @@ def solve(
     """Find designs for PROBLEM; write the ranked list, a page, drawings and the record of the run.
 
     Exit code 0: at least one verified design; 1: none; 2: bad input; 3: environment error;
-    130: interrupted (Ctrl-C); 143: terminated (SIGTERM).
+    130: interrupted (Ctrl-C); 143: terminated (SIGTERM). With --shard, 0: it is done; 1: not yet.
     """
     with _errors_told():
         loaded, text = load_with_text(problem)
