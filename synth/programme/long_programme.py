@@ -35,7 +35,7 @@ def jacobian_by_rows(stated: Mapping[str, ca.SX]) -> ca.Function:
     return ca.Function("nlp_jac_g", [x, p], [g, slope[back, :]], ["x", "p"], ["g", "jac_g_x"])
 
 
-class Asking(ca.Callback):  # type: ignore[misc]  (CasADi has no types)
+class Asking(ca.Callback):
     """Called after every iteration of Ipopt: whether to end it, since that is overdue.
 
     Parameters

@@ -37,6 +37,7 @@ from grashof.synth.theory.stopping import asked_to_stop
 
 LONG = 40  # targets: programmes of more can be stopped, and are not begun any more when asked to stop
 MOST_ITERATIONS = 150
+MENDING = 60  # of a near miss to be mended in place: what can be mended takes a dozen
 PATIENCE = (250, 400)  # iterations where the error is bounded: of what a list offers, and where that is asked
 SLIGHT = 1e-6  # weight of the error beside the slack
 
@@ -86,6 +87,8 @@ def solve(scaled: ScaledProblem, start: Start, max_iter: int | None = None) -> S
     Solve
     """
     patience = PATIENCE[scaled.bounded] if start.bounded else MOST_ITERATIONS
+    if start.stay and not scaled.constraints:
+        patience = MENDING
     form = Form.of(scaled, start)
     most = patience if max_iter is None else max_iter
     if form.targets > LONG and asked_to_stop():

@@ -142,11 +142,14 @@ def _linearised(target: SearchTargets, batch: Batch, weight: float) -> _Model:
         gaps.append(turned)
         own.append(by_turn[..., 3])
     error = (np.abs(residual) ** 2).sum(axis=1) + (turned**2).sum(axis=1) + weight**2 * (over**2).sum(axis=1)
-    made = (np.stack(part, axis=2) for part in (gaps, rows, own))
     return _Model(
-        np.where(loop.closes & np.isfinite(error), error, np.inf),
-        *(np.nan_to_num(part) for part in (*made, weight * over, weight * by_over)),
-        ends,
+        error=np.where(loop.closes & np.isfinite(error), error, np.inf),
+        gap=np.nan_to_num(np.stack(gaps, axis=2)),
+        common=np.nan_to_num(np.stack(rows, axis=2)),
+        own=np.nan_to_num(np.stack(own, axis=2)),
+        over=np.nan_to_num(weight * over),
+        by_over=np.nan_to_num(weight * by_over),
+        ends=ends,
     )
 
 
