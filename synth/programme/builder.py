@@ -13,6 +13,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.synth.programme.long_programme import Asking, jacobian_by_rows
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
+from grashof.synth.theory.stopping import give_way
 
 # Numbers that a problem and a start give: as many as the symbols that they fill.
 Fill: TypeAlias = Callable[[ScaledProblem, Start], Any]
@@ -106,11 +107,19 @@ class Builder:
         }
 
     def programme(self, cost: ca.SX, options: dict[str, Any], *, long: bool = False) -> Programme:
-        """The programme that makes a cost least; a `long` one ends when asked to stop."""
+        """The programme that makes a cost least; a `long` one ends when asked to stop.
+
+        Raises
+        ------
+        Stopped
+            It was so before a `long` one was built.
+        """
         stated = self.stated(cost)
         asking = Asking(stated) if long else None
         if long:
+            give_way()
             options = {**options, "jac_g": jacobian_by_rows(stated), "iteration_callback": asking}
+            give_way()
         sizes = {name: each.symbol.numel() for name, each in self._unknowns.items()}
         ends = np.cumsum(list(sizes.values())).tolist()
         return Programme(

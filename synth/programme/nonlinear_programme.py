@@ -33,7 +33,7 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import Form
 from grashof.synth.programme.unknowns import FAR, Unknowns, interleaved
-from grashof.synth.theory.stopping import asked_to_stop
+from grashof.synth.theory.stopping import Stopped, give_way
 
 LONG = 40  # targets: programmes of more can be stopped, and are not begun any more when asked to stop
 MOST_ITERATIONS = 150
@@ -91,9 +91,12 @@ def solve(scaled: ScaledProblem, start: Start, max_iter: int | None = None) -> S
         patience = MENDING
     form = Form.of(scaled, start)
     most = patience if max_iter is None else max_iter
-    if form.targets > LONG and asked_to_stop():
+    try:
+        if form.targets > LONG:
+            give_way()
+        programme = _programme(form, most, scaled.constraints, scaled.own_objective)
+    except Stopped:
         return _as_it_is(start, STOPPED)
-    programme = _programme(form, most, scaled.constraints, scaled.own_objective)
     given = programme.arguments(scaled, start)
     fixed = sum(np.count_nonzero(given[f"lb{kind}"] == given[f"ub{kind}"]) for kind in "xg")
     if (given["lbx"] > given["ubx"]).any() or fixed > len(given["lbx"]):  # nothing is left to solve for
