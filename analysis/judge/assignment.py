@@ -13,6 +13,7 @@ _KEPT = 4
 _STRIDE, _MOST_CUTS = 5, 72  # pieces from cut to cut; more of them where there are very many pieces
 _SAGITTA = 5e-4  # of the length of the curve: no piece bulges farther from its chord
 _NEAR = 0.1  # rad: guesses that agree so well lead to the same place
+_FEW = 64  # targets: those of more are added diagonal by diagonal, which takes longer to begin
 _ALIKE = 1e-6  # assignments whose costs differ by a smaller share are the same one
 
 
@@ -148,6 +149,8 @@ def _least_costs(around: FloatArray, cuts: IntArray, length: int) -> FloatArray:
 
     `around`, shape (N, 2 M), is what N targets cost on the pieces of two turns.
     """
+    if len(around) > _FEW:
+        return _least_costs_of_many(around, cuts, length)
     places = cuts + np.arange(length)[:, None]
     total = around[0][places]
     for squared in around[1:]:
@@ -155,6 +158,28 @@ def _least_costs(around: FloatArray, cuts: IntArray, length: int) -> FloatArray:
         total += squared[places]
     least: FloatArray = total.min(axis=0)
     return least
+
+
+def _least_costs_of_many(around: FloatArray, cuts: IntArray, length: int) -> FloatArray:
+    """The same, to the last bit, for many targets: what is least up to each piece, all cuts at once.
+
+    Up to target k and piece p it is least(k, p) = min(least(k - 1, p) + cost(k, p), least(k, p - 1)). On
+    a diagonal k + p = d nothing depends on anything else there, so that one step makes all of it.
+    """
+    count, width = around.shape
+    # On a diagonal a piece more is a target less, so many numbers farther back; none before the first.
+    back = width - 1
+    flat = np.concatenate([np.zeros((length - 1) * back), around.ravel()])
+    place = cuts + back * np.arange(length - 1, -1, -1)[:, None]
+    least: FloatArray = np.zeros((length + 1, len(cuts)))
+    least[0] = np.inf  # before the first piece
+    for diagonal in range(count + length - 1):
+        low, high = max(0, diagonal - count + 1), min(diagonal, length - 1) + 1
+        here = flat[diagonal * width :][place[low:high]]
+        here += least[low + 1 : high + 1]
+        least[low + 1 : high + 1] = np.minimum(here, least[low:high], out=here)
+    ends: FloatArray = least[-1]
+    return ends
 
 
 def assigned(windows: FloatArray) -> tuple[IntArray, FloatArray]:

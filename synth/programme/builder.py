@@ -10,8 +10,10 @@ import casadi as ca
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
+from grashof.synth.programme.long_programme import Asking, jacobian_by_rows
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
+from grashof.synth.theory.stopping import give_way
 
 # Numbers that a problem and a start give: as many as the symbols that they fill.
 Fill: TypeAlias = Callable[[ScaledProblem, Start], Any]
@@ -95,14 +97,29 @@ class Builder:
         """All unknowns in one column."""
         return ca.vertcat(*(each.symbol for each in self._unknowns.values()))
 
-    def programme(self, cost: ca.SX, options: dict[str, Any]) -> Programme:
-        """The programme that makes a cost least."""
-        stated = {
+    def stated(self, cost: ca.SX) -> dict[str, ca.SX]:
+        """The programme that makes a cost least, as CasADi takes it."""
+        return {
             "x": self.unknowns,
             "p": ca.vertcat(*(symbol for symbol, _ in self._parameters)),
             "f": cost,
             "g": ca.vertcat(*(expression for expression, _ in self._rows)),
         }
+
+    def programme(self, cost: ca.SX, options: dict[str, Any], *, long: bool = False) -> Programme:
+        """The programme that makes a cost least; a `long` one ends when asked to stop.
+
+        Raises
+        ------
+        Stopped
+            It was so before a `long` one was built.
+        """
+        stated = self.stated(cost)
+        asking = Asking(stated) if long else None
+        if long:
+            give_way()
+            options = {**options, "jac_g": jacobian_by_rows(stated), "iteration_callback": asking}
+            give_way()
         sizes = {name: each.symbol.numel() for name, each in self._unknowns.items()}
         ends = np.cumsum(list(sizes.values())).tolist()
         return Programme(
@@ -112,12 +129,16 @@ class Builder:
             parameters=tuple(value for _, value in self._parameters),
             rows=tuple((expression.numel(), limits) for expression, limits in self._rows),
             bounds=tuple(self._bounds),
+            asking=asking,
         )
 
 
 @dataclass(frozen=True, slots=True)
 class Programme:
-    """A programme built; `places` holds where each unknown stands in the column of all."""
+    """A programme built; `places` holds where each unknown stands in the column of all.
+
+    `asking` is called by the solver of a long one, and has to be kept for that.
+    """
 
     solver: ca.Function
     places: dict[str, slice]
@@ -125,6 +146,7 @@ class Programme:
     parameters: tuple[Fill, ...]
     rows: tuple[tuple[int, Fill], ...]
     bounds: tuple[tuple[int, Fill], ...]
+    asking: Asking | None
 
     def arguments(self, scaled: ScaledProblem, start: Start) -> dict[str, FloatArray]:
         """What the solver takes for a start."""

@@ -11,6 +11,7 @@ from grashof.synth.programme.limits import ADDED
 from grashof.synth.programme.nonlinear_programme import Solve, solve
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
+from grashof.synth.theory.stopping import asked_to_stop
 
 SOLVED = ("Solve_Succeeded", "Solved_To_Acceptable_Level")
 EXCHANGES = 4  # times at most that a solve is repeated
@@ -23,7 +24,7 @@ def solve_by_exchange(scaled: ScaledProblem, start: Start) -> Solve:
     """
     solved = solve(scaled, start)
     for _ in range(EXCHANGES):
-        if solved.status not in SOLVED:
+        if solved.status not in SOLVED or asked_to_stop():
             break
         points, theta2 = np.array(solved.points), np.array(solved.theta2)
         ways = points, theta2, start.direction, start.assembly

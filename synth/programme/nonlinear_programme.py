@@ -27,13 +27,17 @@ from grashof.synth.programme.constraints import (
     stand_nearest,
 )
 from grashof.synth.programme.limits import cost_of_goals, peak_unit, require_limits
+from grashof.synth.programme.long_programme import STOPPED
 from grashof.synth.programme.on_symbols import numpy_on_symbols
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import Form
 from grashof.synth.programme.unknowns import FAR, Unknowns, interleaved
+from grashof.synth.theory.stopping import Stopped, give_way
 
+LONG = 40  # targets: programmes of more can be stopped, and are not begun any more when asked to stop
 MOST_ITERATIONS = 150
+MENDING = 60  # of a near miss to be mended in place: what can be mended takes a dozen
 PATIENCE = (250, 400)  # iterations where the error is bounded: of what a list offers, and where that is asked
 SLIGHT = 1e-6  # weight of the error beside the slack
 
@@ -83,16 +87,25 @@ def solve(scaled: ScaledProblem, start: Start, max_iter: int | None = None) -> S
     Solve
     """
     patience = PATIENCE[scaled.bounded] if start.bounded else MOST_ITERATIONS
+    if start.stay and not scaled.constraints:
+        patience = MENDING
     form = Form.of(scaled, start)
     most = patience if max_iter is None else max_iter
-    programme = _programme(form, most, scaled.constraints, scaled.own_objective)
+    try:
+        if form.targets > LONG:
+            give_way()
+        programme = _programme(form, most, scaled.constraints, scaled.own_objective)
+    except Stopped:
+        return _as_it_is(start, STOPPED)
     given = programme.arguments(scaled, start)
     fixed = sum(np.count_nonzero(given[f"lb{kind}"] == given[f"ub{kind}"]) for kind in "xg")
     if (given["lbx"] > given["ubx"]).any() or fixed > len(given["lbx"]):  # nothing is left to solve for
-        points = (start.o2, start.o4, start.a, start.b, start.p)
-        return Solve(points, start.theta2, start.theta3, start.body_angle, "Contradictory_Limits", 0)
+        return _as_it_is(start, "Contradictory_Limits")
     answer = np.asarray(programme.solver(**given)["x"]).ravel()
     stats = programme.solver.stats()
+    status = str(stats["return_status"])
+    if programme.asking is not None and programme.asking.ended_by_another(status):
+        raise KeyboardInterrupt
     found = {name: answer[place] for name, place in programme.places.items()}
     o2, o4, a, b = (complex(*found[name]) for name in ("o2", "o4", "a", "b"))
     p, theta3 = complex(scaled.targets[0]), start.theta3
@@ -104,10 +117,16 @@ def solve(scaled: ScaledProblem, start: Start, max_iter: int | None = None) -> S
         theta2=tuple(found["theta2"].tolist()),
         theta3=theta3,
         body_angle=float(found["body_angle"][0]) if "body_angle" in found else start.body_angle,
-        status=str(stats["return_status"]),
+        status=status,
         iterations=int(stats["iter_count"]),
         peaks={key: float(found[key][0]) * peak_unit(form, scaled, start, key) for key in form.along},
     )
+
+
+def _as_it_is(start: Start, status: str) -> Solve:
+    """A start in place of a solve."""
+    points = (start.o2, start.o4, start.a, start.b, start.p)
+    return Solve(points, start.theta2, start.theta3, start.body_angle, status, 0)
 
 
 _IPOPT = {
@@ -139,7 +158,7 @@ def _programme(
         "calc_lam_p": False,
         "ipopt": {**_IPOPT, "max_iter": max_iter},
     }
-    return build.programme(cost, options)
+    return build.programme(cost, options, long=form.targets > LONG)
 
 
 def _stated(

@@ -20,7 +20,10 @@ from grashof.synth.results.judging import judged, verified_cognates
 from grashof.synth.results.larger_zones import MISSED, shares
 from grashof.synth.results.polishing import polished_solve, polished_start
 from grashof.synth.starts.finder import finder_for
+from grashof.synth.theory.stopping import asked_to_stop, overdue
 
+# Status of a start that was left alone because the search had long been asked to stop.
+LEFT_ALONE = "Stopped"
 # The judge may put the driver a little elsewhere than the programme, and looks between the targets: so many
 # solves at most ask for that much more, unless what is missing is more than a little (as in `Defect.miss`;
 # share of a zone).
@@ -78,6 +81,8 @@ def attempt(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
 
     `number` is that of the start.
     """
+    if overdue():
+        return Attempt(LEFT_ALONE, None)
     finder, start = finder_for(scaled), polished_start(scaled, start)
     done = None
     if start.settled or not set(UNSMOOTH).isdisjoint(start.relaxed):
@@ -94,13 +99,13 @@ def attempt(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
 def _solved(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
     """Solve; again, asking for more, as long as one thing alone is missed by a little."""
     solve = solve_by_exchange(scaled, start)
-    if solve.status not in SOLVED and any(Form.of(scaled, start).nearest):
+    if solve.status not in SOLVED and any(Form.of(scaled, start).nearest) and not asked_to_stop():
         start = replace(start, loose=True)
         solve = solve_by_exchange(scaled, start)
     done = polished_and_judged(scaled, start, solve, number)
     for _ in range(MORE if solve.status in SOLVED else 0):
         more = _more(scaled, start, done.candidate)
-        if not more:
+        if not more or asked_to_stop():
             break
         start = replace(begun_from(start, solve), more={**start.more, **more})
         again = solve_by_exchange(scaled, start)

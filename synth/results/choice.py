@@ -11,7 +11,7 @@ from grashof.synth.programme.merit import same_error
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.results.attempt import Attempt
 from grashof.synth.results.candidate import Candidate
-from grashof.synth.results.judging import judged_again
+from grashof.synth.results.judging import judged_in_time
 from grashof.synth.results.larger_zones import shares
 from grashof.synth.results.ledger import EXACT_ERROR, Ledger
 from grashof.synth.results.ranking import ranked
@@ -52,11 +52,11 @@ def _best_within_bounds(
     ]
     attempts = [] if run.ended() else run.solve(scaled, starts, ledger.solved)
     solved = len(attempts)
-    again = [judged_again(scaled, one, most) for one in found]
+    again = judged_in_time(scaled, found, most)
     good = [one for one in again if one.verdict.ok]
     for one in attempts:
         good += one.verified[:1]
-        good += [each for each in one.cognates if judged_again(scaled, each, most).verdict.ok]
+        good += [each for each in judged_in_time(scaled, one.cognates, most) if each.verdict.ok]
     if not good and scaled.zones is not None and not run.ended():  # how large the zones would have to be
         relaxed = [replace(start, relaxed=("within",)) for start in starts]
         lack = min((max(shares(problem, one.verdict)) for one in again), default=1.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +14,7 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Configurations, dyad_violations, judge, met
 from grashof.synth.results.candidate import Candidate
 from grashof.synth.theory.cognates import assembly_of, cognate_points, position_of
+from grashof.synth.theory.stopping import overdue
 
 
 def judged(
@@ -71,6 +73,18 @@ def judged_again(scaled: ScaledProblem, candidate: Candidate, most_error: float 
     return _valued(scaled, replace(candidate, verdict=verdict, problem=scaled.problem))
 
 
+def judged_in_time(
+    scaled: ScaledProblem, found: Sequence[Candidate], most_error: float = np.inf
+) -> list[Candidate]:
+    """As `judged_again`, in their order; where that has to be left off, those of the least error."""
+    errors, judged = [one.error(one.problem) for one in found], dict[int, Candidate]()
+    for k in sorted(range(len(found)), key=errors.__getitem__):
+        if judged and overdue():
+            break
+        judged[k] = judged_again(scaled, found[k], most_error)
+    return [judged[k] for k in sorted(judged)]
+
+
 def _valued(scaled: ScaledProblem, candidate: Candidate) -> Candidate:
     """The same with what the user's own objective makes of it, where there is one."""
     return candidate if scaled.own_objective is None else candidate.valued(scaled.own_objective)
@@ -82,6 +96,8 @@ def verified_cognates(scaled: ScaledProblem, candidate: Candidate) -> tuple[Cand
     came_from = {"start": candidate.start, "iterations": candidate.iterations}
     found = []
     for cognate in cognate_points(position, scaled.timed):
+        if overdue():
+            break
         points = (cognate - scaled.frame.origin) / scaled.frame.scale
         if np.isfinite(points).all() and _worth_judging(scaled, points):
             other = judged(scaled, points, assembly_of(points), 0.0, **came_from)

@@ -16,7 +16,7 @@ from grashof.problems import ProblemError, Task
 from grashof.problems.values.arrays import TURN, IntArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.results.candidate import Candidate
-from grashof.synth.results.judging import judged_again
+from grashof.synth.results.judging import judged_again, judged_in_time
 
 LONG, FEW = 40, 24  # more targets than the first are stood in for by so many
 KEPT = 0.98  # of the error that may be added: the judge looks at all targets
@@ -81,5 +81,4 @@ def met_by(best: Candidate, task: Task, index: IntArray) -> Task:
 def on_all_targets(scaled: ScaledProblem, found: list[Candidate], most: float) -> list[Candidate]:
     """Designs of a stand-in that the judge accepts on all targets, up to some error (sizes)."""
     once = {one.id: one for one in found}
-    judged = [judged_again(scaled, one, most) for one in once.values()]
-    return [one for one in judged if one.verdict.ok]
+    return [one for one in judged_in_time(scaled, list(once.values()), most) if one.verdict.ok]

@@ -13,6 +13,7 @@ from grashof.problems.values.checks import counted
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Start
+from grashof.synth.starts.every_target import fitted_to_all
 from grashof.synth.starts.loop_search import draw, fitting, improve, place
 from grashof.synth.starts.sampled_dyads import fixed_pivots
 from grashof.synth.starts.search_targets import judged, search_targets
@@ -97,7 +98,10 @@ def search(
             best = np.argsort(error, kind="stable")[:keep_now]
             batch, error = improve(fitting(some), batch[best], steps_now, EXACT, until=min(enough, keep_now))
         batch = refined(target, index, batch[np.argsort(error, kind="stable")[:keep]])
-        batch, _ = improve(fitting(target), batch, steps, EXACT, until=min(enough, keep))
+        if len(index) < len(target.points) and not target.timed:
+            batch = fitted_to_all(target, batch, steps)
+        else:
+            batch, _ = improve(fitting(target), batch, steps, EXACT, until=min(enough, keep))
         placed = place(target, batch)
     sound = np.isfinite(placed.error)
     if scaled.exact:

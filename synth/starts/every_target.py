@@ -11,10 +11,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import isotonic_regression
 
-from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray
+from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.synth.programme.driver_angles import as_they_come
 from grashof.synth.starts.closed_loop import Batch, Loop, SearchTargets, body_turns, by_theta3_of
 from grashof.synth.starts.limit_residuals import Placement, oversteps
 from grashof.synth.starts.loop_search import PLACES, PULL, missed_places, project
+from grashof.synth.theory.stopping import asked_to_stop, leave_off
 
 STEPS = 30
 DONE = 1e-8  # share of its error: a linkage that gains less is done
@@ -29,8 +31,8 @@ class _Model:
     """Misses of every target, linearised: gap - common @ what all share - own * its driver angle.
 
     `gap` and `own` have the shape (n, N, 3), `common` (n, N, 3, C), `error` (n,). Limits are overstepped by
-    `over` (n, L), with derivatives `by_over` (n, L, C + 2) by what all share and by the first and the last
-    driver angle.
+    `over` (n, L), with derivatives `by_over` (n, L, C + 2) by what all share and by the driver angles at both
+    `ends` of the motion (n, 2).
     """
 
     error: FloatArray
@@ -39,6 +41,7 @@ class _Model:
     own: FloatArray
     over: FloatArray
     by_over: FloatArray
+    ends: IntArray
 
     def where(self, better: BoolArray, fresh: _Model) -> _Model:
         """The fresh one of the linkages that are better."""
@@ -49,12 +52,12 @@ class _Model:
 def fitted_to_all(
     target: SearchTargets, batch: Batch, steps: int = STEPS, *, weight: float = PULL, placed: bool = False
 ) -> Batch:
-    """Linkages with the least squares over all targets, met in order, by the Gauss-Newton method.
+    """Linkages with the least squares over all targets, by the Gauss-Newton method.
 
     Parameters
     ----------
     target : SearchTargets
-        Untimed, in order.
+        Untimed.
     batch : Batch
         With driver angles at every target, near the best ones.
     steps : int
@@ -70,15 +73,18 @@ def fitted_to_all(
 
     Notes
     -----
-    Damped as Levenberg and Marquardt do. Driver angles that would go back are projected on the order by
-    weighted isotonic regression, which is the solution of the step for given proportions; those that
-    stand together are eliminated together.
+    Damped as Levenberg and Marquardt do. Of targets in order, driver angles that would go back are
+    projected on the order by weighted isotonic regression, which is the solution of the step for given
+    proportions; those that stand together are eliminated together.
     """
     now = _with_angles(target, batch, PLACES * placed)
     model = _linearised(target, now, weight)
     damping, idle = np.full(len(batch), 1e-3), np.zeros(len(batch), dtype=np.int64)
+    leave_off()
     for _ in range(steps):
-        tried = _stepped(now, model, damping)
+        if asked_to_stop():
+            break
+        tried = _stepped(target, now, model, damping)
         fresh = _linearised(target, tried, weight)
         better = fresh.error < model.error
         idle = np.where(better & (fresh.error < (1 - DONE) * model.error), 0, idle + better)
@@ -87,7 +93,7 @@ def fitted_to_all(
         damping = np.clip(np.where(better, damping / 5, damping * 8), 1e-12, 10 * HEAVY)
         if ((idle > 3) | (damping > HEAVY)).all():
             break
-    return _by_gaps(now, len(target.points))
+    return now if target.jumbled else _by_gaps(now, len(target.points))
 
 
 def costs_of_all(target: SearchTargets, batch: Batch, weight: float) -> FloatArray:
@@ -119,7 +125,8 @@ def _linearised(target: SearchTargets, batch: Batch, weight: float) -> _Model:
         by_theta3 = by_theta3_of(loop, by_theta2)
         residual, slope = missed_places(free, loop, z, by_theta2, by_theta3)
         turned, _ = body_turns(free, loop)
-        over, by_over = _overstepped(target, loop, z)
+        ends = _ends(target, loop)
+        over, by_over = _overstepped(target, loop, z, ends)
     root = np.sqrt(free.weights)
     spans = [root * each for e in (np.ones_like(loop.e2), loop.e2, loop.e3) for each in (e, 1j * e)]
     columns = [*np.moveaxis(slope[..., :3], -1, 0), *spans]
@@ -135,25 +142,41 @@ def _linearised(target: SearchTargets, batch: Batch, weight: float) -> _Model:
         gaps.append(turned)
         own.append(by_turn[..., 3])
     error = (np.abs(residual) ** 2).sum(axis=1) + (turned**2).sum(axis=1) + weight**2 * (over**2).sum(axis=1)
-    made = (np.stack(part, axis=2) for part in (gaps, rows, own))
     return _Model(
-        np.where(loop.closes & np.isfinite(error), error, np.inf),
-        *(np.nan_to_num(part) for part in (*made, weight * over, weight * by_over)),
+        error=np.where(loop.closes & np.isfinite(error), error, np.inf),
+        gap=np.nan_to_num(np.stack(gaps, axis=2)),
+        common=np.nan_to_num(np.stack(rows, axis=2)),
+        own=np.nan_to_num(np.stack(own, axis=2)),
+        over=np.nan_to_num(weight * over),
+        by_over=np.nan_to_num(weight * by_over),
+        ends=ends,
     )
 
 
-def _overstepped(target: SearchTargets, loop: Loop, z: ComplexArray) -> tuple[FloatArray, FloatArray]:
-    """How far limits are overstepped (n, L); by what all share and the first and last angle (n, L, 11)."""
+def _ends(target: SearchTargets, loop: Loop) -> IntArray:
+    """Targets whose driver angles limits may depend on: those at both ends of the motion; shape (n, 2)."""
+    ends = np.broadcast_to([0, len(target.points) - 1], (len(loop.r2), 2))
+    if target.jumbled:
+        ends = as_they_come(np.nan_to_num(loop.theta2))[0][:, [0, -1]]
+        if target.wanted.theta2_start_deg is not None:
+            ends[:, 0] = 0
+    return ends
+
+
+def _overstepped(
+    target: SearchTargets, loop: Loop, z: ComplexArray, ends: IntArray
+) -> tuple[FloatArray, FloatArray]:
+    """How far limits are overstepped (n, L); by what all share and the angles at both ends (n, L, 11)."""
     n, count = loop.theta2.shape
     by_theta2 = np.zeros((n, count, 11))
-    by_theta2[:, 0, 9] = by_theta2[:, -1, 10] = 1
+    by_theta2[np.arange(n)[:, None], ends, [9, 10]] = 1
     by_z = np.zeros((n, 3, 11), dtype=np.complex128)
     for k in range(3):
         by_z[:, k, 3 + 2 * k], by_z[:, k, 4 + 2 * k] = 1, 1j
     return oversteps(target, Placement(target, loop, by_theta2, by_theta3_of(loop, by_theta2), z, by_z))
 
 
-def _stepped(batch: Batch, model: _Model, damping: FloatArray) -> Batch:
+def _stepped(target: SearchTargets, batch: Batch, model: _Model, damping: FloatArray) -> Batch:
     """Linkages after a damped step."""
     common, own, gap, count = model.common, model.own, model.gap, model.gap.shape[1]
     flat, transposed = _flat(common), np.swapaxes(_flat(common), 1, 2)
@@ -162,20 +185,22 @@ def _stepped(batch: Batch, model: _Model, damping: FloatArray) -> Batch:
     by_common, by_ends = model.by_over[..., :-2], model.by_over[..., -2:]
     normal += np.swapaxes(by_common, 1, 2) @ by_common
     right -= (np.swapaxes(by_common, 1, 2) @ model.over[..., None])[..., 0]
-    border[:, [0, -1]] += np.swapaxes(by_ends, 1, 2) @ by_common
-    pull[:, [0, -1]] -= (np.swapaxes(by_ends, 1, 2) @ model.over[..., None])[..., 0]
+    each = np.arange(len(batch))[:, None]
+    border[each, model.ends] += np.swapaxes(by_ends, 1, 2) @ by_common
+    pull[each, model.ends] -= (np.swapaxes(by_ends, 1, 2) @ model.over[..., None])[..., 0]
     diagonal = np.einsum("sii->si", normal)
     ridge = damping[:, None] * (diagonal + 1e-12 * diagonal.max(axis=1, keepdims=True)) + 1e-300
     normal = normal + ridge[..., None] * np.eye(normal.shape[1])
     heavy = _weights(own)
-    heavy[:, [0, -1]] += (by_ends**2).sum(axis=1)
+    heavy[each, model.ends] += (by_ends**2).sum(axis=1)
     heavy *= (1 + damping)[:, None]
     parts = np.concatenate([border, heavy[..., None]], axis=2)
     angles = batch.unknowns[:, 3 : 3 + count]
-    together = _summed(parts, np.diff(angles, axis=1, prepend=np.nan) == 0)
-    share = np.swapaxes(together[..., :-1] / together[..., -1:], 1, 2)
+    if not target.jumbled:
+        parts = _summed(parts, np.diff(angles, axis=1, prepend=np.nan) == 0)
+    share = np.swapaxes(parts[..., :-1] / parts[..., -1:], 1, 2)
     step = np.clip(_solved(normal - share @ border, right - (share @ pull[..., None])[..., 0]), -1.5, 1.5)
-    moved = _moved(batch, (pull - (border @ step[..., None])[..., 0]) / heavy, heavy)
+    moved = _moved(target, batch, (pull - (border @ step[..., None])[..., 0]) / heavy, heavy)
     places = batch.unknowns[:, 3 + count :]
     places = places + step[:, 3 : 3 + places.shape[1]]
     return replace(
@@ -190,10 +215,12 @@ def _weights(own: FloatArray) -> FloatArray:
     return least
 
 
-def _moved(batch: Batch, step: FloatArray, weights: FloatArray) -> FloatArray:
-    """Driver angles after a step (n, N), in order."""
+def _moved(target: SearchTargets, batch: Batch, step: FloatArray, weights: FloatArray) -> FloatArray:
+    """Driver angles after a step (n, N), in order where that is asked."""
     sense = batch.direction[:, None]
-    angles = batch.unknowns[:, 3 : 3 + step.shape[1]]
+    angles: FloatArray = batch.unknowns[:, 3 : 3 + step.shape[1]]
+    if target.jumbled:
+        return angles + np.clip(step, -LONGEST, LONGEST)
     wish = sense * (angles + np.clip(step, -LONGEST, LONGEST))
     ordered: FloatArray = np.stack([_in_order(*row) for row in zip(wish, weights, strict=True)])
     return sense * ordered

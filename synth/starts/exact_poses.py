@@ -10,12 +10,14 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from itertools import combinations, zip_longest
+from itertools import zip_longest
 from typing import ClassVar
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from grashof.problems import ProblemError
+from grashof.problems.values.arrays import ComplexArray
 from grashof.problems.values.checks import counted
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
@@ -39,6 +41,8 @@ PAIRS, SAMPLED_PAIRS, NEAR_PAIRS = 1_000_000, 200_000, 150_000  # judged
 SUBSETS = 6  # fives of many poses that are tried
 NEARLY, EXACT = 1e-4, 1e-9  # radius error in sizes: before and after polishing
 NOT_TURNED = 1e-9  # of unit rotations
+EQUAL = 1e-12  # sizes and unit rotations: poses closer are the same one
+AT_ONCE = 1024  # poses compared with all others
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,14 +75,13 @@ class WholePoses:
 
     def refuse(self) -> None:
         """Raise `ProblemError` when two of the poses are equal: fewer are asked for then."""
-        motion = self.motion
-        for i, j in combinations(range(len(motion.shift)), 2):
-            moved = abs(self.scaled.targets[i] - self.scaled.targets[j])
-            if moved + abs(motion.rotation[i] - motion.rotation[j]) < 1e-12:
-                raise ProblemError(
-                    f"motion.poses[{i}] and motion.poses[{j}] are equal; "
-                    "they must be distinct, or requirements.exact = false"
-                )
+        equal = first_equal(self.scaled.targets, self.motion.rotation)
+        if equal is not None:
+            i, j = equal
+            raise ProblemError(
+                f"motion.poses[{i}] and motion.poses[{j}] are equal; "
+                "they must be distinct, or requirements.exact = false"
+            )
 
     def degenerate(self) -> str:
         """Why a pure rotation needs no linkage; empty for other poses."""
@@ -257,3 +260,27 @@ class ManyPoses(DyadPairs):
 def translate(motion: Displacements) -> bool:
     """Whether all poses are pure translations of the first."""
     return bool(np.abs(motion.rotation - 1).max() < NOT_TURNED)
+
+
+def first_equal(positions: ComplexArray, rotations: ComplexArray) -> tuple[int, int] | None:
+    """The first of some poses that a later one is equal to, and the first of those; None where all differ.
+
+    A tree finds those that may be, in place of all pairs.
+
+    Parameters
+    ----------
+    positions : ndarray of complex, shape (n,), sizes
+    rotations : ndarray of complex, shape (n,)
+        Of absolute value 1.
+    """
+    numbers = np.stack([positions.real, positions.imag, rotations.real, rotations.imag], axis=1)
+    tree = cKDTree(numbers)
+    for begin in range(0, len(numbers), AT_ONCE):
+        some = numbers[begin : begin + AT_ONCE]
+        apart = np.asarray(tree.query(some, k=2, distance_upper_bound=2 * EQUAL)[0])[:, 1]
+        for i in (begin + np.flatnonzero(np.isfinite(apart))).tolist():
+            later = [j for j in sorted(tree.query_ball_point(numbers[i], 2 * EQUAL)) if j > i]
+            moved = np.abs(positions[later] - positions[i]) + np.abs(rotations[later] - rotations[i])
+            if (moved < EQUAL).any():
+                return i, later[int(np.argmax(moved < EQUAL))]
+    return None

@@ -35,6 +35,7 @@ from grashof.synth.starts.loop_search import (
 )
 from grashof.synth.starts.search_targets import judged, search_targets
 from grashof.synth.starts.thinning import refined, thinned
+from grashof.synth.theory.stopping import leave_off
 
 DRAWS, TIMED_DRAWS = 2000, 600
 ASTRAY = 0.3  # share of them on which P makes a detour between two targets
@@ -176,6 +177,7 @@ def _search(scaled: ScaledProblem, drawn: Batch, best: Batch, size: int) -> tupl
             model = within_limits(some, weight)
             if number == len(STAGES) - 2:
                 batch = joined(batch, with_places(some, best))
+            leave_off()
             error, _, _ = model(batch)
             batch = _best_distinct(some, batch, error, size * keep, drawn=number == 0)
             batch, error = improve(model, batch, steps, 0.0)
@@ -199,7 +201,8 @@ def _search(scaled: ScaledProblem, drawn: Batch, best: Batch, size: int) -> tupl
 def _with_places_refined(target: SearchTargets, index: IntArray, batch: Batch) -> Batch:
     """Linkages that know the targets `index` with driver angles at every one, where they stand."""
     places = batch.unknowns[:, -PLACES:]
-    inner = refined(target, index, replace(batch, unknowns=batch.unknowns[:, :-PLACES]))
+    z = places.reshape(-1, PLACES // 2, 2) @ np.array([1, 1j])
+    inner = refined(target, index, replace(batch, unknowns=batch.unknowns[:, :-PLACES]), z)
     return replace(inner, unknowns=np.concatenate([inner.unknowns, places], axis=1))
 
 
@@ -255,7 +258,7 @@ def _start(scaled: ScaledProblem, linkages: Screened, error: FloatArray, index: 
 
 def _all_fitted(target: SearchTargets) -> bool:
     """Whether the search itself fits linkages to all of many targets, so that a programme gains nothing."""
-    return len(target.points) > FEW_TARGETS and not target.jumbled and not target.timed
+    return len(target.points) > FEW_TARGETS and not target.timed
 
 
 def _some(rng: np.random.Generator, every: IntArray, count: int) -> list[int]:

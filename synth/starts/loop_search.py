@@ -27,7 +27,7 @@ from grashof.synth.starts.closed_loop import (
     by_unknowns,
 )
 from grashof.synth.starts.limit_residuals import Placement, oversteps
-from grashof.synth.theory.stopping import asked_to_stop
+from grashof.synth.theory.stopping import asked_to_stop, leave_off
 
 # So many steps on end that take less than this share of its error away end the work on a linkage.
 LOOK, STALL = 5, 1e-3
@@ -146,6 +146,7 @@ def improve(
     batch : Batch
     error : ndarray, shape (n,), sizes squared
     """
+    leave_off()
     result = replace(batch, unknowns=batch.unknowns.copy())
     error, residual, jacobian = model(batch)
     damping, marked, least = np.full(len(batch), 1e-2), error, error.copy()

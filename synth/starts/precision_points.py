@@ -71,8 +71,10 @@ class NinePoints(PrecisionPoints):
         if not scaled.exact or scaled.timed or not scaled.problem.task.only_points:
             return False
         points = search_targets(scaled).points
+        if len(points) != 9:
+            return False
         apart = np.abs(points[:, None] - points) + np.eye(len(points))
-        return len(points) == 9 and bool(apart.min() > 1e-9)
+        return bool(apart.min() > 1e-9)
 
     def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
         """A round of the search, which for points in order is most often sooner there; then all linkages.

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.synth.theory.closure import coupler_of
 
 STEPS = 4
+MANY = 64  # targets: of more, each driver angle is eliminated by itself
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +88,11 @@ def polish_path(
         _, residual, jacobian = _linearised(unknowns, gaps, assembly, wish)
         if not (np.isfinite(residual).all() and np.isfinite(jacobian).all()):
             break
-        unknowns = unknowns - np.linalg.lstsq(jacobian, residual, rcond=1e-12)[0]
+        if wish.timed or len(theta2) <= MANY:
+            jacobian = jacobian if wish.timed else _spread(jacobian, wish)
+            unknowns = unknowns - np.linalg.lstsq(jacobian, residual, rcond=1e-12)[0]
+        else:
+            unknowns = unknowns - _eliminated(jacobian, residual, wish)
     (moved, coupler), residual, _ = _linearised(unknowns, gaps, assembly, wish)
     theta2 = unknowns[10] + gaps if wish.timed else unknowns[10:]
     return Polished(moved, theta2, coupler, float(unknowns[9]), float(np.abs(residual).max(initial=0.0)))
@@ -96,7 +101,10 @@ def polish_path(
 def _linearised(
     unknowns: FloatArray, gaps: FloatArray, assembly: FloatArray, wish: Wish
 ) -> tuple[tuple[ComplexArray, ComplexArray], FloatArray, FloatArray]:
-    """Points at the first target, coupler at all; misses (M,), and their derivative (M, unknowns)."""
+    """Points at the first target, coupler at all; misses (M,), and their derivative (M, 11).
+
+    By what all targets share (10), and by the driver angle of each row's own target, or of all where timed.
+    """
     o2, o4 = complex(*unknowns[:2]), complex(*unknowns[2:4])
     r2, r3, r4 = unknowns[4:7]
     arm, body_angle = complex(*unknowns[7:9]), unknowns[9]
@@ -123,11 +131,6 @@ def _linearised(
         by_move = np.stack([np.broadcast_to(column, a.shape) for column in moves], axis=1)
         by_point = by_move + 1j * (arm * e3)[:, None] * by_turn
         by_turn[:, 9] = 1.0
-        if not wish.timed:
-            by_turn, by_point = (
-                np.concatenate([slope[:, :10], np.diag(slope[:, 10])], axis=1)
-                for slope in (by_turn, by_point)
-            )
     off = (p - wish.points)[wish.has_point]
     turned = np.angle(e3 * np.exp(1j * (body_angle - wish.turns)))[wish.has_turn]
     slope = by_point[wish.has_point]
@@ -136,3 +139,37 @@ def _linearised(
         np.concatenate([off.real, off.imag, turned]),
         np.concatenate([slope.real, slope.imag, by_turn[wish.has_turn]]),
     )
+
+
+def _target_of_rows(wish: Wish) -> IntArray:
+    """The target that each miss is of, shape (M,)."""
+    points, turns = np.flatnonzero(wish.has_point), np.flatnonzero(wish.has_turn)
+    return np.concatenate([points, points, turns])
+
+
+def _spread(jacobian: FloatArray, wish: Wish) -> FloatArray:
+    """The derivative by each driver angle in a column of its own, shape (M, 10 + N)."""
+    by_angles = np.zeros((len(jacobian), len(wish.points)))
+    by_angles[np.arange(len(jacobian)), _target_of_rows(wish)] = jacobian[:, 10]
+    return np.concatenate([jacobian[:, :10], by_angles], axis=1)
+
+
+def _eliminated(jacobian: FloatArray, residual: FloatArray, wish: Wish) -> FloatArray:
+    """The step of least squares for many targets, shape (10 + N,): without driver angles, then these.
+
+    What a driver angle can do is taken out of the rows of its target, in time and memory as the targets
+    are many.
+    """
+    target, common, own = _target_of_rows(wish), jacobian[:, :10], jacobian[:, 10]
+    square = np.bincount(target, own**2, len(wish.points))
+    share = np.divide(1.0, square, out=np.zeros_like(square), where=square > 0)
+
+    def along(rows: FloatArray) -> FloatArray:
+        """What of each column the driver angles can do, shape (N, columns)."""
+        columns = [np.bincount(target, own * column, len(square)) * share for column in rows.T]
+        return np.stack(columns, axis=1)
+
+    both = np.concatenate([common, residual[:, None]], axis=1)
+    left = both - own[:, None] * along(both)[target]
+    shared = np.linalg.lstsq(left[:, :10], left[:, 10], rcond=1e-12)[0]
+    return np.concatenate([shared, along((residual - common @ shared)[:, None])[:, 0]])

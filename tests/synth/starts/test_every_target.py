@@ -1,6 +1,7 @@
 """Linkages fitted to every target of a long task: by the truth of planted tasks, and at the cost of lines."""
 
 import tracemalloc
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ import pytest
 from grashof.analysis.judge.planted import planted_motion, planted_path
 from grashof.problems import MotionTask, PathTask, Problem, Requirements, Task
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.starts.closed_loop import Batch, SearchTargets
+from grashof.synth.starts.closed_loop import Batch, Loop, SearchTargets
 from grashof.synth.starts.every_target import fitted_to_all
 from grashof.synth.starts.loop_search import draw, fitting, improve, place, standing, with_places
 from grashof.synth.starts.search_targets import search_targets
@@ -36,6 +37,24 @@ def begun(task: Task, few: int = 24) -> tuple[SearchTargets, Batch]:
 @pytest.mark.parametrize("path", [False, True])
 def test_a_task_without_noise_is_met(path: bool) -> None:
     target, batch = begun(planted(1, 80, 0.0, path=path))
+    with np.errstate(all="ignore"):
+        fitted = fitted_to_all(target, batch, 200)
+        error = place(target, fitted).error.min()
+    assert error < 1e-12 * len(target.points)
+
+
+@pytest.mark.parametrize("path", [False, True])
+def test_a_task_in_any_order_is_met(path: bool) -> None:
+    ordered, batch = begun(planted(1, 80, 0.0, path=path))
+    mixed = np.random.default_rng(0).permutation(80)
+    names = ("points", "weights", "turns", "turn_weights")
+    target = replace(
+        ordered,
+        wanted=replace(ordered.wanted, order=False),
+        **{name: getattr(ordered, name)[mixed] for name in names},
+    )
+    angles = Loop.of(ordered, batch).theta2[:, mixed]
+    batch = replace(batch, unknowns=np.concatenate([batch.unknowns[:, :3], angles], axis=1))
     with np.errstate(all="ignore"):
         fitted = fitted_to_all(target, batch, 200)
         error = place(target, fitted).error.min()

@@ -1,11 +1,13 @@
 """Thinned paths: which points stay, and that driver angles between them follow the path."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from grashof.problems import Requirements
-from grashof.synth.starts.closed_loop import SearchTargets
+from grashof.synth.starts.closed_loop import Loop, SearchTargets
 from grashof.synth.starts.loop_search import draw, place
-from grashof.synth.starts.thinning import refined, thinned
+from grashof.synth.starts.thinning import AROUND, refined, thinned
 
 
 def target_of(count: int, timed: bool = False, **wanted: object) -> SearchTargets:
@@ -20,13 +22,37 @@ def target_of(count: int, timed: bool = False, **wanted: object) -> SearchTarget
     )
 
 
-def test_short_paths_and_unordered_ones_stay_whole() -> None:
-    for target in (target_of(20), target_of(60, order=False, same_branch=False)):
-        some, index = thinned(target, 30)
-        assert some is target
-        assert index.tolist() == list(range(len(target.points)))
-        batch = draw(target, 5, np.random.default_rng(0))
-        assert refined(target, index, batch) is batch
+def test_short_paths_stay_whole() -> None:
+    target = target_of(20)
+    some, index = thinned(target, 30)
+    assert some is target
+    assert index.tolist() == list(range(len(target.points)))
+    batch = draw(target, 5, np.random.default_rng(0))
+    assert refined(target, index, batch) is batch
+
+
+def test_targets_in_any_order_are_refined_where_each_is_nearest() -> None:
+    """Targets on the curve of a linkage: none is missed by more than from the nearest angle of the grid."""
+    free = target_of(90, order=False)
+    batch = draw(free, 40, np.random.default_rng(0))
+    loop = Loop.of(free, batch)
+    (row,) = np.flatnonzero(loop.closes)[:1]
+    points = 0.3 + loop.e2[row] + (0.5 + 0.2j) * loop.e3[row]
+    target, one = replace(free, points=points), batch[[row]]
+    _, index = thinned(target, 30)
+    known = replace(one, unknowns=one.unknowns[:, [0, 1, 2, *(3 + index)]], assembly=one.assembly[:, index])
+    found = refined(target, index, known)
+    step = 2 * np.pi / AROUND
+    rounded = replace(
+        one,
+        unknowns=np.concatenate([one.unknowns[:, :3], step * np.round(one.unknowns[:, 3:] / step)], axis=1),
+    )
+    missed, at_most = (
+        np.abs(0.3 + at.e2 + (0.5 + 0.2j) * at.e3 - points)[0]
+        for at in (Loop.of(target, each) for each in (found, rounded))
+    )
+    assert (missed <= at_most + 1e-6).all()
+    assert missed.max() < 0.1
 
 
 def test_refined_angles_pass_the_kept_points_and_stay_in_order() -> None:

@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from grashof.analysis.judge.planted import random_full_crank, uneven_driver_angles
+from grashof.analysis import solve_position, verify
+from grashof.analysis.judge.planted import planted_path, random_full_crank, uneven_driver_angles
+from grashof.problems import Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.theory import polish as path_polish
 from grashof.synth.theory.polish import Polished, Wish, polish_path
@@ -145,3 +147,24 @@ def test_a_loop_that_does_not_close_has_no_error() -> None:
     first = np.array([0, 10, 1, 2, 1 + 1j], dtype=np.complex128)
     angles = np.linspace(0, 3, 5)
     assert np.isnan(polish_path(first, angles, 0.0, planted.assembly, wish_of(planted.targets, False)).error)
+
+
+@pytest.mark.parametrize("count", [path_polish.MANY + 1, 400])
+def test_many_driver_angles_are_eliminated_without_a_difference(
+    count: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rng = np.random.default_rng(count)
+    task, linkage = planted_path(rng, count)
+    verdict = verify(linkage, task, Requirements(exact=True))
+    points = task.positions @ np.array([1, 1j]) / task.size
+    state = solve_position(linkage, verdict.theta2[:1], verdict.assembly[:1])
+    places = [linkage.o2, linkage.o4, state.a[0], state.b[0], state.p[0]]
+    begin = np.array(places) @ np.array([1, 1j]) / task.size + rng.normal(0, 1e-5, 5)
+    none, every = np.zeros(count, dtype=bool), np.ones(count, dtype=bool)
+    wish = Wish(points, every, np.zeros(count), none, timed=False)
+    found = []
+    for many in (path_polish.MANY, 1000):
+        monkeypatch.setattr(path_polish, "MANY", many)
+        found.append(polish_path(begin, verdict.theta2, 0.0, verdict.assembly.astype(float), wish))
+    assert max(one.error for one in found) < 1e-12
+    np.testing.assert_allclose(found[0].points, found[1].points, atol=1e-9)

@@ -1,0 +1,73 @@
+"""A time limit ends every search soon: long tasks of least squares, and targets to be met."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from time import perf_counter
+
+import numpy as np
+import pytest
+
+from grashof import load, synthesize
+from grashof.analysis.judge.planted import planted_motion, planted_path
+from grashof.problems import MotionTask, PathTask, Problem, Requirements
+
+LIMIT, SOON = 1.0, 2.0  # s: after the limit, on a quiet machine
+NOISE = 0.005  # of the size
+
+
+def poses(count: int, **wanted: object) -> Problem:
+    rng = np.random.default_rng(count)
+    task, _ = planted_motion(rng, count)
+    places = task.positions + rng.normal(0, NOISE * task.size, (count, 2))
+    noisy = MotionTask(places, task.angles + rng.normal(0, NOISE, count))
+    return Problem(task=noisy, requirements=Requirements(exact=False, **wanted))
+
+
+def points(count: int, *, timed: bool = False, **wanted: object) -> Problem:
+    rng = np.random.default_rng(count)
+    task, _ = planted_path(rng, count, timed=timed)
+    noisy = PathTask(task.points + rng.normal(0, NOISE * task.size, (count, 2)), timing=task.timing)
+    return Problem(task=noisy, requirements=Requirements(exact=False, **wanted))
+
+
+def closed(count: int) -> Problem:
+    angle = np.linspace(0, 2 * np.pi, count, endpoint=False)
+    places = np.stack([2 * np.cos(angle), np.sin(angle + 0.3 * np.cos(angle))], axis=1)
+    return Problem(task=PathTask(places, closed=True), requirements=Requirements(exact=False))
+
+
+def zones(count: int) -> Problem:
+    problem = points(count)
+    return Problem(task=replace(problem.task, within=4 * NOISE * problem.task.size))
+
+
+def met(count: int) -> Problem:
+    return Problem(
+        task=planted_path(np.random.default_rng(1), count)[0], requirements=Requirements(exact=True)
+    )
+
+
+LIMITED = {"transmission_min_deg": 40.0, "link_ratio_max": 4.0}
+TASKS: dict[str, Callable[[], Problem]] = {
+    "poses": lambda: poses(1000),
+    "poses in any order": lambda: poses(200, order=False),
+    "points": lambda: points(2000),
+    "points in any order": lambda: points(300, order=False),
+    "limited points": lambda: points(1000, **LIMITED),
+    "bounded points": lambda: points(500, error_factor=1.5),
+    "points in zones": lambda: zones(300),
+    "timed points": lambda: points(2000, timed=True),
+    "limited timed points": lambda: points(400, timed=True, **LIMITED),
+    "closed": lambda: closed(1000),
+    "points met": lambda: met(200),
+    "nine points": lambda: load("nine-points"),
+}
+
+
+@pytest.mark.quick("points in any order")
+@pytest.mark.parametrize("task", TASKS)
+def test_a_search_ends_soon_after_its_time_limit(task: str) -> None:
+    problem, begun = TASKS[task](), perf_counter()
+    result = synthesize(problem, time_limit=LIMIT)
+    assert perf_counter() - begun < LIMIT + SOON
+    assert len(result) or "stopped" in result.note or result.complete
