@@ -1,4 +1,4 @@
-"""Measure how cost grows, one axis at a time: positions of a task, designs asked for, effort, length of a list.
+"""Measure how cost grows, one axis at a time: positions, designs asked for, effort, length of a list.
 
 Prints processor time and peak memory (above that of the imports) of a process for each size, and the exponent
 with which each grows: the slope of a line through the logarithms. Run it on a quiet machine.
@@ -78,7 +78,12 @@ KINDS: dict[str, Callable[[np.random.Generator, int], Problem]] = {
     "timed-path": timed_points,
     "closed-path": closed_points,
 }
-CASES = {"positions": tuple(KINDS), "starts": ("luggage",), "effort": ("luggage", "path-ellipse"), "list": ("luggage",)}
+CASES = {
+    "positions": tuple(KINDS),
+    "starts": ("luggage",),
+    "effort": ("luggage", "path-ellipse"),
+    "list": ("luggage",),
+}
 
 
 def prepared(axis: str, kind: str, size: int) -> Callable[[], object]:

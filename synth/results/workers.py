@@ -20,7 +20,7 @@ import numpy as np
 from grashof.problems import SolverError
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Round, Start
-from grashof.synth.results.attempt import Attempt, attempt
+from grashof.synth.results.attempt import LEFT_ALONE, Attempt, attempt
 from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.stopping import Stopped, asked_to_stop, stop_when
 
@@ -30,8 +30,7 @@ _LOG = logging.getLogger(__name__)
 AHEAD, AHEAD_EXACT, BUNDLE = 4, 16, 4
 LARGER = 2  # times the draws and starts of a usual round: rounds that more effort adds
 LOOK = 0.1  # s between two looks whether to stop
-# Status of a start that ends the process that solves it, and of one that was not waited for.
-CRASHED, STOPPED = "Crashed", "Stopped"
+CRASHED = "Crashed"  # status of a start that ends the process that solves it
 
 STOP, OVER = 1, 2  # what the processes are told: to be content with what there is, and to end
 
@@ -144,7 +143,7 @@ class Elsewhere:
             except CrashError:
                 one = Attempt(CRASHED, None)
             except Stopped:
-                one = Attempt(STOPPED, None)
+                one = Attempt(LEFT_ALONE, None)
             made.append(_numbered(one, first + number))
         return made
 
