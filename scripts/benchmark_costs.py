@@ -18,9 +18,9 @@ from grashof import load, synthesize
 from grashof.analysis import solve_position, verify
 from grashof.analysis.judge.planted import planted_motion, planted_path, random_full_crank
 from grashof.problems import MotionTask, PathTask, Problem, Requirements
+from grashof.synth.designs.families import listed
+from grashof.synth.designs.judging import judged
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.results.families import listed
-from grashof.synth.results.judging import judged
 from grashof.synth.results.result import Result
 from grashof.synth.starts.finder import finder_for
 

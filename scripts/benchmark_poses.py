@@ -17,7 +17,7 @@ from grashof.problems import FourBar, MotionTask, Problem, Requirements, Transmi
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
-from grashof.synth.results.attempt import attempt
+from grashof.synth.search.attempt import attempt
 
 NOISE = 0.01  # of the size in position, rad in angle
 

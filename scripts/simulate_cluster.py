@@ -27,9 +27,9 @@ from grashof.problems.files.on_disk import write_whole
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.results.chunks import AHEAD, chunk, which
-from grashof.synth.results.journal import content_of
-from grashof.synth.results.plain import plain
+from grashof.synth.search.chunks import AHEAD, chunk, which
+from grashof.synth.search.journal import content_of
+from grashof.synth.search.plain import plain
 from grashof.synth.shards import Plan
 
 PROBLEMS = ("luggage", "path-ellipse")

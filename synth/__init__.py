@@ -1,8 +1,8 @@
 """How designs are found: starts, the CasADi programme, Ipopt, verification, ranking."""
 
-from grashof.synth.results.candidate import Candidate
+from grashof.synth.designs.candidate import Candidate
 from grashof.synth.results.result import Result
-from grashof.synth.results.run import Progress
+from grashof.synth.search.run import Progress
 from grashof.synth.synthesize import synthesize
 
 __all__ = ["Candidate", "Progress", "Result", "synthesize"]

@@ -10,18 +10,18 @@ from pathlib import Path
 from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.toml_file import file_text
+from grashof.synth.designs.judging import judged_again
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.results.asked import asking
-from grashof.synth.results.chunks import CHUNK, which
 from grashof.synth.results.conclusion import conclude, needless
-from grashof.synth.results.journal import WHOLE, head_of, read_head, recorded_steps, refuse_other, step_name
-from grashof.synth.results.judging import judged_again
-from grashof.synth.results.ledger import Chunk, Ledger
-from grashof.synth.results.plain import plain, restored
 from grashof.synth.results.result import Result
-from grashof.synth.results.run import Progress, Run
-from grashof.synth.results.search import finished, found_few
-from grashof.synth.results.workers import working
+from grashof.synth.search.asked import asking
+from grashof.synth.search.chunks import CHUNK, which
+from grashof.synth.search.journal import WHOLE, head_of, read_head, recorded_steps, refuse_other, step_name
+from grashof.synth.search.ledger import Chunk, Ledger
+from grashof.synth.search.plain import plain, restored
+from grashof.synth.search.run import Progress, Run
+from grashof.synth.search.searches import finished, found_few
+from grashof.synth.search.workers import working
 from grashof.synth.shards import PROBLEM, SHARDS, Plan, Shard
 from grashof.synth.theory.stopping import stopping
 

@@ -13,13 +13,13 @@ from grashof.problems.files.on_disk import write_whole
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.errors import wrong_value
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.results.asked import asking, search_of
-from grashof.synth.results.chunks import chunks
-from grashof.synth.results.journal import Recorded, head_of
-from grashof.synth.results.ledger import Ledger
-from grashof.synth.results.run import Progress, Run
-from grashof.synth.results.search import asked_in_turn
-from grashof.synth.results.workers import working
+from grashof.synth.search.asked import asking, search_of
+from grashof.synth.search.chunks import chunks
+from grashof.synth.search.journal import Recorded, head_of
+from grashof.synth.search.ledger import Ledger
+from grashof.synth.search.run import Progress, Run
+from grashof.synth.search.searches import asked_in_turn
+from grashof.synth.search.workers import working
 from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.stopping import Stopped, stopping
 

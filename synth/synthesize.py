@@ -13,13 +13,13 @@ from grashof.problems.values.checks import readable
 from grashof.problems.values.errors import wrong_value
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.user_functions import refuse_unusable
-from grashof.synth.results.asked import asking, search_of
 from grashof.synth.results.conclusion import conclude, needless
-from grashof.synth.results.journal import journal_of
 from grashof.synth.results.result import Result
-from grashof.synth.results.run import Progress, Run
-from grashof.synth.results.search import searches
-from grashof.synth.results.workers import working
+from grashof.synth.search.asked import asking, search_of
+from grashof.synth.search.journal import journal_of
+from grashof.synth.search.run import Progress, Run
+from grashof.synth.search.searches import searches
+from grashof.synth.search.workers import working
 from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.stopping import stopping
 

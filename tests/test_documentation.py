@@ -9,7 +9,7 @@ import pytest
 from grashof.problems import Requirements
 from grashof.problems.values.quantities import Unit
 from grashof.problems.values.requirements import LIMITS
-from grashof.synth.results.table import COLUMNS, LISTED
+from grashof.synth.designs.table import COLUMNS, LISTED
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -1,1 +1,1 @@
-"""From solves to a list: designs judged, ranked, chosen, explained."""
+"""What a search comes to: what is chosen of its designs, or why there is none."""

@@ -7,17 +7,17 @@ from dataclasses import replace
 
 import numpy as np
 
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.judging import judged_in_time
+from grashof.synth.designs.ranking import ranked
+from grashof.synth.designs.zones import shares
 from grashof.synth.programme.merit import same_error
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.results.attempt import Attempt
-from grashof.synth.results.candidate import Candidate
-from grashof.synth.results.judging import judged_in_time
-from grashof.synth.results.larger_zones import shares
-from grashof.synth.results.ledger import EXACT_ERROR, Ledger
-from grashof.synth.results.ranking import ranked
-from grashof.synth.results.run import Run
-from grashof.synth.results.search import error_of_use
 from grashof.synth.results.trade_offs import Chosen, seeds_of, started_at, trade_offs
+from grashof.synth.search.attempt import Attempt
+from grashof.synth.search.ledger import EXACT_ERROR, Ledger
+from grashof.synth.search.run import Run
+from grashof.synth.search.searches import error_of_use
 
 NEAR = 1.6  # times the error that is allowed: least-squares designs up to there are begun from
 SEEDS = 12  # designs that are begun from

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import logging
 
+from grashof.synth.designs.families import listed
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.results.choice import choose, least_error, why_ended
 from grashof.synth.results.explain import explain
-from grashof.synth.results.families import listed
-from grashof.synth.results.ledger import Ledger
 from grashof.synth.results.result import Result
-from grashof.synth.results.run import Run
-from grashof.synth.results.story import Asking, Story, now
-from grashof.synth.results.tally import CHOICE, DISTINCT
+from grashof.synth.search.ledger import Ledger
+from grashof.synth.search.run import Run
+from grashof.synth.search.story import Asking, Story, now
+from grashof.synth.search.tally import CHOICE, DISTINCT
 from grashof.synth.starts.finder import finder_for
 
 _LOG = logging.getLogger(__name__)

@@ -8,18 +8,18 @@ import numpy as np
 
 from grashof.analysis import Verdict
 from grashof.problems import Rotatability
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.families import listed
+from grashof.synth.designs.judging import judged_again
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.user_functions import relaxed_by_own
-from grashof.synth.results.attempt import Attempt
-from grashof.synth.results.candidate import Candidate
-from grashof.synth.results.families import listed
-from grashof.synth.results.judging import judged_again
 from grashof.synth.results.larger_zones import up, wider
-from grashof.synth.results.ledger import Ledger
 from grashof.synth.results.relaxations import relaxations
-from grashof.synth.results.run import Run
-from grashof.synth.results.search import search_designs
 from grashof.synth.results.trade_offs import Chosen
+from grashof.synth.search.attempt import Attempt
+from grashof.synth.search.ledger import Ledger
+from grashof.synth.search.run import Run
+from grashof.synth.search.searches import search_designs
 from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.stopping import Stopped
 

@@ -7,14 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from grashof.analysis import Verdict, verify
+from grashof.analysis import verify
 from grashof.analysis.judge.design import Constraint
 from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
-from grashof.synth.results.candidate import Candidate
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.zones import MISSED, shares
 from grashof.synth.results.relaxed_limits import Relaxation
-
-MISSED = {"within", "angle_within_deg", "exact"}  # what the judge calls a target missed by too much
 
 
 def wider(
@@ -35,13 +34,6 @@ def wider(
             own = tuple(constraints)
             return [Relaxation("within", words, asked.requirements, own, one, miss, words.count(" and ") + 1)]
     return []
-
-
-def shares(problem: Problem, verdict: Verdict) -> tuple[float, float]:
-    """How many times as large as its zone a miss is at most: of positions, and of angles."""
-    place, turn = np.ones((2, len(problem.task))) if problem.zones is None else problem.zones
-    turned = np.nanmax(verdict.angle_error / turn, initial=0.0)
-    return float(np.nanmax(verdict.position_error / place)), float(turned)
 
 
 def _enlarged(problem: Problem, times: tuple[float, float]) -> tuple[Problem, str]:

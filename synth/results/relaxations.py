@@ -7,6 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.judging import judged_again
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import (
     GROUPS,
@@ -17,8 +19,6 @@ from grashof.synth.programme.screening import (
 )
 from grashof.synth.programme.start import UNSMOOTH, Start
 from grashof.synth.programme.whole_screening import fully_screened
-from grashof.synth.results.candidate import Candidate
-from grashof.synth.results.judging import judged_again
 from grashof.synth.results.relaxed_limits import (
     Relaxation,
     is_angle,
@@ -27,7 +27,7 @@ from grashof.synth.results.relaxed_limits import (
     relaxation,
     with_rounded_angle,
 )
-from grashof.synth.results.run import Run
+from grashof.synth.search.run import Run
 from grashof.synth.starts.finder import finder_for
 from grashof.synth.starts.selection import closest_starts
 

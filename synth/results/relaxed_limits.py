@@ -14,8 +14,8 @@ from grashof.problems import Box, FourBar, Problem, Requirements, Rotatability
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.quantities import Kind
 from grashof.problems.values.requirements import LIMITS
+from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import UNSMOOTH
-from grashof.synth.results.candidate import Candidate
 
 LEAST_MARGIN = 1e-9  # of full rotation: below it lies a change point
 COARSEST = 0.02  # share of a change that its value may be rounded by

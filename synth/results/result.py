@@ -12,10 +12,10 @@ import numpy as np
 from grashof.problems import NoSolutionError, Problem
 from grashof.problems.values.checks import counted
 from grashof.problems.values.display import Displayed
+from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.merit import same_error
-from grashof.synth.results.candidate import Candidate
-from grashof.synth.results.story import Story
-from grashof.synth.results.tally import Tally
+from grashof.synth.search.story import Story
+from grashof.synth.search.tally import Tally
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -106,7 +106,7 @@ class Result(Displayed):
 
     def to_frame(self) -> pd.DataFrame:
         """One verified design a row, best first; columns as the README lists them."""
-        from grashof.synth.results.table import to_frame  # pandas takes half a second to import
+        from grashof.synth.designs.table import to_frame  # pandas takes half a second to import
 
         return to_frame(self.problem, self.candidates)
 

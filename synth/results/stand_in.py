@@ -14,9 +14,9 @@ import numpy as np
 from grashof.analysis import solve_position
 from grashof.problems import ProblemError, Task
 from grashof.problems.values.arrays import TURN, IntArray
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.judging import judged_again, judged_in_time
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.results.candidate import Candidate
-from grashof.synth.results.judging import judged_again, judged_in_time
 
 LONG, FEW = 40, 24  # more targets than the first are stood in for by so many
 KEPT = 0.98  # of the error that may be added: the judge looks at all targets

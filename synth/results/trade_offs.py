@@ -8,15 +8,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.problems import Objective, Problem
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.ranking import distinct, pareto_optimal, ranked
 from grashof.synth.programme.merit import same_error
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
-from grashof.synth.results.attempt import Attempt
-from grashof.synth.results.candidate import Candidate
-from grashof.synth.results.ledger import Ledger
-from grashof.synth.results.ranking import distinct, pareto_optimal, ranked
-from grashof.synth.results.run import Run
 from grashof.synth.results.stand_in import StandIn, on_all_targets
+from grashof.synth.search.attempt import Attempt
+from grashof.synth.search.ledger import Ledger
+from grashof.synth.search.run import Run
 
 FACTORS = (1.02, 1.2, 1.5, 2.0)  # times the least error: so much is offered for other virtues
 GOALS = {"mu": Objective(), "size": Objective(transmission=0.0, compactness=1.0)}

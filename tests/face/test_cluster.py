@@ -16,7 +16,7 @@ from grashof import load
 from grashof.output.cluster import cluster
 from grashof.problems import SolverError
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.results.workers import CrashError, Elsewhere, Here, screen
+from grashof.synth.search.workers import CrashError, Elsewhere, Here, screen
 
 
 def crash(_scaled, code):

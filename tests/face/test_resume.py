@@ -34,7 +34,7 @@ def running(folder: Path, *options: str) -> subprocess.Popen[str]:
     (folder / "long.toml").write_text(LONG, encoding="utf-8")
     # Each step in a file of its own, as if it had taken two seconds.
     program = (
-        "import grashof.synth.results.journal as journal; journal.EVERY = 0.0; "
+        "import grashof.synth.search.journal as journal; journal.EVERY = 0.0; "
         "from grashof.cli import main; main()"
     )
     command = [

@@ -29,8 +29,8 @@ from grashof.synth.programme.formulas import FORMULAS
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS, Screened
 from grashof.synth.programme.start import Start
-from grashof.synth.results.attempt import attempt
 from grashof.synth.results.relaxations import rejudged
+from grashof.synth.search.attempt import attempt
 from grashof.synth.starts.finder import finder_for
 
 NEAR = 1e-5  # so close to a limit either judgement will do: the search places drivers to about 1e-6

@@ -9,18 +9,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-import grashof.synth.results.journal as journal_module
-import grashof.synth.results.workers as workers_module
+import grashof.synth.search.journal as journal_module
+import grashof.synth.search.workers as workers_module
 from grashof import load
 from grashof.problems import MotionTask, Objective, Problem, ProblemError, Requirements
 from grashof.synth import Result
 from grashof.synth.merging import merge_shards
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.results.chunks import chunk, chunks
-from grashof.synth.results.journal import content_of
-from grashof.synth.results.plain import plain
-from grashof.synth.results.run import Run
-from grashof.synth.results.workers import CrashError, Here
+from grashof.synth.search.chunks import chunk, chunks
+from grashof.synth.search.journal import content_of
+from grashof.synth.search.plain import plain
+from grashof.synth.search.run import Run
+from grashof.synth.search.workers import CrashError, Here
 from grashof.synth.shards import PROBLEM, SHARDS, Made, Shard, solve_shard
 
 FOUR = [[0, 0, 0], [60, 90, 15], [180, 140, 40], [300, 90, 70]]

@@ -17,7 +17,7 @@ from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, Requi
 from grashof.synth import Candidate, Result
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
-from grashof.synth.results.attempt import attempt
+from grashof.synth.search.attempt import attempt
 
 pytestmark = pytest.mark.usefixtures("small_search")
 

@@ -18,13 +18,13 @@ from grashof.analysis import verify
 from grashof.problems import Box, Problem, ProblemError, Search, SolverError
 from grashof.problems.values.checks import counted
 from grashof.synth import Candidate, Progress, Result
+from grashof.synth.designs.ranking import ranked
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.results.explain import Explanation
-from grashof.synth.results.ledger import Ledger
-from grashof.synth.results.ranking import ranked
-from grashof.synth.results.search import Run
 from grashof.synth.results.trade_offs import Chosen
-from grashof.synth.results.workers import solved_there
+from grashof.synth.search.ledger import Ledger
+from grashof.synth.search.searches import Run
+from grashof.synth.search.workers import solved_there
 
 pytestmark = pytest.mark.usefixtures("small_search")
 
@@ -159,7 +159,7 @@ def test_enough_is_enough(luggage: Problem) -> None:
 
 
 def test_a_fruitless_search_ends(luggage: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(import_module("grashof.synth.results.ledger"), "FRUITLESS", 16)
+    monkeypatch.setattr(import_module("grashof.synth.search.ledger"), "FRUITLESS", 16)
     monkeypatch.setattr(
         import_module("grashof.synth.results.conclusion"), "explain", lambda *_: Explanation("none")
     )

@@ -32,7 +32,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import near_miss
 from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth import Result
-from grashof.synth.results.ranking import pareto_optimal
+from grashof.synth.designs.ranking import pareto_optimal
 
 _NUMBERED = 10  # designs that carry their rank
 

@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import Any
 
 from grashof.problems import ProblemError, SolverError
-from grashof.synth.results.workers import CrashError
+from grashof.synth.search.workers import CrashError
 
 PATIENCE = 10  # s to wait for an answer
 

@@ -21,8 +21,8 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import no_formula
 from grashof.problems.values.quantities import Needs, Over
 from grashof.synth import Candidate, Result
-from grashof.synth.results.story import Ending, now
-from grashof.synth.results.table import LISTED, facts, to_frame
+from grashof.synth.designs.table import LISTED, facts, to_frame
+from grashof.synth.search.story import Ending, now
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -20,7 +20,7 @@ from grashof.problems.values.checks import counted
 from grashof.problems.values.quantities import Over, Quantity, Unit
 from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth import Candidate, Progress, Result
-from grashof.synth.results.ranking import pareto_optimal
+from grashof.synth.designs.ranking import pareto_optimal
 from grashof.wording.problem import error_meaning, goals
 
 _ROWS = 12

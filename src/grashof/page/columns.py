@@ -11,7 +11,7 @@ import pandas as pd
 
 from grashof.problems import Problem
 from grashof.problems.values.quantities import Needs
-from grashof.synth.results.table import LISTED, OWN
+from grashof.synth.designs.table import LISTED, OWN
 from grashof.wording.problem import error_meaning
 
 

@@ -16,7 +16,7 @@ from grashof.page.render import render
 from grashof.page.scene import scene_of
 from grashof.problems.values.checks import counted
 from grashof.synth import Result
-from grashof.synth.results.tally import DISTINCT, Tally
+from grashof.synth.search.tally import DISTINCT, Tally
 from grashof.wording.problem import goals, summary
 
 _SCRIPTS = (

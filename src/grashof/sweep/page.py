@@ -18,7 +18,7 @@ from grashof.page.scene import scene_of
 from grashof.problems.files.problem_file import problem_of
 from grashof.sweep.result import Sweep
 from grashof.sweep.table import varied_columns
-from grashof.synth.results.table import LISTED
+from grashof.synth.designs.table import LISTED
 
 _SCRIPTS = ("linkage.js", "svg.js", "stage.js", "player.js", "table.js", "sweep.js")
 _ROWS = 1000  # that a browser shows at once without delay

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 
 from grashof.problems import SolverError
 from grashof.sweep.task import solve_task
-from grashof.synth.results.workers import OVER, new_state, processes
+from grashof.synth.search.workers import OVER, new_state, processes
 from grashof.synth.theory.stopping import who_asks
 
 # Key, name and text of a problem.

@@ -10,7 +10,7 @@ import pandas as pd
 
 from grashof.sweep.combinations import Combination
 from grashof.sweep.task import OBJECTIVE
-from grashof.synth.results.table import COLUMNS, LISTED
+from grashof.synth.designs.table import COLUMNS, LISTED
 
 _FIRST = ("combination", "status", "designs")
 _WHOLE = {"combination", "designs", "rank", "direction", "assembly", "start", "iterations"}

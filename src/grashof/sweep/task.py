@@ -86,8 +86,8 @@ def _empty(status: str) -> dict[str, Any]:
 def _told(result: Result, most: int) -> dict[str, Any]:
     """What the table, the plot and the page need of a result."""
     from grashof.page.designs import designs_of
-    from grashof.synth.results.ranking import pareto_optimal
-    from grashof.synth.results.table import to_frame
+    from grashof.synth.designs.ranking import pareto_optimal
+    from grashof.synth.designs.table import to_frame
 
     status = CUT if not result.complete else OK if result.candidates else NONE
     told = {**_empty(status), "found": len(result), "note": result.note}

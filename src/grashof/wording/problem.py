@@ -8,8 +8,8 @@ from grashof.problems import DynamicsSpec, Problem, Requirements, Task
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.problems.values.quantities import Unit
+from grashof.synth.designs.ranking import pareto_goals
 from grashof.synth.programme.merit import same_error
-from grashof.synth.results.ranking import pareto_goals
 from grashof.synth.results.trade_offs import FACTORS
 from grashof.synth.starts.finder import asked_first
 

@@ -24,7 +24,7 @@ from grashof.page.designs import Travel, driver_travel
 from grashof.problems import FourBar, LinkageSpec, PathTask, Problem, load, load_linkage_spec
 from grashof.survey import report_on
 from grashof.synth import Result
-from grashof.synth.results.tally import DISTINCT, Tally
+from grashof.synth.search.tally import DISTINCT, Tally
 
 HOSTILE = "</script><script>alert(1)</script><!-- & \u2028 ' \" {{ 7*7 }}"
 RECORD: dict[str, Any] = {"versions": {"grashof": "0"}, "settings": {"seed": 0, "time_limit": None}}

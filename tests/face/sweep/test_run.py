@@ -20,7 +20,7 @@ from grashof.problems.files.on_disk import versions
 from grashof.problems.files.problem_file import problem_of
 from grashof.sweep import Step, load_study, sweep
 from grashof.sweep.combinations import combinations
-from grashof.synth.results.table import COLUMNS
+from grashof.synth.designs.table import COLUMNS
 
 Write = Callable[..., Path]
 

@@ -11,10 +11,10 @@ from scipy.optimize import least_squares
 from grashof.analysis import Verdict, verify
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import FourBar, MotionTask, Problem, Requirements
+from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
-from grashof.synth.results.attempt import attempt
-from grashof.synth.results.candidate import Candidate
+from grashof.synth.search.attempt import attempt
 
 Floats = npt.NDArray[np.float64]
 # Wide enough not to bind, so that nothing but order and rotatability limits the fit.

@@ -15,12 +15,12 @@ from grashof.problems import Box, FourBar, MotionTask, PathTask, Problem, Requir
 from grashof.synth import Result
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.results.explain import explain
-from grashof.synth.results.ledger import Ledger
 from grashof.synth.results.relaxations import relaxations
 from grashof.synth.results.relaxed_limits import Relaxation, limiting, loosest, relaxation
-from grashof.synth.results.run import Run
 from grashof.synth.results.trade_offs import Chosen
-from grashof.synth.results.workers import Here
+from grashof.synth.search.ledger import Ledger
+from grashof.synth.search.run import Run
+from grashof.synth.search.workers import Here
 
 pytestmark = pytest.mark.usefixtures("small_search")
 

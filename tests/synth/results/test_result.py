@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from grashof.analysis import over_task, verify
 from grashof.problems import FourBar, NoSolutionError, Objective, Problem, TransmissionOver
 from grashof.synth import Candidate, Result
+from grashof.synth.designs.families import listed
+from grashof.synth.designs.ranking import pareto_optimal, ranked
 from grashof.synth.programme.merit import weigh
-from grashof.synth.results.families import listed
-from grashof.synth.results.ranking import pareto_optimal, ranked
 
 Designs = tuple[Candidate, ...]
 bounded = settings(max_examples=60)

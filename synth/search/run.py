@@ -10,13 +10,13 @@ from time import perf_counter
 from typing import Any, TypeVar
 
 from grashof.problems import Search
+from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Round, Start
-from grashof.synth.results.attempt import Attempt
-from grashof.synth.results.candidate import Candidate
-from grashof.synth.results.journal import Journal, Unrecorded
-from grashof.synth.results.ledger import Ledger
-from grashof.synth.results.workers import CRASHED, Work, screen
+from grashof.synth.search.attempt import Attempt
+from grashof.synth.search.journal import Journal, Unrecorded
+from grashof.synth.search.ledger import Ledger
+from grashof.synth.search.workers import CRASHED, Work, screen
 
 _LOG = logging.getLogger(__name__)
 EXPECTED = 3  # rounds that most searches take: so many are begun ahead

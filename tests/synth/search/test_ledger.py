@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import grashof.synth.results.ledger as ledger_module
+import grashof.synth.search.ledger as ledger_module
 from grashof import load
+from grashof.synth.designs.judging import judged, judged_again
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.results.attempt import Attempt
-from grashof.synth.results.chunks import chunk, which
-from grashof.synth.results.judging import judged, judged_again
-from grashof.synth.results.ledger import Chunk, Ledger, nearest_of_kinds
+from grashof.synth.search.attempt import Attempt
+from grashof.synth.search.chunks import chunk, which
+from grashof.synth.search.ledger import Chunk, Ledger, nearest_of_kinds
 from grashof.synth.starts.finder import finder_for
 
 

@@ -12,12 +12,12 @@ import numpy as np
 from grashof.problems import Search
 from grashof.problems.values.arrays import ComplexArray
 from grashof.problems.values.checks import counted
+from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Round, Start
-from grashof.synth.results.attempt import Attempt
-from grashof.synth.results.candidate import Candidate
-from grashof.synth.results.leaders import Leaders
-from grashof.synth.results.tally import Tally
+from grashof.synth.search.attempt import Attempt
+from grashof.synth.search.leaders import Leaders
+from grashof.synth.search.tally import Tally
 
 FRUITLESS = 64  # so many solves without one verified exact design end the search
 STALE = 20  # so many rounds on end without a new exact design, too

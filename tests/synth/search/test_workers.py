@@ -19,8 +19,8 @@ from grashof.problems import MotionTask, Problem, Requirements
 from grashof.synth import Result
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
-from grashof.synth.results.plain import plain
-from grashof.synth.results.workers import CrashError, Elsewhere, Here, Processes, screen
+from grashof.synth.search.plain import plain
+from grashof.synth.search.workers import CrashError, Elsewhere, Here, Processes, screen
 
 CONVEYOR = MotionTask.from_degrees([[0, 0, 0], [60, 90, 15], [180, 140, 40], [300, 90, 70], [360, 0, 90]])
 SEARCHES = {

@@ -9,8 +9,8 @@ import numpy as np
 
 from grashof.problems import Problem, Task
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
-from grashof.synth.results.candidate import Candidate
-from grashof.synth.results.ranking import ranked
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.ranking import ranked
 from grashof.synth.theory.cognates import same_curve
 from grashof.synth.theory.distinct import apart, signature
 from grashof.synth.theory.symmetry import middle_of, symmetries

@@ -9,16 +9,16 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.requirements import LIMITS
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.judging import judged, verified_cognates
+from grashof.synth.designs.polishing import polished_solve, polished_start
+from grashof.synth.designs.zones import MISSED, shares
 from grashof.synth.programme.exchange import SOLVED, begun_from, solve_by_exchange
 from grashof.synth.programme.formulas import FORMULAS
 from grashof.synth.programme.nonlinear_programme import Solve
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import UNSMOOTH, Start
 from grashof.synth.programme.structure import Form
-from grashof.synth.results.candidate import Candidate
-from grashof.synth.results.judging import judged, verified_cognates
-from grashof.synth.results.larger_zones import MISSED, shares
-from grashof.synth.results.polishing import polished_solve, polished_start
 from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.stopping import asked_to_stop, overdue
 

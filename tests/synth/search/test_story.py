@@ -9,10 +9,10 @@ from grashof import load, synthesize
 from grashof.problems import Search
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
-from grashof.synth.results.attempt import Attempt
-from grashof.synth.results.search import Run
-from grashof.synth.results.story import Asking, Ending
-from grashof.synth.results.workers import CRASHED, Here
+from grashof.synth.search.attempt import Attempt
+from grashof.synth.search.searches import Run
+from grashof.synth.search.story import Asking, Ending
+from grashof.synth.search.workers import CRASHED, Here
 
 pytestmark = pytest.mark.usefixtures("small_search")
 ENDINGS = {

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field, fields
 
-from grashof.synth.results.attempt import Attempt, Outcome
+from grashof.synth.search.attempt import Attempt, Outcome
 
 COGNATES, CHOICE, DISTINCT = "cognates verified", "solves for the choice", "verified and distinct"
 

@@ -12,11 +12,11 @@ import numpy as np
 from grashof.synth.programme.nonlinear_programme import MOST_ITERATIONS
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Round, Start
-from grashof.synth.results.chunks import chunks
-from grashof.synth.results.ledger import SAME, Ledger
-from grashof.synth.results.rounds import solve, solve_round
-from grashof.synth.results.run import Run
-from grashof.synth.results.workers import LARGER
+from grashof.synth.search.chunks import chunks
+from grashof.synth.search.ledger import SAME, Ledger
+from grashof.synth.search.rounds import solve, solve_round
+from grashof.synth.search.run import Run
+from grashof.synth.search.workers import LARGER
 from grashof.synth.starts.finder import Finder, asked_first, finder_for, rounds
 from grashof.synth.theory.stopping import Stopped
 

@@ -9,8 +9,8 @@ import pandas as pd
 from grashof.problems import Problem
 from grashof.problems.values.quantities import Quantity, Unit
 from grashof.problems.values.requirements import QUANTITIES
-from grashof.synth.results.candidate import Candidate
-from grashof.synth.results.ranking import pareto_optimal
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.ranking import pareto_optimal
 
 LISTED = tuple(quantity for quantity in QUANTITIES.values() if quantity.listed)
 # Columns that are not quantities, by the quantity that follows them.

@@ -10,9 +10,9 @@ import numpy as np
 from grashof.analysis import Verdict, verify
 from grashof.problems import FourBar, ProblemError
 from grashof.problems.values.arrays import ComplexArray
+from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Configurations, dyad_violations, judge, met
-from grashof.synth.results.candidate import Candidate
 from grashof.synth.theory.cognates import assembly_of, cognate_points, position_of
 from grashof.synth.theory.stopping import overdue
 

@@ -16,7 +16,7 @@ from typing import Any, Protocol, TypeVar
 from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.files.on_disk import WRITING, versions, write_whole
 from grashof.problems.files.problem_writing import problem_toml
-from grashof.synth.results.plain import plain, restored
+from grashof.synth.search.plain import plain, restored
 
 _LOG = logging.getLogger(__name__)
 FORMAT = 2

@@ -9,7 +9,7 @@ import pytest
 from grashof.analysis import over_task
 from grashof.problems import DynamicsSpec
 from grashof.synth import Result
-from grashof.synth.results.table import to_frame
+from grashof.synth.designs.table import to_frame
 
 MOTION = ("omega4_max", "point_speed_max", "point_acceleration_max", "coupler_fit_r2")
 DYNAMICS = ("torque_peak", "torque_rms", "joint_force_peak")

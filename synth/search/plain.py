@@ -14,11 +14,11 @@ from grashof.analysis import Verdict
 from grashof.analysis.four_bar.mobility import GrashofClass
 from grashof.analysis.judge.verdict import Defect
 from grashof.problems import FourBar, Objective, Problem
+from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import Round, Start
-from grashof.synth.results.attempt import Attempt, Outcome
-from grashof.synth.results.candidate import Candidate
-from grashof.synth.results.ledger import Chunk
-from grashof.synth.results.tally import Tally
+from grashof.synth.search.attempt import Attempt, Outcome
+from grashof.synth.search.ledger import Chunk
+from grashof.synth.search.tally import Tally
 
 # What may be written and read: values alone, so that a file is data.
 KINDS: dict[str, Any] = {

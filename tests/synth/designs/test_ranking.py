@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from grashof.analysis import verify
 from grashof.problems import FourBar, Objective, PathTask, Problem, ProblemError, Requirements
 from grashof.synth import Candidate
-from grashof.synth.results.ranking import impractical, pareto_goals, pareto_optimal, ranked, ranking_key
-from grashof.synth.results.table import to_frame
+from grashof.synth.designs.ranking import impractical, pareto_goals, pareto_optimal, ranked, ranking_key
+from grashof.synth.designs.table import to_frame
 from grashof.wording.problem import goals
 
 POINTS = np.array([[0.0, 0], [1, 0.5], [2, 0.5], [4, 0]])  # size 4

@@ -14,8 +14,8 @@ from grashof.analysis.judge.planted import random_full_crank
 from grashof.problems import FourBar, MotionTask, Objective, PathTask, Problem, Requirements, load
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth import Candidate, Result
-from grashof.synth.results.families import best_alike, listed
-from grashof.synth.results.ranking import ranked
+from grashof.synth.designs.families import best_alike, listed
+from grashof.synth.designs.ranking import ranked
 from grashof.synth.theory.cognates import assembly_of, cognate_points, position_of
 from grashof.synth.theory.distinct import signature
 

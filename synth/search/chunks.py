@@ -10,10 +10,10 @@ import numpy as np
 
 from grashof.problems import Search
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.results.ledger import Chunk, Ledger
-from grashof.synth.results.rounds import solve_round
-from grashof.synth.results.run import Run
-from grashof.synth.results.workers import CrashError, Here, Work, screen
+from grashof.synth.search.ledger import Chunk, Ledger
+from grashof.synth.search.rounds import solve_round
+from grashof.synth.search.run import Run
+from grashof.synth.search.workers import CrashError, Here, Work, screen
 from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.stopping import asked_to_stop, give_way
 

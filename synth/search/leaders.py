@@ -10,8 +10,8 @@ import numpy as np
 
 from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
-from grashof.synth.results.candidate import Candidate
-from grashof.synth.results.ranking import ranking_key
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.ranking import ranking_key
 from grashof.synth.theory.distinct import DISTINCT, apart, signature
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-import grashof.synth.results.journal as journal_module
-import grashof.synth.results.workers as workers_module
+import grashof.synth.search.journal as journal_module
+import grashof.synth.search.workers as workers_module
 from grashof import load, synthesize
 from grashof.problems import MotionTask, PathTask, Problem, ProblemError, Requirements
 from grashof.synth import Result

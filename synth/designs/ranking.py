@@ -13,8 +13,8 @@ from grashof.problems import Problem
 from grashof.problems.values.arrays import BoolArray, FloatArray
 from grashof.problems.values.quantities import Quantity
 from grashof.problems.values.requirements import QUANTITIES
+from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.merit import same_error
-from grashof.synth.results.candidate import Candidate
 from grashof.synth.theory.distinct import DISTINCT, pick_apart, signature
 
 BLOCK = 256  # designs compared with all others at once

@@ -20,7 +20,7 @@ import numpy as np
 from grashof.problems import SolverError
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Round, Start
-from grashof.synth.results.attempt import LEFT_ALONE, Attempt, attempt
+from grashof.synth.search.attempt import LEFT_ALONE, Attempt, attempt
 from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.stopping import Stopped, asked_to_stop, stop_when
 

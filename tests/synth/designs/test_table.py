@@ -11,7 +11,7 @@ import pytest
 from grashof.problems import Problem
 from grashof.problems.values.quantities import MEASURED
 from grashof.synth import Result
-from grashof.synth.results.table import LISTED, to_frame
+from grashof.synth.designs.table import LISTED, to_frame
 
 # DESIGN section 4, word for word, and what has been added since.
 CONTRACT = """

@@ -8,7 +8,7 @@ from dataclasses import replace
 from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.values.checks import finite_number, whole_number
 from grashof.problems.values.errors import wrong_value
-from grashof.synth.results.story import Asking
+from grashof.synth.search.story import Asking
 from grashof.synth.starts.finder import finder_of
 
 

@@ -9,10 +9,10 @@ from grashof import load
 from grashof.problems import Problem
 from grashof.problems.values.arrays import BoolArray, FloatArray
 from grashof.synth import Candidate
+from grashof.synth.designs.judging import judged
+from grashof.synth.designs.ranking import BLOCK, _beaten, ranked
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.results.judging import judged
-from grashof.synth.results.leaders import Leaders
-from grashof.synth.results.ranking import BLOCK, _beaten, ranked
+from grashof.synth.search.leaders import Leaders
 from grashof.synth.starts.finder import finder_for
 
 

@@ -7,10 +7,10 @@ import pytest
 
 from grashof import load
 from grashof.synth import Candidate, Result
+from grashof.synth.designs.table import to_frame
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.results.attempt import Attempt
-from grashof.synth.results.plain import plain, restored
-from grashof.synth.results.table import to_frame
+from grashof.synth.search.attempt import Attempt
+from grashof.synth.search.plain import plain, restored
 from grashof.synth.starts.finder import finder_for
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.programme.user_functions import mended
-from grashof.synth.results.ledger import Ledger
-from grashof.synth.results.run import Run
+from grashof.synth.search.ledger import Ledger
+from grashof.synth.search.run import Run
 
 # Solves between two looks at what is verified, fixed, so that workers change nothing: of exact designs,
 # and of least squares, where every look may spare solves.

@@ -1,0 +1,1 @@
+"""Designs: judged, ranked, told as tables."""
