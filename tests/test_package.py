@@ -130,6 +130,7 @@ def test_importing_grashof_loads_no_solver_and_no_plots() -> None:
 def test_a_worker_process_loads_only_what_it_solves_with() -> None:
     loaded = modules_after("import grashof.synth.search.attempt")
     assert "casadi" in loaded
+    assert not loaded & {"scipy.optimize", "scipy.interpolate", "scipy.integrate", "scipy.spatial"}
     assert not loaded & {"matplotlib", "pandas", "pydantic", "rich", "shapely"}
 
 

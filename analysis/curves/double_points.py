@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import eigvals
+import scipy
 
 from grashof.analysis.curves.coupler_curve import coupler_curve
 from grashof.analysis.curves.curvature import SLACK, driver_intervals
@@ -166,7 +166,7 @@ def _projective_roots(cubic: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Real roots as quotients above / below, so that one at infinity is as good as any."""
     companion, scale = np.eye(3, k=1), np.eye(3)
     companion[2], scale[2, 2] = -cubic[:3], cubic[3]
-    roots = eigvals(companion, scale, homogeneous_eigvals=True)
+    roots = scipy.linalg.eigvals(companion, scale, homogeneous_eigvals=True)
     above, below = roots / np.linalg.norm(roots, axis=0)
     phase = np.where(np.abs(below) > np.abs(above), below, above)
     above, below = above * phase.conj(), below * phase.conj()

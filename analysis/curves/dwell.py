@@ -6,7 +6,7 @@ from collections import deque
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
+import scipy
 
 from grashof.analysis.four_bar.extremes import Curve, Quantity, extremes_of, motion_between, sampled
 from grashof.analysis.four_bar.kinematics import solve_kinematics
@@ -137,7 +137,7 @@ def _widened(
         edge = band if values[inside + step] < band else band + tolerance
         if (values[inside] - edge) * (values[inside + step] - edge) >= 0:
             return float(at[inside])
-        return float(brentq(beyond, at[inside], at[inside + step], args=(edge,), xtol=1e-14))
+        return float(scipy.optimize.brentq(beyond, at[inside], at[inside + step], args=(edge,), xtol=1e-14))
 
     def ends(band: float) -> tuple[float, float]:
         return end_of(band, middle, -1), end_of(band, middle, 1)
@@ -149,7 +149,7 @@ def _widened(
         start, end = ends(band)
         return end - start
 
-    found = minimize_scalar(lambda band: -length(band), bounds=(low, high), method="bounded")
+    found = scipy.optimize.minimize_scalar(lambda band: -length(band), bounds=(low, high), method="bounded")
     band = max((low, high, float(found.x)), key=length)
     start, end = ends(band)
     return Dwell(start, end, band, band + tolerance)

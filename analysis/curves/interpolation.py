@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import CubicSpline
+import scipy
 
 from grashof.analysis.curves.fit import samples
 from grashof.problems.values.arrays import FloatArray, frozen_array
@@ -80,7 +80,9 @@ def newton_interpolation(nodes: npt.ArrayLike, values: npt.ArrayLike) -> NewtonP
     return NewtonPolynomial(frozen_array(t), frozen_array(differences))
 
 
-def spline(parameter: npt.ArrayLike, values: npt.ArrayLike, period: float | None = None) -> CubicSpline:
+def spline(
+    parameter: npt.ArrayLike, values: npt.ArrayLike, period: float | None = None
+) -> scipy.interpolate.CubicSpline:
     """Interpolating cubic spline, twice continuously differentiable.
 
     Parameters
@@ -115,11 +117,13 @@ def spline(parameter: npt.ArrayLike, values: npt.ArrayLike, period: float | None
             "the parameter does not increase from sample to sample; a spline needs two or more"
         )
     if period is None:
-        return CubicSpline(t, y, bc_type="not-a-knot")
+        return scipy.interpolate.CubicSpline(t, y, bc_type="not-a-knot")
     period = finite_number(period, "period")
     if len(t) < 3 or not t[-1] - t[0] < period:
         raise ProblemError(
             f"the {len(t)} samples span {t[-1] - t[0]:.6g}; a closed curve of period {period:.6g} needs "
             "three or more within one period, the first not repeated"
         )
-    return CubicSpline(np.append(t, t[0] + period), np.append(y, y[:1], axis=0), bc_type="periodic")
+    return scipy.interpolate.CubicSpline(
+        np.append(t, t[0] + period), np.append(y, y[:1], axis=0), bc_type="periodic"
+    )

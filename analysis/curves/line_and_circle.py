@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import least_squares
+import scipy
 
 from grashof.analysis.four_bar.position import solve_position
 from grashof.problems import FourBar
@@ -158,7 +158,7 @@ def best_circle(points: npt.ArrayLike) -> BestCircle:
         return np.asarray(away - away.mean(axis=0))
 
     eps = float(np.finfo(np.float64).eps)
-    found = least_squares(
+    found = scipy.optimize.least_squares(
         miss, _taubin(unit), jac=slope, method="lm", xtol=4 * eps, ftol=4 * eps, gtol=4 * eps
     )
     distance = np.hypot(*(unit - found.x).T)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import linprog
+import scipy
 
 from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.loads import Loads, cross, turned
@@ -158,7 +158,9 @@ def _least_peak(effects: FloatArray, torque: FloatArray) -> FloatArray:
     ones = np.ones((len(torque), 1))
     rows = np.block([[effects, -ones], [-effects, -ones]])
     sides = np.concatenate([-torque, torque]) / scale
-    found = linprog([0.0, 0.0, 1.0], A_ub=rows, b_ub=sides, bounds=[(None, None), (None, None), (0, None)])
+    found = scipy.optimize.linprog(
+        [0.0, 0.0, 1.0], A_ub=rows, b_ub=sides, bounds=[(None, None), (None, None), (0, None)]
+    )
     if found.x is None:
         raise SolverError(f"no counterweight for the least peak was found: {found.message}")
     return np.asarray(found.x[:2] * scale)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+import scipy
 
 from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.loads import Loads
@@ -93,6 +93,6 @@ def size_flywheel(
     torque[-1] = torque[0]
     mean = float(torque[:-1].mean())
     # What the drive gives beyond what the turn takes, added up, is the energy of the flywheel.
-    gained = CubicSpline(theta2, mean - torque, bc_type="periodic").antiderivative()
+    gained = scipy.interpolate.CubicSpline(theta2, mean - torque, bc_type="periodic").antiderivative()
     found = extremes_of(gained, 0.0, 2 * np.pi)
     return Flywheel(found.stroke / (fluctuation * omega2**2), found.stroke, mean, found.at_low, found.at_high)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.integrate import solve_ivp
+import scipy
 
 from grashof.analysis.forces.loads import (
     Joint,
@@ -133,7 +133,7 @@ def free_response(
     with warnings.catch_warnings():
         # A step that is tried may meet a dead position, before an event ends the motion there.
         warnings.simplefilter("ignore", DeadPositionWarning)
-        done = solve_ivp(
+        done = scipy.integrate.solve_ivp(
             rates, (at[0], at[-1]), [theta2, omega2], method="DOP853", t_eval=at, rtol=tolerance,
             atol=tolerance * 1e-2, events=_endings(linkage, loads), max_step=_longest_step(at, omega2),
         )  # fmt: skip

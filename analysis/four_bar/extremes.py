@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
+import scipy
 from numpy.polynomial import chebyshev
-from scipy.optimize import minimize_scalar
 
 from grashof.analysis.four_bar.kinematics import Kinematics, solve_kinematics
 from grashof.analysis.four_bar.mobility import driver_ranges, full_rotation
@@ -201,7 +201,7 @@ def _stationary(curve: Curve, at: FloatArray, peak: int, closed: bool) -> list[f
     low, high = middle - step, middle + step
     if not closed:
         low, high = max(low, at[0]), min(high, at[-1])
-    found = minimize_scalar(
+    found = scipy.optimize.minimize_scalar(
         lambda place: -float(curve(np.array([place]))[0]), bounds=(low, high), method="bounded",
         options={"xatol": 1e-12},
     )  # fmt: skip

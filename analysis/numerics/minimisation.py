@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TypeAlias
 
 import numpy as np
-from scipy.optimize import isotonic_regression
+import scipy
 
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
 
@@ -207,7 +207,7 @@ def _in_order(wish: FloatArray, weight: FloatArray, low: FloatArray, high: Float
     """The nearest angles, by weight, that do not go back, within one turn and within their bounds."""
     ordered = wish.copy()
     for row in np.flatnonzero((np.diff(wish, axis=1) < 0).any(axis=1)):
-        ordered[row] = isotonic_regression(wish[row], weights=weight[row]).x
+        ordered[row] = scipy.optimize.isotonic_regression(wish[row], weights=weight[row]).x
     for row in np.flatnonzero(ordered[:, -1] - ordered[:, 0] > TURN):
         ordered[row] = _within_a_turn(ordered[row], weight[row])
     bounded: FloatArray = np.clip(ordered, low, high)

@@ -86,7 +86,7 @@ def chunks(
         yield run.step(CHUNK, (number, *rest), scaled, partial(_made, run.work, scaled, number, *rest))
 
 
-def which(search: Search, starts: int, least: float = np.inf) -> tuple[float, ...]:
+def which(search: Search, starts: int, least: float = np.inf) -> tuple[int, int, int, float]:
     """All that `chunk` is given but the problem and the number."""
     return search.enough, search.seed, starts, least
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import isotonic_regression
+import scipy
 
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.synth.programme.driver_angles import as_they_come
@@ -252,7 +252,7 @@ def _summed(parts: FloatArray, together: BoolArray) -> FloatArray:
 def _in_order(angle: FloatArray, weight: FloatArray) -> FloatArray:
     """The nearest angles, by weight, that do not go back, within one turn."""
     if (np.diff(angle) < 0).any():
-        angle = isotonic_regression(angle, weights=weight).x
+        angle = scipy.optimize.isotonic_regression(angle, weights=weight).x
     over = angle[-1] - angle[0] - TURN * (1 - LEAST_GAP)
     return np.clip(angle, angle[0] + over / 2, angle[-1] - over / 2) if over > 0 else angle
 

@@ -14,7 +14,7 @@ from itertools import zip_longest
 from typing import ClassVar
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import ComplexArray
@@ -274,7 +274,7 @@ def first_equal(positions: ComplexArray, rotations: ComplexArray) -> tuple[int, 
         Of absolute value 1.
     """
     numbers = np.stack([positions.real, positions.imag, rotations.real, rotations.imag], axis=1)
-    tree = cKDTree(numbers)
+    tree = scipy.spatial.cKDTree(numbers)
     for begin in range(0, len(numbers), AT_ONCE):
         some = numbers[begin : begin + AT_ONCE]
         apart = np.asarray(tree.query(some, k=2, distance_upper_bound=2 * EQUAL)[0])[:, 1]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.requirements import QUANTITIES
@@ -116,7 +116,7 @@ def to_nearest(coordinates: FloatArray) -> FloatArray:
     """
     if len(coordinates) < 2:
         return np.ones(len(coordinates))
-    apart = np.asarray(cKDTree(coordinates).query(coordinates, k=2, p=np.inf)[0])[:, 1]
+    apart = np.asarray(scipy.spatial.cKDTree(coordinates).query(coordinates, k=2, p=np.inf)[0])[:, 1]
     nearest: FloatArray = np.minimum(apart, 1.0)
     return nearest
 
