@@ -23,7 +23,7 @@ from grashof import load, synthesize
 # One that solves most of the time, and one that screens most of it.
 SEARCHES: dict[str, dict[str, Any]] = {
     "luggage": {"starts": 2000, "enough": 800},
-    "path-ellipse": {"effort": 4},
+    "path-ellipse": {"effort": 10},
 }
 
 

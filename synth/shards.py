@@ -14,7 +14,7 @@ from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.errors import wrong_value
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.search.asked import asking, search_of
-from grashof.synth.search.chunks import chunks
+from grashof.synth.search.chunks import CHUNKS, chunks
 from grashof.synth.search.journal import Recorded, head_of
 from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.run import Progress, Run
@@ -27,7 +27,6 @@ _LOG = logging.getLogger(__name__)
 SHARDS = "shards"  # folder of theirs
 PROBLEM = "problem.toml"
 MOST = 100_000  # shards of a search
-CHUNKS = 4  # of a search of effort 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,7 +127,7 @@ class Plan:
     @property
     def starts(self) -> int:
         """Most solves of a chunk."""
-        return max(1, round(self.search.starts * max(1.0, self.search.effort) / self.count))
+        return max(1, self.search.starts // CHUNKS)
 
     def numbers(self, shard: Shard) -> list[range]:
         """The chunks of a shard, those of each problem: every so many of all."""

@@ -6,8 +6,6 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import Any
 
-import numpy as np
-
 from grashof.problems import Search
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.search.ledger import Chunk, Ledger
@@ -18,10 +16,11 @@ from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.stopping import asked_to_stop, give_way
 
 CHUNK = "chunk"  # kind of step
+CHUNKS = 4  # that a search of effort 1 has in shards: each has so great a share of its solves
 AHEAD = 3  # chunks begun for each process before it is known that they are wanted
 
 
-def chunk(scaled: ScaledProblem, number: int, enough: int, seed: int, starts: int, least: float) -> Chunk:
+def chunk(scaled: ScaledProblem, number: int, enough: int, seed: int, starts: int) -> Chunk:
     """One chunk of a search, wherever it is made; a function of what it is given.
 
     Parameters
@@ -31,22 +30,18 @@ def chunk(scaled: ScaledProblem, number: int, enough: int, seed: int, starts: in
     enough, seed : int
     starts : int
         Most solves.
-    least : float, sizes
-        Error that is known to be reached.
 
     Raises
     ------
     Stopped
         It was asked to end before it was done.
     """
-    return _made_by(Here(), scaled, number, enough, seed, starts, least)
+    return _made_by(Here(), scaled, number, enough, seed, starts)
 
 
-def _made_by(
-    work: Work, scaled: ScaledProblem, number: int, enough: int, seed: int, starts: int, least: float
-) -> Chunk:
+def _made_by(work: Work, scaled: ScaledProblem, number: int, enough: int, seed: int, starts: int) -> Chunk:
     search = Search(starts=starts, enough=enough, seed=seed)
-    ledger = Ledger(scaled, search, "", known=least)
+    ledger = Ledger(scaled, search, "")
     ledger.plan_more()  # nothing but the number of starts ends it
     effort, of_pass = divmod(number, finder_for(scaled).rounds_a_pass)
     found = work.made(screen, scaled, effort, of_pass, enough, seed)
@@ -56,9 +51,7 @@ def _made_by(
     return ledger.chunk
 
 
-def chunks(
-    scaled: ScaledProblem, run: Run, numbers: Sequence[int], starts: int, least: float = np.inf
-) -> Iterator[Chunk]:
+def chunks(scaled: ScaledProblem, run: Run, numbers: Sequence[int], starts: int) -> Iterator[Chunk]:
     """Chunks in the order of their numbers, several of them made at a time.
 
     Parameters
@@ -68,15 +61,13 @@ def chunks(
     numbers : sequence of int
     starts : int
         Most solves of each.
-    least : float, sizes
-        Error that is known to be reached.
 
     Raises
     ------
     Stopped
         It was asked to end before all are done.
     """
-    rest = which(run.search, starts, least)
+    rest = which(run.search, starts)
     for place, number in enumerate(numbers):
         if not run.journal.recorded:
             first, *later = numbers[place : place + AHEAD * run.work.width]
@@ -86,9 +77,16 @@ def chunks(
         yield run.step(CHUNK, (number, *rest), scaled, partial(_made, run.work, scaled, number, *rest))
 
 
-def which(search: Search, starts: int, least: float = np.inf) -> tuple[int, int, int, float]:
+def begin_chunks(scaled: ScaledProblem, run: Run, numbers: Sequence[int], starts: int) -> None:
+    """Begin some that will be wanted, one for each process, while there is little else to do."""
+    if not run.journal.recorded:
+        for number in numbers[: run.work.width]:
+            run.work.begin(chunk, scaled, number, *which(run.search, starts))
+
+
+def which(search: Search, starts: int) -> tuple[int, int, int]:
     """All that `chunk` is given but the problem and the number."""
-    return search.enough, search.seed, starts, least
+    return search.enough, search.seed, starts
 
 
 def _made(work: Work, scaled: ScaledProblem, *given: Any) -> Chunk:

@@ -63,14 +63,11 @@ class Ledger:
     search : Search
     exhausted : str
         Why a search ends that has gone through all its rounds.
-    known : float, sizes
-        Least error of what others have found.
     """
 
     scaled: ScaledProblem
     search: Search
     exhausted: str
-    known: float = np.inf
     verified: list[Candidate] = field(default_factory=list)
     rejected: list[Attempt] = field(default_factory=list)
     best: tuple[Candidate, ...] = ()
@@ -172,7 +169,7 @@ class Ledger:
     @property
     def least(self) -> float:
         """Least error of all verified designs, sizes."""
-        return min([self.known, *self._errors])
+        return min(self._errors, default=np.inf)
 
     @property
     def within_round(self) -> bool:

@@ -12,7 +12,7 @@ import numpy as np
 from grashof.synth.programme.nonlinear_programme import MOST_ITERATIONS
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Round, Start
-from grashof.synth.search.chunks import chunks
+from grashof.synth.search.chunks import CHUNKS, begin_chunks, chunks
 from grashof.synth.search.ledger import SAME, Ledger
 from grashof.synth.search.rounds import solve, solve_round
 from grashof.synth.search.run import Run
@@ -59,6 +59,7 @@ def search_designs(scaled: ScaledProblem, run: Run) -> Ledger:
     finder = finder_for(scaled)
     ledger = Ledger(scaled, run.search, finder.exhausted)
     _LOG.info("search begun: %s, %d targets", type(finder).__name__, len(scaled.targets))
+    _begin_more(finder, ledger, run)
     for number, found in enumerate(rounds(finder, partial(_timed_round, ledger, run)), start=1):
         with run.timed("solving"):
             solve_round(found, ledger, run)
@@ -80,6 +81,13 @@ def finished(ledger: Ledger, run: Run) -> Ledger:
     return ledger
 
 
+def _begin_more(finder: Finder, ledger: Ledger, run: Run) -> None:
+    """Begin chunks that more effort will ask for."""
+    surely = ceil((run.search.effort - 1) / (1 if ledger.scaled.exact else LARGER))
+    first = finder.rounds_a_pass
+    begin_chunks(ledger.scaled, run, range(first, first + max(0, surely)), run.search.starts // CHUNKS)
+
+
 def _do_more(finder: Finder, ledger: Ledger, run: Run) -> None:
     """Do what more effort asks for: the same work so many times again, in chunks."""
     more = run.search.effort - 1
@@ -88,11 +96,11 @@ def _do_more(finder: Finder, ledger: Ledger, run: Run) -> None:
     ledger.plan_more()
     if not count:
         return
-    starts = max(1, round(more * run.search.starts / count))
+    starts = max(1, min(run.search.starts // CHUNKS, round(more * run.search.starts / count)))
     numbers = range(finder.rounds_a_pass, finder.rounds_a_pass + count)
     with run.timed("more effort"):
         try:
-            for number, one in enumerate(chunks(ledger.scaled, run, numbers, starts, ledger.least), start=1):
+            for number, one in enumerate(chunks(ledger.scaled, run, numbers, starts), start=1):
                 ledger.absorb(one)
                 run.tell(ledger)
                 _log(f"chunk {number} of {count}", one.solved, ledger)
