@@ -138,7 +138,7 @@ def _deliver(
 def solve_shard(problem: Problem, text: str, stated: str, options: Options) -> Exit:
     """Make a shard of a search, such as 7/200; what its folder has of it is not done again."""
     from grashof.output.cluster import cluster
-    from grashof.output.folder import check_writable, in_use
+    from grashof.output.folder import part_in_use
     from grashof.output.log_file import logged
     from grashof.output.terminal import search_progress
     from grashof.synth.shards import SHARDS, Shard, solve_shard
@@ -147,10 +147,9 @@ def solve_shard(problem: Problem, text: str, stated: str, options: Options) -> E
         raise ProblemError("--top does not go with --shard; it is for grashof merge")
     shard = Shard.stated(stated)
     folder = options.out if options.out is not None else Path(f"{problem.name}-designs")
-    check_writable(folder)
     own = folder / SHARDS / shard.folder
     with (
-        in_use(own),
+        part_in_use(folder, own),
         logged(options.log, own),
         interruptible() as interrupted,
         cluster(options.scheduler, options.workers) as (executor, workers),
