@@ -56,12 +56,12 @@ class Options:
 
 def solve(problem: Problem, text: str, options: Options) -> Exit:
     """Search for designs and write them; `text` is the problem file."""
-    from grashof.output.folder import check_writable, in_use
+    from grashof.output.folder import SEARCH, check_writable, in_use
     from grashof.output.log_file import logged
 
     folder = options.out if options.out is not None else Path(f"{problem.name}-designs")
     check_writable(folder, options.drawings)
-    with in_use(folder), logged(options.log, folder):
+    with in_use(folder), logged(options.log, folder, folder / SEARCH):
         return _solve(problem, text, options, folder)
 
 
@@ -150,7 +150,7 @@ def solve_shard(problem: Problem, text: str, stated: str, options: Options) -> E
     own = folder / SHARDS / shard.folder
     with (
         part_in_use(folder, own),
-        logged(options.log, own),
+        logged(options.log, folder, own),
         interruptible() as interrupted,
         cluster(options.scheduler, options.workers) as (executor, workers),
         search_progress(problem.name, f"shard {shard}", wanted=False) as progress,

@@ -99,8 +99,10 @@ def part_in_use(folder: Path, part: Path) -> Iterator[None]:
     Raises
     ------
     ProblemError
-        Another run uses the part, or the folder cannot be written.
+        Another run uses the part, the folder cannot be written, or the part is a link to elsewhere.
     """
+    if part.is_symlink():
+        raise ProblemError(f"--out {part}: is a link; it must be a folder")
     # In this order: a folder that is made only to be looked at goes again, under the feet of the others.
     with in_use(part):
         check_writable(folder)
