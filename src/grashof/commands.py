@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -201,12 +200,17 @@ def merge(folder: Path, *, partial: bool, top: int | None, drawings: int, worker
 def _begin_record(folder: Path, *, resume: bool) -> None:
     """Keep the record of a search that is not gone on with; say where there is none to go on with."""
     from grashof.output.folder import OLD_SEARCH, SEARCH
+    from grashof.synth.results.journal import HEAD, remove_record
 
     record, kept = folder / SEARCH, folder / OLD_SEARCH
+    if record.exists() and not record.is_dir():
+        raise ProblemError(f"{record}: is a file; the search is recorded in a folder of this name")
     if resume and not record.exists():
         say(f"{record}: has no record of a search; it begins anew", err=True)
-    elif record.exists() and not resume:
-        shutil.rmtree(kept, ignore_errors=True)
+    elif (record / HEAD).exists() and not resume:
+        remove_record(kept)
+        if kept.exists() or kept.is_symlink():
+            raise ProblemError(f"{kept}: is, or has, more than the record of a search; move it away")
         record.replace(kept)
         say(f"{record}: the record of an unfinished search is kept as {kept.name}", err=True)
 

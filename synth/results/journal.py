@@ -157,11 +157,7 @@ class Recorded:
     def remove(self) -> None:
         """Delete the record, and its folder if nothing else is in it; nothing more is recorded."""
         self._open = False
-        every = (*_files(self._folder), *self._folder.glob(f"{WRITING}*"))
-        for path in (*every, self._folder / HEAD):
-            path.unlink(missing_ok=True)
-        with suppress(OSError):
-            self._folder.rmdir()
+        remove_record(self._folder)
 
     def _next(self, name: str, problem: Problem) -> tuple[Any] | None:
         while not self._recorded and self._unread:
@@ -278,6 +274,14 @@ def recorded_steps(folder: Path) -> Iterator[dict[str, Any]]:
 def content_of(steps: list[dict[str, Any]]) -> dict[str, Any]:
     """What a file of a record holds: steps, and a sum by which damage is noticed."""
     return {"sha256": hashlib.sha256(json.dumps(steps).encode()).hexdigest(), "steps": steps}
+
+
+def remove_record(folder: Path) -> None:
+    """Delete a record, and its folder if nothing else is in it."""
+    for path in (*_files(folder), *folder.glob(f"{WRITING}*"), folder / HEAD):
+        path.unlink(missing_ok=True)
+    with suppress(OSError):
+        folder.rmdir()
 
 
 def is_record_name(name: str) -> bool:
