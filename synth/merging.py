@@ -192,7 +192,7 @@ def _of_shard(own: Path) -> tuple[Problem, str, Search]:
         raise ProblemError(f"{path}: is not a problem file; delete {own}, and run the shard again")
     text = file_text(path, "a problem file", "")
     try:
-        name = plain_text(head.get("name"), "name")
+        name = plain_text(head.get("name"), "name")  # type: ignore[arg-type]  # refused there
         search = Search(**{field.name: head.get(field.name) for field in fields(Search)})  # type: ignore[arg-type]
     except ProblemError as error:
         raise located(error, str(own / HEAD)) from None

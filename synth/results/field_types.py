@@ -37,15 +37,16 @@ def fits(value: Any, hint: Any) -> bool:
     >>> fits({"a": "b"}, dict[str, int])
     False
     """
-    kind, parts = get_origin(hint) or hint, get_args(hint)
+    kind: Any = get_origin(hint) or hint
+    parts = get_args(hint)
     if kind in (Union, UnionType):
         return any(fits(value, each) for each in parts)
     if kind in _NUMBERS:
         return isinstance(value, _SCALARS) and np.asarray(value).dtype.kind in _NUMBERS[kind]
     if kind is np.ndarray:
         return isinstance(value, (np.ndarray, np.generic))
-    if not isinstance(value, type(None) if kind is None else kind):
-        return False
+    if kind is type(None) or not isinstance(value, kind):
+        return value is None and kind is type(None)
     if kind is tuple and parts[1:] != (...,):
         return len(value) == len(parts) and all(map(fits, value, parts))
     if issubclass(kind, Mapping):
