@@ -203,11 +203,12 @@ def test_what_is_damaged_is_not_merged_and_done_again(damage: str, tmp_path: Pat
 
 def tampered(folder: Path, change: Callable[[dict[str, Any]], object], *, every: bool = False) -> None:
     """Another first chunk, or every one, with a sum that is right."""
-    path = folder / SHARDS / Shard(1, 1).folder / "000001.json"
-    steps = json.loads(path.read_text(encoding="utf-8"))["steps"]
-    for step in steps if every else steps[:1]:
-        change(step["result"]["Chunk"])
-    path.write_text(json.dumps(content_of(steps)), encoding="utf-8")
+    files = sorted((folder / SHARDS / Shard(1, 1).folder).glob("0*.json"))
+    for path in files if every else files[:1]:
+        steps = json.loads(path.read_text(encoding="utf-8"))["steps"]
+        for step in steps if every else steps[:1]:
+            change(step["result"]["Chunk"])
+        path.write_text(json.dumps(content_of(steps)), encoding="utf-8")
 
 
 def design(chunk: dict[str, Any]) -> dict[str, Any]:
