@@ -2,23 +2,35 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, fields
 from pathlib import Path
 
+import numpy as np
+
 from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.toml_file import file_text
-from grashof.synth.designs.judging import judged_again
+from grashof.problems.values.checks import located, plain_text
+from grashof.synth.designs.judging import alike, judged_again
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.results.conclusion import conclude, needless
 from grashof.synth.results.result import Result
 from grashof.synth.search.asked import asking
 from grashof.synth.search.chunks import CHUNK, which
-from grashof.synth.search.journal import WHOLE, head_of, read_head, recorded_steps, refuse_other, step_name
+from grashof.synth.search.journal import (
+    HEAD,
+    WHOLE,
+    head_of,
+    read_head,
+    recorded_steps,
+    refuse_other,
+    step_name,
+)
 from grashof.synth.search.ledger import Chunk, Ledger
-from grashof.synth.search.plain import plain, restored
+from grashof.synth.search.plain import restored
 from grashof.synth.search.run import Progress, Run
 from grashof.synth.search.searches import finished, found_few
 from grashof.synth.search.workers import working
@@ -26,6 +38,7 @@ from grashof.synth.shards import PROBLEM, SHARDS, Plan, Shard
 from grashof.synth.theory.stopping import stopping
 
 NAMED = 12  # shards that a message names
+_COGNATE = re.compile("(d[0-9a-f]{7})?")  # id of the design that another one is a cognate of
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,10 +83,7 @@ class Shards:
             both = f"{there[0].of} and of {there[-1].of}"
             raise ProblemError(f"{folder / SHARDS}: has shards of {both}; they must be of one search")
         first = folder / SHARDS / there[0].folder
-        head, path = read_head(first), first / PROBLEM
-        text = file_text(path, "a problem file", "")
-        problem = problem_of(text, str(path), str(head.get("name")))
-        search = Search(**{field.name: head.get(field.name) for field in fields(Search)})  # type: ignore[arg-type]
+        problem, text, search = _of_shard(first)
         done = []
         for shard in there:
             own = folder / SHARDS / shard.folder
@@ -106,9 +116,7 @@ class Shards:
                 try:
                     if step["step"] != name:
                         raise ValueError(name)
-                    chunk = restored(step["result"], ledger.scaled.problem)
-                    if not isinstance(chunk, Chunk):
-                        raise TypeError(name)
+                    chunk = _checked(restored(step["result"], ledger.scaled.problem), ledger.scaled.problem)
                 except (ValueError, KeyError, TypeError):
                     raise _damaged(self.folder / SHARDS / shard.folder) from None
                 yield ledger, chunk
@@ -150,6 +158,10 @@ def merge_shards(
     asked, shards = asking(None, stop), Shards.found(folder)
     if shards.lacking and not partial:
         raise ProblemError(f"{folder}: {shards.lacking} to be done; --partial merges the others")
+    if not shards.done:
+        raise ProblemError(
+            f"{folder}: none of its shards is done; the command that began one goes on with it"
+        )
     plan = Plan(ScaledProblem.of(shards.problem), shards.search)
     if not plan.problems:
         return needless(plan.scaled, asked)
@@ -173,11 +185,50 @@ def _named(folder: Path) -> Iterator[Shard]:
             yield Shard.named(path.name)
 
 
+def _of_shard(own: Path) -> tuple[Problem, str, Search]:
+    """Of which problem a shard is, the file that states it, and of which search."""
+    head, path = read_head(own), own / PROBLEM
+    if path.exists() and not path.is_file():  # a pipe or a device may never end
+        raise ProblemError(f"{path}: is not a problem file; delete {own}, and run the shard again")
+    text = file_text(path, "a problem file", "")
+    try:
+        name = plain_text(head.get("name"), "name")  # type: ignore[arg-type]  # refused there
+        search = Search(**{field.name: head.get(field.name) for field in fields(Search)})  # type: ignore[arg-type]
+    except ProblemError as error:
+        raise located(error, str(own / HEAD)) from None
+    return problem_of(text, str(path), name), text, search
+
+
+def _checked(chunk: object, problem: Problem) -> Chunk:
+    """A chunk of which all is as a search leaves it, but what the judge alone knows.
+
+    Raises
+    ------
+    ValueError
+        It is not.
+    """
+    if not isinstance(chunk, Chunk) or min(chunk.solved, chunk.size, *chunk.tally.recorded.values(), 0) < 0:
+        raise ValueError(type(chunk).__name__)
+    if not all(one.verdict.ok for one in chunk.designs):
+        raise ValueError("a design with defects")
+    for one in (*chunk.designs, *(miss.candidate for miss in chunk.misses)):
+        if one is None or one.own_objective is not None or f"{one.best_at}{one.family}":
+            raise ValueError("a design of no chunk")
+        if not _COGNATE.fullmatch(one.cognate_of):
+            raise ValueError(one.cognate_of)
+        verdict, targets = one.verdict, len(problem.task)
+        each = verdict.theta2, verdict.assembly, verdict.position_error, verdict.angle_error
+        if any(np.shape(array) != (targets,) or array.dtype.kind not in "if" for array in each):
+            raise ValueError("a verdict on another task")
+    return chunk
+
+
 def _refuse_unverified(folder: Path, ledger: Ledger) -> None:
-    """Judge once more what may be listed: a file may say anything."""
-    for one in ledger.best:
+    """Judge once more what may be listed, or the misses where nothing may be: a file may say anything."""
+    misses = [one.candidate for one in ledger.rejected if one.candidate is not None]
+    for one in ledger.best or misses:
         verdict = judged_again(ledger.scaled, one).verdict
-        if not verdict.ok or repr(plain(verdict)) != repr(plain(one.verdict)):
+        if not alike(verdict, one.verdict, ledger.scaled.problem.task.size):
             raise _damaged(folder / SHARDS)
 
 

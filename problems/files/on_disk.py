@@ -36,7 +36,9 @@ def write_whole(path: Path, content: Mapping[str, Any] | str) -> None:
             file.flush()
             os.fsync(file.fileno())
         beside.replace(path)
-    except OSError:
+    except OSError as error:
         with suppress(OSError):
             beside.unlink()
-        raise
+        if error.strerror is None:
+            raise
+        raise OSError(error.errno, error.strerror, str(path)) from None  # a full disk names no file

@@ -19,6 +19,7 @@ from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.extent import span
 
 GREATEST = 1e20  # of lengths, masses and speeds: squares of torques stay within the floats
+DIGITS = 300  # of whole numbers: they become floats, times an effort
 LEAST = 1e-20  # size of a task, for the same reason
 # What a spreadsheet calculates, in the wide forms of Japanese and Chinese, too, and what it may skip before.
 _FORMULA = re.compile(r"(^|;)(?=\s*[=+\-@＝＋－＠]|[\t\r\n])")
@@ -134,9 +135,11 @@ def task_size(points: FloatArray, where: str) -> float:
 
 
 def whole_number(value: int, low: int, where: str) -> int:
-    """`value` as an int, refused below `low` or when it is not whole."""
+    """`value` as an int, refused below `low`, when it is not whole, or with more digits than floats have."""
     if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < low:
         raise wrong_value(where, value, f"a whole number from {low}")
+    if int(value) >= 10**DIGITS:  # of a hexadecimal one Python does not even write thousands
+        raise wrong_value(where, value, f"a whole number from {low}, of up to {DIGITS} digits")
     return int(value)
 
 

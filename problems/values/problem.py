@@ -62,9 +62,8 @@ class Search:
     effort: float = 1.0
 
     def __post_init__(self) -> None:
-        whole_number(self.starts, 1, "search.starts")
-        whole_number(self.enough, 1, "search.enough")
-        whole_number(self.seed, 0, "search.seed")
+        for name, least in (("starts", 1), ("enough", 1), ("seed", 0)):
+            object.__setattr__(self, name, whole_number(getattr(self, name), least, f"search.{name}"))
         object.__setattr__(self, "effort", number_within(self.effort, *EFFORTS, "search.effort"))
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -56,12 +55,12 @@ class Options:
 
 def solve(problem: Problem, text: str, options: Options) -> Exit:
     """Search for designs and write them; `text` is the problem file."""
-    from grashof.output.folder import check_writable, in_use
+    from grashof.output.folder import SEARCH, check_writable, in_use
     from grashof.output.log_file import logged
 
     folder = options.out if options.out is not None else Path(f"{problem.name}-designs")
     check_writable(folder, options.drawings)
-    with in_use(folder), logged(options.log, folder):
+    with in_use(folder), logged(options.log, folder, folder / SEARCH):
         return _solve(problem, text, options, folder)
 
 
@@ -138,7 +137,7 @@ def _deliver(
 def solve_shard(problem: Problem, text: str, stated: str, options: Options) -> Exit:
     """Make a shard of a search, such as 7/200; what its folder has of it is not done again."""
     from grashof.output.cluster import cluster
-    from grashof.output.folder import check_writable, in_use
+    from grashof.output.folder import part_in_use
     from grashof.output.log_file import logged
     from grashof.output.terminal import search_progress
     from grashof.synth.shards import SHARDS, Shard, solve_shard
@@ -147,11 +146,10 @@ def solve_shard(problem: Problem, text: str, stated: str, options: Options) -> E
         raise ProblemError("--top does not go with --shard; it is for grashof merge")
     shard = Shard.stated(stated)
     folder = options.out if options.out is not None else Path(f"{problem.name}-designs")
-    check_writable(folder)
     own = folder / SHARDS / shard.folder
     with (
-        in_use(own),
-        logged(options.log, own),
+        part_in_use(folder, own),
+        logged(options.log, folder, own),
         interruptible() as interrupted,
         cluster(options.scheduler, options.workers) as (executor, workers),
         search_progress(problem.name, f"shard {shard}", wanted=False) as progress,
@@ -202,12 +200,17 @@ def merge(folder: Path, *, partial: bool, top: int | None, drawings: int, worker
 def _begin_record(folder: Path, *, resume: bool) -> None:
     """Keep the record of a search that is not gone on with; say where there is none to go on with."""
     from grashof.output.folder import OLD_SEARCH, SEARCH
+    from grashof.synth.search.journal import HEAD, remove_record
 
     record, kept = folder / SEARCH, folder / OLD_SEARCH
+    if record.exists() and not record.is_dir():
+        raise ProblemError(f"{record}: is a file; the search is recorded in a folder of this name")
     if resume and not record.exists():
         say(f"{record}: has no record of a search; it begins anew", err=True)
-    elif record.exists() and not resume:
-        shutil.rmtree(kept, ignore_errors=True)
+    elif (record / HEAD).exists() and not resume:
+        remove_record(kept)
+        if kept.exists() or kept.is_symlink():
+            raise ProblemError(f"{kept}: is, or has, more than the record of a search; move it away")
         record.replace(kept)
         say(f"{record}: the record of an unfinished search is kept as {kept.name}", err=True)
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -15,6 +16,8 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Configurations, dyad_violations, judge, met
 from grashof.synth.theory.cognates import assembly_of, cognate_points, position_of
 from grashof.synth.theory.stopping import overdue
+
+ROUNDING = 1e-6  # share, rad, sizes: how far verdicts of two processors may differ
 
 
 def judged(
@@ -83,6 +86,34 @@ def judged_in_time(
             break
         judged[k] = judged_again(scaled, found[k], most_error)
     return [judged[k] for k in sorted(judged)]
+
+
+def alike(one: Verdict, other: Verdict, size: float) -> bool:
+    """Whether verdicts are the same but for rounding, which every kind of processor does in its own way.
+
+    Parameters
+    ----------
+    one, other : Verdict
+    size : float, length
+        Of the task: what lengths are compared with.
+    """
+    scales = {"position_error": size, "size": size, "square": size**2}
+
+    def near(x: Any, y: Any, scale: float) -> bool:
+        same = np.shape(x) == np.shape(y)
+        return same and np.allclose(x, y, rtol=ROUNDING, atol=ROUNDING * scale, equal_nan=True)
+
+    if [(d.requirement, d.what, d.allowed) for d in one.defects] != [
+        (d.requirement, d.what, d.allowed) for d in other.defects
+    ]:
+        return False
+    defects = zip(one.defects, other.defects, strict=True)
+    if not all(near(d.found, e.found, size) and near(d.miss, e.miss, 1.0) for d, e in defects):
+        return False
+    names = (each.name for each in fields(Verdict) if each.name not in ("defects", "grashof_class"))
+    return one.grashof_class is other.grashof_class and all(
+        near(getattr(one, name), getattr(other, name), scales.get(name, 1.0)) for name in names
+    )
 
 
 def _valued(scaled: ScaledProblem, candidate: Candidate) -> Candidate:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import logging
+import re
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -16,6 +17,7 @@ from typing import Any, Protocol, TypeVar
 from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.files.on_disk import WRITING, versions, write_whole
 from grashof.problems.files.problem_writing import problem_toml
+from grashof.problems.values.errors import shown
 from grashof.synth.search.plain import plain, restored
 
 _LOG = logging.getLogger(__name__)
@@ -23,6 +25,7 @@ FORMAT = 2
 HEAD = "search.json"
 RESUMED, WHOLE = "resumed", "whole"  # in the head: how often it was; whether nothing is left to be done
 EVERY = 2.0  # s of work that a file holds
+_STEPS = re.compile(r"[0-9]{6,}\.json")  # names of files that hold steps; any other file is not ours
 
 T = TypeVar("T")
 
@@ -106,7 +109,7 @@ class Recorded:
             count = read_head(folder).get(RESUMED)
             self.resumed = count + 1 if isinstance(count, int) else 1
             self.begin()
-            self._unread.extend(sorted(folder.glob("[0-9]*.json")))
+            self._unread.extend(_files(folder))
 
     def done(self, kind: str, of: Any, problem: Problem, do: Callable[[], T], /) -> T:
         """The result of the next step: as recorded, else done now and recorded."""
@@ -154,11 +157,7 @@ class Recorded:
     def remove(self) -> None:
         """Delete the record, and its folder if nothing else is in it; nothing more is recorded."""
         self._open = False
-        every = (*self._folder.glob("[0-9]*.json"), *self._folder.glob(f"{WRITING}*"))
-        for path in (*every, self._folder / HEAD):
-            path.unlink(missing_ok=True)
-        with suppress(OSError):
-            self._folder.rmdir()
+        remove_record(self._folder)
 
     def _next(self, name: str, problem: Problem) -> tuple[Any] | None:
         while not self._recorded and self._unread:
@@ -242,10 +241,7 @@ def read_head(folder: Path) -> dict[str, Any]:
     ProblemError
         There is none.
     """
-    try:
-        found = json.loads((folder / HEAD).read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
-        found = None
+    found = _content(folder / HEAD)
     if not isinstance(found, dict):
         raise ProblemError(f"{folder / HEAD}: is not the record of a search; delete {folder}")
     return found
@@ -259,9 +255,9 @@ def refuse_other(folder: Path, head: Mapping[str, Any]) -> None:
     if found["problem"] != head["problem"]:
         raise ProblemError(f"{folder}: is the record of a search for another problem; name another folder")
     for key, value in head.items():
-        if found[key] != value:
-            there = f"{folder}: is the record of a search with {key} {found[key]}"
-            raise ProblemError(f"{there}; here it is {value}")
+        if type(found[key]) is not type(value) or found[key] != value:  # True is no 1
+            there = f"{folder}: is the record of a search with {key} {shown(found[key])}"
+            raise ProblemError(f"{there}; here it is {shown(value)}")
 
 
 def step_name(kind: str, of: Any) -> str:
@@ -271,7 +267,7 @@ def step_name(kind: str, of: Any) -> str:
 
 def recorded_steps(folder: Path) -> Iterator[dict[str, Any]]:
     """Steps of a record, in their order; one that has no name where a file is damaged."""
-    for path in sorted(folder.glob("[0-9]*.json")):
+    for path in _files(folder):
         yield from _steps(path)
 
 
@@ -280,11 +276,39 @@ def content_of(steps: list[dict[str, Any]]) -> dict[str, Any]:
     return {"sha256": hashlib.sha256(json.dumps(steps).encode()).hexdigest(), "steps": steps}
 
 
+def remove_record(folder: Path) -> None:
+    """Delete a record, and its folder if nothing else is in it."""
+    for path in (*_files(folder), *folder.glob(f"{WRITING}*"), folder / HEAD):
+        path.unlink(missing_ok=True)
+    with suppress(OSError):
+        folder.rmdir()
+
+
+def is_record_name(name: str) -> bool:
+    """Whether a file of this name in the folder of a record belongs to it."""
+    return name == HEAD or _STEPS.fullmatch(name) is not None
+
+
+def _files(folder: Path) -> list[Path]:
+    """Files of a record that hold steps, in their order."""
+    return sorted(path for path in folder.glob("*.json") if _STEPS.fullmatch(path.name))
+
+
 def _steps(path: Path) -> list[dict[str, Any]]:
     """Steps of a file; one that has no name where it is damaged."""
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
-        return [{}]
+    content = _content(path)
     steps = content.get("steps") if isinstance(content, dict) else None
-    return steps if isinstance(steps, list) and content == content_of(steps) else [{}]
+    try:
+        return steps if isinstance(steps, list) and content == content_of(steps) else [{}]
+    except RecursionError:  # nested more deeply than can be written
+        return [{}]
+
+
+def _content(path: Path) -> Any:
+    """What a file of a record states; None where it is missing or damaged."""
+    if not path.is_file():  # a pipe or a device may never end
+        return None
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return None

@@ -17,6 +17,7 @@ from grashof.problems import FourBar, Objective, Problem
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.search.attempt import Attempt, Outcome
+from grashof.synth.search.field_types import refuse_misfits
 from grashof.synth.search.ledger import Chunk
 from grashof.synth.search.tally import Tally
 
@@ -70,8 +71,8 @@ def restored(value: Any, problem: Problem) -> Any:
 
     Raises
     ------
-    ValueError, KeyError, TypeError
-        It is not the plain form of a value.
+    ValueError
+        It is not the plain form of a value whose fields have their types.
 
     Examples
     --------
@@ -79,8 +80,16 @@ def restored(value: Any, problem: Problem) -> Any:
     >>> restored(plain((1, 2j, float("inf"))), load("luggage"))
     (1, 2j, inf)
     """
+    try:
+        return _restored(value, problem)
+    # Whatever a file may say; the last two of numbers beyond 64 bits, and of lists nested a thousand deep.
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as error:
+        raise ValueError(f"no plain form: {type(error).__name__}") from None
+
+
+def _restored(value: Any, problem: Problem) -> Any:
     if isinstance(value, list):
-        return tuple(restored(each, problem) for each in value)
+        return tuple(_restored(each, problem) for each in value)
     if not isinstance(value, dict):
         return value
     ((name, content),) = value.items()
@@ -90,16 +99,19 @@ def restored(value: Any, problem: Problem) -> Any:
         array = _restored_array(*content)
         return array[()] if name == "scalar" else array
     if name == "list":
-        return [restored(each, problem) for each in content]
+        return [_restored(each, problem) for each in content]
     if name == "counter":
-        return Counter({restored(key, problem): number for key, number in content})
+        return Counter({_restored(key, problem): number for key, number in content})
     if name == "map":
-        return {restored(key, problem): restored(each, problem) for key, each in content}
+        return {_restored(key, problem): _restored(each, problem) for key, each in content}
     if name == "word":
         kind, word = content
         return WORDS[kind](word)
     kind = KINDS[name]
-    named = {key: restored(each, problem) for key, each in content.items()}
+    named = {key: _restored(each, problem) for key, each in content.items()}
+    refuse_misfits(kind, named)
+    if kind is FourBar and FourBar(**named).shape:  # refuses what is no linkage
+        raise ValueError("a batch of linkages")
     return Candidate(problem=problem, **named) if kind is Candidate else _made(kind, named)
 
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import logging
 import os
 import pickle
+import signal
+import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import lru_cache
-from multiprocessing import connection, get_context, parent_process
-from signal import SIG_IGN, SIGINT, signal
+from multiprocessing import connection, get_context, parent_process, resource_tracker
 from threading import Thread
 from typing import Any, Protocol, TypeAlias, TypeVar
 
@@ -246,7 +247,7 @@ class Processes(Elsewhere):
     def __init__(self, count: int) -> None:
         self._state = new_state()
         super().__init__(processes(count, self._state), count)
-        self._ready = self._executor.submit(abs, 0)
+        self._ready = begun(self._executor, count)
 
     def end(self) -> None:
         """End the processes, and what they do."""
@@ -282,7 +283,7 @@ class Processes(Elsewhere):
         self.drop()
         self._executor.shutdown(cancel_futures=True)
         self._executor = processes(self.width, self._state)
-        self._ready = self._executor.submit(abs, 0)
+        self._ready = begun(self._executor, self.width)
 
 
 @contextmanager
@@ -339,9 +340,26 @@ def processes(count: int, state: Any) -> ProcessPoolExecutor:
     return ProcessPoolExecutor(count, mp_context=context, initializer=_begin_worker, initargs=(state,))
 
 
+def begun(executor: Executor, count: int) -> Future[int]:
+    """Begin all processes of an executor; done once the first of them is there.
+
+    Ctrl-C reaches every process of a terminal: where it comes before a process can ignore it, that one would
+    end with a traceback. So it waits in them, and here for as long as they are begun.
+    """
+    if sys.platform == "win32":
+        return executor.submit(abs, 0)
+    resource_tracker.ensure_running()  # begun with them otherwise, it would let Ctrl-C through again
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        first, *_ = [executor.submit(abs, 0) for _ in range(count)]  # each begins one
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    return first
+
+
 def _begin_worker(state: Any) -> None:
     """Ctrl-C reaches every process of a terminal, and the parent alone decides what it means."""
-    signal(SIGINT, SIG_IGN)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     stop_when(lambda: state.value >= STOP)
     Thread(target=_end_in_time, args=(state,), daemon=True).start()
 

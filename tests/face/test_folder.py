@@ -4,11 +4,21 @@ from __future__ import annotations
 
 import json
 import os
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from threading import Barrier
 
 import pytest
 
-from grashof.output.folder import ANALYSIS_RECORD, RECORD, check_writable, own_files, replacing_own_files
+from grashof.output.folder import (
+    ANALYSIS_RECORD,
+    RECORD,
+    check_writable,
+    in_use,
+    own_files,
+    part_in_use,
+    replacing_own_files,
+)
 from grashof.problems import ProblemError, load_linkage
 from grashof.workshop.export import Making, export_files
 from grashof.workshop.plates import PlateSizes
@@ -189,6 +199,51 @@ def test_a_folder_that_cannot_be_written(record: str) -> None:
     for folder in (Path("/proc"), Path("/proc/designs")):
         with pytest.raises(ProblemError, match=rf"--out {folder}: .*; it must be a folder"):
             check_writable(folder, record=record)
+
+
+def test_parts_of_a_folder_may_be_begun_at_the_same_moment(tmp_path: Path) -> None:
+    count = 8
+    together = Barrier(count)
+
+    def part(folder: Path, number: int) -> None:
+        together.wait()
+        own = folder / "shards" / str(number)
+        with part_in_use(folder, own):
+            (own / "search.json").touch()
+
+    with ThreadPoolExecutor(count) as threads:
+        for turn in range(40):
+            folder = tmp_path / str(turn) / "out"
+            list(threads.map(part, [folder] * count, range(count)))  # raises what one of them raises
+            assert len(list(folder.glob("shards/*/search.json"))) == count
+
+
+def test_a_part_of_a_folder_with_a_file_of_others_is_refused_without_a_trace(tmp_path: Path) -> None:
+    (tmp_path / CSV).write_text("mine", encoding="utf-8")
+    with (
+        pytest.raises(ProblemError, match="is not Grashof's own"),
+        part_in_use(tmp_path, tmp_path / "shards" / "1"),
+    ):
+        pass
+    assert [path.name for path in tmp_path.iterdir()] == [CSV]
+
+
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="no folder that not even root can write")
+def test_a_part_of_a_folder_that_cannot_be_written() -> None:
+    with (
+        pytest.raises(ProblemError, match=r"--out /proc/designs/1: .*; it must be a folder"),
+        part_in_use(Path("/proc/designs"), Path("/proc/designs/1")),
+    ):
+        pass
+
+
+def test_what_a_killed_run_left_is_removed(tmp_path: Path) -> None:
+    (tmp_path / ".writing-7-000001.json").touch()
+    (tmp_path / ".writing-abc").mkdir()
+    (tmp_path / ".writing-abc" / CSV).touch()
+    (tmp_path / "000001.json").touch()
+    with in_use(tmp_path):
+        assert [path.name for path in tmp_path.iterdir()] == ["000001.json"]
 
 
 def test_an_error_without_a_file_names_the_folder(tmp_path: Path) -> None:

@@ -51,6 +51,29 @@ def test_interrupt_while_drawing_leaves_drawings_out(
     assert "drawings are left out: Ctrl-C came before 1 of them were made" in done.stderr.splitlines()
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="looks for its processes in /proc")
+@pytest.mark.parametrize("later", [0.05, 0.2])
+def test_ctrl_c_while_processes_begin_leaves_no_traceback(tmp_path: Path, later: float) -> None:
+    program = "from grashof.cli import main; main()"
+    given = ["solve", "path-ellipse", "--effort", "20", "--workers", "2", "--drawings", "0"]
+    process = subprocess.Popen(
+        [sys.executable, "-c", program, *given],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
+    while process.poll() is None and len(children.read_text().split()) < 3:  # one of them counts resources
+        time.sleep(0.01)
+    time.sleep(later)
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "KeyboardInterrupt" not in said
+
+
 @pytest.mark.parametrize(("error", "code"), [(OSError(28, "disk full"), 3), (KeyboardInterrupt(), 130)])
 def test_a_drawing_that_fails_does_not_cost_the_lists(
     grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException, code: int

@@ -45,6 +45,9 @@ REFUSED = {
     "nowhere/run.log": "No such file or directory; it must be a file that can be written",
     "luggage-designs/run.json": "the run writes this file itself; name another one",
     "luggage-designs/../luggage-designs/design-03.png": "the run writes this file itself; name another one",
+    "luggage-designs/search/search.json": "the run writes this file itself; name another one",
+    "luggage-designs/search/000001.json": "the run writes this file itself; name another one",
+    "mine.toml": "is a problem file by its name; name another one",
 }
 
 
@@ -54,6 +57,23 @@ def test_a_log_that_cannot_be_is_refused(grashof: Grashof, tmp_path: Path, log: 
     assert (done.exit_code, done.stdout) == (2, "")
     assert done.stderr == f"grashof: --log {Path(log)}: {REFUSED[log]}\n"
     assert not (tmp_path / "luggage-designs").exists()
+
+
+@pytest.mark.parametrize("name", ["candidates.csv", "shards/0001-of-0002/search.json", "link"])
+def test_the_log_of_a_shard_harms_no_file_of_the_search(grashof: Grashof, tmp_path: Path, name: str) -> None:
+    shard = (*FEW, "--shard", "1/2", "--out", "out")
+    assert grashof(*shard, "--log", "run.log").exit_code == 0
+    own = tmp_path / "out" / "shards" / "0001-of-0002"
+    (tmp_path / "out" / "link").symlink_to(own / "000001.json")
+    before = {path.name: path.read_bytes() for path in own.iterdir()}
+    done = grashof(*shard, "--log", f"out/{name}")
+    assert done.exit_code == 2
+    assert (
+        done.stderr
+        == f"grashof: --log {Path('out') / name}: the run writes this file itself; name another one\n"
+    )
+    assert {path.name: path.read_bytes() for path in own.iterdir()} == before
+    assert not (tmp_path / "out" / "candidates.csv").exists()
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="needs /dev/full")

@@ -123,6 +123,44 @@ def test_a_record_that_is_not_gone_on_with_is_kept(grashof: Grashof, tmp_path: P
     assert (tmp_path / "luggage-designs" / "search-old" / "search.json").read_text() == "{}"
 
 
+@pytest.mark.parametrize("place", ["search", "search-old"])
+def test_files_of_others_beside_a_record_are_never_deleted(
+    grashof: Grashof, tmp_path: Path, place: str
+) -> None:
+    folder = tmp_path / "luggage-designs"
+    for name in ("search", "search-old"):
+        (folder / name).mkdir(parents=True)
+        (folder / name / "search.json").write_text("{}", encoding="utf-8")
+    (folder / place / "2026.json").write_text("mine", encoding="utf-8")
+    command = ("solve", "luggage", "--starts", "4", "--drawings", "0")
+    done = [grashof(*command) for _ in range(2)]
+    # The record moves with what is beside it, and is not replaced there.
+    assert [each.exit_code for each in done] == ([0, 0] if place == "search" else [2, 2])
+    if place == "search-old":
+        (line,) = done[0].stderr.splitlines()
+        assert line.endswith("search-old: is, or has, more than the record of a search; move it away")
+    kept = folder / "search-old" / "2026.json"
+    assert kept.read_text(encoding="utf-8") == "mine"
+
+
+def test_a_folder_of_others_named_search_stays(grashof: Grashof, tmp_path: Path) -> None:
+    mine = tmp_path / "luggage-designs" / "search" / "notes"
+    mine.parent.mkdir(parents=True)
+    mine.touch()
+    assert grashof("solve", "luggage", "--starts", "4", "--drawings", "0").exit_code == 0
+    assert mine.exists()
+
+
+def test_a_file_named_search_is_refused(grashof: Grashof, tmp_path: Path) -> None:
+    folder = tmp_path / "luggage-designs"
+    folder.mkdir()
+    (folder / "search").touch()
+    done = grashof("solve", "luggage", "--starts", "4", "--drawings", "0")
+    assert done.exit_code == 2
+    assert "search: is a file; the search is recorded in a folder of this name" in done.stderr
+    assert [path.name for path in folder.iterdir()] == ["search"]
+
+
 def test_without_a_record_the_search_begins_anew(grashof: Grashof, tmp_path: Path) -> None:
     done = grashof("solve", "luggage", "--starts", "4", "--drawings", "0", "--resume")
     assert done.exit_code == 0

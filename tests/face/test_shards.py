@@ -80,6 +80,54 @@ def test_what_cannot_be_merged_is_told_in_one_line(grashof: Grashof, tmp_path: P
     assert grashof(*shard(2, 2, "out")).exit_code == 0
 
 
+def test_merging_of_shards_none_of_which_is_done_searches_for_nothing(
+    grashof: Grashof, tmp_path: Path
+) -> None:
+    assert grashof(*shard(1, 2, "out", "--time-limit", "1e-6")).exit_code == 1
+    done = grashof("merge", "out", "--partial")
+    assert (done.exit_code, done.stdout) == (2, "")
+    (line,) = done.stderr.splitlines()
+    assert line == "grashof: out: none of its shards is done; the command that began one goes on with it"
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["shards"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="links need leave there")
+@pytest.mark.parametrize("there", [True, False])
+def test_a_shard_does_not_follow_a_link_in_the_place_of_its_folder(
+    grashof: Grashof, tmp_path: Path, *, there: bool
+) -> None:
+    elsewhere, shards = tmp_path / "elsewhere", tmp_path / "out" / "shards"
+    shards.mkdir(parents=True)
+    (shards / "0001-of-0001").symlink_to(elsewhere)
+    if there:
+        elsewhere.mkdir()
+        (elsewhere / "problem.toml").write_text("mine", encoding="utf-8")
+    done = grashof(*shard(1, 1, "out"))
+    assert done.exit_code == 2
+    assert done.stderr == "grashof: --out out/shards/0001-of-0001: is a link; it must be a folder\n"
+    assert elsewhere.exists() is there
+    if there:
+        assert [path.read_text(encoding="utf-8") for path in elsewhere.iterdir()] == ["mine"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no limits of files there")
+def test_a_full_disk_costs_no_shard(grashof: Grashof, tmp_path: Path) -> None:
+    import resource
+
+    own = tmp_path / "out" / "shards" / "0001-of-0001"
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (2000, before[1]))  # bytes: a head fits, chunks do not
+    try:
+        done = grashof(*shard(1, 1, "out"))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert done.exit_code == 3
+    assert done.stderr.splitlines()[-1].endswith("File too large: 'out/shards/0001-of-0001/000001.json'")
+    assert sorted(path.name for path in own.iterdir()) == ["problem.toml", "search.json"]
+    assert grashof(*shard(1, 1, "out")).exit_code == 0
+    assert grashof("merge", "out", "--drawings", "0").exit_code == 0
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
 def test_a_terminated_shard_goes_on_with_the_same_command(tmp_path: Path) -> None:
     program = "from grashof.cli import main; main()"

@@ -271,3 +271,11 @@ def test_the_search_begins_with_what_it_does(name: str, exact: bool | None, said
     problem = load(name)
     asked = replace(problem, requirements=replace(problem.requirements, exact=exact))
     assert finder_of(asked).beginning == said
+
+
+def test_a_name_is_no_markup(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
+    with search_progress("[bold]mine[/x]"):
+        pass
+    assert "[bold]mine[/x]" in capsys.readouterr().err

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
+import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -196,6 +199,112 @@ def test_what_is_damaged_is_not_merged_and_done_again(damage: str, tmp_path: Pat
         path.unlink()
     assert divided("poses", tmp_path, 1) == [made]
     assert table(merge_shards(tmp_path)) == whole
+
+
+def tampered(folder: Path, change: Callable[[dict[str, Any]], object], *, every: bool = False) -> None:
+    """Another first chunk, or every one, with a sum that is right."""
+    files = sorted((folder / SHARDS / Shard(1, 1).folder).glob("0*.json"))
+    for path in files if every else files[:1]:
+        steps = json.loads(path.read_text(encoding="utf-8"))["steps"]
+        for step in steps if every else steps[:1]:
+            change(step["result"]["Chunk"])
+        path.write_text(json.dumps(content_of(steps)), encoding="utf-8")
+
+
+def design(chunk: dict[str, Any]) -> dict[str, Any]:
+    found: dict[str, Any] = chunk["designs"][0]["Candidate"]
+    return found
+
+
+def verdict(chunk: dict[str, Any]) -> dict[str, Any]:
+    found: dict[str, Any] = design(chunk)["verdict"]["Verdict"]
+    return found
+
+
+def test_shards_of_another_kind_of_processor_are_merged(tmp_path: Path) -> None:
+    divided("poses", tmp_path, 1)
+
+    def rounded_otherwise(chunk: dict[str, Any]) -> None:
+        judged = verdict(chunk)
+        judged["position_error"]["array"][2][0] += 2e-15
+        judged["theta2"]["array"][2][0] *= 1 + 1e-14
+        judged["transmission_min_task"] *= 1 - 1e-14
+
+    tampered(tmp_path, rounded_otherwise)
+    assert merge_shards(tmp_path).best.verdict.ok
+
+
+DEFECT = {"Defect": {"requirement": "r2", "what": "\x1b[31m", "found": 1.0, "allowed": "2", "miss": 1e-3}}
+CHANGES: dict[str, Callable[[dict[str, Any]], object]] = {
+    "no tally": lambda chunk: chunk.update(tally=None),
+    "designs that are none": lambda chunk: chunk.update(designs="two"),
+    "a count of solves that is none": lambda chunk: chunk.update(solved="8"),
+    "no linkage": lambda chunk: design(chunk).update(linkage=None),
+    "a length that is none": lambda chunk: design(chunk)["linkage"]["FourBar"].update(r2=-1.0),
+    "fewer targets": lambda chunk: verdict(chunk).update(assembly={"array": ["<i8", [0], []]}),
+    "a number beyond 64 bits": lambda chunk: chunk.update(solved={"scalar": ["<i8", [], 2**80]}),
+    "a formula": lambda chunk: design(chunk).update(best_at="=1+1"),
+    "control characters": lambda chunk: design(chunk).update(cognate_of="\x1b[31m"),
+    "a defect": lambda chunk: verdict(chunk).update(defects=[DEFECT]),
+}
+
+
+@pytest.mark.quick("no tally", "a formula")
+@pytest.mark.parametrize("change", CHANGES)
+def test_a_chunk_that_no_search_leaves_is_damaged(change: str, tmp_path: Path) -> None:
+    divided("poses", tmp_path, 1)
+    tampered(tmp_path, CHANGES[change])
+    with pytest.raises(ProblemError, match=r"is damaged; delete it, and run the shard again"):
+        merge_shards(tmp_path)
+
+
+def test_misses_are_judged_again_where_they_may_be_listed(tmp_path: Path) -> None:
+    divided("poses", tmp_path, 1)
+
+    def missing(chunk: dict[str, Any]) -> None:
+        if chunk["designs"]:
+            verdict(chunk).update(defects=[DEFECT])
+            miss = {"status": "Solve_Succeeded", "candidate": chunk["designs"][0], "cognates": []}
+            chunk.update(designs=[], misses=[{"Attempt": miss}])
+
+    tampered(tmp_path, missing, every=True)
+    with pytest.raises(ProblemError, match=r"is damaged; delete it, and run the shard again"):
+        merge_shards(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"seed": "0"}, r"search\.json: search\.seed is '0'; it must be a whole number from 0"),
+        ({"seed": False}, r"search\.json: search\.seed is False; it must be a whole number from 0"),
+        ({"name": None}, r"search\.json: name is None; it must be text"),
+        ({"name": "\x1b[31m"}, r"search\.json: name has control character U\+001B"),
+        ({"format": "x" * 9999}, r"a search with format 'x{,80}\.\.\.x*'; here it is 2$"),
+        ({"format": "two\nlines"}, r"a search with format 'two\\nlines'; here it is 2$"),
+        ({"effort": 1}, r"a search with effort 1; here it is 1\.0$"),
+    ],
+)
+def test_a_head_that_no_search_wrote_is_refused_in_a_line(
+    change: dict[str, Any], said: str, tmp_path: Path
+) -> None:
+    divided("poses", tmp_path, 1)
+    head = tmp_path / SHARDS / Shard(1, 1).folder / "search.json"
+    head.write_text(json.dumps(json.loads(head.read_text(encoding="utf-8")) | change), encoding="utf-8")
+    with pytest.raises(ProblemError, match=said) as refused:
+        merge_shards(tmp_path)
+    assert str(refused.value).startswith(str(tmp_path))
+    assert len(str(refused.value).splitlines()) == 1
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no pipes in folders")
+@pytest.mark.parametrize("name", ["search.json", "problem.toml", "000001.json"])
+def test_a_pipe_in_the_place_of_a_file_is_not_waited_for(name: str, tmp_path: Path) -> None:
+    divided("poses", tmp_path, 1)
+    path = tmp_path / SHARDS / Shard(1, 1).folder / name
+    path.unlink()
+    os.mkfifo(path)
+    with pytest.raises(ProblemError, match=r"delete"):
+        merge_shards(tmp_path)
 
 
 def test_the_problem_file_is_kept(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import shutil
 import sys
 import tempfile
 from collections.abc import Collection, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from grashof.problems import ProblemError
@@ -60,8 +60,7 @@ def check_writable(folder: Path, drawings: int = 0, record: str = RECORD) -> Non
             (Path(name) / "candidates.json").touch()
         taken = _taken(folder, drawings, record) if folder.exists() else []
     except OSError as error:
-        reason = error.strerror or "it cannot be written"
-        raise ProblemError(f"--out {folder}: {reason}; it must be a folder that can be written") from None
+        raise _unwritable(folder, error) from None
     if taken:
         raise ProblemError(f"--out {folder}: {taken[0]} in it is not Grashof's own; name a folder without it")
 
@@ -76,11 +75,37 @@ def in_use(folder: Path) -> Iterator[None]:
     Raises
     ------
     ProblemError
-        Another run uses it.
+        Another run uses it, or it cannot be made.
     """
-    with _made(folder), _locked(folder):
+    with ExitStack() as stack:
+        try:
+            stack.enter_context(_made(folder))
+            stack.enter_context(_locked(folder))
+        except OSError as error:
+            raise _unwritable(folder, error) from None
         for left in folder.glob(f"{UNFINISHED}*"):
-            shutil.rmtree(left, ignore_errors=True)
+            if left.is_dir() and not left.is_symlink():
+                shutil.rmtree(left, ignore_errors=True)
+            else:
+                with suppress(OSError):
+                    left.unlink()
+        yield
+
+
+@contextmanager
+def part_in_use(folder: Path, part: Path) -> Iterator[None]:
+    """A part of a folder for this run alone, while others make and use other parts of it.
+
+    Raises
+    ------
+    ProblemError
+        Another run uses the part, the folder cannot be written, or the part is a link to elsewhere.
+    """
+    if part.is_symlink():
+        raise ProblemError(f"--out {part}: is a link; it must be a folder")
+    # In this order: a folder that is made only to be looked at goes again, under the feet of the others.
+    with in_use(part):
+        check_writable(folder)
         yield
 
 
@@ -165,6 +190,11 @@ def own_files(folder: Path, record: str = RECORD) -> set[str]:
     # Our names only: a record that was tampered with must not reach any other file.
     ours = {name for name in names if isinstance(name, str) and _NAMES[record].fullmatch(name)}
     return {name for name in ours if (folder / name).is_file()}
+
+
+def _unwritable(folder: Path, error: OSError) -> ProblemError:
+    reason = error.strerror or "it cannot be written"
+    return ProblemError(f"--out {folder}: {reason}; it must be a folder that can be written")
 
 
 def _taken(folder: Path, drawings: int, record: str) -> list[str]:

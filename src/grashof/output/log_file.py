@@ -12,6 +12,7 @@ from pathlib import Path
 from grashof.output.folder import is_own_name
 from grashof.output.streams import say
 from grashof.problems import ProblemError
+from grashof.synth.search.journal import is_record_name
 
 LAYOUT = "%(asctime)s.%(msecs)03dZ %(levelname)s %(name)s: %(message)s"
 
@@ -30,7 +31,7 @@ class _File(logging.FileHandler):
 
 
 @contextmanager
-def logged(path: Path | None, folder: Path) -> Iterator[None]:
+def logged(path: Path | None, folder: Path, record: Path) -> Iterator[None]:
     """What Grashof logs inside goes to the end of a file, too: every start, time in UTC.
 
     Parameters
@@ -38,6 +39,8 @@ def logged(path: Path | None, folder: Path) -> Iterator[None]:
     path : Path, optional
     folder : Path
         Where the run writes; the file may be in it, under another name than the run's own.
+    record : Path
+        Folder of the record of the search; the same.
 
     Raises
     ------
@@ -47,8 +50,12 @@ def logged(path: Path | None, folder: Path) -> Iterator[None]:
     if path is None:
         yield
         return
-    if path.parent.resolve() == folder.resolve() and is_own_name(path.name):
+    own = {folder.resolve(): is_own_name, record.resolve(): is_record_name}
+    places = path.parent.resolve() / path.name, path.resolve()  # the last one is where a link leads
+    if any(place.parent in own and own[place.parent](place.name) for place in places):
         raise ProblemError(f"--log {path}: the run writes this file itself; name another one")
+    if path.suffix.lower() == ".toml":
+        raise ProblemError(f"--log {path}: is a problem file by its name; name another one")
     try:
         file = _File(path, encoding="utf-8", errors="replace")
     except OSError as error:

@@ -60,7 +60,8 @@ def search_progress(
     if not (out.is_terminal and sys.stderr.isatty()):  # the first alone can be forced by FORCE_COLOR
         yield lambda step: say(f"{name}: {_step(step, wanted)}", err=True)
         return
-    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[step]}"))
+    name_column = TextColumn("{task.description}", markup=False)  # a name such as [x] is no markup
+    columns = (name_column, BarColumn(), TextColumn("{task.fields[step]}"))
     with Bar(*columns, TimeElapsedColumn(), console=out, transient=True) as bar:
         task = bar.add_task(name, total=None, step=begin)
 

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 
 from grashof.problems import SolverError
 from grashof.sweep.task import solve_task
-from grashof.synth.search.workers import OVER, new_state, processes
+from grashof.synth.search.workers import OVER, begun, new_state, processes
 from grashof.synth.theory.stopping import who_asks
 
 # Key, name and text of a problem.
@@ -63,6 +63,7 @@ def _in_processes(
     state = new_state()
     own = processes(workers, state)
     try:
+        begun(own, workers)
         yield from _elsewhere(own, _solve_until_stopped, tasks, options, stop)
     finally:
         state.value = OVER

@@ -74,6 +74,8 @@ def test_bad_weights(weights: tuple[float, ...], message: str) -> None:
         ({"starts": 0}, "search.starts is 0; it must be a whole number from 1"),
         ({"enough": 2.5}, "search.enough is 2.5; it must be a whole number from 1"),
         ({"seed": -1}, "search.seed is -1; it must be a whole number from 0"),
+        ({"seed": 10**300}, r"search.* is .*; it must be a whole number from 0, of up to 300 digits"),
+        ({"starts": 16**5000}, r"search.* is .*; it must be a whole number from 1, of up to 300 digits"),
     ],
 )
 def test_bad_search(change: dict[str, int], message: str) -> None:

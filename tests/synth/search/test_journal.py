@@ -5,6 +5,7 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import grashof.synth.search.journal as journal_module
@@ -110,14 +111,33 @@ def test_the_record_of_another_search_is_refused(tmp_path: Path) -> None:
         synthesize(problem, **options, seed=3, record=folder)
     head = json.loads((folder / "search.json").read_text(encoding="utf-8"))
     for changed, said in (
-        (head | {"casadi version": "1.0"}, "a search with casadi version 1.0; here it is 3"),
+        (head | {"casadi version": "1.0"}, "a search with casadi version '1.0'; here it is '3"),
         (head | {"format": 0}, "a search with format 0; here it is 2"),
+        (head | {"seed": "0"}, "a search with seed '0'; here it is 0"),
+        (head | {"seed": False}, "a search with seed False; here it is 0"),
         ([], "is not the record of a search"),
     ):
         (folder / "search.json").write_text(json.dumps(changed), encoding="utf-8")
         with pytest.raises(ProblemError, match=said):
             synthesize(problem, **options, record=folder)
     assert list(folder.glob("0*.json"))
+
+
+def test_other_files_in_its_folder_are_left_alone(tmp_path: Path) -> None:
+    problem, options = KINDS["poses fitted"]
+    folder = recorded(tmp_path / "search")
+    others = [folder / name for name in ("0-notes.json", "2026.json", "9")]
+    for path in others:
+        path.write_text("mine", encoding="utf-8")
+    assert table(synthesize(problem, **options, record=folder)) == table(synthesize(problem, **options))
+    assert {path.read_text(encoding="utf-8") for path in others} == {"mine"}
+    assert sorted(folder.iterdir()) == sorted(others)
+
+
+def test_options_may_be_numbers_of_numpy(tmp_path: Path) -> None:
+    problem, _ = KINDS["poses"]
+    found = synthesize(problem, starts=np.int64(8), seed=np.int64(0), record=tmp_path / "search")
+    assert table(found) == table(synthesize(problem, starts=8, seed=0))
 
 
 def test_functions_of_the_user_are_not_recorded(tmp_path: Path) -> None:
