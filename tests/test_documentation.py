@@ -56,3 +56,8 @@ def test_paths_that_are_named_exist(page: str) -> None:
 def test_the_readme_links_the_pages_for_those_who_change_the_code() -> None:
     for page in ("docs/architecture.md", "docs/conventions.md", "CONTRIBUTING.md"):
         assert f"`{page}`" in README
+
+
+def test_the_batch_script_is_the_one_in_the_readme() -> None:
+    script = (ROOT / "docs" / "shards.sh").read_text(encoding="utf-8")
+    assert f"```sh\n{script}```" in (ROOT / "README.md").read_text(encoding="utf-8")
