@@ -26,7 +26,6 @@ from grashof import load
 from grashof.problems.files.on_disk import write_whole
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.search.chunks import AHEAD, chunk, which
 from grashof.synth.search.journal import content_of
 from grashof.synth.search.plain import plain
@@ -48,7 +47,7 @@ class Measured:
 def measured(name: str, count: int) -> Measured:
     """Times of the chunks of a problem of the catalogue."""
     problem = load(name)
-    plan = Plan(ScaledProblem.of(problem), problem.search)
+    plan = Plan.of(problem, problem.search)
     (scaled,) = plan.problems
     ledger = plan.ledger(scaled, count)
     made, taken, steps = [], [], []

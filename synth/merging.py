@@ -15,7 +15,6 @@ from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.toml_file import file_text
 from grashof.problems.values.checks import located, plain_text
 from grashof.synth.designs.judging import alike, judged_again
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.results.conclusion import conclude, needless
 from grashof.synth.results.result import Result
 from grashof.synth.search.asked import asking
@@ -162,7 +161,7 @@ def merge_shards(
         raise ProblemError(
             f"{folder}: none of its shards is done; the command that began one goes on with it"
         )
-    plan = Plan(ScaledProblem.of(shards.problem), shards.search)
+    plan = Plan.of(shards.problem, shards.search)
     if not plan.problems:
         return needless(plan.scaled, asked)
     with stopping(asked), working(workers, None) as work:

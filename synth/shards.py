@@ -14,7 +14,7 @@ from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.errors import wrong_value
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.search.asked import asking, search_of
-from grashof.synth.search.chunks import CHUNKS, chunks
+from grashof.synth.search.chunks import CHUNKS, chunks, starts_of_chunk
 from grashof.synth.search.journal import Recorded, head_of
 from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.run import Progress, Run
@@ -101,16 +101,20 @@ class Plan:
     ----------
     scaled : ScaledProblem
         As it is asked.
+    problems : tuple of ScaledProblem
+        As it is searched; none where its targets need no linkage.
     search : Search
     """
 
     scaled: ScaledProblem
+    problems: tuple[ScaledProblem, ...]
     search: Search
 
-    @property
-    def problems(self) -> tuple[ScaledProblem, ...]:
-        """The problem as it is searched; none where its targets need no linkage."""
-        return () if finder_for(self.scaled).degenerate() else asked_in_turn(self.scaled)
+    @classmethod
+    def of(cls, problem: Problem, search: Search) -> Plan:
+        """The plan of a search."""
+        scaled = ScaledProblem.of(problem)
+        return cls(scaled, () if finder_for(scaled).degenerate() else asked_in_turn(scaled), search)
 
     def ledger(self, scaled: ScaledProblem, chunks: int) -> Ledger:
         """Bookkeeping of so many chunks of a problem, which nothing ends before all are done."""
@@ -127,7 +131,7 @@ class Plan:
     @property
     def starts(self) -> int:
         """Most solves of a chunk."""
-        return max(1, self.search.starts // CHUNKS)
+        return starts_of_chunk(self.search)
 
     def numbers(self, shard: Shard) -> list[range]:
         """The chunks of a shard, those of each problem: every so many of all."""
@@ -187,7 +191,7 @@ def solve_shard(
     """
     asked = asking(time_limit, stop)
     search = search_of(problem, workers, starts=starts, enough=enough, seed=seed, effort=effort)
-    plan, own = Plan(ScaledProblem.of(problem), search), folder / SHARDS / shard.folder
+    plan, own = Plan.of(problem, search), folder / SHARDS / shard.folder
     numbers = plan.numbers(shard)
     head = head_of(problem, search, name=problem.name, shard=str(shard))
     journal = Recorded(own, head)  # refuses another search

@@ -1,4 +1,4 @@
-"""What the commands do: search, analyse, animate; what they write and print."""
+"""What the commands do: search, in shards too, analyse, animate; what they write and print."""
 
 from __future__ import annotations
 

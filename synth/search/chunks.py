@@ -84,6 +84,11 @@ def begin_chunks(scaled: ScaledProblem, run: Run, numbers: Sequence[int], starts
             run.work.begin(chunk, scaled, number, *which(run.search, starts))
 
 
+def starts_of_chunk(search: Search) -> int:
+    """Most solves of a chunk."""
+    return max(1, search.starts // CHUNKS)
+
+
 def which(search: Search, starts: int) -> tuple[int, int, int]:
     """All that `chunk` is given but the problem and the number."""
     return search.enough, search.seed, starts

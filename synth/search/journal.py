@@ -80,7 +80,7 @@ class Unrecorded:
 class Recorded:
     """A journal in a folder: `HEAD` states of which search, ``000001.json`` and so on hold its steps.
 
-    A search is a sequence of steps, screenings and solves, each of which depends on nothing but the
+    A search is a sequence of steps, screenings, solves and chunks, each of which depends on nothing but the
     problem, the seed and the steps before; so it goes on by taking the results of the first ones from
     the record. Each file is written to a temporary name, flushed to disk and renamed, about every
     `EVERY` seconds, and holds all steps since the one before.

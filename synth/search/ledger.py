@@ -179,11 +179,6 @@ class Ledger:
         return not self.scaled.exact or self.work > self.planned or not (self._enough or self._fruitless)
 
     @property
-    def done(self) -> bool:
-        """Whether all is done that the effort asks for."""
-        return self.work >= self.search.effort * self.planned or self.solved >= self.starts
-
-    @property
     def ended(self) -> bool:
         """Whether the rounds of ``effort = 1`` (or less) have done what can be expected of them."""
         if self.scaled.exact:

@@ -12,7 +12,7 @@ import numpy as np
 from grashof.synth.programme.nonlinear_programme import MOST_ITERATIONS
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Round, Start
-from grashof.synth.search.chunks import CHUNKS, begin_chunks, chunks
+from grashof.synth.search.chunks import begin_chunks, chunks, starts_of_chunk
 from grashof.synth.search.ledger import SAME, Ledger
 from grashof.synth.search.rounds import solve, solve_round
 from grashof.synth.search.run import Run
@@ -85,7 +85,7 @@ def _begin_more(finder: Finder, ledger: Ledger, run: Run) -> None:
     """Begin chunks that more effort will ask for."""
     surely = ceil((run.search.effort - 1) / (1 if ledger.scaled.exact else LARGER))
     first = finder.rounds_a_pass
-    begin_chunks(ledger.scaled, run, range(first, first + max(0, surely)), run.search.starts // CHUNKS)
+    begin_chunks(ledger.scaled, run, range(first, first + max(0, surely)), starts_of_chunk(run.search))
 
 
 def _do_more(finder: Finder, ledger: Ledger, run: Run) -> None:
@@ -96,7 +96,7 @@ def _do_more(finder: Finder, ledger: Ledger, run: Run) -> None:
     ledger.plan_more()
     if not count:
         return
-    starts = max(1, min(run.search.starts // CHUNKS, round(more * run.search.starts / count)))
+    starts = max(1, min(starts_of_chunk(run.search), round(more * run.search.starts / count)))
     numbers = range(finder.rounds_a_pass, finder.rounds_a_pass + count)
     with run.timed("more effort"):
         try:

@@ -34,7 +34,7 @@ class Story:
     resumed : int
         How often it was gone on with from its record.
     steps_recorded : int
-        Screenings and solves taken from the record.
+        Screenings, solves and chunks taken from the record.
     processes_lost : int
         How often a process was lost and replaced.
     starts_crashed : tuple of int

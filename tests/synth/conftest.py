@@ -12,6 +12,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import pytest
 
+import grashof.synth.search.workers as workers_module
 from grashof import load, synthesize
 from grashof.analysis.judge.planted import planted_motion, planted_path
 from grashof.problems import FourBar, MotionTask, PathTask, Problem, Requirements
@@ -276,3 +277,31 @@ def other_process() -> Iterator[Executor]:
     """A worker process that all tests share: to start one takes longer than a small search."""
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
         yield pool
+
+
+class Killed(BaseException):
+    """As if the process had been killed."""
+
+
+class Mortal:
+    """How many attempts the process lives for; as many as there are, at first."""
+
+    killed = Killed
+
+    def __init__(self) -> None:
+        self.left = 10**9
+        self._attempt = workers_module.attempt
+
+    def attempt(self, *given: Any) -> Any:
+        """An attempt, or the end."""
+        self.left -= 1
+        if self.left < 0:
+            raise Killed
+        return self._attempt(*given)
+
+
+@pytest.fixture
+def mortal(monkeypatch: pytest.MonkeyPatch) -> Mortal:
+    made = Mortal()
+    monkeypatch.setattr(workers_module, "attempt", made.attempt)
+    return made

@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 import grashof.synth.search.journal as journal_module
-import grashof.synth.search.workers as workers_module
 from grashof import load
 from grashof.problems import MotionTask, Objective, Problem, ProblemError, Requirements
 from grashof.synth import Result
@@ -79,30 +78,20 @@ def test_all_chunks_are_made_and_nothing_ends_them_early(tmp_path: Path) -> None
     assert len(merge_shards(tmp_path)) == made.designs
 
 
-def test_a_shard_that_was_killed_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    class Killed(BaseException):
-        """As if the process had been killed."""
-
+def test_a_shard_that_was_killed_goes_on(
+    tmp_path: Path, mortal: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(journal_module, "EVERY", 0.0)
     whole = tmp_path / "whole"
     divided("poses", whole, 1)
-    attempt, left = workers_module.attempt, [0]
-
-    def mortal(*given: Any) -> object:
-        left[0] -= 1
-        if left[0] < 0:
-            raise Killed
-        return attempt(*given)
-
-    monkeypatch.setattr(workers_module, "attempt", mortal)
     problem, options = KINDS["poses"]
     tries = 0
     while True:
-        left[0], tries = 12, tries + 1  # of eight a chunk: one a try is made
+        mortal.left, tries = 12, tries + 1  # of eight a chunk: one a try is made
         try:
             solve_shard(problem, Shard(1, 1), tmp_path / "killed", **options)
             break
-        except Killed:
+        except mortal.killed:
             with pytest.raises(ProblemError, match=r"shard 1 of 1 to be done; --partial merges the others"):
                 merge_shards(tmp_path / "killed")
     assert tries == 4

@@ -4,12 +4,12 @@ import json
 import time
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import grashof.synth.search.journal as journal_module
-import grashof.synth.search.workers as workers_module
 from grashof import load, synthesize
 from grashof.problems import MotionTask, PathTask, Problem, ProblemError, Requirements
 from grashof.synth import Result
@@ -28,10 +28,6 @@ KINDS = {
 }
 
 
-class Killed(BaseException):
-    """As if the process had been killed."""
-
-
 @pytest.fixture(autouse=True)
 def every_step_in_a_file(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(journal_module, "EVERY", 0.0)
@@ -45,26 +41,17 @@ def table(result: Result) -> str:
 @pytest.mark.quick("poses", "poses fitted", "points met")
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_search_that_was_killed_goes_on_to_the_same_list(
-    kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+    kind: str, tmp_path: Path, mortal: Any, caplog: pytest.LogCaptureFixture
 ) -> None:
     caplog.set_level("INFO", logger="grashof")
     problem, options = KINDS[kind]
     whole, folder = synthesize(problem, **options), tmp_path / "search"
-    attempt, left = workers_module.attempt, [0]
-
-    def mortal(*given: object) -> object:
-        left[0] -= 1
-        if left[0] < 0:
-            raise Killed
-        return attempt(*given)
-
-    monkeypatch.setattr(workers_module, "attempt", mortal)
     result, tries = None, 0
     while result is None:
-        left[0], tries = 20, tries + 1
+        mortal.left, tries = 20, tries + 1
         try:
             result = synthesize(problem, **options, record=folder)
-        except Killed:
+        except mortal.killed:
             assert tries < 40
     assert tries > (kind == "poses")
     assert table(result) == table(whole)
