@@ -281,7 +281,7 @@ def analyse(
     Exit code 0: done; 2: bad input; 3: environment error.
     """
     with _errors_told():
-        commands.analyse(linkage, out, speed_rpm)
+        commands.analyse(linkage, out, speed_rpm=speed_rpm)
 
 
 @app.command()

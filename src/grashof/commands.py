@@ -215,16 +215,16 @@ def _begin_record(folder: Path, *, resume: bool) -> None:
         say(f"{record}: the record of an unfinished search is kept as {kept.name}", err=True)
 
 
-def analyse(linkage: str, out: Path | None, speed_rpm: float | None) -> None:
-    """Write how a linkage moves, and print the summary."""
+def analyse(linkage: str, out: Path | None, **asked: Any) -> None:
+    """Write how a linkage moves, and print the summary; for what else is asked see `Asked`."""
     from grashof.output.analysis_files import print_report, write_report
     from grashof.output.folder import ANALYSIS_PAGE, ANALYSIS_RECORD, check_writable
-    from grashof.survey import report_on
+    from grashof.survey import Asked, report_on
 
     spec = load_linkage_spec(linkage)
     folder = out if out is not None else Path(f"{spec.name}-analysis")
     check_writable(folder, record=ANALYSIS_RECORD)
-    report = report_on(spec, speed_rpm)
+    report = report_on(spec, Asked(**asked))
     files = write_report(folder, report)
     for note in report.notes:
         say(note, err=True)

@@ -13,8 +13,8 @@ from grashof.figures.parts import COUPLER, GROUND, OUTPUT, PATH, TARGET
 from grashof.figures.subject import Linkage, Subject
 from grashof.problems import FourBar, Problem, ProblemError
 from grashof.problems.values.arrays import FloatArray
-from grashof.survey.quantities import FORCES, dynamic_quantities, kinematic_quantities, table_of
-from grashof.survey.sweep import Sweep, dead_positions_unwarned
+from grashof.study.quantities import FORCES, dynamic_quantities, kinematic_quantities, table_of
+from grashof.study.sweep import Sweep, dead_positions_unwarned
 
 AxesArray = npt.NDArray[np.object_]
 # What each panel shows: the label of its axis, and the columns of the analysis with their names.

@@ -9,7 +9,7 @@ import numpy as np
 
 from grashof.analysis import Verdict, verify
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, Problem, ProblemError
-from grashof.survey.sweep import Sweep
+from grashof.study.sweep import Sweep
 from grashof.synth import Candidate
 
 Linkage = FourBar | LinkageSpec | Candidate

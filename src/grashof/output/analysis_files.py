@@ -44,6 +44,9 @@ def write_report(folder: Path, report: LinkageReport) -> list[str]:
     with replacing_own_files(folder, record=ANALYSIS_RECORD) as fresh:
         for name, table in report.tables.items():
             write_csv(fresh / f"{name}.csv", table)
+        for section in report.sections:
+            for name, table in section.tables.items():
+                write_csv(fresh / f"table-{name}.csv", table)
         write_csv(fresh / "summary.csv", _summary_frame(report))
         write_json(fresh / "summary.json", _summary(report))
         write_page(fresh / ANALYSIS_PAGE, analysis_page(report, about))

@@ -32,7 +32,8 @@ _NAMES = {
     ),
     ANALYSIS_RECORD: re.compile(
         r"(kinematics|dynamics|extremes|summary)\.csv|(summary|analysis)\.json|analysis\.html"
-        r"|(path|angles|velocities|accelerations|torque|forces)\.(png|svg)(?P<rank>)"
+        r"|(path|angles|velocities|accelerations|torque|forces)\.(png|svg)"
+        r"|table-[a-z0-9-]+\.csv|plot-[a-z0-9-]+\.(png|svg)(?P<rank>)"
     ),
     SWEEP_RECORD: re.compile(r"sweep\.(csv|parquet|png|html|json)(?P<rank>)"),
 }

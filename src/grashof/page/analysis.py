@@ -10,7 +10,7 @@ import pandas as pd
 
 from grashof.page.render import compact, render
 from grashof.problems import FourBar
-from grashof.survey.quantities import FORCES
+from grashof.study.quantities import FORCES
 from grashof.survey.report import LinkageReport
 from grashof.wording.numbers import number_text, value_text
 

@@ -23,7 +23,7 @@ from grashof.page.render import compact
 from grashof.problems import FourBar, Problem
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics_spec import metres
-from grashof.survey.sweep import INSET, dead_positions_unwarned, driver_angles
+from grashof.study.sweep import INSET, dead_positions_unwarned, driver_angles
 from grashof.synth import Candidate
 
 STEPS = 180

@@ -8,8 +8,8 @@ import pandas as pd
 from grashof.analysis import extremes_of, transmission_angle
 from grashof.problems import AssemblyError, FourBar
 from grashof.problems.values.arrays import TURN, FloatArray
-from grashof.survey.quantities import Quantity
-from grashof.survey.sweep import INSET, Sweep
+from grashof.study.quantities import Quantity
+from grashof.study.sweep import INSET, Sweep
 
 _WIDE_INSET = 1e-4  # rad: extremes of rates are sought so far from a dead position of a change point
 _CONSTANT = 1e-12  # least and largest values apart, as a share: the quantity is constant

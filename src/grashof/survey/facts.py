@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
@@ -24,29 +23,10 @@ from grashof.analysis import (
     worst_transmission,
 )
 from grashof.problems import AssemblyError, LinkageSpec, ProblemError
-from grashof.survey.sweep import Sweep
+from grashof.study.section import Fact
+from grashof.study.sweep import Sweep
 
 _HARMONICS = 5
-
-
-@dataclass(frozen=True, slots=True)
-class Fact:
-    """One line of the summary.
-
-    Parameters
-    ----------
-    key : str
-        Its name in files.
-    label : str
-        What people read.
-    value : float, int, str or bool
-    unit : str
-    """
-
-    key: str
-    label: str
-    value: float | int | str | bool
-    unit: str = ""
 
 
 def facts_of(sweep: Sweep, masses: Masses | None, tables: Mapping[str, pd.DataFrame]) -> Iterator[Fact]:

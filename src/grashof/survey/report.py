@@ -12,10 +12,13 @@ from grashof.analysis import GrashofClass, Masses, grashof_class, solve_position
 from grashof.analysis.numerics.smooth_polygon import smooth_polygon
 from grashof.problems import LinkageSpec
 from grashof.problems.values.arrays import FloatArray
+from grashof.sections import SECTIONS
+from grashof.study.quantities import dynamic_quantities, kinematic_quantities, table_of
+from grashof.study.section import Fact, Section
+from grashof.study.study import Asked, LinkageStudy
+from grashof.study.sweep import Sweep, dead_positions_unwarned
 from grashof.survey.extremes import extremes_table
-from grashof.survey.facts import Fact, facts_of
-from grashof.survey.quantities import dynamic_quantities, kinematic_quantities, table_of
-from grashof.survey.sweep import Sweep, dead_positions_unwarned, masses_of
+from grashof.survey.facts import facts_of
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,6 +35,8 @@ class LinkageReport:
         "kinematics" and, with masses, "dynamics": a row for each driver angle; "extremes".
     notes : tuple of str
         What a reader has to know about limits.
+    sections : tuple of Section
+        What it says besides, by subject.
     """
 
     sweep: Sweep
@@ -39,16 +44,17 @@ class LinkageReport:
     facts: tuple[Fact, ...]
     tables: Mapping[str, pd.DataFrame]
     notes: tuple[str, ...]
+    sections: tuple[Section, ...] = ()
 
 
-def report_on(spec: LinkageSpec, speed_rpm: float | None = None) -> LinkageReport:
+def report_on(spec: LinkageSpec, asked: Asked | None = None) -> LinkageReport:
     """Analyse a linkage over all that its driver can do on its own assembly.
 
     Parameters
     ----------
     spec : LinkageSpec
-    speed_rpm : float, optional
-        Of the driver, counter-clockwise; by default that of the file, or else 1 rad/s.
+    asked : Asked, optional
+        What is reported besides.
 
     Returns
     -------
@@ -59,7 +65,8 @@ def report_on(spec: LinkageSpec, speed_rpm: float | None = None) -> LinkageRepor
     ProblemError
         The linkage closes at no driver angle, or a speed that is not finite or beyond 1e20.
     """
-    sweep, masses = Sweep.of(spec, speed_rpm), masses_of(spec)
+    study = LinkageStudy.of(spec, Asked() if asked is None else asked)
+    sweep, masses = study.sweep, study.masses
     with dead_positions_unwarned():
         states, quantities = sweep.states(), kinematic_quantities(spec)
         tables = {"kinematics": table_of(quantities, states)}
@@ -67,7 +74,8 @@ def report_on(spec: LinkageSpec, speed_rpm: float | None = None) -> LinkageRepor
             tables["dynamics"] = table_of(dynamic, states)
         tables["extremes"] = extremes_table(sweep, quantities + dynamic)
         facts = tuple(facts_of(sweep, masses, tables))
-    return LinkageReport(sweep, masses, facts, tables, _notes(sweep))
+        sections = tuple(section for make in SECTIONS if (section := make(study)) is not None)
+    return LinkageReport(sweep, masses, facts, tables, _notes(sweep), sections)
 
 
 def _notes(sweep: Sweep) -> tuple[str, ...]:

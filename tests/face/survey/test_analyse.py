@@ -24,7 +24,7 @@ from grashof.analysis import (
 )
 from grashof.output.run_files import write_run
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, MotionTask, ProblemError, load_linkage_spec
-from grashof.survey import LinkageReport, report_on
+from grashof.survey import Asked, LinkageReport, report_on
 from grashof.synth import Result, synthesize
 
 Grashof = Callable[..., Any]
@@ -137,12 +137,14 @@ def test_what_is_constant_is_least_and_largest_nowhere(jack: LinkageReport) -> N
 
 def test_speed_scales_rates() -> None:
     spec = load_linkage_spec("lufkin-c912d")
-    slow, fast = (report_on(spec, speed).tables["kinematics"] for speed in (None, -60 / np.pi))
+    slow, fast = (
+        report_on(spec, Asked(speed_rpm=speed)).tables["kinematics"] for speed in (None, -60 / np.pi)
+    )
     np.testing.assert_allclose(fast["omega4"], -2 * slow["omega4"], rtol=1e-12, atol=1e-15)
     np.testing.assert_allclose(fast["alpha4"], 4 * slow["alpha4"], rtol=1e-12, atol=1e-15)
     np.testing.assert_allclose(fast["torque_factor"], slow["torque_factor"])
     with pytest.raises(ProblemError, match="speed_rpm is nan"):
-        report_on(spec, np.nan)
+        report_on(spec, Asked(speed_rpm=np.nan))
 
 
 def test_a_limited_range_says_so() -> None:
@@ -227,7 +229,10 @@ def unsaved(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(grashof.figures.files, "save", lambda _, paths: [path.touch() for path in paths])
 
 
-TABLES = {"kinematics.csv", "extremes.csv", "summary.csv", "summary.json", "analysis.json", "analysis.html"}
+TABLES = {
+    "kinematics.csv", "extremes.csv", "summary.csv", "summary.json", "analysis.json", "analysis.html",
+    "table-mass-centres.csv",
+}  # fmt: skip
 
 
 def pictures(*names: str) -> set[str]:
@@ -355,7 +360,7 @@ def test_plots_of_a_limited_range_are_made(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("speed", [0.0, -30.0])
 def test_a_driver_at_rest_and_backwards(speed: float) -> None:
-    report = report_on(load_linkage_spec("pumpjack"), speed)
+    report = report_on(load_linkage_spec("pumpjack"), Asked(speed_rpm=speed))
     table = extremes(report)
     assert table.loc["a_speed", "max"] == pytest.approx(abs(speed) * np.pi / 30 * 1.1938)
     # At rest the torque holds the weight.

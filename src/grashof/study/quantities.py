@@ -19,7 +19,7 @@ from grashof.analysis import (
 from grashof.problems import FourBar, LinkageSpec
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.dynamics_spec import metres
-from grashof.survey.sweep import masses_of
+from grashof.study.sweep import masses_of
 
 Curve = Callable[[Kinematics], FloatArray]
 # Keys of the joint forces (f32: on link 2 by link 3), and the joints that they act in.

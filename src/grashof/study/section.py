@@ -1,0 +1,88 @@
+"""A section of an analysis: facts, tables and plots about one subject, as data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import pandas as pd
+
+from grashof.problems.values.arrays import FloatArray
+
+DRIVER_ANGLE = "driver angle theta2 (deg)"
+
+
+@dataclass(frozen=True, slots=True)
+class Fact:
+    """One line of a summary.
+
+    Parameters
+    ----------
+    key : str
+        Its name in files.
+    label : str
+        What people read.
+    value : float, int, str or bool
+    unit : str
+    """
+
+    key: str
+    label: str
+    value: float | int | str | bool
+    unit: str = ""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Plot:
+    """Curves over a common axis, or tracks in a plane.
+
+    Parameters
+    ----------
+    key : str
+        Its name in files, lower case with hyphens; no other plot of the analysis has it.
+    title : str
+    unit : str
+        Of the values, and of both axes of tracks.
+    series : mapping of str to ndarray
+        By their labels: curves of shape (N,), or tracks of shape (N, 2); NaN where a line is broken.
+    places : ndarray, shape (N,), optional
+        Where the values of curves are. Without them the series are tracks, drawn with equal axes.
+    over : str
+        What the places are, with their unit: `DRIVER_ANGLE` (deg), or such as "time (s)".
+    points : mapping of str to ndarray, shape (K, 2)
+        Single points drawn besides: of data that a curve is fitted to, of a track at chosen angles.
+    """
+
+    key: str
+    title: str
+    unit: str
+    series: Mapping[str, FloatArray]
+    places: FloatArray | None = None
+    over: str = DRIVER_ANGLE
+    points: Mapping[str, FloatArray] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Section:
+    """What an analysis says about one subject.
+
+    Parameters
+    ----------
+    key : str
+        "mass-centres": its name in files.
+    title : str
+        "Mass centres": its heading.
+    facts : tuple of Fact
+    tables : mapping of str to DataFrame
+        By their names: "mass-centres" is written as table-mass-centres.csv.
+    plots : tuple of Plot
+    notes : tuple of str
+        What a reader has to know, a sentence each without its full stop.
+    """
+
+    key: str
+    title: str
+    facts: tuple[Fact, ...] = ()
+    tables: Mapping[str, pd.DataFrame] = field(default_factory=dict)
+    plots: tuple[Plot, ...] = ()
+    notes: tuple[str, ...] = ()
