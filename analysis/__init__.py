@@ -39,14 +39,15 @@ from grashof.analysis.forces.mass import (
     Body,
     Masses,
     given_masses,
-    stated_masses,
     system_centre,
     triangular_plate,
     uniform_bar,
     uniform_bars,
 )
+from grashof.analysis.forces.stated import stated_loads, stated_masses
 from grashof.analysis.four_bar.differences import Deviation, central_differences, compare_differences
 from grashof.analysis.four_bar.driver import DriverMotion, driver_motion
+from grashof.analysis.four_bar.driver_law import DriverLaw
 from grashof.analysis.four_bar.extremes import Extremes, extremes, extremes_of
 from grashof.analysis.four_bar.instant_centres import InstantCentres, instant_centres
 from grashof.analysis.four_bar.kinematics import Kinematics, PointMotion, solve_kinematics
@@ -86,6 +87,7 @@ __all__ = [
     "Design",
     "Deviation",
     "DoublePoints",
+    "DriverLaw",
     "DriverMotion",
     "Dwell",
     "Dynamics",
@@ -159,6 +161,7 @@ __all__ = [
     "solve_kinematics",
     "solve_position",
     "spline",
+    "stated_loads",
     "stated_masses",
     "straightness",
     "system_centre",

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.analysis.four_bar.kinematics import Kinematics, PointMotion
-from grashof.problems import DynamicsSpec, FourBar, ProblemError
+from grashof.problems import FourBar, ProblemError
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.read_only import ReadOnly
@@ -180,20 +180,6 @@ def given_masses(
     halfway = [np.stack([half, np.zeros_like(half)], axis=-1) for half in lengths]
     places = halfway if centres is None else [np.asarray(centre, dtype=np.float64) for centre in centres]
     return Masses(*(Body(*each) for each in zip(masses, inertias, places, strict=True)))
-
-
-def stated_masses(linkage: FourBar, spec: DynamicsSpec) -> Masses:
-    """Moving links as a problem states them, with the payload at P.
-
-    Parameters
-    ----------
-    linkage : FourBar
-    spec : DynamicsSpec
-    """
-    if spec.masses is None or spec.inertias is None:
-        return uniform_bars(linkage, np.float64(spec.mass_per_length or 0.0), spec.payload)
-    known = given_masses(linkage, spec.masses, spec.inertias)
-    return known.with_payload(spec.payload, linkage.coupler_point) if spec.payload else known
 
 
 def system_centre(masses: Masses, state: Kinematics) -> PointMotion:

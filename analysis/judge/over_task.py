@@ -5,20 +5,22 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import legendre
 
 from grashof.analysis.curves.fit import coupler_fit_r2
 from grashof.analysis.forces.dynamics import inverse_dynamics
-from grashof.analysis.forces.loads import Joint, Loads
-from grashof.analysis.forces.mass import stated_masses
-from grashof.analysis.four_bar.kinematics import solve_kinematics
+from grashof.analysis.forces.loads import Joint
+from grashof.analysis.forces.stated import stated_loads, stated_masses
+from grashof.analysis.four_bar.driver_law import DriverLaw
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.judge.verdict import Verdict
 from grashof.problems import DeadPositionWarning, DynamicsSpec, FourBar, Problem, Task
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics_spec import metres
+from grashof.problems.values.motor import MotorSpec
 
 _SAMPLES = 361
 _NEAR = np.logspace(-8, -2, 31)  # rad, about the positions that come closest to a dead one
@@ -105,12 +107,13 @@ def over_task(linkage: FourBar, problem: Problem, verdict: Verdict) -> OverTask:
     forces: tuple[float, ...] = ()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeadPositionWarning)
-        omega4, speed, acceleration = _peaks(_speeds(linkage, 1.0 if spec is None else spec.omega2), theta2)
+        law = driver_law(problem, start, end)
+        omega4, speed, acceleration = _peaks(_speeds(linkage, law), theta2)
         if spec is not None:
-            loaded, square = _loaded(linkage, spec, metres(problem.length_unit)), np.inf
+            loaded, square = _loaded(linkage, spec, metres(problem.length_unit), law), np.inf
             peak, force = _peaks(loaded, theta2)
             if np.isfinite(peak):
-                square = mean_over(lambda angle: loaded(angle)[0] ** 2, start, end)
+                square = _mean_in_time(lambda angle: loaded(angle)[0] ** 2, law)
             forces = float(peak), float(np.sqrt(square)), float(force)
     fit = float(coupler_fit_r2(linkage, start, end))
     return OverTask(float(omega4), float(speed), float(acceleration), fit, *forces)
@@ -121,10 +124,11 @@ def torque_peak(linkage: FourBar, problem: Problem, verdict: Verdict) -> float:
     if problem.dynamics is None:
         return np.nan
     linkage = _as_used(linkage, verdict)
-    theta2 = _sampled(linkage, *motion_ends(problem.task, verdict))
+    ends = motion_ends(problem.task, verdict)
+    theta2, law = _sampled(linkage, *ends), driver_law(problem, *ends)
     if not _joined(linkage, verdict, theta2):
         return np.nan
-    loaded = _loaded(linkage, problem.dynamics, metres(problem.length_unit))
+    loaded = _loaded(linkage, problem.dynamics, metres(problem.length_unit), law)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeadPositionWarning)
         return float(_peaks(lambda angle: loaded(angle)[:1], theta2)[0])
@@ -181,22 +185,41 @@ def mean_over(curve: Curves, start: float, end: float) -> float:
     return mean
 
 
-def _speeds(linkage: FourBar, omega2: float) -> Curves:
+def driver_law(problem: Problem, start: float, end: float) -> DriverLaw:
+    """How the driver of a design goes from one angle to the other: as the problem's dynamics have it."""
+    spec, rotation = problem.dynamics, end - start
+    omega2 = np.copysign(1.0 if spec is None else spec.omega2, rotation)
+    motor = spec.motor if spec is not None and rotation else None
+    return DriverLaw(start, rotation, float(omega2), motor or MotorSpec())
+
+
+def _mean_in_time(curve: Curves, law: DriverLaw) -> float:
+    """Mean over the time of a motion of a curve over the driver angle."""
+    if law.motor.steady:
+        return mean_over(curve, law.start, law.start + law.rotation)
+    return sum(
+        (end - start) * mean_over(lambda share: curve(law.at_time(share * law.duration).theta2), start, end)
+        for start, end in pairwise(law.corners.tolist())
+    )
+
+
+def _speeds(linkage: FourBar, law: DriverLaw) -> Curves:
     """|omega4|, speed and acceleration of P, each a row."""
 
     def curves(theta2: FloatArray) -> FloatArray:
-        state = solve_kinematics(linkage, theta2, omega2)
+        state = law.state(linkage, theta2)
         return np.stack([np.abs(state.omega4), state.p.speed, state.p.acceleration_magnitude])
 
     return curves
 
 
-def _loaded(linkage: FourBar, spec: DynamicsSpec, metre: float) -> Curves:
+def _loaded(linkage: FourBar, spec: DynamicsSpec, metre: float, law: DriverLaw) -> Curves:
     """|torque| in N m and the greatest joint force in N, each a row."""
-    masses, loads = stated_masses(linkage, spec), Loads(gravity=np.array(spec.gravity) / metre)
+    masses = stated_masses(linkage, spec, metre)
+    loads = stated_loads(spec, metre, lambda state: law.time_at(state.theta2))
 
     def curves(theta2: FloatArray) -> FloatArray:
-        found = inverse_dynamics(solve_kinematics(linkage, theta2, spec.omega2), masses, loads)
+        found = inverse_dynamics(law.state(linkage, theta2), masses, loads)
         force = np.max([found.joint_force(joint) for joint in Joint], axis=0)
         return np.stack([metre**2 * np.abs(found.torque), metre * force])
 

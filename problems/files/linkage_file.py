@@ -84,7 +84,7 @@ def load_linkage_spec(linkage: str | os.PathLike[str]) -> LinkageSpec:
                 f"{text!r} is neither a linkage of the catalogue nor a file; {_LINKAGES.hint(text)}"
             )
     path = Path(linkage)
-    return _parsed(file_text(path, "a linkage file"), str(path), readable(path.stem))
+    return _parsed(file_text(path, "a linkage file"), str(path), readable(path.stem), path.parent)
 
 
 def load_design(path: Path, which: str) -> ListedDesign:
@@ -150,7 +150,7 @@ def _problem_given(given: str, name: str) -> str:
     return f"{given}: is a problem; solve it, then name a design: {name}-designs/candidates.json#1"
 
 
-def _parsed(text: str, file_name: str, name: str) -> LinkageSpec:
+def _parsed(text: str, file_name: str, name: str, folder: Path | None = None) -> LinkageSpec:
     # Here, not above: worker processes import this package, and need not pay for pydantic.
     from grashof.problems.files.linkage_schema import linkage_from
 
@@ -158,7 +158,7 @@ def _parsed(text: str, file_name: str, name: str) -> LinkageSpec:
     if "kind" in document:
         raise ProblemError(_problem_given(file_name, name))
     try:
-        return linkage_from(document, name)
+        return linkage_from(document, name, folder)
     except ProblemError as error:
         raise located(error, file_name) from None
 
@@ -206,9 +206,9 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
         raise located(error, where) from None
     if direction not in (1, -1):
         raise ProblemError(f"{where}: direction is {shown(direction)}; it must be +1 or -1")
-    driven = (spec.dynamics or DynamicsSpec()).turning(direction)
-    title, source = f"{spec.title}: design {rank}", readable(str(path))
     problem = _listed_problem(content, path)
+    driven = ((spec if problem is None else problem).dynamics or DynamicsSpec()).turning(direction)
+    title, source = f"{spec.title}: design {rank}", readable(str(path))
     return LinkageSpec(linkage, spec.name, title, source, unit, dynamics=driven, problem=problem), design
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field, ValidationInfo, field_validator
 
-from grashof.problems.files.problem_schema import DynamicsTable
+from grashof.problems.files.dynamics_schema import MACHINE_TABLES, MachineTables
 from grashof.problems.files.tables import Table, Text, listed, of_length, stated
 from grashof.problems.values.checks import GREATEST, finite_number, number_within
 from grashof.problems.values.dynamics_spec import metres
@@ -16,7 +17,7 @@ from grashof.problems.values.linkage import FourBar
 from grashof.problems.values.linkage_spec import LinkageSpec
 
 
-def linkage_from(document: dict[str, Any], name: str) -> LinkageSpec:
+def linkage_from(document: dict[str, Any], name: str, folder: Path | None = None) -> LinkageSpec:
     """Linkage stated by a parsed linkage file.
 
     Parameters
@@ -24,6 +25,8 @@ def linkage_from(document: dict[str, Any], name: str) -> LinkageSpec:
     document : dict
         The file as `tomllib` gives it.
     name : str
+    folder : Path, optional
+        Where the file is; without it the document may name no other file.
 
     Raises
     ------
@@ -40,15 +43,15 @@ def linkage_from(document: dict[str, Any], name: str) -> LinkageSpec:
         ...
     grashof.problems.values.errors.ProblemError: coupler is unknown; did you mean coupler_point?
     """
-    return stated(LinkageTable, document, _TABLES).spec(name)
+    return stated(LinkageTable, document, _TABLES, folder).spec(name)
 
 
 _PARAMETERS = {row.key: row for row in FourBar.PARAMETERS}
 Point = Annotated[list[float], listed("[x, y]"), of_length(2, "[x, y]")]
 
 
-class LinkageTable(Table):
-    """The whole linkage file."""
+class _Linkage(Table):
+    """The linkage itself; the keys of a file come in this order."""
 
     title: Text = ""
     source: Text = ""
@@ -64,7 +67,10 @@ class LinkageTable(Table):
     assembly: int = 1
     body_angle_deg: float = 0.0
     output_arm: float | None = None
-    dynamics: DynamicsTable | None = None
+
+
+class LinkageTable(MachineTables, _Linkage):
+    """The whole linkage file."""
 
     @field_validator(*(key for key, row in _PARAMETERS.items() if row.kind != "angle"))
     @classmethod
@@ -90,7 +96,7 @@ class LinkageTable(Table):
 
     def value(self) -> FourBar:
         """The linkage itself, checked with what belongs to it."""
-        if self.dynamics is not None and self.dynamics.value().has_masses:
+        if (dynamics := self.dynamics_spec()) is not None and dynamics.acts:
             metres(self.length_unit)  # refuses one that is not known
         given = {row.name: getattr(self, row.key) for row in FourBar.PARAMETERS}
         linkage = FourBar(**given | {"o4": self._o4(), "body_angle": np.radians(self.body_angle_deg)})
@@ -118,8 +124,8 @@ class LinkageTable(Table):
             source=self.source,
             length_unit=self.length_unit,
             output_arm=self.output_arm,
-            dynamics=None if self.dynamics is None else self.dynamics.value(),
+            dynamics=self.dynamics_spec(),
         )
 
 
-_TABLES: dict[str, type[Table]] = {"": LinkageTable, "dynamics": DynamicsTable}
+_TABLES: dict[str, type[Table]] = {"": LinkageTable, **MACHINE_TABLES}

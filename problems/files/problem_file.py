@@ -55,7 +55,7 @@ def load_with_text(problem: str | os.PathLike[str]) -> tuple[Problem, str]:
             raise ProblemError(f"{problem!r} is neither a problem of the catalogue nor a file; {hint}")
     path = Path(problem)
     text = file_text(path, "a problem file", _PROBLEMS.hint(path.stem))
-    return problem_of(text, str(path), readable(path.stem)), text
+    return problem_of(text, str(path), readable(path.stem), path.parent), text
 
 
 def catalogue() -> tuple[str, ...]:
@@ -85,13 +85,16 @@ def problem_text(name: str) -> str:
     return _PROBLEMS.text(name)
 
 
-def problem_of(text: str, file_name: str, name: str) -> Problem:
-    """Problem that the text of a file states; messages begin with the name of the file."""
+def problem_of(text: str, file_name: str, name: str, folder: Path | None = None) -> Problem:
+    """Problem that the text of a file states; messages begin with the name of the file.
+
+    In a folder it may name other files, such as tables of loads.
+    """
     # Here, not above: worker processes import this package, and need not pay for pydantic.
     from grashof.problems.files.problem_schema import problem_from
 
     document = document_of(text, file_name)
     try:
-        return problem_from(document, name)
+        return problem_from(document, name, folder)
     except ProblemError as error:
         raise located(error, file_name) from None

@@ -7,11 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import fields
+from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
 from pydantic import AfterValidator, Discriminator, Tag, ValidationInfo, create_model, field_validator
 from pydantic_core import PydanticCustomError
 
+from grashof.problems.files.dynamics_schema import MACHINE_TABLES, MachineTables
 from grashof.problems.files.tables import (
     LIST,
     NUMBER,
@@ -28,7 +30,7 @@ from grashof.problems.files.tables import (
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.box import Box
 from grashof.problems.values.checks import near_miss, noted, outline, refuse, refused
-from grashof.problems.values.dynamics_spec import DynamicsSpec, metres
+from grashof.problems.values.dynamics_spec import metres
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.manufacturing import Manufacturing
 from grashof.problems.values.motion_task import MotionTask
@@ -40,7 +42,7 @@ from grashof.problems.values.requirements import LIMITS, MAY_KEEP_OUT, Requireme
 from grashof.problems.values.task import Task
 
 
-def problem_from(document: dict[str, Any], name: str) -> Problem:
+def problem_from(document: dict[str, Any], name: str, folder: Path | None = None) -> Problem:
     """Problem stated by a parsed problem file.
 
     Parameters
@@ -49,6 +51,8 @@ def problem_from(document: dict[str, Any], name: str) -> Problem:
         The file as `tomllib` gives it.
     name : str
         What the problem is called, `Problem.name`.
+    folder : Path, optional
+        Where the file is; without it the document may name no other file.
 
     Raises
     ------
@@ -68,7 +72,7 @@ def problem_from(document: dict[str, Any], name: str) -> Problem:
     """
     wrong: list[str] = []
     with noted(wrong):
-        return stated(ProblemFile, document, _TABLES).problem(name)
+        return stated(ProblemFile, document, _TABLES, folder).problem(name)
     raise refused([*wrong, *_ill_matched(document)])
 
 
@@ -79,7 +83,7 @@ def _ill_matched(document: dict[str, Any]) -> Iterator[str]:
         if other in document:
             yield f'{other} does not belong to kind = "{kind}"'
     wrong: list[str] = []
-    if "dynamics" in document and isinstance(unit, str):
+    if any(table in document for table in MACHINE_TABLES) and isinstance(unit, str):
         with noted(wrong):
             metres(unit)
     yield from wrong
@@ -283,27 +287,6 @@ class ManufacturingTable(Table):
         return Manufacturing(self.length_tolerance, self.band)
 
 
-class DynamicsTable(Table):
-    speed_rpm: float | None = None
-    gravity: Annotated[list[float], listed("[x, y] in m/s2")] | None = None
-    mass_per_length: float | None = None
-    masses: Annotated[list[float], listed("[m2, m3, m4]")] | None = None
-    inertias: Annotated[list[float], listed("[I2, I3, I4]")] | None = None
-    payload: float | None = None
-
-    @field_validator("*")
-    @classmethod
-    def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
-        pair: dict[str, Any] = {"masses": (1, 1, 1), "inertias": (1, 1, 1)}
-        besides = pair if key.field_name in pair else {}
-        DynamicsSpec(**{**besides, str(key.field_name): given})
-        return given
-
-    def value(self) -> DynamicsSpec:
-        given: dict[str, Any] = {key: getattr(self, key) for key in self.model_fields_set}
-        return DynamicsSpec(**given)
-
-
 class SearchTable(Table):
     starts: int | None = None
     enough: int | None = None
@@ -321,7 +304,9 @@ class SearchTable(Table):
         return Search(**given)
 
 
-class ProblemFile(Table):
+class _Task(Table):
+    """What is asked; the keys of a file come in this order."""
+
     kind: Annotated[str, one_of("motion", "path")]
     title: Text = ""
     source: Text = ""
@@ -331,7 +316,9 @@ class ProblemFile(Table):
     scene: SceneTable = SceneTable()
     requirements: RequirementsTable = RequirementsTable()
     objective: ObjectiveTable = ObjectiveTable()
-    dynamics: DynamicsTable | None = None
+
+
+class ProblemFile(MachineTables, _Task):
     manufacturing: ManufacturingTable | None = None
     search: SearchTable = SearchTable()
 
@@ -343,8 +330,8 @@ class ProblemFile(Table):
                 raise ProblemError(f'{other} does not belong to kind = "{self.kind}"')
         if mine is None:
             raise ProblemError(f"{self.kind} is missing")
-        if self.dynamics is not None:
-            metres(self.length_unit)
+        if self.dynamics_spec() is not None:
+            metres(self.length_unit)  # refuses one that is not known
         return mine.value()
 
     def problem(self, name: str) -> Problem:
@@ -357,7 +344,7 @@ class ProblemFile(Table):
             outlines=self.scene.value(),
             requirements=self.requirements.value(),
             objective=self.objective.value(),
-            dynamics=None if self.dynamics is None else self.dynamics.value(),
+            dynamics=self.dynamics_spec(),
             manufacturing=None if self.manufacturing is None else self.manufacturing.value(),
             search=self.search.value(),
         )
@@ -375,7 +362,7 @@ _TABLES: dict[str, type[Table]] = {
     **{f"requirements.{name}": BoxTable for name in sorted(_PLACES)},
     "objective": ObjectiveTable,
     "objective.maximise": WeightsTable,
-    "dynamics": DynamicsTable,
+    **MACHINE_TABLES,
     "manufacturing": ManufacturingTable,
     "search": SearchTable,
 }

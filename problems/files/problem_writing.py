@@ -38,15 +38,17 @@ def problem_toml(problem: Problem) -> str:
     """
     head = {"kind": problem.task.kind, **{key: getattr(problem, key) for key in _WORDS}}
     lines = [f"{key} = {_value(value)}" for key, value in head.items()]
-    for name, table in _tables(problem):
-        lines += ["", f"[{name}]", *(f"{key} = {_value(value)}" for key, value in table.items())]
+    for name, given in _tables(problem):
+        heading = f"[[{name}]]" if isinstance(given, list) else f"[{name}]"
+        for table in given if isinstance(given, list) else [given]:
+            lines += ["", heading, *(f"{key} = {_value(value)}" for key, value in table.items())]
     return "\n".join(lines) + "\n"
 
 
 _WORDS = ("title", "source", "length_unit")
 
 
-def _tables(problem: Problem) -> Iterator[tuple[str, Mapping[str, Any]]]:
+def _tables(problem: Problem) -> Iterator[tuple[str, Mapping[str, Any] | list[Mapping[str, Any]]]]:
     yield problem.task.kind, _given(_task(problem.task))
     if problem.outlines:
         yield "scene", {"outlines": problem.outlines}
@@ -55,7 +57,7 @@ def _tables(problem: Problem) -> Iterator[tuple[str, Mapping[str, Any]]]:
     if problem.by_objective:
         yield "objective", {"maximise": problem.objective.stated}
     if problem.dynamics is not None:
-        yield "dynamics", problem.dynamics.stated
+        yield from problem.dynamics.tables.items()
     if problem.manufacturing is not None:
         yield "manufacturing", asdict(problem.manufacturing)
     yield "search", asdict(problem.search)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Annotated, Any, ClassVar, Self, TypeAlias, TypeVar
 
 from pydantic import (
@@ -55,7 +56,12 @@ class Table(BaseModel):
 AnyTable = TypeVar("AnyTable", bound=Table)
 
 
-def stated(table: type[AnyTable], document: dict[str, Any], tables: Mapping[str, type[Table]]) -> AnyTable:
+def stated(
+    table: type[AnyTable],
+    document: dict[str, Any],
+    tables: Mapping[str, type[Table]],
+    folder: Path | None = None,
+) -> AnyTable:
     """What a parsed file states, as its table.
 
     Parameters
@@ -65,7 +71,9 @@ def stated(table: type[AnyTable], document: dict[str, Any], tables: Mapping[str,
     document : dict
         The file as `tomllib` gives it.
     tables : mapping of str to type
-        All tables of such a file by their key paths.
+        All tables of such a file by their key paths, those of lists without their numbers.
+    folder : Path, optional
+        That the names of other files in it are relative to; without it none may be named.
 
     Raises
     ------
@@ -73,7 +81,7 @@ def stated(table: type[AnyTable], document: dict[str, Any], tables: Mapping[str,
         All errors found, a line each, with their key paths.
     """
     try:
-        return table.model_validate(document)
+        return table.model_validate(document, context={"folder": folder})
     except ValidationError as refused:
         errors = refused.errors(include_url=False)
     # A missing key comes last: most often it stands in the file, misspelt, and that error is clearer.
@@ -143,7 +151,7 @@ def _described(error: ErrorDetails, tables: Mapping[str, type[Table]]) -> str:
 
 def _unknown(location: tuple[int | str, ...], tables: Mapping[str, type[Table]]) -> str:
     path, table, key = _path(location), _path(location[:-1]), str(location[-1])
-    keys = list(tables[table].model_fields)
+    keys = list(tables[re.sub(r"\[\d+\]", "", table)].model_fields)
     homes = (name for name, other in tables.items() if key in other.model_fields and other.telling)
     meant = near_miss(key, keys) or next((f"{home}.{key}".lstrip(".") for home in homes), None)
     return f"{path} is unknown; " + (f"did you mean {meant}?" if meant else f"the keys are {', '.join(keys)}")

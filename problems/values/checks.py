@@ -126,6 +126,31 @@ def number_within(value: float, low: float, high: float, where: str) -> float:
     return number
 
 
+def bounded(value: float, where: str) -> float:
+    """`value` as a float, refused beyond 1e20 either way."""
+    return number_within(value, -GREATEST, GREATEST, where)
+
+
+def from_zero(value: float, where: str) -> float:
+    """`value` as a float, refused below zero and beyond 1e20."""
+    number = bounded(value, where)
+    if number < 0:
+        raise ProblemError(f"{where} is {number:.15g}; it must be a number from zero")
+    return number
+
+
+def numbers(values: Sequence[float], count: int, where: str) -> tuple[float, ...]:
+    """So many floats, none beyond 1e20."""
+    try:
+        given = list(values)
+    except TypeError:
+        raise wrong_value(where, values, f"{count} numbers") from None
+    if len(given) != count:
+        entries = "1 entry" if len(given) == 1 else f"{len(given)} entries"
+        raise ProblemError(f"{where} has {entries}; it must have {count} numbers")
+    return tuple(bounded(value, f"{where}[{index}]") for index, value in enumerate(given))
+
+
 def task_size(points: FloatArray, where: str) -> float:
     """Greatest distance between two of N points (N, 2), refused where it is so small that digits are lost."""
     size = span(points)

@@ -1,4 +1,4 @@
-"""What the links weigh, how fast the driver turns and where gravity points."""
+"""What the links weigh, how fast the driver turns, where gravity points, and what else acts."""
 
 from __future__ import annotations
 
@@ -8,25 +8,54 @@ from typing import Any
 
 import numpy as np
 
-from grashof.problems.values.checks import GREATEST, number_within, positive_number
+from grashof.problems.values.acting import (
+    CounterweightSpec,
+    DamperSpec,
+    FrictionSpec,
+    LoadSpec,
+    Pair,
+    SpringSpec,
+    TorsionSpringSpec,
+)
+from grashof.problems.values.checks import bounded, from_zero, numbers, positive_number
 from grashof.problems.values.errors import ProblemError, wrong_value
+from grashof.problems.values.motor import MotorSpec
+from grashof.problems.values.section import SectionSpec
+from grashof.problems.values.stated import Stated
 
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048}
-_STEADY = 30 / np.pi  # rpm: 1 rad/s
+STEADY = 30 / np.pi  # rpm: 1 rad/s
 Triple = tuple[float, float, float]
+_LISTS: dict[str, type] = {
+    "loads": LoadSpec,
+    "springs": SpringSpec,
+    "dampers": DamperSpec,
+    "torsion_springs": TorsionSpringSpec,
+    "counterweights": CounterweightSpec,
+}
+# Keys of the table [dynamics]; the other fields have tables of their own.
+DYNAMICS_KEYS = (
+    "mass_per_length", "density", "masses", "inertias", "centres", "payload", "speed_rpm", "gravity",
+)  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True, init=False)
-class DynamicsSpec:
-    """Masses, speed and gravity, of a problem or of one linkage; kg, s and its length unit.
+@dataclass(frozen=True, slots=True)
+class DynamicsSpec(Stated):
+    """Masses, speed, gravity and what else acts, of a problem or of one linkage; kg, s and its length unit.
+
+    Forces are in N, moments in N m, stiffness in N/m, whatever the length unit.
 
     Parameters
     ----------
     mass_per_length : float, kg/length, optional
         The links are slender uniform bars from joint to joint.
     masses, inertias : three floats, kg and kg length^2, optional
-        Instead: of links 2, 3 and 4, inertias about the centres of mass, which lie halfway between
-        the joints of each link (the coupler's between A and B, wherever P is).
+        Instead: of links 2, 3 and 4, inertias about the centres of mass.
+    centres : three pairs of float, length, optional
+        Centres of mass of links 2, 3 and 4 in their frames; by default halfway between the joints of
+        each link (the coupler's between A and B, wherever P is).
+    density : float, kg/m^3, optional
+        Instead: the links are uniform bars of the `section`.
     payload : float, kg
         Carried at P, as a point.
     speed_rpm : float
@@ -34,6 +63,16 @@ class DynamicsSpec:
         zero, in the sense that the task asks for.
     gravity : two floats, m/s^2
         In metres whatever the length unit; none by default.
+    loads : tuple of LoadSpec
+    springs : tuple of SpringSpec
+    dampers : tuple of DamperSpec
+    torsion_springs : tuple of TorsionSpringSpec
+    counterweights : tuple of CounterweightSpec
+    friction : FrictionSpec, optional
+    motor : MotorSpec, optional
+        Steady speed without it.
+    section : SectionSpec, optional
+        Of the bars; `density` needs it, and strength.
 
     Raises
     ------
@@ -47,48 +86,67 @@ class DynamicsSpec:
     3.141593
     """
 
-    mass_per_length: float | None
-    masses: Triple | None
-    inertias: Triple | None
-    payload: float
-    speed_rpm: float
-    gravity: tuple[float, float]
+    mass_per_length: float | None = None
+    masses: Triple | None = None
+    inertias: Triple | None = None
+    centres: tuple[Pair, Pair, Pair] | None = None
+    density: float | None = None
+    payload: float = 0.0
+    speed_rpm: float = STEADY
+    gravity: Pair = (0.0, 0.0)
+    loads: tuple[LoadSpec, ...] = ()
+    springs: tuple[SpringSpec, ...] = ()
+    dampers: tuple[DamperSpec, ...] = ()
+    torsion_springs: tuple[TorsionSpringSpec, ...] = ()
+    counterweights: tuple[CounterweightSpec, ...] = ()
+    friction: FrictionSpec | None = None
+    motor: MotorSpec | None = None
+    section: SectionSpec | None = None
 
-    def __init__(
-        self,
-        mass_per_length: float | None = None,
-        masses: Sequence[float] | None = None,
-        inertias: Sequence[float] | None = None,
-        *,
-        payload: float = 0.0,
-        speed_rpm: float = _STEADY,
-        gravity: Sequence[float] = (0.0, 0.0),
-    ) -> None:
-        if mass_per_length is not None and (masses is not None or inertias is not None):
-            raise ProblemError(
-                "dynamics.mass_per_length does not go with masses and inertias; give one or the other"
-            )
-        if (masses is None) != (inertias is None):
-            absent = "masses" if masses is None else "inertias"
-            raise ProblemError(f"dynamics.{absent} is missing; masses and inertias are needed together")
-        if mass_per_length is not None:
-            mass_per_length = positive_number(
-                _bounded(mass_per_length, "dynamics.mass_per_length"), "dynamics.mass_per_length"
-            )
-        object.__setattr__(self, "mass_per_length", mass_per_length)
-        object.__setattr__(self, "masses", _triple(masses, "dynamics.masses"))
-        object.__setattr__(self, "inertias", _triple(inertias, "dynamics.inertias"))
+    def __post_init__(self) -> None:
+        self._check_masses()
+        for name in ("mass_per_length", "density"):
+            if (given := getattr(self, name)) is not None:
+                self._set(name, positive_number(bounded(given, f"dynamics.{name}"), f"dynamics.{name}"))
+        for name in ("masses", "inertias"):
+            self._set(name, _triple(getattr(self, name), f"dynamics.{name}"))
         if self.masses is not None and not any(self.masses):
             raise ProblemError("dynamics.masses are all zero; one at least has a mass")
-        object.__setattr__(self, "payload", _from_zero(payload, "dynamics.payload"))
-        object.__setattr__(self, "speed_rpm", _bounded(speed_rpm, "dynamics.speed_rpm"))
-        object.__setattr__(self, "gravity", _numbers(gravity, 2, "dynamics.gravity"))
+        if self.centres is not None:
+            self._set("centres", _places(self.centres, "dynamics.centres"))
+        self._set("payload", from_zero(self.payload, "dynamics.payload"))
+        self._set("speed_rpm", bounded(self.speed_rpm, "dynamics.speed_rpm"))
+        self._set("gravity", numbers(self.gravity, 2, "dynamics.gravity"))
+        for name, kind in _LISTS.items():
+            entries = getattr(self, name)
+            if not isinstance(entries, Sequence) or not all(isinstance(each, kind) for each in entries):
+                raise wrong_value(name, entries, f"a list of {kind.__name__}")
+            self._set(name, tuple(entries))
+
+    def _check_masses(self) -> None:
+        given = [name for name in ("mass_per_length", "density") if getattr(self, name) is not None]
+        given += ["masses and inertias"] if (self.masses, self.inertias) != (None, None) else []
+        if len(given) > 1:
+            raise ProblemError(f"dynamics.{given[0]} does not go with {given[1]}; give one or the other")
+        if (self.masses is None) != (self.inertias is None):
+            absent = "masses" if self.masses is None else "inertias"
+            raise ProblemError(f"dynamics.{absent} is missing; masses and inertias are needed together")
+        if self.centres is not None and self.masses is None:
+            raise ProblemError("dynamics.masses is missing; centres are those of given masses and inertias")
+        if self.density is not None and self.section is None:
+            raise ProblemError("section is missing; dynamics.density needs it")
+
+    def _set(self, name: str, value: Any) -> None:
+        object.__setattr__(self, name, value)
 
     @property
-    def stated(self) -> dict[str, Any]:
-        """The arguments that give this value, without those that are not given: a file's table."""
-        every = {name: getattr(self, name) for name in self.__slots__}
-        return {name: value for name, value in every.items() if value is not None}
+    def tables(self) -> dict[str, Any]:
+        """The tables of a file that state it, by their names, and lists of tables."""
+        own = {key: getattr(self, key) for key in DYNAMICS_KEYS if getattr(self, key) is not None}
+        return {
+            "dynamics": own,
+            **{key: given for key, given in self.stated.items() if key not in DYNAMICS_KEYS},
+        }
 
     def turning(self, direction: int) -> DynamicsSpec:
         """The dynamics of a linkage whose driver turns counter-clockwise (+1) or clockwise (-1).
@@ -102,12 +160,36 @@ class DynamicsSpec:
 
     @property
     def has_masses(self) -> bool:
-        """Whether the links or the payload have a mass."""
-        return self.mass_per_length is not None or self.masses is not None or self.payload > 0
+        """Whether the links, the payload or counterweights have a mass."""
+        bars = (self.mass_per_length, self.density, self.masses)
+        return any(given is not None for given in bars) or self.payload > 0 or bool(self.counterweights)
+
+    @property
+    def acts(self) -> bool:
+        """Whether anything takes a torque: masses, loads, springs, dampers, friction."""
+        given = (self.loads, self.springs, self.dampers, self.torsion_springs)
+        return self.has_masses or any(given) or self.friction is not None
+
+    def too_short(self, duration: float, where: str) -> list[str]:
+        """What is wrong with loads over time in a motion of a duration (s), which `where` explains."""
+        return [
+            f"loads[{index}] covers {load.values[0][0]:g} to {load.values[-1][0]:g} s; "
+            f"it must cover 0 to {duration:.6g} s, {where}"
+            for index, load in enumerate(self.loads)
+            if load.values is not None and load.over == "time"
+            if load.values[0][0] > 0 or not load.values[-1][0] >= duration * (1 - 1e-12)
+        ]
+
+    @property
+    def turn_time(self) -> float:
+        """What a turn of the driver takes, s: at its mean speed, or as the motor's table has it."""
+        if self.motor is not None and self.motor.values is not None:
+            return self.motor.values[-1][0] - self.motor.values[0][0]
+        return 60 / abs(self.speed_rpm) if self.speed_rpm else np.inf
 
     @property
     def omega2(self) -> float:
-        """Speed of the driver, rad/s."""
+        """Speed of the driver, rad/s; its mean where a motor starts and stops."""
         return self.speed_rpm * np.pi / 30
 
 
@@ -129,30 +211,13 @@ def metres(length_unit: str) -> float:
     return METRES[length_unit]
 
 
-def _numbers(values: Sequence[float], count: int, where: str) -> tuple[float, ...]:
-    try:
-        numbers = list(values)
-    except TypeError:
-        raise wrong_value(where, values, f"{count} numbers") from None
-    if len(numbers) != count:
-        entries = "1 entry" if len(numbers) == 1 else f"{len(numbers)} entries"
-        raise ProblemError(f"{where} has {entries}; it must have {count} numbers")
-    return tuple(_bounded(value, f"{where}[{index}]") for index, value in enumerate(numbers))
-
-
 def _triple(values: Sequence[float] | None, where: str) -> tuple[float, ...] | None:
     if values is None:
         return None
-    numbers = _numbers(values, 3, where)
-    return tuple(_from_zero(value, f"{where}[{index}]") for index, value in enumerate(numbers))
+    return tuple(from_zero(value, f"{where}[{i}]") for i, value in enumerate(numbers(values, 3, where)))
 
 
-def _from_zero(value: float, where: str) -> float:
-    number = _bounded(value, where)
-    if number < 0:
-        raise ProblemError(f"{where} is {number:.15g}; it must be a number from zero")
-    return number
-
-
-def _bounded(value: float, where: str) -> float:
-    return number_within(value, -GREATEST, GREATEST, where)
+def _places(values: Any, where: str) -> tuple[tuple[float, ...], ...]:
+    if not isinstance(values, Sequence) or len(values) != 3:
+        raise wrong_value(where, values, "three places [u, v], of links 2, 3 and 4")
+    return tuple(numbers(value, 2, f"{where}[{index}]") for index, value in enumerate(values))

@@ -130,9 +130,11 @@ class Problem(ReadOnly):
                 metres(self.length_unit)  # refuses one that is not known
             with noted(wrong):
                 positive_number(self.dynamics.speed_rpm, "dynamics.speed_rpm")
-            if not self.dynamics.has_masses:
+            wrong += self.dynamics.too_short(self.dynamics.turn_time, "a turn of the driver")
+            if not self.dynamics.acts:
                 wrong.append(
-                    "dynamics has no mass; mass_per_length is needed, masses and inertias, or payload"
+                    "dynamics has no mass; mass_per_length is needed, masses and inertias, density or "
+                    "payload, or else loads, springs or friction"
                 )
         wrong += self._without_value()
         wrong += self._undecided()
@@ -250,8 +252,10 @@ class Problem(ReadOnly):
     def reference_torque(self) -> float:
         """What the objective counts the torque in, N m; it depends on the problem alone.
 
-        M S (g + omega2^2 S): the mass of links and payload, held and turned at a radius of the task's
-        size S. `mass_per_length` counts as one bar of length S.
+        M S (g + omega2^2 S): the mass of links, payload and counterweights, held and turned at a radius
+        of the task's size S. `mass_per_length` and `density` count as one bar of length S. To it come the
+        greatest moments, the greatest forces at a radius of S, springs and dampers stretched by S (and
+        omega2 S), or turned by 1 rad (and at omega2), and friction. 1 where nothing acts.
 
         Raises
         ------
@@ -263,4 +267,14 @@ class Problem(ReadOnly):
             raise ProblemError("dynamics is missing; without masses there is no torque")
         size = self.task.size * metres(self.length_unit)
         mass = (spec.mass_per_length or 0.0) * self.task.size + sum(spec.masses or ()) + spec.payload
-        return mass * size * (math.hypot(*spec.gravity) + spec.omega2**2 * size)
+        mass += sum(weight.mass for weight in spec.counterweights)
+        if spec.density is not None and spec.section is not None:
+            mass += spec.density * max(spec.section.areas) * metres(self.length_unit) ** 2 * size
+        torque = mass * size * (math.hypot(*spec.gravity) + spec.omega2**2 * size)
+        torque += sum(load.greatest * (1.0 if load.is_moment else size) for load in spec.loads)
+        torque += sum(spring.stiffness for spring in spec.springs) * size**2
+        torque += sum(damper.damping for damper in spec.dampers) * spec.omega2 * size**2
+        torque += sum(spring.stiffness for spring in spec.torsion_springs)
+        if spec.friction is not None:
+            torque += max(spec.friction.moment) + max(spec.friction.viscous) * spec.omega2
+        return torque or 1.0

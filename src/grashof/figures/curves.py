@@ -14,6 +14,7 @@ from grashof.figures.subject import Linkage, Subject
 from grashof.problems import FourBar, Problem, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.study.quantities import FORCES, dynamic_quantities, kinematic_quantities, table_of
+from grashof.study.study import Asked, LinkageStudy
 from grashof.study.sweep import Sweep, dead_positions_unwarned
 
 AxesArray = npt.NDArray[np.object_]
@@ -120,8 +121,8 @@ def plot_dynamics(
         As `plot_kinematics`; or neither the linkage's file nor the problem states masses.
     """
     panels = _panels(quantities, DYNAMICS)
-    sweep = Sweep.of(Subject.of(linkage, problem).spec, speed_rpm)
-    found = dynamic_quantities(sweep.spec)
+    study = LinkageStudy.of(Subject.of(linkage, problem).spec, Asked(speed_rpm=speed_rpm))
+    sweep, found = study.sweep, dynamic_quantities(study)
     if not found:
         raise ProblemError(f"{sweep.spec.name} has no masses; a table [dynamics] or a problem states them")
     with dead_positions_unwarned():

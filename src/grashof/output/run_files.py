@@ -125,7 +125,7 @@ def _designs(result: Result, frame: pd.DataFrame) -> dict[str, Any]:
         "title": problem.title,
         "length_unit": problem.length_unit,
         "angle_unit": "rad",
-        **({} if problem.dynamics is None else {"dynamics": problem.dynamics.stated}),
+        **({} if problem.dynamics is None else {"dynamics": problem.dynamics.tables["dynamics"]}),
         "designs": [
             {"rank": rank, **_design(candidate, keys), "pareto": bool(best)}
             for rank, (candidate, best) in enumerate(

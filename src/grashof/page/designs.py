@@ -10,15 +10,15 @@ import numpy as np
 import pandas as pd
 
 from grashof.analysis import (
-    Loads,
     driver_ranges,
     full_rotation,
     inverse_dynamics,
     solve_kinematics,
+    stated_loads,
     stated_masses,
 )
 from grashof.analysis.four_bar.mobility import range_index
-from grashof.analysis.judge.over_task import motion_ends
+from grashof.analysis.judge.over_task import driver_law, motion_ends
 from grashof.page.render import compact
 from grashof.problems import FourBar, Problem
 from grashof.problems.values.arrays import TURN, FloatArray
@@ -101,7 +101,7 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], frame: pd.DataFra
     travels = [
         driver_travel(linkage, each.verdict.theta2) for linkage, each in zip(linkages, designs, strict=True)
     ]
-    torques = _torques(problem, linkages, travels)
+    torques = _torques(problem, designs, linkages, travels)
     rows = frame.to_dict("records")
     return [
         {
@@ -122,18 +122,30 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], frame: pd.DataFra
 
 
 def _torques(
-    problem: Problem, linkages: Sequence[FourBar], travels: Sequence[Travel]
+    problem: Problem,
+    designs: Sequence[Candidate],
+    linkages: Sequence[FourBar],
+    travels: Sequence[Travel],
 ) -> list[list[float | None]] | list[None]:
-    """Drive torque over the travel of each linkage, N m; None for each without dynamics."""
+    """Drive torque over the travel of each linkage, N m; None for each without dynamics.
+
+    Of a driver that starts and stops, over the task alone.
+    """
     if problem.dynamics is None or not linkages:
         return [None] * len(linkages)
     spec, metre = problem.dynamics, metres(problem.length_unit)
     batch = FourBar(*map(np.stack, zip(*(each.parameters for each in linkages), strict=True)))[:, None]
     theta2 = np.stack([travel.angles(INSET) for travel in travels])
+    laws = [driver_law(problem, *motion_ends(problem.task, each.verdict)) for each in designs]
+    ways = list(zip(laws, theta2, strict=True))
+    motion = zip(*(law.at_angle(angles) for law, angles in ways), strict=True)
     with dead_positions_unwarned():
-        state = solve_kinematics(batch, theta2, spec.omega2)
-        loads = Loads(gravity=np.array(spec.gravity) / metre)
-        torque = metre**2 * inverse_dynamics(state, stated_masses(batch, spec), loads).torque
+        state = solve_kinematics(batch, *map(np.stack, motion))
+        time = np.stack([law.time_at(angles) for law, angles in ways])
+        loads = stated_loads(spec, metre, lambda _: time)
+        torque = metre**2 * inverse_dynamics(state, stated_masses(batch, spec, metre), loads).torque
+    if spec.motor is not None and not spec.motor.steady:
+        torque = np.where([law.holds(angles) for law, angles in ways], torque, np.nan)
     return [compact(row) for row in torque.tolist()]
 
 

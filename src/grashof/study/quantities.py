@@ -11,15 +11,13 @@ import pandas as pd
 
 from grashof.analysis import (
     Kinematics,
-    Loads,
     inverse_dynamics,
     solve_kinematics,
     transmission_angle,
 )
 from grashof.problems import FourBar, LinkageSpec
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.dynamics_spec import metres
-from grashof.study.sweep import masses_of
+from grashof.study.study import LinkageStudy
 
 Curve = Callable[[Kinematics], FloatArray]
 # Keys of the joint forces (f32: on link 2 by link 3), and the joints that they act in.
@@ -85,13 +83,12 @@ def kinematic_quantities(spec: LinkageSpec) -> list[Quantity]:
     return found
 
 
-def dynamic_quantities(spec: LinkageSpec) -> list[Quantity]:
-    """Torque, power and forces in N, N m and W, whatever the length unit; none without masses."""
-    masses = masses_of(spec)
-    if masses is None or spec.dynamics is None:
+def dynamic_quantities(study: LinkageStudy) -> list[Quantity]:
+    """Torque, power and forces in N, N m and W, whatever the length unit; none where nothing acts."""
+    masses = study.masses
+    if masses is None:
         return []
-    metre = metres(spec.length_unit)
-    loads = Loads(gravity=np.array(spec.dynamics.gravity) / metre)
+    metre, loads = study.metre, study.loads
 
     def of(name: str) -> Curve:
         return lambda s: getattr(inverse_dynamics(s, masses, loads), name)

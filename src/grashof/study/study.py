@@ -6,11 +6,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from grashof.analysis import Kinematics, Loads, Masses
+from grashof.analysis import Kinematics, Loads, Masses, stated_loads, stated_masses
 from grashof.problems import FourBar, LinkageSpec
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.checks import refuse
 from grashof.problems.values.dynamics_spec import metres
-from grashof.study.sweep import Sweep, masses_of
+from grashof.study.sweep import Sweep
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,8 +43,12 @@ class LinkageStudy:
 
     @classmethod
     def of(cls, spec: LinkageSpec, asked: Asked) -> LinkageStudy:
-        """The study of a linkage; `ProblemError` where it closes at no driver angle."""
-        return cls(Sweep.of(spec, asked.speed_rpm), asked)
+        """The study of a linkage; `ProblemError` where it has no motion, or a load does not last for it."""
+        sweep = Sweep.of(spec, asked.speed_rpm)
+        if spec.dynamics is not None:
+            lasts = max(law.duration for law in sweep.laws)
+            refuse(spec.dynamics.too_short(lasts, f"the motion at {sweep.speed_rpm:g} rpm"))
+        return cls(sweep, asked)
 
     @property
     def spec(self) -> LinkageSpec:
@@ -57,14 +62,19 @@ class LinkageStudy:
 
     @property
     def masses(self) -> Masses | None:
-        """Of the links, kg and the length unit; None where the file states none."""
-        return masses_of(self.spec)
+        """Of the links, kg and the length unit; None where the file states nothing that takes a torque."""
+        given = self.spec.dynamics
+        if given is None or not given.acts:
+            return None
+        return stated_masses(self.linkage, given, self.metre)
 
     @property
     def loads(self) -> Loads:
         """What acts on the links, in kg, s and the length unit: newtons over `metre`."""
         given = self.spec.dynamics
-        return Loads() if given is None else Loads(gravity=np.array(given.gravity) / self.metre)
+        if given is None or not given.acts:
+            return Loads()
+        return stated_loads(given, self.metre, lambda state: self.sweep.time(state.theta2))
 
     @property
     def metre(self) -> float:

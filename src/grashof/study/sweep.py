@@ -11,17 +11,18 @@ from itertools import pairwise
 import numpy as np
 
 from grashof.analysis import (
+    DriverLaw,
+    DriverMotion,
     Kinematics,
-    Masses,
     driver_ranges,
     full_rotation,
     solve_kinematics,
-    stated_masses,
     transmission_angle,
 )
 from grashof.problems import DeadPositionWarning, FourBar, LinkageSpec, ProblemError
-from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
 from grashof.problems.values.checks import GREATEST, number_within
+from grashof.problems.values.motor import MotorSpec
 
 INSET = 1e-6  # rad: extremes of rates are sought so far from a dead position
 _DEAD = 1e-7  # sin(theta4 - theta3), as `solve_kinematics` counts it
@@ -74,8 +75,33 @@ class Sweep:
         return "over the turn" if self.turns else "over the travel"
 
     def state(self, theta2: FloatArray) -> Kinematics:
-        """Kinematics at driver angles, rad."""
-        return solve_kinematics(self.spec.linkage, theta2, self.speed_rpm * TURN / 60)
+        """Kinematics at driver angles, rad, of one range or another."""
+        first, *others = self.laws
+        motion = first.at_angle(theta2)
+        for law, ends in zip(others, self.ranges[1:], strict=True):
+            inside, pairs = _within(theta2, ends), zip(law.at_angle(theta2), motion, strict=True)
+            motion = DriverMotion(*(np.where(inside, *pair) for pair in pairs))
+        return solve_kinematics(self.spec.linkage, *motion)
+
+    def time(self, theta2: FloatArray) -> FloatArray:
+        """Time from the start of a turn, or of a range, at driver angles, s; NaN at no speed."""
+        first, *others = self.laws
+        time = first.time_at(theta2)
+        for law, ends in zip(others, self.ranges[1:], strict=True):
+            time = np.where(_within(theta2, ends), law.time_at(theta2), time)
+        return time
+
+    @property
+    def laws(self) -> list[DriverLaw]:
+        """How the driver goes through each range: up it, or down it where it turns clockwise."""
+        dynamics, omega2 = self.spec.dynamics, self.speed_rpm * TURN / 60
+        motor = (dynamics.motor if dynamics is not None else None) or MotorSpec()
+        return [
+            DriverLaw(low, high - low, omega2, motor)
+            if omega2 >= 0
+            else DriverLaw(high, low - high, omega2, motor)
+            for low, high in self.ranges
+        ]
 
     def states(self) -> list[Kinematics]:
         """Kinematics of each range at every degree, or as many angles between dead positions."""
@@ -85,6 +111,11 @@ class Sweep:
         """Driver angles of each range, rad."""
         for low, high in self.ranges:
             yield driver_angles(low, high, _STEPS, even=self.turns)
+
+
+def _within(theta2: FloatArray, ends: tuple[float, float]) -> BoolArray:
+    inside: BoolArray = (np.asarray(theta2) >= ends[0]) & (np.asarray(theta2) <= ends[1])
+    return inside
 
 
 def driver_angles(low: float, high: float, steps: int, *, even: bool) -> FloatArray:
@@ -116,9 +147,3 @@ def dead_positions_unwarned() -> Iterator[None]:
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore", DeadPositionWarning)
         yield
-
-
-def masses_of(spec: LinkageSpec) -> Masses | None:
-    """Masses that the file states, if any."""
-    given = spec.dynamics
-    return stated_masses(spec.linkage, given) if given is not None and given.has_masses else None

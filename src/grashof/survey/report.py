@@ -70,7 +70,7 @@ def report_on(spec: LinkageSpec, asked: Asked | None = None) -> LinkageReport:
     with dead_positions_unwarned():
         states, quantities = sweep.states(), kinematic_quantities(spec)
         tables = {"kinematics": table_of(quantities, states)}
-        if dynamic := dynamic_quantities(spec):
+        if dynamic := dynamic_quantities(study):
             tables["dynamics"] = table_of(dynamic, states)
         tables["extremes"] = extremes_table(sweep, quantities + dynamic)
         facts = tuple(facts_of(sweep, masses, tables))

@@ -83,7 +83,7 @@ def _combined(study: Study, source: Source, values: Mapping[str, Any]) -> Combin
             with noted(wrong):
                 document = assigned(document, parts, value)
         with noted(wrong):
-            text = problem_toml(problem_from(document, source.name))
+            text = problem_toml(problem_from(document, source.name, source.folder))
         text = "" if wrong else text
     words = [source.label] if source.label else []
     label = ", ".join([*words, *(f"{key} = {value}" for key, value in values.items())])

@@ -50,6 +50,8 @@ class Source:
         The same in words.
     wrong : str
         Why the file is none; empty where it is one.
+    folder : Path, optional
+        Where it is; its tables of loads are relative to that.
     """
 
     name: str
@@ -57,6 +59,7 @@ class Source:
     document: dict[str, Any]
     label: str = ""
     wrong: str = ""
+    folder: Path | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -257,7 +260,9 @@ def _sources(document: Mapping[str, Any], folder: Path) -> tuple[Source, ...]:
     if not isinstance(table, str):
         return (base,)
     rows = target_rows(folder / table, base.document)
-    return tuple(Source(base.name, cells, laid, _row_label(cells)) for cells, laid in rows)
+    return tuple(
+        Source(base.name, cells, laid, _row_label(cells), folder=base.folder) for cells, laid in rows
+    )
 
 
 def _row_label(cells: Mapping[str, Any]) -> str:
@@ -273,9 +278,8 @@ def _base(named: str, folder: Path) -> Source:
         meant = near_miss(named, catalogue())
         hint = f"did you mean {meant}?" if meant else f"the catalogue has {', '.join(catalogue())}"
         raise ProblemError(f"{named!r} is neither a problem of the catalogue nor a file; {hint}")
-    return Source(
-        readable(path.stem), {}, document_of(file_text(path, "a problem file or its name"), str(path))
-    )
+    text = file_text(path, "a problem file or its name")
+    return Source(readable(path.stem), {}, document_of(text, str(path)), folder=path.parent)
 
 
 def _problems_in(folder: Path) -> tuple[Source, ...]:
@@ -288,7 +292,7 @@ def _problems_in(folder: Path) -> tuple[Source, ...]:
         wrong: list[str] = []
         with noted(wrong):
             document = document_of(file_text(path, "a problem file"), path.name)
-        found.append(Source(name, {"problem": name}, document, name, "; ".join(wrong)))
+        found.append(Source(name, {"problem": name}, document, name, "; ".join(wrong), folder))
     if not found:
         raise ProblemError(f"{folder}: has no file *.toml")
     return tuple(found)

@@ -339,6 +339,7 @@ def test_tables_that_do_not_go_together_are_all_told() -> None:
     )
     assert message("length_unit = 'm'\n" + text).splitlines() == [
         "dynamics.speed_rpm is -1; it must be a number greater than zero",
-        "dynamics has no mass; mass_per_length is needed, masses and inertias, or payload",
+        "dynamics has no mass; mass_per_length is needed, masses and inertias, density or payload, "
+        "or else loads, springs or friction",
         "requirements.same_branch is false; it must be true when objective.maximise.torque is given",
     ]

@@ -107,7 +107,8 @@ MORE = "it must be a number greater than zero"
 BAD = [
     (
         "",
-        "dynamics has no mass; mass_per_length is needed, masses and inertias, or payload",
+        "dynamics has no mass; mass_per_length is needed, masses and inertias, density or payload, "
+        "or else loads, springs or friction",
     ),
     ("masses = [1, 2, 3]", "dynamics.inertias is missing; masses and inertias are needed together"),
     ("inertias = [1, 2, 3]", "dynamics.masses is missing; masses and inertias are needed together"),
@@ -134,9 +135,9 @@ BAD = [
     ("masses = [0, 0, 0]\ninertias = [0, 0, 0]", "dynamics.masses are all zero; one at least has a mass"),
     (BARS + "speed = 10", "dynamics.speed is unknown; did you mean speed_rpm?"),
     (
-        BARS + "friction = 10",
-        "dynamics.friction is unknown; "
-        "the keys are speed_rpm, gravity, mass_per_length, masses, inertias, payload",
+        BARS + "colour = 10",
+        "dynamics.colour is unknown; the keys are speed_rpm, gravity, mass_per_length, density, masses, "
+        "inertias, centres, payload",
     ),
 ]
 

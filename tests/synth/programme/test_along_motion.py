@@ -9,7 +9,7 @@ import pytest
 
 from grashof import load, synthesize
 from grashof.analysis import Joint, Loads, inverse_dynamics, over_task, solve_kinematics
-from grashof.analysis.forces.mass import stated_masses
+from grashof.analysis.forces.stated import stated_masses
 from grashof.analysis.judge.planted import planted_motion, planted_path
 from grashof.problems import (
     DynamicsSpec,

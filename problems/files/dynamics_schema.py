@@ -1,0 +1,229 @@
+"""Tables of problem and linkage files: what a linkage weighs, what acts on it and what drives it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Any, ClassVar
+
+from pydantic import Field, ValidationInfo, field_validator
+
+from grashof.problems.files.number_table import number_table
+from grashof.problems.files.tables import Table, listed
+from grashof.problems.values.acting import (
+    OVER,
+    CounterweightSpec,
+    DamperSpec,
+    FrictionSpec,
+    LoadSpec,
+    Place,
+    SpringSpec,
+    TorsionSpringSpec,
+)
+from grashof.problems.values.dynamics_spec import DynamicsSpec
+from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.motor import PROFILES, MotorSpec
+from grashof.problems.values.section import SectionSpec
+
+Point = Annotated[list[float], listed("[u, v]")]
+# Columns of files, with or without their units.
+_PLACES = {over: (over, "over", f"{over}_deg" if over != "time" else "time_s") for over in OVER}
+_FORCE, _MOMENT = (("fx", "fx_n"), ("fy", "fy_n")), (("moment", "moment_nm"),)
+_MOTION = (("time", "time_s"), ("angle", "angle_deg"))
+
+
+class _Spec(Table):
+    """A table whose keys are the arguments of a value."""
+
+    spec: ClassVar[Callable[..., Any]]
+
+    def given(self) -> dict[str, Any]:
+        """The keys that are given, as arguments."""
+        return {key: _argument(getattr(self, key)) for key in self.model_fields_set}
+
+    def value(self) -> Any:
+        return type(self).spec(**self.given())
+
+
+def _argument(value: Any) -> Any:
+    if isinstance(value, Table):
+        return value.value()
+    return tuple(_argument(each) for each in value) if isinstance(value, list) else value
+
+
+class DynamicsTable(_Spec):
+    speed_rpm: float | None = None
+    gravity: Annotated[list[float], listed("[x, y] in m/s2")] | None = None
+    mass_per_length: float | None = None
+    density: float | None = None
+    masses: Annotated[list[float], listed("[m2, m3, m4]")] | None = None
+    inertias: Annotated[list[float], listed("[I2, I3, I4]")] | None = None
+    centres: Annotated[list[Point], listed("[[u2, v2], [u3, v3], [u4, v4]]")] | None = None
+    payload: float | None = None
+
+    @field_validator("*")
+    @classmethod
+    def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
+        pair: dict[str, Any] = {"masses": (1, 1, 1), "inertias": (1, 1, 1)}
+        besides = pair if key.field_name in (*pair, "centres") else {}
+        DynamicsSpec(**{**besides, **_SECTION, str(key.field_name): _argument(given)})
+        return given
+
+    def value(self) -> DynamicsSpec:
+        return DynamicsSpec(**_SECTION | self.given())  # the file as a whole says whether there is a section
+
+
+_SECTION: dict[str, Any] = {"section": SectionSpec(1.0, 1.0)}
+
+
+class LoadTable(_Spec):
+    spec = LoadSpec
+    link: int
+    at: Point = Field(default=[0.0, 0.0])
+    force: Annotated[list[float], listed("[fx, fy] in N")] | None = None
+    moment: float | None = None
+    values: Annotated[list[list[float]], listed("rows [place, fx, fy] or [place, moment]")] | None = None
+    over: str = "theta2"
+    table: str | None = None
+    frame: str = "global"
+
+    def given(self) -> dict[str, Any]:
+        given = super().given()
+        if (rows := given.pop("table", None)) is not None:
+            if "values" in given:
+                raise ProblemError("table is given besides values; give one of them")
+            given["values"] = rows
+        return given
+
+    @field_validator("table", mode="after")
+    @classmethod
+    def _read(cls, name: str | None, info: ValidationInfo) -> Any:
+        places = _PLACES.get(info.data.get("over", "theta2"), _PLACES["theta2"])
+        return (
+            None if name is None else number_table(_file(name, info), ((places, *_FORCE), (places, *_MOMENT)))
+        )
+
+
+class PlaceTable(_Spec):
+    telling = False
+    spec = Place
+    link: int
+    at: Point = Field(default=[0.0, 0.0])
+
+
+Between = Annotated[list[PlaceTable], listed("two places such as [{ link = 1, at = [0, 2] }, { link = 4 }]")]
+
+
+class SpringTable(_Spec):
+    spec = SpringSpec
+    between: Between
+    stiffness: float
+    free_length: float = 0.0
+
+
+class DamperTable(_Spec):
+    spec = DamperSpec
+    between: Between
+    damping: float
+
+
+class TorsionSpringTable(_Spec):
+    spec = TorsionSpringSpec
+    between: Annotated[list[int], listed("two links of a joint, such as [2, 3]")]
+    stiffness: float
+    free_angle_deg: float = 0.0
+
+
+class CounterweightTable(_Spec):
+    spec = CounterweightSpec
+    link: int
+    mass: float
+    at: Point
+
+
+class FrictionTable(_Spec):
+    spec = FrictionSpec
+    coulomb: Any = 0.0
+    pin_radius: Any = 0.0
+    viscous: Any = 0.0
+    moment: Any = 0.0
+
+
+class MotorTable(_Spec):
+    spec = MotorSpec
+    profile: Any = "constant"
+    ramp: float = 1 / 3
+    values: Annotated[list[list[float]], listed("rows [time in s, angle in deg]")] | None = None
+    gear_ratio: float = 1.0
+    gear_efficiency: float = 1.0
+    inertia: float = 0.0
+
+    def given(self) -> dict[str, Any]:
+        given = super().given()
+        if isinstance(given.get("profile"), tuple):
+            if "values" in given:
+                raise ProblemError("profile is a file and values are given besides; give one of them")
+            given["values"] = given.pop("profile")
+        return given
+
+    @field_validator("profile", mode="after")
+    @classmethod
+    def _read(cls, profile: Any, info: ValidationInfo) -> Any:
+        is_file = isinstance(profile, str) and profile not in PROFILES and profile.endswith(".csv")
+        return number_table(_file(profile, info), (_MOTION,)) if is_file else profile
+
+
+class SectionTable(_Spec):
+    spec = SectionSpec
+    width: float
+    height: float
+
+
+def _file(name: str, info: ValidationInfo) -> Path:
+    """A file named in another one; `ProblemError` where the text is not that of a file."""
+    folder = (info.context or {}).get("folder")
+    if folder is None:
+        raise ProblemError(
+            f"{info.field_name} names a file, {name}; it must be values, as this text is no file"
+        )
+    return Path(folder) / name
+
+
+class MachineTables(Table):
+    """What problem and linkage files have in common."""
+
+    dynamics: DynamicsTable | None = None
+    loads: list[LoadTable] = Field(default=[])
+    springs: list[SpringTable] = Field(default=[])
+    dampers: list[DamperTable] = Field(default=[])
+    torsion_springs: list[TorsionSpringTable] = Field(default=[])
+    counterweights: list[CounterweightTable] = Field(default=[])
+    friction: FrictionTable | None = None
+    motor: MotorTable | None = None
+    section: SectionTable | None = None
+
+    def dynamics_spec(self) -> DynamicsSpec | None:
+        """All of it as one value; None where nothing is stated."""
+        names = [name for name in MachineTables.model_fields if getattr(self, name)]
+        if not names:
+            return None
+        own = {} if self.dynamics is None else self.dynamics.given()
+        return DynamicsSpec(
+            **own, **{name: _argument(getattr(self, name)) for name in names if name != "dynamics"}
+        )
+
+
+# By their names, lists of tables included; those in lists by the names of the lists.
+MACHINE_TABLES: dict[str, type[Table]] = {
+    "dynamics": DynamicsTable,
+    "loads": LoadTable,
+    "springs": SpringTable,
+    "springs.between": PlaceTable,
+    "dampers": DamperTable,
+    "dampers.between": PlaceTable,
+    "torsion_springs": TorsionSpringTable,
+    "counterweights": CounterweightTable,
+    "friction": FrictionTable,
+    "motor": MotorTable,
+    "section": SectionTable,
+}

@@ -1,0 +1,287 @@
+"""What acts on a linkage besides weight and drive: loads, springs, dampers, friction."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from grashof.problems.values.checks import GREATEST, bounded, finite_rows, from_zero, numbers
+from grashof.problems.values.errors import ProblemError, wrong_value
+from grashof.problems.values.stated import Stated
+
+Pair = tuple[float, float]
+OVER = ("theta2", "theta4", "time")
+TURN_DEG = 360.0
+# The joints by the links that they join.
+JOINTS = ((1, 2), (2, 3), (3, 4), (1, 4))
+
+
+@dataclass(frozen=True, slots=True)
+class Place(Stated):
+    """A point of a link.
+
+    Parameters
+    ----------
+    link : int
+        1 (the ground, whose frame is the global one) to 4.
+    at : pair of float, length
+        In the link's frame: from O2, A or O4, u towards A, B or B, v to its left.
+    """
+
+    link: int
+    at: Pair = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        _one_of("link", self.link, (1, 2, 3, 4))
+        object.__setattr__(self, "at", numbers(self.at, 2, "at"))
+
+
+@dataclass(frozen=True, slots=True)
+class LoadSpec(Stated):
+    """A force on a link at a point, or a moment: constant, or over driver angle, output angle or time.
+
+    Parameters
+    ----------
+    link : int
+        2, 3 or 4.
+    at : pair of float, length
+        Of a force: its point in the link's frame.
+    force : pair of float, N, optional
+    moment : float, N m, optional
+        Counter-clockwise.
+    values : sequence of rows, optional
+        Instead of both: (place, fx, fy) or (place, moment), places rising, in deg or s. Between rows
+        the load follows a curve through them that rises and falls as they do.
+    over : str
+        What the places are: "theta2", "theta4" (deg, a whole turn) or "time" (s from the start).
+    frame : str
+        Axes of the force: "global", or "link", with which it turns.
+
+    Raises
+    ------
+    ProblemError
+        Not one of force, moment and values, or values that do not rise or close.
+
+    Examples
+    --------
+    >>> LoadSpec(4, at=(4.572, 0), force=(0, -9e3)).stated
+    {'link': 4, 'at': [4.572, 0.0], 'force': [0.0, -9000.0]}
+    """
+
+    link: int
+    at: Pair = (0.0, 0.0)
+    force: Pair | None = None
+    moment: float | None = None
+    values: tuple[tuple[float, ...], ...] | None = None
+    over: str = "theta2"
+    frame: str = "global"
+
+    def __post_init__(self) -> None:
+        _one_of("link", self.link, (2, 3, 4))
+        object.__setattr__(self, "at", numbers(self.at, 2, "at"))
+        _one_of("over", self.over, OVER)
+        _one_of("frame", self.frame, ("global", "link"))
+        given = [name for name in ("force", "moment", "values") if getattr(self, name) is not None]
+        if len(given) != 1:
+            what = " and ".join(given) or "nothing"
+            raise ProblemError(f"force is given by {what}; it must be by one of force, moment, values, table")
+        if self.force is not None:
+            object.__setattr__(self, "force", numbers(self.force, 2, "force"))
+        if self.moment is not None:
+            object.__setattr__(self, "moment", bounded(self.moment, "moment"))
+        if self.values is not None:
+            object.__setattr__(self, "values", _rows(self.values, self.over))
+        for name, plain in (("over", "theta2"), ("at", (0.0, 0.0)), ("frame", "global")):
+            needs = self.values is not None if name == "over" else not self.is_moment
+            if getattr(self, name) != plain and not needs:
+                without = "a constant load" if name == "over" else "a moment"
+                raise ProblemError(f"{name} does not go with {without}")
+
+    @property
+    def greatest(self) -> float:
+        """Its greatest size, N or N m."""
+        if self.values is None:
+            return float(np.hypot(*(self.force or (self.moment or 0.0, 0.0))))
+        return float(np.linalg.norm(np.array(self.values)[:, 1:], axis=1).max())
+
+    @property
+    def is_moment(self) -> bool:
+        """Whether it is a moment."""
+        return self.moment is not None or (self.values is not None and len(self.values[0]) == 2)
+
+
+@dataclass(frozen=True, slots=True)
+class SpringSpec(Stated):
+    """A straight spring between points of two links.
+
+    Parameters
+    ----------
+    between : pair of Place
+    stiffness : float, N/m
+    free_length : float, length
+    """
+
+    between: tuple[Place, Place]
+    stiffness: float
+    free_length: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "between", _two_places(self.between))
+        object.__setattr__(self, "stiffness", from_zero(self.stiffness, "stiffness"))
+        object.__setattr__(self, "free_length", from_zero(self.free_length, "free_length"))
+
+
+@dataclass(frozen=True, slots=True)
+class DamperSpec(Stated):
+    """A damper between points of two links.
+
+    Parameters
+    ----------
+    between : pair of Place
+    damping : float, N s/m
+    """
+
+    between: tuple[Place, Place]
+    damping: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "between", _two_places(self.between))
+        object.__setattr__(self, "damping", from_zero(self.damping, "damping"))
+
+
+@dataclass(frozen=True, slots=True)
+class TorsionSpringSpec(Stated):
+    """A spring about a joint, that turns its two links towards each other.
+
+    Parameters
+    ----------
+    between : pair of int
+        Links of a joint: 1 and 2 (O2), 2 and 3 (A), 3 and 4 (B), 1 and 4 (O4).
+    stiffness : float, N m/rad
+    free_angle_deg : float, deg
+        Angle of the second link less that of the first where it is slack, the ground's being 0.
+    """
+
+    between: tuple[int, int]
+    stiffness: float
+    free_angle_deg: float = 0.0
+
+    def __post_init__(self) -> None:
+        pair = tuple(self.between) if isinstance(self.between, Sequence) else (self.between,)
+        if len(pair) == 2 and pair[0] == pair[1]:
+            raise ProblemError(f"between joins link {pair[0]} to itself; it must be two links of a joint")
+        if tuple(sorted(pair, key=repr)) not in JOINTS:
+            raise wrong_value("between", list(pair), "two links of a joint: [1, 2], [2, 3], [3, 4] or [1, 4]")
+        free = bounded(self.free_angle_deg, "free_angle_deg")
+        in_order = pair == tuple(sorted(pair))
+        object.__setattr__(self, "between", tuple(sorted(pair)))
+        object.__setattr__(self, "free_angle_deg", free if in_order else -free)
+        object.__setattr__(self, "stiffness", from_zero(self.stiffness, "stiffness"))
+
+
+@dataclass(frozen=True, slots=True)
+class CounterweightSpec(Stated):
+    """A point mass on a link, besides its own.
+
+    Parameters
+    ----------
+    link : int
+        2, 3 or 4.
+    mass : float, kg
+    at : pair of float, length
+        In the link's frame.
+    """
+
+    link: int
+    mass: float
+    at: Pair
+
+    def __post_init__(self) -> None:
+        _one_of("link", self.link, (2, 3, 4))
+        object.__setattr__(self, "mass", from_zero(self.mass, "mass"))
+        object.__setattr__(self, "at", numbers(self.at, 2, "at"))
+
+
+@dataclass(frozen=True, slots=True)
+class FrictionSpec(Stated):
+    """Friction in the joints O2, A, B, O4: a number for each, or one for all.
+
+    Parameters
+    ----------
+    coulomb : float or four floats
+        Coefficient of friction of the pins; it needs `pin_radius`.
+    pin_radius : float or four floats, length
+    viscous : float or four floats, N m s/rad
+        Moment for each rad/s.
+    moment : float or four floats, N m
+        Of constant size, against the rotation.
+    """
+
+    coulomb: tuple[float, ...] = (0.0,)
+    pin_radius: tuple[float, ...] = (0.0,)
+    viscous: tuple[float, ...] = (0.0,)
+    moment: tuple[float, ...] = (0.0,)
+
+    def __post_init__(self) -> None:
+        for name in self.__slots__:
+            object.__setattr__(self, name, _one_or_four(getattr(self, name), name))
+        if any(self.coulomb) != any(self.pin_radius):
+            absent = "pin_radius" if any(self.coulomb) else "coulomb"
+            raise ProblemError(f"{absent} is missing; coulomb and pin_radius are needed together")
+
+    @property
+    def radius(self) -> tuple[float, ...]:
+        """Of the friction circles: moment for each unit of a joint's force, length."""
+        return tuple(np.multiply(self.coulomb, self.pin_radius).tolist())
+
+
+def _one_of(name: str, value: object, allowed: tuple[object, ...]) -> None:
+    if isinstance(value, bool) or value not in allowed:
+        named = [str(each) for each in allowed]
+        raise wrong_value(name, value, f"{', '.join(named[:-1])} or {named[-1]}")
+
+
+def _one_or_four(given: object, name: str) -> tuple[float, ...]:
+    if isinstance(given, Sequence) and not isinstance(given, str):
+        if len(given) not in (1, 4):
+            raise wrong_value(name, list(given), "a number, or four: in O2, A, B, O4")
+        each = tuple(from_zero(value, name) for value in given)
+        return each[:1] if len(set(each)) == 1 else each
+    return (from_zero(given, name),)  # type: ignore[arg-type]
+
+
+def _two_places(given: object) -> tuple[Place, Place]:
+    places = tuple(given) if isinstance(given, Sequence) else ()
+    if len(places) != 2 or not all(isinstance(place, Place) for place in places):
+        raise wrong_value("between", given, "two places, each with its link")
+    if places[0].link == places[1].link:
+        raise ProblemError(
+            f"between joins link {places[0].link} to itself; it must be places of two different links"
+        )
+    return places
+
+
+def _rows(values: object, over: str) -> tuple[tuple[float, ...], ...]:
+    rows = [tuple(row) if isinstance(row, Sequence) else (row,) for row in values or ()]  # type: ignore[attr-defined]
+    columns = len(rows[0]) if rows else 3
+    if columns not in (2, 3):
+        raise wrong_value("values[0]", list(rows[0]), f"[{over}, fx, fy] or [{over}, moment]")
+    means = f"[{over}, fx, fy]" if columns == 3 else f"[{over}, moment]"
+    table = finite_rows(rows, columns, "values", means, GREATEST)
+    if len(table) < 2:
+        raise ProblemError(f"values has {len(table)} rows; it must have two or more")
+    steps = np.diff(table[:, 0])
+    if not (steps > 0).all():
+        row = int(np.flatnonzero(~(steps > 0))[0]) + 1
+        raise ProblemError(f"values[{row}] has {over} {table[row, 0]:.15g}; it must rise from row to row")
+    if over != "time":
+        first, last = table[0, 0], table[-1, 0]
+        if abs(last - first - TURN_DEG) > 1e-9:
+            raise ProblemError(
+                f"values cover {over} {first:.15g} to {last:.15g} deg; they must cover a turn, as 0 to 360"
+            )
+        if (table[0, 1:] != table[-1, 1:]).any():
+            raise ProblemError("values end otherwise than they begin; a turn ends as it begins")
+    return tuple(tuple(row) for row in table.tolist())

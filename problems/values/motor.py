@@ -1,0 +1,82 @@
+"""What drives a linkage: how the driver's speed varies, and the gear and motor before it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from grashof.problems.values.checks import GREATEST, finite_rows, from_zero, number_within, positive_number
+from grashof.problems.values.errors import ProblemError, wrong_value
+from grashof.problems.values.stated import Stated
+
+PROFILES = ("constant", "trapezoid", "cycloid")
+_RAMP = 1 / 3
+
+
+@dataclass(frozen=True, slots=True)
+class MotorSpec(Stated):
+    """The drive of link 2.
+
+    Parameters
+    ----------
+    profile : str
+        "constant"; "trapezoid": from rest at even acceleration, then at even speed, then to rest; or
+        "cycloid": from rest to rest without a jump of acceleration (Norton, *Design of Machinery*,
+        sec. 8.3). Over a task from its first target to its last, of a linkage over each turn, or from one
+        dead position to the other; `speed_rpm` is the mean.
+    ramp : float
+        Of a trapezoid: share of the time that it takes to speed up, and to slow down.
+    values : sequence of rows, optional
+        Instead of a profile: (time in s, angle in deg), both rising: their curve, its angles stretched to the
+        motion. Its time counts, not `speed_rpm`.
+    gear_ratio : float
+        Speed of the motor over that of link 2.
+    gear_efficiency : float
+    inertia : float, kg m^2
+        Of the motor.
+
+    Raises
+    ------
+    ProblemError
+        An unknown profile, numbers outside their ranges, or values that do not rise.
+    """
+
+    profile: str = "constant"
+    ramp: float = _RAMP
+    values: tuple[tuple[float, ...], ...] | None = None
+    gear_ratio: float = 1.0
+    gear_efficiency: float = 1.0
+    inertia: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.profile not in PROFILES:
+            raise wrong_value("profile", self.profile, f"{', '.join(PROFILES)}, or the name of a CSV file")
+        object.__setattr__(self, "ramp", number_within(self.ramp, 0.01, 0.5, "ramp"))
+        if self.ramp != _RAMP and self.profile != "trapezoid":
+            raise ProblemError('ramp does not go with this profile; it needs profile = "trapezoid"')
+        ratio = number_within(positive_number(self.gear_ratio, "gear_ratio"), 0.0, GREATEST, "gear_ratio")
+        object.__setattr__(self, "gear_ratio", ratio)
+        share = number_within(self.gear_efficiency, 0.01, 1.0, "gear_efficiency")
+        object.__setattr__(self, "gear_efficiency", share)
+        object.__setattr__(self, "inertia", from_zero(self.inertia, "inertia"))
+        if self.values is not None:
+            if self.profile != "constant":
+                raise ProblemError("profile is given besides values; give one of them")
+            object.__setattr__(self, "values", _rising(self.values))
+
+    @property
+    def steady(self) -> bool:
+        """Whether link 2 turns at a steady speed."""
+        return self.profile == "constant" and self.values is None
+
+
+def _rising(values: object) -> tuple[tuple[float, ...], ...]:
+    table = finite_rows(values, 2, "values", "[time, angle]", GREATEST)  # type: ignore[arg-type]
+    if len(table) < 3:
+        raise ProblemError(f"values has {len(table)} rows; it must have three or more")
+    for column, name in enumerate(("time", "angle")):
+        for row in range(1, len(table)):
+            if not table[row, column] > table[row - 1, column]:
+                raise ProblemError(
+                    f"values[{row}] has {name} {table[row, column]:.15g}; it must rise from row to row"
+                )
+    return tuple(tuple(row) for row in table.tolist())
