@@ -43,8 +43,8 @@ class DriverLaw:
     Examples
     --------
     >>> law = DriverLaw(0.0, np.pi, 2.0, MotorSpec(profile="cycloid"))
-    >>> law.at_time(law.duration / 2).omega2.round(6), law.at_angle(np.pi / 2).alpha2.round(6)
-    (np.float64(4.0), np.float64(-0.0))
+    >>> law.at_time(law.duration / 2).omega2.round(6), law.at_angle(np.pi).omega2.round(6)
+    (np.float64(4.0), np.float64(0.0))
     """
 
     start: float

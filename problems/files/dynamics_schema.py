@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, ValidationInfo, field_validator
 
-from grashof.problems.files.number_table import number_table
+from grashof.problems.files.number_table import Names, number_table
 from grashof.problems.files.tables import Table, listed
 from grashof.problems.values.acting import (
     OVER,
@@ -20,6 +20,7 @@ from grashof.problems.values.acting import (
     SpringSpec,
     TorsionSpringSpec,
 )
+from grashof.problems.values.checks import located
 from grashof.problems.values.dynamics_spec import DynamicsSpec
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.motor import PROFILES, MotorSpec
@@ -99,9 +100,7 @@ class LoadTable(_Spec):
     @classmethod
     def _read(cls, name: str | None, info: ValidationInfo) -> Any:
         places = _PLACES.get(info.data.get("over", "theta2"), _PLACES["theta2"])
-        return (
-            None if name is None else number_table(_file(name, info), ((places, *_FORCE), (places, *_MOMENT)))
-        )
+        return None if name is None else _rows(name, info, ((places, *_FORCE), (places, *_MOMENT)))
 
 
 class PlaceTable(_Spec):
@@ -170,7 +169,7 @@ class MotorTable(_Spec):
     @classmethod
     def _read(cls, profile: Any, info: ValidationInfo) -> Any:
         is_file = isinstance(profile, str) and profile not in PROFILES and profile.endswith(".csv")
-        return number_table(_file(profile, info), (_MOTION,)) if is_file else profile
+        return _rows(profile, info, (_MOTION,)) if is_file else profile
 
 
 class SectionTable(_Spec):
@@ -179,14 +178,15 @@ class SectionTable(_Spec):
     height: float
 
 
-def _file(name: str, info: ValidationInfo) -> Path:
-    """A file named in another one; `ProblemError` where the text is not that of a file."""
+def _rows(name: str, info: ValidationInfo, kinds: Sequence[Sequence[Names]]) -> list[list[float]]:
+    """The rows of a CSV file that another file names; `ProblemError` where the text is not that of a file."""
     folder = (info.context or {}).get("folder")
     if folder is None:
-        raise ProblemError(
-            f"{info.field_name} names a file, {name}; it must be values, as this text is no file"
-        )
-    return Path(folder) / name
+        raise ProblemError(f"{info.field_name} is the file {name}; here it must be values instead")
+    try:
+        return number_table(Path(folder) / name, kinds)
+    except ProblemError as error:
+        raise located(error, str(info.field_name)) from None
 
 
 class MachineTables(Table):

@@ -144,9 +144,16 @@ def _described(error: ErrorDetails, tables: Mapping[str, type[Table]]) -> str:
         return f"{path} is missing"
     if kind == "value_error":
         lines = str(error["ctx"]["error"]).splitlines()
-        # A value type names its key from the top of the file; a box cannot know whose it is.
-        return "\n".join(line if line.startswith(path) else f"{path}.{line}" for line in lines)
+        return "\n".join(_placed(line, path) for line in lines)
     return f"{path} is {_given(error['input'])}; it must be {_WANTED.get(kind, error['msg'])}"
+
+
+def _placed(line: str, path: str) -> str:
+    """A value type names its key from the top of the file or by itself; a box cannot know whose it is."""
+    table, dot, key = path.rpartition(".")
+    if line.startswith(path):
+        return line
+    return f"{table}{dot}{line}" if line.startswith((f"{key}:", f"{key} ")) else f"{path}.{line}"
 
 
 def _unknown(location: tuple[int | str, ...], tables: Mapping[str, type[Table]]) -> str:

@@ -14,16 +14,15 @@ from grashof.synth.programme.along_motion import (
     AGREES,
     ALONG,
     INVERSE,
-    LOADS,
     MOST_PEAKS,
-    Instant,
-    loads,
     magnitudes,
     value_of,
 )
 from grashof.synth.programme.builder import Builder, Fill, always
 from grashof.synth.programme.constraints import Places, Symbols, cross, vector
+from grashof.synth.programme.driver_way import drive_of, driver_at
 from grashof.synth.programme.formulas import FORMULAS, Part, parts_of, range_of
+from grashof.synth.programme.instant import Instant
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import Form
@@ -137,15 +136,14 @@ def _peak(build: Builder, form: Form, x: Unknowns, places: Places, key: str) -> 
     on_coupler = Vector(ca.dot(coupler, arm) / x.r[2], cross(coupler, arm) / x.r[2])
     ground, lengths = vector(x.o4 - x.o2), ca.vertsplit(x.r)
     unit = build.parameter(lambda scaled, start: peak_unit(form, scaled, start, key))
-    load = ca.vertsplit(build.parameter(lambda scaled, _: loads(scaled.problem), LOADS))
+    omega2 = build.parameter(lambda scaled, _: drive_of(scaled.problem)[1])
     added = ca.vertsplit(build.parameter(lambda _, start: _padded(start.peaks_at.get(key, ())), ADDED))
     peak = build.unknown(key, 1, lambda *_: 1.0, _most(form, key))
     last = x.theta2[0] + x.direction * TURN if form.closed else x.theta2[form.targets - 1]
     for share in (*np.linspace(0, 1, form.grid), *added):
-        at = Instant.of(
-            ground, lengths, on_coupler, x.assembly, x.theta2[0] + share * (last - x.theta2[0]), load
-        )
-        for value in ALONG[key](at):
+        driver = driver_at(form.motor, omega2, share, x.theta2[0], last, x.direction)
+        at = Instant.of(vector(x.o2), ground, lengths, on_coupler, x.assembly, driver)
+        for value in ALONG[key](at, form.burden):
             if isinstance(value, Vector):
                 build.row(peak**2 - (value / unit).square)
             else:

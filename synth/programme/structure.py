@@ -7,9 +7,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.problems import FourBar, Rotatability, TransmissionOver
-from grashof.problems.values.quantities import Over
-from grashof.problems.values.requirements import LIMITS
+from grashof.problems.values.motor import MotorSpec
+from grashof.problems.values.quantities import Needs, Over
+from grashof.problems.values.requirements import LIMITS, QUANTITIES
 from grashof.synth.programme.along_motion import ALONG
+from grashof.synth.programme.burden import Burden
+from grashof.synth.programme.driver_way import drive_of
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 
@@ -44,7 +47,11 @@ class Form:
     own_goal : bool
         The user's own objective decides.
     grid : int
-        At how many driver angles what varies along the motion is bounded.
+        At how many instants what varies along the motion is bounded.
+    burden : Burden or None
+        What takes the torque and forces that are bounded; None where none are.
+    motor : MotorSpec or None
+        How the driver goes where anything is bounded along the motion.
     closed : bool
         The task motion is a whole turn.
     keep_out : tuple of str
@@ -73,6 +80,8 @@ class Form:
     goals: tuple[str, ...]
     own_goal: bool
     grid: int
+    burden: Burden | None
+    motor: MotorSpec | None
     closed: bool
     keep_out: tuple[str, ...]
     stay: bool
@@ -111,6 +120,8 @@ class Form:
             goals=() if plain else tuple(start.goals),
             own_goal=not plain and start.objective is None,
             grid=_grid_size(start, closed),
+            burden=Burden.of(scaled.problem),
+            motor=drive_of(scaled.problem)[0],
             closed=closed,
             keep_out=points_held(scaled),
             stay=start.stay,
@@ -119,7 +130,11 @@ class Form:
             most_error=bool(np.isfinite(start.most_error)),
             zoned=start.zoned,
         )
-        return made if made.along else replace(made, grid=0)  # one programme for motions short and long
+        # One programme for motions short and long, and whatever acts.
+        if not made.along:
+            return replace(made, grid=0, burden=None, motor=None)
+        heavy = any(QUANTITIES[key].needs is Needs.DYNAMICS for key in made.along)
+        return made if heavy else replace(made, burden=None)
 
     def places_of(self, name: str) -> int:
         """At how many places a point is held in free regions."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from grashof.problems import DynamicsSpec, Problem, Requirements, Task
@@ -118,13 +120,37 @@ def _search(problem: Problem) -> str:
 
 
 def _driven(spec: DynamicsSpec) -> str:
-    links = (
-        "uniform links" if spec.masses is None else f"links of {', '.join(f'{m:g}' for m in spec.masses)} kg"
-    )
-    each = "" if spec.mass_per_length is None else f" of {spec.mass_per_length:g} kg a length unit"
     x, y = spec.gravity
-    payload = f", payload {spec.payload:g} kg" if spec.payload else ""
-    return f"dynamics: {links}{each}{payload}; driver at {spec.speed_rpm:g} rpm; gravity {x:g}, {y:g} m/s2"
+    every = [_links(spec), *_acting(spec)]
+    every += [f"payload {spec.payload:g} kg"] if spec.payload else []
+    return f"dynamics: {', '.join(every)}; driver {_motor(spec)}; gravity {x:g}, {y:g} m/s2"
+
+
+def _links(spec: DynamicsSpec) -> str:
+    if spec.masses is not None:
+        centres = "" if spec.centres is None else ", centres given"
+        return f"links of {', '.join(f'{m:g}' for m in spec.masses)} kg{centres}"
+    if spec.mass_per_length is not None:
+        return f"uniform links of {spec.mass_per_length:g} kg a length unit"
+    return "massless links" if spec.density is None else f"uniform links of {spec.density:g} kg/m3"
+
+
+def _acting(spec: DynamicsSpec) -> Iterator[str]:
+    """What acts besides weight, counted."""
+    names = {"loads": "load", "springs": "spring", "dampers": "damper", "counterweights": "counterweight"}
+    names |= {"torsion_springs": "torsion spring"}
+    for key, noun in names.items():
+        if entries := getattr(spec, key):
+            yield counted(len(entries), noun)
+    if spec.friction is not None:
+        yield "friction"
+
+
+def _motor(spec: DynamicsSpec) -> str:
+    if spec.motor is not None and spec.motor.values is not None:
+        return f"by a table of {spec.turn_time:g} s"
+    profile = "" if spec.motor is None or spec.motor.steady else f"from rest to rest ({spec.motor.profile}) "
+    return f"{profile}at {spec.speed_rpm:g} rpm"
 
 
 def _task(task: Task, unit: str) -> str:

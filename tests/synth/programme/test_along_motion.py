@@ -9,7 +9,8 @@ import pytest
 
 from grashof import load, synthesize
 from grashof.analysis import Joint, Loads, inverse_dynamics, over_task, solve_kinematics
-from grashof.analysis.forces.stated import stated_masses
+from grashof.analysis.forces.stated import stated_loads, stated_masses
+from grashof.analysis.judge.over_task import driver_law
 from grashof.analysis.judge.planted import planted_motion, planted_path
 from grashof.problems import (
     DynamicsSpec,
@@ -21,12 +22,27 @@ from grashof.problems import (
     ProblemError,
     Requirements,
 )
+from grashof.problems.values.acting import (
+    CounterweightSpec,
+    DamperSpec,
+    FrictionSpec,
+    LoadSpec,
+    Place,
+    SpringSpec,
+    TorsionSpringSpec,
+)
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.dynamics_spec import metres
+from grashof.problems.values.motor import MotorSpec
 from grashof.problems.values.requirements import QUANTITIES
+from grashof.problems.values.section import SectionSpec
 from grashof.synth import Result
-from grashof.synth.programme.along_motion import ALONG, Instant, loads
+from grashof.synth.programme.along_motion import ALONG
+from grashof.synth.programme.burden import Burden
+from grashof.synth.programme.driver_way import drive_of, driver_at
 from grashof.synth.programme.exchange import SOLVED, solve_by_exchange
+from grashof.synth.programme.frame import Frame
+from grashof.synth.programme.instant import Instant
 from grashof.synth.programme.nonlinear_programme import solve
 from grashof.synth.programme.on_symbols import numpy_on_symbols
 from grashof.synth.programme.scaled_problem import ScaledProblem
@@ -37,11 +53,45 @@ from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.burmester import trace_four_pose_curves
 
 TORQUE = Objective(transmission=0, torque=1)
+CARD = ((0, 0.3, -9), (90, 0.4, -20), (180, -0.1, -20), (250, 0, -11), (360, 0.3, -9))
+LOADED = DynamicsSpec(
+    density=800.0,
+    section=SectionSpec(0.05, 0.02),
+    payload=1.0,
+    speed_rpm=30,
+    gravity=(0.5, -9.81),
+    loads=(
+        LoadSpec(4, at=(-0.7, 0.1), values=CARD),
+        LoadSpec(3, at=(0.2, 0.3), force=(1.0, 2.0), frame="link"),
+        LoadSpec(2, moment=-0.7),
+        LoadSpec(4, values=((0, 1), (120, -1), (360, 1)), over="theta4"),
+        LoadSpec(3, at=(0.1, 0), values=((0, 1, 2), (1, -1, 0), (5, 2, 2)), over="time"),
+    ),
+    springs=(SpringSpec((Place(1, (0.2, 0.9)), Place(4, (0.3, 0.1))), 30.0, 0.4),),
+    dampers=(DamperSpec((Place(2, (0.2, 0.9)), Place(4, (0.3, 0.1))), 4.0),),
+    torsion_springs=(TorsionSpringSpec((3, 2), 2.0, 40.0), TorsionSpringSpec((1, 4), 1.0)),
+    counterweights=(CounterweightSpec(2, 3.0, (-0.4, 0.1)),),
+    friction=FrictionSpec(
+        coulomb=0.001, pin_radius=(0.01, 0.02, 0.01, 0.03), viscous=0.1, moment=(0, 0.1, 0, 0)
+    ),
+)
 DRIVEN = {
     "bars": ("m", DynamicsSpec(2.0, payload=3.0, speed_rpm=40, gravity=(1.0, -9.81))),
     "masses": ("mm", DynamicsSpec(masses=(0.4, 0.5, 0.6), inertias=(9.0, 0.7, 0.8), gravity=(0, -9.81))),
     "weightless": ("in", DynamicsSpec(masses=(0, 0.5, 0), inertias=(0, 0, 2.0), payload=0.1, speed_rpm=3)),
 }
+RESTS = ((0, 0), (1, 20), (2, 70), (4, 100))  # s, deg
+DRIVEN |= {
+    name: (unit, replace(LOADED, motor=motor))
+    for name, unit, motor in (
+        ("loaded", "m", None),
+        ("loaded in inches", "in", None),
+        ("trapezoid", "m", MotorSpec(profile="trapezoid", ramp=0.2)),
+        ("cycloid", "mm", MotorSpec(profile="cycloid")),
+        ("measured", "m", MotorSpec(values=RESTS)),
+    )
+}
+ENDS = (-1.0, 3.5)  # rad, of the motion
 GRID_ERROR = 2e-3  # by which the peak at the grid falls short of the true one
 
 
@@ -50,38 +100,42 @@ def magnitude(values: list[Any]) -> Any:
     return np.max([np.hypot(v.x, v.y) if isinstance(v, Vector) else np.abs(v) for v in values], axis=0)
 
 
-def found(problem: Problem, linkage: FourBar, theta2: FloatArray, key: str) -> FloatArray:
-    """The formula of the search on arrays, in the units of the judge."""
-    size = problem.task.size
+def placed(problem: Problem, linkage: FourBar) -> tuple[Vector, Vector, FloatArray, Vector, float]:
+    """A linkage in the frame of the search."""
+    frame, size = Frame.of(problem.task), problem.task.size
+    o2 = frame.inward(linkage.o2)
     ground, arm = (Vector(*(pair / size)) for pair in (linkage.o4 - linkage.o2, linkage.coupler_point))
-    lengths = linkage.lengths / size
-    at = Instant.of(ground, lengths, arm, float(linkage.assembly), theta2, loads(problem))
-    values: FloatArray = magnitude(ALONG[key](at)) * problem.scale(QUANTITIES[key])
+    return Vector(o2.real, o2.imag), ground, linkage.lengths / size, arm, float(linkage.assembly)
+
+
+def found(problem: Problem, linkage: FourBar, share: FloatArray, key: str) -> FloatArray:
+    """The formula of the search on arrays, in the units of the judge."""
+    at = Instant.of(*placed(problem, linkage), driver_at(*drive_of(problem), share, *ENDS, 1.0))
+    values: FloatArray = magnitude(ALONG[key](at, Burden.of(problem))) * problem.scale(QUANTITIES[key])
     return values
 
 
-def on_symbols(problem: Problem, linkage: FourBar, theta2: FloatArray, key: str) -> FloatArray:
+def on_symbols(problem: Problem, linkage: FourBar, share: FloatArray, key: str) -> FloatArray:
     """The same formula on the symbols of CasADi."""
-    size, angle = problem.task.size, ca.SX.sym("theta2")
-    ground, arm = (
-        Vector(*map(ca.SX, pair / size)) for pair in (linkage.o4 - linkage.o2, linkage.coupler_point)
-    )
+    time, (o2, ground, lengths, arm, assembly) = ca.SX.sym("time"), placed(problem, linkage)
+    o2, ground, arm = (Vector(ca.SX(v.x), ca.SX(v.y)) for v in (o2, ground, arm))
     with numpy_on_symbols():
-        at = Instant.of(ground, linkage.lengths / size, arm, float(linkage.assembly), angle, loads(problem))
-        values = [np.hypot(v.x, v.y) if isinstance(v, Vector) else np.abs(v) for v in ALONG[key](at)]
-    curve = ca.Function("curve", [angle], [ca.mmax(ca.vertcat(*values))])
-    return np.asarray(curve(theta2[None])).ravel() * problem.scale(QUANTITIES[key])
+        driver = driver_at(*drive_of(problem), time, *ENDS, 1.0)
+        every = ALONG[key](Instant.of(o2, ground, lengths, arm, assembly, driver), Burden.of(problem))
+        values = [np.hypot(v.x, v.y) if isinstance(v, Vector) else np.abs(v) for v in every]
+    curve = ca.Function("curve", [time], [ca.mmax(ca.vertcat(*values))])
+    return np.asarray(curve(share[None])).ravel() * problem.scale(QUANTITIES[key])
 
 
-def curves(problem: Problem, linkage: FourBar, theta2: FloatArray) -> dict[str, FloatArray]:
+def curves(problem: Problem, linkage: FourBar, share: FloatArray) -> dict[str, FloatArray]:
     """Every quantity by the analysis."""
-    spec, metre = problem.dynamics, metres(problem.length_unit)
+    spec, metre, law = problem.dynamics, metres(problem.length_unit), driver_law(problem, *ENDS)
     assert spec is not None
-    state = solve_kinematics(linkage, theta2, spec.omega2)
-    heavy = Loads(gravity=np.array(spec.gravity) / metre)
-    dynamics = inverse_dynamics(state, stated_masses(linkage, spec), heavy)
+    state = solve_kinematics(linkage, *law.at_time(share * law.duration))
+    loads = stated_loads(spec, metre, lambda _: share * law.duration)
+    dynamics = inverse_dynamics(state, stated_masses(linkage, spec, metre), loads)
     return {
-        "mechanical_advantage": np.abs(state.omega4 / state.omega2),  # its inverse
+        "mechanical_advantage": np.abs(solve_kinematics(linkage, state.theta2).omega4),  # its inverse
         "omega4_max": np.abs(state.omega4),
         "point_speed_max": state.p.speed,
         "point_acceleration_max": state.p.acceleration_magnitude,
@@ -103,16 +157,16 @@ def judged(problem: Problem, linkage: FourBar, theta2: FloatArray) -> FloatArray
 @pytest.mark.parametrize("kind", DRIVEN)
 def test_formulas_agree_with_the_judge_on_arrays_and_on_symbols(kind: str) -> None:
     unit, spec = DRIVEN[kind]
-    theta2 = np.linspace(-3, 9, 73)
+    share = (np.arange(73) + 0.5) / 73
     for seed in range(50):
         task, linkage = planted_motion(np.random.default_rng(seed), poses=4)
         problem = Problem(task=task, length_unit=unit, dynamics=spec)
-        for key, expected in curves(problem, linkage, theta2).items():
+        for key, expected in curves(problem, linkage, share).items():
             near = 1e-9 * expected.max()
-            np.testing.assert_allclose(found(problem, linkage, theta2, key), expected, rtol=0, atol=near)
+            np.testing.assert_allclose(found(problem, linkage, share, key), expected, rtol=0, atol=near)
             if seed < 6:
                 np.testing.assert_allclose(
-                    on_symbols(problem, linkage, theta2, key), expected, rtol=0, atol=near
+                    on_symbols(problem, linkage, share, key), expected, rtol=0, atol=near
                 )
 
 

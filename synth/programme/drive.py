@@ -1,0 +1,168 @@
+"""What a burden takes: the drive torque and the joint forces of a linkage at an instant.
+
+Written once for arrays and for CasADi symbols, as in `grashof.synth.programme.formulas`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from grashof.problems.values.acting import JOINTS
+from grashof.synth.programme.burden import Burden, Mass, Push
+from grashof.synth.programme.driver_way import pieces
+from grashof.synth.programme.instant import Instant
+from grashof.synth.programme.vector import Vector
+
+_TURN_DEG = 360.0
+_FRICTION_ROUNDS = 3  # each takes the joint forces of the last
+_TINY = 1e-30  # under roots
+
+
+def drive_torque(at: Instant, burden: Burden) -> list[Any]:
+    """Virtual work: T = sum of (m (a - g) - F) . dr + (I alpha - M) dtheta, by the driver angle."""
+    moments = _joint_moments(at, burden)
+    torque: Any = 0.0
+    for link, arm, force in _forces(at, burden):
+        torque = torque + force.dot(at.moved(link, arm))
+    for link, moment in _moments(at, burden):
+        torque = torque + moment * at.speed(link)
+    for joint, moment in enumerate(moments):
+        torque = torque - moment * _opening(at, joint)
+    return [torque]
+
+
+def joint_forces(at: Instant, burden: Burden) -> list[Any]:
+    """Forces in O2, A, B and O4, friction in the joints included."""
+    return _reactions(at, burden, _joint_moments(at, burden))
+
+
+def _reactions(at: Instant, burden: Burden, moments: list[Any]) -> list[Any]:
+    """Forces in O2, A, B and O4, from moments of link 3 about A and of link 4 about O4."""
+    force: dict[int, Any] = {2: Vector(0.0, 0.0), 3: Vector(0.0, 0.0), 4: Vector(0.0, 0.0)}
+    about: dict[int, Any] = {2: 0.0, 3: moments[2] - moments[1], 4: -moments[2] - moments[3]}
+    for link, arm, demand in _forces(at, burden):
+        force[link] = force[link] + demand
+        about[link] = about[link] + arm.cross(demand)
+    for link, moment in _moments(at, burden):
+        about[link] = about[link] + moment
+    # F43, by link 4 on link 3: AB x F43 = about A and O4B x F43 = -about O4.
+    in_b = (-about[4] * at.coupler - about[3] * at.output) / at.output.cross(at.coupler)
+    in_a = force[3] - in_b  # by link 2 on link 3
+    return [force[2] + in_a, in_a, in_b, force[4] + in_b]
+
+
+def _forces(at: Instant, burden: Burden) -> Iterator[tuple[int, Vector, Vector]]:
+    """Link, place from the origin of its frame, and the force that the joints have to give there."""
+    weight = Vector(*burden.weight)
+    for each in burden.masses:
+        mass, _, arm = _body(at, each)
+        yield each.link, arm, mass * (burden.inertia * at.acceleration(each.link, arm) - weight)
+    for push in burden.pushes:
+        if not push.moment:
+            force = Vector(*_values(at, push))
+            if push.turning:
+                along = at.link(push.link)
+                force = (force.x * along + force.y * along.left) / np.sqrt(along.square)
+            yield push.link, at.on_link(push.link, push.at), -force
+    for pull in burden.pulls:
+        first, second = (at.place(*end) for end in zip(pull.links, pull.places, strict=True))
+        rates = [
+            at.velocity(link, at.on_link(link, place)) if link != 1 else Vector(0.0, 0.0)
+            for link, place in zip(pull.links, pull.places, strict=True)
+        ]
+        way = second - first
+        force = pull.stiffness * way
+        if pull.free_length or pull.damping:
+            along = way / np.sqrt(way.square + _TINY)
+            slack = pull.damping * along.dot(rates[1] - rates[0]) - pull.stiffness * pull.free_length
+            force = force + slack * along
+        for link, place, demand in zip(pull.links, pull.places, (-force, force), strict=True):
+            if link != 1:
+                yield link, at.on_link(link, place), demand
+
+
+def _moments(at: Instant, burden: Burden) -> Iterator[tuple[int, Any]]:
+    """Link, and the moment that it takes besides that of forces."""
+    for each in burden.masses:
+        inertia = _body(at, each)[1]
+        if each.inertia or each.per_size:
+            yield each.link, burden.inertia * inertia * at.turned(each.link)
+    for push in burden.pushes:
+        if push.moment:
+            (moment,) = _values(at, push)
+            yield push.link, -moment
+
+
+def _body(at: Instant, mass: Mass) -> tuple[Any, Any, Vector]:
+    """Mass, inertia about its centre, and the centre from the origin of its link's frame."""
+    if mass.at_point:
+        return mass.mass, 0.0, at.point
+    if not mass.per_size:
+        return mass.mass, mass.inertia, at.on_link(mass.link, mass.place)
+    square = at.link(mass.link).square
+    bar = mass.per_size * np.sqrt(square)
+    return bar, bar * (square + mass.width**2) / 12, at.on_link(mass.link, None)
+
+
+def _values(at: Instant, push: Push) -> list[Any]:
+    """Components of a force or moment: constant, or of the curve through its rows."""
+    if not push.over:
+        return list(push.values)
+    if push.over == "time":
+        place = at.driver.time
+    else:
+        degrees = np.degrees(1.0) * at.turn(2 if push.over == "theta2" else 4)
+        place = push.places[0] + np.remainder(degrees - push.places[0], _TURN_DEG)
+    return [_curve(push, column, place) for column in range(len(push.rows[0]))]
+
+
+def _curve(push: Push, column: int, place: Any) -> Any:
+    """The monotone cubic through a column; a sum of what each piece adds, so that nothing branches."""
+    places, values = np.array(push.places), np.array(push.rows)[:, column]
+    if push.over != "time":  # its slopes look at the neighbours on the other turn
+        beside = min(2, len(places) - 1)
+        places = np.concatenate(
+            [places[-1 - beside : -1] - _TURN_DEG, places, places[1 : 1 + beside] + _TURN_DEG]
+        )
+        values = np.concatenate([values[-1 - beside : -1], values, values[1 : 1 + beside]])
+    value: Any = values[0]
+    for (cubic, square, slope), low, high in zip(
+        pieces(places, values), places[:-1], places[1:], strict=True
+    ):
+        way = np.minimum(np.maximum(place - low, 0.0), high - low)
+        value = value + ((cubic * way + square) * way + slope) * way
+    return value
+
+
+def _opening(at: Instant, joint: int) -> Any:
+    """Derivative of a joint's angle, its second link against its first."""
+    first, second = JOINTS[joint]
+    return at.speed(second) - at.speed(first)
+
+
+def _joint_moments(at: Instant, burden: Burden) -> list[Any]:
+    """On the second link of each joint: of torsion springs and friction."""
+    moments: list[Any] = [0.0] * len(JOINTS)
+    for joint, stiffness, free in burden.windings:
+        first, second = JOINTS[joint]
+        angle = at.turn(second) - at.turn(first) - free
+        moments[joint] = moments[joint] - stiffness * (np.remainder(angle + np.pi, 2 * np.pi) - np.pi)
+    for joint in range(len(JOINTS)):
+        rate = at.driver.pace * _opening(at, joint)
+        if burden.viscous[joint]:
+            moments[joint] = moments[joint] - burden.viscous[joint] * rate
+        if burden.constant[joint]:
+            moments[joint] = moments[joint] - burden.constant[joint] * np.sign(rate)
+    if not any(burden.radius):
+        return moments
+    known = moments
+    for _ in range(_FRICTION_ROUNDS):
+        forces = _reactions(at, burden, moments)
+        moments = [
+            moment - radius * np.sqrt(force.square + _TINY) * np.sign(at.driver.pace * _opening(at, joint))
+            for joint, (moment, radius, force) in enumerate(zip(known, burden.radius, forces, strict=True))
+        ]
+    return moments

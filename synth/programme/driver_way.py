@@ -1,0 +1,92 @@
+"""How the driver goes from the first target to the last: as analysis has it, by formulas of its own.
+
+Written once for arrays and for CasADi symbols, as in `grashof.synth.programme.formulas`.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import scipy
+
+from grashof.problems import Problem
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.motor import MotorSpec
+from grashof.synth.programme.instant import Moment
+
+
+def driver_at(
+    motor: MotorSpec | None, omega2: float, share: Any, first: Any, last: Any, sense: Any
+) -> Moment:
+    """The driver at shares of the time from the first target to the last.
+
+    Parameters
+    ----------
+    motor : MotorSpec, optional
+        Steady speed without it.
+    omega2 : float, rad/s
+        Mean speed.
+    share
+        Of the time, from 0 to 1; where the speed is steady, of the way.
+    first, last : rad
+    sense
+        +1 or -1, that of the rotation.
+    """
+    turn = sense * (last - first)
+    if motor is None or motor.steady:
+        return Moment(first + share * (last - first), sense, 0.0, share * turn / omega2)
+    way, rate, bend = _profile(motor, share)
+    pace = turn / (omega2 * _lasts(motor)) if motor.values is not None else 1.0
+    time = share * _lasts(motor) if motor.values is not None else share * turn / omega2
+    return Moment(first + way * (last - first), sense * pace * rate, sense * pace**2 * bend / turn, time)
+
+
+def drive_of(problem: Problem) -> tuple[MotorSpec | None, float]:
+    """The motor of a problem and its mean speed, rad/s."""
+    spec = problem.dynamics
+    return (None, 1.0) if spec is None else (spec.motor, spec.omega2)
+
+
+def _lasts(motor: MotorSpec) -> float:
+    rows = motor.values or ()
+    return rows[-1][0] - rows[0][0]
+
+
+def _profile(motor: MotorSpec, share: Any) -> tuple[Any, Any, Any]:
+    """Share of the way, with its first two derivatives by the share of the time."""
+    if motor.values is not None:
+        rows = np.array(motor.values)
+        return _cubics(*((rows - rows[0]) / (rows[-1] - rows[0])).T, share)
+    if motor.profile == "cycloid":
+        phase = 2 * np.pi * share
+        return share - np.sin(phase) / (2 * np.pi), 1 - np.cos(phase), 2 * np.pi * np.sin(phase)
+    ramp = motor.ramp
+    top = 1 / (1 - ramp)
+    rising, even, falling = (
+        np.minimum(np.maximum(share - low, 0.0), high - low)
+        for low, high in ((0.0, ramp), (ramp, 1 - ramp), (1 - ramp, 1.0))
+    )
+    way = top * (rising**2 / (2 * ramp) + even + falling - falling**2 / (2 * ramp))
+    bend = top / ramp * (1.0 * (share <= ramp) - 1.0 * (share >= 1 - ramp))
+    return way, top / ramp * (rising - falling), bend
+
+
+def _cubics(places: FloatArray, values: FloatArray, at: Any) -> tuple[Any, Any, Any]:
+    """The monotone cubic curve through values, with its first two derivatives."""
+    value, rate, bend = values[0], 0.0, 0.0
+    for (cubic, square, slope), low, high in zip(
+        pieces(places, values), places[:-1], places[1:], strict=True
+    ):
+        way = np.minimum(np.maximum(at - low, 0.0), high - low)
+        value = value + ((cubic * way + square) * way + slope) * way
+        inside = 1.0 * (at >= low) * (at < high) if high < places[-1] else 1.0 * (at >= low)
+        rate = rate + inside * ((3 * cubic * way + 2 * square) * way + slope)
+        bend = bend + inside * (6 * cubic * way + 2 * square)
+    return value, rate, bend
+
+
+def pieces(places: FloatArray, values: FloatArray) -> FloatArray:
+    """Coefficients of (x - place)^3, ^2, ^1 in each piece of the monotone cubic curve, shape (N - 1, 3)."""
+    coefficients: FloatArray = scipy.interpolate.PchipInterpolator(places, values).c[:3].T
+    return coefficients
