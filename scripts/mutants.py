@@ -111,7 +111,62 @@ payload = 2
 _MAKING = "[manufacturing]\nlength_tolerance = 0.02\nband = 0.5\n"
 _SEARCH = "[search]\nstarts = 20\nenough = 5\nseed = 3\neffort = 0.2\n"
 # Together with the catalogue these state every key that there is.
+# Everything that a file can say about what acts.
+_ACTING = """
+[dynamics]
+density = 7850
+speed_rpm = 20
+gravity = [0, -9.81]
+payload = 2
+[[loads]]
+link = 4
+at = [4.5, 0]
+force = [0, -1000]
+[[loads]]
+link = 3
+moment = 12
+[[loads]]
+link = 3
+over = "theta4"
+frame = "link"
+values = [[0, 1, 2], [180, 3, 4], [360, 1, 2]]
+[[loads]]
+link = 2
+over = "time"
+values = [[0, 5], [10, 6]]
+[[springs]]
+between = [{ link = 1, at = [0, 2] }, { link = 4, at = [1, 0] }]
+stiffness = 500
+free_length = 1.2
+[[dampers]]
+between = [{ link = 2 }, { link = 4, at = [1, 0] }]
+damping = 5
+[[torsion_springs]]
+between = [4, 3]
+stiffness = 7
+free_angle_deg = 30
+[[counterweights]]
+link = 2
+mass = 900
+at = [-1.0, 0]
+[friction]
+coulomb = 0.1
+pin_radius = [0.05, 0.05, 0.05, 0.1]
+viscous = 2
+[motor]
+profile = "trapezoid"
+ramp = 0.25
+gear_ratio = 30
+gear_efficiency = 0.9
+inertia = 0.02
+[section]
+width = 0.2
+height = 0.1
+"""
 _PROBLEMS = (
+    f'kind = "motion"\nlength_unit = "m"\n[motion]\nposes = [[5, 4, 0], [3.5, 4, -5], [2, 3, -5]]\n'
+    "[requirements]\nlink_length = [0.3, 8]\n"
+    f"[objective]\nmaximise = {{ transmission = 1, torque = 0.2 }}\n{_ACTING}",
     f'kind = "motion"\n{_HEAD}[motion]\n{_POSES}weights = [1, 1, 2, 1, 1, 1]\nangle_length = 100\n'
     "body = [[0, 0], [20, 0], [20, 10]]\nwithin = 5\nangle_within_deg = [3, 3, 3, 3, 3, 3]\n"
     "[scene]\noutlines = [[[0, 0], [50, 0]], [[0, 0], [0, 50], [50, 50]]]\n"
@@ -134,6 +189,7 @@ _PROBLEMS = (
     f'kind = "motion"\n{_HEAD}[motion]\nposes = [[0, 0, 10], [30, 10, 10], [60, 5, 10]]\n{_SEARCH}',
 )
 _LINKAGES = (
+    f'length_unit = "m"\no4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n{_ACTING}',
     f"{_HEAD}r1 = 4\nground_angle_deg = 20\nr2 = 1\nr3 = 4\nr4 = 3\ncoupler_point = [2, 1]\nassembly = -1\n"
     "body_angle_deg = 30\noutput_arm = 5\n[dynamics]\nspeed_rpm = -20\ngravity = [0, -9.81]\n"
     "mass_per_length = 3\npayload = 2\n",
