@@ -35,6 +35,7 @@ from grashof.analysis.forces.loads import (
     Spring,
     TorsionSpring,
 )
+from grashof.analysis.forces.losses import damper_power, friction_power
 from grashof.analysis.forces.mass import (
     Body,
     Masses,
@@ -132,6 +133,7 @@ __all__ = [
     "curvature",
     "curve_distances",
     "cusps",
+    "damper_power",
     "double_points",
     "driver_motion",
     "driver_ranges",
@@ -141,6 +143,7 @@ __all__ = [
     "fit_polynomial",
     "fourier_series",
     "free_response",
+    "friction_power",
     "full_rotation",
     "given_masses",
     "grashof_class",

@@ -263,6 +263,12 @@ def known_joint_moments(state: Kinematics, loads: Loads) -> FloatArray:
         if viscous[joint] or coulomb[joint]:
             _, rate = joint_rotation(state, joint)
             moments[joint] -= viscous[joint] * rate + coulomb[joint] * np.sign(rate)
+    return moments + torsion_moments(state, loads)
+
+
+def torsion_moments(state: Kinematics, loads: Loads) -> FloatArray:
+    """Moments of torsion springs on the second link of each joint, shape (4, ...), N length."""
+    moments = np.zeros((4, *state.shape))
     for spring in loads.torsion_springs:
         angle, _ = joint_rotation(state, spring.joint)
         moments[spring.joint] -= spring.stiffness * spring.wound(angle)

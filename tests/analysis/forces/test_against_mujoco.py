@@ -58,11 +58,10 @@ def engine(linkage: FourBar, masses: Masses, spec: DynamicsSpec) -> Any:
     (o2x, o2y), (o4x, o4y) = linkage.o2.tolist(), linkage.o4.tolist()
     r2, r3, r4 = (float(getattr(linkage, name)) for name in ("r2", "r3", "r4"))
     (gx, gy), spring = spec.gravity, spec.springs[0]
-    wound = {each.between: each for each in spec.torsion_springs}
-    hinges = {
-        joint: f'stiffness="{wound[pair].stiffness}" springref="{float(np.radians(wound[pair].free_angle_deg))!r}"'
-        for joint, pair in (("2", (1, 2)), ("4", (1, 4)))
-    }
+    hinges = [
+        f'stiffness="{each.stiffness}" springref="{float(np.radians(each.free_angle_deg))!r}"'
+        for each in spec.torsion_springs
+    ]
     ends = [end.at for end in spring.between]
     return mujoco.MjModel.from_xml_string(f"""
     <mujoco>
@@ -72,12 +71,12 @@ def engine(linkage: FourBar, masses: Masses, spec: DynamicsSpec) -> Any:
       </option>
       <worldbody>
         <site name="hook" pos="{ends[0][0]} {ends[0][1]} 0"/>
-        <body pos="{o2x} {o2y} 0">{body(masses, 2)}<joint name="q2" axis="0 0 1" {hinges["2"]}/>
+        <body pos="{o2x} {o2y} 0">{body(masses, 2)}<joint name="q2" axis="0 0 1" {hinges[0]}/>
           <body pos="{r2} 0 0">{body(masses, 3)}<joint name="q3" axis="0 0 1"/>
             <site name="b3" pos="{r3} 0 0"/>
           </body>
         </body>
-        <body pos="{o4x} {o4y} 0">{body(masses, 4)}<joint name="q4" axis="0 0 1" {hinges["4"]}/>
+        <body pos="{o4x} {o4y} 0">{body(masses, 4)}<joint name="q4" axis="0 0 1" {hinges[1]}/>
           <site name="b4" pos="{r4} 0 0"/><site name="eye" pos="{ends[1][0]} {ends[1][1]} 0"/>
         </body>
       </worldbody>

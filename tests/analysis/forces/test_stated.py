@@ -1,5 +1,6 @@
 """Masses and loads as files state them: units, tables, and the drive torque of everything at once."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -20,71 +21,40 @@ from grashof.problems.values.acting import (
     CounterweightSpec,
     DamperSpec,
     FrictionSpec,
-    LoadSpec,
     Place,
     SpringSpec,
-    TorsionSpringSpec,
 )
 from grashof.problems.values.motor import MotorSpec
 from grashof.problems.values.section import SectionSpec
 
-CARD = ((0, 0.3, -9), (90, 0.4, -20), (180, -0.1, -20), (250, 0, -11), (360, 0.3, -9))
-EVERYTHING = DynamicsSpec(
-    density=800.0,
-    section=SectionSpec(0.05, 0.02),
-    payload=1.0,
-    speed_rpm=30,
-    gravity=(0.5, -9.81),
-    loads=(
-        LoadSpec(4, at=(-0.7, 0.1), values=CARD),
-        LoadSpec(3, at=(0.2, 0.3), force=(1.0, 2.0), frame="link"),
-        LoadSpec(2, moment=-0.7),
-        LoadSpec(4, values=((0, 1), (120, -1), (360, 1)), over="theta4"),
-        LoadSpec(3, at=(0.1, 0), values=((0, 1, 2), (1, -1, 0), (5, 2, 2)), over="time"),
-    ),
-    springs=(SpringSpec((Place(1, (0.2, 0.9)), Place(4, (0.3, 0.1))), 30.0, 0.4),),
-    dampers=(DamperSpec((Place(2, (0.2, 0.9)), Place(4, (0.3, 0.1))), 4.0),),
-    torsion_springs=(TorsionSpringSpec((3, 2), 2.0, 40.0), TorsionSpringSpec((1, 4), 1.0)),
-    counterweights=(CounterweightSpec(2, 3.0, (-0.4, 0.1)),),
-    friction=FrictionSpec(0.1, (0.01, 0.02, 0.01, 0.03), viscous=0.1, moment=(0, 0.1, 0, 0)),
-)
+CARD = ((0, -9), (90, -20), (180, -20), (250, -11), (360, -9))
 INCH = 0.0254
-
-
-def linkages(count: int) -> list[FourBar]:
-    """Crank-rockers of all sizes, turned and placed anywhere."""
-    rng, found = np.random.default_rng(7), []
-    while len(found) < count:
-        r2, r3, r4 = rng.uniform(0.2, 1.5), rng.uniform(0.5, 3), rng.uniform(0.5, 3)
-        o2, o4 = rng.normal(size=2), rng.normal(size=2)
-        made = FourBar(o2, o4, r2, r3, r4, rng.normal(size=2), assembly=rng.choice([-1, 1]))
-        r1 = float(made.r1)
-        if r3 + r4 > 1.02 * (r1 + r2) and abs(r1 - r2) > 1.02 * abs(r3 - r4) + 0.01:
-            found.append(made)
-    return found
+Linkages = Callable[[int], list[FourBar]]
 
 
 @pytest.mark.parametrize("profile", [MotorSpec(), MotorSpec("trapezoid"), MotorSpec("cycloid")])
 @pytest.mark.parametrize("speed", [30.0, -30.0])
-def test_the_torque_of_everything_at_once_is_virtual_work(profile: MotorSpec, speed: float) -> None:
+def test_the_torque_of_everything_at_once_is_virtual_work(
+    profile: MotorSpec, speed: float, everything: DynamicsSpec, linkages: Linkages
+) -> None:
     for linkage in linkages(20):
         omega2 = speed * np.pi / 30
         law = DriverLaw(0.0, np.copysign(2 * np.pi, omega2), omega2, profile)
         time = np.linspace(0.001, 0.999, 173) * law.duration
         state = solve_kinematics(linkage, *law.at_time(time))
-        masses = stated_masses(linkage, EVERYTHING)
-        loads = stated_loads(EVERYTHING, 1.0, lambda _, now=time: now)
+        masses = stated_masses(linkage, everything)
+        loads = stated_loads(everything, 1.0, lambda _, now=time: now)
         found = inverse_dynamics(state, masses, loads)
         work = virtual_work_torque(state, masses, loads, found.joint_moments)
         peak = np.abs(found.torque).max()
         np.testing.assert_allclose(found.torque, work, rtol=0, atol=1e-9 * peak)
 
 
-def test_newtons_are_newtons_in_every_length_unit() -> None:
+def test_newtons_are_newtons_in_every_length_unit(everything: DynamicsSpec, linkages: Linkages) -> None:
     def in_inches(place: Place) -> Place:
         return Place(place.link, tuple(each / INCH for each in place.at))
 
-    spec = EVERYTHING
+    spec = everything
     small = replace(
         spec,
         section=SectionSpec(0.05 / INCH, 0.02 / INCH),
@@ -112,7 +82,7 @@ def test_newtons_are_newtons_in_every_length_unit() -> None:
         np.testing.assert_allclose(torques[1], torques[0], rtol=1e-9, atol=1e-9 * np.abs(torques[0]).max())
 
 
-def test_bars_of_a_density_are_those_of_their_section() -> None:
+def test_bars_of_a_density_are_those_of_their_section(linkages: Linkages) -> None:
     linkage = linkages(1)[0]
     masses = stated_masses(linkage, DynamicsSpec(density=7850, section=SectionSpec(20, 10)), 1e-3)
     for link in (2, 3, 4):
@@ -122,15 +92,14 @@ def test_bars_of_a_density_are_those_of_their_section() -> None:
         assert float(body.inertia) == pytest.approx(float(body.mass) * (length**2 + 20**2) / 12)
 
 
-def test_centres_off_the_middle() -> None:
+def test_centres_off_the_middle(linkages: Linkages) -> None:
     spec = DynamicsSpec(masses=(1, 2, 3), inertias=(0, 0, 0), centres=((0.1, 0.2), (0.3, 0), (0, -1)))
     masses = stated_masses(linkages(1)[0], spec)
     assert [masses.of(link).centre.tolist() for link in (2, 3, 4)] == [[0.1, 0.2], [0.3, 0], [0, -1]]
 
 
 def test_a_curve_neither_overshoots_nor_jumps() -> None:
-    rows = [(row[0], row[2]) for row in CARD]
-    curve = curve_through(rows, period=360.0)
+    curve = curve_through(CARD, period=360.0)
     fine = np.linspace(-400, 800, 24001)
     values = curve(fine)[:, 0]
     assert values.min() >= -20
@@ -139,7 +108,7 @@ def test_a_curve_neither_overshoots_nor_jumps() -> None:
     assert np.abs(np.diff(values)).max() < 0.02  # nowhere steeper than three times the chord
     slopes = np.diff(values) / np.diff(fine)
     assert np.abs(np.diff(slopes)).max() < 2e-3  # its slope is continuous, over the end of the turn, too
-    inner = scipy.interpolate.PchipInterpolator(*np.array(rows).T)
+    inner = scipy.interpolate.PchipInterpolator(*np.array(CARD).T)
     np.testing.assert_allclose(curve(np.array([120.0, 200.0]))[:, 0], inner([120, 200]), atol=1e-12)
 
 
