@@ -144,7 +144,9 @@ def one_or_each(
         ...
     grashof.problems.values.errors.ProblemError: radius has 1 entry; it must be a number, or 2 (O2, O4)
     """
-    if not isinstance(value, Iterable) or isinstance(value, (str, bytes)):
+    if isinstance(value, (str, bytes)):
+        raise wrong_value(where, value, "a number")
+    if not isinstance(value, Iterable):
         return size_number(value, where, least, greatest)
     numbers = list(value)
     if len(numbers) != len(owners):
