@@ -74,6 +74,7 @@ def _peaks(curves: Curves, samples: FloatArray) -> tuple[FloatArray, FloatArray]
     places, heights = [samples[top]], [np.take_along_axis(values, top, axis=1)]
     for _ in range(_ROUNDS):
         near = low[..., None] + (high - low)[..., None] * np.linspace(0, 1, _POINTS)
+        near[..., -1] = high  # and not beyond it by rounding
         own = _own(curves, near)
         peak = own.argmax(axis=2)[..., None]
         places.append(np.take_along_axis(near, peak, axis=2)[..., 0])

@@ -79,9 +79,7 @@ class StrengthSpec:
         }  # fmt: skip
         for name, value in of_pins.items():
             if pin_diameter is None and value is not None:
-                raise ProblemError(
-                    f"strength.pin_diameter is missing; strength.{name} is of no use without it"
-                )
+                raise ProblemError(f"strength.pin_diameter is missing; {name} is of no use without it")
         object.__setattr__(self, "yield_stress", size_number(yield_stress, "strength.yield_stress"))
         for name, pressure in (
             ("elastic_modulus", elastic_modulus),
