@@ -281,7 +281,7 @@ def _spread(state: Kinematics, link: int, body: Body, gravity: FloatArray) -> _S
         _Point(
             foot - half,
             np.where(has_length[..., None], 0.0, whole),
-            np.where(has_length, 0.0, cross(arm, whole) - turning * alpha),
+            np.where(has_length, 0.0, cross(arm, whole)),
         ),
     )
 

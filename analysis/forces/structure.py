@@ -102,18 +102,21 @@ class Structure:
 
         Notes
         -----
-        Euler's, pi^2 E I / l^2, both ends pinned in the plane of motion and, on the safe side, out of it
-        (Shigley, *Mechanical Engineering Design*, sec. 4-12). A stocky bar yields first.
+        Euler's, pi^2 E I / l^2, both ends pinned in the plane of motion and, on the safe side, out of it;
+        of bars so stocky that it exceeds half their yield load A Sy, Johnson's parabola,
+        A Sy (1 - A Sy / (4 Euler's)) (Shigley, *Mechanical Engineering Design*, secs. 4-12 and 4-13).
         """
-        if self.section is None or self.modulus is None:
+        if self.section is None or self.strength is None or self.modulus is None:
             return {}
-        section, modulus, square = self.section.of(link), self.modulus, np.square(length)
-        inertias = {"buckling": section.inertia, "buckling_across": section.inertia_across}
-        return {
-            key: np.pi**2 * modulus * inertia / square * self.in_si("N")
-            for key, inertia in inertias.items()
-            if inertia is not None
-        }
+        section, square = self.section.of(link), np.square(length)
+        crushing = self.strength.yield_stress / self.in_si("Pa") * section.area
+        found = {}
+        for key, inertia in (("buckling", section.inertia), ("buckling_across", section.inertia_across)):
+            if inertia is not None:
+                euler = np.pi**2 * self.modulus * inertia / square
+                johnson = crushing * (1 - crushing / (4 * euler))
+                found[key] = np.where(2 * euler < crushing, euler, johnson) * self.in_si("N")
+        return found
 
     def pin_areas(self, joint: Joint) -> dict[str, float]:
         """Areas that share a joint's force, length^2, by key of `PIN_MEASURES`; none without diameters.

@@ -139,17 +139,31 @@ def test_what_is_not_known_is_left_out() -> None:
         Structure(bars, Loads(), None, StrengthSpec(1e8))
 
 
-def test_buckling_loads_are_those_of_euler() -> None:
+def test_slender_bars_buckle_as_euler_says() -> None:
     section = SectionSpec(width=[0.04, 0.05, 0.06], height=0.02)
     structure = Structure(NO_MASS, Loads(), section, STEEL)
     loads = structure.buckling_loads(3, 5.0)
     assert loads["buckling"] == pytest.approx(np.pi**2 * 210e9 * (0.02 * 0.05**3 / 12) / 25)
     assert loads["buckling_across"] == pytest.approx(np.pi**2 * 210e9 * (0.05 * 0.02**3 / 12) / 25)
     tube = SectionSpec(area=1e-3, inertia=1e-8, extreme_fibre=0.01)
-    assert list(Structure(NO_MASS, Loads(), tube, StrengthSpec(1e8, 1e9)).buckling_loads(2, 1.0)) == [
-        "buckling"
-    ]
-    assert Structure(NO_MASS, Loads(), tube, StrengthSpec(1e8)).buckling_loads(2, 1.0) == {}
+    for strength, keys in ((StrengthSpec(1e8, 1e9), ["buckling"]), (StrengthSpec(1e8), [])):
+        assert list(Structure(NO_MASS, Loads(), tube, strength).buckling_loads(2, 1.0)) == keys
+
+
+@pytest.mark.parametrize("metre", [1.0, 1e-3])
+def test_stocky_bars_buckle_as_johnson_says(metre: float) -> None:
+    """Shigley, eqs. 4-45 and 4-46: with slenderness l / k up to sqrt(2 pi^2 E / Sy)."""
+    width, modulus, strength = 0.05, 210e9, 235e6
+    structure = Structure(NO_MASS, Loads(), SectionSpec(width / metre, width / metre), STEEL, metre)
+    gyration, area = width / np.sqrt(12), width**2
+    limit = np.sqrt(2 * np.pi**2 * modulus / strength)
+    slenderness = np.array([0.01, 20, 80, limit * 0.999, limit * 1.001, 200])
+    johnson = area * (strength - (strength / (2 * np.pi) * slenderness) ** 2 / modulus)
+    euler = area * np.pi**2 * modulus / slenderness**2
+    found = structure.buckling_loads(2, slenderness * gyration / metre)
+    expected = np.where(slenderness < limit, johnson, euler)
+    np.testing.assert_allclose(found["buckling"], expected, rtol=1e-12)
+    np.testing.assert_allclose(found["buckling_across"], expected, rtol=1e-12)
 
 
 def test_an_overhang_in_compression_does_not_buckle_the_bar() -> None:
