@@ -45,10 +45,20 @@ from grashof.analysis.forces.mass import (
     uniform_bar,
     uniform_bars,
 )
+from grashof.analysis.forces.section_forces import BarForces, SectionForce, section_forces
 from grashof.analysis.forces.stated import stated_loads, stated_masses
+from grashof.analysis.forces.strength import StrengthHistory, strength_at
+from grashof.analysis.forces.strength_peaks import (
+    SafetyFactor,
+    StrengthPeak,
+    StrengthSummary,
+    strength_over,
+)
+from grashof.analysis.forces.structure import BAR_MEASURES, PIN_MEASURES, Structure
 from grashof.analysis.four_bar.differences import Deviation, central_differences, compare_differences
 from grashof.analysis.four_bar.driver import DriverMotion, driver_motion
 from grashof.analysis.four_bar.driver_law import DriverLaw
+from grashof.analysis.four_bar.driver_samples import driver_samples
 from grashof.analysis.four_bar.extremes import Extremes, extremes, extremes_of
 from grashof.analysis.four_bar.instant_centres import InstantCentres, instant_centres
 from grashof.analysis.four_bar.kinematics import Kinematics, PointMotion, solve_kinematics
@@ -78,8 +88,11 @@ from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.judge.verify import verify
 
 __all__ = [
+    "BAR_MEASURES",
+    "PIN_MEASURES",
     "AppliedForce",
     "AppliedMoment",
+    "BarForces",
     "BestCircle",
     "BestLine",
     "Body",
@@ -114,7 +127,13 @@ __all__ = [
     "PolynomialFit",
     "Position",
     "Robustness",
+    "SafetyFactor",
+    "SectionForce",
     "Spring",
+    "StrengthHistory",
+    "StrengthPeak",
+    "StrengthSummary",
+    "Structure",
     "TorqueBalance",
     "TorsionSpring",
     "Verdict",
@@ -137,6 +156,7 @@ __all__ = [
     "double_points",
     "driver_motion",
     "driver_ranges",
+    "driver_samples",
     "dwell",
     "extremes",
     "extremes_of",
@@ -159,6 +179,7 @@ __all__ = [
     "regression",
     "robustness",
     "rotatability",
+    "section_forces",
     "sensitivity",
     "size_flywheel",
     "solve_kinematics",
@@ -167,6 +188,8 @@ __all__ = [
     "stated_loads",
     "stated_masses",
     "straightness",
+    "strength_at",
+    "strength_over",
     "system_centre",
     "transmission_angle",
     "triangular_plate",

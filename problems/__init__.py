@@ -26,11 +26,14 @@ from grashof.problems.values.objective import Objective
 from grashof.problems.values.path_task import PathTask
 from grashof.problems.values.problem import Problem, Search
 from grashof.problems.values.requirements import Requirements, Rotatability, TransmissionOver
+from grashof.problems.values.section import CrossSection, SectionSpec
+from grashof.problems.values.strength import StrengthSpec
 from grashof.problems.values.task import Task
 
 __all__ = [
     "AssemblyError",
     "Box",
+    "CrossSection",
     "DeadPositionWarning",
     "DynamicsSpec",
     "FourBar",
@@ -47,7 +50,9 @@ __all__ = [
     "Requirements",
     "Rotatability",
     "Search",
+    "SectionSpec",
     "SolverError",
+    "StrengthSpec",
     "Task",
     "TransmissionOver",
     "catalogue",

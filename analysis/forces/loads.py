@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import TypeAlias
@@ -63,10 +63,14 @@ class AppliedMoment:
     link : int
         2, 3 or 4. One on link 2 adds to the drive torque.
     moment : array_like, shape (...), N length; or callable
+    at : pair of float, length, optional
+        Where it enters the link, (u, v) in its frame, which matters to section forces alone. By default
+        the shaft, O2 or O4, of links 2 and 4, and P of link 3.
     """
 
     link: int
     moment: Varying
+    at: Pair | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,6 +191,27 @@ class Wrench:
     moment: FloatArray
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class PlacedLoad:
+    """A force and a moment on a link, with the place where they act.
+
+    Parameters
+    ----------
+    link : int
+        1 to 4.
+    at : array_like, shape (..., 2), length
+        (u, v) in the link's frame, the ground's being the global one.
+    force : ndarray, shape (..., 2), N
+        In global axes.
+    moment : ndarray, shape (...), N length
+    """
+
+    link: int
+    at: npt.ArrayLike
+    force: FloatArray
+    moment: FloatArray
+
+
 def cross(first: FloatArray, second: FloatArray) -> FloatArray:
     """First x second in the plane, shape (...)."""
     turning: FloatArray = first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
@@ -200,22 +225,35 @@ def turned(at: FloatArray, theta: FloatArray) -> FloatArray:
     return np.stack([cosine * x - sine * y, sine * x + cosine * y], axis=-1)
 
 
+def placed_loads(state: Kinematics, loads: Loads) -> Iterator[PlacedLoad]:
+    """All forces, moments and springs that act on the links, 1 to 4, at their places."""
+    nothing, still = np.zeros(()), np.zeros(2)
+    for force in loads.forces:
+        theta, value = state.angular(force.link)[0], _value(force.force, state)
+        if force.turning:
+            value = turned(value, theta)
+        yield PlacedLoad(force.link, force.at, value, nothing)
+    for moment in loads.moments:
+        state.angular(moment.link)  # raises for a link that the linkage has not
+        entry = state.linkage.coupler_point if moment.link == 3 else (0.0, 0.0)
+        at = entry if moment.at is None else moment.at
+        yield PlacedLoad(moment.link, at, still, _value(moment.moment, state))
+    for spring in loads.springs:
+        pull = spring_pull(spring, *spring_ends(state, spring))
+        yield PlacedLoad(spring.first_link, spring.first_at, pull, nothing)
+        yield PlacedLoad(spring.second_link, spring.second_at, -pull, nothing)
+
+
 def wrenches(state: Kinematics, loads: Loads) -> dict[int, Wrench]:
     """What every link, 1 to 4, feels from forces, moments and springs; weight is left to the masses."""
     found = {link: Wrench(np.zeros(2), np.zeros(())) for link in (1, 2, 3, 4)}
-    for force in loads.forces:
-        value = _value(force.force, state)
-        if force.turning:
-            value = turned(value, state.angular(force.link)[0])
-        _push(found, state, force.link, state.point(force.link, force.at).position, value)
-    for moment in loads.moments:
-        state.angular(moment.link)  # raises for a link that the linkage has not
-        found[moment.link].moment = found[moment.link].moment + _value(moment.moment, state)
-    for spring in loads.springs:
-        first, second = spring_ends(state, spring)
-        pull = spring_pull(spring, first, second)
-        _push(found, state, spring.first_link, first.position, pull)
-        _push(found, state, spring.second_link, second.position, -pull)
+    for load in placed_loads(state, loads):
+        wrench = found[load.link]
+        if load.force.any():
+            place = _carried(state, load.link, load.at).position
+            wrench.force = wrench.force + load.force
+            wrench.moment = wrench.moment + cross(place - _origin(state, load.link), load.force)
+        wrench.moment = wrench.moment + load.moment
     return found
 
 
@@ -279,7 +317,7 @@ def _value(given: Varying, state: Kinematics) -> FloatArray:
     return np.asarray(given(state) if callable(given) else given, dtype=np.float64)
 
 
-def _carried(state: Kinematics, link: int, at: Pair) -> PointMotion:
+def _carried(state: Kinematics, link: int, at: npt.ArrayLike) -> PointMotion:
     if link != 1:
         return state.point(link, at)
     place = np.asarray(at, dtype=np.float64)
@@ -287,10 +325,5 @@ def _carried(state: Kinematics, link: int, at: Pair) -> PointMotion:
     return PointMotion(place, still, still, still)
 
 
-def _push(found: dict[int, Wrench], state: Kinematics, link: int, at: FloatArray, force: FloatArray) -> None:
-    linkage = state.linkage
-    origin = {1: linkage.o2, 2: linkage.o2, 4: linkage.o4}.get(link)
-    arm = at - (state.a.position if origin is None else origin)
-    wrench = found[link]
-    wrench.force = wrench.force + force
-    wrench.moment = wrench.moment + cross(arm, np.asarray(force))
+def _origin(state: Kinematics, link: int) -> FloatArray:
+    return state.a.position if link == 3 else state.linkage.o4 if link == 4 else state.linkage.o2

@@ -26,15 +26,23 @@ class Body(ReadOnly):
         About the centre of mass.
     centre : array_like, shape (..., 2), length
         Centre of mass (u, v): origin O2, A or O4, u towards A, B or B, v to its left.
+    parts : tuple of Body
+        That it was put together from, whose places section forces depend on; none of a single one.
     """
 
     mass: FloatArray
     inertia: FloatArray
     centre: FloatArray
+    parts: tuple[Body, ...]
 
     def __init__(
-        self, mass: npt.ArrayLike, inertia: npt.ArrayLike = 0.0, centre: npt.ArrayLike = (0.0, 0.0)
+        self,
+        mass: npt.ArrayLike,
+        inertia: npt.ArrayLike = 0.0,
+        centre: npt.ArrayLike = (0.0, 0.0),
+        parts: tuple[Body, ...] = (),
     ) -> None:
+        object.__setattr__(self, "parts", parts)
         for name, value in (("mass", mass), ("inertia", inertia), ("centre", centre)):
             array = frozen_array(value)
             if not np.isfinite(array).all():
@@ -55,7 +63,13 @@ class Body(ReadOnly):
             mass,
             self.inertia + other.inertia + reduced * (apart**2).sum(axis=-1),
             self.centre + share[..., None] * apart,
+            (*self.pieces, *other.pieces),
         )
+
+    @property
+    def pieces(self) -> tuple[Body, ...]:
+        """Its parts, or itself where it has none."""
+        return self.parts or (self,)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -25,6 +25,7 @@ from grashof.problems.values.dynamics_spec import DynamicsSpec
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.motor import PROFILES, MotorSpec
 from grashof.problems.values.section import SectionSpec
+from grashof.problems.values.strength import StrengthSpec
 
 Point = Annotated[list[float], listed("[u, v]")]
 # Columns of files, with or without their units.
@@ -174,8 +175,24 @@ class MotorTable(_Spec):
 
 class SectionTable(_Spec):
     spec = SectionSpec
-    width: float
-    height: float
+    width: Any = None
+    height: Any = None
+    area: Any = None
+    inertia: Any = None
+    extreme_fibre: Any = None
+    inertia_across: Any = None
+    shear_factor: Any = None
+
+
+class StrengthTable(_Spec):
+    spec = StrengthSpec
+    yield_stress: float
+    elastic_modulus: float | None = None
+    pin_diameter: Any = None
+    pin_shear_strength: float | None = None
+    bearing_strength: float | None = None
+    pin_thickness: Any = None
+    double_shear: bool = False
 
 
 def _rows(name: str, info: ValidationInfo, kinds: Sequence[Sequence[Names]]) -> list[list[float]]:
@@ -201,6 +218,7 @@ class MachineTables(Table):
     friction: FrictionTable | None = None
     motor: MotorTable | None = None
     section: SectionTable | None = None
+    strength: StrengthTable | None = None
 
     def dynamics_spec(self) -> DynamicsSpec | None:
         """All of it as one value; None where nothing is stated."""
@@ -226,4 +244,5 @@ MACHINE_TABLES: dict[str, type[Table]] = {
     "friction": FrictionTable,
     "motor": MotorTable,
     "section": SectionTable,
+    "strength": StrengthTable,
 }

@@ -151,6 +151,43 @@ def numbers(values: Sequence[float], count: int, where: str) -> tuple[float, ...
     return tuple(bounded(value, f"{where}[{index}]") for index, value in enumerate(given))
 
 
+def one_or_each(
+    value: float | Sequence[float],
+    owners: Sequence[str],
+    where: str,
+    least: float = LEAST,
+    greatest: float = GREATEST,
+) -> float | tuple[float, ...]:
+    """A number greater than zero, between limits; or a tuple with one for each of its owners.
+
+    Examples
+    --------
+    >>> one_or_each(2, ("O2", "O4"), "radius"), one_or_each([1, 2], ("O2", "O4"), "radius")
+    (2.0, (1.0, 2.0))
+    >>> one_or_each([1], ("O2", "O4"), "radius")
+    Traceback (most recent call last):
+        ...
+    grashof.problems.values.errors.ProblemError: radius has 1 entry; it must be a number, or 2 (O2, O4)
+    """
+    if isinstance(value, (str, bytes)):
+        raise wrong_value(where, value, "a number")
+    if not isinstance(value, Iterable):
+        return size_number(value, where, least, greatest)
+    numbers = list(value)
+    if len(numbers) != len(owners):
+        entries = "1 entry" if len(numbers) == 1 else f"{len(numbers)} entries"
+        owned = ", ".join(owners)
+        raise ProblemError(f"{where} has {entries}; it must be a number, or {len(owners)} ({owned})")
+    return tuple(
+        size_number(each, f"{where}[{index}]", least, greatest) for index, each in enumerate(numbers)
+    )
+
+
+def size_number(value: float, where: str, least: float = LEAST, greatest: float = GREATEST) -> float:
+    """`value` as a float, refused where it is not greater than zero or beyond limits."""
+    return number_within(positive_number(value, where), least, greatest, where)
+
+
 def task_size(points: FloatArray, where: str) -> float:
     """Greatest distance between two of N points (N, 2), refused where it is so small that digits are lost."""
     size = span(points)

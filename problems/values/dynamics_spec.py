@@ -22,6 +22,7 @@ from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.motor import MotorSpec
 from grashof.problems.values.section import SectionSpec
 from grashof.problems.values.stated import Stated
+from grashof.problems.values.strength import StrengthSpec, check_strength
 
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048}
 STEADY = 30 / np.pi  # rpm: 1 rad/s
@@ -73,6 +74,8 @@ class DynamicsSpec(Stated):
         Steady speed without it.
     section : SectionSpec, optional
         Of the bars; `density` needs it, and strength.
+    strength : StrengthSpec, optional
+        Of the bars and pins.
 
     Raises
     ------
@@ -102,6 +105,7 @@ class DynamicsSpec(Stated):
     friction: FrictionSpec | None = None
     motor: MotorSpec | None = None
     section: SectionSpec | None = None
+    strength: StrengthSpec | None = None
 
     def __post_init__(self) -> None:
         self._check_masses()
@@ -135,6 +139,7 @@ class DynamicsSpec(Stated):
             raise ProblemError("dynamics.masses is missing; centres are those of given masses and inertias")
         if self.density is not None and self.section is None:
             raise ProblemError("section is missing; dynamics.density needs it")
+        check_strength(self.section, self.strength)
 
     def _set(self, name: str, value: Any) -> None:
         object.__setattr__(self, name, value)

@@ -1,36 +1,183 @@
-"""The section of the bars."""
+"""The cross-sections of the links, on which stress, deflection and buckling depend."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any, TypeAlias
 
-from grashof.problems.values.checks import bounded, positive_number
+from grashof.problems.values.checks import GREATEST, LEAST, one_or_each
+from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.stated import Stated
+
+OneOrEach: TypeAlias = float | Sequence[float]
+LINKS = ("link 2", "link 3", "link 4")
+SHAPES = "width and height, or area, inertia and extreme_fibre"
+_RECTANGLE = ("width", "height")
+_ANY_SHAPE = ("area", "inertia", "extreme_fibre")
+_POWERS = {"area": 2, "inertia": 4, "inertia_across": 4}  # of the length unit; the others are lengths
+_RECTANGLE_SHEAR = 1.5
+_LARGEST_SHEAR = 2.0
 
 
 @dataclass(frozen=True, slots=True)
-class SectionSpec(Stated):
-    """A rectangular section of all bars.
+class CrossSection:
+    """The section of one link.
 
     Parameters
     ----------
-    width, height : float, length
-        In the plane of motion, and across it.
+    area : float, length^2
+    inertia : float, length^4
+        Second moment of area for bending in the plane of motion.
+    extreme_fibre : float, length
+        Distance of the outermost fibre from the neutral axis in that bending.
+    shear_factor : float
+        Greatest shear stress over the mean one, shear force / area.
+    inertia_across : float or None, length^4
+        For bending out of the plane of motion, where it is known.
+    height : float or None, length
+        Across the plane of motion, where it is known: as long as a pin bears.
     """
 
-    width: float
-    height: float
+    area: float
+    inertia: float
+    extreme_fibre: float
+    shear_factor: float
+    inertia_across: float | None = None
+    height: float | None = None
 
-    def __post_init__(self) -> None:
-        for name in self.__slots__:
-            object.__setattr__(self, name, positive_number(bounded(getattr(self, name), name), name))
+
+@dataclass(frozen=True, slots=True, init=False)
+class SectionSpec(Stated):
+    """Cross-sections of links 2, 3 and 4, in the length unit: one for all, or lists of three.
+
+    Parameters
+    ----------
+    width : float or three floats, length, optional
+        Of a solid rectangle, in the plane of motion.
+    height : float or three floats, length, optional
+        Of it, across that plane.
+    area : float or three floats, length^2, optional
+        Instead, of any shape.
+    inertia : float or three floats, length^4, optional
+        Its second moment of area for bending in the plane of motion.
+    extreme_fibre : float or three floats, length, optional
+        Distance of its outermost fibre from the neutral axis in that bending.
+    inertia_across : float or three floats, length^4, optional
+        For bending out of the plane of motion; without it buckling that way is left open.
+    shear_factor : float or three floats, optional
+        Greatest shear stress over the mean one: 2 for a thin round tube (the default), 4/3 for a round
+        bar, 1.5 for a rectangle.
+
+    Raises
+    ------
+    ProblemError
+        Numbers that are not finite and greater than zero or beyond 1e20 (to the power of their unit),
+        lists of another length, a shape that is given twice or in part, or one that cannot be.
+
+    Notes
+    -----
+    A rectangle has A = width height and I = height width^3 / 12 (Shigley, *Mechanical Engineering
+    Design*, table A-18); shear factors are those of Shigley, table 3-2.
+
+    Examples
+    --------
+    >>> section = SectionSpec(width=0.2, height=[0.1, 0.1, 0.3])
+    >>> round(section.of(4).area, 6), round(section.of(4).inertia, 6), section.of(2).height
+    (0.06, 0.0002, 0.1)
+    """
+
+    width: OneOrEach | None
+    height: OneOrEach | None
+    area: OneOrEach | None
+    inertia: OneOrEach | None
+    extreme_fibre: OneOrEach | None
+    inertia_across: OneOrEach | None
+    shear_factor: OneOrEach | None
+
+    def __init__(
+        self,
+        width: OneOrEach | None = None,
+        height: OneOrEach | None = None,
+        *,
+        area: OneOrEach | None = None,
+        inertia: OneOrEach | None = None,
+        extreme_fibre: OneOrEach | None = None,
+        inertia_across: OneOrEach | None = None,
+        shear_factor: OneOrEach | None = None,
+    ) -> None:
+        given = {
+            "width": width, "height": height, "area": area, "inertia": inertia,
+            "extreme_fibre": extreme_fibre, "inertia_across": inertia_across, "shear_factor": shear_factor,
+        }  # fmt: skip
+        _check_shape([name for name, value in given.items() if value is not None])
+        for name, value in given.items():
+            object.__setattr__(self, name, None if value is None else _checked(name, value))
+        for link in (2, 3, 4) if self.width is None else ():
+            self._check_reach(link)
+
+    @property
+    def stated(self) -> dict[str, Any]:
+        """The arguments that give this value, without those that are not given: a file's table."""
+        every = {name: getattr(self, name) for name in self.__slots__}
+        return {name: value for name, value in every.items() if value is not None}
 
     @property
     def areas(self) -> tuple[float, float, float]:
-        """Of the sections of links 2, 3 and 4, length^2."""
-        return (self.width * self.height,) * 3
+        """Of links 2, 3 and 4, length^2."""
+        return self.of(2).area, self.of(3).area, self.of(4).area
 
     @property
-    def widths(self) -> tuple[float, float, float]:
-        """In the plane of motion, of links 2, 3 and 4; 0 where only the area is known."""
-        return (self.width,) * 3
+    def widths(self) -> tuple[float, ...]:
+        """Of links 2, 3 and 4 in the plane of motion, length; 0 where only the area is known."""
+        return self.width if isinstance(self.width, tuple) else (float(self.width or 0.0),) * 3  # type: ignore[arg-type]
+
+    def of(self, link: int) -> CrossSection:
+        """The section of link 2, 3 or 4."""
+        own = {
+            name: value[link - 2] if isinstance(value, tuple) else value
+            for name, value in self.stated.items()
+        }
+        if self.width is None:
+            return CrossSection(**{"shear_factor": _LARGEST_SHEAR, **own})
+        width, height = own["width"], own["height"]
+        return CrossSection(
+            area=width * height,
+            inertia=height * width**3 / 12,
+            extreme_fibre=width / 2,
+            shear_factor=_RECTANGLE_SHEAR,
+            inertia_across=width * height**3 / 12,
+            height=height,
+        )
+
+    def _check_reach(self, link: int) -> None:
+        own = self.of(link)
+        most = own.area * own.extreme_fibre**2
+        if own.inertia > most * (1 + 1e-9):
+            where = f"section.inertia[{link - 2}]" if isinstance(self.inertia, tuple) else "section.inertia"
+            limit = f"at most area times extreme_fibre squared, {most:.15g}"
+            raise ProblemError(f"{where} is {own.inertia:.15g}; it must be {limit}")
+
+
+def _check_shape(names: Sequence[str]) -> None:
+    """Refuse keys of both shapes together, or of neither one all."""
+    rectangle = [name for name in names if name in _RECTANGLE]
+    other = [name for name in names if name not in _RECTANGLE]
+    if not names:
+        raise ProblemError(
+            "section is empty; it must have width and height, or area, inertia and extreme_fibre"
+        )
+    if rectangle and other:
+        raise ProblemError(f"section.{other[0]} does not go with {rectangle[0]}; give one shape or the other")
+    needed = _RECTANGLE if rectangle else _ANY_SHAPE
+    for name in needed:
+        if name not in names:
+            together = " and ".join((", ".join(needed[:-1]), needed[-1]))
+            raise ProblemError(f"section.{name} is missing; {together} are needed together")
+
+
+def _checked(name: str, value: OneOrEach) -> OneOrEach:
+    where = f"section.{name}"
+    # The mean is no more than the greatest; area and inertia are powers of lengths.
+    least = 1.0 if name == "shear_factor" else LEAST ** _POWERS.get(name, 1)
+    return one_or_each(value, LINKS, where, least, GREATEST ** _POWERS.get(name, 1))

@@ -1,0 +1,44 @@
+"""Driver angles at which whatever varies over a motion is sampled."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from grashof.problems import FourBar
+from grashof.problems.values.arrays import FloatArray
+
+_SAMPLES = 481
+_NEAR = np.logspace(-8, -2, 31)  # rad, about the positions that come closest to a dead one
+
+
+def driver_samples(linkage: FourBar, start: float, end: float) -> FloatArray:
+    """Driver angles between two ends, close where a dead position may be near.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        A single linkage.
+    start, end : float, rad
+        In either order; both are among the samples.
+
+    Returns
+    -------
+    ndarray, shape (N,), rad
+        Ascending. With O2A along the ground line the diagonal A-O4 is shortest or longest, so that the
+        linkage comes closest to a dead position there; elsewhere it does at the ends of its motion.
+
+    Examples
+    --------
+    >>> samples = driver_samples(FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3), 0.5, 6.0)
+    >>> float(samples[0]), float(samples[-1]), bool((samples == np.pi).any())
+    (0.5, 6.0, True)
+    """
+    low, high = min(start, end), max(start, end)
+    spread = low + (high - low) * (1 - np.cos(np.linspace(0, np.pi, _SAMPLES))) / 2
+    spread[[0, -1]] = low, high
+    theta1 = float(linkage.theta1)
+    aligned = theta1 + np.pi * np.arange(
+        np.ceil((low - theta1) / np.pi), np.floor((high - theta1) / np.pi) + 1
+    )
+    near = (aligned[:, None] + np.concatenate([-_NEAR, [0.0], _NEAR])).ravel()
+    return np.unique(np.concatenate([spread, near[(near > low) & (near < high)]]))

@@ -1,0 +1,60 @@
+"""Peaks of several curves at once."""
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from grashof.analysis.numerics.peaks import peaks
+
+Floats = npt.NDArray[np.float64]
+
+
+def test_peaks_are_right_to_rounding_and_each_curve_has_its_own() -> None:
+    rng = np.random.default_rng(3)
+    at, waves = rng.uniform(0.1, 6.1, 20), rng.integers(1, 6, 20)
+
+    def curves(x: Floats) -> Floats:  # sharper and sharper about a place that no sample hits
+        return np.exp(waves[:, None] * (np.cos(x - at[:, None]) - 1))
+
+    values, places = peaks(curves, [np.linspace(0, 2 * np.pi, 200)])
+    np.testing.assert_allclose(values, 1, rtol=1e-14)
+    np.testing.assert_allclose(places, at, atol=1e-7)
+
+
+def test_a_kink_and_an_end_may_be_the_highest() -> None:
+    values, places = peaks(lambda x: np.stack([-np.abs(x - 0.7654321), x**2, -x]), [np.linspace(0, 2, 50)])
+    np.testing.assert_allclose(values, [0, 4, 0], atol=1e-5)
+    np.testing.assert_allclose(places, [0.7654321, 2, 0], atol=1e-5)
+
+
+def test_curves_are_never_asked_for_places_beyond_their_ends() -> None:
+    samples = np.array([0.1, 0.2, 0.30000000000000004])
+
+    def curves(x: Floats) -> Floats:
+        assert ((x >= samples[0]) & (x <= samples[-1])).all()
+        return np.stack([x, -x])
+
+    np.testing.assert_allclose(peaks(curves, [samples])[0], [samples[-1], -samples[0]])
+
+
+def test_what_is_not_a_number_is_infinite_in_its_own_curve_alone() -> None:
+    def curves(x: Floats) -> Floats:
+        with np.errstate(divide="ignore"):
+            return np.stack([np.where(x == 1.0, np.nan, x), np.cos(x), 1 / (x - 1.0) ** 2])
+
+    values, places = peaks(curves, [np.linspace(0, 2, 101)])
+    np.testing.assert_array_equal(values, [np.inf, 1, np.inf])
+    np.testing.assert_array_equal(places, [1, 0, 1])
+
+
+def test_the_highest_of_several_stretches() -> None:
+    stretches = [np.linspace(0, 1, 30), np.linspace(2, 3, 30)]
+    values, places = peaks(lambda x: np.stack([-np.abs(x - 1.4), -np.abs(x - 1.6)]), stretches)
+    np.testing.assert_allclose(values, [-0.4, -0.4])
+    np.testing.assert_allclose(places, [1, 2])
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_few_samples_are_enough_for_a_line(count: int) -> None:
+    values, places = peaks(lambda x: np.stack([3 * x]), [np.linspace(1, 2, count)])
+    assert (values[0], places[0]) == (6, 2)
