@@ -81,7 +81,8 @@ def broken_beyond(values: FloatArray, most: float) -> FloatArray:
 
 
 def _distance(track: FloatArray, centre: FloatArray) -> FloatArray:
-    return np.hypot(*(track - centre).T)
+    distance: FloatArray = np.hypot(*(track - centre).T)
+    return distance
 
 
 def _spiked(sizes: FloatArray, most: float) -> bool:
