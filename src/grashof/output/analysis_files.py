@@ -20,8 +20,7 @@ from grashof.output.folder import ANALYSIS_PAGE, ANALYSIS_RECORD, replacing_own_
 from grashof.output.run_files import write_csv, write_json, write_page
 from grashof.output.streams import say
 from grashof.output.terminal import console, folded
-from grashof.study.section import Fact
-from grashof.survey.report import LinkageReport
+from grashof.survey import Fact, LinkageReport
 from grashof.wording.numbers import number_text, value_text
 
 _PACKAGES = ("grashof", "numpy", "scipy", "pandas", "matplotlib", "jinja2")
