@@ -20,7 +20,7 @@ from grashof.output.folder import ANALYSIS_PAGE, ANALYSIS_RECORD, replacing_own_
 from grashof.output.run_files import write_csv, write_json, write_page
 from grashof.output.streams import say
 from grashof.output.terminal import console, folded
-from grashof.survey import Fact, LinkageReport
+from grashof.survey import Fact, LinkageReport, Section
 from grashof.wording.numbers import number_text, value_text
 
 _PACKAGES = ("grashof", "numpy", "scipy", "pandas", "matplotlib", "jinja2")
@@ -76,11 +76,16 @@ def print_report(report: LinkageReport) -> None:
     for line in _fitting(_extremes_table(report, 6), _extremes_table(report, 4)):
         say(line)
     for section in report.sections:
-        if section.facts:
-            for line in _fitting(_facts_table(section.title, section.facts)):
-                say(line)
-            for line in folded(section.notes):
-                say(line)
+        for line in _section_lines(section):
+            say(line)
+
+
+def _section_lines(section: Section) -> list[str]:
+    """Its facts under its title, with its notes; none without facts."""
+    if not section.facts:
+        return []
+    lines = _fitting(_facts_table(section.title, section.facts))
+    return [*(line for line in lines if line), *folded(section.notes), ""]
 
 
 def _fitting(*tables: Table) -> list[str]:

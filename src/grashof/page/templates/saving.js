@@ -5,7 +5,7 @@ const LETTERS = ["font-size", "font-weight"];
 const FONT = "Helvetica, Arial, sans-serif";
 const USUAL = { "fill-opacity": "1", "stroke-width": "1px", "stroke-dasharray": "none", "stroke-linecap": "butt", "stroke-linejoin": "miter", opacity: "1", "font-weight": "400" };
 // As `no_formula` in Python: no cell is a formula to a spreadsheet, also where it divides at semicolons.
-const FORMULA = /((?:^|;)\s*)(?=[=+\-@＝＋－＠])/g;
+const FORMULA = /(^|;)(?=\s*[=+\-@＝＋－＠]|[\t\r\n])/g;
 
 // Text without what XML cannot hold.
 const plain = (text) => String(text).replace(/[\u0000-\u0008\u000b\u000c\u000e-\u001f\ufffe\uffff]/g, "?");
