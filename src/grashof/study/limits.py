@@ -87,7 +87,13 @@ def _distance(track: FloatArray, centre: FloatArray) -> FloatArray:
 
 def _spiked(sizes: FloatArray, most: float) -> bool:
     """Whether values beyond a size stand alone, much larger than those two steps before and after."""
-    padded = np.pad(np.nan_to_num(sizes, nan=0.0, posinf=np.inf), 2)
+    if len(sizes) < 3:
+        return False
+    closed = np.isclose(
+        sizes[0], sizes[-1], rtol=1e-6, equal_nan=True
+    )  # a turn, which goes on where it began
+    ends = np.full((2, 2), np.inf) if not closed else np.array([sizes[-3:-1], sizes[1:3]])
+    padded = np.nan_to_num(np.concatenate([ends[0], sizes, ends[1]]), nan=0.0, posinf=np.inf)
     beside = np.maximum(padded[1:-3], padded[3:-1])
     whole = np.where(np.isnan(sizes), 2 * _SPIKE * beside, sizes)  # unknown in the very pole
     far = np.maximum(padded[:-4], padded[4:])
