@@ -79,6 +79,7 @@ def test_the_keyboard_folds_and_unfolds(opened: Open) -> None:
     for key, expected in (("Enter", True), ("Space", False), ("Space", True)):
         page.keyboard.press(key)
         wait_until(page, f"grashof.state().groups[1].open === {str(expected).lower()}")
+    wait_until(page, "grashof.state().groups[1].made === 3")
     assert not state(page)["playing"]
     assert state(page)["theta2"] == theta2
     page.keyboard.press("Tab")

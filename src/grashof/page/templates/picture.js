@@ -58,7 +58,7 @@ class Picture {
     this.outputs = lines.map((line) => $("output", line));
     this.noise = this.panel.series.map(({ values, xy }) => {
       const [low, high] = extent(values || xy.flat()) || [0, 0];
-      return 1e-12 * Math.max(-low, high);
+      return 1e-12 * Math.min(Math.max(-low, high), this.panel.most ?? Infinity);
     });
     this.svg.setAttribute("aria-label", title.textContent);
   }
