@@ -14,9 +14,10 @@ from grashof.study.section import DRIVER_ANGLE, Plot
 
 Rows = slice | npt.NDArray[np.intp]
 _MOST = 1500  # rows of a plot that are shown whole
+_DIGITS = 5  # of what varies as much as it is large
+_STEADY = 1e-9  # share of its size within which a column is constant
+_NOISE = 1e-13  # share of its size below which a value is 0
 _PLACES = 7  # digits: steps of a long history have to stay even
-
-_NOISE = 1e-13  # times what one value in twenty exceeds
 
 
 class Columns:
@@ -33,22 +34,28 @@ class Columns:
 
     def __init__(self) -> None:
         self.found: list[list[float | None]] = []
-        self._places: dict[tuple[float | None, ...], int] = {}
+        self._known: dict[tuple[float | None, ...], int] = {}
 
-    def add(self, values: FloatArray, digits: int = 5) -> int:
-        """The number of a column that has these values."""
-        column = compact(_plain(values).tolist(), digits)
-        known = self._places.setdefault(tuple(column), len(self.found))
-        if known == len(self.found):
+    def add(self, values: FloatArray, digits: int = _DIGITS) -> int:
+        """The number of a column that has these values, to so many digits or more where they hardly vary."""
+        plain, digits = _plain(values, digits)
+        column = compact(plain.tolist(), digits)
+        number = self._known.setdefault(tuple(column), len(self.found))
+        if number == len(self.found):
             self.found.append(column)
-        return known
+        return number
 
 
-def _plain(values: FloatArray) -> FloatArray:
-    """Values of which those are 0 that rounding alone keeps from it."""
-    known = np.abs(values[np.isfinite(values)])
-    noise = _NOISE * np.quantile(known, 0.95) if known.size else 0.0
-    return np.where(np.abs(values) < noise, 0.0, values)
+def _plain(values: FloatArray, digits: int) -> tuple[FloatArray, int]:
+    """Values of which those are 0 that rounding alone keeps from it, and digits that tell them apart."""
+    known = values[np.isfinite(values)]
+    if not known.any():
+        return values, digits
+    size = float(np.quantile(np.abs(known), 0.95))
+    spread = float(np.ptp(np.quantile(known, [0.05, 0.95])))
+    if spread > _STEADY * size:
+        digits = max(digits, int(np.ceil(np.log10(size / spread))) + _DIGITS - 1)
+    return np.where(np.abs(values) < _NOISE * size, 0.0, values), digits
 
 
 def plot_data(plot: Plot, columns: Columns) -> dict[str, Any]:

@@ -73,6 +73,7 @@ def told_sections() -> tuple[Section, ...]:
             (
                 Plot("hostile", HOSTILE, HOSTILE, {HOSTILE: np.sin(turn), "_": pole}, theta2),
                 Plot("gaps", "with gaps", "N", {"known": gaps, "none": np.full(361, np.nan)}, theta2),
+                Plot("error", "small angle", "deg", {"error": 20 + 1e-6 * np.sin(turn)}, theta2),
             ),
             (HOSTILE,),
         ),

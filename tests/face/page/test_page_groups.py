@@ -63,7 +63,7 @@ def test_groups_are_drawn_when_they_are_opened_and_seen(opened: Open) -> None:
     page.locator("#open-all").click()
     wait_until(page, "grashof.state().groups.every((group) => group.open)")
     wait_until(page, "grashof.state().groups[1].drawn === 3")
-    assert [group["made"] for group in state(page)["groups"]] == [5, 3, 7, 9, 12, 2, 0, 5]
+    assert [group["made"] for group in state(page)["groups"]] == [5, 3, 7, 9, 12, 3, 0, 5]
     assert state(page)["groups"][-1]["drawn"] == 0  # far below
     page.locator("details").last.scroll_into_view_if_needed()
     wait_until(page, "grashof.state().groups.at(-1).drawn > 0")
@@ -107,6 +107,31 @@ def test_marks_follow_the_linkage(opened: Open, told: LinkageReport) -> None:
     motor = plot(page, "motor")
     assert float(readings(motor)[0]) == pytest.approx(np.sin(2 * angle), rel=1e-3)
     assert len(dots(motor)) == 1
+
+
+def test_in_a_gap_nothing_is_read_and_no_dot_is_seen(opened: Open) -> None:
+    page = opened("sections", size=(1440, 900))
+    open_group(page, "=1+1")
+    gaps = plot(page, "with gaps")
+    page.locator("#stage").focus()
+    assert readings(gaps) == ["0.866", "–"]
+    assert len(dots(gaps)) == 1
+    for _ in range(4):
+        page.keyboard.press("Shift+ArrowRight")
+    assert np.degrees(state(page)["theta2"]) == pytest.approx(100)
+    assert readings(gaps) == ["–", "–"]
+    assert dots(gaps) == []
+
+
+def test_angles_that_hardly_vary_have_numbers_at_their_axis(opened: Open) -> None:
+    page = opened("sections", size=(1440, 900))
+    open_group(page, "=1+1")
+    numbers = [
+        float(each) for each in texts(plot(page, "small angle").locator(".grid text[text-anchor=end]"))
+    ]
+    assert len(numbers) >= 3
+    assert 20 - 2e-6 < min(numbers) < 20 < max(numbers) < 20 + 2e-6
+    assert len(set(numbers)) == len(numbers)
 
 
 def test_tracks_have_equal_scales(opened: Open) -> None:

@@ -16,6 +16,7 @@ import pytest
 import grashof.page
 from grashof.figures.section_plots import PENS
 from grashof.page import analysis_page
+from grashof.page.plot_data import Columns
 from grashof.survey import LinkageReport, Plot, Section
 
 RECORD: dict[str, Any] = {"versions": {"grashof": "0"}, "settings": {}}
@@ -79,7 +80,7 @@ def test_groups_stand_in_order_and_an_empty_section_in_none(page: Groups) -> Non
 
 def test_facts_and_tables_are_text_with_what_is_not_finite_in_words(page: Groups) -> None:
     texts = page.groups[-3]
-    assert texts[:2] == [HOSTILE, "2 plots, 2 tables, 4 values"]
+    assert texts[:2] == [HOSTILE, "3 plots, 2 tables, 4 values"]
     assert "b" not in page.tags
     assert page.tags.count("script") == 2
     for label, *rest in (
@@ -106,6 +107,24 @@ def test_values_that_are_not_finite_are_gaps(page: Groups) -> None:
     pole = page.plot("hostile")["series"][1]
     assert np.isnan(page.column(pole["values"])[0])
     assert page.plot("hostile")["most"] == pytest.approx(12, rel=0.05)  # the half of both lines is below 1
+
+
+@pytest.mark.parametrize(
+    ("offset", "size"), [(0, 1), (20, 1e-3), (2e6, 0.1), (0, 1e-250), (-3, 1e-7), (1, 1e250)]
+)
+def test_columns_are_as_fine_as_one_can_see(offset: float, size: float) -> None:
+    values = offset + size * np.sin(np.linspace(0, 6, 361))
+    columns = Columns()
+    columns.add(values)
+    np.testing.assert_allclose(np.array(columns.found[0], dtype=float), values, rtol=0, atol=1e-3 * size)
+
+
+def test_columns_are_short_where_they_are_nothing_but_rounding() -> None:
+    columns = Columns()
+    random = np.random.default_rng(0)
+    columns.add(2.5 + 1e-15 * random.normal(size=361))
+    columns.add(np.where(np.arange(361) % 2, 1e-17, 1.0))
+    assert columns.found == [[2.5] * 361, [1.0, 0.0] * 180 + [1.0]]
 
 
 def test_columns_are_kept_once(page: Groups) -> None:

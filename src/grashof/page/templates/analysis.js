@@ -59,7 +59,8 @@ class AnalysisPage {
     this.player = new Player($("#player"), { onMove: (angle) => this.stage.move(angle) });
     this.groups = [];
     const nodes = $$("#groups details");
-    this.groups = groups.map((plots, k) => new Group(nodes[k], plots.map((plot) => panelOf(plot, columns, driver)), this));
+    const panels = groups.map((plots) => plots.map((plot) => panelOf(plot, columns, driver)));
+    this.groups = panels.map((plots, k) => new Group(nodes[k], plots, this));
     for (const [button, open] of [["#open-all", true], ["#close-all", false]]) {
       $(button).addEventListener("click", () => {
         for (const node of nodes) node.open = open;
@@ -92,7 +93,8 @@ class AnalysisPage {
   windowOf({ places }) {
     if (this.designs.length < 2) return null;
     const { low, high } = this.designs[this.range];
-    return extent(places.filter((place) => place !== null && place >= low * DEG - 1e-3 && place <= high * DEG + 1e-3));
+    const inside = (place) => place !== null && place >= low * DEG - 1e-3 && place <= high * DEG + 1e-3;
+    return extent(places.filter(inside));
   }
 
   turnTo(theta2) {

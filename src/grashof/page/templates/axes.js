@@ -1,7 +1,13 @@
 // What all plots have: pens, numbers along axes, lines that end at the frame, rows between samples.
 const PENS = 8; // the styles of lines; the next eight have the same colours, dotted
-const SPOTS = ["M-3.5 0a3.5 3.5 0 1 0 7 0a3.5 3.5 0 1 0 -7 0Z", "M-3 -3h6v6h-6Z", "M0 -4.5l4.5 4.5l-4.5 4.5l-4.5 -4.5Z", "M-4 3.5h8l-4 -7Z"];
+const SPOTS = [
+  "M-3.5 0a3.5 3.5 0 1 0 7 0a3.5 3.5 0 1 0 -7 0Z",
+  "M-3 -3h6v6h-6Z",
+  "M0 -4.5l4.5 4.5l-4.5 4.5l-4.5 -4.5Z",
+  "M-4 3.5h8l-4 -7Z",
+];
 const LETTER = 6.4; // px: few characters of an axis are wider
+const FONT = "Helvetica, Arial, sans-serif";
 
 const pen = (k) => `pen-${(k % PENS) + 1}${k >= PENS ? " again" : ""}`;
 
@@ -9,16 +15,32 @@ const pen = (k) => `pen-${(k % PENS) + 1}${k >= PENS ? " again" : ""}`;
 const spotPen = (k) => `pen-${PENS - (k % PENS)}`;
 const spot = (k) => SPOTS[k % SPOTS.length];
 
+const measure = document.createElement("canvas").getContext("2d");
+function textWidth(text) {
+  measure.font = `12px ${FONT}`;
+  return measure.measureText(text).width;
+}
+
+// As much of a text as fits.
+function shortened(text, width) {
+  if (textWidth(text) <= width) return text;
+  let kept = [...text];
+  while (kept.length && textWidth(`${kept.join("")}…`) > width) kept = kept.slice(0, -1);
+  return `${kept.join("")}…`;
+}
+
 // Ticks with their numbers as text, with a power of ten where they are long.
 function numbered({ at, decimals }) {
   const most = Math.max(...at.map(Math.abs));
-  const power = most >= 1e5 || decimals > 4;
   const step = at.length > 1 ? at[1] - at[0] : most;
+  const order = (value) => Math.floor(Math.log10(value) + 1e-9);
+  const digits = (value) => Math.min(Math.max(order(Math.abs(value)) - order(step), 0), 12);
+  const longer = Math.max(order(most), 0) + 2 + decimals > digits(most) + 5;
+  const power = most >= 1e5 || (decimals > 4 && longer);
   const text = (value) => {
     if (!power) return fixed(value, decimals);
     if (Math.abs(value) < step / 2) return "0";
-    const digits = Math.floor(Math.log10(Math.abs(value)) + 1e-9) - Math.floor(Math.log10(step) + 1e-9);
-    return minus(value.toExponential(Math.min(Math.max(digits, 0), 6)).replace("e+", "e"));
+    return minus(value.toExponential(digits(value)).replace("e+", "e"));
   };
   return at.map((value) => ({ value, text: text(value) }));
 }

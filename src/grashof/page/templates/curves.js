@@ -4,8 +4,8 @@ const PEAK = 12; // a rate is drawn up to so many times its typical size, where 
 class Curves extends Picture {
   // panel: { title, unit, series: [{ label, values }] } with values at `places`; besides `over` (what the
   // places are), `angles` (driver angles in deg at the places), `most` (size up to which values are drawn),
-  // `limits` and `points`. options: `bounded`, the `bold` part of the places, target `marks`, and the `window`
-  // of places that is shown.
+  // `limits` and `points`. options: `bounded`, the `bold` part of the places, target `marks`, and the
+  // `window` of places that is shown.
   show(panel, options = {}) {
     const follows = this.panel;
     super.show(panel, options);
@@ -22,7 +22,7 @@ class Curves extends Picture {
     const across = named || this.panel.over ? this.panel.over || this.panel.driver : "";
     const below = across ? 36 : 20;
     const height = box.bottom - box.top - below - 6;
-    const numbers = ticksAlong(low, high, height, this.panel.unit === "deg", 26).filter(({ value }) => value >= low);
+    const numbers = ticksAlong(low, high, height, this.panel.unit === "deg", 26);
     const left = box.left + Math.max(46, longest(numbers) + 10) + (named ? 18 : 0);
     this.frame = { left, right: box.right - 10, top: box.top + 6, bottom: box.bottom - below };
     const { right, top, bottom } = this.frame;
@@ -30,8 +30,9 @@ class Curves extends Picture {
     this.y = (value) => bottom - ((bottom - top) * (value - low)) / (high - low);
     const grid = add(svg, "g", { class: "grid" });
     for (const { value, text } of numbers) {
-      add(grid, "path", { d: `M${px(left)} ${px(this.y(value))}H${right}`, class: value === 0 ? "zero" : "" });
-      add(grid, "text", { x: left - 5, y: px(this.y(value) + 4), "text-anchor": "end" }, text);
+      const y = this.y(value);
+      add(grid, "path", { d: `M${px(left)} ${px(y)}H${right}`, class: value === 0 ? "zero" : "" });
+      add(grid, "text", { x: left - 5, y: px(y + 4), "text-anchor": "end" }, text);
     }
     const degrees = !this.panel.over || this.panel.over.endsWith("(deg)");
     for (const { value, text } of ticksAlong(first, last, right - left, degrees)) {
@@ -140,4 +141,5 @@ class Curves extends Picture {
   }
 }
 
-const isRising = (places) => places.every((place, k) => k === 0 || (place !== null && place >= places[k - 1]));
+const isRising = (places) =>
+  places.every((place, k) => k === 0 || (place !== null && place >= places[k - 1]));

@@ -75,8 +75,8 @@ class Picture {
   // Values at the mark as text, beside the names of their lines; rounding is nothing.
   tell(values) {
     this.outputs.forEach((output, k) => {
-      const parts = [values[k]].flat().map((value) => figure(Math.abs(value) < this.noise[k] ? 0 : value));
-      output.textContent = parts.join(", ");
+      const text = (value) => figure(value !== null && Math.abs(value) < this.noise[k] ? 0 : value);
+      output.textContent = [values[k]].flat().map(text).join(", ");
     });
   }
 
@@ -100,14 +100,12 @@ class Picture {
   // The names of both axes, below and to the left of a box.
   nameAxes(svg, { left, bottom }, across, up) {
     const { frame } = this;
-    const middle = [(frame.left + frame.right) / 2, (frame.top + frame.bottom) / 2];
-    if (across) {
-      add(svg, "text", { x: px(middle[0]), y: bottom - 5, "text-anchor": "middle", class: "axis" }, across);
-    }
+    const text = (words, x, y, length, more) =>
+      add(svg, "text", { x, y, "text-anchor": "middle", class: "axis", ...more }, shortened(words, length));
+    if (across) text(across, px((frame.left + frame.right) / 2), bottom - 5, frame.right - frame.left);
     if (up) {
-      const [x, y] = [left + 13, px(middle[1])];
-      const turned = { x, y, "text-anchor": "middle", transform: `rotate(-90 ${x} ${y})`, class: "axis" };
-      add(svg, "text", turned, up);
+      const [x, y] = [left + 13, px((frame.top + frame.bottom) / 2)];
+      text(up, x, y, frame.bottom - frame.top, { transform: `rotate(-90 ${x} ${y})` });
     }
   }
 

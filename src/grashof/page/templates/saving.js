@@ -1,49 +1,44 @@
 // Plots as files: pictures that need no style sheet, and tables.
-const SHEET = { width: 720, curves: 400, tracks: 620, margin: 14, line: 18, text: 12 };
-const SAVED = ["fill", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "stroke-linecap", "stroke-linejoin", "opacity"];
-const LETTERS = ["font-size", "font-weight"];
-const FONT = "Helvetica, Arial, sans-serif";
-const USUAL = { "fill-opacity": "1", "stroke-width": "1px", "stroke-dasharray": "none", "stroke-linecap": "butt", "stroke-linejoin": "miter", opacity: "1", "font-weight": "400" };
+const SHEET = { width: 720, curves: 400, tracks: 620, margin: 14, line: 18 };
+// What becomes an attribute, of lines and of letters, with what goes without saying.
+const SAVED = {
+  fill: "",
+  "fill-opacity": "1",
+  stroke: "none",
+  "stroke-width": "1px",
+  "stroke-dasharray": "none",
+  "stroke-linecap": "butt",
+  "stroke-linejoin": "miter",
+  opacity: "1",
+};
+const LETTERS = { fill: "", "font-size": "", "font-weight": "400" };
 // As `no_formula` in Python: no cell is a formula to a spreadsheet, also where it divides at semicolons.
 const FORMULA = /(^|;)(?=\s*[=+\-@＝＋－＠]|[\t\r\n])/g;
 
 // Text without what XML cannot hold.
 const plain = (text) => String(text).replace(/[\u0000-\u0008\u000b\u000c\u000e-\u001f\ufffe\uffff]/g, "?");
 
-const measure = document.createElement("canvas").getContext("2d");
-function textWidth(text) {
-  measure.font = `${SHEET.text}px ${FONT}`;
-  return measure.measureText(text).width;
-}
-
-// As much of a text as fits.
-function shortened(text, width) {
-  if (textWidth(text) <= width) return text;
-  let kept = [...text];
-  while (kept.length && textWidth(`${kept.join("")}…`) > width) kept = kept.slice(0, -1);
-  return `${kept.join("")}…`;
-}
-
 // A plot as SVG of its own: white, with title, names of the axes and a legend.
 function savedSvg(picture, heading) {
-  const { width, margin, line } = SHEET;
+  const { width, margin } = SHEET;
   const holder = document.createElement("div");
   holder.className = "sheet";
   document.body.append(holder);
   const { panel } = picture;
   const svg = element("svg", { xmlns: "http://www.w3.org/2000/svg", "font-family": FONT });
   holder.append(svg);
-  add(svg, "text", { x: margin, y: 24, class: "title" }, plain(shortened(panel.title, width / 1.3)));
-  add(svg, "text", { x: margin, y: 42 }, plain(shortened(heading, width - 2 * margin)));
+  add(svg, "text", { x: margin, y: 24, class: "title" }, shortened(panel.title, width / 1.3));
+  add(svg, "text", { x: margin, y: 42 }, shortened(heading, width - 2 * margin));
   const begin = legend(svg, panel, 60);
   const height = begin + (picture instanceof Tracks ? SHEET.tracks : SHEET.curves);
   const copy = Object.assign(Object.create(Object.getPrototypeOf(picture)), picture);
-  copy.paint(svg, { left: margin / 2, top: begin, right: width - margin / 2, bottom: height - margin / 2 }, true);
+  const half = margin / 2;
+  copy.paint(svg, { left: half, top: begin, right: width - half, bottom: height - half }, true);
   set(svg, { width, height, viewBox: `0 0 ${width} ${height}` });
   styleInlined(svg);
   svg.insertBefore(element("rect", { width, height, fill: "#ffffff" }), svg.firstChild);
   holder.remove();
-  return `<?xml version="1.0" encoding="UTF-8"?>\n${new XMLSerializer().serializeToString(svg)}\n`;
+  return `<?xml version="1.0" encoding="UTF-8"?>\n${plain(new XMLSerializer().serializeToString(svg))}\n`;
 }
 
 // Names of lines and points in rows; returns where the plot begins below them.
@@ -53,7 +48,7 @@ function legend(svg, panel, top) {
   const spots = (panel.points || []).map(({ label }, k) => [label, `spot ${spotPen(k)}`, spot(k)]);
   let [x, y] = [margin, top];
   for (const [label, style, d] of [...lines, ...spots]) {
-    const text = plain(shortened(label, width - 2 * margin - 30));
+    const text = shortened(label, width - 2 * margin - 30);
     const wide = 30 + textWidth(text) + 16;
     if (x > margin && x + wide > width - margin) [x, y] = [margin, y + line];
     add(svg, "path", { d, class: style, transform: `translate(${px(x + 12)} ${y - 4})` });
@@ -67,9 +62,9 @@ function legend(svg, panel, top) {
 function styleInlined(svg) {
   for (const node of $$("path, text, circle", svg)) {
     const style = getComputedStyle(node);
-    for (const name of node.tagName === "text" ? ["fill", ...LETTERS] : SAVED) {
+    for (const [name, usual] of Object.entries(node.tagName === "text" ? LETTERS : SAVED)) {
       const value = style.getPropertyValue(name);
-      if (value && value !== USUAL[name]) node.setAttribute(name, value.replaceAll("px", ""));
+      if (value !== usual) node.setAttribute(name, value.replaceAll("px", ""));
     }
   }
   for (const node of $$("[class]", svg)) node.removeAttribute("class");
@@ -105,8 +100,10 @@ function cell(words) {
 }
 
 // A name that every system takes, of letters and digits.
-const fileName = (...parts) =>
-  parts.map((part) => part.replace(/[^\p{L}\p{N}._-]+/gu, "-").replace(/^[.-]+|[.-]+$/g, "")).filter(Boolean).join("-").slice(0, 120);
+function fileName(...parts) {
+  const words = parts.map((part) => part.replace(/[^\p{L}\p{N}._-]+/gu, "-").replace(/^[.-]+|[.-]+$/g, ""));
+  return words.filter(Boolean).join("-").slice(0, 120);
+}
 
 function download(name, text, type) {
   const link = document.createElement("a");

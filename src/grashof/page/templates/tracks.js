@@ -19,7 +19,8 @@ class Tracks extends Picture {
     this.frame = { left, right: box.left + width - 10, top: box.top + 6, bottom: box.bottom - below };
     const { right, top, bottom } = this.frame;
     const unit = Math.min((right - left) / (xs[1] - xs[0]), (bottom - top) / (ys[1] - ys[0]));
-    const [x0, y0] = [(left + right) / 2 - (unit * (xs[0] + xs[1])) / 2, (top + bottom) / 2 + (unit * (ys[0] + ys[1])) / 2];
+    const x0 = (left + right) / 2 - (unit * (xs[0] + xs[1])) / 2;
+    const y0 = (top + bottom) / 2 + (unit * (ys[0] + ys[1])) / 2;
     this.at = (x, y) => [x0 + unit * x, y0 - unit * y];
     const grid = add(svg, "g", { class: "grid" });
     for (const { value, text } of ticksAlong((left - x0) / unit, (right - x0) / unit, right - left, false)) {
@@ -27,7 +28,8 @@ class Tracks extends Picture {
       add(grid, "path", { d: `M${x} ${top}V${bottom}`, class: value === 0 ? "zero" : "" });
       add(grid, "text", { x, y: bottom + 14, "text-anchor": "middle" }, text);
     }
-    for (const { value, text } of ticksAlong((y0 - bottom) / unit, (y0 - top) / unit, bottom - top, false, 40)) {
+    const [low, high] = [(y0 - bottom) / unit, (y0 - top) / unit];
+    for (const { value, text } of ticksAlong(low, high, bottom - top, false, 40)) {
       const y = y0 - unit * value;
       add(grid, "path", { d: `M${px(left)} ${px(y)}H${right}`, class: value === 0 ? "zero" : "" });
       add(grid, "text", { x: left - 5, y: px(y + 4), "text-anchor": "end" }, text);
@@ -44,9 +46,9 @@ class Tracks extends Picture {
   // From where to where the tracks go along an axis, as far as they are shown.
   reach(axis) {
     const { series, points, most, middle } = this.panel;
-    const near = ({ xy: [xs, ys] }) => (_, k) =>
-      xs[k] !== null && ys[k] !== null && (most === undefined || Math.hypot(xs[k] - middle[0], ys[k] - middle[1]) <= most);
-    const tracks = series.flatMap((each) => each.xy[axis].filter(near(each)));
+    const near = (x, y) =>
+      x !== null && y !== null && (most === undefined || Math.hypot(x - middle[0], y - middle[1]) <= most);
+    const tracks = series.flatMap(({ xy }) => xy[axis].filter((_, k) => near(xy[0][k], xy[1][k])));
     return extent([...tracks, ...(points || []).flatMap(({ xy }) => xy[axis])]) || [0, 1];
   }
 
