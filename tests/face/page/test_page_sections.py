@@ -17,7 +17,8 @@ import grashof.page
 from grashof.figures.section_plots import PENS
 from grashof.page import analysis_page
 from grashof.page.plot_data import Columns
-from grashof.survey import LinkageReport, Plot, Section
+from grashof.problems import load_linkage_spec
+from grashof.survey import LinkageReport, Plot, Section, report_on
 
 RECORD: dict[str, Any] = {"versions": {"grashof": "0"}, "settings": {}}
 HOSTILE = '</script><b onclick="x">=1+1 & "quoted"; -2</b>'
@@ -93,6 +94,13 @@ def test_facts_and_tables_are_text_with_what_is_not_finite_in_words(page: Groups
         assert rest in [texts[k + 1 : k + 1 + len(rest)] for k in places], label
     cells = texts[texts.index("rank") + 1 :]
     assert cells[:6] == [HOSTILE, "no limit", "1", "b", "0.333333", "2"]
+
+
+def test_every_plot_of_an_analysis_has_a_key_of_its_own() -> None:
+    page = Groups(analysis_page(report_on(load_linkage_spec("pumpjack")), RECORD))
+    keys = [plot["key"] for group in page.data["groups"] for plot in group]
+    assert len(set(keys)) == len(keys) > 30
+    assert all(re.fullmatch("[a-z0-9-]+", key) for key in keys)
 
 
 def test_small_tables_are_shown_and_large_ones_named_with_their_size(page: Groups) -> None:
