@@ -275,13 +275,16 @@ def analyse(
         float | None,
         typer.Option(help="Of the driver, clockwise below 0; the file's by default.", show_default=False),
     ] = None,
+    pictures: Annotated[
+        bool, typer.Option("--pictures", help="Plots of all sections as PNG and SVG, not in the page alone.")
+    ] = False,
 ) -> None:
     """Report motion and forces of LINKAGE; write tables, a summary, a page and plots.
 
     Exit code 0: done; 2: bad input; 3: environment error.
     """
     with _errors_told():
-        commands.analyse(linkage, out, speed_rpm=speed_rpm)
+        commands.analyse(linkage, out, pictures=pictures, speed_rpm=speed_rpm)
 
 
 @app.command()

@@ -215,7 +215,7 @@ def _begin_record(folder: Path, *, resume: bool) -> None:
         say(f"{record}: the record of an unfinished search is kept as {kept.name}", err=True)
 
 
-def analyse(linkage: str, out: Path | None, **asked: Any) -> None:
+def analyse(linkage: str, out: Path | None, *, pictures: bool = False, **asked: Any) -> None:
     """Write how a linkage moves, and print the summary; for what else is asked see `Asked`."""
     from grashof.output.analysis_files import print_report, write_report
     from grashof.output.folder import ANALYSIS_PAGE, ANALYSIS_RECORD, check_writable
@@ -225,7 +225,7 @@ def analyse(linkage: str, out: Path | None, **asked: Any) -> None:
     folder = out if out is not None else Path(f"{spec.name}-analysis")
     check_writable(folder, record=ANALYSIS_RECORD)
     report = report_on(spec, Asked(**asked))
-    files = write_report(folder, report)
+    files = write_report(folder, report, pictures=pictures)
     for note in report.notes:
         say(note, err=True)
     _report("", files, folder)

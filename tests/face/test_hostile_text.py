@@ -15,16 +15,18 @@ from typing import Any
 from xml.etree import ElementTree as ET
 
 import ezdxf
+import numpy as np
 import openpyxl
+import pandas as pd
 import pytest
 
 from grashof.figures.animation import save_animation
 from grashof.figures.files import draw_design, draw_motion, save
 from grashof.notebook import html
-from grashof.output.analysis_files import write_report
+from grashof.output.analysis_files import print_report, write_report
 from grashof.output.run_files import write_run
 from grashof.problems import FourBar, LinkageSpec
-from grashof.survey import report_on
+from grashof.survey import Fact, Plot, Section, report_on
 from grashof.synth import Result
 from grashof.workshop import plan_parts, write_dxf, write_svg
 from grashof.workshop.plates import PlateSizes
@@ -116,6 +118,25 @@ def test_an_analysis(spec: LinkageSpec, tmp_path: Path, monkeypatch: pytest.Monk
     assert {path.name for path in tmp_path.iterdir()} == {"out"}
     assert_no_formulas(tmp_path / "out")
     assert_plain_page((tmp_path / "out" / "analysis.html").read_text(encoding="utf-8"), 2)
+
+
+def test_sections_of_an_analysis(
+    spec: LinkageSpec, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text, theta2 = spec.title, np.arange(361.0)
+    plot = Plot("curve", text, text, {text: theta2}, theta2, text, {text: np.ones((1, 2))})
+    table = pd.DataFrame({"theta2_deg": [0.0, 1.0], text: [text, text]})
+    section = Section("mine", text, (Fact("mine", text, text, text),), {"mine": table}, (plot,), (text,))
+    monkeypatch.setattr("grashof.figures.survey_plots.plots", lambda _: [])
+    report = replace(report_on(spec), sections=(section,))
+    write_report(tmp_path / "out", report, pictures=True)
+    assert {path.name for path in tmp_path.iterdir()} == {"out"}
+    assert_no_formulas(tmp_path / "out")
+    assert_plain_page((tmp_path / "out" / "analysis.html").read_text(encoding="utf-8"), 2)
+    tags = {str(one.tag).rpartition("}")[2] for one in ET.parse(tmp_path / "out" / "plot-curve.svg").iter()}
+    assert not {"script", "image", "img"} & tags
+    print_report(report)
+    assert text in capsys.readouterr().out
 
 
 def test_a_workbook(spec: LinkageSpec) -> None:

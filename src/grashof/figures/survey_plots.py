@@ -10,8 +10,9 @@ from matplotlib.figure import Figure
 
 from grashof.figures.curves import DYNAMICS, KINEMATICS, Panel, draw_curves
 from grashof.figures.files import STYLE, fit_title, shortened
-from grashof.figures.linkage import plot_linkage
+from grashof.figures.linkage import figure_of, plot_linkage
 from grashof.figures.parts import COLOURS, GROUND
+from grashof.figures.section_plots import plot_section
 from grashof.problems import FourBar
 from grashof.survey.report import LinkageReport, mass_tracks
 
@@ -30,6 +31,16 @@ def plots(report: LinkageReport) -> Iterator[tuple[str, Figure]]:
     for table, known, files in (("kinematics", KINEMATICS, _KINEMATIC), ("dynamics", DYNAMICS, _DYNAMIC)):
         for name, quantities in files.items() if table in report.tables else ():
             yield name, _curves(report, table, [known[quantity] for quantity in quantities])
+
+
+def section_pictures(report: LinkageReport) -> Iterator[tuple[str, Figure]]:
+    """Name and figure of each plot of a section."""
+    for plot in (plot for section in report.sections for plot in section.plots):
+        with rc_context(STYLE):
+            size = (8.5, 7.0) if plot.places is None else (8.5, 4.0)
+            axes = plot_section(plot, Figure(figsize=size, layout="constrained").subplots())
+            fit_title(axes, _title(report) if plot.places is not None else f"{_title(report)}\n{plot.title}")
+        yield f"plot-{plot.key}", figure_of(axes)
 
 
 def _curves(report: LinkageReport, table: str, panels: list[Panel]) -> Figure:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import platform
+from collections.abc import Iterable
 from importlib.metadata import version
 from io import StringIO
+from itertools import chain, count
 from pathlib import Path
 from typing import Any
 
@@ -17,16 +19,23 @@ from rich.table import Table
 from grashof.output.folder import ANALYSIS_PAGE, ANALYSIS_RECORD, replacing_own_files
 from grashof.output.run_files import write_csv, write_json, write_page
 from grashof.output.streams import say
-from grashof.output.terminal import console
-from grashof.survey.report import LinkageReport
+from grashof.output.terminal import console, folded
+from grashof.survey import Fact, LinkageReport, Section
 from grashof.wording.numbers import number_text, value_text
 
 _PACKAGES = ("grashof", "numpy", "scipy", "pandas", "matplotlib", "jinja2")
 _UNBOUNDED = 1000
 
 
-def write_report(folder: Path, report: LinkageReport) -> list[str]:
+def write_report(folder: Path, report: LinkageReport, *, pictures: bool = False) -> list[str]:
     """Write tables, summary, the page, plots and the record of them; the names of the files, sorted.
+
+    Parameters
+    ----------
+    folder : Path
+    report : LinkageReport
+    pictures : bool
+        Whether the plots of the sections are written as pictures, too, and not in the page alone.
 
     Raises
     ------
@@ -34,7 +43,7 @@ def write_report(folder: Path, report: LinkageReport) -> list[str]:
         The disk is full or the folder is lost; it then holds what it held before.
     """
     from grashof.figures.files import save
-    from grashof.figures.survey_plots import plots  # matplotlib takes half a second to import
+    from grashof.figures.survey_plots import plots, section_pictures  # matplotlib takes a while to import
     from grashof.page import analysis_page
 
     about = {
@@ -50,7 +59,7 @@ def write_report(folder: Path, report: LinkageReport) -> list[str]:
         write_csv(fresh / "summary.csv", _summary_frame(report))
         write_json(fresh / "summary.json", _summary(report))
         write_page(fresh / ANALYSIS_PAGE, analysis_page(report, about))
-        for name, figure in plots(report):
+        for name, figure in chain(plots(report), section_pictures(report) if pictures else ()):
             save(figure, [fresh / f"{name}.png", fresh / f"{name}.svg"])
         files = sorted({*(path.name for path in fresh.iterdir()), ANALYSIS_RECORD})
         write_json(fresh / ANALYSIS_RECORD, {**about, "files": files})
@@ -62,10 +71,21 @@ def print_report(report: LinkageReport) -> None:
     spec = report.sweep.spec
     lengths = ", ".join(f"{length:.6g}" for length in spec.linkage.lengths)
     say(f"{spec.title or spec.name}: r1 to r4 {lengths} {spec.length_unit}".rstrip())
-    for line in _fitting(_facts_table(report)):
+    for line in _fitting(_facts_table("summary", report.facts)):
         say(line)
     for line in _fitting(_extremes_table(report, 6), _extremes_table(report, 4)):
         say(line)
+    for section in report.sections:
+        for line in _section_lines(section):
+            say(line)
+
+
+def _section_lines(section: Section) -> list[str]:
+    """Its facts under its title, with its notes; none without facts."""
+    if not section.facts:
+        return []
+    lines = _fitting(_facts_table(section.title, section.facts))
+    return [*(line for line in lines if line), *folded(section.notes), ""]
 
 
 def _fitting(*tables: Table) -> list[str]:
@@ -85,12 +105,12 @@ def _plain_table() -> Table:
     return Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
 
 
-def _facts_table(report: LinkageReport) -> Table:
+def _facts_table(title: str, facts: Iterable[Fact]) -> Table:
     table = _plain_table()
-    table.add_column("summary", no_wrap=True)
+    table.add_column(title, no_wrap=True)
     table.add_column("value", justify="right", no_wrap=True)
     table.add_column("unit", no_wrap=True)
-    for fact in report.facts:
+    for fact in facts:
         table.add_row(fact.label, value_text(fact.value), fact.unit)
     return table
 
@@ -118,10 +138,24 @@ def _extremes_table(report: LinkageReport, digits: int) -> Table:
 
 def _summary_frame(report: LinkageReport) -> pd.DataFrame:
     rows = [
-        {"quantity": fact.key, "value": fact.value, "unit": fact.unit, "what": fact.label}
-        for fact in report.facts
+        {"quantity": key, "value": fact.value, "unit": fact.unit, "what": fact.label, "section": section}
+        for key, (section, fact) in _facts_by_key(report).items()
     ]
     return pd.DataFrame(rows)
+
+
+def _facts_by_key(report: LinkageReport) -> dict[str, tuple[str, Fact]]:
+    """Facts of the summary, with "", and of the sections, with their keys.
+
+    No two have the same key: that of a section's fact begins with the section where it is taken.
+    """
+    found = {fact.key: ("", fact) for fact in report.facts}
+    for section in report.sections:
+        for fact in section.facts:
+            longer = f"{section.key.replace('-', '_')}_{fact.key}"
+            keys = chain((fact.key, longer), (f"{longer}_{number}" for number in count(2)))
+            found[next(key for key in keys if key not in found)] = (section.key, fact)
+    return found
 
 
 def _summary(report: LinkageReport) -> dict[str, Any]:
@@ -134,7 +168,18 @@ def _summary(report: LinkageReport) -> dict[str, Any]:
         "angle_unit": "rad",
         "linkage": spec.linkage.stated,
         "notes": list(report.notes),
-        "facts": {fact.key: {"value": fact.value, "unit": fact.unit} for fact in report.facts},
+        "facts": {
+            key: {
+                "value": _finite(fact.value),
+                "unit": fact.unit,
+                **({"section": section} if section else {}),
+            }
+            for key, (section, fact) in _facts_by_key(report).items()
+        },
+        "sections": [
+            {"key": section.key, "title": section.title, "notes": list(section.notes)}
+            for section in report.sections
+        ],
         "extremes": [
             {str(key): _finite(value) for key, value in row.items()}
             for row in report.tables["extremes"].to_dict("records")
@@ -144,6 +189,7 @@ def _summary(report: LinkageReport) -> dict[str, Any]:
 
 def _finite(value: Any) -> Any:
     """As JSON knows it: null for NaN, words for infinity."""
+    value = value.item() if isinstance(value, np.generic) else value
     if not isinstance(value, float) or np.isfinite(value):
         return value
     return None if np.isnan(value) else "infinite" if value > 0 else "-infinite"

@@ -219,10 +219,13 @@ _GUARDS = ("Maximum_Iterations_Exceeded", "Maximum_WallTime_Exceeded")
 def write_csv(path: Path, frame: pd.DataFrame) -> None:
     """A table with floats in full precision; no text in it is a formula to a spreadsheet."""
     texts = frame.select_dtypes(exclude=["number", "bool"]).columns
-    plain = {name: frame[name].map(lambda x: no_formula(x) if isinstance(x, str) else x) for name in texts}
-    frame = frame.assign(**plain)
+    frame = frame.assign(**{name: frame[name].map(_plain) for name in texts}).rename(columns=_plain)
     with path.open("w", encoding="utf-8", newline="") as file:  # pandas would read ~ as a home
         frame.to_csv(file, index=False, lineterminator="\n")
+
+
+def _plain(value: Any) -> Any:
+    return no_formula(value) if isinstance(value, str) else value
 
 
 def write_json(path: Path, content: dict[str, Any]) -> None:

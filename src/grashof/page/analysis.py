@@ -1,21 +1,29 @@
-"""The page of an analysis: the moving linkage, every curve of its tables, extremes and summary."""
+"""The page of an analysis: the moving linkage, all plots and sections in groups that fold, the summary."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from grashof.page.render import compact, render
-from grashof.problems import FourBar
-from grashof.study.quantities import FORCES
+from grashof.page.panels import motion_sections
+from grashof.page.plot_data import Columns, is_thinned, plot_data
+from grashof.page.render import render
+from grashof.problems.values.checks import counted
+from grashof.study.section import DRIVER_ANGLE, Fact, Section
 from grashof.survey.report import LinkageReport
 from grashof.wording.numbers import number_text, value_text
 
-_SCRIPTS = ("linkage.js", "svg.js", "stage.js", "player.js", "curves.js", "analysis.js")
+_SCRIPTS = (
+    "linkage.js", "svg.js", "stage.js", "player.js", "axes.js", "picture.js", "curves.js", "tracks.js",
+    "saving.js", "analysis.js",
+)  # fmt: skip
 _EXTREMES = (("min", "least"), ("theta2_min_deg", "at θ2"), ("max", "largest"), ("theta2_max_deg", "at θ2"))
+_SMALL = 30  # rows up to which a table stands in the page; a larger one is a file beside it
+_DIGITS = 6
+_THINNED = "long histories have only some of their samples on this page, and all of them in the tables"
 
 
 def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
@@ -33,9 +41,14 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         One file: it needs no other and no network.
     """
     sweep, spec = report.sweep, report.sweep.spec
-    table = pd.concat([table for name, table in report.tables.items() if name != "extremes"], axis=1)
-    parts = _by_range(table.loc[:, ~table.columns.duplicated()], len(sweep.ranges))
+    columns = Columns()
+    sections = [
+        section
+        for section in (*motion_sections(report), *report.sections)
+        if section.facts or section.tables or section.plots or section.notes
+    ]
     data = {
+        "name": spec.name,
         "scene": {"unit": spec.length_unit},
         "designs": [
             {
@@ -47,20 +60,9 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
             }
             for low, high in sweep.ranges
         ],
-        "theta2": [part["theta2_deg"].tolist() for part in parts],
-        "panels": [
-            {
-                "title": title,
-                "unit": unit,
-                "series": [
-                    {"label": label, "values": [compact(part[key].tolist()) for part in parts]}
-                    for key, label in names.items()
-                    if key in table
-                ],
-            }
-            for title, unit, names in panels(spec.unit)
-            if any(key in table for key in names)
-        ],
+        "groups": [[plot_data(plot, columns) for plot in section.plots] for section in sections],
+        "columns": columns.found,
+        "driver": DRIVER_ANGLE,
     }
     lengths = [f"{float(length):.6g}" for length in spec.linkage.lengths]
     return render(
@@ -72,7 +74,8 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         report=report,
         lengths=lengths,
         ranges=[f"{np.degrees(low):.6g} to {np.degrees(high):.6g} deg" for low, high in sweep.ranges],
-        facts=[(fact.label, value_text(fact.value), fact.unit) for fact in report.facts],
+        facts=_facts(report.facts),
+        groups=[_group(section) for section in sections],
         extremes=_extremes(report.tables["extremes"]),
         extreme_columns=[label for _, label in _EXTREMES],
         many="range" in report.tables["extremes"],
@@ -81,50 +84,45 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
     )
 
 
-def panels(unit: str) -> list[tuple[str, str, dict[str, str]]]:
-    """Title, unit and columns (with their labels) of every plot over the driver angle.
-
-    Examples
-    --------
-    >>> title, unit, names = panels("mm")[3]
-    >>> title, unit, names
-    ('speed of A, B, P', 'mm/s', {'a_speed': 'A', 'b_speed': 'B', 'p_speed': 'P'})
-    """
-    points = {name: name.upper() for name in FourBar.MOVING}
-    speeds, accelerations = (
-        {f"{name}_{size}": point for name, point in points.items()} for size in ("speed", "acceleration")
-    )
-    places, rates = [], []
-    for name, point in reversed(points.items()):
-        places.append((f"place of {point}", unit, _xy(name)))
-        for rate, per in (("velocity", "s"), ("acceleration", "s²")):
-            rates.append((f"{rate} of {point}", f"{unit}/{per}", _xy(f"{name}_{rate}")))
-    every = ", ".join(points.values())
-    return [
-        ("angles", "deg", {"theta3_deg": "θ3", "theta4_deg": "θ4", "mu_deg": "μ"}),
-        ("angular velocity", "rad/s", {"omega3": "ω3", "omega4": "ω4"}),
-        ("angular acceleration", "rad/s²", {"alpha3": "α3", "alpha4": "α4"}),
-        (f"speed of {every}", f"{unit}/s", speeds),
-        (f"acceleration of {every}", f"{unit}/s²", accelerations),
-        ("torque factor of the output arm", unit, {"torque_factor": "factor"}),
-        ("drive torque", "N m", {"torque": "torque"}),
-        ("drive power", "W", {"power": "power"}),
-        ("joint forces", "N", FORCES),
-        ("shaking force", "N", _xy("shaking_force") | {"shaking_force": "size"}),
-        ("shaking moment about O2", "N m", {"shaking_moment": "moment"}),
-        *places,
-        *rates,
-        *((f"force {name.upper()} in {joint}", "N", _xy(name)) for name, joint in FORCES.items()),
-    ]
+def _facts(facts: Sequence[Fact]) -> list[tuple[str, str, str]]:
+    return [(fact.label, value_text(fact.value), fact.unit) for fact in facts]
 
 
-def _xy(name: str) -> dict[str, str]:
-    return {f"{name}_{axis}": axis for axis in "xy"}
+def _group(section: Section) -> dict[str, Any]:
+    """A section as the template shows it."""
+    small = {name: table for name, table in section.tables.items() if len(table) <= _SMALL}
+    many = (("plot", len(section.plots)), ("table", len(section.tables)), ("value", len(section.facts)))
+    return {
+        "key": section.key,
+        "title": section.title,
+        "about": ", ".join(counted(number, word) for word, number in many if number),
+        "notes": [*section.notes, *([_THINNED] if any(map(is_thinned, section.plots)) else [])],
+        "facts": _facts(section.facts),
+        "tables": [_table(name, table) for name, table in small.items()],
+        "files": [
+            (f"table-{name}.csv", counted(len(table), "row"), counted(table.shape[1], "column"))
+            for name, table in section.tables.items()
+            if name not in small
+        ],
+    }
 
 
-def _by_range(table: pd.DataFrame, count: int) -> list[pd.DataFrame]:
-    """The rows of each range of the driver."""
-    return [table[table["range"] == n] for n in range(1, count + 1)] if "range" in table else [table]
+def _table(name: str, table: pd.DataFrame) -> dict[str, Any]:
+    return {
+        "name": name,
+        "file": f"table-{name}.csv",
+        "columns": [(str(column), _is_text(table[column])) for column in table.columns],
+        "rows": [[_cell(value) for value in row] for row in table.itertuples(index=False, name=None)],
+    }
+
+
+def _is_text(column: pd.Series[Any]) -> bool:
+    return any(isinstance(value, str) for value in column)
+
+
+def _cell(value: Any) -> str:
+    plain = value.item() if isinstance(value, np.generic) else value
+    return value_text(plain) if isinstance(plain, bool | int | float) else str(plain)
 
 
 def _extremes(table: pd.DataFrame) -> list[dict[str, Any]]:
@@ -133,7 +131,7 @@ def _extremes(table: pd.DataFrame) -> list[dict[str, Any]]:
             "range": row.get("range", ""),
             "what": row["what"],
             "unit": row["unit"],
-            "cells": [number_text(row[key], 6) for key, _ in _EXTREMES],
+            "cells": [number_text(row[key], _DIGITS) for key, _ in _EXTREMES],
         }
         for row in table.to_dict("records")
     ]

@@ -37,9 +37,9 @@ def render(template: str, scripts: Sequence[str], data: Mapping[str, Any], **sho
     )
 
 
-def compact(values: Iterable[float]) -> list[float | None]:
-    """Samples of a curve as short JSON: five significant digits, null where there is no finite value."""
-    return [float(f"{value:.5g}") if math.isfinite(value) else None for value in values]
+def compact(values: Iterable[float], digits: int = 5) -> list[float | None]:
+    """Samples of a curve as short JSON: so many significant digits, null where there is no finite value."""
+    return [float(f"{value:.{digits}g}") if math.isfinite(value) else None for value in values]
 
 
 @cache

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
 import pandas as pd
 
 from grashof.problems.values.arrays import FloatArray
@@ -51,6 +52,9 @@ class Plot:
         What the places are, with their unit: `DRIVER_ANGLE` (deg), or such as "time (s)".
     points : mapping of str to ndarray, shape (K, 2)
         Single points drawn besides: of data that a curve is fitted to, of a track at chosen angles.
+    angles : ndarray, shape (N,), optional
+        Driver angles (deg) of the points of tracks, or of places that are none: a mark then follows the
+        linkage.
     """
 
     key: str
@@ -60,6 +64,15 @@ class Plot:
     places: FloatArray | None = None
     over: str = DRIVER_ANGLE
     points: Mapping[str, FloatArray] = field(default_factory=dict)
+    angles: FloatArray | None = None
+
+    @property
+    def swings(self) -> bool:
+        """Whether the driver angles of its places lie between dead positions, and are no whole turn."""
+        if self.places is None or self.over != DRIVER_ANGLE or not len(self.places):
+            return False
+        known = np.isfinite(self.places)
+        return not (known.all() and np.ptp(self.places) >= 360 - 1e-9)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

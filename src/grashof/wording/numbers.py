@@ -12,12 +12,12 @@ def value_text(value: float | int | str | bool) -> str:
 
     Examples
     --------
-    >>> value_text(True), value_text(2.0), value_text("crank-rocker")
-    ('yes', '2', 'crank-rocker')
+    >>> value_text(True), value_text(2.0), value_text("crank-rocker"), value_text(np.inf)
+    ('yes', '2', 'crank-rocker', 'no limit')
     """
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return f"{value + 0.0:.6g}" if isinstance(value, float) else str(value)
+    return number_text(value, 6) if isinstance(value, float) else str(value)
 
 
 def number_text(value: Any, digits: int) -> str:

@@ -8,12 +8,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import pandas as pd
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from grashof.page import analysis_page, search_page
-from grashof.problems import FourBar, LinkageSpec
-from grashof.survey import report_on
+from grashof.problems import FourBar, LinkageSpec, load_linkage_spec
+from grashof.survey import Fact, LinkageReport, Plot, Section, report_on
 from grashof.synth import Result
 
 Open = Callable[..., Page]
@@ -43,6 +45,69 @@ def rocker() -> FourBar:
     return ROCKER
 
 
+HOSTILE = '</script><b onclick="x">=1+1 & "quoted"; -2</b>'
+
+
+def told_sections() -> tuple[Section, ...]:
+    """Sections of everything that a section may have, and of what no section should have."""
+    theta2 = np.arange(361.0)
+    turn, time = np.radians(theta2), np.linspace(0, 12, 4001)
+    round_trip = np.column_stack([3 * np.cos(turn), 2 * np.sin(turn)])
+    gaps = np.where((theta2 > 90) & (theta2 < 120), np.nan, np.sin(turn))
+    pole = np.where(theta2 == 0, np.inf, 1 / np.sin(turn + 1e-9))
+    along, top = np.linspace(0, 4, 41), {"90": round_trip[90:91]}
+    return (
+        Section(
+            "all",
+            HOSTILE,
+            (
+                Fact("mass", HOSTILE, "=1+1", HOSTILE),
+                Fact("unknown", "not known", np.nan, "N"),
+                Fact("endless", "without end", -np.inf, "N"),
+                Fact("holds", "all bars hold", True),
+            ),
+            {
+                "few": pd.DataFrame({"name": [HOSTILE, "b"], "value": [np.inf, 1 / 3], "rank": [1, 2]}),
+                "many": pd.DataFrame({"theta2_deg": theta2, "value": gaps}),
+            },
+            (
+                Plot("hostile", HOSTILE, HOSTILE, {HOSTILE: np.sin(turn), "_": pole}, theta2),
+                Plot("gaps", "with gaps", "N", {"known": gaps, "none": np.full(361, np.nan)}, theta2),
+                Plot("error", "small angle", "deg", {"error": 20 + 1e-6 * np.sin(turn)}, theta2),
+            ),
+            (HOSTILE,),
+        ),
+        Section("none", "Nothing at all"),
+        Section("words", "Words alone", notes=("there is no other",)),
+        Section(
+            "other",
+            "Other axes",
+            plots=(
+                Plot("run", "run-out", "deg", {"theta2": 10 * time, "slow": time}, time, "time (s)"),
+                Plot("sag", "sag", "m", {f"{k}": np.sin(along + k) for k in range(12)}, along, "along (m)"),
+                Plot("motor", "motor", "N m", {"T": np.sin(2 * turn)}, np.cos(turn), "speed", angles=theta2),
+                Plot("track", "track", "m/s", {"P": round_trip}, angles=theta2, points=top),
+                Plot("still", "no angles", "m", {"a": round_trip, "b": round_trip[:7] * 2}),
+            ),
+        ),
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="package")
+def told() -> LinkageReport:
+    report = report_on(load_linkage_spec("pumpjack"))
+    own = [section for section in report.sections if section.key == "mass-centres"]
+    return replace(report, sections=(*own, *told_sections()))
+
+
+@pytest.fixture(scope="package")
+def swinging() -> LinkageReport:
+    """A driver that swings in two ranges, the second of which lies below the first."""
+    return report_on(
+        LinkageSpec(FourBar((0, 0), (4, 0), 3, 1, 3, (0.5, 1)), "double rocker", length_unit="mm")
+    )
+
+
 @pytest.fixture(scope="package")
 def browser() -> Iterator[Browser]:
     found = [shutil.which(name) for name in ("chromium", "chromium-browser", "google-chrome")]
@@ -56,8 +121,14 @@ def browser() -> Iterator[Browser]:
 
 
 @pytest.fixture(scope="package")
-def folder(few: Result, alike: Result, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The pages of searches, with families and without, in vain, and of a driver that cannot turn fully."""
+def folder(
+    few: Result,
+    alike: Result,
+    told: LinkageReport,
+    swinging: LinkageReport,
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Path:
+    """The pages of searches, with families and without, in vain, and of analyses of several linkages."""
     path = tmp_path_factory.mktemp("pages")
     named = replace(few, problem=replace(few.problem, title=TITLE))
     frame = few.to_frame()
@@ -69,6 +140,8 @@ def folder(few: Result, alike: Result, tmp_path_factory: pytest.TempPathFactory)
         "nothing": search_page(replace(missed, nearest=()), frame.iloc[:0], RECORD),
         "rocker": analysis_page(report_on(LinkageSpec(ROCKER, "rocker", title=TITLE)), RECORD),
         "swift": analysis_page(report_on(LinkageSpec(NEARLY_DEAD, "swift")), RECORD),
+        "sections": analysis_page(told, RECORD),
+        "swinging": analysis_page(swinging, RECORD),
     }
     for name, page in pages.items():
         (path / f"{name}.html").write_text(page, encoding="utf-8")

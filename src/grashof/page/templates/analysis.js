@@ -1,14 +1,71 @@
-// The page of an analysis: one linkage, and a mark on every curve that follows it.
+// The page of an analysis: one linkage, and groups of plots with marks that follow it.
+const CROWD = 5; // lines from which a plot is twice as wide
+
+// A group that folds: its plots are made when it is opened for the first time.
+class Group {
+  constructor(node, plots, page) {
+    Object.assign(this, { node, plots, page, pictures: [] });
+    node.addEventListener("toggle", () => this.open());
+    this.open();
+  }
+
+  open() {
+    if (!this.node.open || this.pictures.length) return;
+    const onPick = (degrees) => this.page.turnTo(degrees / DEG);
+    const figures = this.plots.map((panel) => {
+      const node = $("#plot").content.firstElementChild.cloneNode(true);
+      const picture = panel.places ? new Curves(node, { onPick }) : new Tracks(node, { onPick });
+      node.classList.toggle("tracks", !panel.places);
+      node.classList.toggle("wide", panel.series.length > CROWD);
+      this.saves(node, panel, picture);
+      this.pictures.push(picture);
+      return node;
+    });
+    $(".cards", this.node).append(...figures);
+    this.show();
+  }
+
+  saves(node, panel, picture) {
+    const { name, heading } = this.page;
+    const [svg, csv] = $$(".save button", node);
+    svg.setAttribute("aria-label", `Save ${panel.title} as SVG`);
+    csv.setAttribute("aria-label", `Save ${panel.title} as CSV`);
+    const file = fileName(name, panel.key) || "plot";
+    svg.addEventListener("click", () => download(`${file}.svg`, savedSvg(picture, heading), "image/svg+xml"));
+    csv.addEventListener("click", () => download(`${file}.csv`, savedCsv(panel), "text/csv"));
+  }
+
+  // The plots, those over the driver angle within the range that the driver is in.
+  show() {
+    this.pictures.forEach((picture, k) => {
+      const panel = this.plots[k];
+      picture.show(panel, { window: panel.over ? null : this.page.windowOf(panel) });
+      picture.mark(this.page.degrees);
+    });
+  }
+
+  mark(degrees) {
+    for (const picture of this.pictures) picture.mark(degrees);
+  }
+}
+
 class AnalysisPage {
-  constructor({ scene, designs, panels, theta2 }) {
-    Object.assign(this, { designs, panels, theta2, range: 0 });
+  constructor({ name, scene, designs, groups, columns, driver }) {
+    Object.assign(this, { name, designs, range: 0, degrees: 0, heading: $("h1").textContent });
     this.stage = new Stage($("#stage"), scene, {
       onDrive: (angle) => this.turnTo(angle),
       onDraw: (state) => this.moved(state),
     });
     this.player = new Player($("#player"), { onMove: (angle) => this.stage.move(angle) });
-    const onPick = (degrees) => this.turnTo(degrees / DEG);
-    this.curves = $$("#curves figure").map((node) => new Curves(node, { onPick }));
+    this.groups = [];
+    const nodes = $$("#groups details");
+    const panels = groups.map((plots) => plots.map((plot) => panelOf(plot, columns, driver)));
+    this.groups = panels.map((plots, k) => new Group(nodes[k], plots, this));
+    for (const [button, open] of [["#open-all", true], ["#close-all", false]]) {
+      $(button).addEventListener("click", () => {
+        for (const node of nodes) node.open = open;
+      });
+    }
     $("#trace").addEventListener("change", (event) => {
       this.stage.trace = event.target.checked;
       this.stage.draw();
@@ -25,14 +82,19 @@ class AnalysisPage {
     this.player.pause();
     this.range = index;
     const { low, high, turns, direction } = this.designs[index];
-    this.curves.forEach((curve, k) => {
-      const series = this.panels[k].series.map(({ label, values }) => ({ label, values: values[index] }));
-      curve.show({ ...this.panels[k], series }, this.theta2[index], { bounded: !turns });
-    });
+    for (const group of this.groups) group.show();
     this.stage.show(this.designs[index], this.designs);
     this.player.travel({ low, high, wraps: turns, sense: direction, step: 1 / DEG });
     tellTravel(this.stage, low, high);
     this.player.set(turns ? Math.PI / 3 : (low + high) / 2);
+  }
+
+  // The part of a plot over the driver angle that lies in the range; null for all of it.
+  windowOf({ places }) {
+    if (this.designs.length < 2) return null;
+    const { low, high } = this.designs[this.range];
+    const inside = (place) => place !== null && place >= low * DEG - 1e-3 && place <= high * DEG + 1e-3;
+    return extent(places.filter(inside));
   }
 
   turnTo(theta2) {
@@ -41,13 +103,34 @@ class AnalysisPage {
   }
 
   moved(state) {
-    for (const curve of this.curves) curve.mark(state.theta2 * DEG);
+    this.degrees = state.theta2 * DEG;
+    for (const group of this.groups) group.mark(this.degrees);
     tellPosition(this.stage, state);
   }
 
   state() {
-    return { range: this.range, playing: this.player.playing, ...this.stage.state };
+    const groups = this.groups.map(({ node, pictures }) => ({
+      title: $("h3", node).textContent,
+      open: node.open,
+      made: pictures.length,
+      drawn: pictures.filter((picture) => picture.drawn).length,
+    }));
+    return { range: this.range, playing: this.player.playing, groups, ...this.stage.state };
   }
+}
+
+// A plot with its columns in their places.
+function panelOf(plot, columns, driver) {
+  const column = (index) => (index === undefined ? undefined : columns[index]);
+  const line = (each) => ({ ...each, values: column(each.values), xy: each.xy && each.xy.map(column) });
+  return {
+    ...plot,
+    driver,
+    places: column(plot.places),
+    angles: column(plot.angles),
+    series: plot.series.map(line),
+    points: plot.points && plot.points.map(line),
+  };
 }
 
 const page = new AnalysisPage(JSON.parse($("#data").textContent));

@@ -1,137 +1,145 @@
-// Curves over the driver angle, with a mark that follows it.
-const PENS = ["pen-1", "pen-2", "pen-3", "pen-4"];
+// Curves over the driver angle, with a mark that follows it, or over anything else.
 const PEAK = 12; // a rate is drawn up to so many times its typical size, where it grows without bound
 
-class Curves {
-  // panel: { title, unit, series: [{ label, values }], limits } with values at `places` (deg, rising).
-  constructor(figureNode, { onPick = null } = {}) {
-    Object.assign(this, { svg: $("svg", figureNode), readout: $("figcaption", figureNode), onPick });
-    onResize(this.svg, () => this.draw());
-    if (onPick) this.picks();
+class Curves extends Picture {
+  // panel: { title, unit, series: [{ label, values }] } with values at `places`; besides `over` (what the
+  // places are), `angles` (driver angles in deg at the places), `most` (size up to which values are drawn),
+  // `limits` and `points`. options: `bounded`, the `bold` part of the places, target `marks`, and the
+  // `window` of places that is shown.
+  show(panel, options = {}) {
+    const follows = this.panel;
+    super.show(panel, options);
+    if (follows) return;
+    if (panel.angles && this.onPick) this.follow(([x]) => this.pick(x));
+    else if (!panel.angles && isRising(panel.places)) this.follow(([x]) => this.read(x), true);
+    this.svg.classList.toggle("picks", Boolean(panel.angles) || isRising(panel.places));
   }
 
-  show(panel, places, { bounded = false, bold = null, marks = [] } = {}) {
-    Object.assign(this, { panel, places, bounded, bold, marks });
-    const items = panel.series.map(({ label }, k) => {
-      const item = document.createElement("span");
-      item.className = `reading ${PENS[k]}`;
-      item.append(label, " ", document.createElement("output"));
-      return item;
-    });
-    const title = document.createElement("b");
-    title.textContent = withUnit(panel.title, panel.unit);
-    this.readout.replaceChildren(title, " ", ...items);
-    this.outputs = items.map((item) => $("output", item));
-    this.draw();
-  }
-
-  draw() {
-    const [width, height] = [this.svg.clientWidth, this.svg.clientHeight];
-    if (width < 80 || !this.panel) return;
-    set(this.svg, { viewBox: `0 0 ${width} ${height}` });
-    this.svg.replaceChildren();
-    this.frame = { left: 46, right: width - 10, top: 6, bottom: height - 20 };
-    this.axes();
-    const { left, right, top, bottom } = this.frame;
-    const [w, h] = [right - left, bottom - top];
-    // A picture of its own cuts off what leaves the frame.
-    const layer = add(this.svg, "svg", {
-      x: left,
-      y: top,
-      width: w,
-      height: h,
-      viewBox: `${left} ${top} ${w} ${h}`,
-    });
-    this.panel.series.forEach(({ values }, k) => {
-      add(layer, "path", { d: this.line(values), class: `curve ${PENS[k]}${this.bold ? " faint" : ""}` });
-      if (this.bold) add(layer, "path", { d: this.line(values, this.bold), class: `curve ${PENS[k]}` });
-    });
-    this.cursor = add(this.svg, "path", { class: "cursor" });
-    this.dots = this.panel.series.map((_, k) => add(this.svg, "circle", { r: 4, class: `dot ${PENS[k]}` }));
-    if (this.marked) this.mark(...this.marked);
-  }
-
-  line(values, [from, to] = [-Infinity, Infinity]) {
-    const { top, bottom } = this.frame;
-    // Not far out of the frame: dashes without end take the browser a second to draw.
-    const y = (value) => Math.min(Math.max(this.y(value), 2 * top - bottom), 2 * bottom - top);
-    const inside = (place) => place >= from - 1e-9 && place <= to + 1e-9;
-    const points = values.map((value, k) =>
-      value === null || !inside(this.places[k]) ? null : [this.x(this.places[k]), y(value)],
-    );
-    return through(points);
-  }
-
-  axes() {
-    const { left, right, top, bottom } = this.frame;
-    const [first, last] = [this.places[0], this.places.at(-1)];
+  // Axes and lines, into a box of a drawing.
+  paint(svg, box, named = false) {
     const [low, high] = this.panel.limits || this.limits();
+    const [first, last] = this.span();
+    const across = named || this.panel.over ? this.panel.over || this.panel.driver : "";
+    const below = across ? 36 : 20;
+    const height = box.bottom - box.top - below - 6;
+    const numbers = ticksAlong(low, high, height, this.panel.unit === "deg", 26);
+    const left = box.left + Math.max(46, longest(numbers) + 10) + (named ? 18 : 0);
+    this.frame = { left, right: box.right - 10, top: box.top + 6, bottom: box.bottom - below };
+    const { right, top, bottom } = this.frame;
     this.x = (place) => left + ((right - left) * (place - first)) / (last - first);
     this.y = (value) => bottom - ((bottom - top) * (value - low)) / (high - low);
-    const layer = add(this.svg, "g", { class: "grid" });
-    const about = (bottom - top) / 26;
-    const { at, decimals } =
-      this.panel.unit === "deg" ? degreeTicks(low, high, about) : ticks(low, high, about);
-    for (const value of at) {
-      add(layer, "path", { d: `M${left} ${px(this.y(value))}H${right}`, class: value === 0 ? "zero" : "" });
-      const label = Math.abs(value) >= 1e5 ? minus(value.toExponential(1)) : fixed(value, decimals);
-      add(layer, "text", { x: left - 5, y: this.y(value) + 4, "text-anchor": "end" }, label);
+    const grid = add(svg, "g", { class: "grid" });
+    for (const { value, text } of numbers) {
+      const y = this.y(value);
+      add(grid, "path", { d: `M${px(left)} ${px(y)}H${right}`, class: value === 0 ? "zero" : "" });
+      add(grid, "text", { x: left - 5, y: px(y + 4), "text-anchor": "end" }, text);
     }
-    for (const place of degreeTicks(first, last, (right - left) / 48).at) {
-      add(layer, "path", { d: `M${px(this.x(place))} ${top}V${bottom}` });
-      add(
-        layer,
-        "text",
-        { x: this.x(place), y: bottom + 14, "text-anchor": "middle" },
-        fixed(place, 0),
-      );
+    const degrees = !this.panel.over || this.panel.over.endsWith("(deg)");
+    for (const { value, text } of ticksAlong(first, last, right - left, degrees)) {
+      add(grid, "path", { d: `M${px(this.x(value))} ${top}V${bottom}` });
+      add(grid, "text", { x: px(this.x(value)), y: bottom + 14, "text-anchor": "middle" }, text);
     }
-    for (const place of this.marks) {
-      add(layer, "path", { d: `M${px(this.x(place))} ${bottom}v-7`, class: "target-mark" });
+    for (const place of this.options.marks || []) {
+      add(grid, "path", { d: `M${px(this.x(place))} ${bottom}v-7`, class: "target-mark" });
     }
+    const { bold } = this.options;
+    this.panel.series.forEach(({ values }, k) => {
+      add(svg, "path", { d: this.line(values), class: `curve ${pen(k)}${bold ? " faint" : ""}` });
+      if (bold) add(svg, "path", { d: this.line(values, bold), class: `curve ${pen(k)}` });
+    });
+    this.spots(svg, (place, value) => [this.x(place), this.y(value)]);
+    this.nameAxes(svg, box, across, named ? withUnit(this.panel.title, this.panel.unit) : "");
+  }
+
+  // Lifted in gaps, and where a value jumps through infinity.
+  line(values, [from, to] = [-Infinity, Infinity]) {
+    const { places } = this.panel;
+    const most = this.most();
+    const points = [];
+    values.forEach((value, k) => {
+      const place = places[k];
+      const known = value !== null && place !== null && place >= from - 1e-9 && place <= to + 1e-9;
+      const before = k ? values[k - 1] : null;
+      if (before !== null && Math.abs(before) > most && Math.abs(value) > most && before * value < 0) {
+        points.push(null);
+      }
+      points.push(known ? [this.x(place), this.y(value)] : null);
+    });
+    return cutPath(points, this.frame);
+  }
+
+  // The places that are shown.
+  span() {
+    const { places, points } = this.panel;
+    const every = extent([...places, ...(points || []).flatMap(({ xy }) => xy[0])]) || [0, 1];
+    const [low, high] = this.options.window || every;
+    return high > low ? [low, high] : margined([low, high], 0);
   }
 
   limits() {
-    const known = this.panel.series.flatMap(({ values }) => values).filter((value) => value !== null);
-    if (!known.length) return [0, 1];
-    let [low, high] = [Math.min(...known), Math.max(...known)];
-    const sizes = known.map(Math.abs).sort((a, b) => a - b);
-    const most = PEAK * sizes[sizes.length >> 1];
-    if (this.bounded && most > 0) [low, high] = [Math.max(low, -most), Math.min(high, most)];
-    const margin = 0.06 * (high - low) || 0.1 * Math.abs(high) || 1;
-    return [low - margin, high + margin];
+    const { places, series, points } = this.panel;
+    const [first, last] = this.span();
+    const inside = (place) => place !== null && place >= first - 1e-3 && place <= last + 1e-3;
+    const known = series.flatMap(({ values }) => values.filter((_, k) => inside(places[k])));
+    const most = this.most();
+    let [low, high] = extent(known) || [0, 1];
+    [low, high] = [Math.max(low, -most), Math.min(high, most)];
+    const spots = extent((points || []).flatMap(({ xy }) => xy[1].filter((_, k) => inside(xy[0][k]))));
+    if (spots) [low, high] = [Math.min(low, spots[0]), Math.max(high, spots[1])];
+    return margined([low, high], 0.06);
+  }
+
+  most() {
+    const { most, series } = this.panel;
+    if (most !== undefined || !this.options.bounded) return most ?? Infinity;
+    const sizes = series.flatMap(({ values }) => values.filter((value) => value !== null).map(Math.abs));
+    return PEAK * sizes.sort((a, b) => a - b)[sizes.length >> 1] || Infinity;
+  }
+
+  pointers() {
+    this.cursor = add(this.svg, "path", { class: "cursor" });
+    this.dots = this.panel.series.map((_, k) => add(this.svg, "circle", { r: 4, class: `dot ${pen(k)}` }));
+    for (const dot of this.dots) set(dot, { visibility: "hidden" });
   }
 
   // Puts the mark at a driver angle in deg; `values` where they are known better than by the samples.
-  mark(place, values = this.panel.series.map((series) => interpolated(this.places, series.values, place))) {
-    this.marked = [place, values];
-    this.outputs.forEach((output, k) => {
-      output.textContent = figure(values[k]);
-    });
-    if (!this.cursor) return;
-    const { top, bottom } = this.frame;
-    set(this.cursor, { d: `M${px(this.x(place))} ${top}V${bottom}` });
-    this.dots.forEach((dot, k) => {
-      const y = values[k] === null ? NaN : this.y(values[k]);
-      const seen = y >= top - 1 && y <= bottom + 1;
-      set(dot, { cx: px(this.x(place)), cy: seen ? px(y) : 0, visibility: seen ? "visible" : "hidden" });
-    });
+  mark(angle, values = null) {
+    this.marked = [angle, values];
+    const { angles } = this.panel;
+    if (angles && this.seen) this.markRow(rowAtAngle(angles, angle), values);
   }
 
-  picks() {
-    const pick = (event) => {
-      const { left, right } = this.frame;
-      const at = event.clientX - this.svg.getBoundingClientRect().left;
-      const share = Math.min(Math.max((at - left) / (right - left), 0), 1);
-      this.onPick(this.places[0] + share * (this.places.at(-1) - this.places[0]));
-    };
-    this.svg.addEventListener("pointerdown", (event) => {
-      event.preventDefault();
-      this.svg.setPointerCapture(event.pointerId);
-      pick(event);
-    });
-    this.svg.addEventListener("pointermove", (event) => {
-      if (this.svg.hasPointerCapture(event.pointerId)) pick(event);
-    });
+  markRow(row, given = null) {
+    const { places, series } = this.panel;
+    const values = given || series.map((each) => valueAt(each.values, row));
+    this.tell(values);
+    if (!this.drawn) return;
+    const place = valueAt(places, row);
+    const { left, right, top, bottom } = this.frame;
+    const x = place === null ? NaN : this.x(place);
+    set(this.cursor, { d: x >= left - 1 && x <= right + 1 ? `M${px(x)} ${top}V${bottom}` : "" });
+    this.dots.forEach((dot, k) => this.put(dot, x, values[k] === null ? NaN : this.y(values[k])));
+  }
+
+  // The place at a position in the drawing.
+  placeAt(x) {
+    const { left, right } = this.frame;
+    const [first, last] = this.span();
+    return first + (last - first) * Math.min(Math.max((x - left) / (right - left), 0), 1);
+  }
+
+  pick(x) {
+    const { angles, places } = this.panel;
+    const place = this.placeAt(x);
+    const angle = angles === places ? place : valueAt(angles, rowAt(places, place));
+    if (angle !== null) this.onPick(angle);
+  }
+
+  // A mark of its own, where nothing that moves says where it is.
+  read(x) {
+    this.markRow(rowAt(this.panel.places, this.placeAt(x)));
   }
 }
+
+const isRising = (places) =>
+  places.every((place, k) => k === 0 || (place !== null && place >= places[k - 1]));

@@ -110,16 +110,3 @@ function travelPath(design) {
   if (!travelled.has(design)) travelled.set(design, pathOf(design.linkage, travelAngles(design)));
   return travelled.get(design);
 }
-
-// Value at x of samples at rising places; null beside a gap.
-function interpolated(places, values, x) {
-  let [low, high] = [0, places.length - 1];
-  while (high - low > 1) {
-    const middle = (low + high) >> 1;
-    if (places[middle] <= x) low = middle;
-    else high = middle;
-  }
-  if (values[low] === null || values[high] === null) return null;
-  const width = places[high] - places[low];
-  return width > 0 ? values[low] + ((values[high] - values[low]) * (x - places[low])) / width : values[low];
-}

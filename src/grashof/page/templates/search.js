@@ -73,12 +73,13 @@ class SearchPage {
     const bold = whole ? null : design.task.map((angle) => angle * DEG).sort((a, b) => a - b);
     const mu = angles.map((angle) => positionOf(design.linkage, angle).mu * DEG);
     const panel = { title: "Transmission angle", unit: "deg", limits: [0, 90] };
-    this.transmission.show({ ...panel, series: [{ label: "μ", values: mu }] }, places, { bold, marks });
+    const series = [{ label: "μ", values: mu }];
+    this.transmission.show({ ...panel, places, angles: places, series }, { bold, marks });
     if (!this.torque) return;
-    const series = [{ label: "T", values: design.torque }];
-    const options = { bold, marks, bounded: !design.turns };
     const sampled = travelAngles(design).map((angle) => angle * DEG);
-    this.torque.show({ title: "Drive torque", unit: this.torqueUnit, series }, sampled, options);
+    const torque = { title: "Drive torque", unit: this.torqueUnit, places: sampled, angles: sampled };
+    const options = { bold, marks, bounded: !design.turns };
+    this.torque.show({ ...torque, series: [{ label: "T", values: design.torque }] }, options);
   }
 
   moved(state) {

@@ -47,6 +47,7 @@ function ticks(low, high, about, steps = [1, 2, 5, 10]) {
 
 // The same for degrees, in the steps that an engineer reads.
 function degreeTicks(low, high, about) {
+  if (high - low < about) return ticks(low, high, about);
   const step =
     [1, 2, 5, 10, 15, 30, 45, 60, 90, 180, 360].find((each) => (high - low) / each <= about) || 360;
   const at = [];

@@ -1,0 +1,138 @@
+"""Plots of the sections of an analysis: curves over the driver angle or anything else, tracks in a plane."""
+
+from __future__ import annotations
+
+from textwrap import wrap
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from grashof.figures.linkage import new_axes
+from grashof.figures.parts import BODY, COUPLER, DRIVER, GROUND, OUTPUT, PATH, SCENE
+from grashof.problems.values.arrays import FloatArray
+from grashof.study.limits import broken_beyond, greatest_drawn, middle
+from grashof.study.section import DRIVER_ANGLE, Plot
+
+# Colours and dashes of the first to the eighth line, as on the page; the next eight are dotted.
+PENS: tuple[tuple[str, tuple[int, ...]], ...] = (
+    (COUPLER, ()),
+    (DRIVER, (7, 3)),
+    (PATH, ()),
+    (OUTPUT, (3, 3)),
+    (BODY, (10, 3, 3, 3)),
+    (GROUND, ()),
+    (SCENE, (7, 3)),
+    ("#8a5a2b", (3, 3)),
+)
+_AGAIN = (1, 2)
+_MARKERS = "osD^vP*X"
+_LABEL = 42  # characters of an axis' label on one line
+_CROWD = 6  # lines from which the legend has two columns
+
+
+def plot_section(plot: Plot, ax: Axes | None = None) -> Axes:
+    """Draw a plot of a section.
+
+    Parameters
+    ----------
+    plot : Plot
+        Curves over their places, or tracks in a plane, and single points.
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+        Of tracks with equal scales.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> time, angle = np.linspace(0, 2, 9), np.linspace(0, 90, 9)
+    >>> plot = Plot("run-out", "run-out", "deg", {"theta2": angle}, time, "time (s)")
+    >>> axes = plot_section(plot, Figure().subplots())
+    >>> axes.get_xlabel(), axes.get_ylabel()
+    ('time (s)', 'run-out (deg)')
+    """
+    ax = new_axes(ax)
+    most = greatest_drawn(plot)
+    drawn = _draw_tracks(ax, plot, most) if plot.places is None else _draw_curves(ax, plot, plot.places, most)
+    look: dict[str, Any] = {"linestyle": "none", "markersize": 4.5, "markerfacecolor": "none", "zorder": 4}
+    for number, (label, points) in enumerate(plot.points.items()):
+        colour, marker = PENS[-1 - number % len(PENS)][0], _MARKERS[number % len(_MARKERS)]
+        drawn += ax.plot(*points.T, marker=marker, color=colour, label=label, **look)
+    if len(drawn) > 1:
+        _name(ax, drawn)
+    return ax
+
+
+def _draw_curves(ax: Axes, plot: Plot, places: FloatArray, most: float) -> list[Line2D]:
+    drawn = []
+    for number, (label, values) in enumerate(plot.series.items()):
+        drawn += ax.plot(places, broken_beyond(values, most), label=label, **_pen(number))
+    if np.isfinite(most):
+        _cut(ax, np.concatenate(list(plot.series.values())), most)
+    ax.axhline(0, color=GROUND, linewidth=0.6, zorder=0)
+    ax.set_ylabel("\n".join(wrap(_with_unit(plot.title, plot.unit), _LABEL)), parse_math=False)
+    dead = ""
+    if plot.over == DRIVER_ANGLE and not plot.swings:
+        _whole_turns(ax, places)
+    elif plot.over == DRIVER_ANGLE:
+        dead = "; dotted: dead positions"
+        for angle in _ends(places):
+            ax.axvline(angle, color=GROUND, linestyle=":", linewidth=0.9)
+    ax.set_xlabel(f"{plot.over}{dead}", parse_math=False)
+    return drawn
+
+
+def _draw_tracks(ax: Axes, plot: Plot, most: float) -> list[Line2D]:
+    drawn, centre = [], middle(plot)
+    for number, (label, track) in enumerate(plot.series.items()):
+        near = np.hypot(*(track - centre).T) <= most
+        drawn += ax.plot(*np.where(near[:, None], track, np.nan).T, label=label, **_pen(number))
+    ax.set_title("\n".join(wrap(plot.title, 80)), parse_math=False)
+    ax.set_xlabel(_with_unit("x", plot.unit), parse_math=False)
+    ax.set_ylabel(_with_unit("y", plot.unit), parse_math=False)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.margins(0.08)
+    return drawn
+
+
+def _cut(ax: Axes, values: FloatArray, most: float) -> None:
+    known = values[np.isfinite(values)]
+    low, high = max(float(known.min()) * 1.05, -most), min(float(known.max()) * 1.05, most)
+    ax.set_ylim(min(low, -0.02 * most), max(high, 0.02 * most))
+
+
+def _whole_turns(ax: Axes, places: FloatArray) -> None:
+    low, high = float(places.min()), float(places.max())
+    ax.set_xlim(low, high)
+    step = 45 * max(1, round((high - low) / 360))
+    ax.set_xticks(np.arange(np.ceil(low / step - 1e-9), high / step + 1e-9) * step)
+
+
+def _ends(places: FloatArray) -> list[float]:
+    """First and last place of every part between NaN."""
+    known = np.isfinite(np.concatenate([[np.nan], places, [np.nan]]))
+    first, last = np.flatnonzero(known[1:-1] & ~known[:-2]), np.flatnonzero(known[1:-1] & ~known[2:])
+    return sorted({float(place) for place in places[np.concatenate([first, last])]})
+
+
+def _pen(number: int) -> dict[str, Any]:
+    colour, dashes = PENS[number % len(PENS)]
+    lines = _AGAIN if number >= len(PENS) else dashes
+    return {"color": colour, "linestyle": (0, lines) if lines else "-", "linewidth": 1.5}
+
+
+def _name(ax: Axes, lines: list[Line2D]) -> None:
+    """The legend: any label is the name of a line, and none is left out or read as a formula."""
+    labels = [str(line.get_label()) for line in lines]
+    names = [f" {label}" if label.startswith("_") else label for label in labels]
+    legend = ax.legend(lines, names, loc="best", fontsize="small", ncols=1 + (len(lines) > _CROWD))
+    for text in legend.get_texts():
+        text.set_parse_math(False)
+
+
+def _with_unit(label: str, unit: str) -> str:
+    return f"{label} ({unit})" if unit else label

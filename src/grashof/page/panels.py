@@ -1,0 +1,106 @@
+"""The tables of motion and forces as sections: what the page of an analysis shows before all others."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+
+from grashof.problems import FourBar
+from grashof.study.quantities import FORCES
+from grashof.study.section import Plot, Section
+from grashof.survey.report import LinkageReport
+
+# Of a plot: key, title, unit, and the columns with their labels.
+Panel = tuple[str, str, str, Mapping[str, str]]
+
+
+def motion_sections(report: LinkageReport) -> list[Section]:
+    """Every column of the tables of motion and forces, in plots over the driver angle.
+
+    Parameters
+    ----------
+    report : LinkageReport
+
+    Returns
+    -------
+    list of Section
+        With plots alone; those that the report has no data for are left out.
+
+    Examples
+    --------
+    >>> from grashof.problems import load_linkage_spec
+    >>> from grashof.survey import report_on
+    >>> for section in motion_sections(report_on(load_linkage_spec("lufkin-c912d"))):
+    ...     print(f"{section.title}: {', '.join(plot.key for plot in section.plots[:3])}")
+    Angles and velocities: angles, angular-velocity, angular-acceleration
+    Torque and power: torque-factor
+    Points A, B and P: place-of-p, velocity-of-p, acceleration-of-p
+    """
+    tables = [report.tables[name] for name in ("kinematics", "dynamics") if name in report.tables]
+    table = pd.concat(tables, axis=1)
+    table = _parted(table.loc[:, ~table.columns.duplicated()])
+    theta2 = table["theta2_deg"].to_numpy()
+    sections = []
+    for key, title, panels in _groups(report.sweep.spec.unit):
+        plots = tuple(
+            Plot(name, heading, unit, {columns[each]: table[each].to_numpy() for each in known}, theta2)
+            for name, heading, unit, columns in panels
+            if (known := [each for each in columns if each in table])
+        )
+        if plots:
+            sections.append(Section(key, title, plots=plots))
+    return sections
+
+
+def _groups(unit: str) -> list[tuple[str, str, list[Panel]]]:
+    """Key, title and plots of each section."""
+    points = {name: name.upper() for name in FourBar.MOVING}
+    speeds, accelerations = (
+        {f"{name}_{size}": label for name, label in points.items()} for size in ("speed", "acceleration")
+    )
+    every = ", ".join(points.values())
+    motion: list[Panel] = [
+        ("angles", "angles", "deg", {"theta3_deg": "θ3", "theta4_deg": "θ4", "mu_deg": "μ"}),
+        ("angular-velocity", "angular velocity", "rad/s", {"omega3": "ω3", "omega4": "ω4"}),
+        ("angular-acceleration", "angular acceleration", "rad/s²", {"alpha3": "α3", "alpha4": "α4"}),
+        ("speeds", f"speed of {every}", f"{unit}/s", speeds),
+        ("accelerations", f"acceleration of {every}", f"{unit}/s²", accelerations),
+    ]
+    power: list[Panel] = [
+        ("torque-factor", "torque factor of the output arm", unit, {"torque_factor": "factor"}),
+        ("torque", "drive torque", "N m", {"torque": "torque"}),
+        ("power", "drive power", "W", {"power": "power"}),
+    ]
+    forces: list[Panel] = [
+        ("joint-forces", "joint forces", "N", FORCES),
+        ("shaking-force", "shaking force", "N", _xy("shaking_force") | {"shaking_force": "size"}),
+        ("shaking-moment", "shaking moment about O2", "N m", {"shaking_moment": "moment"}),
+        *((name, f"force {name.upper()} in {joint}", "N", _xy(name)) for name, joint in FORCES.items()),
+    ]
+    places: list[Panel] = []
+    for name, point in reversed(points.items()):
+        places.append((f"place-of-{name}", f"place of {point}", unit, _xy(name)))
+        for rate, per in (("velocity", "s"), ("acceleration", "s²")):
+            columns = _xy(f"{name}_{rate}")
+            places.append((f"{rate}-of-{name}", f"{rate} of {point}", f"{unit}/{per}", columns))
+    return [
+        ("motion", "Angles and velocities", motion),
+        ("power", "Torque and power", power),
+        ("forces", "Forces", forces),
+        ("points", "Points A, B and P", places),
+    ]
+
+
+def _xy(name: str) -> dict[str, str]:
+    return {f"{name}_{axis}": axis for axis in "xy"}
+
+
+def _parted(table: pd.DataFrame) -> pd.DataFrame:
+    """The table with a row of NaN between the ranges of the driver, so that lines break."""
+    if "range" not in table:
+        return table
+    parts = [part.astype(np.float64) for _, part in table.groupby("range")]
+    gap = pd.DataFrame(np.nan, index=[0], columns=table.columns)
+    return pd.concat([piece for part in parts for piece in (part, gap)][:-1], ignore_index=True)
