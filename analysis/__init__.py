@@ -36,6 +36,7 @@ from grashof.analysis.forces.loads import (
     TorsionSpring,
 )
 from grashof.analysis.forces.mass import (
+    WEIGHTLESS,
     Body,
     Masses,
     given_masses,
@@ -45,6 +46,7 @@ from grashof.analysis.forces.mass import (
     uniform_bars,
 )
 from grashof.analysis.forces.stated import stated_loads, stated_masses
+from grashof.analysis.forces.statics import Advantage, Holding, advantage, holding
 from grashof.analysis.four_bar.differences import Deviation, central_differences, compare_differences
 from grashof.analysis.four_bar.driver import DriverMotion, driver_motion
 from grashof.analysis.four_bar.driver_law import DriverLaw
@@ -77,6 +79,8 @@ from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.judge.verify import verify
 
 __all__ = [
+    "WEIGHTLESS",
+    "Advantage",
     "AppliedForce",
     "AppliedMoment",
     "BestCircle",
@@ -99,6 +103,7 @@ __all__ = [
     "FreeResponse",
     "Friction",
     "GrashofClass",
+    "Holding",
     "InstantCentres",
     "Joint",
     "Kinematics",
@@ -117,6 +122,7 @@ __all__ = [
     "TorqueBalance",
     "TorsionSpring",
     "Verdict",
+    "advantage",
     "all_double_points",
     "balance_force",
     "balance_torque",
@@ -145,6 +151,7 @@ __all__ = [
     "given_masses",
     "grashof_class",
     "greatest_error",
+    "holding",
     "instant_centres",
     "inverse_dynamics",
     "mechanical_energy",

@@ -164,6 +164,11 @@ class Loads:
     torsion_springs: tuple[TorsionSpring, ...] = ()
     friction: Friction = field(default_factory=Friction)
 
+    @property
+    def any(self) -> bool:
+        """Whether anything but weight and friction acts."""
+        return bool(self.forces or self.moments or self.springs or self.torsion_springs)
+
     def gravity_vector(self) -> FloatArray:
         """Gravity, shape (2,)."""
         gravity = np.asarray(self.gravity, dtype=np.float64)
