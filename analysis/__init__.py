@@ -1,5 +1,11 @@
 """How a given linkage moves and how good it is: the independent judge of the synthesis, without CasADi."""
 
+from grashof.analysis.curves.coupler_circles import (
+    Centrodes,
+    CouplerCircles,
+    centrodes,
+    coupler_circles,
+)
 from grashof.analysis.curves.curvature import curvature, cusps
 from grashof.analysis.curves.curve_distance import curve_distances
 from grashof.analysis.curves.double_points import DoublePoints, all_double_points, double_points
@@ -24,8 +30,9 @@ from grashof.analysis.curves.line_and_circle import (
 )
 from grashof.analysis.forces.balancing import ForceBalance, TorqueBalance, balance_force, balance_torque
 from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics, virtual_work_torque
+from grashof.analysis.forces.energy import Energies, Powers, energies, mechanical_energy, powers
 from grashof.analysis.forces.flywheel import Flywheel, size_flywheel
-from grashof.analysis.forces.free_response import Ending, FreeResponse, free_response, mechanical_energy
+from grashof.analysis.forces.free_response import Ending, FreeResponse, free_response
 from grashof.analysis.forces.loads import (
     AppliedForce,
     AppliedMoment,
@@ -86,7 +93,9 @@ __all__ = [
     "BestCircle",
     "BestLine",
     "Body",
+    "Centrodes",
     "Constraint",
+    "CouplerCircles",
     "Defect",
     "Design",
     "Deviation",
@@ -96,6 +105,7 @@ __all__ = [
     "Dwell",
     "Dynamics",
     "Ending",
+    "Energies",
     "Extremes",
     "Flywheel",
     "ForceBalance",
@@ -117,6 +127,7 @@ __all__ = [
     "PointMotion",
     "PolynomialFit",
     "Position",
+    "Powers",
     "Robustness",
     "Spring",
     "TorqueBalance",
@@ -130,9 +141,11 @@ __all__ = [
     "best_line",
     "branch_index",
     "central_differences",
+    "centrodes",
     "circuit_index",
     "circularity",
     "compare_differences",
+    "coupler_circles",
     "coupler_fit_r2",
     "coupler_fourier",
     "curvature",
@@ -142,6 +155,7 @@ __all__ = [
     "driver_motion",
     "driver_ranges",
     "dwell",
+    "energies",
     "extremes",
     "extremes_of",
     "fit_polynomial",
@@ -159,6 +173,7 @@ __all__ = [
     "newton_position",
     "output_stroke",
     "over_task",
+    "powers",
     "reach_box",
     "regression",
     "robustness",

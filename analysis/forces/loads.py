@@ -262,12 +262,18 @@ def known_joint_moments(state: Kinematics, loads: Loads) -> FloatArray:
     -------
     ndarray, shape (4, ...), N length
     """
-    moments = np.zeros((4, *state.shape))
+    moments = torsion_moments(state, loads)
     viscous, coulomb = loads.friction.each("viscous"), loads.friction.each("coulomb")
     for joint in Joint:
         if viscous[joint] or coulomb[joint]:
             _, rate = joint_rotation(state, joint)
             moments[joint] -= viscous[joint] * rate + coulomb[joint] * np.sign(rate)
+    return moments
+
+
+def torsion_moments(state: Kinematics, loads: Loads) -> FloatArray:
+    """The same of torsion springs alone."""
+    moments = np.zeros((4, *state.shape))
     for spring in loads.torsion_springs:
         angle, _ = joint_rotation(state, spring.joint)
         moments[spring.joint] -= spring.stiffness * spring.wound(angle)

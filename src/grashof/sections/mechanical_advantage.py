@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from grashof.analysis import WEIGHTLESS, Kinematics, advantage, extremes_of, holding, output_stroke
+from grashof.analysis import Kinematics, advantage, extremes_of, holding, output_stroke
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.study.columns import Columns, curves, over_driver, table
 from grashof.study.section import Fact, Plot, Section
@@ -41,10 +41,9 @@ def _ratios(study: LinkageStudy, state: Kinematics) -> Columns:
         "force_ratio": found.force_ratio,
     }
     masses, loads = study.masses, study.loads
-    weighs = masses is not None and loads.gravity_vector().any()
-    if not (weighs or loads.any):
+    if masses is None or not (loads.any or loads.gravity_vector().any()):
         return columns
-    held = holding(study.linkage, state.theta2, WEIGHTLESS if masses is None else masses, loads)
+    held = holding(study.linkage, state.theta2, masses, loads)
     metre, sense = study.metre, -1.0 if study.sweep.speed_rpm < 0 else 1.0
     return columns | {
         "holding_torque": held.torque * metre**2,

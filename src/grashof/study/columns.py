@@ -60,9 +60,19 @@ def curves(columns: Columns, key: str, title: str, unit: str, labels: Mapping[st
     return Plot(key, title, unit, lines, columns["theta2_deg"], DRIVER_ANGLE)
 
 
-def track(columns: Columns, key: str) -> FloatArray:
-    """The track of a vector, shape (N, 2)."""
-    return np.stack([columns[f"{key}_x"], columns[f"{key}_y"]], axis=-1)
+def track(columns: Columns, key: str, axes: str = "xy") -> FloatArray:
+    """The track of a vector, shape (N, 2); NaN where it goes off to infinity."""
+    return broken(np.stack([columns[f"{key}_{axis}"] for axis in axes], axis=-1))
+
+
+def broken(points: FloatArray) -> FloatArray:
+    """A track of shape (N, 2), NaN where it goes off to infinity."""
+    sizes = np.hypot(points[:, 0], points[:, 1])
+    known = sizes[np.isfinite(sizes)]
+    far = _FAR * float(np.median(known)) if known.size else np.inf
+    with np.errstate(invalid="ignore"):
+        near = np.isfinite(sizes) & ((sizes <= far) | (far == 0))
+    return np.where(near[:, None], points, np.nan)
 
 
 def line(values: FloatArray) -> FloatArray:
