@@ -12,6 +12,15 @@ import numpy as np
 import pytest
 
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, load_linkage_spec
+from grashof.problems.values.acting import (
+    DamperSpec,
+    FrictionSpec,
+    LoadSpec,
+    Place,
+    SpringSpec,
+    TorsionSpringSpec,
+)
+from grashof.problems.values.motor import MotorSpec
 from grashof.survey import Section
 
 Sections = Callable[..., dict[str, Section]]
@@ -25,14 +34,31 @@ LINKAGES = {
     "parallelogram": FourBar((0, 0), (3, 0), 2, 3, 2, (1, 1)),
     "deltoid": FourBar((0, 0), (3, 0), 3, 2, 2),
 }
+LOADED = DynamicsSpec(
+    300.0,
+    speed_rpm=-10,
+    gravity=(0, -9.81),
+    loads=(
+        LoadSpec(4, at=(-4, 0), values=((0, 0, -9e3), (90, 0, -2e4), (200, 0, -1e4), (360, 0, -9e3))),
+        LoadSpec(3, moment=50.0),
+        LoadSpec(4, values=((0, 10.0), (3, -20.0), (7, 5.0)), over="time"),
+    ),
+    springs=(SpringSpec((Place(1, (0, 2)), Place(4, (1, 0))), 500.0, 1.2),),
+    dampers=(DamperSpec((Place(1, (0, 2)), Place(4, (1, 0))), 30.0),),
+    torsion_springs=(TorsionSpringSpec((2, 3), 40.0, 20.0),),
+    friction=FrictionSpec(coulomb=0.1, pin_radius=0.05, viscous=2.0),
+    motor=MotorSpec(profile="trapezoid", gear_ratio=30, gear_efficiency=0.9, inertia=0.02),
+)
 ASKED: dict[str, Any] = {"at_deg": (10.0, 90.0, 200.0), "dwell_deg": 2.0}
 
 
-@pytest.fixture(scope="module", params=[*LINKAGES, "pumpjack", "lufkin-c912d", "still"])
+@pytest.fixture(scope="module", params=[*LINKAGES, "pumpjack", "lufkin-c912d", "still", "loaded"])
 def made(request: pytest.FixtureRequest, sections: Sections) -> dict[str, Section]:
     if request.param in LINKAGES:
         spec = LinkageSpec(LINKAGES[request.param], request.param, length_unit="mm", dynamics=HEAVY)
         return sections(spec, **ASKED)
+    if request.param == "loaded":
+        return sections(replace(load_linkage_spec("pumpjack"), dynamics=LOADED), **ASKED)
     if request.param == "still":
         return sections(load_linkage_spec("pumpjack"), speed_rpm=0.0, **ASKED)
     return sections(load_linkage_spec(request.param), **ASKED)

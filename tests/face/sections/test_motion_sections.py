@@ -8,11 +8,24 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from grashof.analysis import dwell, solve_kinematics
+from grashof.analysis import dwell, mechanical_energy, solve_kinematics
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, ProblemError, load_linkage_spec
-from grashof.survey import Section, report_on
+from grashof.problems.values.acting import DamperSpec, FrictionSpec, LoadSpec, Place, SpringSpec
+from grashof.problems.values.motor import MotorSpec
+from grashof.study.study import LinkageStudy
+from grashof.survey import Asked, Section, report_on
 
 Sections = Callable[..., dict[str, Section]]
+LOADED = DynamicsSpec(
+    300.0,
+    speed_rpm=-10,
+    gravity=(0, -9.81),
+    loads=(LoadSpec(4, at=(-4, 0), values=((0, 0, -9e3), (90, 0, -2e4), (200, 0, -1e4), (360, 0, -9e3))),),
+    springs=(SpringSpec((Place(1, (0, 2)), Place(4, (1, 0))), 500.0, 1.2),),
+    dampers=(DamperSpec((Place(1, (0, 2)), Place(4, (1, 0))), 30.0),),
+    friction=FrictionSpec(coulomb=0.1, pin_radius=0.05, viscous=2.0),
+    motor=MotorSpec(profile="trapezoid"),
+)
 JACK = load_linkage_spec("pumpjack")
 
 
@@ -75,6 +88,25 @@ def test_the_energy_table_adds_up(sections: Sections) -> None:
     )["energies"].tables["energies"]
     np.testing.assert_allclose(inches["energy"], metres["energy"], rtol=1e-9)
     np.testing.assert_allclose(inches["drive_power"], metres["drive_power"], rtol=1e-9, atol=1e-6)
+
+
+def test_the_powers_of_loads_springs_and_friction_are_the_rate_of_the_energy(sections: Sections) -> None:
+    spec = replace(JACK, dynamics=LOADED)
+    table = sections(spec)["energies"].tables["energies"].iloc[5:-5]
+    study = LinkageStudy.of(spec, Asked())
+    time, step = study.sweep.time(np.radians(table["theta2_deg"].to_numpy())), 1e-3
+    law = study.sweep.laws[0]
+    total = [
+        mechanical_energy(
+            solve_kinematics(spec.linkage, *law.at_time(time + k * step)), study.masses, study.loads
+        )
+        for k in (-2, -1, 1, 2)
+    ]
+    rate = (total[0] - 8 * total[1] + 8 * total[2] - total[3]) / (12 * step)
+    given = table["drive_power"] + table["load_power"] + table["friction_power"]
+    corner = np.min(np.abs(time[:, None] - law.duration * law.corners), axis=1) < 3 * step
+    np.testing.assert_allclose(given[~corner], rate[~corner], atol=1e-6 * np.abs(rate).max())
+    assert (table["friction_power"] < 0).all()
 
 
 @pytest.mark.parametrize("linkage", [JACK.linkage, FourBar((0, 0), (4, 0), 3, 1, 3)])
