@@ -11,6 +11,7 @@ from grashof.sections.hodographs import hodographs
 from grashof.sections.mass_centres import mass_centres
 from grashof.sections.mechanical_advantage import mechanical_advantage
 from grashof.sections.pin_forces import pin_forces
+from grashof.sections.pumping_unit import pumping_unit
 from grashof.study.section import Section
 from grashof.study.study import LinkageStudy
 
@@ -23,4 +24,5 @@ SECTIONS: tuple[Callable[[LinkageStudy], Section | None], ...] = (
     coupler_plane,
     dwell_section,
     energy_section,
+    pumping_unit,
 )

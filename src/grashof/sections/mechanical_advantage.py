@@ -69,8 +69,8 @@ def _facts(study: LinkageStudy) -> Iterator[Fact]:
             label = f"velocity ratio omega4 / omega2, {name}"
             yield Fact(f"velocity_ratio_{name}", label, ratio)
             yield Fact(f"velocity_ratio_{name}_theta2_deg", f"{label}: theta2", _angle(at), "deg")
-        least = 1 / max(abs(found.low), abs(found.high))
-        yield Fact("mechanical_advantage_least", "mechanical advantage |T4 / T2|, least", least)
+        if most := max(abs(found.low), abs(found.high)):
+            yield Fact("mechanical_advantage_least", "mechanical advantage |T4 / T2|, least", 1 / most)
     stands = output_stroke(linkage).theta2
     stands = np.sort(stands[np.abs(advantage(linkage, stands).velocity_ratio) < _STANDS])
     for number, at in enumerate(stands, start=1):
