@@ -16,7 +16,7 @@ Curve = Callable[[FloatArray], FloatArray]
 _SAMPLES = 181
 _ROUNDS = 40
 _SETTLED = 1e-9  # share of the peak: what is still missing to the least one
-_TOLERANCES = {"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10}
+_FINE = 1e-10  # the finest tolerance that the solver knows
 
 
 class LeastPeak(NamedTuple):

@@ -63,7 +63,7 @@ def pumping_unit(study: LinkageStudy) -> Section | None:
 def _load_of_file(study: LinkageStudy, unit: PumpingUnitSpec, arm: float) -> Load | None:
     """The forces and moments that the file puts on the beam, as a load on the polished rod."""
     loads = replace(study.loads, springs=(), torsion_springs=())
-    if not any(each.link == 4 for each in (*loads.forces, *loads.moments)):
+    if 4 not in {force.link for force in loads.forces} | {moment.link for moment in loads.moments}:
         return None
     newton = study.metre / arm
 
