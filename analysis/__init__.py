@@ -1,5 +1,11 @@
 """How a given linkage moves and how good it is: the independent judge of the synthesis, without CasADi."""
 
+from grashof.analysis.curves.coupler_circles import (
+    Centrodes,
+    CouplerCircles,
+    centrodes,
+    coupler_circles,
+)
 from grashof.analysis.curves.curvature import curvature, cusps
 from grashof.analysis.curves.curve_distance import curve_distances
 from grashof.analysis.curves.double_points import DoublePoints, all_double_points, double_points
@@ -24,8 +30,9 @@ from grashof.analysis.curves.line_and_circle import (
 )
 from grashof.analysis.forces.balancing import ForceBalance, TorqueBalance, balance_force, balance_torque
 from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics, virtual_work_torque
+from grashof.analysis.forces.energy import Energies, Powers, energies, mechanical_energy, powers
 from grashof.analysis.forces.flywheel import Flywheel, size_flywheel
-from grashof.analysis.forces.free_response import Ending, FreeResponse, free_response, mechanical_energy
+from grashof.analysis.forces.free_response import Ending, FreeResponse, free_response
 from grashof.analysis.forces.loads import (
     AppliedForce,
     AppliedMoment,
@@ -35,8 +42,8 @@ from grashof.analysis.forces.loads import (
     Spring,
     TorsionSpring,
 )
-from grashof.analysis.forces.losses import damper_power, friction_power
 from grashof.analysis.forces.mass import (
+    WEIGHTLESS,
     Body,
     Masses,
     given_masses,
@@ -45,8 +52,19 @@ from grashof.analysis.forces.mass import (
     uniform_bar,
     uniform_bars,
 )
+from grashof.analysis.forces.pumping_unit import (
+    ReducerTorque,
+    RodMotion,
+    beam_limits,
+    crank_angle,
+    driver_angle,
+    reducer_torque,
+    rod_load,
+    rod_motion,
+)
 from grashof.analysis.forces.section_forces import BarForces, SectionForce, section_forces
 from grashof.analysis.forces.stated import stated_loads, stated_masses
+from grashof.analysis.forces.statics import Advantage, Holding, advantage, holding
 from grashof.analysis.forces.strength import StrengthHistory, strength_at
 from grashof.analysis.forces.strength_peaks import (
     SafetyFactor,
@@ -90,13 +108,17 @@ from grashof.analysis.judge.verify import verify
 __all__ = [
     "BAR_MEASURES",
     "PIN_MEASURES",
+    "WEIGHTLESS",
+    "Advantage",
     "AppliedForce",
     "AppliedMoment",
     "BarForces",
     "BestCircle",
     "BestLine",
     "Body",
+    "Centrodes",
     "Constraint",
+    "CouplerCircles",
     "Defect",
     "Design",
     "Deviation",
@@ -106,6 +128,7 @@ __all__ = [
     "Dwell",
     "Dynamics",
     "Ending",
+    "Energies",
     "Extremes",
     "Flywheel",
     "ForceBalance",
@@ -113,6 +136,7 @@ __all__ = [
     "FreeResponse",
     "Friction",
     "GrashofClass",
+    "Holding",
     "InstantCentres",
     "Joint",
     "Kinematics",
@@ -126,7 +150,10 @@ __all__ = [
     "PointMotion",
     "PolynomialFit",
     "Position",
+    "Powers",
+    "ReducerTorque",
     "Robustness",
+    "RodMotion",
     "SafetyFactor",
     "SectionForce",
     "Spring",
@@ -137,37 +164,43 @@ __all__ = [
     "TorqueBalance",
     "TorsionSpring",
     "Verdict",
+    "advantage",
     "all_double_points",
     "balance_force",
     "balance_torque",
+    "beam_limits",
     "best_circle",
     "best_line",
     "branch_index",
     "central_differences",
+    "centrodes",
     "circuit_index",
     "circularity",
     "compare_differences",
+    "coupler_circles",
     "coupler_fit_r2",
     "coupler_fourier",
+    "crank_angle",
     "curvature",
     "curve_distances",
     "cusps",
-    "damper_power",
     "double_points",
+    "driver_angle",
     "driver_motion",
     "driver_ranges",
     "driver_samples",
     "dwell",
+    "energies",
     "extremes",
     "extremes_of",
     "fit_polynomial",
     "fourier_series",
     "free_response",
-    "friction_power",
     "full_rotation",
     "given_masses",
     "grashof_class",
     "greatest_error",
+    "holding",
     "instant_centres",
     "inverse_dynamics",
     "mechanical_energy",
@@ -175,9 +208,13 @@ __all__ = [
     "newton_position",
     "output_stroke",
     "over_task",
+    "powers",
     "reach_box",
+    "reducer_torque",
     "regression",
     "robustness",
+    "rod_load",
+    "rod_motion",
     "rotatability",
     "section_forces",
     "sensitivity",

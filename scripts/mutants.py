@@ -192,7 +192,12 @@ _LINKAGES = (
     f'length_unit = "m"\no4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n{_ACTING}',
     f"{_HEAD}r1 = 4\nground_angle_deg = 20\nr2 = 1\nr3 = 4\nr4 = 3\ncoupler_point = [2, 1]\nassembly = -1\n"
     "body_angle_deg = 30\noutput_arm = 5\n[dynamics]\nspeed_rpm = -20\ngravity = [0, -9.81]\n"
-    "mass_per_length = 3\npayload = 2\n",
+    "mass_per_length = 3\npayload = 2\n"
+    '[pumping_unit]\nwell = "left"\ncrank = "counter-clockwise"\nstructural_unbalance = -900\nrating = 9e4\n'
+    'counterbalance = 3e4\ncounterbalance_phase_deg = 5\nover = "position"\n'
+    "values = [[0, 2, 1], [1, 2, 2]]\n",
+    "length_unit = 'm'\no4 = [5, 3]\nr2 = 1.2\nr3 = 3.8\nr4 = 3\noutput_arm = 4\n"
+    "[pumping_unit]\nrod_load = 2e4\n",
     "o2 = [1, 1]\no4 = [5, 1]\nr2 = 3\nr3 = 3\nr4 = 4\n",  # its driver does not turn fully
 )
 

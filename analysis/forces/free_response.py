@@ -1,4 +1,4 @@
-"""The motion that a given drive torque makes, and the energy in it."""
+"""The motion that a given drive torque makes."""
 
 from __future__ import annotations
 
@@ -12,15 +12,10 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from grashof.analysis.forces.loads import (
-    Joint,
-    Loads,
-    joint_rotation,
-    known_joint_moments,
-    spring_ends,
-    wrenches,
-)
+from grashof.analysis.forces.energy import mechanical_energy
+from grashof.analysis.forces.loads import Loads
 from grashof.analysis.forces.mass import Masses
+from grashof.analysis.forces.statics import load_power
 from grashof.analysis.four_bar.kinematics import Kinematics, solve_kinematics
 from grashof.analysis.four_bar.position import solve_position
 from grashof.problems import AssemblyError, DeadPositionWarning, FourBar, ProblemError, SolverError
@@ -147,27 +142,6 @@ def free_response(
     return FreeResponse(done.t, state, mechanical_energy(state, masses, loads), ending)
 
 
-def mechanical_energy(state: Kinematics, masses: Masses, loads: Loads | None = None) -> FloatArray:
-    """Kinetic energy and that of weights and springs, shape (...), N length."""
-    loads = Loads() if loads is None else loads
-    gravity = loads.gravity_vector()
-    energy = np.zeros(state.shape)
-    for link in (2, 3, 4):
-        body, omega = masses.of(link), state.angular(link)[1]
-        centre = state.point(link, body.centre)
-        energy = energy + body.mass * (centre.velocity**2).sum(axis=-1) / 2 + body.inertia * omega**2 / 2
-        energy = energy - body.mass * (centre.position * gravity).sum(axis=-1)
-    for spring in loads.springs:
-        first, second = spring_ends(state, spring)
-        way = second.position - first.position
-        energy = (
-            energy + spring.stiffness * (np.hypot(way[..., 0], way[..., 1]) - spring.free_length) ** 2 / 2
-        )
-    for torsion in loads.torsion_springs:
-        energy = energy + torsion.stiffness * torsion.wound(joint_rotation(state, torsion.joint)[0]) ** 2 / 2
-    return energy[()]
-
-
 def _equation_of_motion(unit: Kinematics, omega2: float, masses: Masses, loads: Loads) -> tuple[float, float]:
     """Inertia felt by the driver, and the torque that keeps its speed, by virtual work.
 
@@ -179,21 +153,15 @@ def _equation_of_motion(unit: Kinematics, omega2: float, masses: Masses, loads: 
         *(omega2**2 * rate for rate in (unit.alpha2, unit.alpha3, unit.alpha4)),
         *(omega2**3 * rate for rate in (unit.jerk2, unit.jerk3, unit.jerk4)),
     )  # fmt: skip
-    outside, gravity = wrenches(state, loads), loads.gravity_vector()
-    inertia = still = np.zeros(1)
+    gravity = loads.gravity_vector()
+    inertia, still = np.zeros(1), -load_power(unit, state, loads)
     for link in (2, 3, 4):
         body, (_, omega, alpha, _) = masses.of(link), unit.angular(link)
         centre = unit.point(link, body.centre)
         inertia = inertia + body.mass * (centre.velocity**2).sum(axis=-1) + body.inertia * omega**2
         push = omega2**2 * centre.acceleration - gravity
         still = still + body.mass * (push * centre.velocity).sum(axis=-1)
-        still = still + omega2**2 * body.inertia * alpha * omega - outside[link].moment * omega
-    if outside[3].force.any():  # A is the one origin of a link's frame that moves
-        still = still - (outside[3].force * unit.a.velocity).sum(axis=-1)
-    moments = known_joint_moments(state, loads)
-    for joint in Joint:
-        if moments[joint].any():
-            still = still - moments[joint] * joint_rotation(unit, joint)[1]
+        still = still + omega2**2 * body.inertia * alpha * omega
     return float(inertia[0]), float(still[0])
 
 

@@ -168,6 +168,11 @@ class Loads:
     torsion_springs: tuple[TorsionSpring, ...] = ()
     friction: Friction = field(default_factory=Friction)
 
+    @property
+    def any(self) -> bool:
+        """Whether anything but weight and friction acts."""
+        return bool(self.forces or self.moments or self.springs or self.torsion_springs)
+
     def gravity_vector(self) -> FloatArray:
         """Gravity, shape (2,)."""
         gravity = np.asarray(self.gravity, dtype=np.float64)
@@ -295,17 +300,17 @@ def known_joint_moments(state: Kinematics, loads: Loads) -> FloatArray:
     -------
     ndarray, shape (4, ...), N length
     """
-    moments = np.zeros((4, *state.shape))
+    moments = torsion_moments(state, loads)
     viscous, coulomb = loads.friction.each("viscous"), loads.friction.each("coulomb")
     for joint in Joint:
         if viscous[joint] or coulomb[joint]:
             _, rate = joint_rotation(state, joint)
             moments[joint] -= viscous[joint] * rate + coulomb[joint] * np.sign(rate)
-    return moments + torsion_moments(state, loads)
+    return moments
 
 
 def torsion_moments(state: Kinematics, loads: Loads) -> FloatArray:
-    """Moments of torsion springs on the second link of each joint, shape (4, ...), N length."""
+    """The same of torsion springs alone."""
     moments = np.zeros((4, *state.shape))
     for spring in loads.torsion_springs:
         angle, _ = joint_rotation(state, spring.joint)

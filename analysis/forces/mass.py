@@ -101,6 +101,10 @@ class Masses:
         return Masses(self.crank, self.coupler + Body(mass, 0.0, at), self.output)
 
 
+# Links that have no mass.
+WEIGHTLESS = Masses(Body(0.0), Body(0.0), Body(0.0))
+
+
 def uniform_bar(length: npt.ArrayLike, mass_per_length: npt.ArrayLike, width: npt.ArrayLike = 0.0) -> Body:
     """A straight uniform bar along its link, from joint to joint.
 

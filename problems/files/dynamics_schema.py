@@ -24,6 +24,7 @@ from grashof.problems.values.checks import located
 from grashof.problems.values.dynamics_spec import DynamicsSpec
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.motor import PROFILES, MotorSpec
+from grashof.problems.values.pumping_unit import CRANK, POSITION, PumpingUnitSpec
 from grashof.problems.values.section import SectionSpec
 from grashof.problems.values.strength import StrengthSpec
 
@@ -31,6 +32,10 @@ Point = Annotated[list[float], listed("[u, v]")]
 # Columns of files, with or without their units.
 _PLACES = {over: (over, "over", f"{over}_deg" if over != "time" else "time_s") for over in OVER}
 _FORCE, _MOMENT = (("fx", "fx_n"), ("fy", "fy_n")), (("moment", "moment_nm"),)
+_ROD_LOADS = {
+    CRANK: (("crank", "crank_deg"), ("load", "load_n")),
+    POSITION: (("position",), ("up", "up_n"), ("down", "down_n")),
+}
 _MOTION = (("time", "time_s"), ("angle", "angle_deg"))
 
 
@@ -171,6 +176,34 @@ class MotorTable(_Spec):
     def _read(cls, profile: Any, info: ValidationInfo) -> Any:
         is_file = isinstance(profile, str) and profile not in PROFILES and profile.endswith(".csv")
         return _rows(profile, info, (_MOTION,)) if is_file else profile
+
+
+class PumpingUnitTable(_Spec):
+    spec = PumpingUnitSpec
+    well: str = "right"
+    crank: str = "clockwise"
+    structural_unbalance: float = 0.0
+    counterbalance: float = 0.0
+    counterbalance_phase_deg: float = 0.0
+    rating: float | None = None
+    rod_load: float | None = None
+    over: str = CRANK
+    values: Annotated[list[list[float]], listed("rows [crank angle, load]")] | None = None
+    table: str | None = None
+
+    def given(self) -> dict[str, Any]:
+        given = super().given()
+        if (rows := given.pop("table", None)) is not None:
+            if "values" in given:
+                raise ProblemError("table is given besides values; give one of them")
+            given["values"] = rows
+        return given
+
+    @field_validator("table", mode="after")
+    @classmethod
+    def _read(cls, name: str | None, info: ValidationInfo) -> Any:
+        columns = _ROD_LOADS.get(info.data.get("over", CRANK), _ROD_LOADS[CRANK])
+        return None if name is None else _rows(name, info, (columns,))
 
 
 class SectionTable(_Spec):

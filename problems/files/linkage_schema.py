@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field, ValidationInfo, field_validator
 
-from grashof.problems.files.dynamics_schema import MACHINE_TABLES, MachineTables
+from grashof.problems.files.dynamics_schema import MACHINE_TABLES, MachineTables, PumpingUnitTable
 from grashof.problems.files.tables import Table, Text, listed, of_length, stated
 from grashof.problems.values.checks import GREATEST, finite_number, number_within
 from grashof.problems.values.dynamics_spec import metres
@@ -72,6 +72,8 @@ class _Linkage(Table):
 class LinkageTable(MachineTables, _Linkage):
     """The whole linkage file."""
 
+    pumping_unit: PumpingUnitTable | None = None
+
     @field_validator(*(key for key, row in _PARAMETERS.items() if row.kind != "angle"))
     @classmethod
     def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
@@ -98,6 +100,10 @@ class LinkageTable(MachineTables, _Linkage):
         """The linkage itself, checked with what belongs to it."""
         if (dynamics := self.dynamics_spec()) is not None and dynamics.acts:
             metres(self.length_unit)  # refuses one that is not known
+        if self.pumping_unit is not None:
+            metres(self.length_unit, "pumping_unit")
+            if self.output_arm is None:
+                raise ProblemError("output_arm is missing; pumping_unit needs that of the horsehead")
         given = {row.name: getattr(self, row.key) for row in FourBar.PARAMETERS}
         linkage = FourBar(**given | {"o4": self._o4(), "body_angle": np.radians(self.body_angle_deg)})
         if not linkage.r1 > 0:
@@ -125,7 +131,8 @@ class LinkageTable(MachineTables, _Linkage):
             length_unit=self.length_unit,
             output_arm=self.output_arm,
             dynamics=self.dynamics_spec(),
+            pumping_unit=None if self.pumping_unit is None else self.pumping_unit.value(),
         )
 
 
-_TABLES: dict[str, type[Table]] = {"": LinkageTable, **MACHINE_TABLES}
+_TABLES: dict[str, type[Table]] = {"": LinkageTable, **MACHINE_TABLES, "pumping_unit": PumpingUnitTable}

@@ -198,7 +198,7 @@ class DynamicsSpec(Stated):
         return self.speed_rpm * np.pi / 30
 
 
-def metres(length_unit: str) -> float:
+def metres(length_unit: str, needed_by: str = "dynamics") -> float:
     """Length of a unit in metres.
 
     Raises
@@ -212,7 +212,7 @@ def metres(length_unit: str) -> float:
     0.0254
     """
     if length_unit not in METRES:
-        raise wrong_value("length_unit", length_unit, f"one of {', '.join(METRES)} with dynamics")
+        raise wrong_value("length_unit", length_unit, f"one of {', '.join(METRES)} with {needed_by}")
     return METRES[length_unit]
 
 

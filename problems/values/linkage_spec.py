@@ -10,6 +10,7 @@ from grashof.problems.values.dynamics_spec import DynamicsSpec
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkage import FourBar
 from grashof.problems.values.problem import Problem
+from grashof.problems.values.pumping_unit import PumpingUnitSpec
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +26,8 @@ class LinkageSpec(Displayed):
         factor are reported.
     dynamics : DynamicsSpec, optional
         It need not have masses.
+    pumping_unit : PumpingUnitSpec, optional
+        Where the linkage is one; `output_arm` is then that of its horsehead.
     problem : Problem, optional
         Of a design out of a list: what it was found for.
     """
@@ -36,11 +39,14 @@ class LinkageSpec(Displayed):
     length_unit: str = ""
     output_arm: float | None = None
     dynamics: DynamicsSpec | None = None
+    pumping_unit: PumpingUnitSpec | None = None
     problem: Problem | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         for name in ("name", "title", "source", "length_unit"):
             plain_text(getattr(self, name), name)
+        if self.pumping_unit is not None and self.output_arm is None:
+            raise ProblemError("output_arm is missing; pumping_unit needs that of the horsehead")
 
     @property
     def unit(self) -> str:

@@ -278,13 +278,17 @@ def analyse(
     pictures: Annotated[
         bool, typer.Option("--pictures", help="Plots of all sections as PNG and SVG, not in the page alone.")
     ] = False,
+    dwell_deg: Annotated[
+        float | None,
+        typer.Option(help="Report how long link 4 dwells in a band so wide.", show_default=False),
+    ] = None,
 ) -> None:
     """Report motion and forces of LINKAGE; write tables, a summary, a page and plots.
 
     Exit code 0: done; 2: bad input; 3: environment error.
     """
     with _errors_told():
-        commands.analyse(linkage, out, pictures=pictures, speed_rpm=speed_rpm)
+        commands.analyse(linkage, out, pictures=pictures, speed_rpm=speed_rpm, dwell_deg=dwell_deg)
 
 
 @app.command()

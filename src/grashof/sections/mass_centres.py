@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import pandas as pd
 
 from grashof.analysis import Kinematics, PointMotion, system_centre
 from grashof.problems.values.arrays import FloatArray
+from grashof.study.columns import line, table
 from grashof.study.section import Plot, Section
 from grashof.study.study import LinkageStudy
 
@@ -29,12 +29,10 @@ def mass_centres(study: LinkageStudy) -> Section:
             keys = [f"{name}_{suffix}{'_' if suffix else ''}{axis}" for axis in "xy"]
             columns |= dict(zip(keys, xy.T, strict=True))
             title, unit = f"{suffix or 'place'} of {label}", f"{study.spec.unit}{per}"
-            plots.append(
-                Plot(f"{name}-{suffix or 'place'}", title, unit, dict(zip("xy", xy.T, strict=True)), theta2)
-            )
-    table = pd.DataFrame(columns).dropna(subset="theta2_deg")
+            lines = dict(zip("xy", map(line, xy.T), strict=True))
+            plots.append(Plot(f"{name}-{suffix or 'place'}", title, unit, lines, theta2))
     note = () if study.masses is not None else ("the file states no masses: points halfway between joints",)
-    return Section("mass-centres", "Mass centres", (), {"mass-centres": table}, tuple(plots), note)
+    return Section("mass-centres", "Mass centres", (), {"mass-centres": table(columns)}, tuple(plots), note)
 
 
 def centres_of(study: LinkageStudy, state: Kinematics) -> dict[str, PointMotion]:

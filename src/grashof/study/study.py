@@ -22,9 +22,15 @@ class Asked:
     ----------
     speed_rpm : float, optional
         Of the driver, counter-clockwise; by default that of the file, or else 1 rad/s.
+    at_deg : tuple of float, deg
+        Driver angles at which the linkage is looked at closely.
+    dwell_deg : float, deg, optional
+        The band in which link 4 counts as dwelling.
     """
 
     speed_rpm: float | None = None
+    at_deg: tuple[float, ...] = ()
+    dwell_deg: float | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

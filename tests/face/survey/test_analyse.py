@@ -231,8 +231,12 @@ def unsaved(monkeypatch: pytest.MonkeyPatch) -> None:
 
 TABLES = {
     "kinematics.csv", "extremes.csv", "summary.csv", "summary.json", "analysis.json", "analysis.html",
-    "table-mass-centres.csv",
 }  # fmt: skip
+
+
+def section_tables(name: str) -> set[str]:
+    sections = report_on(load_linkage_spec(name)).sections
+    return {f"table-{table}.csv" for section in sections for table in section.tables}
 
 
 def pictures(*names: str) -> set[str]:
@@ -246,6 +250,7 @@ def test_files_and_terminal(grashof: Grashof, tmp_path: Path) -> None:
     folder = tmp_path / "pumpjack-analysis"
     kinematic = pictures("path", "angles", "velocities", "accelerations")
     expected = TABLES | {"dynamics.csv"} | kinematic | pictures("torque", "forces")
+    expected |= section_tables("pumpjack")
     assert {path.name for path in folder.iterdir()} == expected
     assert "46.65" in done.stdout
     assert "no limit" not in done.stdout
@@ -258,7 +263,8 @@ def test_files_and_terminal(grashof: Grashof, tmp_path: Path) -> None:
     (folder / "notes.txt").write_text("mine")
     again = grashof("analyse", "lufkin-c912d", "--out", folder, "--speed-rpm", "6.5")
     assert again.exit_code == 0
-    assert {path.name for path in folder.iterdir()} == TABLES | kinematic | {"notes.txt"}
+    expected = TABLES | section_tables("lufkin-c912d") | kinematic | {"notes.txt"}
+    assert {path.name for path in folder.iterdir()} == expected
 
 
 @pytest.mark.usefixtures("unsaved")

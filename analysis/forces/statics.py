@@ -1,0 +1,192 @@
+"""What holds a linkage at rest, and what a drive torque is worth at the output and at P."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from grashof.analysis.forces.loads import (
+    Friction,
+    Joint,
+    Loads,
+    joint_rotation,
+    known_joint_moments,
+    wrenches,
+)
+from grashof.analysis.forces.mass import Masses
+from grashof.analysis.four_bar.kinematics import Kinematics
+from grashof.analysis.four_bar.position import close_loop, sides
+from grashof.problems import FourBar
+from grashof.problems.values.arrays import FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Advantage:
+    """What the linkage makes of a speed or a torque of its driver, friction left out; each of shape (...).
+
+    Parameters
+    ----------
+    velocity_ratio : ndarray
+        omega4 / omega2; infinite in a dead position of the driver.
+    torque_ratio : ndarray
+        T4 / T2 = omega2 / omega4, the mechanical advantage; infinite where link 4 stands.
+    way : ndarray, length/rad
+        Of P for each radian of the driver.
+    force_ratio : ndarray
+        Force at P along its path for a force on A across link 2; infinite where P stands.
+    """
+
+    velocity_ratio: FloatArray
+    torque_ratio: FloatArray
+    way: FloatArray
+    force_ratio: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Holding:
+    """What keeps a linkage at rest against its weight and loads, each by itself; friction left out.
+
+    Parameters
+    ----------
+    torque : ndarray, shape (...), N length
+        On link 2, counter-clockwise; the other two are for a free driver.
+    moment : ndarray, shape (...), N length
+        On link 4, counter-clockwise.
+    force : ndarray, shape (...), N
+        At P, along `direction`.
+    direction : ndarray, shape (..., 2)
+        Of the path of P as the driver turns counter-clockwise; NaN where P stands.
+    """
+
+    torque: FloatArray
+    moment: FloatArray
+    force: FloatArray
+    direction: FloatArray
+
+
+def advantage(linkage: FourBar, theta2: npt.ArrayLike) -> Advantage:
+    """Velocity ratio, mechanical advantage and force ratio at given driver angles.
+
+    Parameters
+    ----------
+    linkage : FourBar
+    theta2 : array_like, shape (...), rad
+
+    Returns
+    -------
+    Advantage
+        NaN where the linkage cannot close.
+
+    Notes
+    -----
+    Power in is power out: T2 omega2 = T4 omega4, and F2 r2 omega2 = F v_P for a force F2 on A across
+    link 2 (Norton, *Design of Machinery*, sec. 6.4).
+
+    Examples
+    --------
+    >>> norton = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
+    >>> found = advantage(norton, np.radians([40, 250]))
+    >>> found.velocity_ratio.round(6).tolist(), found.torque_ratio.round(4).tolist()
+    ([0.279919, -0.116888], [3.5725, -8.5552])
+    """
+    virtual, _ = virtual_motion(linkage, theta2)
+    way, crank = virtual.p.speed, virtual.omega2
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return Advantage(
+            velocity_ratio=virtual.omega4 / crank,
+            torque_ratio=crank / virtual.omega4,
+            way=way / crank,
+            force_ratio=linkage.r2 * crank / way,
+        )
+
+
+def holding(linkage: FourBar, theta2: npt.ArrayLike, masses: Masses, loads: Loads) -> Holding:
+    """What keeps a linkage at rest at given driver angles: a torque, a moment on link 4, a force at P.
+
+    Parameters
+    ----------
+    linkage : FourBar
+    theta2 : array_like, shape (...), rad
+    masses : Masses
+    loads : Loads
+        Its friction is left out: at rest it may act either way.
+
+    Returns
+    -------
+    Holding
+        NaN where the linkage cannot close. Infinite where what is to hold it cannot: a torque in a
+        dead position of the driver, a moment on link 4 where this stands.
+
+    Notes
+    -----
+    Virtual work (Norton, *Design of Machinery*, sec. 11.10), in a virtual motion that has a limit in
+    dead positions.
+
+    Examples
+    --------
+    A bar of 3 kg as the output of a square, P at B: half of its weight times the length.
+
+    >>> from grashof.analysis.forces.mass import Body
+    >>> square = FourBar(o2=(0, 0), o4=(2, 0), r2=2, r3=2, r4=2, coupler_point=(2, 0), assembly=1)
+    >>> bar = Masses(Body(0), Body(0), Body(3.0, 0.0, (1.0, 0.0)))
+    >>> held = holding(square, np.radians(60), bar, Loads(gravity=(0, -10)))
+    >>> float(held.torque.round(9)), float(held.moment.round(9)), float(held.force.round(9))
+    (15.0, 15.0, 7.5)
+    """
+    virtual, rest = virtual_motion(linkage, theta2)
+    power = virtual_power(virtual, rest, masses, replace(loads, friction=Friction()))
+    speed = virtual.p.speed
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return Holding(
+            torque=-power / virtual.omega2,
+            moment=-power / virtual.omega4,
+            force=-power / speed,
+            direction=virtual.p.velocity / speed[..., None],
+        )
+
+
+def virtual_motion(linkage: FourBar, theta2: npt.ArrayLike) -> tuple[Kinematics, Kinematics]:
+    """Positions with velocities that the linkage allows, and the same at rest.
+
+    The driver turns counter-clockwise by |sin(theta4 - theta3)|, so that the others have a limit in a
+    dead position: the rates of `solve_kinematics` times that.
+    """
+    loop = close_loop(sides(linkage), np.asarray(theta2, dtype=np.float64))
+    theta3, theta4 = np.arctan2(loop.sin3, loop.cos3), np.arctan2(loop.sin4, loop.cos4)
+    theta2 = np.broadcast_to(np.asarray(theta2, dtype=np.float64), np.shape(theta3))[()]
+    none = np.zeros(np.shape(theta3))
+    omega2 = linkage.assembly * loop.sine
+    omega3 = linkage.assembly * linkage.r2 / linkage.r3 * (loop.cos4 * loop.sin2 - loop.sin4 * loop.cos2)
+    omega4 = linkage.assembly * linkage.r2 / linkage.r4 * (loop.cos3 * loop.sin2 - loop.sin3 * loop.cos2)
+    higher = (none,) * 6
+    return (
+        Kinematics(linkage, theta2, theta3, theta4, omega2, omega3, omega4, *higher),
+        Kinematics(linkage, theta2, theta3, theta4, none, none, none, *higher),
+    )
+
+
+def virtual_power(virtual: Kinematics, state: Kinematics, masses: Masses, loads: Loads) -> FloatArray:
+    """Power of weights and loads of a state in velocities that the linkage allows, shape (...)."""
+    gravity = loads.gravity_vector()
+    power = load_power(virtual, state, loads)
+    for link in (2, 3, 4):
+        body = masses.of(link)
+        if np.any(body.mass > 0) and gravity.any():
+            power = power + body.mass * (virtual.point(link, body.centre).velocity * gravity).sum(axis=-1)
+    return power
+
+
+def load_power(virtual: Kinematics, state: Kinematics, loads: Loads) -> FloatArray:
+    """The same of forces, moments, springs and what is known of friction alone, without weights."""
+    outside, power = wrenches(state, loads), np.zeros(state.shape)
+    for link in (2, 3, 4):
+        power = power + outside[link].moment * virtual.angular(link)[1]
+    if outside[3].force.any():  # A is the one origin of a link's frame that moves
+        power = power + (outside[3].force * virtual.a.velocity).sum(axis=-1)
+    moments = known_joint_moments(state, loads)
+    for joint in Joint:
+        if moments[joint].any():
+            power = power + moments[joint] * joint_rotation(virtual, joint)[1]
+    return power

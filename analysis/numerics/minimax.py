@@ -1,0 +1,117 @@
+"""The least peak of a curve that parameters shift linearly."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+import scipy
+
+from grashof.problems import SolverError
+from grashof.problems.values.arrays import FloatArray
+
+Curve = Callable[[FloatArray], FloatArray]
+
+_SAMPLES = 181
+_ROUNDS = 40
+_SETTLED = 1e-9  # share of the peak: what is still missing to the least one
+_FINE = 1e-10  # the finest tolerance that the solver knows
+
+
+class LeastPeak(NamedTuple):
+    """Parameters, shape (K,), and the greatest magnitude that they leave."""
+
+    parameters: FloatArray
+    peak: float
+
+
+def least_peak(
+    base: Curve,
+    effects: Curve,
+    start: float,
+    end: float,
+    outermost: Callable[[Curve], tuple[float, float]],
+) -> LeastPeak:
+    """Parameters x for which |base + effects x| is least where it is greatest.
+
+    Parameters
+    ----------
+    base : callable
+        From places, shape (N,), to values, shape (N,).
+    effects : callable
+        From places to what a unit of each parameter adds, shape (N, K).
+    start, end : float
+        Between which the peak counts.
+    outermost : callable
+        Places of the least and the largest value of a curve between these ends.
+
+    Returns
+    -------
+    LeastPeak
+        NaN where a curve is not finite.
+
+    Raises
+    ------
+    SolverError
+        The linear programme was not solved.
+
+    Notes
+    -----
+    A linear programme at some places; where the curve it finds has its peaks, these join them
+    (an exchange method: Hettich & Kortanek 1993, *SIAM Rev.* 35(3), 380-429).
+
+    Examples
+    --------
+    Chebyshev: x^2 less the best straight line on [0, 1] leaves 1/8.
+
+    >>> from grashof.analysis.four_bar.extremes import extremes_of
+    >>> def outermost(curve):
+    ...     found = extremes_of(curve, 0.0, 1.0)
+    ...     return found.at_low, found.at_high
+    >>> line = lambda t: np.stack([np.ones_like(t), t], axis=-1)
+    >>> found = least_peak(lambda t: t**2, line, 0.0, 1.0, outermost)
+    >>> round(found.peak, 12), (found.parameters + 0.0).round(9).tolist()
+    (0.125, [0.125, -1.0])
+    """
+    places = np.linspace(start, end, _SAMPLES)
+    best = LeastPeak(np.zeros(effects(places[:1]).shape[-1]), np.inf)
+    if not (np.isfinite(base(places)).all() and np.isfinite(effects(places)).all()):
+        return LeastPeak(np.full(best.parameters.shape, np.nan), np.nan)
+    bound = -1.0
+    for _ in range(_ROUNDS):
+        before = bound
+        parameters, bound = _programme(base(places), effects(places))
+
+        def left(t: FloatArray, chosen: FloatArray = parameters) -> FloatArray:
+            return base(t) + effects(t) @ chosen
+
+        peaks = np.array(outermost(left))
+        peak = float(np.abs(left(peaks)).max())
+        if peak < best.peak:
+            best = LeastPeak(parameters, peak)
+        if peak - bound <= _SETTLED * peak or bound <= before:  # the new places change nothing
+            break
+        places = np.concatenate([places, peaks])
+    return best
+
+
+def _programme(base: FloatArray, effects: FloatArray) -> tuple[FloatArray, float]:
+    """The parameters of the least peak at some places, and that peak."""
+    scale, sizes = float(np.abs(base).max()) or 1.0, np.abs(effects).max(axis=0)
+    sizes = np.where(sizes > 0, sizes, 1.0)
+    ones = np.ones((len(base), 1))
+    rows = np.block([[effects / sizes, -ones], [-effects / sizes, -ones]])
+    sides = np.concatenate([-base, base]) / scale
+    goal = [0.0] * effects.shape[1] + [1.0]
+    bounds: list[tuple[float | None, float | None]] = [(None, None)] * effects.shape[1] + [(0.0, None)]
+    found = scipy.optimize.linprog(
+        goal,
+        A_ub=rows,
+        b_ub=sides,
+        bounds=bounds,
+        options={"primal_feasibility_tolerance": _FINE, "dual_feasibility_tolerance": _FINE},
+    )
+    if found.x is None:
+        raise SolverError(f"no least peak was found: {found.message}")
+    return np.asarray(found.x[:-1] * scale / sizes), float(found.x[-1] * scale)

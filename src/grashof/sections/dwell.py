@@ -1,0 +1,65 @@
+"""How long the output dwells while the driver turns on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from grashof.analysis import Dwell, Kinematics, dwell
+from grashof.problems import AssemblyError
+from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.problems.values.checks import number_within
+from grashof.study.columns import curves, over_driver
+from grashof.study.section import Fact, Section
+from grashof.study.study import LinkageStudy
+from grashof.study.sweep import INSET
+
+
+def dwell_section(study: LinkageStudy) -> Section | None:
+    """The longest rest of theta4 within a band; None unless a band is asked for."""
+    if study.asked.dwell_deg is None:
+        return None
+    band = np.radians(number_within(study.asked.dwell_deg, 1e-6, 360.0, "dwell_deg"))
+    found = []
+    for low, high in study.sweep.ranges:
+        found.append(_rest(study, band, low, high))
+    facts = tuple(fact for number, rest in enumerate(found, start=1) for fact in _facts(study, rest, number))
+    columns = over_driver(study, lambda state: {"theta4_deg": np.degrees(np.unwrap(state.theta4))})
+    at = columns["theta2_deg"]
+    dwelling = np.zeros(at.shape, dtype=bool)
+    for rest in found:
+        start, end = np.degrees([rest.start, rest.end])
+        dwelling |= (at - start) % 360 <= end - start if study.sweep.turns else (at >= start) & (at <= end)
+    columns["dwelling"] = np.where(dwelling, columns["theta4_deg"], np.nan)
+    labels = {"theta4": "theta4_deg", "dwell": "dwelling"}
+    title = f"dwell of link 4 within {study.asked.dwell_deg:g} deg"
+    plot = curves(columns, "dwell", title, "deg", labels)
+    return Section("dwell", "Dwell", facts, {}, (plot,))
+
+
+def _rest(study: LinkageStudy, band: float, low: float, high: float) -> Dwell:
+    def theta4(state: Kinematics) -> FloatArray:
+        return state.theta4
+
+    if study.sweep.turns:
+        return dwell(study.linkage, theta4, band, period=TURN)
+    try:
+        return dwell(study.linkage, theta4, band, low, high, TURN)
+    except AssemblyError:  # rounding at the very end of a range
+        return dwell(study.linkage, theta4, band, low + INSET, high - INSET, TURN)
+
+
+def _facts(study: LinkageStudy, rest: Dwell, number: int) -> Iterator[Fact]:
+    many = len(study.sweep.ranges) > 1
+    mark, where = (f"_{number}", f", range {number}") if many else ("", "")
+    what = f"dwell of theta4 within {study.asked.dwell_deg:g} deg{where}"
+    yield Fact(f"dwell{mark}_deg", f"{what}: turn of the driver", float(np.degrees(rest.duration)), "deg")
+    for name, angle in (("from", rest.start), ("to", rest.end)):
+        yield Fact(f"dwell{mark}_{name}_deg", f"{what}: {name} theta2", float(np.degrees(angle)), "deg")
+    for name, angle in (("low", rest.low), ("high", rest.high)):
+        label = f"{what}: theta4, {name} end of the band"
+        yield Fact(f"dwell{mark}_{name}_theta4_deg", label, float(np.degrees(angle)), "deg")
+    if study.sweep.speed_rpm != 0:
+        seconds = float(np.degrees(rest.duration)) / 6 / abs(study.sweep.speed_rpm)
+        yield Fact(f"dwell{mark}_seconds", f"{what}: time at the driver's speed", seconds, "s")

@@ -1,0 +1,63 @@
+"""The energy in the moving linkage, and who gives and takes it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from grashof.analysis import Kinematics, Loads, Masses, energies, extremes_of, powers
+from grashof.problems.values.arrays import TURN
+from grashof.study.columns import Columns, curves, over_driver, table
+from grashof.study.section import Fact, Section
+from grashof.study.study import LinkageStudy
+
+
+def energy_section(study: LinkageStudy) -> Section | None:
+    """Kinetic energy of each link, energy of weights and springs, and the powers that change them."""
+    masses, loads = study.masses, study.loads
+    if masses is None:
+        return None
+    columns = over_driver(study, lambda state: _columns(state, masses, loads, study.metre**2))
+    kinetic = {f"link {n}": f"kinetic_{n}" for n in (2, 3, 4)} | {"together": "kinetic"}
+    whole = {"kinetic": "kinetic", "weights": "weights", "springs": "springs", "sum": "energy"}
+    given = {"drive": "drive_power", "loads": "load_power", "friction": "friction_power"}
+    for labels in (whole, given):  # lines of what is not there would only be in the way
+        for label, key in list(labels.items()):
+            if label in ("springs", "loads", "friction") and not np.nan_to_num(columns[key]).any():
+                del labels[label]
+    plots = (
+        curves(columns, "kinetic-energy", "kinetic energy", "J", kinetic),
+        curves(columns, "energy", "energy", "J", whole),
+        curves(columns, "powers", "power that changes the energy", "W", given),
+    )
+    notes = ("the energy of weights counts from the origin", "powers together are the rate of the energy")
+    facts = tuple(_facts(study, masses))
+    return Section("energies", "Energies", facts, {"energies": table(columns)}, plots, notes)
+
+
+def _columns(state: Kinematics, masses: Masses, loads: Loads, joule: float) -> Columns:
+    found, given = energies(state, masses, loads), powers(state, masses, loads)
+    none = np.zeros(state.shape)
+    return {
+        **{f"kinetic_{link}": found.kinetic[link - 2] * joule for link in (2, 3, 4)},
+        "kinetic": found.kinetic.sum(axis=0) * joule,
+        "weights": found.weight * joule + none,
+        "springs": found.springs * joule + none,
+        "energy": found.total * joule,
+        "drive_power": given.drive * joule,
+        "load_power": given.loads * joule + none,
+        "friction_power": given.friction * joule + none,
+    }
+
+
+def _facts(study: LinkageStudy, masses: Masses) -> Iterator[Fact]:
+    if not (study.sweep.turns and masses.total > 0):
+        return
+    found = extremes_of(
+        lambda t: energies(study.sweep.state(t), masses).kinetic.sum(axis=0), 0.0, TURN, closed=True
+    )
+    for name, value, at in (("least", found.low, found.at_low), ("largest", found.high, found.at_high)):
+        yield Fact(f"kinetic_energy_{name}", f"kinetic energy, {name}", value * study.metre**2, "J")
+        angle = float(np.round(np.degrees(at) % 360, 9))
+        yield Fact(f"kinetic_energy_{name}_theta2_deg", f"kinetic energy, {name}: theta2", angle, "deg")

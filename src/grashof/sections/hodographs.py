@@ -1,0 +1,50 @@
+"""Velocity and acceleration of P as tracks in a plane, and the jerk of P and of links 3 and 4."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from grashof.analysis import Kinematics, extremes_of
+from grashof.problems.values.arrays import TURN
+from grashof.study.columns import Columns, curves, over_driver, table, track
+from grashof.study.section import Fact, Plot, Section
+from grashof.study.study import LinkageStudy
+
+
+def hodographs(study: LinkageStudy) -> Section:
+    """Hodographs of P, its jerk, and the angular jerk of links 3 and 4."""
+    columns, unit = over_driver(study, _motion), study.spec.unit
+    velocity, acceleration = ({"P": track(columns, key)} for key in ("p_velocity", "p_acceleration"))
+    of_p = {"x": "p_jerk_x", "y": "p_jerk_y", "size": "p_jerk"}
+    plots = (
+        Plot("hodograph-of-velocity", "hodograph: velocity of P", f"{unit}/s", velocity),
+        Plot("hodograph-of-acceleration", "hodograph: acceleration of P", f"{unit}/s²", acceleration),
+        curves(columns, "jerk-of-p", "jerk of P", f"{unit}/s³", of_p),
+        curves(columns, "angular-jerk", "angular jerk", "rad/s³", {"link 3": "jerk3", "link 4": "jerk4"}),
+    )
+    kept = {key: values for key, values in columns.items() if "velocity" not in key and "accel" not in key}
+    return Section("hodographs", "Hodographs and jerk", tuple(_facts(study)), {"jerk": table(kept)}, plots)
+
+
+def _motion(state: Kinematics) -> Columns:
+    p = state.p
+    return {
+        "p_velocity": p.velocity,
+        "p_acceleration": p.acceleration,
+        "p_jerk_x": p.jerk[:, 0],
+        "p_jerk_y": p.jerk[:, 1],
+        "p_jerk": np.hypot(p.jerk[:, 0], p.jerk[:, 1]),
+        "jerk3": state.jerk3 + np.zeros(state.shape),
+        "jerk4": state.jerk4 + np.zeros(state.shape),
+    }
+
+
+def _facts(study: LinkageStudy) -> Iterator[Fact]:
+    if not study.sweep.turns:  # without limit towards dead positions
+        return
+    found = extremes_of(lambda t: np.hypot(*study.sweep.state(t).p.jerk.T), 0.0, TURN, closed=True)
+    yield Fact("p_jerk_largest", "jerk of P, largest", found.high, f"{study.spec.unit}/s3")
+    at = float(np.round(np.degrees(found.at_high) % 360, 9))
+    yield Fact("p_jerk_largest_theta2_deg", "jerk of P, largest: theta2", at, "deg")

@@ -1,0 +1,63 @@
+"""The forces in the pins as tracks in a plane: where they press, and where pins and bores wear."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from grashof.analysis import Dynamics, Kinematics, inverse_dynamics
+from grashof.problems import FourBar
+from grashof.problems.values.arrays import FloatArray
+from grashof.study.columns import Columns, broken, over_driver, table, track
+from grashof.study.section import Plot, Section
+from grashof.study.study import LinkageStudy
+
+# By joint: the force on the second link that it joins, as `Dynamics` names it.
+_ON_SECOND = {"o2": ("f12", 1.0), "a": ("f32", -1.0), "b": ("f43", -1.0), "o4": ("f14", 1.0)}
+
+
+def pin_forces(study: LinkageStudy) -> Section | None:
+    """Polar plots of the joint forces: in global axes, and in the frame of each link."""
+    masses, loads = study.masses, study.loads
+    if masses is None:
+        return None
+    columns = over_driver(study, lambda s: _forces(s, inverse_dynamics(s, masses, loads), study.metre))
+    joints = {joint.upper(): broken(track(columns, joint)) for joint in FourBar.JOINTS}
+    first = ", ".join(f"{joint.upper()} on {links[1]}" for joint, links in FourBar.JOINTS.items())
+    plots = [Plot("pin-forces", f"pin forces, global axes: {first}", "N", joints)]
+    for link in FourBar.LINKS[1:]:
+        tracks = {
+            f"in {joint.upper()}": track(columns, f"{joint}_on_{link.number}", "uv")
+            for joint, links in FourBar.JOINTS.items()
+            if link.number in links
+        }
+        title = f"pin forces on link {link.number}, in its frame: u along it"
+        plots.append(Plot(f"pin-forces-on-{link.number}", title, "N", tracks))
+    kept = {key: values for key, values in columns.items() if "_on_" in key or key in ("theta2_deg", "range")}
+    note = "a bore wears where the force on its link points, a pin on the side away from the force on its own"
+    return Section("pin-forces", "Pin forces", (), {"pin-forces": table(kept)}, tuple(plots), (note,))
+
+
+def _forces(state: Kinematics, found: Dynamics, metre: float) -> Columns:
+    columns: dict[str, FloatArray] = {}
+    for joint, links in FourBar.JOINTS.items():
+        columns[joint] = _on(found, joint, links[1]) * metre
+        for link in links:
+            if link != 1:
+                turned = _in_frame(_on(found, joint, link), getattr(state, f"theta{link}")) * metre
+                columns |= {
+                    f"{joint}_on_{link}_{axis}": part for axis, part in zip("uv", turned.T, strict=True)
+                }
+    return columns
+
+
+def _on(found: Dynamics, joint: str, link: int) -> FloatArray:
+    """The force on a link in a joint, in global axes."""
+    name, sign = _ON_SECOND[joint]
+    force: FloatArray = getattr(found, name)
+    return force * (sign if link == FourBar.JOINTS[joint][1] else -sign)
+
+
+def _in_frame(force: FloatArray, theta: FloatArray) -> FloatArray:
+    cosine, sine = np.cos(theta), np.sin(theta)
+    x, y = force.T
+    return np.stack([cosine * x + sine * y, cosine * y - sine * x], axis=-1)
