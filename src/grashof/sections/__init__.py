@@ -12,6 +12,7 @@ from grashof.sections.mass_centres import mass_centres
 from grashof.sections.mechanical_advantage import mechanical_advantage
 from grashof.sections.pin_forces import pin_forces
 from grashof.sections.pumping_unit import pumping_unit
+from grashof.sections.strength import strength
 from grashof.study.section import Section
 from grashof.study.study import LinkageStudy
 
@@ -24,5 +25,6 @@ SECTIONS: tuple[Callable[[LinkageStudy], Section | None], ...] = (
     coupler_plane,
     dwell_section,
     energy_section,
+    strength,
     pumping_unit,
 )
