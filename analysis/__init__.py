@@ -32,7 +32,12 @@ from grashof.analysis.forces.balancing import ForceBalance, TorqueBalance, balan
 from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics, virtual_work_torque
 from grashof.analysis.forces.energy import Energies, Powers, energies, mechanical_energy, powers
 from grashof.analysis.forces.flywheel import Flywheel, size_flywheel
-from grashof.analysis.forces.free_response import Ending, FreeResponse, free_response
+from grashof.analysis.forces.free_response import (
+    Ending,
+    FreeResponse,
+    free_response,
+    generalised_inertia,
+)
 from grashof.analysis.forces.loads import (
     AppliedForce,
     AppliedMoment,
@@ -197,6 +202,7 @@ __all__ = [
     "fourier_series",
     "free_response",
     "full_rotation",
+    "generalised_inertia",
     "given_masses",
     "grashof_class",
     "greatest_error",

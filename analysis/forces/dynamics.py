@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.analysis.forces.loads import (
-    JOINED,
     Joint,
     Loads,
     Wrench,
@@ -63,7 +62,9 @@ class Dynamics:
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
-def inverse_dynamics(state: Kinematics, masses: Masses, loads: Loads | None = None) -> Dynamics:
+def inverse_dynamics(
+    state: Kinematics, masses: Masses, loads: Loads | None = None, senses: FloatArray | None = None
+) -> Dynamics:
     """Drive torque and joint forces of a motion, by Newton and Euler.
 
     Parameters
@@ -74,6 +75,8 @@ def inverse_dynamics(state: Kinematics, masses: Masses, loads: Loads | None = No
         Of all links, the payload with the coupler (`Masses.with_payload`).
     loads : Loads, optional
         Gravity, forces, springs, friction; none by default.
+    senses : ndarray, shape (4,), optional
+        +1 or -1: in which friction takes the joints to turn; by default as they do.
 
     Returns
     -------
@@ -102,11 +105,11 @@ def inverse_dynamics(state: Kinematics, masses: Masses, loads: Loads | None = No
     loads = Loads() if loads is None else loads
     outside, gravity = wrenches(state, loads), loads.gravity_vector()
     demands = {link: _demand(state, masses, link, outside[link], gravity) for link in (2, 3, 4)}
-    moments = known_joint_moments(state, loads)
+    moments = known_joint_moments(state, loads, senses)
     radius = loads.friction.each("radius")
     forces = _joint_forces(state, demands, moments)
     if radius.any():
-        moments, forces = _with_pin_friction(state, demands, moments, forces, radius)
+        moments, forces = _with_pin_friction(state, demands, moments, forces, _turning(state, radius, senses))
     f12, f32, f43, f14 = forces
     a = np.asarray(state.linkage.r2)[..., None] * _direction(state.theta2)
     torque = demands[2].moment - cross(a, f32) - moments[0] + moments[1]
@@ -190,21 +193,25 @@ def _joint_forces(
     return demands[2].force - f32, f32, f43, f14
 
 
+def _turning(state: Kinematics, radius: FloatArray, senses: FloatArray | None) -> FloatArray:
+    """Radii of the friction circles, with the signs in which the joints turn; shape (4, ...)."""
+    if senses is None:
+        return np.stack([radius[joint] * np.sign(joint_rotation(state, joint)[1]) for joint in Joint])
+    return np.stack([np.full(state.shape, radius[joint] * senses[joint]) for joint in Joint])
+
+
 def _with_pin_friction(
     state: Kinematics,
     demands: dict[int, Wrench],
     known: FloatArray,
     forces: tuple[FloatArray, ...],
-    radius: FloatArray,
+    turning: FloatArray,
 ) -> tuple[FloatArray, tuple[FloatArray, FloatArray, FloatArray, FloatArray]]:
     """Joint moments with friction in proportion to the joint forces, and those forces."""
-    against = np.stack(
-        [-radius[joint] * np.sign(joint_rotation(state, joint)[1]) for joint in range(len(JOINED))]
-    )
     settled = np.zeros(state.shape, dtype=bool)
     for _ in range(_MOST_ROUNDS):
         sizes = np.stack([np.hypot(force[..., 0], force[..., 1]) for force in forces])
-        moments = known + against * sizes
+        moments = known - turning * sizes
         forces = _joint_forces(state, demands, moments)
         again = np.stack([np.hypot(force[..., 0], force[..., 1]) for force in forces])
         settled = ~(np.abs(again - sizes) > _SETTLED * again.max(axis=0)).any(axis=0)

@@ -4,21 +4,27 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import scipy
 
+from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.energy import mechanical_energy
-from grashof.analysis.forces.loads import Loads
+from grashof.analysis.forces.loads import (
+    Friction,
+    Joint,
+    Loads,
+    joint_rotation,
+    known_joint_moments,
+    torsion_moments,
+)
 from grashof.analysis.forces.mass import Masses
 from grashof.analysis.forces.statics import load_power
 from grashof.analysis.four_bar.kinematics import Kinematics, solve_kinematics
-from grashof.analysis.four_bar.position import solve_position
-from grashof.problems import AssemblyError, DeadPositionWarning, FourBar, ProblemError, SolverError
+from grashof.analysis.numerics.collocation import Acceleration, Events, Panel, Path, integrate_motion
+from grashof.problems import AssemblyError, DeadPositionWarning, FourBar, ProblemError
 from grashof.problems.values.arrays import FloatArray
 
 Drive = float | Callable[[float, float, float], float]
@@ -26,6 +32,9 @@ Drive = float | Callable[[float, float, float], float]
 # sin(theta4 - theta3) at which a motion towards a dead position ends: beyond it the driver angle no
 # longer shows how the linkage moves on.
 _DEAD_END = 1e-3
+_AHEAD = 1e-6  # rad of the driver: so far ahead it is seen in which sense a joint is about to turn
+_PARTS = 10_000  # of a motion with friction, between which a joint changes its sense
+_ROUNDS = 50  # of friction that depends on the acceleration, where a driver sets off
 
 
 class Ending(StrEnum):
@@ -49,12 +58,15 @@ class FreeResponse:
     energy : ndarray, shape (N,), N length
         `mechanical_energy`.
     ending : Ending
+    end : float, s
+        When it ended.
     """
 
     time: FloatArray
     state: Kinematics
     energy: FloatArray
     ending: Ending
+    end: float
 
 
 def free_response(
@@ -65,7 +77,7 @@ def free_response(
     omega2: float,
     torque: Drive = 0.0,
     loads: Loads | None = None,
-    tolerance: float = 1e-9,
+    tolerance: float = 1e-10,
 ) -> FreeResponse:
     """Motion of a linkage that a drive torque, weights and springs are left to move.
 
@@ -81,8 +93,7 @@ def free_response(
     torque : float or callable, N length
         Of the drive; a function of time, theta2 and omega2.
     loads : Loads, optional
-        Constant friction ends the motion where the driver comes to rest. Friction in proportion to
-        the joint forces is not possible here.
+        Friction ends the motion where it keeps the driver at rest.
     tolerance : float
         Relative, of each step.
 
@@ -95,13 +106,17 @@ def free_response(
     AssemblyError
         The linkage cannot close at the start, or stands in a dead position.
     ProblemError
-        The links have no inertia, the times do not rise, or the loads are not possible.
+        The links have no inertia, or the times do not rise.
+    SolverError
+        The motion has no acceleration, as where friction locks the linkage.
 
     Notes
     -----
     One degree of freedom: with velocities per unit of omega2, virtual work gives
     T = I(theta2) alpha2 + T0(theta2, omega2), where T0 is the torque without driver acceleration.
-    Integrated by the Runge-Kutta method of order 8 of Dormand and Prince.
+    Friction in proportion to the joint forces, which depend on alpha2, is found along with it.
+    Integrated by collocation at 16 points of each step; while the driver turns one way friction has
+    one sign, so that steps end where it comes to rest.
 
     Examples
     --------
@@ -115,54 +130,183 @@ def free_response(
     at = np.asarray(time, dtype=np.float64)
     if at.ndim != 1 or len(at) < 2 or not (np.diff(at) > 0).all():
         raise ProblemError("time is not a rising sequence of two or more numbers")
-    if loads.friction.each("radius").any():
-        raise ProblemError("friction in proportion to joint forces is not possible in a free response")
     _check_start(linkage, masses, theta2)
-    drive = torque if callable(torque) else _steady(torque)
+    drive = torque if callable(torque) else None
+    constant = 0.0 if callable(torque) else float(torque)
 
-    def rates(now: float, y: FloatArray) -> list[float]:
-        unit = solve_kinematics(linkage, np.array([y[0]]))
-        inertia, still = _equation_of_motion(unit, float(y[1]), masses, loads)
-        return [float(y[1]), (drive(now, float(y[0]), float(y[1])) - still) / inertia]
+    def given(now: FloatArray, angle: FloatArray, rate: FloatArray) -> FloatArray:
+        if drive is None:
+            return np.full(now.shape, constant)
+        return np.array(
+            [float(drive(*each)) for each in zip(now.tolist(), angle.tolist(), rate.tolist(), strict=True)]
+        )
 
-    with warnings.catch_warnings():
+    def rates(senses: FloatArray | None) -> Acceleration:
+        def alpha2(now: FloatArray, angle: FloatArray, rate: FloatArray, guess: FloatArray) -> FloatArray:
+            unit = solve_kinematics(linkage, angle)
+            inertia, still = _equation_of_motion(unit, rate, guess, senses, masses, loads)
+            return (given(now, angle, rate) - still) / inertia
+
+        return alpha2
+
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
         # A step that is tried may meet a dead position, before an event ends the motion there.
         warnings.simplefilter("ignore", DeadPositionWarning)
-        done = scipy.integrate.solve_ivp(
-            rates, (at[0], at[-1]), [theta2, omega2], method="DOP853", t_eval=at, rtol=tolerance,
-            atol=tolerance * 1e-2, events=_endings(linkage, loads), max_step=_longest_step(at, omega2),
-        )  # fmt: skip
-    if done.status < 0:
-        raise SolverError(f"the motion could not be integrated: {done.message}")
-    alpha2 = np.array([rates(now, y)[1] for now, y in zip(done.t, done.y.T, strict=True)])
-    state = solve_kinematics(linkage, done.y[0], done.y[1], alpha2)
-    ending = Ending.TIME
-    if done.status == 1:
-        ending = Ending.DEAD_POSITION if done.t_events and len(done.t_events[0]) else Ending.AT_REST
-    return FreeResponse(done.t, state, mechanical_energy(state, masses, loads), ending)
+        rubbing = _Rubbing(linkage, _rubbing(loads))
+        path, ending = _moved(rates, at, theta2, omega2, tolerance, rubbing)
+        end = path[-1].end
+        reached = at if ending is Ending.TIME else at[at <= end]
+        state = solve_kinematics(linkage, *_along(path, reached))
+    return FreeResponse(reached, state, mechanical_energy(state, masses, loads), ending, end)
 
 
-def _equation_of_motion(unit: Kinematics, omega2: float, masses: Masses, loads: Loads) -> tuple[float, float]:
-    """Inertia felt by the driver, and the torque that keeps its speed, by virtual work.
+def generalised_inertia(linkage: FourBar, theta2: npt.ArrayLike, masses: Masses) -> FloatArray:
+    """Inertia of all links as the driver feels it, shape (...), kg length^2.
 
-    `unit` is the position with the driver at a steady 1 rad/s; accelerations go with omega2^2.
+    Notes
+    -----
+    Twice the kinetic energy at 1 rad/s of the driver (Norton, *Design of Machinery*, sec. 10.12).
+
+    Examples
+    --------
+    >>> from grashof.analysis.forces.mass import Body
+    >>> rod = Masses(Body(3.0, 0.2, (0.5, 0.0)), Body(0), Body(0))
+    >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
+    >>> float(generalised_inertia(crank_rocker, 1.0, rod).round(9))
+    0.95
     """
-    state = Kinematics(
-        unit.linkage, unit.theta2, unit.theta3, unit.theta4,
-        *(omega2 * rate for rate in (unit.omega2, unit.omega3, unit.omega4)),
-        *(omega2**2 * rate for rate in (unit.alpha2, unit.alpha3, unit.alpha4)),
-        *(omega2**3 * rate for rate in (unit.jerk2, unit.jerk3, unit.jerk4)),
-    )  # fmt: skip
+    return 2 * mechanical_energy(solve_kinematics(linkage, theta2), masses)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Rubbing:
+    """Joints whose friction has the sense in which they turn, however slowly.
+
+    Parameters
+    ----------
+    linkage : FourBar
+    joints : tuple of int
+    """
+
+    linkage: FourBar
+    joints: tuple[int, ...]
+
+    def senses(self, theta2: float, sense: int) -> FloatArray:
+        """In which the joints are about to turn where the driver turns in a sense, shape (4,)."""
+        unit = solve_kinematics(self.linkage, np.array([theta2 + sense * _AHEAD]))
+        return np.array([sense * np.sign(joint_rotation(unit, joint)[1][0]) for joint in Joint])
+
+    def events(self, sense: int, senses: FloatArray | None) -> Events:
+        """What ends a part of the motion: a dead position near, rest, a joint that turns back."""
+
+        def values(theta2: FloatArray, omega2: FloatArray) -> FloatArray:
+            unit = solve_kinematics(self.linkage, theta2)
+            left = self.linkage.assembly * np.sin(unit.theta4 - unit.theta3) - _DEAD_END
+            found = [np.where(np.isfinite(left), left, -1.0)]
+            if senses is not None:
+                found.append(sense * omega2)
+                found += [sense * senses[joint] * joint_rotation(unit, joint)[1] for joint in self.joints]
+            return np.stack(np.broadcast_arrays(*found))
+
+        return values
+
+
+def _moved(
+    rates: Callable[[FloatArray | None], Acceleration],
+    time: FloatArray,
+    theta2: float,
+    omega2: float,
+    tolerance: float,
+    rubbing: _Rubbing,
+) -> tuple[list[Path], Ending]:
+    """The motion, in parts in which each joint turns in one sense where that matters; how it ended."""
+    now, last, path = float(time[0]), float(time[-1]), list[Path]()
+    while True:
+        sense, senses = int(np.sign(omega2)), None
+        if rubbing.joints:
+            sense = sense or _sets_off(rates, now, theta2, rubbing)
+            if not sense:
+                return path or [Path((Panel(now, 0.0, theta2, 0.0, np.zeros(1)),), None)], Ending.AT_REST
+            senses = rubbing.senses(theta2, sense)
+        events = rubbing.events(sense, senses)
+        path.append(integrate_motion(rates(senses), now, last, theta2, omega2, tolerance, events))
+        if path[-1].event is None or len(path) > _PARTS:
+            return path, Ending.TIME
+        if path[-1].event == 0:
+            return path, Ending.DEAD_POSITION
+        now, (theta2, omega2) = path[-1].end, path[-1].panels[-1].last()
+        omega2 = 0.0 if path[-1].event == 1 else omega2
+
+
+def _sets_off(
+    rates: Callable[[FloatArray | None], Acceleration], now: float, theta2: float, rubbing: _Rubbing
+) -> int:
+    """The sense in which a driver at rest begins to turn against friction; 0 where that holds it."""
+    for sense in (1, -1):
+        alpha, state = np.zeros(1), (np.array([now]), np.array([theta2]), np.zeros(1))
+        begin = rates(rubbing.senses(theta2, sense))
+        for _ in range(_ROUNDS):
+            before, alpha = alpha, begin(*state, alpha)
+            if not abs(float((alpha - before)[0])) > 1e-14 * abs(float(alpha[0])):
+                break
+        if sense * float(alpha[0]) > 0:
+            return sense
+    return 0
+
+
+def _along(path: list[Path], time: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Driver angle, speed and acceleration at times of a motion."""
+    whole = Path(tuple(panel for part in path for panel in part.panels), None)
+    return whole.at(time)
+
+
+def _equation_of_motion(
+    unit: Kinematics,
+    omega2: FloatArray,
+    guess: FloatArray,
+    senses: FloatArray | None,
+    masses: Masses,
+    loads: Loads,
+) -> tuple[FloatArray, FloatArray]:
+    """Inertia felt by the driver, and the torque that keeps its speed, by virtual work; shape (N,).
+
+    `unit` is the position with the driver at a steady 1 rad/s; accelerations go with omega2^2. Friction
+    is that of joints that turn in `senses`, and of a driver that has about the acceleration `guess`.
+    """
+    state = _scaled(unit, omega2, np.zeros(omega2.shape))
     gravity = loads.gravity_vector()
-    inertia, still = np.zeros(1), -load_power(unit, state, loads)
+    inertia = np.zeros(omega2.shape)
+    still = -load_power(unit, state, replace(loads, friction=Friction()))
     for link in (2, 3, 4):
         body, (_, omega, alpha, _) = masses.of(link), unit.angular(link)
         centre = unit.point(link, body.centre)
         inertia = inertia + body.mass * (centre.velocity**2).sum(axis=-1) + body.inertia * omega**2
-        push = omega2**2 * centre.acceleration - gravity
+        push = (omega2**2)[:, None] * centre.acceleration - gravity
         still = still + body.mass * (push * centre.velocity).sum(axis=-1)
         still = still + omega2**2 * body.inertia * alpha * omega
-    return float(inertia[0]), float(still[0])
+    if loads.friction.each("radius").any():
+        rubbing = inverse_dynamics(_scaled(unit, omega2, guess), masses, loads, senses).joint_moments
+    else:
+        rubbing = known_joint_moments(state, loads, senses)
+    rubbing = rubbing - torsion_moments(state, loads)
+    for joint in Joint:
+        if rubbing[joint].any():
+            still = still - rubbing[joint] * joint_rotation(unit, joint)[1]
+    return inertia, still
+
+
+def _scaled(unit: Kinematics, omega2: FloatArray, alpha2: FloatArray) -> Kinematics:
+    """The same position with the driver at another speed and acceleration; without jerks."""
+    none = np.zeros(omega2.shape)
+    return Kinematics(
+        unit.linkage, unit.theta2, unit.theta3, unit.theta4,
+        *(omega2 * rate for rate in (unit.omega2, unit.omega3, unit.omega4)),
+        alpha2, *(
+            omega2**2 * bend + alpha2 * rate
+            for bend, rate in ((unit.alpha3, unit.omega3), (unit.alpha4, unit.omega4))
+        ),
+        none, none, none,
+    )  # fmt: skip
 
 
 def _check_start(linkage: FourBar, masses: Masses, theta2: float) -> None:
@@ -175,30 +319,8 @@ def _check_start(linkage: FourBar, masses: Masses, theta2: float) -> None:
         raise ProblemError("the links have no inertia, so no torque gives them a motion")
 
 
-def _steady(torque: float) -> Callable[[float, float, float], float]:
-    return lambda now, theta2, omega2: torque  # noqa: ARG005
-
-
-def _endings(linkage: FourBar, loads: Loads) -> list[Callable[[float, FloatArray], float]]:
-    """Events that end a motion: a dead position, and rest where friction may hold."""
-
-    def near_dead(now: float, y: FloatArray) -> float:  # noqa: ARG001
-        state = solve_position(linkage, y[0])
-        sine = float(linkage.assembly * np.sin(state.theta4 - state.theta3))
-        return sine - _DEAD_END if np.isfinite(sine) else -1.0
-
-    def at_rest(now: float, y: FloatArray) -> float:  # noqa: ARG001
-        return float(y[1])
-
-    events: list[Any] = [near_dead]
-    if loads.friction.each("coulomb").any():
-        events.append(at_rest)
-    for event in events:
-        event.terminal = True
-    return events
-
-
-def _longest_step(time: FloatArray, omega2: float) -> float:
-    """A step in which no event is passed over: at most a tenth of a turn at the starting speed."""
-    span = float(time[-1] - time[0])
-    return min(span, 0.2 * np.pi / abs(omega2)) if omega2 else span / 20
+def _rubbing(loads: Loads) -> tuple[int, ...]:
+    """The joints whose friction does not vanish with their speed."""
+    return tuple(
+        joint for joint in Joint if any(loads.friction.each(name)[joint] for name in ("coulomb", "radius"))
+    )

@@ -293,8 +293,15 @@ def joint_rotation(state: Kinematics, joint: int) -> tuple[FloatArray, FloatArra
     return angle - before, rate - rate_before
 
 
-def known_joint_moments(state: Kinematics, loads: Loads) -> FloatArray:
+def known_joint_moments(state: Kinematics, loads: Loads, senses: FloatArray | None = None) -> FloatArray:
     """Moments that joints exert on their second link, friction that grows with the force left out.
+
+    Parameters
+    ----------
+    state : Kinematics
+    loads : Loads
+    senses : ndarray, shape (4,), optional
+        In which friction takes the joints to turn; by default as they do.
 
     Returns
     -------
@@ -305,7 +312,8 @@ def known_joint_moments(state: Kinematics, loads: Loads) -> FloatArray:
     for joint in Joint:
         if viscous[joint] or coulomb[joint]:
             _, rate = joint_rotation(state, joint)
-            moments[joint] -= viscous[joint] * rate + coulomb[joint] * np.sign(rate)
+            sense = np.sign(rate) if senses is None else senses[joint]
+            moments[joint] -= viscous[joint] * rate + coulomb[joint] * sense
     return moments
 
 

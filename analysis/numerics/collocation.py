@@ -1,0 +1,312 @@
+"""Motions of one unknown under an acceleration that depends on place, speed and time, to many digits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+from numpy.polynomial import legendre
+
+from grashof.problems import SolverError
+from grashof.problems.values.arrays import BoolArray, FloatArray
+
+# Of time, place, speed and a guess of the acceleration itself, shape (N,) each.
+Acceleration = Callable[[FloatArray, FloatArray, FloatArray, FloatArray], FloatArray]
+Events = Callable[[FloatArray, FloatArray], FloatArray]  # of place and speed, shape (N,), to (K, N)
+
+_NODES = 16
+_SWEEPS = 25
+_DIFFERENCE = 1e-7
+_GROWTH, _SHRINK, _STEEP, _CAREFUL = 4.0, 0.4, 0.1, 0.8
+_SHORTEST = 1e-11  # of the whole time: such a panel may hold a jump of the acceleration
+_SAME = 1e-15  # sweeps that change less have settled
+_MOST = 200_000  # panels
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Panel:
+    """A part of a motion: its acceleration as a polynomial of the time.
+
+    Parameters
+    ----------
+    start, length : float, s
+    place, speed : float
+        At its start.
+    terms : ndarray, shape (N,)
+        Legendre coefficients of the acceleration, from -1 to 1.
+    """
+
+    start: float
+    length: float
+    place: float
+    speed: float
+    terms: FloatArray
+
+    @property
+    def end(self) -> float:
+        """Time at which it ends."""
+        return self.start + self.length
+
+    def at(self, time: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Place, speed and acceleration at times, shape (N,) each."""
+        half = self.length / 2
+        share, once = (time - self.start) / half - 1, legendre.legint(self.terms, lbnd=-1)
+        twice = legendre.legint(once, lbnd=-1)
+        place = self.place + self.speed * (time - self.start) + half**2 * legendre.legval(share, twice)
+        return (
+            place,
+            self.speed + half * legendre.legval(share, once),
+            np.asarray(legendre.legval(share, self.terms)),
+        )
+
+    def last(self) -> tuple[float, float]:
+        """Place and speed at its end."""
+        place, speed, _ = self.at(np.array([self.end]))
+        return float(place[0]), float(speed[0])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Path:
+    """A motion, panel by panel.
+
+    Parameters
+    ----------
+    panels : tuple of Panel
+    event : int or None
+        Which event ended it; None where the time was over.
+    """
+
+    panels: tuple[Panel, ...]
+    event: int | None
+
+    @property
+    def end(self) -> float:
+        """Time at which it ends."""
+        return self.panels[-1].end
+
+    def at(self, time: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Place, speed and acceleration at times of the motion, shape (N,) each."""
+        starts = np.array([panel.start for panel in self.panels])
+        which = np.clip(np.searchsorted(starts, time, side="right") - 1, 0, len(starts) - 1)
+        found = np.empty((3, len(time)))
+        for number in np.unique(which):
+            here = which == number
+            found[:, here] = self.panels[number].at(time[here])
+        place, speed, acceleration = found
+        return place, speed, acceleration
+
+
+def integrate_motion(
+    acceleration: Acceleration,
+    start: float,
+    end: float,
+    place: float,
+    speed: float,
+    tolerance: float = 1e-12,
+    events: Events | None = None,
+) -> Path:
+    """The motion from a place and a speed, until an event or an end of time.
+
+    Parameters
+    ----------
+    acceleration : callable
+        Of time, place, speed and a guess of the acceleration (for one that it depends on), shape
+        (N,) each. NaN where there is no motion: panels are shortened until they do not reach there.
+    start, end : float, s
+    place, speed : float
+        At the start.
+    tolerance : float
+        Of speed and place within a panel, as shares of what they change by in the motion so far.
+    events : callable, optional
+        Of place and speed, shape (N,), to values of K events, shape (K, N). The motion ends where one
+        falls below zero; one that is below it at the start counts once it has been above.
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    SolverError
+        Panels become so short that the motion does not get on.
+
+    Notes
+    -----
+    Collocation at 16 Gauss-Legendre points of each panel (Hairer, Lubich & Wanner, *Geometric
+    Numerical Integration*, sec. II.1): an implicit Runge-Kutta method of order 32, solved by
+    sweeps over all points at once. The last terms of the polynomial say what a panel errs by.
+
+    Examples
+    --------
+    >>> path = integrate_motion(lambda t, x, v, a: -x, 0.0, 20.0, 1.0, 0.0)
+    >>> bool(np.abs(path.at(np.array([20.0]))[0] - np.cos(20.0)).max() < 1e-13), len(path.panels) < 16
+    (True, True)
+    """
+    span = end - start
+    guess = float(acceleration(*(np.array([value]) for value in (start, place, speed, 0.0)))[0])
+    if not np.isfinite(guess):
+        raise SolverError("the motion could not be integrated: it has no acceleration at its start")
+    length, panels, now = _first_length(span, speed, guess), list[Panel](), start
+    armed = events is not None and _values(events, place, speed) > 0
+    fastest, terms = abs(speed), np.array([guess])
+    while now < end:
+        length = min(length, end - now)
+        panel, error, sweeps = _panel(acceleration, now, length, place, speed, terms)
+        scale = max(fastest, abs(speed), 1e-3 * span * float(np.abs(panel.terms).sum())) or 1.0
+        share = error * length / (tolerance * scale)  # of what it may err by
+        if not share <= 1 and length > _SHORTEST * span:
+            length *= _SHRINK if not np.isfinite(share) else max(_STEEP, _CAREFUL * share ** (-1 / _NODES))
+            continue
+        if not np.isfinite(panel.terms).all():
+            raise SolverError("the motion could not be integrated: its acceleration has no limit")
+        panels.append(panel)
+        if events is not None:
+            met, armed = _event(panel, events, armed)
+            if met is not None:
+                return Path((*panels[:-1], _cut(panel, met[1])), met[0])
+        if len(panels) > _MOST:
+            raise SolverError(f"the motion could not be integrated: {_MOST} steps were not enough")
+        now, (place, speed) = panel.end, panel.last()
+        fastest, terms = max(fastest, abs(speed)), _carried_on(panel)
+        length *= (
+            min(_GROWTH, _CAREFUL * max(share, 1e-16) ** (-1 / _NODES)) if sweeps < _SWEEPS // 2 else 1.0
+        )
+        if end - now <= 4e-16 * max(abs(end), span):
+            break
+    return Path(tuple(panels), None)
+
+
+def _first_length(span: float, speed: float, acceleration: float) -> float:
+    """Of a panel in which a motion in rad goes about a tenth of a turn."""
+    lengths = [span]
+    lengths += [0.6 / abs(speed)] if speed else []
+    lengths += [np.sqrt(1.2 / abs(acceleration))] if acceleration else []
+    return float(min(lengths))
+
+
+def _integration() -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Nodes, the matrix that gives Legendre coefficients from values, and that which integrates values."""
+    nodes, weights = legendre.leggauss(_NODES)
+    degrees = np.arange(_NODES)
+    basis = legendre.legvander(nodes, _NODES - 1)
+    to_terms = (basis * weights[:, None]).T * (degrees[:, None] + 0.5)
+    integrated = np.stack(
+        [legendre.legval(nodes, legendre.legint(row, lbnd=-1)) for row in np.eye(_NODES)], axis=-1
+    )
+    return nodes, to_terms, integrated @ to_terms
+
+
+_AT, _TO_TERMS, _INTEGRAL = _integration()
+_BETWEEN = np.concatenate([[-1.0], (_AT[:-1] + _AT[1:]) / 2, [1.0]])
+
+
+def _panel(
+    acceleration: Acceleration, now: float, length: float, place: float, speed: float, terms: FloatArray
+) -> tuple[Panel, float, int]:
+    """A panel, what its acceleration errs by, and the sweeps that it took; infinite where they do not settle.
+
+    Newton's method, its derivatives by differences and kept while it gets on.
+    """
+    half = length / 2
+    time = now + half * (1 + _AT)
+    found = np.broadcast_to(legendre.legval(_AT, terms), _AT.shape)
+    before, inverse = np.inf, None
+    for sweep in range(1, _SWEEPS + 1):
+        gained = half * (_INTEGRAL @ found)
+        here, rate = place + speed * half * (1 + _AT) + half * (_INTEGRAL @ gained), speed + gained
+        left = acceleration(time, here, rate, found) - found
+        if inverse is None:
+            inverse = _newton(acceleration, time, here, rate, found, half)
+        change = inverse @ left
+        found = found + change
+        moved, size = float(np.abs(change).max()), float(np.abs(found).max())
+        if not np.isfinite(moved):
+            break
+        if moved <= _SAME * size or (moved <= 1e-11 * size and moved >= 0.1 * before):
+            panel = Panel(now, length, place, speed, _TO_TERMS @ found)
+            return panel, max(_tail(panel.terms), _defect(acceleration, panel)), sweep
+        if moved > 0.5 * before and sweep > 4:
+            break
+        inverse = inverse if moved <= 0.05 * before or before == np.inf else None
+        before = moved
+    return Panel(now, length, place, speed, _TO_TERMS @ found), np.inf, _SWEEPS
+
+
+def _newton(
+    acceleration: Acceleration,
+    time: FloatArray,
+    place: FloatArray,
+    speed: FloatArray,
+    guess: FloatArray,
+    half: float,
+) -> FloatArray:
+    """The inverse of what the residual of a panel changes by with its accelerations."""
+    operands = np.stack([place, speed, guess])
+    steps = _DIFFERENCE * np.maximum(1.0, np.abs(operands).max(axis=1))
+    moved = operands[:, None] + np.concatenate([np.zeros((3, 1)), np.diag(steps)], axis=1)[..., None]
+    values = acceleration(np.tile(time, 4), *moved.reshape(3, -1)).reshape(4, -1)
+    by_place, by_speed, by_itself = ((values[1:] - values[0]) / steps[:, None])[..., None]
+    integral = half * _INTEGRAL
+    matrix = np.diag(1 - by_itself[:, 0]) - by_speed * integral - by_place * (integral @ integral)
+    if not np.isfinite(matrix).all() or not abs(np.linalg.det(matrix)) > 0:
+        return np.full(matrix.shape, np.nan)
+    return np.linalg.inv(matrix)
+
+
+def _defect(acceleration: Acceleration, panel: Panel) -> float:
+    """What the polynomial of a panel is off by at its ends and halfway between its points."""
+    time = panel.start + panel.length / 2 * (1 + _BETWEEN)
+    place, speed, found = panel.at(time)
+    off = np.abs(acceleration(time, place, speed, found) - found)
+    rounding = 1e-13 * float(np.abs(found).max())
+    return max(0.0, float(off.max()) - rounding) if np.isfinite(off).all() else np.inf
+
+
+def _tail(terms: FloatArray) -> float:
+    """What the next terms of a Legendre series may come to, rounding left out."""
+    return max(0.0, float(np.abs(terms[-3:]).max()) - 4e-16 * _NODES * float(np.abs(terms).max()))
+
+
+def _carried_on(panel: Panel) -> FloatArray:
+    """A guess for the next panel: the acceleration at the end of this one."""
+    return np.array([float(panel.terms.sum())])
+
+
+def _values(events: Events, place: float, speed: float) -> FloatArray:
+    return np.asarray(events(np.array([place]), np.array([speed]))[:, 0])
+
+
+def _event(panel: Panel, events: Events, armed: BoolArray) -> tuple[tuple[int, float] | None, BoolArray]:
+    """The first event in a panel with its time, if there is one, and which are armed at its end."""
+    times = np.concatenate([[panel.start], panel.start + panel.length / 2 * (1 + _AT), [panel.end]])
+    above = events(*panel.at(times)[:2]) > 0
+    ever = np.logical_or.accumulate(above, axis=1) | armed[:, None]
+    fallen = ever[:, :-1] & ~above[:, 1:]
+    met = [
+        (number, _crossing(panel, events, number, times[k], times[k + 1]))
+        for number, k in enumerate(fallen.argmax(axis=1))
+        if fallen[number, k]
+    ]
+    return min(met, key=lambda each: each[1], default=None), ever[:, -1]
+
+
+def _crossing(panel: Panel, events: Events, number: int, low: float, high: float) -> float:
+    """The time in a panel at which an event falls to zero."""
+
+    def value(time: float) -> float:
+        place, speed, _ = panel.at(np.array([time]))
+        found = float(events(place, speed)[number, 0])
+        return found if np.isfinite(found) else -1.0
+
+    if not value(low) > 0:
+        return low
+    return float(scipy.optimize.brentq(value, low, high, xtol=1e-15 * max(abs(high), 1e-300), rtol=1e-14))
+
+
+def _cut(panel: Panel, end: float) -> Panel:
+    """The part of a panel before a time."""
+    length = max(end - panel.start, 1e-300)
+    times = panel.start + length / 2 * (1 + _AT)
+    return Panel(panel.start, length, panel.place, panel.speed, _TO_TERMS @ panel.at(times)[2])
