@@ -23,6 +23,7 @@ def coupler_plane(study: LinkageStudy) -> Section:
     linkage, unit = study.linkage, study.spec.unit
     columns = over_driver(study, lambda state: _columns(study, state))
     reach = _SHOWN * float(linkage.lengths.sum())
+    theta2 = columns["theta2_deg"]
     far = np.hypot(columns["moving_u"], columns["moving_v"]) > reach
     fixed, moving = track(columns, "fixed"), track(columns, "moving", "uv")
     pivots = {name.upper(): np.array([getattr(linkage, name)]) for name in linkage.GROUND}
@@ -30,15 +31,14 @@ def coupler_plane(study: LinkageStudy) -> Section:
     shown = [np.where(far[:, None], np.nan, points) for points in (fixed, moving)]
     angles, notes = _angles(study)
     circles, diameter = _circles(study, angles), {"diameter": "inflection_diameter"}
+    named = {name: np.array([place]) for name, place in frame.items()}
+    of_fixed, of_moving = (
+        "fixed centrode: I13 in the frame",
+        "moving centrode: I13 in the coupler, u along AB",
+    )
     plots = (
-        Plot("fixed-centrode", "fixed centrode: I13 in the frame", unit, {"I13": shown[0]}, points=pivots),
-        Plot(
-            "moving-centrode",
-            "moving centrode: I13 in the coupler, u along AB",
-            unit,
-            {"I13": shown[1]},
-            points={name: np.array([place]) for name, place in frame.items()},
-        ),
+        Plot("fixed-centrode", of_fixed, unit, {"I13": shown[0]}, points=pivots, angles=theta2),
+        Plot("moving-centrode", of_moving, unit, {"I13": shown[1]}, points=named, angles=theta2),
         _circle_plot(study, circles),
         curves(columns, "inflection-diameter", "diameter of the inflection circle", unit, diameter),
     )

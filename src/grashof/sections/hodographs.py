@@ -8,7 +8,7 @@ import numpy as np
 
 from grashof.analysis import Kinematics, extremes_of
 from grashof.problems.values.arrays import TURN
-from grashof.study.columns import Columns, curves, over_driver, table, track
+from grashof.study.columns import Columns, curves, over_driver, table, tracks
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
 
@@ -16,16 +16,19 @@ from grashof.study.study import LinkageStudy
 def hodographs(study: LinkageStudy) -> Section:
     """Hodographs of P, its jerk, and the angular jerk of links 3 and 4."""
     columns, unit = over_driver(study, _motion), study.spec.unit
-    velocity, acceleration = ({"P": track(columns, key)} for key in ("p_velocity", "p_acceleration"))
     of_p = {"x": "p_jerk_x", "y": "p_jerk_y", "size": "p_jerk"}
     plots = (
-        Plot("hodograph-of-velocity", "hodograph: velocity of P", f"{unit}/s", velocity),
-        Plot("hodograph-of-acceleration", "hodograph: acceleration of P", f"{unit}/s²", acceleration),
+        _hodograph(columns, "velocity", f"{unit}/s"),
+        _hodograph(columns, "acceleration", f"{unit}/s²"),
         curves(columns, "jerk-of-p", "jerk of P", f"{unit}/s³", of_p),
         curves(columns, "angular-jerk", "angular jerk", "rad/s³", {"link 3": "jerk3", "link 4": "jerk4"}),
     )
     kept = {key: values for key, values in columns.items() if "velocity" not in key and "accel" not in key}
     return Section("hodographs", "Hodographs and jerk", tuple(_facts(study)), {"jerk": table(kept)}, plots)
+
+
+def _hodograph(columns: Columns, rate: str, unit: str) -> Plot:
+    return tracks(columns, f"hodograph-of-{rate}", f"hodograph: {rate} of P", unit, {"P": f"p_{rate}"})
 
 
 def _motion(state: Kinematics) -> Columns:

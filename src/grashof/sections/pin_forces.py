@@ -7,8 +7,8 @@ import numpy as np
 from grashof.analysis import Dynamics, Kinematics, inverse_dynamics
 from grashof.problems import FourBar
 from grashof.problems.values.arrays import FloatArray
-from grashof.study.columns import Columns, broken, over_driver, table, track
-from grashof.study.section import Plot, Section
+from grashof.study.columns import Columns, over_driver, table, tracks
+from grashof.study.section import Section
 from grashof.study.study import LinkageStudy
 
 # By joint: the force on the second link that it joins, as `Dynamics` names it.
@@ -21,17 +21,14 @@ def pin_forces(study: LinkageStudy) -> Section | None:
     if masses is None:
         return None
     columns = over_driver(study, lambda s: _forces(s, inverse_dynamics(s, masses, loads), study.metre))
-    joints = {joint.upper(): broken(track(columns, joint)) for joint in FourBar.JOINTS}
     first = ", ".join(f"{joint.upper()} on {links[1]}" for joint, links in FourBar.JOINTS.items())
-    plots = [Plot("pin-forces", f"pin forces, global axes: {first}", "N", joints)]
+    every = {joint.upper(): joint for joint in FourBar.JOINTS}
+    plots = [tracks(columns, "pin-forces", f"pin forces, global axes: {first}", "N", every)]
     for link in FourBar.LINKS[1:]:
-        tracks = {
-            f"in {joint.upper()}": track(columns, f"{joint}_on_{link.number}", "uv")
-            for joint, links in FourBar.JOINTS.items()
-            if link.number in links
-        }
+        joints = [joint for joint, links in FourBar.JOINTS.items() if link.number in links]
+        labels = {f"in {joint.upper()}": f"{joint}_on_{link.number}" for joint in joints}
         title = f"pin forces on link {link.number}, in its frame: u along it"
-        plots.append(Plot(f"pin-forces-on-{link.number}", title, "N", tracks))
+        plots.append(tracks(columns, f"pin-forces-on-{link.number}", title, "N", labels, "uv"))
     kept = {key: values for key, values in columns.items() if "_on_" in key or key in ("theta2_deg", "range")}
     note = "a bore wears where the force on its link points, a pin on the side away from the force on its own"
     return Section("pin-forces", "Pin forces", (), {"pin-forces": table(kept)}, tuple(plots), (note,))

@@ -199,7 +199,7 @@ def _plots(columns: dict[str, FloatArray], unit: str) -> Iterator[Plot]:
         lines = {
             label.replace("_", " "): line(columns[name]) for label, name in names.items() if name in columns
         }
-        return Plot(key, title, per, lines, crank, _ANGLE)
+        return Plot(key, title, per, lines, crank, _ANGLE, angles=columns["theta2_deg"])
 
     yield plot("rod-position", "position of the polished rod, share of the stroke", "", position="position")
     yield plot("api-torque-factor", "torque factor, positive on the up stroke", unit, factor="torque_factor")

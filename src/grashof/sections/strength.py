@@ -102,7 +102,9 @@ def _facts(study: LinkageStudy, summary: StrengthSummary) -> Iterator[Fact]:
     yield Fact("worst_bar", f"bar with the greatest {bar.label}", bar.part)
     yield Fact("worst_bar_value", f"greatest {bar.label}", bar.value, _unit(study, bar.unit))
     yield Fact("worst_bar_theta2_deg", f"greatest {bar.label}: theta2", _degrees(bar.place), "deg")
-    yield Fact("worst_bar_at", f"greatest {bar.label}: from the origin of the link", bar.at, study.spec.unit)
+    if np.isfinite(bar.at):
+        label = f"greatest {bar.label}: from the origin of the link"
+        yield Fact("worst_bar_at", label, bar.at, study.spec.unit)
     if (worst := summary.worst) is not None:
         yield Fact("safety_factor", f"least safety factor: {worst.label}, {worst.part}", worst.value)
         yield Fact("safety_factor_theta2_deg", "least safety factor: theta2", _degrees(worst.place), "deg")

@@ -13,7 +13,6 @@ from grashof.study.section import DRIVER_ANGLE, Plot
 from grashof.study.study import LinkageStudy
 
 Columns = Mapping[str, FloatArray]
-_FAR = 10.0  # times the median: so far a line is drawn that goes off to infinity
 
 
 def over_driver(study: LinkageStudy, of: Callable[[Kinematics], Columns]) -> dict[str, FloatArray]:
@@ -60,35 +59,31 @@ def curves(columns: Columns, key: str, title: str, unit: str, labels: Mapping[st
     return Plot(key, title, unit, lines, columns["theta2_deg"], DRIVER_ANGLE)
 
 
+def tracks(
+    columns: Columns, key: str, title: str, unit: str, labels: Mapping[str, str], axes: str = "xy"
+) -> Plot:
+    """Plot of some vectors as tracks in a plane; `labels` gives the key of each."""
+    series = {label: track(columns, name, axes) for label, name in labels.items()}
+    return Plot(key, title, unit, series, angles=columns["theta2_deg"])
+
+
 def track(columns: Columns, key: str, axes: str = "xy") -> FloatArray:
-    """The track of a vector, shape (N, 2); NaN where it goes off to infinity."""
-    return broken(np.stack([columns[f"{key}_{axis}"] for axis in axes], axis=-1))
-
-
-def broken(points: FloatArray) -> FloatArray:
-    """A track of shape (N, 2), NaN where it goes off to infinity."""
-    sizes = np.hypot(points[:, 0], points[:, 1])
-    known = sizes[np.isfinite(sizes)]
-    far = _FAR * float(np.median(known)) if known.size else np.inf
-    with np.errstate(invalid="ignore"):
-        near = np.isfinite(sizes) & ((sizes <= far) | (far == 0))
-    return np.where(near[:, None], points, np.nan)
+    """The track of a vector, shape (N, 2); NaN where it is not finite."""
+    points = np.stack([columns[f"{key}_{axis}"] for axis in axes], axis=-1)
+    return np.where(np.isfinite(points).all(axis=1, keepdims=True), points, np.nan)
 
 
 def line(values: FloatArray) -> FloatArray:
-    """Values of a curve, NaN where it goes off to infinity and where it comes back from the other side.
+    """Values of a curve, NaN where it is not finite and where it comes back from the other infinity.
 
     Examples
     --------
-    >>> line(np.array([1.0, 2.0, 50.0, 2.0, 3.0, -3.0, -1.0, 1.0])).tolist()
-    [1.0, 2.0, nan, 2.0, nan, -3.0, -1.0, 1.0]
+    >>> line(np.array([1.0, np.inf, 2.0, 3.0, -3.0, -1.0, 1.0])).tolist()
+    [1.0, nan, 2.0, nan, -3.0, -1.0, 1.0]
     """
     found = np.where(np.isfinite(values), values, np.nan)
-    sizes = np.abs(found)
-    known = sizes[np.isfinite(sizes)]
-    if known.size and (usual := float(np.median(known))) > 0:
-        found[sizes > _FAR * usual] = np.nan
     # Towards zero sizes fall on both sides of a change of sign, towards infinity they grow.
+    sizes = np.abs(found)
     before, after = np.append(0.0, sizes[:-2]), np.append(sizes[2:], 0.0)
     with np.errstate(invalid="ignore"):
         through = (found[:-1] * found[1:] < 0) & (sizes[:-1] > before) & (sizes[1:] > after)

@@ -1,4 +1,4 @@
-"""What all sections have in common, on every kind of linkage: keys, shapes, finite facts."""
+"""What all sections have in common, on every kind of linkage: keys, shapes, facts that are known."""
 
 from __future__ import annotations
 
@@ -83,6 +83,7 @@ def test_plots_are_lines_of_numbers(made: dict[str, Section]) -> None:
                 assert values.shape[1] == 2, plot.key
             else:
                 assert values.shape == plot.places.shape, plot.key
+            assert plot.angles is None or len(plot.angles) == len(values), plot.key
         for points in plot.points.values():
             assert points.ndim == 2, plot.key
             assert np.isfinite(points).all(), plot.key
@@ -92,7 +93,7 @@ def test_facts_are_known_and_tables_are_full(made: dict[str, Section]) -> None:
     for section in made.values():
         assert section.title
         for fact in section.facts:
-            assert not isinstance(fact.value, float) or np.isfinite(fact.value), fact.key
+            assert not isinstance(fact.value, float) or not np.isnan(fact.value), fact.key
         for name, table in section.tables.items():
             assert len(table), name
             numbers = table.select_dtypes("number").to_numpy()
