@@ -12,7 +12,7 @@ from grashof.analysis.curves.fit import (
     greatest_error,
     regression,
 )
-from grashof.analysis.curves.fourier import FourierSeries, coupler_fourier, fourier_series
+from grashof.analysis.curves.fourier import FourierSeries, coupler_fourier, coupler_harmonics, fourier_series
 from grashof.analysis.curves.interpolation import NewtonPolynomial, newton_interpolation, spline
 from grashof.analysis.curves.line_and_circle import (
     BestCircle,
@@ -20,8 +20,8 @@ from grashof.analysis.curves.line_and_circle import (
     best_circle,
     best_line,
     circularity,
-    straightness,
 )
+from grashof.analysis.curves.straightness import straightest_half_turn, straightness
 from grashof.analysis.forces.balancing import ForceBalance, TorqueBalance, balance_force, balance_torque
 from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics, virtual_work_torque
 from grashof.analysis.forces.flywheel import Flywheel, size_flywheel
@@ -59,13 +59,15 @@ from grashof.analysis.four_bar.differences import Deviation, central_differences
 from grashof.analysis.four_bar.driver import DriverMotion, driver_motion
 from grashof.analysis.four_bar.driver_law import DriverLaw
 from grashof.analysis.four_bar.driver_samples import driver_samples
-from grashof.analysis.four_bar.extremes import Extremes, extremes, extremes_of
+from grashof.analysis.four_bar.even_motion import EvenMotion, even_motion
+from grashof.analysis.four_bar.extremes import Extremes, extremes, extremes_of, transmission_extremes
 from grashof.analysis.four_bar.instant_centres import InstantCentres, instant_centres
 from grashof.analysis.four_bar.kinematics import Kinematics, PointMotion, solve_kinematics
 from grashof.analysis.four_bar.mobility import (
     GrashofClass,
     branch_index,
     circuit_index,
+    dead_ends,
     driver_ranges,
     full_rotation,
     grashof_class,
@@ -106,6 +108,7 @@ __all__ = [
     "Dwell",
     "Dynamics",
     "Ending",
+    "EvenMotion",
     "Extremes",
     "Flywheel",
     "ForceBalance",
@@ -149,15 +152,18 @@ __all__ = [
     "compare_differences",
     "coupler_fit_r2",
     "coupler_fourier",
+    "coupler_harmonics",
     "curvature",
     "curve_distances",
     "cusps",
     "damper_power",
+    "dead_ends",
     "double_points",
     "driver_motion",
     "driver_ranges",
     "driver_samples",
     "dwell",
+    "even_motion",
     "extremes",
     "extremes_of",
     "fit_polynomial",
@@ -187,11 +193,13 @@ __all__ = [
     "spline",
     "stated_loads",
     "stated_masses",
+    "straightest_half_turn",
     "straightness",
     "strength_at",
     "strength_over",
     "system_centre",
     "transmission_angle",
+    "transmission_extremes",
     "triangular_plate",
     "triple_rocker_kind",
     "uniform_bar",
