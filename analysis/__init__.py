@@ -1,11 +1,6 @@
 """How a given linkage moves and how good it is: the independent judge of the synthesis, without CasADi."""
 
-from grashof.analysis.curves.coupler_circles import (
-    Centrodes,
-    CouplerCircles,
-    centrodes,
-    coupler_circles,
-)
+from grashof.analysis.curves.coupler_circles import Centrodes, CouplerCircles, centrodes, coupler_circles
 from grashof.analysis.curves.curvature import curvature, cusps
 from grashof.analysis.curves.curve_distance import curve_distances
 from grashof.analysis.curves.double_points import DoublePoints, all_double_points, double_points
@@ -18,26 +13,15 @@ from grashof.analysis.curves.fit import (
     greatest_error,
     regression,
 )
-from grashof.analysis.curves.fourier import FourierSeries, coupler_fourier, fourier_series
+from grashof.analysis.curves.fourier import FourierSeries, coupler_fourier, coupler_harmonics, fourier_series
 from grashof.analysis.curves.interpolation import NewtonPolynomial, newton_interpolation, spline
-from grashof.analysis.curves.line_and_circle import (
-    BestCircle,
-    BestLine,
-    best_circle,
-    best_line,
-    circularity,
-    straightness,
-)
+from grashof.analysis.curves.line_and_circle import BestCircle, BestLine, best_circle, best_line, circularity
+from grashof.analysis.curves.straightness import straightest_half_turn, straightness
 from grashof.analysis.forces.balancing import ForceBalance, TorqueBalance, balance_force, balance_torque
 from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics, virtual_work_torque
 from grashof.analysis.forces.energy import Energies, Powers, energies, mechanical_energy, powers
 from grashof.analysis.forces.flywheel import Flywheel, size_flywheel
-from grashof.analysis.forces.free_response import (
-    Ending,
-    FreeResponse,
-    free_response,
-    generalised_inertia,
-)
+from grashof.analysis.forces.free_response import Ending, FreeResponse, free_response, generalised_inertia
 from grashof.analysis.forces.loads import (
     AppliedForce,
     AppliedMoment,
@@ -71,24 +55,21 @@ from grashof.analysis.forces.section_forces import BarForces, SectionForce, sect
 from grashof.analysis.forces.stated import stated_loads, stated_masses
 from grashof.analysis.forces.statics import Advantage, Holding, advantage, holding
 from grashof.analysis.forces.strength import StrengthHistory, strength_at
-from grashof.analysis.forces.strength_peaks import (
-    SafetyFactor,
-    StrengthPeak,
-    StrengthSummary,
-    strength_over,
-)
+from grashof.analysis.forces.strength_peaks import SafetyFactor, StrengthPeak, StrengthSummary, strength_over
 from grashof.analysis.forces.structure import BAR_MEASURES, PIN_MEASURES, Structure
 from grashof.analysis.four_bar.differences import Deviation, central_differences, compare_differences
 from grashof.analysis.four_bar.driver import DriverMotion, driver_motion
 from grashof.analysis.four_bar.driver_law import DriverLaw
 from grashof.analysis.four_bar.driver_samples import driver_samples
-from grashof.analysis.four_bar.extremes import Extremes, extremes, extremes_of
+from grashof.analysis.four_bar.even_motion import EvenMotion, even_motion
+from grashof.analysis.four_bar.extremes import Extremes, extremes, extremes_of, transmission_extremes
 from grashof.analysis.four_bar.instant_centres import InstantCentres, instant_centres
 from grashof.analysis.four_bar.kinematics import Kinematics, PointMotion, solve_kinematics
 from grashof.analysis.four_bar.mobility import (
     GrashofClass,
     branch_index,
     circuit_index,
+    dead_ends,
     driver_ranges,
     full_rotation,
     grashof_class,
@@ -134,6 +115,7 @@ __all__ = [
     "Dynamics",
     "Ending",
     "Energies",
+    "EvenMotion",
     "Extremes",
     "Flywheel",
     "ForceBalance",
@@ -185,10 +167,12 @@ __all__ = [
     "coupler_circles",
     "coupler_fit_r2",
     "coupler_fourier",
+    "coupler_harmonics",
     "crank_angle",
     "curvature",
     "curve_distances",
     "cusps",
+    "dead_ends",
     "double_points",
     "driver_angle",
     "driver_motion",
@@ -196,6 +180,7 @@ __all__ = [
     "driver_samples",
     "dwell",
     "energies",
+    "even_motion",
     "extremes",
     "extremes_of",
     "fit_polynomial",
@@ -230,11 +215,13 @@ __all__ = [
     "spline",
     "stated_loads",
     "stated_masses",
+    "straightest_half_turn",
     "straightness",
     "strength_at",
     "strength_over",
     "system_centre",
     "transmission_angle",
+    "transmission_extremes",
     "triangular_plate",
     "triple_rocker_kind",
     "uniform_bar",

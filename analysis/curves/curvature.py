@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.analysis.curves.coupler_curve import coupler_curve
+from grashof.analysis.four_bar.even_motion import even_motion
 from grashof.analysis.four_bar.mobility import driver_ranges, full_rotation
 from grashof.problems import FourBar
 from grashof.problems.values.arrays import TURN, FloatArray
@@ -95,7 +96,7 @@ def cusps(
     tolerance = number_within(tolerance, 0.0, 1.0, "tolerance")
     still: list[float] = []
     for low, high in driver_intervals(linkage, theta2_start, theta2_end):
-        angle = _slowest(linkage, low - _BEYOND, high + _BEYOND)
+        angle = _slowest(linkage, low, high)
         angle = angle[(angle >= low - SLACK) & (angle <= high + SLACK)]
         for value in angle[np.abs(coupler_curve(linkage, angle)[1]) <= tolerance * linkage.r2]:
             # The end of a whole turn is its start once more.
@@ -124,7 +125,7 @@ def driver_intervals(
 
 
 def _slowest(linkage: FourBar, low: float, high: float) -> FloatArray:
-    """Driver angles at which the speed of P has a minimum."""
+    """Driver angles at which the speed of P has a minimum, at an end too."""
 
     def slope(theta2: FloatArray) -> FloatArray:
         _, rate, bend = coupler_curve(linkage, theta2)
@@ -132,8 +133,8 @@ def _slowest(linkage: FourBar, low: float, high: float) -> FloatArray:
             return np.asarray((rate.conj() * bend).real)
 
     count = max(3, int(np.ceil(_SAMPLES * (high - low) / TURN)))
-    # Closer at the ends, where near a dead position the linkage runs away from the driver.
-    theta2 = low + (high - low) * (1 - np.cos(np.linspace(0, np.pi, count))) / 2
+    inside = even_motion(linkage, low, high).theta2(np.linspace(0, 1, count))
+    theta2 = np.concatenate([[low - _BEYOND], inside, [high + _BEYOND]])
     rising = slope(theta2)
     from_here = (rising[:-1] <= 0) & (rising[1:] > 0)
     left, right = theta2[:-1][from_here], theta2[1:][from_here]

@@ -5,20 +5,22 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import Polynomial, chebyshev, legendre
 
+from grashof.analysis.four_bar.even_motion import EvenMotion, even_motion
 from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.numerics.quadrature import gauss_legendre
 from grashof.problems import FourBar
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.checks import finite_rows, whole_number
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.read_only import ReadOnly
 
-_NODES = 128  # of the quadrature over a motion
+_FEWEST, _MOST = 8, 512  # panels over a motion
+_SETTLED = 1e-13
 _EQUAL = 1e-14  # share of their size by which equal values may differ
 
 
@@ -208,9 +210,9 @@ def coupler_fit_r2(
 
     Notes
     -----
-    Least squares over the continuous motion, each driver angle counting the same: the means are
-    Gauss-Legendre sums, in which the Legendre polynomials are orthogonal. It is the limit of
-    `fit_polynomial` over ever more equal steps of the driver.
+    Least squares over the continuous motion, each driver angle counting the same. The means are
+    Gauss-Legendre sums over an `even_motion`, of ever more panels until the result stays as it is: the
+    limit of `fit_polynomial` over ever more equal steps of the driver.
 
     Examples
     --------
@@ -221,16 +223,14 @@ def coupler_fit_r2(
     degree = whole_number(degree, 1, "degree")
     if degree > 30:
         raise ProblemError(f"degree is {degree}; it must be from 1 to 30")
-    node, weight, basis = _quadrature(degree)
     start, end = np.asarray(theta2_start, dtype=np.float64), np.asarray(theta2_end, dtype=np.float64)
-    theta2 = (start + end)[..., None] / 2 + (end - start)[..., None] / 2 * node
-    p = solve_position(linkage[..., None], theta2).p
-    middle = p[..., _NODES // 2, None, :]
-    p = (p - middle) * weight
-    parts = basis.T @ p
-    spread = ((p - basis[:, :1] @ parts[..., :1, :]) ** 2).sum(axis=(-2, -1))
-    wrong = ((p - basis @ parts) ** 2).sum(axis=(-2, -1))
-    return _r2(wrong, spread, np.abs(middle).max(axis=(-2, -1)))
+    found = np.empty(np.broadcast_shapes(start.shape, end.shape, linkage.shape))
+    start, end = np.broadcast_to(start, found.shape), np.broadcast_to(end, found.shape)
+    members = [linkage[index] if index else linkage for index in np.ndindex(linkage.shape)]
+    member = np.broadcast_to(np.arange(len(members)).reshape(linkage.shape), found.shape)
+    for index in np.ndindex(found.shape):
+        found[index] = _settled_r2(members[member[index]], float(start[index]), float(end[index]), degree)
+    return found[()]
 
 
 def samples(parameter: npt.ArrayLike, values: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
@@ -250,12 +250,30 @@ def samples(parameter: npt.ArrayLike, values: npt.ArrayLike) -> tuple[FloatArray
     return t, y
 
 
-@cache
-def _quadrature(degree: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Gauss-Legendre nodes, roots of their weights, shape (N, 1), and Legendre polynomials, orthonormal."""
-    node, weight = legendre.leggauss(_NODES)
-    root = np.sqrt(weight)[:, None]
-    return node, root, legendre.legvander(node, degree) * np.sqrt(np.arange(degree + 1) + 0.5) * root
+def _settled_r2(linkage: FourBar, start: float, end: float, degree: int) -> float:
+    if start == end:
+        return np.nan
+    motion, panels, before = even_motion(linkage, start, end), _FEWEST, np.inf
+    while True:
+        r2 = _r2_by_panels(linkage, motion, panels, degree)
+        if not abs(r2 - before) > _SETTLED or panels >= _MOST:
+            return r2
+        panels, before = 2 * panels, r2
+
+
+def _r2_by_panels(linkage: FourBar, motion: EvenMotion, panels: int, degree: int) -> float:
+    share, weight = gauss_legendre(motion.edges(panels))
+    theta2, counts = motion.theta2(share), weight * np.abs(motion.rate(share))
+    root = np.sqrt(counts / counts.sum())[:, None]
+    p = solve_position(linkage, theta2).p
+    middle = p[len(p) // 2]
+    if not np.isfinite(p).all():
+        return np.nan
+    basis = np.linalg.qr(root * legendre.legvander(_scaled(theta2, motion.start, motion.end), degree))[0]
+    p = root * (p - middle)
+    spread = ((p - root * (root.T @ p)) ** 2).sum()
+    wrong = ((p - basis @ (basis.T @ p)) ** 2).sum()
+    return float(_r2(wrong, spread, np.abs(middle).max()))
 
 
 def _scaled(parameter: FloatArray, low: float, high: float) -> FloatArray:

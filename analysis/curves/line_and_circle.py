@@ -20,7 +20,7 @@ _STRAIGHT = 1e-11  # deviations below this share of the length are rounding
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BestLine(ReadOnly):
-    """The line with the least sum of squared distances from the points.
+    """The line with the least sum, or integral, of squared distances from points or a path.
 
     Parameters
     ----------
@@ -171,8 +171,8 @@ def best_circle(points: npt.ArrayLike) -> BestCircle:
     )
 
 
-def straightness(linkage: FourBar, theta2_start: float, theta2_end: float, samples: int = 361) -> BestLine:
-    """How straight the path of P is between two driver angles.
+def circularity(linkage: FourBar, theta2_start: float, theta2_end: float, samples: int = 361) -> BestCircle:
+    """How circular the path of P is between two driver angles.
 
     Parameters
     ----------
@@ -184,31 +184,12 @@ def straightness(linkage: FourBar, theta2_start: float, theta2_end: float, sampl
 
     Returns
     -------
-    BestLine
+    BestCircle
 
     Raises
     ------
     ProblemError
-        The linkage cannot be assembled all the way, or P does not move.
-
-    Examples
-    --------
-    >>> hoeken = FourBar(o2=(0, 0), o4=(2.2, 0), r2=1, r3=2.8, r4=2.8, coupler_point=(5.6, 0))
-    >>> line = straightness(hoeken, np.pi / 2, 3 * np.pi / 2)
-    >>> round(line.length, 3), round(100 * line.width / line.length, 3)
-    (4.181, 0.096)
-    """
-    return best_line(along_path(linkage, theta2_start, theta2_end, samples))
-
-
-def circularity(linkage: FourBar, theta2_start: float, theta2_end: float, samples: int = 361) -> BestCircle:
-    """How circular the path of P is between two driver angles.
-
-    Parameters, samples and errors as for `straightness`; errors for a straight path too.
-
-    Returns
-    -------
-    BestCircle
+        The linkage cannot be assembled all the way, P does not move, or its path is straight.
 
     Examples
     --------

@@ -10,8 +10,10 @@ import numpy as np
 import scipy
 from numpy.polynomial import chebyshev
 
+from grashof.analysis.four_bar.even_motion import even_motion
 from grashof.analysis.four_bar.kinematics import Kinematics, solve_kinematics
-from grashof.analysis.four_bar.mobility import driver_ranges, full_rotation
+from grashof.analysis.four_bar.mobility import CHANGE, dead_ends, driver_ranges, full_rotation, rotatability
+from grashof.analysis.four_bar.transmission import ground_line_transmission, quality, transmission_angle
 from grashof.problems import AssemblyError, FourBar, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 
@@ -21,6 +23,7 @@ Curve: TypeAlias = Callable[[FloatArray], FloatArray]
 _SAMPLES = 2881
 _DEGREE = 16
 _CANDIDATES = 6
+_DEAD = 1e-7  # rad
 _NODES = np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
 
 
@@ -91,10 +94,55 @@ def extremes(
     """
     start, end, closed = motion_between(linkage, start, end)
 
-    def curve(theta2: FloatArray) -> FloatArray:
-        return np.asarray(quantity(solve_kinematics(linkage, theta2, omega2)), dtype=np.float64)
+    motion = even_motion(linkage, start, end)
 
-    return extremes_of(curve, start, end, closed, period)
+    def curve(share: FloatArray) -> FloatArray:
+        return np.asarray(quantity(solve_kinematics(linkage, motion.theta2(share), omega2)), dtype=np.float64)
+
+    at = dense_places(0.0, 1.0, closed)
+    values = counted_on(motion.theta2(at), curve(at), period)
+    found = refined(curve, at, values, closed, period)
+    at_low, at_high = motion.theta2([found.at_low, found.at_high]).tolist()
+    return Extremes(found.low, found.high, at_low, at_high)
+
+
+def transmission_extremes(linkage: FourBar, start: float, end: float) -> Extremes:
+    """Least and largest transmission angle between two driver angles, in closed form.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        A single linkage that closes all the way.
+    start, end : float, rad
+        In either order.
+
+    Returns
+    -------
+    Extremes
+        In rad: 0 and pi themselves where an end is a dead position, folded or stretched.
+
+    Notes
+    -----
+    See `worst_transmission`.
+
+    Examples
+    --------
+    >>> rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3)
+    >>> found = transmission_extremes(rocker, *driver_ranges(rocker)[0])
+    >>> np.degrees([found.low, found.high]).round(4).tolist()
+    [36.3361, 180.0]
+    """
+    theta1, (low, high) = float(linkage.theta1), sorted((start, end))
+    along = np.arange(np.ceil((low - theta1) / np.pi), np.floor((high - theta1) / np.pi) + 1)
+    at = np.concatenate([[start, end], theta1 + np.pi * along])
+    ground = np.stack(ground_line_transmission(linkage))
+    change = np.abs(rotatability(linkage)[::-1]) <= CHANGE
+    ground = np.where(change, [0.0, np.pi], ground)
+    mu = np.concatenate([transmission_angle(linkage, at[:2]), ground[along.astype(np.int64) % 2]])
+    if not full_rotation(linkage):  # what rounding of an end leaves of a dead position
+        mu = np.where(quality(mu) <= _DEAD, np.where(mu < 1, 0.0, np.pi), mu)
+    least, most = int(np.argmin(mu)), int(np.argmax(mu))
+    return Extremes(float(mu[least]), float(mu[most]), float(at[least]), float(at[most]))
 
 
 def extremes_of(
@@ -116,7 +164,25 @@ def extremes_of(
     -------
     Extremes
     """
-    at, values = sampled(curve, start, end, closed, period)
+    return refined(curve, *sampled(curve, start, end, closed, period), closed, period)
+
+
+def refined(
+    curve: Curve, at: FloatArray, values: FloatArray, closed: bool = False, period: float | None = None
+) -> Extremes:
+    """Least and largest value of a function of one variable, from its samples.
+
+    Parameters
+    ----------
+    curve, closed, period
+        As for `extremes_of`.
+    at, values : ndarray, shape (N,)
+        Where the curve is sampled, and its values there, unwrapped.
+
+    Returns
+    -------
+    Extremes
+    """
     low, at_low = _outermost(curve, at, -values, closed, period, -1.0)
     high, at_high = _outermost(curve, at, values, closed, period, 1.0)
     return Extremes(-low, high, at_low, at_high)
@@ -128,10 +194,10 @@ def motion_between(linkage: FourBar, start: float | None, end: float | None) -> 
     if start is None or end is None:
         if start is not end:
             raise ProblemError("one of start and end is given; give both or neither")
-        low, high = driver_ranges(linkage)[0]
-        start, end = (0.0, TURN) if turns else (float(low), float(high))
-        if np.isnan(start):
+        low, high = driver_ranges(linkage)[0].tolist()
+        if np.isnan(low):
             raise AssemblyError("the linkage cannot close at any driver angle")
+        start, end = (0.0, TURN) if turns else dead_ends(linkage, low, high)
     if not end > start:
         raise ProblemError(f"start is {start:.6g} and end {end:.6g}; start must be less than end")
     return start, end, turns and abs(end - start - TURN) < 1e-12
@@ -141,18 +207,34 @@ def sampled(
     curve: Curve, start: float, end: float, closed: bool, period: float | None
 ) -> tuple[FloatArray, FloatArray]:
     """Where a curve is sampled, and its values there, unwrapped by `period`; shapes (N,)."""
+    at = dense_places(start, end, closed)
+    return at, counted_on(at, np.asarray(curve(at), dtype=np.float64), period)
+
+
+def dense_places(start: float, end: float, closed: bool) -> FloatArray:
+    """Where a curve is sampled when its extremes are sought, shape (N,)."""
     share = np.linspace(0, 1, _SAMPLES)
     if not closed:  # closer towards ends that may be dead positions
         share = (1 - np.cos(np.pi * share)) / 2
     at = start + (end - start) * share
     at[-1] = end
-    values = np.asarray(curve(at), dtype=np.float64)
-    if values.shape != at.shape:
+    return at
+
+
+def counted_on(theta2: FloatArray, values: FloatArray, period: float | None) -> FloatArray:
+    """Values at driver angles, unwrapped by `period`, shape (N,).
+
+    Raises
+    ------
+    AssemblyError
+        One is NaN.
+    """
+    if values.shape != theta2.shape:
         raise ProblemError(f"the quantity has shape {values.shape}; it must have one value for each angle")
     if np.isnan(values).any():
-        angle = np.degrees(at[np.isnan(values)][0])
+        angle = np.degrees(theta2[np.isnan(values)][0])
         raise AssemblyError(f"the quantity has no value at driver angle {angle:.6g} deg")
-    return at, values if period is None else np.unwrap(values, period=period)
+    return values if period is None else np.unwrap(values, period=period)
 
 
 def _outermost(

@@ -7,10 +7,12 @@ from enum import StrEnum
 import numpy as np
 import numpy.typing as npt
 
+from grashof.analysis.four_bar.position import close_loop, sides
 from grashof.problems import FourBar
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 
 CHANGE = 1e-12  # share of r1+r2+r3+r4 within which a linkage has a change point
+_OUTWARDS = np.concatenate([[0], 2.0 ** np.arange(14)]) * np.finfo(np.float64).eps  # rad: rounding of an end
 
 
 class GrashofClass(StrEnum):
@@ -181,6 +183,33 @@ def driver_ranges(linkage: FourBar) -> FloatArray:
     second = np.stack([np.where(two, -reach, np.nan), np.where(two, -gap, np.nan)], axis=-1)
     ranges: FloatArray = linkage.theta1[..., None, None] + np.stack([first, second], axis=-2)
     return ranges
+
+
+def dead_ends(linkage: FourBar, low: float, high: float) -> tuple[float, float]:
+    """Ends of a driver's range, put outwards by so much of their rounding that they are dead positions.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        A single linkage.
+    low, high : float, rad
+        A range of `driver_ranges`.
+
+    Returns
+    -------
+    low, high : float, rad
+        `solve_position` has links 3 and 4 in one line there. As they are where that cannot be.
+
+    Notes
+    -----
+    The links move with the root of the driver angle: an end that is a rounding of 1e-16 inside is
+    1e-8 off the dead position.
+    """
+    scale = max(abs(low), abs(high), 1.0)
+    places = np.array([[low], [high]]) + np.array([[-scale], [scale]]) * _OUTWARDS
+    dead = close_loop(sides(linkage), places).sine == 0
+    first = np.where(dead.any(axis=1), dead.argmax(axis=1), 0)
+    return float(places[0, first[0]]), float(places[1, first[1]])
 
 
 def range_index(linkage: FourBar, theta2: npt.ArrayLike, slack: float = 1e-9) -> tuple[IntArray, FloatArray]:

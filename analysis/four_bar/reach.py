@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from grashof.analysis.four_bar.position import places, solve_position
+from grashof.analysis.four_bar.even_motion import even_motion
+from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.numerics.peaks import greatest, own
 from grashof.problems import FourBar
 from grashof.problems.values.arrays import FloatArray
 
-_SAMPLES = 721
+_SAMPLES = 361
 
 
 def reach_box(linkage: FourBar, start: float, end: float) -> FloatArray:
@@ -27,8 +29,7 @@ def reach_box(linkage: FourBar, start: float, end: float) -> FloatArray:
 
     Notes
     -----
-    The motion is sampled, closer towards its ends, where near a dead position the linkage runs away
-    from the driver; a parabola through the samples about each extreme refines it.
+    The motion is sampled evenly for all links (`even_motion`), then ever closer about each extreme.
 
     Examples
     --------
@@ -36,30 +37,20 @@ def reach_box(linkage: FourBar, start: float, end: float) -> FloatArray:
     >>> reach_box(crank_rocker, 0.0, 2 * np.pi).round(6).tolist()
     [[-1.0, -1.0], [4.0, 3.0]]
     """
-    towards_end = (1 - np.cos(np.linspace(0, np.pi, _SAMPLES))) / 2
-    where = places(linkage, solve_position(linkage, start + (end - start) * towards_end))
-    track = np.concatenate(list(where.values()), axis=-1)
-    track = track[np.isfinite(track).all(axis=-1)]
-    corners = [getattr(linkage, pivot) for pivot in linkage.GROUND]
-    if len(track):
-        corners += [*-_peaks(-track).reshape(-1, 2), *_peaks(track).reshape(-1, 2)]
-    return np.array([np.min(corners, axis=0), np.max(corners, axis=0)])
+    motion = even_motion(linkage, start, end)
 
+    def tracks(share: FloatArray) -> FloatArray:
+        """The coordinates of each point that moves, and the same turned round."""
+        state = solve_position(linkage, motion.theta2(share))
+        rows = np.concatenate([np.moveaxis(getattr(state, point), -1, 0) for point in linkage.MOVING])
+        both = own(np.concatenate([rows, -rows]))
+        closed = np.isfinite(own(np.broadcast_to(state.theta3, (len(both), *state.theta3.shape))))
+        return np.where(closed, both, -np.inf)
 
-def _peaks(curves: FloatArray) -> FloatArray:
-    """Maximum of each column, through the parabola about its largest sample."""
-    column = np.arange(curves.shape[1])
-    top = np.argmax(curves, axis=0)
-    largest: FloatArray = curves[top, column]
-    if len(curves) < 3:
-        return largest
-    inner = np.clip(top, 1, len(curves) - 2)
-    before, middle, after = (curves[inner + shift, column] for shift in (-1, 0, 1))
-    bend = before - 2 * middle + after
-    with np.errstate(divide="ignore", invalid="ignore"):
-        vertex = middle - (after - before) ** 2 / (8 * bend)
-    inside = (bend < 0) & (inner == top) & (np.abs(after - before) <= -2 * bend)
-    return np.where(inside, vertex, largest)
+    furthest = greatest(tracks, np.linspace(0, 1, _SAMPLES), most=2)[0].reshape(2, -1, 2)
+    corners = np.stack([getattr(linkage, pivot) for pivot in linkage.GROUND])
+    most, least = np.where(np.isfinite(furthest), furthest, -np.inf)
+    return np.stack([np.min([*corners, *-least], axis=0), np.max([*corners, *most], axis=0)])
 
 
 def diagonal(box: FloatArray) -> float:

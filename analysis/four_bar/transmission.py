@@ -8,6 +8,8 @@ import numpy.typing as npt
 from grashof.problems import FourBar
 from grashof.problems.values.arrays import FloatArray
 
+_ROUNDING = 8 * float(np.finfo(np.float64).eps)  # share of lengths
+
 
 def transmission_angle(linkage: FourBar, theta2: npt.ArrayLike) -> FloatArray:
     """Transmission angle mu, between coupler AB and output link O4B.
@@ -77,7 +79,7 @@ def worst_transmission(linkage: FourBar, start: npt.ArrayLike, end: npt.ArrayLik
         quality(transmission_angle(linkage, low + linkage.theta1)),
         quality(transmission_angle(linkage, high + linkage.theta1)),
     )
-    folded, stretched = _turn_extremes(linkage)
+    folded, stretched = ground_line_transmission(linkage)
     worst = np.where(even, np.minimum(worst, quality(folded)), worst)
     return np.where(odd, np.minimum(worst, quality(stretched)), worst)
 
@@ -91,12 +93,12 @@ def worst_transmission_cycle(linkage: FourBar) -> FloatArray:
     >>> float(np.degrees(worst_transmission_cycle(norton)).round(4))
     26.3843
     """
-    folded, stretched = _turn_extremes(linkage)
+    folded, stretched = ground_line_transmission(linkage)
     return np.minimum(quality(folded), quality(stretched))
 
 
-def _turn_extremes(linkage: FourBar) -> tuple[FloatArray, FloatArray]:
-    """Mu with O2A along the ground line, towards O4 and away from it."""
+def ground_line_transmission(linkage: FourBar) -> tuple[FloatArray, FloatArray]:
+    """Mu with O2A along the ground line, towards O4 and away from it: the extremes over a turn."""
     r1, r2 = linkage.r1, linkage.r2
     return (
         _angle_opposite(np.abs(r1 - r2), linkage.r3, linkage.r4),
@@ -105,7 +107,13 @@ def _turn_extremes(linkage: FourBar) -> tuple[FloatArray, FloatArray]:
 
 
 def _angle_opposite(side: FloatArray, r3: FloatArray, r4: FloatArray) -> FloatArray:
+    least, most = np.abs(r3 - r4), r3 + r4
+    rounding = _ROUNDING * (side + most)
     with np.errstate(invalid="ignore"):
-        near = np.sqrt((side - (r3 - r4)) * (side + (r3 - r4)))
-        far = np.sqrt((r3 + r4 - side) * (r3 + r4 + side))
-        return 2 * np.arctan2(near, far)
+        near, far = _from_zero(side - least, rounding), _from_zero(most - side, rounding)
+        return 2 * np.arctan2(np.sqrt(near * (side + least)), np.sqrt(far * (most + side)))
+
+
+def _from_zero(gap: FloatArray, rounding: FloatArray) -> FloatArray:
+    """The gap, 0 where only rounding makes it less: there the position is dead."""
+    return np.where((gap < 0) & (gap >= -rounding), 0.0, gap)

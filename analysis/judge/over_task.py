@@ -5,18 +5,18 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
-from numpy.polynomial import legendre
 
 from grashof.analysis.curves.fit import coupler_fit_r2
 from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.loads import Joint
 from grashof.analysis.forces.stated import stated_loads, stated_masses
 from grashof.analysis.four_bar.driver_law import DriverLaw
+from grashof.analysis.four_bar.means import mean_in_time
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.judge.verdict import Verdict
+from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import DeadPositionWarning, DynamicsSpec, FourBar, Problem, Task
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics_spec import metres
@@ -24,12 +24,6 @@ from grashof.problems.values.motor import MotorSpec
 
 _SAMPLES = 361
 _NEAR = np.logspace(-8, -2, 31)  # rad, about the positions that come closest to a dead one
-_PEAKS = 3
-_POINTS = 33
-_ROUNDS = 2  # each narrows the place of a peak 16 times; a parabola does the rest
-_PANEL = legendre.leggauss(16)
-_SETTLED = 1e-11
-_MOST_PANELS = 1024
 
 Curves = Callable[[FloatArray], FloatArray]
 
@@ -108,12 +102,13 @@ def over_task(linkage: FourBar, problem: Problem, verdict: Verdict) -> OverTask:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeadPositionWarning)
         law = driver_law(problem, start, end)
-        omega4, speed, acceleration = _peaks(_speeds(linkage, law), theta2)
+        omega4, speed, acceleration = peaks(_speeds(linkage, law), [theta2])[0]
         if spec is not None:
             loaded, square = _loaded(linkage, spec, metres(problem.length_unit), law), np.inf
-            peak, force = _peaks(loaded, theta2)
+            peak, force = peaks(loaded, [theta2])[0]
             if np.isfinite(peak):
-                square = _mean_in_time(lambda angle: loaded(angle)[0] ** 2, law)
+                mean, _ = mean_in_time(linkage, law, lambda angle: loaded(angle)[0] ** 2, panels=8)
+                square = float(mean)
             forces = float(peak), float(np.sqrt(square)), float(force)
     fit = float(coupler_fit_r2(linkage, start, end))
     return OverTask(float(omega4), float(speed), float(acceleration), fit, *forces)
@@ -131,7 +126,7 @@ def torque_peak(linkage: FourBar, problem: Problem, verdict: Verdict) -> float:
     loaded = _loaded(linkage, problem.dynamics, metres(problem.length_unit), law)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeadPositionWarning)
-        return float(_peaks(lambda angle: loaded(angle)[:1], theta2)[0])
+        return float(peaks(lambda angle: loaded(angle)[:1], [theta2])[0][0])
 
 
 def _as_used(linkage: FourBar, verdict: Verdict) -> FourBar:
@@ -154,53 +149,12 @@ def motion_ends(task: Task, verdict: Verdict) -> tuple[float, float]:
     return start, end
 
 
-def mean_over(curve: Curves, start: float, end: float) -> float:
-    """Mean of a curve between two driver angles, sampled closer towards the ends.
-
-    Parameters
-    ----------
-    curve : callable
-        Takes and returns arrays of shape (N,).
-    start, end : float, rad
-
-    Returns
-    -------
-    float
-        Infinite where ever closer samples let it grow on.
-
-    Examples
-    --------
-    >>> round(mean_over(lambda angle: np.sin(angle) ** 2, 0.0, np.pi), 12)
-    0.5
-    """
-    before, panels = np.inf, 8
-    while panels <= _MOST_PANELS:
-        node, weight = _PANEL
-        phase = np.pi * (np.arange(panels)[:, None] + (node + 1) / 2).ravel() / panels
-        share = np.pi / (4 * panels) * np.tile(weight, panels) * np.sin(phase)
-        mean = float(share @ curve((start + end) / 2 - (end - start) / 2 * np.cos(phase)))
-        if abs(mean - before) <= _SETTLED * abs(mean):
-            break
-        before, panels = mean, 2 * panels
-    return mean
-
-
 def driver_law(problem: Problem, start: float, end: float) -> DriverLaw:
     """How the driver of a design goes from one angle to the other: as the problem's dynamics have it."""
     spec, rotation = problem.dynamics, end - start
     omega2 = np.copysign(1.0 if spec is None else spec.omega2, rotation)
     motor = spec.motor if spec is not None and rotation else None
     return DriverLaw(start, rotation, float(omega2), motor or MotorSpec())
-
-
-def _mean_in_time(curve: Curves, law: DriverLaw) -> float:
-    """Mean over the time of a motion of a curve over the driver angle."""
-    if law.motor.steady:
-        return mean_over(curve, law.start, law.start + law.rotation)
-    return sum(
-        (end - start) * mean_over(lambda share: curve(law.at_time(share * law.duration).theta2), start, end)
-        for start, end in pairwise(law.corners.tolist())
-    )
 
 
 def _speeds(linkage: FourBar, law: DriverLaw) -> Curves:
@@ -238,41 +192,3 @@ def _sampled(linkage: FourBar, start: float, end: float) -> FloatArray:
     )
     near = (turning[:, None] + np.concatenate([-_NEAR, [0.0], _NEAR])).ravel()
     return np.unique(np.concatenate([spread, near[(near > low) & (near < high)]]))
-
-
-def _peaks(curves: Curves, theta2: FloatArray) -> FloatArray:
-    """Greatest value of each row of curves; the samples hold their ends."""
-    values = _infinite_if_dead(curves(theta2))
-    best: FloatArray = values.max(axis=1)
-    padded = np.pad(values, ((0, 0), (1, 1)), constant_values=-np.inf)
-    summit = np.where((values >= padded[:, :-2]) & (values >= padded[:, 2:]), values, -np.inf)
-    top = np.argsort(-summit, axis=1, kind="stable")[:, :_PEAKS]
-    row = np.arange(len(values))[:, None, None]
-    low = theta2[np.maximum(top - 1, 0)]
-    high = theta2[np.minimum(top + 1, len(theta2) - 1)]
-    share = np.linspace(0, 1, _POINTS)
-    for _ in range(_ROUNDS):
-        angle = low[..., None] + (high - low)[..., None] * share
-        near = _infinite_if_dead(curves(angle.ravel())).reshape(len(values), *angle.shape)
-        own = near[row, row, np.arange(top.shape[1])[:, None], np.arange(_POINTS)]  # of its own curve
-        peak = own.argmax(axis=2)[..., None]
-        low = np.take_along_axis(angle, np.maximum(peak - 1, 0), axis=2)[..., 0]
-        high = np.take_along_axis(angle, np.minimum(peak + 1, _POINTS - 1), axis=2)[..., 0]
-    best = np.maximum(best, own.max(axis=(1, 2)))
-    beside = [np.take_along_axis(own, np.clip(peak + k, 0, _POINTS - 1), axis=2)[..., 0] for k in (-1, 0, 1)]
-    greatest: FloatArray = np.maximum(best, _vertex(*beside).max(axis=1))
-    return greatest
-
-
-def _vertex(before: FloatArray, middle: FloatArray, after: FloatArray) -> FloatArray:
-    """Top of the parabola through three values at equal steps, the middle one where it has none."""
-    with np.errstate(invalid="ignore", divide="ignore"):
-        bend = before - 2 * middle + after
-        top = middle - (after - before) ** 2 / (8 * bend)
-    found: FloatArray = np.where((bend < 0) & (before < middle) & (after < middle), top, middle)
-    return found
-
-
-def _infinite_if_dead(values: FloatArray) -> FloatArray:
-    """The motion closes everywhere, so what is not a number is so in a dead position alone."""
-    return np.where(np.isnan(values), np.inf, values)

@@ -8,7 +8,7 @@ import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
 
-_PEAKS = 3
+_MOST = 3
 _POINTS = 17
 _ROUNDS = 4  # each narrows the place of a peak eight times; a parabola does the rest
 
@@ -42,10 +42,73 @@ def peaks(curves: Curves, stretches: Sequence[FloatArray]) -> tuple[FloatArray, 
     >>> values.round(12).tolist(), places.round(9).tolist()
     ([1.0, 3.0], [1.570796327, 3.0])
     """
-    found = [_peaks(curves, at) for at in stretches]
+
+    def each_its_own(places: FloatArray) -> FloatArray:
+        values = curves(places.ravel())
+        return own(_infinite_if_none(values).reshape(len(values), *places.shape))
+
+    found = [greatest(each_its_own, at) for at in stretches]
     values, places = (np.stack(each) for each in zip(*found, strict=True))
     best = values.argmax(axis=0)[None]
     return np.take_along_axis(values, best, axis=0)[0], np.take_along_axis(places, best, axis=0)[0]
+
+
+def greatest(
+    curves: Curves, places: FloatArray, most: int = _MOST, rounds: int = _ROUNDS
+) -> tuple[FloatArray, FloatArray]:
+    """Greatest value of each of many curves between two ends, each sampled where it is high by itself.
+
+    Parameters
+    ----------
+    curves : callable
+        From places to values of the R curves, shape (R, N): from places that are the same for all, shape
+        (1, N), or each curve's own, shape (R, N). See `own`.
+    places : ndarray, shape (N,)
+        Ascending: dense samples from end to end.
+    most : int
+        So many of the highest samples that no neighbour exceeds are looked at more closely,
+    rounds : int
+        so many times, each an eighth as far about them. Four are enough for smooth curves.
+
+    Returns
+    -------
+    values, places : ndarray, shape (R,)
+
+    Examples
+    --------
+    >>> def curves(x):
+    ...     return np.stack([np.sin(x[0]), 5 - (x[-1] - 2.0) ** 2])
+    >>> values, places = greatest(curves, np.linspace(0, 3, 30))
+    >>> values.round(12).tolist(), places.round(6).tolist()
+    ([1.0, 5.0], [1.570796, 2.0])
+    """
+    values = curves(places[None])
+    padded = np.pad(values, ((0, 0), (1, 1)), constant_values=-np.inf)
+    summit = np.where((values >= padded[:, :-2]) & (values >= padded[:, 2:]), values, -np.inf)
+    top = np.argsort(-summit, axis=1, kind="stable")[:, :most]
+    low, high = places[np.maximum(top - 1, 0)], places[np.minimum(top + 1, len(places) - 1)]
+    at, heights = [places[top]], [np.take_along_axis(values, top, axis=1)]
+    for _ in range(rounds):
+        near = low[..., None] + (high - low)[..., None] * np.linspace(0, 1, _POINTS)
+        near[..., -1] = high  # and not beyond it by rounding
+        here = curves(near.reshape(len(near), -1)).reshape(near.shape)
+        peak = here.argmax(axis=2)[..., None]
+        at.append(np.take_along_axis(near, peak, axis=2)[..., 0])
+        heights.append(np.take_along_axis(here, peak, axis=2)[..., 0])
+        low = np.take_along_axis(near, np.maximum(peak - 1, 0), axis=2)[..., 0]
+        high = np.take_along_axis(near, np.minimum(peak + 1, _POINTS - 1), axis=2)[..., 0]
+    beside = [np.take_along_axis(here, np.clip(peak + k, 0, _POINTS - 1), axis=2)[..., 0] for k in (-1, 0, 1)]
+    at.append(np.clip(vertex(at[-1], near[..., 1] - near[..., 0], *beside), near[..., 0], near[..., -1]))
+    heights.append(curves(at[-1]))
+    every, where = np.concatenate(heights, axis=1), np.concatenate(at, axis=1)
+    best = every.argmax(axis=1)[:, None]
+    return np.take_along_axis(every, best, axis=1)[:, 0], np.take_along_axis(where, best, axis=1)[:, 0]
+
+
+def own(values: FloatArray) -> FloatArray:
+    """Values of R curves at their own places, from those at the places of all, shape (R, R or 1, ...)."""
+    row = np.arange(len(values))
+    return np.asarray(values[row, row % values.shape[1]])
 
 
 def vertex(
@@ -63,39 +126,6 @@ def vertex(
         away = (before - after) / (2 * bend)
     inside = (bend < 0) & (before <= middle) & (after <= middle)
     return np.where(inside, place + step * np.where(inside, away, 0.0), place)
-
-
-def _peaks(curves: Curves, samples: FloatArray) -> tuple[FloatArray, FloatArray]:
-    values = _infinite_if_none(curves(samples))
-    padded = np.pad(values, ((0, 0), (1, 1)), constant_values=-np.inf)
-    summit = np.where((values >= padded[:, :-2]) & (values >= padded[:, 2:]), values, -np.inf)
-    top = np.argsort(-summit, axis=1, kind="stable")[:, :_PEAKS]
-    low, high = samples[np.maximum(top - 1, 0)], samples[np.minimum(top + 1, len(samples) - 1)]
-    places, heights = [samples[top]], [np.take_along_axis(values, top, axis=1)]
-    for _ in range(_ROUNDS):
-        near = low[..., None] + (high - low)[..., None] * np.linspace(0, 1, _POINTS)
-        near[..., -1] = high  # and not beyond it by rounding
-        own = _own(curves, near)
-        peak = own.argmax(axis=2)[..., None]
-        places.append(np.take_along_axis(near, peak, axis=2)[..., 0])
-        heights.append(np.take_along_axis(own, peak, axis=2)[..., 0])
-        low = np.take_along_axis(near, np.maximum(peak - 1, 0), axis=2)[..., 0]
-        high = np.take_along_axis(near, np.minimum(peak + 1, _POINTS - 1), axis=2)[..., 0]
-    beside = [np.take_along_axis(own, np.clip(peak + k, 0, _POINTS - 1), axis=2) for k in (-1, 0, 1)]
-    parabola = vertex(places[-1][..., None], near[..., 1:2] - near[..., :1], *beside)
-    top_place = np.clip(parabola, near[..., :1], near[..., -1:])
-    places.append(top_place[..., 0])
-    heights.append(_own(curves, top_place)[..., 0])
-    every, where = np.concatenate(heights, axis=1), np.concatenate(places, axis=1)
-    best = every.argmax(axis=1)[:, None]
-    return np.take_along_axis(every, best, axis=1)[:, 0], np.take_along_axis(where, best, axis=1)[:, 0]
-
-
-def _own(curves: Curves, places: FloatArray) -> FloatArray:
-    """Values of each curve at its own places, shape (R, ...)."""
-    values = _infinite_if_none(curves(places.ravel())).reshape(len(places), *places.shape)
-    row = np.arange(len(places))
-    return values[row, row]
 
 
 def _infinite_if_none(values: FloatArray) -> FloatArray:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from operator import attrgetter
 
 import numpy as np
@@ -15,11 +16,13 @@ from grashof.analysis import (
     solve_kinematics,
     transmission_angle,
 )
+from grashof.analysis.four_bar.transmission import quality
 from grashof.problems import FourBar, LinkageSpec
 from grashof.problems.values.arrays import FloatArray
 from grashof.study.study import LinkageStudy
 
 Curve = Callable[[Kinematics], FloatArray]
+_DEAD = 1e-7  # rad: what rounding of the driver angle leaves of a dead position
 # Keys of the joint forces (f32: on link 2 by link 3), and the joints that they act in.
 FORCES = {
     f"f1{other}" if one == 1 else f"f{other}{one}": joint.upper()
@@ -68,18 +71,22 @@ def kinematic_quantities(spec: LinkageSpec) -> list[Quantity]:
         for n in driven
     ]
     for name in FourBar.MOVING:
-        point, place = name.upper(), attrgetter(f"{name}.position")
+        point, moves = name.upper(), lru_cache(maxsize=2)(attrgetter(name))
+        place = _part_of(moves, "position")
         found += [
             Quantity(f"{name}_{axis}", f"{point} {axis}", unit, _component(place, axis), position=True)
             for axis in "xy"
         ]
         for rate, size, per in (("velocity", "speed", "s"), ("acceleration", "acceleration", "s2")):
-            vector, keys = attrgetter(f"{name}.{rate}"), (f"{name}_{rate}", f"{name}_{size}")
+            vector, keys = _part_of(moves, rate), (f"{name}_{rate}", f"{name}_{size}")
             found += _vector(keys, (f"{rate} of {point}", f"{size} of {point}"), f"{unit}/{per}", vector)
     if spec.output_arm is not None:
         arm, label = spec.output_arm, "torque factor of the output arm"
-        factor = Quantity("torque_factor", label, unit, lambda s: arm * _ratio(s), never_negative=True)
-        found.append(factor)
+        signed = "torque factor, + where 4 turns with 2"
+        found += [
+            Quantity("torque_factor", label, unit, lambda s: arm * np.abs(_ratio(s)), never_negative=True),
+            Quantity("torque_factor_signed", signed, unit, lambda s: arm * _ratio(s)),
+        ]
     return found
 
 
@@ -90,8 +97,10 @@ def dynamic_quantities(study: LinkageStudy) -> list[Quantity]:
         return []
     metre, loads = study.metre, study.loads
 
+    solved = lru_cache(maxsize=2)(lambda s: inverse_dynamics(s, masses, loads))
+
     def of(name: str) -> Curve:
-        return lambda s: getattr(inverse_dynamics(s, masses, loads), name)
+        return _part_of(solved, name)
 
     def moment(key: str, label: str, unit: str) -> Quantity:
         return Quantity(key, label, unit, lambda s: of(key)(s) * metre**2)
@@ -121,6 +130,10 @@ def _vector(
     return [*components, Quantity(keys[1], labels[1], unit, size, never_negative=True)]
 
 
+def _part_of(solve: Callable[[Kinematics], object], name: str) -> Curve:
+    return lambda s: np.asarray(getattr(solve(s), name))
+
+
 def _component(of: Curve, axis: str, factor: float = 1.0) -> Curve:
     return lambda s: of(s)[..., "xy".index(axis)] * factor
 
@@ -130,12 +143,13 @@ def _degrees(angle: str) -> Curve:
 
 
 def _mu(state: Kinematics) -> FloatArray:
-    return np.degrees(transmission_angle(state.linkage, state.theta2))
+    mu = transmission_angle(state.linkage, state.theta2)
+    return np.degrees(np.where(quality(mu) <= _DEAD, np.where(mu < 1, 0.0, np.pi), mu))
 
 
 def _ratio(state: Kinematics) -> FloatArray:
-    """Size of d theta4 / d theta2."""
-    return np.abs(solve_kinematics(state.linkage, state.theta2, 1.0).omega4)
+    """D theta4 / d theta2."""
+    return solve_kinematics(state.linkage, state.theta2, 1.0).omega4
 
 
 def table_of(quantities: list[Quantity], states: list[Kinematics]) -> pd.DataFrame:

@@ -14,6 +14,7 @@ from grashof.analysis import (
     DriverLaw,
     DriverMotion,
     Kinematics,
+    dead_ends,
     driver_ranges,
     full_rotation,
     solve_kinematics,
@@ -130,14 +131,15 @@ def driver_angles(low: float, high: float, steps: int, *, even: bool) -> FloatAr
 
 
 def _between_dead_positions(linkage: FourBar) -> Iterator[tuple[float, float]]:
-    for low, high in driver_ranges(linkage):
+    for low, high in driver_ranges(linkage).tolist():
         if np.isnan(low):
             continue
+        low, high = dead_ends(linkage, low, high)
         # At a change point dead positions lie inside a range too, on the ground line.
         inside = float(linkage.theta1) + np.pi * np.arange(-1, 4)
         sine = np.sin(transmission_angle(linkage, inside))
         dead = (inside > low + 1e-9) & (inside < high - 1e-9) & ~(np.abs(sine) > _DEAD)
-        ends = [float(low), *(float(angle) for angle in inside[dead]), float(high)]
+        ends = [low, *inside[dead].tolist(), high]
         yield from ((start, end) for start, end in pairwise(ends) if end - start > 4 * INSET)
 
 

@@ -2,17 +2,56 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
+from enum import Enum
+
 import numpy as np
 import pandas as pd
+from numpy.polynomial import chebyshev
 
-from grashof.analysis import extremes_of, transmission_angle
+from grashof.analysis import (
+    Extremes,
+    Kinematics,
+    even_motion,
+    rotatability,
+    transmission_angle,
+    transmission_extremes,
+)
+from grashof.analysis.four_bar.even_motion import EvenMotion
+from grashof.analysis.four_bar.extremes import counted_on, dense_places, refined
+from grashof.analysis.four_bar.mobility import CHANGE
+from grashof.analysis.four_bar.transmission import quality
 from grashof.problems import AssemblyError, FourBar
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.study.quantities import Quantity
 from grashof.study.sweep import INSET, Sweep
 
-_WIDE_INSET = 1e-4  # rad: extremes of rates are sought so far from a dead position of a change point
 _CONSTANT = 1e-12  # least and largest values apart, as a share: the quantity is constant
+_ROUNDING = 2e-15  # of a driver angle
+_ALONG = 1e-6  # half turns
+_DEAD = 1e-6  # rad
+_BEYOND = 0.1  # rad: over so much of the motion rates are continued to a change point by a polynomial of
+_DEGREE = 12
+_PARABOLAS = 1e-5, 1e-7, 1e-9  # shares of the motion
+_CELLS = ("min", "theta2_min_deg", "max", "theta2_max_deg")
+
+
+def extremes_table(sweep: Sweep, quantities: list[Quantity]) -> pd.DataFrame:
+    """A row for each quantity: least and largest value, and the driver angles of both.
+
+    The angles are NaN where the quantity is constant; all four of an angle that turns fully.
+    """
+    rows, listed = [], [quantity for quantity in quantities if _listed(quantity)]
+    for number, (low, high) in enumerate(sweep.ranges, start=1):
+        part = _Range.of(sweep, low, high)
+        sampled = [part.samples(quantity).values(quantity) for quantity in listed]
+        for quantity, values in zip(listed, sampled, strict=True):
+            found = _extreme(part, quantity, values)
+            what = quantity.label if found is not None else f"{quantity.label}, turns fully"
+            named = {"quantity": quantity.key, "what": what, "unit": quantity.unit}
+            rows.append({"range": number, **named, **(found or dict.fromkeys(_CELLS, np.nan))})
+    table = pd.DataFrame(rows)
+    return table if len(sweep.ranges) > 1 else table.drop(columns="range")
 
 
 def _listed(quantity: Quantity) -> bool:
@@ -20,65 +59,170 @@ def _listed(quantity: Quantity) -> bool:
     return quantity.position or not quantity.key.endswith(("_x", "_y"))
 
 
-def extremes_table(sweep: Sweep, quantities: list[Quantity]) -> pd.DataFrame:
-    """A row for each quantity: least and largest value, and the driver angles of both.
+@dataclass(frozen=True, slots=True, eq=False)
+class _Samples:
+    """A part of the motion, sampled densely."""
 
-    The angles are NaN where the quantity is constant.
-    """
-    rows = []
-    for number, (low, high) in enumerate(sweep.ranges, start=1):
-        for quantity in filter(_listed, quantities):
-            found = _extreme(sweep, quantity, low, high)
-            named = {"quantity": quantity.key, "what": quantity.label, "unit": quantity.unit}
-            rows.append({"range": number, **named, **found})
-    table = pd.DataFrame(rows)
-    return table if len(sweep.ranges) > 1 else table.drop(columns="range")
+    sweep: Sweep
+    motion: EvenMotion
+    at: FloatArray
+    state: Kinematics
+
+    @classmethod
+    def between(cls, sweep: Sweep, start: float, end: float) -> _Samples:
+        motion, at = even_motion(sweep.spec.linkage, start, end), dense_places(0.0, 1.0, sweep.turns)
+        return cls(sweep, motion, at, sweep.state(motion.theta2(at)))
+
+    def curve(self, quantity: Quantity, share: FloatArray) -> FloatArray:
+        return np.asarray(quantity.of(self.sweep.state(self.motion.theta2(share))), dtype=np.float64)
+
+    def values(self, quantity: Quantity) -> FloatArray:
+        return np.asarray(quantity.of(self.state), dtype=np.float64)
+
+    def extremes(self, quantity: Quantity, values: FloatArray) -> Extremes | None:
+        """Of a quantity with these samples, at driver angles; None of an angle that turns fully.
+
+        Raises
+        ------
+        AssemblyError
+            It has no value somewhere.
+        """
+        turns, period = self.sweep.turns, quantity.period
+        values = counted_on(self.state.theta2, values, period)
+        if period is not None and turns and abs(values[-1] - values[0]) > period / 2:
+            return None
+        if not quantity.never_negative:
+            found = refined(lambda at: self.curve(quantity, at), self.at, values, turns, period)
+            low, high = found.low, found.high
+        else:  # a size is sharp where it is about 0, its square is not
+            found = refined(lambda at: self.curve(quantity, at) ** 2, self.at, values**2, turns)
+            found = replace(found, at_low=self._polished(quantity, found.at_low))
+            low, high = self.curve(quantity, np.array([found.at_low, found.at_high])).tolist()
+            low = 0.0 if self._is_zero(quantity, found.at_low, low) else low
+        return Extremes(low, high, *self.motion.theta2([found.at_low, found.at_high]).tolist())
+
+    def _polished(self, quantity: Quantity, place: float) -> float:
+        """Where a size is least, by ever smaller parabolas through its square."""
+        for step in _PARABOLAS if 0 < place < 1 else ():
+            before, middle, after = (self.curve(quantity, place + step * np.arange(-1.0, 2.0)) ** 2).tolist()
+            bend = before - 2 * middle + after
+            shift = (before - after) / (2 * bend) if bend > 0 else np.nan
+            if not abs(shift) <= 1:
+                break
+            place += step * shift
+        return place
+
+    def _is_zero(self, quantity: Quantity, place: float, size: float) -> bool:
+        """Whether a size is 0 but for rounding, be it of the driver angle."""
+        theta2 = float(self.motion.theta2(place))
+        beside = theta2 + _ROUNDING * max(abs(theta2), 1.0) * np.array([-1, 1])
+        return size <= float(np.max(quantity.of(self.sweep.state(beside)))) / 2
 
 
-def _extreme(sweep: Sweep, quantity: Quantity, low: float, high: float) -> dict[str, float]:
-    """Least and largest value, infinite where it grows without bound towards a dead position."""
+class _End(Enum):
+    """What a range of the driver ends with, by how near to it rates have digits, rad."""
 
-    def curve(theta2: FloatArray) -> FloatArray:
-        return np.asarray(quantity.of(sweep.state(theta2)), dtype=np.float64)
+    DEAD = INSET  # they grow without bound
+    CHANGE = 2e-3  # the motion goes on as it came, but rounding hides it
+    OPEN = 0.0  # the other half turn begins
 
-    # A rate tends to infinity towards a dead position; at a change point, which is left as it is
-    # entered, to a finite value that rounding hides.
-    still = sweep.turns or quantity.position
-    passes = [_passes(sweep.spec.linkage, limit, sense) for limit, sense in ((low, 1), (high, -1))]
-    insets = [0.0 if still else _WIDE_INSET if through else INSET for through in passes]
-    start, end = low + insets[0], high - insets[1]
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Range:
+    """A range of the driver, sampled all the way and as near to its ends as rates have digits."""
+
+    low: float
+    high: float
+    ends: tuple[_End, _End]
+    whole: _Samples
+    inner: _Samples
+
+    @classmethod
+    def of(cls, sweep: Sweep, low: float, high: float) -> _Range:
+        whole = _Samples.between(sweep, low, high)
+        if sweep.turns:
+            return cls(low, high, (_End.OPEN, _End.OPEN), whole, whole)
+        ends = _kind(sweep.spec.linkage, low), _kind(sweep.spec.linkage, high)
+        inner = _Samples.between(sweep, low + ends[0].value, high - ends[1].value)
+        return cls(low, high, ends, whole, inner)
+
+    def samples(self, quantity: Quantity) -> _Samples:
+        """Those in which the extremes of a quantity are sought."""
+        return self.whole if quantity.position else self.inner
+
+
+def _extreme(part: _Range, quantity: Quantity, values: FloatArray) -> dict[str, float] | None:
+    """Least and largest value, infinite where it grows without bound; None of an angle that turns fully."""
+    turns = part.whole.sweep.turns
     try:
-        found = extremes_of(curve, start, end, sweep.turns, quantity.period)
-    except AssemblyError:  # rounding at the very end of a range
-        try:
-            found = extremes_of(curve, low + INSET, high - INSET, sweep.turns, quantity.period)
-        except AssemblyError:
-            return dict.fromkeys(("min", "theta2_min_deg", "max", "theta2_max_deg"), np.nan)
+        found = _found(part, quantity, values)
+    except AssemblyError:  # at the very end of a range
+        found = Extremes(*np.full(4, np.nan).tolist())
+    if found is None:
+        return None
     least, largest = found.low, found.high
     if quantity.period is not None:
         turned = quantity.period * np.floor((least + quantity.period / 2) / quantity.period)
         least, largest = least - turned, largest - turned
-    if quantity.never_negative:
-        usual = np.median(curve(np.linspace(start, end, 101)))
-        least = 0.0 if least < 1e-7 * usual else least  # a size that goes through 0
-    extremes: dict[str, float] = {}
-    for name, value, at in (("min", least, found.at_low), ("max", largest, found.at_high)):
-        for near, limit, sense, through in ((start, low, 1, passes[0]), (end, high, -1, passes[1])):
-            if not still and abs(at - near) < 1e-9:
-                closer = float(curve(np.array([limit + sense * INSET / 16]))[0])
-                at = limit
-                if not through and abs(closer) > 1.5 * abs(value):
-                    value = np.copysign(np.inf, value)
-        if sweep.turns:
-            at = at % TURN if TURN - at % TURN > 1e-9 else 0.0
-        extremes |= {name: float(value), f"theta2_{name}_deg": float(np.round(np.degrees(at), 9) + 0.0)}
+    at = [_counted(angle) if turns else angle for angle in (found.at_low, found.at_high)]
     if np.isclose(least, largest, rtol=_CONSTANT, atol=0.0):  # rounding alone would choose the angles
-        extremes |= dict.fromkeys(("theta2_min_deg", "theta2_max_deg"), np.nan)
-    return extremes
+        at = [np.nan, np.nan]
+    places = np.round(np.degrees(at), 9) + 0.0
+    return dict(zip(_CELLS, (float(least), float(places[0]), float(largest), float(places[1])), strict=True))
 
 
-def _passes(linkage: FourBar, limit: float, sense: int) -> bool:
-    """Whether sin(mu) goes to 0 in proportion to the driver angle left, and not like its root."""
-    near = limit + sense * np.array([_WIDE_INSET, _WIDE_INSET / 4])
-    far, close = np.sin(transmission_angle(linkage, near))
-    return bool(far > 3 * close)
+def _found(part: _Range, quantity: Quantity, values: FloatArray) -> Extremes | None:
+    if quantity.key == "mu_deg":
+        mu = transmission_extremes(part.whole.sweep.spec.linkage, part.low, part.high)
+        return Extremes(*np.degrees([mu.low, mu.high]).tolist(), mu.at_low, mu.at_high)
+    found = part.samples(quantity).extremes(quantity, values)
+    if found is None or quantity.position or part.whole.sweep.turns:
+        return found
+    return _with_its_ends(part, quantity, found)
+
+
+def _counted(angle: float) -> float:
+    """An angle counted from 0, where rounding does not make it a whole turn."""
+    return angle % TURN if TURN - angle % TURN > 1e-9 else 0.0
+
+
+def _with_its_ends(part: _Range, quantity: Quantity, found: Extremes) -> Extremes:
+    """The extremes of a rate, with what it tends to where the motion ends."""
+    values, places = [found.low, found.high], [found.at_low, found.at_high]
+    motion = part.inner.motion
+    for near, limit, end in zip((motion.start, motion.end), (part.low, part.high), part.ends, strict=True):
+        if end is _End.OPEN:
+            continue
+        theta2, heights = _towards(part, quantity, near, limit, end)
+        for k, sign in enumerate((-1.0, 1.0)):
+            top = int(np.argmax(sign * heights))
+            if end is _End.CHANGE and sign * heights[top] > sign * values[k]:
+                values[k], places[k] = float(heights[top]), float(theta2[top])
+            elif end is _End.DEAD and places[k] == near:
+                grows = abs(heights[top]) > 1.5 * abs(values[k])
+                values[k], places[k] = np.copysign(np.inf, values[k]) if grows else values[k], limit
+    return Extremes(*values, *places)
+
+
+def _towards(
+    part: _Range, quantity: Quantity, near: float, limit: float, end: _End
+) -> tuple[FloatArray, FloatArray]:
+    """Driver angles between the end of a range and where extremes are sought, and the values of a rate."""
+    sweep, way = part.whole.sweep, near - limit
+    if end is _End.DEAD:
+        theta2 = np.array([limit + way / 16])
+        return theta2, np.asarray(quantity.of(sweep.state(theta2)), dtype=np.float64)
+    reach = min(_BEYOND, (part.high - part.low) / 4) * np.sign(way)
+    known = near + reach * (1 + chebyshev.chebpts1(_DEGREE + 1)) / 2
+    series = chebyshev.chebfit((known - near) * 2 / reach - 1, quantity.of(sweep.state(known)), _DEGREE)
+    theta2 = np.linspace(limit, near, 65)
+    return theta2, np.asarray(chebyshev.chebval((theta2 - near) * 2 / reach - 1, series))
+
+
+def _kind(linkage: FourBar, limit: float) -> _End:
+    """What the end of a range is."""
+    half_turns = (limit - float(linkage.theta1)) / np.pi
+    near, folded = abs(half_turns - round(half_turns)) < _ALONG, round(half_turns) % 2 == 0
+    if near and abs(rotatability(linkage)[1 if folded else 0]) <= CHANGE:
+        return _End.CHANGE
+    return _End.DEAD if quality(transmission_angle(linkage, limit)) < _DEAD else _End.OPEN

@@ -10,7 +10,7 @@ import pandas as pd
 from grashof.analysis import (
     Masses,
     coupler_fit_r2,
-    coupler_fourier,
+    coupler_harmonics,
     cusps,
     double_points,
     grashof_class,
@@ -18,19 +18,27 @@ from grashof.analysis import (
     reach_box,
     rotatability,
     solve_kinematics,
+    straightest_half_turn,
     straightness,
     triple_rocker_kind,
-    worst_transmission,
+    worst_transmission_cycle,
 )
+from grashof.analysis.four_bar.means import mean_in_time
+from grashof.analysis.numerics.quadrature import held
 from grashof.problems import AssemblyError, LinkageSpec, ProblemError
+from grashof.problems.values.arrays import FloatArray
+from grashof.study.quantities import dynamic_quantities
 from grashof.study.section import Fact
+from grashof.study.study import LinkageStudy
 from grashof.study.sweep import Sweep
 
 _HARMONICS = 5
+_DOUBTED = 2.0  # times its error: a mean below it is 0
 
 
-def facts_of(sweep: Sweep, masses: Masses | None, tables: Mapping[str, pd.DataFrame]) -> Iterator[Fact]:
+def facts_of(study: LinkageStudy, tables: Mapping[str, pd.DataFrame]) -> Iterator[Fact]:
     """The lines of the summary, in their order."""
+    sweep, masses = study.sweep, study.masses
     spec, ranges, turns = sweep.spec, sweep.ranges, sweep.turns
     linkage, unit = spec.linkage, spec.unit
     kind = grashof_class(linkage)
@@ -46,7 +54,7 @@ def facts_of(sweep: Sweep, masses: Masses | None, tables: Mapping[str, pd.DataFr
         for name, end in (("low", low), ("high", high)):
             label = f"dead position, {name} end of range {number}"
             yield Fact(f"driver_{name}{mark}_deg", label, float(np.degrees(end)), "deg")
-    worst, where = (worst_transmission(linkage, *ranges[0]), "") if turns else (0.0, " (dead positions)")
+    worst, where = (worst_transmission_cycle(linkage), "") if turns else (0.0, " (dead positions)")
     label = f"worst transmission angle {sweep.over}{where}"
     yield Fact("transmission_min_deg", label, float(np.degrees(worst)), "deg")
     yield from _stroke_facts(spec, turns, tables["extremes"])
@@ -55,7 +63,7 @@ def facts_of(sweep: Sweep, masses: Masses | None, tables: Mapping[str, pd.DataFr
     yield Fact("size", f"size {sweep.over} (diagonal of the box it needs)", float(np.hypot(*extent)), unit)
     yield from _path_facts(sweep)
     if masses is not None:
-        yield from _mass_facts(spec, masses, tables["dynamics"], turns)
+        yield from _mass_facts(study, masses)
 
 
 def _stroke_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame) -> Iterator[Fact]:
@@ -101,8 +109,8 @@ def _path_facts(sweep: Sweep) -> Iterator[Fact]:
             label = f"R2 of degree {degree} through the path of P {where}"
             yield Fact(f"coupler_fit_r2_degree_{degree}", label, r2)
     if turns:
-        series = coupler_fourier(linkage)
-        for number, share in enumerate(series.content[:_HARMONICS].tolist(), start=1):
+        series = coupler_harmonics(linkage, _HARMONICS)
+        for number, share in enumerate(series.content.tolist(), start=1):
             if np.isfinite(share):
                 yield Fact(f"fourier_share_{number}", f"share of harmonic {number} in the path of P", share)
         label = f"path of P from {_HARMONICS} harmonics errs by"
@@ -123,29 +131,42 @@ def _path_facts(sweep: Sweep) -> Iterator[Fact]:
 
 
 def _straight_facts(spec: LinkageSpec, low: float, high: float, turns: bool) -> Iterator[Fact]:
-    """The straightest half turn, to 5 deg; of a driver that swings the whole of its first range."""
-    starts = np.radians(np.arange(0, 360, 5.0)) if turns else np.array([low])
-    span = np.pi if turns else high - low
-    try:
-        lines = [(straightness(spec.linkage, start, start + span, 61), start) for start in starts]
-    except ProblemError:  # P does not move, or rounding opens the loop in a dead position
-        return
-    line, start = min(lines, key=lambda each: each[0].width / each[0].length)
+    """The straightest half turn; of a driver that swings the whole of its first range."""
     unit, what = spec.unit, "straightest half turn of P" if turns else "path of P, range 1"
-    yield Fact("straight_from_deg", f"{what}: from theta2", float(np.degrees(start)), "deg")
-    yield Fact("straight_to_deg", f"{what}: to theta2", float(np.degrees(start + span)), "deg")
+    try:
+        if turns:
+            low, line = straightest_half_turn(spec.linkage)
+            high = low + np.pi
+        else:
+            line = straightness(spec.linkage, low, high)
+    except ProblemError:  # P does not move
+        return
+    yield Fact("straight_from_deg", f"{what}: from theta2", float(np.degrees(low)), "deg")
+    yield Fact("straight_to_deg", f"{what}: to theta2", float(np.degrees(high)), "deg")
     yield Fact("straight_length", f"{what}: length along its best line", line.length, unit)
     yield Fact("straight_deviation", f"{what}: largest distance from it", line.deviation_max, unit)
 
 
-def _mass_facts(spec: LinkageSpec, masses: Masses, table: pd.DataFrame, turns: bool) -> Iterator[Fact]:
+def _mass_facts(study: LinkageStudy, masses: Masses) -> Iterator[Fact]:
+    spec = study.spec
     yield Fact("mass", "moving mass", float(masses.total), "kg")
     if spec.dynamics is not None:
         x, y = spec.dynamics.gravity
         yield Fact("gravity", "gravity", f"{x:g}, {y:g}", "m/s2")
-    if turns:  # equal steps, the last of which is the first again
-        torque = table["torque"].to_numpy()[:-1]
-        mean, rms = float(np.mean(torque)), float(np.sqrt(np.mean(torque**2)))
-        mean = mean if abs(mean) > 1e-12 * rms else 0.0  # less is rounding
+    if study.sweep.turns:
+        mean, rms = _torque_over_turn(study)
         yield Fact("torque_mean", "drive torque, mean over the turn", mean, "N m")
         yield Fact("torque_rms", "drive torque, rms over the turn", rms, "N m")
+
+
+def _torque_over_turn(study: LinkageStudy) -> tuple[float, float]:
+    """Mean and root mean square of the drive torque over time, with as many digits as are certain."""
+    torque = next(quantity for quantity in dynamic_quantities(study) if quantity.key == "torque")
+
+    def powers(theta2: FloatArray) -> FloatArray:
+        values = torque.of(study.sweep.state(theta2))
+        return np.stack([values, values**2])
+
+    (mean, square), (error, square_error) = mean_in_time(study.linkage, study.sweep.laws[0], powers)
+    rms = float(np.sqrt(square))
+    return held(float(mean), _DOUBTED * error), held(rms, square_error / (2 * rms) if rms > 0 else 0.0)

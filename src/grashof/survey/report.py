@@ -73,7 +73,7 @@ def report_on(spec: LinkageSpec, asked: Asked | None = None) -> LinkageReport:
         if dynamic := dynamic_quantities(study):
             tables["dynamics"] = table_of(dynamic, states)
         tables["extremes"] = extremes_table(sweep, quantities + dynamic)
-        facts = tuple(facts_of(sweep, masses, tables))
+        facts = tuple(facts_of(study, tables))
         sections = tuple(section for make in SECTIONS if (section := make(study)) is not None)
     return LinkageReport(sweep, masses, facts, tables, _notes(sweep), sections)
 

@@ -1,4 +1,4 @@
-"""Best line and circle: exact ones recovered, optimality by perturbation, Hoeken's published figures."""
+"""Best line and circle: exact ones recovered, optimality by perturbation."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,6 @@ from grashof.analysis.curves.line_and_circle import (
     best_circle,
     best_line,
     circularity,
-    straightness,
 )
 from grashof.problems import FourBar
 from grashof.problems.values.errors import ProblemError
@@ -90,29 +89,6 @@ def test_the_circle_of_four_points_by_hand() -> None:
     assert circle.error_share == pytest.approx(circle.deviation_max / circle.radius)
 
 
-# Norton, Design of Machinery, table 3-1: range of the crank in deg, L1/L2, L3/L2 = L4/L2 = BP/L2, length
-# of the straight part / L2, its deviation (from side to side) in % of the length.
-HOEKEN = [
-    (60, 2.900, 3.850, 1.763, 0.00027),
-    (120, 2.625, 3.438, 3.238, 0.010),
-    (140, 2.500, 3.250, 3.623, 0.023),
-    (160, 2.350, 3.025, 3.933, 0.047),
-    (180, 2.200, 2.800, 4.181, 0.096),
-]
-
-
-@pytest.mark.parametrize(("turn", "r1", "r3", "length", "percent"), HOEKEN)
-def test_straight_line_linkages_of_hoeken_as_norton_prints_them(
-    turn: float, r1: float, r3: float, length: float, percent: float
-) -> None:
-    hoeken = FourBar((0, 0), (r1, 0), 1, r3, r3, coupler_point=(2 * r3, 0))
-    half = np.radians(turn) / 2
-    line = straightness(hoeken, np.pi - half, np.pi + half)
-    assert line.length == pytest.approx(length, abs=6e-4)
-    assert 100 * line.width / line.length == pytest.approx(percent, rel=0.05)
-    assert abs(np.sin(line.angle)) < 1e-9
-
-
 def test_the_arcs_of_the_pivots() -> None:
     at_b = FourBar((1, 1), (5, 1), 1, 4, 3, coupler_point=(4, 0))
     circle = circularity(at_b, 0.5, 2.5)
@@ -136,4 +112,4 @@ def test_bad_input_is_named() -> None:
         with pytest.raises(ProblemError, match="one line"):
             best_circle(points)
     with pytest.raises(ProblemError, match="cannot be assembled"):
-        straightness(FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1)), 0, np.pi)
+        circularity(FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1)), 0, np.pi)

@@ -22,7 +22,7 @@ from grashof.analysis import (
     stated_masses,
     verify,
 )
-from grashof.analysis.judge.over_task import mean_over, motion_ends, torque_peak
+from grashof.analysis.judge.over_task import motion_ends, torque_peak
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import DynamicsSpec, FourBar, PathTask, Problem, Requirements, load
 from grashof.problems.values.arrays import FloatArray
@@ -228,13 +228,6 @@ def test_one_target_angle_is_no_motion_but_a_place() -> None:
     for name, value in place.items():
         assert getattr(found, name) == pytest.approx(value, rel=1e-9), name
     assert np.isnan(found.coupler_fit_r2)
-
-
-def test_means_near_a_pole() -> None:
-    """1 / ((x - 0.3)^2 + h^2) has an arctangent for integral."""
-    h = 1e-3
-    exact = (np.arctan(0.7 / h) + np.arctan(0.3 / h)) / h
-    assert mean_over(lambda x: 1 / ((x - 0.3) ** 2 + h**2), 0.0, 1.0) == pytest.approx(exact, rel=1e-9)
 
 
 def test_a_payload_and_gravity_are_felt() -> None:
