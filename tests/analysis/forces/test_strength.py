@@ -179,6 +179,18 @@ def test_an_overhang_in_compression_does_not_buckle_the_bar() -> None:
     assert float(found.bars[2]["thrust"].value) == pytest.approx(0, abs=1e-9)
 
 
+def test_shear_counts_close_to_the_joint_of_a_deep_bar() -> None:
+    portal = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=1)
+    loads = Loads(forces=(AppliedForce(3, (0.02, 0), (0.0, -800.0)),))
+    structure = Structure(NO_MASS, loads, SectionSpec(width=1.0, height=0.1))
+    found = strength_at(solve_kinematics(portal, np.pi / 2, 0.0), structure).bars[3]
+    force = 800 * (4 - 0.02) / 4
+    assert float(found["shear_stress"].value) == pytest.approx(1.5 * force / 0.1)
+    assert float(found["normal_stress"].value) == pytest.approx(force * 0.02 * 0.5 / (0.1 / 12))
+    assert float(found["stress"].value) == pytest.approx(np.sqrt(3) * 1.5 * force / 0.1)
+    assert 0 <= float(found["stress"].at) <= 0.02
+
+
 def dense(
     structure: Structure, linkage: FourBar, theta2: Floats, omega2: float
 ) -> dict[tuple[str, str], float]:
