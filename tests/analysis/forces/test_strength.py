@@ -105,6 +105,16 @@ def test_a_press_by_hand(unit: str) -> None:
         )
 
 
+def test_a_bar_that_is_only_pulled_is_not_bent_by_rounding() -> None:
+    state = solve_kinematics(JACK, np.linspace(0, TURN, 100), 0.0)
+    structure = Structure(NO_MASS, Loads(forces=(WELL,)), SectionSpec(0.2, 0.2), STEEL)
+    pitman = strength_at(state, structure).bars[3]
+    for key in ("compression", "thrust", "shear", "moment", "shear_stress", "deflection"):
+        np.testing.assert_array_equal(pitman[key].value, 0)
+    assert (pitman["tension"].value > 1000).all()
+    np.testing.assert_allclose(pitman["stress"].value, pitman["tension"].value / 0.04)
+
+
 def test_pins_of_their_own_and_the_thinner_link() -> None:
     strength = StrengthSpec(
         235e6, pin_diameter=[0.01, 0.02, 0.03, 0.04], pin_thickness=[0.1, 0.2, 0.3], double_shear=True
