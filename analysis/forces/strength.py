@@ -25,6 +25,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.section import CrossSection
 
 LINKS = (2, 3, 4)
+_ROUNDING = 1e-12  # share of the greatest force in a bar below which other forces are none
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -111,19 +112,25 @@ def pin_measures(
 def _bar_measures(bar: BarForces, structure: Structure) -> dict[str, Along]:
     """All measures of a bar, in kg, s and the length unit."""
     found = {
-        "tension": _from_zero(greatest(bar, bar.normal)),
-        "compression": _from_zero(greatest(bar, -bar.normal)),
-        "thrust": _from_zero(greatest(bar, -bar.normal, bar.between_joints)),
+        "tension": greatest(bar, bar.normal),
+        "compression": greatest(bar, -bar.normal),
+        "thrust": greatest(bar, -bar.normal, bar.between_joints),
         "shear": greatest_size(bar, bar.shear),
         "moment": greatest_size(bar, bar.moment),
     }
+    reach = bar.stations[..., -1] - bar.stations[..., 0]
+    sizes = [found[key].value for key in ("tension", "compression", "shear")]
+    least = _ROUNDING * np.max([*sizes, found["moment"].value / reach], axis=0)
+    found = {key: _above(along, least * reach if key == "moment" else least) for key, along in found.items()}
     if structure.section is None:
         return found
     section = structure.section.of(bar.link)
     found |= _stresses(bar, section)
+    found["shear_stress"] = _above(found["shear_stress"], least * section.shear_factor / section.area)
     if structure.modulus is not None:
-        bow = deflection(bar, structure.modulus * section.inertia)
-        found["deflection"] = greatest_deflection(bar, bow)
+        stiffness = structure.modulus * section.inertia
+        bow = greatest_deflection(bar, deflection(bar, stiffness))
+        found["deflection"] = _above(bow, least * reach**3 / stiffness)
     if structure.strength is not None:
         used = found["stress"].value * structure.in_si("Pa") / structure.strength.yield_stress
         thrust = found["thrust"].value * structure.in_si("N")
@@ -145,5 +152,6 @@ def _stresses(bar: BarForces, section: CrossSection) -> dict[str, Along]:
     return {"normal_stress": normal, "shear_stress": greatest_size(bar, shear), "stress": stress}
 
 
-def _from_zero(along: Along) -> Along:
-    return Along(np.maximum(along.value, 0.0), along.at)
+def _above(along: Along, least: FloatArray) -> Along:
+    """What is borne, nothing where it is less than could be rounding."""
+    return Along(np.where(along.value <= least, 0.0, along.value), along.at)

@@ -1,5 +1,6 @@
 """Mass properties: published figures, integrals over the shapes, and Steiner's theorem."""
 
+import pickle
 from typing import Any
 
 import numpy as np
@@ -100,3 +101,17 @@ def test_bad_input_is_said() -> None:
         given_masses(linkage, (1, 2), (1, 2, 3))
     with pytest.raises(ProblemError, match="no mass"):
         system_centre(given_masses(linkage, (0, 0, 0), (0, 0, 0)), solve_kinematics(linkage, 0.0))
+
+
+def test_bodies_keep_what_they_were_put_together_from() -> None:
+    bar, weight, boss = uniform_bar(2.0, 3.0), Body(5.0, 0.0, (-1.0, 0.0)), Body(1.0, 0.2, (2.0, 0.0))
+    assert bar.pieces == (bar,)
+    whole = (bar + weight) + (boss + weight)
+    assert whole.pieces == (bar, weight, boss, weight)
+    assert sum(float(piece.mass) for piece in whole.pieces) == float(whole.mass)
+    masses = Masses(whole, bar, bar).with_payload(4.0, (1.0, 1.0))
+    assert masses.coupler.pieces[0] is bar
+    assert [float(piece.mass) for piece in masses.coupler.pieces] == [6.0, 4.0]
+    copied = pickle.loads(pickle.dumps(whole))
+    assert [float(piece.mass) for piece in copied.pieces] == [6.0, 5.0, 1.0, 5.0]
+    assert not copied.pieces[0].centre.flags.writeable

@@ -105,6 +105,16 @@ def test_a_press_by_hand(unit: str) -> None:
         )
 
 
+def test_a_bar_that_is_only_pulled_is_not_bent_by_rounding() -> None:
+    state = solve_kinematics(JACK, np.linspace(0, TURN, 100), 0.0)
+    structure = Structure(NO_MASS, Loads(forces=(WELL,)), SectionSpec(0.2, 0.2), STEEL)
+    pitman = strength_at(state, structure).bars[3]
+    for key in ("compression", "thrust", "shear", "moment", "shear_stress", "deflection"):
+        np.testing.assert_array_equal(pitman[key].value, 0)
+    assert (pitman["tension"].value > 1000).all()
+    np.testing.assert_allclose(pitman["stress"].value, pitman["tension"].value / 0.04)
+
+
 def test_pins_of_their_own_and_the_thinner_link() -> None:
     strength = StrengthSpec(
         235e6, pin_diameter=[0.01, 0.02, 0.03, 0.04], pin_thickness=[0.1, 0.2, 0.3], double_shear=True
@@ -177,6 +187,18 @@ def test_an_overhang_in_compression_does_not_buckle_the_bar() -> None:
     found = strength_at(solve_kinematics(linkage, np.pi / 2, 0.0), Structure(NO_MASS, held))
     assert float(found.bars[2]["compression"].value) == pytest.approx(80)
     assert float(found.bars[2]["thrust"].value) == pytest.approx(0, abs=1e-9)
+
+
+def test_shear_counts_close_to_the_joint_of_a_deep_bar() -> None:
+    portal = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=1)
+    loads = Loads(forces=(AppliedForce(3, (0.02, 0), (0.0, -800.0)),))
+    structure = Structure(NO_MASS, loads, SectionSpec(width=1.0, height=0.1))
+    found = strength_at(solve_kinematics(portal, np.pi / 2, 0.0), structure).bars[3]
+    force = 800 * (4 - 0.02) / 4
+    assert float(found["shear_stress"].value) == pytest.approx(1.5 * force / 0.1)
+    assert float(found["normal_stress"].value) == pytest.approx(force * 0.02 * 0.5 / (0.1 / 12))
+    assert float(found["stress"].value) == pytest.approx(np.sqrt(3) * 1.5 * force / 0.1)
+    assert 0 <= float(found["stress"].at) <= 0.02
 
 
 def dense(

@@ -28,13 +28,19 @@ def test_a_kink_and_an_end_may_be_the_highest() -> None:
 
 
 def test_curves_are_never_asked_for_places_beyond_their_ends() -> None:
-    samples = np.array([0.1, 0.2, 0.30000000000000004])
+    rng = np.random.default_rng(0)
+    beyond = 0
+    for _ in range(200):
+        samples = np.sort(rng.normal(size=3))
+        middle, high = samples[1:]
+        beyond += middle + (high - middle) > high  # by rounding
 
-    def curves(x: Floats) -> Floats:
-        assert ((x >= samples[0]) & (x <= samples[-1])).all()
-        return np.stack([x, -x])
+        def curves(x: Floats, samples: Floats = samples) -> Floats:
+            assert ((x >= samples[0]) & (x <= samples[-1])).all()
+            return np.stack([x, -x])
 
-    np.testing.assert_allclose(peaks(curves, [samples])[0], [samples[-1], -samples[0]])
+        np.testing.assert_allclose(peaks(curves, [samples])[0], [samples[-1], -samples[0]])
+    assert beyond
 
 
 def test_what_is_not_a_number_is_infinite_in_its_own_curve_alone() -> None:
