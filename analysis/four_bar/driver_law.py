@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +18,7 @@ from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
 from grashof.problems.values.motor import MotorSpec
 
 _HALVINGS = 60
+_BESIDE = 1e-12  # share of the time
 
 
 class _Shape(NamedTuple):
@@ -99,6 +101,29 @@ class DriverLaw:
             return np.asarray((time - time[0]) / (time[-1] - time[0]))
         ramp = self.motor.ramp
         return np.array([0.0, ramp, 1 - ramp, 1.0] if self.motor.profile == "trapezoid" else [0.0, 1.0])
+
+    def stretches(self, theta2: FloatArray) -> list[FloatArray]:
+        """Places of the motion at ascending driver angles, in parts between which its acceleration jumps.
+
+        A place is the driver angle of a steady motion, and else the share of its time, over which it is
+        as smooth as the profile; see `at_place`. Parts then end just beside the jumps, and beside rest,
+        so that each sees its own side.
+        """
+        if self.motor.steady:
+            return [theta2]
+        share = np.unique(
+            np.concatenate([self._shape.time(self._way(theta2)), np.linspace(0, 1, len(theta2))])
+        )
+        parts = []
+        for low, high in pairwise(self.corners.tolist()):
+            ends = low + _BESIDE, high - _BESIDE
+            inner = share[(share > ends[0]) & (share < ends[1])]
+            parts.append(np.concatenate([ends[:1], inner, ends[1:]]))
+        return parts
+
+    def at_place(self, place: FloatArray) -> DriverMotion:
+        """The driver at places of `stretches`, shape (...)."""
+        return self.at_angle(place) if self.motor.steady else self._moved(place)
 
     def _way(self, theta2: npt.ArrayLike) -> FloatArray:
         """Share of the way at driver angles; one turn after the other is the same."""

@@ -54,12 +54,11 @@ def mean_in_time(
 ) -> tuple[FloatArray, FloatArray]:
     """Mean over the time that the driver takes from one angle to another; parameters as for `mean_over`.
 
-    At a steady speed, and at none, it is the mean over the angle.
+    The curve is one over the places of the law, `DriverLaw.at_place`. At a steady speed, and at none,
+    it is the mean over the angle.
     """
     if law.motor.steady:
         return mean_over(linkage, curve, law.start, law.start + law.rotation, panels)
     parts = [np.linspace(*ends, panels + 1)[:-1] for ends in pairwise(law.corners.tolist())]
-    found = integrate(
-        lambda share: curve(law.at_time(share * law.duration).theta2), np.append(np.concatenate(parts), 1.0)
-    )
+    found = integrate(curve, np.append(np.concatenate(parts), 1.0))
     return found.total, found.error

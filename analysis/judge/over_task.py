@@ -13,6 +13,7 @@ from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.loads import Joint
 from grashof.analysis.forces.stated import stated_loads, stated_masses
 from grashof.analysis.four_bar.driver_law import DriverLaw
+from grashof.analysis.four_bar.kinematics import solve_kinematics
 from grashof.analysis.four_bar.means import mean_in_time
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.judge.verdict import Verdict
@@ -102,12 +103,12 @@ def over_task(linkage: FourBar, problem: Problem, verdict: Verdict) -> OverTask:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeadPositionWarning)
         law = driver_law(problem, start, end)
-        omega4, speed, acceleration = peaks(_speeds(linkage, law), [theta2])[0]
+        omega4, speed, acceleration = peaks(_speeds(linkage, law), law.stretches(theta2))[0]
         if spec is not None:
             loaded, square = _loaded(linkage, spec, metres(problem.length_unit), law), np.inf
-            peak, force = peaks(loaded, [theta2])[0]
+            peak, force = peaks(loaded, law.stretches(theta2))[0]
             if np.isfinite(peak):
-                mean, _ = mean_in_time(linkage, law, lambda angle: loaded(angle)[0] ** 2, panels=8)
+                mean, _ = mean_in_time(linkage, law, lambda place: loaded(place)[0] ** 2, panels=8)
                 square = float(mean)
             forces = float(peak), float(np.sqrt(square)), float(force)
     fit = float(coupler_fit_r2(linkage, start, end))
@@ -126,7 +127,7 @@ def torque_peak(linkage: FourBar, problem: Problem, verdict: Verdict) -> float:
     loaded = _loaded(linkage, problem.dynamics, metres(problem.length_unit), law)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeadPositionWarning)
-        return float(peaks(lambda angle: loaded(angle)[:1], [theta2])[0][0])
+        return float(peaks(lambda place: loaded(place)[:1], law.stretches(theta2))[0][0])
 
 
 def _as_used(linkage: FourBar, verdict: Verdict) -> FourBar:
@@ -158,22 +159,22 @@ def driver_law(problem: Problem, start: float, end: float) -> DriverLaw:
 
 
 def _speeds(linkage: FourBar, law: DriverLaw) -> Curves:
-    """|omega4|, speed and acceleration of P, each a row."""
+    """|omega4|, speed and acceleration of P, each a row, over places of the law."""
 
-    def curves(theta2: FloatArray) -> FloatArray:
-        state = law.state(linkage, theta2)
+    def curves(place: FloatArray) -> FloatArray:
+        state = solve_kinematics(linkage, *law.at_place(place))
         return np.stack([np.abs(state.omega4), state.p.speed, state.p.acceleration_magnitude])
 
     return curves
 
 
 def _loaded(linkage: FourBar, spec: DynamicsSpec, metre: float, law: DriverLaw) -> Curves:
-    """|torque| in N m and the greatest joint force in N, each a row."""
+    """|torque| in N m and the greatest joint force in N, each a row, over places of the law."""
     masses = stated_masses(linkage, spec, metre)
     loads = stated_loads(spec, metre, lambda state: law.time_at(state.theta2))
 
-    def curves(theta2: FloatArray) -> FloatArray:
-        found = inverse_dynamics(law.state(linkage, theta2), masses, loads)
+    def curves(place: FloatArray) -> FloatArray:
+        found = inverse_dynamics(solve_kinematics(linkage, *law.at_place(place)), masses, loads)
         force = np.max([found.joint_force(joint) for joint in Joint], axis=0)
         return np.stack([metre**2 * np.abs(found.torque), metre * force])
 

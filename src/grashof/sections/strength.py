@@ -37,8 +37,10 @@ def strength(study: LinkageStudy) -> Section | None:
     tables = {"strength": table(columns), "strength-peaks": _peaks(study, summary)}
     if summary.factors:
         tables["safety"] = _safety(summary)
-    notes = ("bars are straight and even; holes, notches, fatigue and impact are left out",)
-    return Section("strength", "Strength of bars and pins", facts, tables, plots, notes)
+    notes = ["bars are straight and even; holes, notches, fatigue and impact are left out"]
+    if not study.sweep.turns:
+        notes.append("towards dead positions forces grow without bound, so that there are no greatest ones")
+    return Section("strength", "Strength of bars and pins", facts, tables, plots, tuple(notes))
 
 
 def _columns(state: Kinematics, structure: Structure) -> Columns:
@@ -80,7 +82,7 @@ def _peaks(study: LinkageStudy, summary: StrengthSummary) -> pd.DataFrame:
         }
         for peak in summary.peaks
     ]
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows).replace([np.inf, -np.inf], np.nan)
 
 
 def _safety(summary: StrengthSummary) -> pd.DataFrame:
@@ -94,18 +96,18 @@ def _safety(summary: StrengthSummary) -> pd.DataFrame:
         }
         for factor in summary.factors
     ]
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows).replace([np.inf, -np.inf], np.nan)
 
 
 def _facts(study: LinkageStudy, summary: StrengthSummary) -> Iterator[Fact]:
-    bar = summary.worst_bar
-    yield Fact("worst_bar", f"bar with the greatest {bar.label}", bar.part)
-    yield Fact("worst_bar_value", f"greatest {bar.label}", bar.value, _unit(study, bar.unit))
-    yield Fact("worst_bar_theta2_deg", f"greatest {bar.label}: theta2", _degrees(bar.place), "deg")
-    if np.isfinite(bar.at):
-        label = f"greatest {bar.label}: from the origin of the link"
-        yield Fact("worst_bar_at", label, bar.at, study.spec.unit)
-    if (worst := summary.worst) is not None:
+    bar, worst = summary.worst_bar, summary.worst
+    if np.isfinite(bar.value):
+        label = f"greatest {bar.label}"
+        yield Fact("worst_bar", f"bar with the {label}", bar.part)
+        yield Fact("worst_bar_value", label, bar.value, _unit(study, bar.unit))
+        yield Fact("worst_bar_theta2_deg", f"{label}: theta2", _degrees(bar.place), "deg")
+        yield Fact("worst_bar_at", f"{label}: from the origin of the link", bar.at, study.spec.unit)
+    if worst is not None and np.isfinite(worst.value) and worst.value > 0:
         yield Fact("safety_factor", f"least safety factor: {worst.label}, {worst.part}", worst.value)
         yield Fact("safety_factor_theta2_deg", "least safety factor: theta2", _degrees(worst.place), "deg")
 

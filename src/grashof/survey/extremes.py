@@ -10,10 +10,12 @@ import pandas as pd
 from numpy.polynomial import chebyshev
 
 from grashof.analysis import (
+    DriverLaw,
     Extremes,
     Kinematics,
     even_motion,
     rotatability,
+    solve_kinematics,
     transmission_angle,
     transmission_extremes,
 )
@@ -42,8 +44,8 @@ def extremes_table(sweep: Sweep, quantities: list[Quantity]) -> pd.DataFrame:
     The angles are NaN where the quantity is constant; all four of an angle that turns fully.
     """
     rows, listed = [], [quantity for quantity in quantities if _listed(quantity)]
-    for number, (low, high) in enumerate(sweep.ranges, start=1):
-        part = _Range.of(sweep, low, high)
+    for number, ((low, high), law) in enumerate(zip(sweep.ranges, sweep.laws, strict=True), start=1):
+        part = _Range.of(sweep, low, high, law)
         sampled = [part.samples(quantity).values(quantity) for quantity in listed]
         for quantity, values in zip(listed, sampled, strict=True):
             found = _extreme(part, quantity, values)
@@ -136,15 +138,16 @@ class _Range:
     ends: tuple[_End, _End]
     whole: _Samples
     inner: _Samples
+    law: DriverLaw
 
     @classmethod
-    def of(cls, sweep: Sweep, low: float, high: float) -> _Range:
+    def of(cls, sweep: Sweep, low: float, high: float, law: DriverLaw) -> _Range:
         whole = _Samples.between(sweep, low, high)
         if sweep.turns:
-            return cls(low, high, (_End.OPEN, _End.OPEN), whole, whole)
+            return cls(low, high, (_End.OPEN, _End.OPEN), whole, whole, law)
         ends = _kind(sweep.spec.linkage, low), _kind(sweep.spec.linkage, high)
         inner = _Samples.between(sweep, low + ends[0].value, high - ends[1].value)
-        return cls(low, high, ends, whole, inner)
+        return cls(low, high, ends, whole, inner, law)
 
     def samples(self, quantity: Quantity) -> _Samples:
         """Those in which the extremes of a quantity are sought."""
@@ -175,10 +178,33 @@ def _found(part: _Range, quantity: Quantity, values: FloatArray) -> Extremes | N
     if quantity.key == "mu_deg":
         mu = transmission_extremes(part.whole.sweep.spec.linkage, part.low, part.high)
         return Extremes(*np.degrees([mu.low, mu.high]).tolist(), mu.at_low, mu.at_high)
+    if not (quantity.position or part.law.motor.steady):
+        return _of_uneven_drive(part, quantity)
     found = part.samples(quantity).extremes(quantity, values)
     if found is None or quantity.position or part.whole.sweep.turns:
         return found
     return _with_its_ends(part, quantity, found)
+
+
+def _of_uneven_drive(part: _Range, quantity: Quantity) -> Extremes:
+    """The extremes of a rate where the driver starts and stops: over its time, jump by jump."""
+    sweep, law = part.whole.sweep, part.law
+
+    def curve(place: FloatArray) -> FloatArray:
+        state = solve_kinematics(sweep.spec.linkage, *law.at_place(place))
+        return np.asarray(quantity.of(state), dtype=np.float64)
+
+    inset = 0.0 if sweep.turns else INSET
+    theta2 = np.sort(part.whole.motion.theta2(part.whole.at))
+    found = []
+    for stretch in law.stretches(theta2):
+        along = law.at_place(stretch).theta2
+        inside = (along >= part.low + inset) & (along <= part.high - inset)
+        values = counted_on(along[inside], curve(stretch[inside]), None)
+        found.append(refined(curve, stretch[inside], values))
+    least, most = min(found, key=lambda each: each.low), max(found, key=lambda each: each.high)
+    places = law.at_place(np.array([least.at_low, most.at_high])).theta2
+    return Extremes(least.low, most.high, *places.tolist())
 
 
 def _counted(angle: float) -> float:

@@ -163,10 +163,12 @@ def _torque_over_turn(study: LinkageStudy) -> tuple[float, float]:
     """Mean and root mean square of the drive torque over time, with as many digits as are certain."""
     torque = next(quantity for quantity in dynamic_quantities(study) if quantity.key == "torque")
 
-    def powers(theta2: FloatArray) -> FloatArray:
-        values = torque.of(study.sweep.state(theta2))
+    law = study.sweep.laws[0]
+
+    def powers(place: FloatArray) -> FloatArray:
+        values = torque.of(solve_kinematics(study.linkage, *law.at_place(place)))
         return np.stack([values, values**2])
 
-    (mean, square), (error, square_error) = mean_in_time(study.linkage, study.sweep.laws[0], powers)
+    (mean, square), (error, square_error) = mean_in_time(study.linkage, law, powers)
     rms = float(np.sqrt(square))
     return held(float(mean), _DOUBTED * error), held(rms, square_error / (2 * rms) if rms > 0 else 0.0)
