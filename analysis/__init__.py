@@ -17,7 +17,13 @@ from grashof.analysis.curves.fourier import FourierSeries, coupler_fourier, coup
 from grashof.analysis.curves.interpolation import NewtonPolynomial, newton_interpolation, spline
 from grashof.analysis.curves.line_and_circle import BestCircle, BestLine, best_circle, best_line, circularity
 from grashof.analysis.curves.straightness import straightest_half_turn, straightness
-from grashof.analysis.forces.balancing import ForceBalance, TorqueBalance, balance_force, balance_torque
+from grashof.analysis.forces.balancing import (
+    ForceBalance,
+    TorqueBalance,
+    balance_force,
+    balance_torque,
+    balance_turn,
+)
 from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics, virtual_work_torque
 from grashof.analysis.forces.energy import Energies, Powers, energies, mechanical_energy, powers
 from grashof.analysis.forces.flywheel import Flywheel, size_flywheel
@@ -155,6 +161,7 @@ __all__ = [
     "all_double_points",
     "balance_force",
     "balance_torque",
+    "balance_turn",
     "beam_limits",
     "best_circle",
     "best_line",

@@ -3,16 +3,28 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-import scipy
 
-from grashof.analysis.four_bar.extremes import Curve, Quantity, extremes_of, motion_between, sampled
+from grashof.analysis.four_bar.even_motion import even_motion
+from grashof.analysis.four_bar.extremes import (
+    Curve,
+    Quantity,
+    counted_on,
+    dense_places,
+    motion_between,
+)
 from grashof.analysis.four_bar.kinematics import solve_kinematics
+from grashof.analysis.numerics.peaks import greatest
 from grashof.problems import FourBar
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.errors import wrong_value
+
+_MOST = 4  # runs that are looked at more closely
+_ROUNDS = 8
+_STEPS = 60
+_LEVEL = 4e-16
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,83 +85,155 @@ def dwell(
     def curve(theta2: FloatArray) -> FloatArray:
         return np.asarray(quantity(solve_kinematics(linkage, theta2)), dtype=np.float64)
 
-    at, values = sampled(curve, start, end, closed, period)
-    if np.ptp(values) <= tolerance:
-        return Dwell(start, end, float(values.min()), float(values.max()))
-    if closed:  # twice around, as the dwell may lie across the ends
+    samples = _Samples.of(linkage, curve, (start, end), closed, period)
+    if np.ptp(samples.values) <= tolerance:
+        return Dwell(start, end, float(samples.values.min()), float(samples.values.max()))
+    first, last = samples.longest(tolerance)
+    kept = (samples.at > first) & (samples.at < last)
+    low = float(np.min(np.append(samples.values[kept], samples.counted(np.array([first, last])))))
+    turns = end - start if closed and first >= end else 0.0
+    return Dwell(first - turns, last - turns, low, low + tolerance)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Samples:
+    """A quantity at driver angles between any two of which it rises or falls all the way.
+
+    Parameters
+    ----------
+    curve : callable
+        From driver angles to the quantity.
+    period : float, optional
+        By which it may jump.
+    at, values : ndarray, shape (N,)
+        Driver angles, twice round where the driver turns fully, and the quantity, unwrapped.
+    starts : int
+        So many of them in the first turn; all where there is no other.
+    """
+
+    curve: Curve
+    period: float | None
+    at: FloatArray
+    values: FloatArray
+    starts: int
+
+    @classmethod
+    def of(
+        cls, linkage: FourBar, curve: Curve, ends: tuple[float, float], closed: bool, period: float | None
+    ) -> _Samples:
+        at = even_motion(linkage, *ends).theta2(dense_places(0.0, 1.0, closed))
+        values = counted_on(at, curve(at), period)
+        once = cls(curve, period, at, values, len(at))
+        turning = once._turning()
+        at, kept = np.unique(np.concatenate([at, turning]), return_index=True)
+        values = np.concatenate([values, once.counted(turning)])[kept]
+        if not closed:
+            return cls(curve, period, at, values, len(at))
+        # Twice around, as the dwell may lie across the ends.
         gain = 0.0 if period is None else period * np.round((values[-1] - values[0]) / period)
-        at, values = np.concatenate([at, at[1:] + end - start]), np.concatenate([values, values[1:] + gain])
-    first, last = _longest_run(at, values, tolerance)
-    found = _widened(curve, at, values, first, last, tolerance, period)
-    turns = end - start if closed and found.start >= end else 0.0
-    return replace(found, start=found.start - turns, end=found.end - turns)
+        twice = np.concatenate([at, at[1:] + (ends[1] - ends[0])])
+        return cls(curve, period, twice, np.concatenate([values, values[1:] + gain]), len(at))
+
+    def counted(self, places: FloatArray) -> FloatArray:
+        """The quantity at driver angles, counted on as the samples are."""
+        found = self.curve(places)
+        if self.period is not None:
+            near = np.interp(places, self.at, self.values)
+            found = found - self.period * np.round((found - near) / self.period)
+        return np.asarray(found)
+
+    def _turning(self) -> FloatArray:
+        """Driver angles at which the quantity is greatest or least beside others."""
+        rises = np.diff(self.values) > 0
+        turns = np.flatnonzero(rises[1:] != rises[:-1]) + 1
+        if not turns.size:
+            return self.at[:0]
+        low, high = self.at[turns - 1][:, None], self.at[turns + 1][:, None]
+        sign = np.where(rises[turns - 1], 1.0, -1.0)[:, None]
+
+        def heights(share: FloatArray) -> FloatArray:
+            places = low + (high - low) * share
+            return sign * self.counted(places.ravel()).reshape(places.shape)
+
+        share = greatest(heights, np.linspace(0, 1, 9), most=1)[1]
+        return np.asarray(low[:, 0] + (high - low)[:, 0] * share)
+
+    def longest(self, tolerance: float) -> tuple[float, float]:
+        """Both ends of the longest part in which the quantity varies by no more than the tolerance."""
+        last, edge = _runs(self.values, tolerance)
+        after = np.minimum(last + 1, len(last) - 1)
+        step = self.values[after] - self.values[last]
+        share = np.divide(edge - self.values[last], step, out=np.zeros(len(step)), where=step != 0)
+        length = (self.at[last] + share * (self.at[after] - self.at[last]) - self.at)[: self.starts]
+        beside = np.pad(length, 1, constant_values=-np.inf)
+        summits = np.flatnonzero((length >= beside[:-2]) & (length >= beside[2:]))
+        top = summits[np.argsort(-length[summits], kind="stable")[:_MOST]]
+        low, high = self.at[np.maximum(top - 1, 0)][:, None], self.at[top + 1][:, None]
+
+        def lengths(share: FloatArray) -> FloatArray:
+            places = low + (high - low) * share
+            return self._ends(places.ravel(), last, tolerance).reshape(places.shape) - places
+
+        found, share = greatest(lengths, np.linspace(0, 1, 9), most=2, rounds=_ROUNDS)
+        best = int(np.argmax(found))
+        start = float(low[best, 0] + (high - low)[best, 0] * share[best])
+        return start, start + float(found[best])
+
+    def _ends(self, starts: FloatArray, last: IntArray, tolerance: float) -> FloatArray:
+        """Where the quantity leaves a band of that width, for each start; `last` are samples before that."""
+        index = np.clip(np.searchsorted(self.at, starts, side="right") - 1, 0, len(self.at) - 2)
+        values = self.counted(starts)
+        before, edge = np.empty(len(starts), dtype=np.int64), np.empty(len(starts))
+        for k, (cell, value) in enumerate(zip(index, values, strict=True)):
+            beyond = self.values[cell + 1 : last[cell + 1] + 2]
+            most, least = (each.accumulate(np.append(value, beyond)) for each in (np.maximum, np.minimum))
+            within = int(np.searchsorted(most - least, tolerance, side="right")) - 1
+            before[k] = cell + within
+            rises = within < len(beyond) and beyond[within] > most[within]
+            edge[k] = least[within] + tolerance if rises else most[within] - tolerance
+        after = np.minimum(before + 1, len(self.at) - 1)
+        low, high = np.maximum(self.at[before], starts), self.at[after]
+        return self._crossing(edge, low, high)
+
+    def _crossing(self, edge: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
+        """Where the quantity is at an edge, between angles on either side of it; the Illinois method."""
+        below, above = self.counted(low) - edge, self.counted(high) - edge
+        again, rounding = np.zeros(len(edge)), _LEVEL * np.abs(self.values).max()
+        for _ in range(_STEPS):
+            with np.errstate(divide="ignore", invalid="ignore"):
+                share = np.clip(np.nan_to_num(below / (below - above), nan=0.5), 0.0, 1.0)
+            middle = low + (high - low) * share
+            value = self.counted(middle) - edge
+            if (np.abs(value) <= rounding).all():
+                break
+            lowers = (value > 0) == (above > 0)  # the upper end; twice running, the other counts half
+            side = np.where(lowers, 1.0, -1.0)
+            half = np.where(again == side, 0.5, 1.0)
+            low, high = np.where(lowers, low, middle), np.where(lowers, middle, high)
+            below, above = np.where(lowers, below * half, value), np.where(lowers, value, above * half)
+            again = side
+        return np.asarray(middle)
 
 
-def _longest_run(at: FloatArray, values: FloatArray, tolerance: float) -> tuple[int, int]:
-    """First and last sample of the longest run that stays within the tolerance."""
+def _runs(values: FloatArray, tolerance: float) -> tuple[IntArray, FloatArray]:
+    """For each sample the last of those from it on that keep within a band, and the edge crossed then."""
     least: deque[int] = deque()
     most: deque[int] = deque()
-    first, longest = 0, (0, 0)
-    for last, value in enumerate(values):
-        while least and values[least[-1]] >= value:
+    last, edge = np.full(len(values), len(values) - 1), np.full(len(values), np.nan)
+    first, known = 0, values.tolist()
+    for now, value in enumerate(known):
+        while least and known[least[-1]] >= value:
             least.pop()
-        while most and values[most[-1]] <= value:
+        while most and known[most[-1]] <= value:
             most.pop()
-        least.append(last)
-        most.append(last)
-        while values[most[0]] - values[least[0]] > tolerance:
+        least.append(now)
+        most.append(now)
+        while known[most[0]] - known[least[0]] > tolerance:
+            last[first] = now - 1
+            edge[first] = known[least[0]] + tolerance if most[0] == now else known[most[0]] - tolerance
             first += 1
             if least[0] < first:
                 least.popleft()
             if most[0] < first:
                 most.popleft()
-        if at[last] - at[first] > at[longest[1]] - at[longest[0]]:
-            longest = first, last
-    return longest
-
-
-def _widened(
-    curve: Curve,
-    at: FloatArray,
-    values: FloatArray,
-    first: int,
-    last: int,
-    tolerance: float,
-    period: float | None,
-) -> Dwell:
-    """The dwell about a run of samples: the best place of the band, and its ends between the samples."""
-    middle = (first + last) // 2
-
-    def counted(places: FloatArray) -> FloatArray:
-        found = np.asarray(curve(places), dtype=np.float64)
-        if period is not None:
-            found = found - period * np.round((found - np.interp(places, at, values)) / period)
-        return found
-
-    def beyond(place: float, edge: float) -> float:
-        return float(counted(np.array([place]))[0]) - edge
-
-    def end_of(band: float, inside: int, step: int) -> float:
-        while 0 <= inside + step < len(at) and band <= values[inside + step] <= band + tolerance:
-            inside += step
-        if not 0 <= inside + step < len(at):
-            return float(at[inside])
-        edge = band if values[inside + step] < band else band + tolerance
-        if (values[inside] - edge) * (values[inside + step] - edge) >= 0:
-            return float(at[inside])
-        return float(scipy.optimize.brentq(beyond, at[inside], at[inside + step], args=(edge,), xtol=1e-14))
-
-    def ends(band: float) -> tuple[float, float]:
-        return end_of(band, middle, -1), end_of(band, middle, 1)
-
-    inner = extremes_of(counted, at[first], at[last])
-    low, high = sorted((inner.high - tolerance, inner.low))
-
-    def length(band: float) -> float:
-        start, end = ends(band)
-        return end - start
-
-    found = scipy.optimize.minimize_scalar(lambda band: -length(band), bounds=(low, high), method="bounded")
-    band = max((low, high, float(found.x)), key=length)
-    start, end = ends(band)
-    return Dwell(start, end, band, band + tolerance)
+    return last.astype(np.int64), edge

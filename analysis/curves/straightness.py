@@ -12,7 +12,7 @@ from grashof.analysis.four_bar.even_motion import EvenMotion, even_motion
 from grashof.analysis.four_bar.mobility import full_rotation
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.numerics.peaks import greatest, own
-from grashof.analysis.numerics.quadrature import NODES, WEIGHTS, Panels, gauss_legendre, integrate
+from grashof.analysis.numerics.quadrature import Panels, gauss_legendre, integrate
 from grashof.problems import AssemblyError, FourBar
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, frozen_array
 from grashof.problems.values.errors import ProblemError
@@ -275,14 +275,10 @@ class _Path:
     def _gone(self, share: FloatArray) -> FloatArray:
         """Length of the path from its start, and integrals over it, shape (6, K)."""
         turns = np.floor(share)
-        rest, edges = share - turns, self.panels.edges
-        index = np.clip(np.searchsorted(edges, rest, side="right") - 1, 0, len(edges) - 2)
-        half = (rest - edges[index]) / 2
-        place = edges[index, None] + half[:, None] * (1 + NODES)
-        values = _moments(self.linkage, self.motion, self.origin, place.ravel()).reshape(-1, *place.shape)
-        part = np.where(half > 0, values @ WEIGHTS * half, 0.0)
-        before = np.cumsum(self.panels.parts, axis=1) - self.panels.parts
-        return np.asarray(before[:, index] + part + self.panels.total[:, None] * turns)
+        inside = self.panels.until(
+            lambda at: _moments(self.linkage, self.motion, self.origin, at), share - turns
+        )
+        return inside + self.panels.total[:, None] * turns
 
 
 def _lowest_bracket(

@@ -11,9 +11,15 @@ import scipy
 from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.loads import Loads, cross, turned
 from grashof.analysis.forces.mass import Body, Masses
-from grashof.analysis.four_bar.kinematics import Kinematics
-from grashof.problems import FourBar, ProblemError, SolverError
-from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.analysis.four_bar.even_motion import even_motion
+from grashof.analysis.four_bar.extremes import extremes_of
+from grashof.analysis.four_bar.kinematics import Kinematics, solve_kinematics
+from grashof.analysis.four_bar.means import mean_over
+from grashof.analysis.four_bar.mobility import full_rotation
+from grashof.analysis.numerics.minimax import least_peak
+from grashof.analysis.numerics.quadrature import Curve
+from grashof.problems import AssemblyError, FourBar, ProblemError, SolverError
+from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 from grashof.problems.values.errors import wrong_value
 
 
@@ -103,7 +109,9 @@ def balance_force(
 def balance_torque(
     state: Kinematics, masses: Masses, loads: Loads, radius: float, measure: str = "rms"
 ) -> TorqueBalance:
-    """The counterweight on the crank that makes the drive torque most even, as on a pumpjack.
+    """The counterweight on the crank that makes samples of the drive torque most even, as on a pumpjack.
+
+    `balance_turn` does so for the torque between samples, too.
 
     Parameters
     ----------
@@ -132,24 +140,127 @@ def balance_torque(
     components of m r: least squares, or a linear programme for the peak. With friction in
     proportion to the joint forces the result is optimal only nearly.
     """
-    gravity = loads.gravity_vector()
-    if not gravity.any():
-        raise ProblemError("gravity is zero, so no counterweight can work against the torque")
+    gravity = _acting(loads)
     if np.ndim(state.theta2) != 1 or np.any(state.alpha2 != 0):
         raise ProblemError("state is not a turn of a single linkage at steady speed")
     before = inverse_dynamics(state, masses, loads).torque
-    effects = np.stack(
-        [-cross(turned(np.array(unit), state.theta2), gravity) for unit in ((1.0, 0.0), (0.0, 1.0))], axis=-1
-    )
+    effects = _effects(gravity, state.theta2).T
     if measure == "rms":
         moment = np.linalg.lstsq(effects, -before, rcond=None)[0]
     elif measure == "peak":
         moment = _least_peak(effects, before)
     else:
         raise wrong_value("measure", measure, "'rms' or 'peak'")
+    return _balanced(state, masses, loads, moment, radius)
+
+
+def balance_turn(
+    linkage: FourBar, masses: Masses, omega2: float, loads: Loads, radius: float, measure: str = "rms"
+) -> TorqueBalance:
+    """The counterweight on the crank that makes the drive torque of a turn most even.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        A single linkage whose driver turns fully.
+    masses : Masses
+    omega2 : float, rad/s
+        Steady.
+    loads, radius, measure
+        As for `balance_torque`.
+
+    Returns
+    -------
+    TorqueBalance
+        With the torques at every degree of the driver, from 0 to 360.
+
+    Raises
+    ------
+    AssemblyError
+        The driver does not turn fully.
+    ProblemError
+        No gravity, or another measure.
+
+    Notes
+    -----
+    As `balance_torque`, with integrals over the turn that are refined until they stay as they are; or for
+    the peak over driver angles to which those of the peaks that are left are added until none is higher
+    (an exchange method: Hettich & Kortanek 1993, *SIAM Rev.* 35(3), 380-429).
+
+    Examples
+    --------
+    >>> from grashof.analysis.forces.mass import uniform_bars
+    >>> jack = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
+    >>> bars, weight = uniform_bars(jack, (312, 312, 314)), Loads(gravity=(0, -9.81))
+    >>> found = balance_turn(jack, bars, 2 * np.pi / 3, weight, radius=1.0, measure="peak")
+    >>> [float(np.abs(torque).max().round()) for torque in (found.torque_before, found.torque_after)]
+    [23743.0, 3534.0]
+    """
+    gravity = _acting(loads)
+    if not full_rotation(linkage):
+        raise AssemblyError("the driver does not turn fully, so no counterweight evens out a turn of it")
+
+    def torque(theta2: FloatArray) -> FloatArray:
+        return inverse_dynamics(solve_kinematics(linkage, theta2, omega2), masses, loads).torque
+
+    def effects(theta2: FloatArray) -> FloatArray:
+        return _effects(gravity, theta2)
+
+    if measure == "rms":
+        moment = _least_rms(linkage, torque, effects)
+    elif measure == "peak":
+        moment = _least_peak_over_turn(linkage, torque, effects)
+    else:
+        raise wrong_value("measure", measure, "'rms' or 'peak'")
+    state = solve_kinematics(linkage, np.radians(np.arange(361)), omega2)
+    return _balanced(state, masses, loads, moment, radius)
+
+
+def _acting(loads: Loads) -> FloatArray:
+    gravity = loads.gravity_vector()
+    if not gravity.any():
+        raise ProblemError("gravity is zero, so no counterweight can work against the torque")
+    return gravity
+
+
+def _effects(gravity: FloatArray, theta2: FloatArray) -> FloatArray:
+    """Torque for a unit of each component of mass times place, shape (2, N)."""
+    return np.stack([-cross(turned(np.array(unit), theta2), gravity) for unit in ((1.0, 0.0), (0.0, 1.0))])
+
+
+def _balanced(
+    state: Kinematics, masses: Masses, loads: Loads, moment: FloatArray, radius: float
+) -> TorqueBalance:
     weight = _counterweight(moment[0] + 1j * moment[1], radius)
     whole = Masses(masses.crank + weight, masses.coupler, masses.output)
-    return TorqueBalance(weight, whole, before, inverse_dynamics(state, whole, loads).torque)
+    before, after = (inverse_dynamics(state, each, loads).torque for each in (masses, whole))
+    return TorqueBalance(weight, whole, before, after)
+
+
+def _least_rms(linkage: FourBar, torque: Curve, effects: Curve) -> FloatArray:
+    """Moment m r with the least root mean square of torque + effects m r over the turn."""
+
+    def products(theta2: FloatArray) -> FloatArray:
+        each = effects(theta2)
+        return np.concatenate([each * torque(theta2), each[:1] * each, each[1:] * each])
+
+    (fx, fy, *square), _ = mean_over(linkage, products, 0.0, TURN)
+    return np.asarray(np.linalg.solve(np.reshape(square, (2, 2)), [-fx, -fy]))
+
+
+def _least_peak_over_turn(linkage: FourBar, torque: Curve, effects: Curve) -> FloatArray:
+    """Moment m r with the least peak of |torque + effects m r| over the turn."""
+    motion = even_motion(linkage, 0.0, TURN)
+
+    def outermost(curve: Curve) -> tuple[float, float]:
+        found = extremes_of(curve, 0.0, 1.0, closed=True)
+        return found.at_low, found.at_high
+
+    def base(share: FloatArray) -> FloatArray:
+        return torque(motion.theta2(share))
+
+    found = least_peak(base, lambda share: effects(motion.theta2(share)).T, 0.0, 1.0, outermost)
+    return found.parameters
 
 
 def _least_peak(effects: FloatArray, torque: FloatArray) -> FloatArray:

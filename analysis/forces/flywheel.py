@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 
 from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.loads import Loads
 from grashof.analysis.forces.mass import Masses
-from grashof.analysis.four_bar.extremes import extremes_of
+from grashof.analysis.four_bar.even_motion import even_motion
 from grashof.analysis.four_bar.kinematics import solve_kinematics
 from grashof.analysis.four_bar.mobility import full_rotation
+from grashof.analysis.numerics.quadrature import gauss_legendre, held, integrate
 from grashof.problems import AssemblyError, FourBar, ProblemError
+from grashof.problems.values.arrays import TURN, FloatArray
 
-_SAMPLES = 1440
+_PANELS = 36
+_HALVINGS = 60
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +73,8 @@ def size_flywheel(
     The drive gives the mean of the torque that a steady turn takes; the flywheel gives the rest.
     Its energy is the range of the integral of torque less mean over the turn, and
     inertia = energy / (fluctuation omega2^2) (Norton, *Design of Machinery*, sec. 11.11). As the
-    torque is that of a steady speed this holds for small fluctuations.
+    torque is that of a steady speed this holds for small fluctuations. Integrals are refined until they
+    stay as they are; the energy is greatest and least where the torque passes through its mean.
 
     Examples
     --------
@@ -88,11 +92,35 @@ def size_flywheel(
             f"omega2 is {omega2!r} and fluctuation {fluctuation!r}; they must be a speed other than 0 and "
             "a share above 0 and below 2"
         )
-    theta2 = np.linspace(0, 2 * np.pi, _SAMPLES + 1)
-    torque = inverse_dynamics(solve_kinematics(linkage, theta2, omega2), masses, loads).torque
-    torque[-1] = torque[0]
-    mean = float(torque[:-1].mean())
+    motion = even_motion(linkage, 0.0, TURN)
+
+    def torque(share: FloatArray) -> FloatArray:
+        state = solve_kinematics(linkage, motion.theta2(share), omega2)
+        return inverse_dynamics(state, masses, loads).torque
+
+    def work(share: FloatArray) -> FloatArray:
+        return torque(share) * motion.rate(share)
+
+    panels = integrate(work, motion.edges(_PANELS))
+    mean = held(float(panels.total) / TURN, 2 * float(panels.error) / TURN)
+    samples = np.concatenate([[0.0], gauss_legendre(panels.edges)[0], [1.0]])
+    at = np.append(0.0, _passages(lambda share: mean - torque(share), samples))
     # What the drive gives beyond what the turn takes, added up, is the energy of the flywheel.
-    gained = scipy.interpolate.CubicSpline(theta2, mean - torque, bc_type="periodic").antiderivative()
-    found = extremes_of(gained, 0.0, 2 * np.pi)
-    return Flywheel(found.stroke / (fluctuation * omega2**2), found.stroke, mean, found.at_low, found.at_high)
+    theta2 = motion.theta2(at)
+    gained = mean * theta2 - panels.until(work, at)
+    least, most = (int(choose(gained)) for choose in (np.argmin, np.argmax))
+    energy = float(gained[most] - gained[least])
+    slowest, fastest = theta2[[least, most]].tolist()
+    return Flywheel(energy / (fluctuation * omega2**2), energy, mean, slowest, fastest)
+
+
+def _passages(curve: Callable[[FloatArray], FloatArray], places: FloatArray) -> FloatArray:
+    """Where a curve changes sign, smoothly or not, by halving between places where it is sampled."""
+    positive = curve(places) > 0
+    changes = np.flatnonzero(positive[1:] != positive[:-1])
+    low, high, rises = places[changes], places[changes + 1], positive[changes + 1]
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        beyond = (curve(middle) > 0) == rises
+        low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
+    return np.asarray((low + high) / 2)

@@ -246,7 +246,7 @@ def _outermost(
     inner = heights[1:-1]
     peaks = np.flatnonzero((inner >= heights[:-2]) & (inner >= heights[2:])) + 1
     if closed:
-        peaks = np.append(peaks, 0)
+        peaks = np.append(peaks, [0, len(at) - 1])
     for peak in peaks[np.argsort(-heights[peaks], kind="stable")[:_CANDIDATES]]:
         near = sign * heights[peak]
 
@@ -273,6 +273,8 @@ def _stationary(curve: Curve, at: FloatArray, peak: int, closed: bool) -> list[f
             low, high = max(low, at[0]), min(high, at[-1])
         values = curve((low + high) / 2 + (high - low) / 2 * _NODES)
         if not np.isfinite(values).all():
+            if closed:  # it is not known beyond its ends
+                return _stationary(curve, at, peak, closed=False)
             continue
         terms = chebyshev.chebfit(_NODES, values, _DEGREE)
         if np.abs(terms[-3:]).max() <= 1e-14 * np.abs(values).max() + 1e-9 * np.ptp(values) * (width == 1):

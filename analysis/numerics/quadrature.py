@@ -45,6 +45,15 @@ class Panels:
         """Integral over all panels, shape (...)."""
         return np.asarray(self.parts.sum(axis=-1))
 
+    def until(self, curve: Curve, places: FloatArray) -> FloatArray:
+        """Integral of the curve from the first edge to places between the edges, ascending; (..., K)."""
+        index = np.clip(np.searchsorted(self.edges, places, side="right") - 1, 0, len(self.edges) - 2)
+        half = (places - self.edges[index]) / 2
+        values = curve((self.edges[index, None] + half[:, None] * (1 + NODES)).ravel())
+        part = values.reshape(*values.shape[:-1], len(places), len(NODES)) @ WEIGHTS * half
+        before = np.cumsum(self.parts, axis=-1) - self.parts
+        return np.asarray(before[..., index] + np.where(half > 0, part, 0.0))
+
 
 def integrate(curve: Curve, edges: npt.ArrayLike) -> Panels:
     """Integral of one curve or several, by panels that are halved until the sum stays as it is.
