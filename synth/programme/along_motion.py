@@ -84,8 +84,8 @@ def magnitudes(
     ends = theta2[:, :1], last[:, None]
     with np.errstate(all="ignore"):
         driver = driver_at(*drive_of(problem), share, *ends, direction[:, None])
-        places = (Vector(each.real, each.imag) for each in (o2, ground))
-        at = Instant.of(*places, lengths, Vector(arm.real, arm.imag), assembly[:, None], driver)
+        base, along, point = (Vector(each.real, each.imag) for each in (o2, ground, arm))
+        at = Instant.of(base, along, lengths, point, assembly[:, None], driver)
         values = ALONG[key](at, Burden.of(problem))
         found = [np.hypot(v.x, v.y) if isinstance(v, Vector) else np.abs(v) for v in values]
     greatest: FloatArray = np.nan_to_num(np.max(found, axis=0), nan=np.inf)

@@ -80,7 +80,7 @@ class Push:
 class Pull:
     """A spring or damper between places of two links, in reference torques and sizes."""
 
-    links: Numbers
+    links: tuple[int, ...]
     places: tuple[Numbers, ...]
     stiffness: float
     free_length: float
@@ -131,8 +131,9 @@ class Burden:
             weight=_scaled(spec.gravity, size / unit),
             masses=tuple(_masses(problem, frame.scale)),
             pushes=tuple(_push(load, frame, size / unit, 1 / unit) for load in spec.loads),
-            pulls=tuple(
-                _pull(each, frame, size**2 / unit, spec.omega2) for each in (*spec.springs, *spec.dampers)
+            pulls=(
+                *(_pull(each, frame, size**2 / unit, spec.omega2) for each in spec.springs),
+                *(_pull(each, frame, size**2 / unit, spec.omega2) for each in spec.dampers),
             ),
             windings=tuple(
                 (JOINTS.index(each.between), each.stiffness / unit, float(np.radians(each.free_angle_deg)))

@@ -68,7 +68,7 @@ def _forces(at: Instant, burden: Burden) -> Iterator[tuple[int, Vector, Vector]]
                 force = (force.x * along + force.y * along.left) / np.sqrt(along.square)
             yield push.link, at.on_link(push.link, push.at), -force
     for pull in burden.pulls:
-        first, second = (at.place(*end) for end in zip(pull.links, pull.places, strict=True))
+        first, second = map(at.place, pull.links, pull.places)
         rates = [
             at.velocity(link, at.on_link(link, place)) if link != 1 else Vector(0.0, 0.0)
             for link, place in zip(pull.links, pull.places, strict=True)

@@ -16,9 +16,7 @@ from grashof.problems.values.motor import MotorSpec
 from grashof.synth.programme.instant import Moment
 
 
-def driver_at(
-    motor: MotorSpec | None, omega2: float, share: Any, first: Any, last: Any, sense: Any
-) -> Moment:
+def driver_at(motor: MotorSpec | None, omega2: Any, share: Any, first: Any, last: Any, sense: Any) -> Moment:
     """The driver at shares of the time from the first target to the last.
 
     Parameters

@@ -203,8 +203,8 @@ def _of_uneven_drive(part: _Range, quantity: Quantity) -> Extremes:
         values = counted_on(along[inside], curve(stretch[inside]), None)
         found.append(refined(curve, stretch[inside], values))
     least, most = min(found, key=lambda each: each.low), max(found, key=lambda each: each.high)
-    places = law.at_place(np.array([least.at_low, most.at_high])).theta2
-    return Extremes(least.low, most.high, *places.tolist())
+    at_low, at_high = law.at_place(np.array([least.at_low, most.at_high])).theta2.tolist()
+    return Extremes(least.low, most.high, at_low, at_high)
 
 
 def _counted(angle: float) -> float:
