@@ -31,6 +31,7 @@ from grashof.analysis.curves.line_and_circle import (
 from grashof.analysis.forces.balancing import ForceBalance, TorqueBalance, balance_force, balance_torque
 from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics, virtual_work_torque
 from grashof.analysis.forces.energy import Energies, Powers, energies, mechanical_energy, powers
+from grashof.analysis.forces.equilibrium import Equilibria, equilibria
 from grashof.analysis.forces.flywheel import Flywheel, size_flywheel
 from grashof.analysis.forces.free_response import (
     Ending,
@@ -134,6 +135,7 @@ __all__ = [
     "Dynamics",
     "Ending",
     "Energies",
+    "Equilibria",
     "Extremes",
     "Flywheel",
     "ForceBalance",
@@ -196,6 +198,7 @@ __all__ = [
     "driver_samples",
     "dwell",
     "energies",
+    "equilibria",
     "extremes",
     "extremes_of",
     "fit_polynomial",
