@@ -26,6 +26,7 @@ from grashof.analysis.forces.balancing import (
 )
 from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics, virtual_work_torque
 from grashof.analysis.forces.energy import Energies, Powers, energies, mechanical_energy, powers
+from grashof.analysis.forces.equilibrium import Equilibria, equilibria
 from grashof.analysis.forces.flywheel import Flywheel, size_flywheel
 from grashof.analysis.forces.free_response import Ending, FreeResponse, free_response, generalised_inertia
 from grashof.analysis.forces.loads import (
@@ -121,6 +122,7 @@ __all__ = [
     "Dynamics",
     "Ending",
     "Energies",
+    "Equilibria",
     "EvenMotion",
     "Extremes",
     "Flywheel",
@@ -187,6 +189,7 @@ __all__ = [
     "driver_samples",
     "dwell",
     "energies",
+    "equilibria",
     "even_motion",
     "extremes",
     "extremes_of",

@@ -298,14 +298,14 @@ def _equation_of_motion(
 def _scaled(unit: Kinematics, omega2: FloatArray, alpha2: FloatArray) -> Kinematics:
     """The same position with the driver at another speed and acceleration; without jerks."""
     none = np.zeros(omega2.shape)
+    alpha3, alpha4 = (
+        omega2**2 * bend + alpha2 * rate
+        for bend, rate in ((unit.alpha3, unit.omega3), (unit.alpha4, unit.omega4))
+    )
     return Kinematics(
         unit.linkage, unit.theta2, unit.theta3, unit.theta4,
-        *(omega2 * rate for rate in (unit.omega2, unit.omega3, unit.omega4)),
-        alpha2, *(
-            omega2**2 * bend + alpha2 * rate
-            for bend, rate in ((unit.alpha3, unit.omega3), (unit.alpha4, unit.omega4))
-        ),
-        none, none, none,
+        omega2 * unit.omega2, omega2 * unit.omega3, omega2 * unit.omega4,
+        alpha2, alpha3, alpha4, none, none, none,
     )  # fmt: skip
 
 

@@ -55,11 +55,8 @@ class Panel:
         share, once = (time - self.start) / half - 1, legendre.legint(self.terms, lbnd=-1)
         twice = legendre.legint(once, lbnd=-1)
         place = self.place + self.speed * (time - self.start) + half**2 * legendre.legval(share, twice)
-        return (
-            place,
-            self.speed + half * legendre.legval(share, once),
-            np.asarray(legendre.legval(share, self.terms)),
-        )
+        speed = self.speed + half * legendre.legval(share, once)
+        return np.asarray(place), np.asarray(speed), np.asarray(legendre.legval(share, self.terms))
 
     def last(self) -> tuple[float, float]:
         """Place and speed at its end."""
@@ -149,7 +146,7 @@ def integrate_motion(
     if not np.isfinite(guess):
         raise SolverError("the motion could not be integrated: it has no acceleration at its start")
     length, panels, now = _first_length(span, speed, guess), list[Panel](), start
-    armed = events is not None and _values(events, place, speed) > 0
+    armed = np.zeros(0, dtype=bool) if events is None else _values(events, place, speed) > 0
     fastest, terms = abs(speed), np.array([guess])
     while now < end:
         length = min(length, end - now)
@@ -195,7 +192,7 @@ def _integration() -> tuple[FloatArray, FloatArray, FloatArray]:
     integrated = np.stack(
         [legendre.legval(nodes, legendre.legint(row, lbnd=-1)) for row in np.eye(_NODES)], axis=-1
     )
-    return nodes, to_terms, integrated @ to_terms
+    return np.asarray(nodes), np.asarray(to_terms), np.asarray(integrated @ to_terms)
 
 
 _AT, _TO_TERMS, _INTEGRAL = _integration()
@@ -211,7 +208,7 @@ def _panel(
     """
     half = length / 2
     time = now + half * (1 + _AT)
-    found = np.broadcast_to(legendre.legval(_AT, terms), _AT.shape)
+    found = np.broadcast_to(np.asarray(legendre.legval(_AT, terms), dtype=np.float64), _AT.shape)
     before, inverse = np.inf, None
     for sweep in range(1, _SWEEPS + 1):
         gained = half * (_INTEGRAL @ found)

@@ -282,13 +282,34 @@ def analyse(
         float | None,
         typer.Option(help="Report how long link 4 dwells in a band so wide.", show_default=False),
     ] = None,
+    release: Annotated[
+        float | None,
+        typer.Option(
+            metavar="DEG",
+            help="Report the free motion from this driver angle, from rest by default.",
+            show_default=False,
+        ),
+    ] = None,
+    release_rpm: Annotated[
+        float | None, typer.Option(help="Speed of the driver at the release.", show_default=False)
+    ] = None,
+    seconds: Annotated[float | None, typer.Option(help="Length of that motion, s.", show_default="5")] = None,
 ) -> None:
     """Report motion and forces of LINKAGE; write tables, a summary, a page and plots.
 
     Exit code 0: done; 2: bad input; 3: environment error.
     """
     with _errors_told():
-        commands.analyse(linkage, out, pictures=pictures, speed_rpm=speed_rpm, dwell_deg=dwell_deg)
+        commands.analyse(
+            linkage,
+            out,
+            pictures=pictures,
+            speed_rpm=speed_rpm,
+            dwell_deg=dwell_deg,
+            release_deg=release,
+            release_rpm=release_rpm,
+            seconds=seconds,
+        )
 
 
 @app.command()

@@ -26,11 +26,18 @@ class Asked:
         Driver angles at which the linkage is looked at closely.
     dwell_deg : float, deg, optional
         The band in which link 4 counts as dwelling.
+    release_deg, release_rpm : float, deg and rpm, optional
+        Driver angle at which the linkage is let go, and the driver's speed there: none by default.
+    seconds : float, s, optional
+        How long that motion is followed.
     """
 
     speed_rpm: float | None = None
     at_deg: tuple[float, ...] = ()
     dwell_deg: float | None = None
+    release_deg: float | None = None
+    release_rpm: float | None = None
+    seconds: float | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

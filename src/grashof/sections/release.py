@@ -1,0 +1,99 @@
+"""How the linkage moves when it is let go: from rest, or coasting from a speed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pandas as pd
+
+from grashof.analysis import Energies, FreeResponse, Masses, energies, free_response
+from grashof.problems import AssemblyError, ProblemError, SolverError
+from grashof.problems.values.arrays import TURN
+from grashof.problems.values.checks import number_within
+from grashof.study.section import Fact, Plot, Section
+from grashof.study.study import LinkageStudy
+
+SECONDS = 5.0
+_TIME = "time (s)"
+_ROWS = (200, 2000)  # fewest and most steps of the table
+_PER_SECOND = 100
+_LONGEST = 3600.0  # s
+
+
+def release(study: LinkageStudy) -> Section | None:
+    """Free motion from a driver angle; None unless it is asked for."""
+    asked = study.asked
+    if asked.release_deg is None:
+        if asked.release_rpm is not None:
+            raise ProblemError("release_rpm does not go without release; it is the speed at that angle")
+        return None
+    given, masses = study.spec.dynamics, study.masses
+    if masses is None or given is None:
+        raise ProblemError("release needs masses; [dynamics] states none")
+    if any(load.over == "time" for load in given.loads):
+        raise ProblemError("release does not go with a load over time; it may be over theta2 or theta4")
+    found = _motion(study, masses, asked.release_deg)
+    state, joule, parts = found.state, study.metre**2, energies(found.state, masses, study.loads)
+    theta2 = np.degrees(state.theta2)
+    p = state.p.position
+    table = pd.DataFrame({
+        "time": found.time,
+        "theta2_deg": theta2,
+        "omega2": state.omega2,
+        "alpha2": state.alpha2,
+        "theta3_deg": np.degrees(np.unwrap(state.theta3)),
+        "theta4_deg": np.degrees(np.unwrap(state.theta4)),
+        "p_x": p[:, 0],
+        "p_y": p[:, 1],
+        "kinetic": parts.kinetic.sum(axis=0) * joule,
+        "weights": parts.weight * joule,
+        "springs": parts.springs * joule,
+        "energy": parts.total * joule,
+    })  # fmt: skip
+
+    def plot(key: str, title: str, unit: str, **columns: str) -> Plot:
+        lines = {label: table[column].to_numpy() for label, column in columns.items()}
+        return Plot(key, title, unit, lines, found.time, _TIME, angles=theta2)
+
+    plots = (
+        plot("release-angle", "driver angle after the release", "deg", theta2="theta2_deg"),
+        plot("release-speed", "speed of the driver after the release", "rad/s", omega2="omega2"),
+        plot("release-energy", "energy after the release", "J", kinetic="kinetic", sum="energy"),
+        Plot("release-path", "path of P after the release", study.spec.unit, {"P": p}, angles=theta2),
+    )
+    facts = tuple(_facts(study, found, parts))
+    notes = ("the driver is free; a motor that the file states is uncoupled",)
+    return Section("release", "Free motion", facts, {"release": table}, plots, notes)
+
+
+def _motion(study: LinkageStudy, masses: Masses, release_deg: float) -> FreeResponse:
+    theta2 = np.radians(number_within(release_deg, -1e6, 1e6, "release"))
+    speed = study.asked.release_rpm or 0.0
+    omega2 = number_within(speed, -1e6, 1e6, "release_rpm") * TURN / 60
+    seconds = SECONDS if study.asked.seconds is None else study.asked.seconds
+    seconds = number_within(seconds, 1e-6, _LONGEST, "seconds")
+    steps = int(np.clip(round(_PER_SECOND * seconds), *_ROWS))
+    try:
+        time = np.linspace(0.0, seconds, steps + 1)
+        return free_response(study.linkage, masses, time, float(theta2), omega2, loads=study.loads)
+    except (AssemblyError, SolverError, ProblemError) as error:
+        raise ProblemError(f"release: {error}") from None
+
+
+def _facts(study: LinkageStudy, found: FreeResponse, parts: Energies) -> Iterator[Fact]:
+    state, loads = found.state, study.loads
+    yield Fact("release_ending", "free motion ended because", str(found.ending))
+    yield Fact("release_seconds", "free motion lasted", found.end, "s")
+    turned = float(np.degrees(state.theta2[-1] - state.theta2[0]))
+    yield Fact("release_turned_deg", "driver turned by", turned, "deg")
+    kinetic = float(parts.kinetic.sum(axis=0).max())
+    change = found.energy - found.energy[0]
+    rubs = any(loads.friction.each(name).any() for name in ("viscous", "coulomb", "radius"))
+    damped = any(spring.damping for spring in loads.springs)
+    if not (rubs or damped or loads.forces or loads.moments):
+        drift = float(np.abs(change).max()) / kinetic if kinetic > 0 else 0.0
+        yield Fact("release_energy_drift", "energy kept but for a share of the kinetic energy of", drift)
+    else:
+        lost = float(-change[-1]) * study.metre**2
+        yield Fact("release_energy_lost", "energy given to loads, dampers and friction", lost, "J")

@@ -1,0 +1,140 @@
+"""Equilibrium and free motion as sections, and what is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from grashof.analysis import balance_force, stated_masses
+from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, ProblemError, load_linkage_spec
+from grashof.problems.values.acting import CounterweightSpec, FrictionSpec, LoadSpec
+from grashof.survey import Section
+
+Sections = Callable[..., dict[str, Section]]
+JACK = load_linkage_spec("pumpjack")
+TIMED = LoadSpec(2, values=((0, 1), (9, 1)), over="time")
+SMALL = LinkageSpec(
+    FourBar((0, 1.5), (4, 4.5), 1.1938, 3.7719, 3.048762),
+    "small",
+    length_unit="m",
+    dynamics=DynamicsSpec(2.0, gravity=(0, -9.81)),
+)
+
+
+def facts(section: Section) -> dict[str, Any]:
+    return {fact.key: fact.value for fact in section.facts}
+
+
+def test_it_swings_about_its_equilibrium_with_its_frequency(sections: Sections) -> None:
+    still = sections(JACK)["equilibrium"]
+    table = still.tables["equilibrium"]
+    assert table["stable"].tolist() == [False, True]
+    row = table.iloc[1]
+    moved = sections(JACK, release_deg=row["theta2_deg"] + 0.05, seconds=4.0)["release"]
+    motion = moved.tables["release"]
+    # It begins at the end of a swing.
+    phase = 2 * np.pi * row["frequency_hz"] * motion["time"]
+    expected = row["theta2_deg"] + 0.05 * np.cos(phase)
+    np.testing.assert_allclose(motion["theta2_deg"], expected, atol=1e-4)
+    assert facts(moved)["release_energy_drift"] < 1e-8
+
+
+def test_frequencies_and_energies_in_every_unit(sections: Sections) -> None:
+    linkage, inch = SMALL.linkage, 0.0254
+    small = FourBar(linkage.o2 / inch, linkage.o4 / inch, *(linkage.lengths[1:] / inch))
+    assert SMALL.dynamics is not None
+    heavy = replace(SMALL.dynamics, mass_per_length=2.0 * inch)
+    inches = sections(
+        LinkageSpec(small, "it", length_unit="in", dynamics=heavy), release_deg=30.0, seconds=1.0
+    )
+    metres = sections(SMALL, release_deg=30.0, seconds=1.0)
+    for key, name in (("equilibrium", "equilibrium"), ("release", "release")):
+        one, two = inches[key].tables[name], metres[key].tables[name]
+        for column in {"theta2_deg", "frequency_hz", "stiffness", "inertia", "omega2", "energy"} & set(one):
+            np.testing.assert_allclose(one[column], two[column], rtol=1e-8, atol=1e-9)
+
+
+def test_coasting_against_friction(sections: Sections) -> None:
+    assert SMALL.dynamics is not None
+    rubbing = replace(SMALL.dynamics, gravity=(0, 0), friction=FrictionSpec(moment=(8.0,)))
+    spec = replace(SMALL, dynamics=rubbing)
+    found = sections(spec, release_deg=10.0, release_rpm=-30.0, seconds=20.0)
+    motion, given = found["release"].tables["release"], facts(found["release"])
+    assert motion["omega2"].iloc[0] == pytest.approx(-np.pi)
+    assert given["release_ending"] == "friction brought the driver to rest"
+    assert motion["time"].iloc[-1] <= given["release_seconds"] < 20
+    lost = motion["energy"].iloc[0] - motion["energy"].iloc[-1]
+    assert given["release_energy_lost"] == pytest.approx(lost)
+    assert "equilibrium" not in found
+
+
+def test_a_balanced_linkage_rests_everywhere(sections: Sections) -> None:
+    assert SMALL.dynamics is not None
+    balanced = balance_force(SMALL.linkage, stated_masses(SMALL.linkage, SMALL.dynamics))
+    weights = tuple(
+        CounterweightSpec(link, float(body.mass), tuple(body.centre.tolist()))
+        for link, body in ((2, balanced.crank_weight), (4, balanced.output_weight))
+    )
+    spec = replace(SMALL, dynamics=replace(SMALL.dynamics, counterweights=weights))
+    assert facts(sections(spec)["equilibrium"]) == {"equilibrium_everywhere": True}
+
+
+def test_a_driver_that_swings_ends_in_a_dead_position(sections: Sections) -> None:
+    rocker = LinkageSpec(FourBar((0, 0), (4, 0), 2, 2, 3), "it", length_unit="m", dynamics=SMALL.dynamics)
+    found = sections(rocker, release_deg=60.0, release_rpm=20.0)
+    assert facts(found["release"])["release_ending"] == "the driver came to a dead position"
+    assert found["equilibrium"].tables["equilibrium"]["theta2_deg"].abs().max() < 108.3
+
+
+@pytest.mark.parametrize(
+    ("spec", "asked", "message"),
+    [
+        (replace(JACK, dynamics=None), {"release_deg": 1.0}, "release needs masses; [dynamics] states none"),
+        (JACK, {"release_rpm": 1.0}, "release_rpm does not go without release"),
+        (JACK, {"release_deg": np.nan}, "release is nan; it must be a finite number"),
+        (JACK, {"release_deg": 1.0, "release_rpm": 1e9}, "release_rpm is 1000000000; it must be from"),
+        (JACK, {"release_deg": 1.0, "seconds": 0.0}, "seconds is 0; it must be from"),
+        (JACK, {"release_deg": 1.0, "seconds": 1e9}, "seconds is 1000000000; it must be from"),
+        (
+            replace(SMALL, dynamics=DynamicsSpec(loads=(LoadSpec(2, moment=1.0),))),
+            {"release_deg": 1.0},
+            "release: the links have no inertia, so no torque gives them a motion",
+        ),
+        (
+            replace(
+                SMALL, dynamics=DynamicsSpec(1.0, loads=(LoadSpec(2, values=((0, 1), (9, 1)), over="time"),))
+            ),
+            {"release_deg": 1.0},
+            "release does not go with a load over time; it may be over theta2 or theta4",
+        ),
+        (
+            LinkageSpec(FourBar((0, 0), (4, 0), 2, 2, 3), "it", length_unit="m", dynamics=SMALL.dynamics),
+            {"release_deg": 180.0},
+            "release: the linkage cannot close at driver angle 180 deg; it closes from",
+        ),
+    ],
+)
+def test_what_is_refused(sections: Sections, spec: LinkageSpec, asked: dict[str, Any], message: str) -> None:
+    with pytest.raises(ProblemError) as error:
+        sections(spec, **asked)
+    assert message in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_options_of_the_command(grashof: Callable[..., Any], tmp_path: Path) -> None:
+    options = ("--release", "100", "--release-rpm", "-2", "--seconds", "0.5", "--dwell-deg", "1")
+    done = grashof("analyse", "pumpjack", *options)
+    assert done.exit_code == 0, done.output
+    motion = pd.read_csv(tmp_path / "pumpjack-analysis" / "table-release.csv")
+    assert motion["time"].iloc[-1] == 0.5
+    assert motion["omega2"].iloc[0] == pytest.approx(-np.pi / 15)
+    refused = grashof("analyse", "pumpjack", "--release-rpm", "3")
+    assert refused.exit_code == 2
+    told = "grashof: release_rpm does not go without release; it is the speed at that angle"
+    assert refused.stderr.strip() == told
