@@ -55,7 +55,8 @@ def _profile(motor: MotorSpec, share: Any) -> tuple[Any, Any, Any]:
     """Share of the way, with its first two derivatives by the share of the time."""
     if motor.values is not None:
         rows = np.array(motor.values)
-        return _cubics(*((rows - rows[0]) / (rows[-1] - rows[0])).T, share)
+        times, angles = ((rows - rows[0]) / (rows[-1] - rows[0])).T
+        return _cubics(times, angles, share)
     if motor.profile == "cycloid":
         phase = 2 * np.pi * share
         return share - np.sin(phase) / (2 * np.pi), 1 - np.cos(phase), 2 * np.pi * np.sin(phase)
