@@ -22,7 +22,7 @@ _DIFFERENCE = 1e-7
 _GROWTH, _SHRINK, _STEEP, _CAREFUL = 4.0, 0.4, 0.1, 0.8
 _SHORTEST = 1e-11  # of the whole time: such a panel may hold a jump of the acceleration
 _SAME = 1e-15  # sweeps that change less have settled
-_MOST = 200_000  # panels
+_MOST = 10_000  # panels: some five hundred turns
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -164,7 +164,9 @@ def integrate_motion(
             if met is not None:
                 return Path((*panels[:-1], _cut(panel, met[1])), met[0])
         if len(panels) > _MOST:
-            raise SolverError(f"the motion could not be integrated: {_MOST} steps were not enough")
+            raise SolverError(
+                f"the motion could not be integrated: {_MOST} steps reach no further than {now:.3g} s"
+            )
         now, (place, speed) = panel.end, panel.last()
         fastest, terms = max(fastest, abs(speed)), _carried_on(panel)
         length *= (
