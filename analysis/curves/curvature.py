@@ -142,4 +142,4 @@ def _slowest(linkage: FourBar, low: float, high: float) -> FloatArray:
         middle = (left + right) / 2
         up = slope(middle) > 0
         left, right = np.where(up, left, middle), np.where(up, middle, right)
-    return (left + right) / 2
+    return np.asarray((left + right) / 2)

@@ -73,7 +73,7 @@ def _from_curve(linkage: FourBar, corners: ComplexArray) -> float:
 
     def distance(share: FloatArray) -> FloatArray:
         p: ComplexArray = solve_position(linkage, motion.theta2(share[0])).p @ _COMPLEX
-        return _distances(p, corners).min(axis=1)[None]
+        return np.asarray(_distances(p, corners).min(axis=1)[None])
 
     places = np.linspace(0, 1, _CURVE + 1)
     return float(greatest(distance, places, most=_FURTHEST, rounds=_ROUNDS)[0][0])
@@ -94,7 +94,8 @@ def _from_target(linkage: FourBar, corners: ComplexArray) -> float:
         far = np.abs(points[:, None] - curve)
         beside = np.minimum(np.roll(far, 1, axis=1), np.roll(far, -1, axis=1))
         nearest = np.argpartition(np.where(far <= beside, far, np.inf), _NEAREST, axis=1)[:, :_NEAREST]
-        return _nearest(linkage, points[:, None], theta2[nearest], steps[nearest]).min(axis=1)[None]
+        far = _nearest(linkage, points[:, None], theta2[nearest], steps[nearest])
+        return np.asarray(far.min(axis=1)[None])
 
     places = np.unique(np.concatenate([np.linspace(0, gone[-1], _POLYGON + 1), gone]))
     return float(greatest(distance, places, most=_FURTHEST, rounds=_ROUNDS)[0][0])
@@ -109,7 +110,8 @@ def _nearest(linkage: FourBar, points: ComplexArray, theta2: FloatArray, reach: 
         best = np.minimum(best, np.abs(gap))
         speed, slope = np.abs(rate) ** 2, (rate.conj() * gap).real
         second = speed + (bend.conj() * gap).real
-        step = slope / np.where(second > _FLAT * speed, second, speed)
+        with np.errstate(divide="ignore", invalid="ignore"):  # in a cusp
+            step = np.nan_to_num(slope / np.where(second > _FLAT * speed, second, speed))
         theta2 = theta2 - np.clip(step, -reach, reach)
     return best
 

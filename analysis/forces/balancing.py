@@ -146,7 +146,7 @@ def balance_torque(
     before = inverse_dynamics(state, masses, loads).torque
     effects = _effects(gravity, state.theta2).T
     if measure == "rms":
-        moment = np.linalg.lstsq(effects, -before, rcond=None)[0]
+        moment = np.asarray(np.linalg.lstsq(effects, -before, rcond=None)[0], dtype=np.float64)
     elif measure == "peak":
         moment = _least_peak(effects, before)
     else:

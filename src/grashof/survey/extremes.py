@@ -3,37 +3,29 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from enum import Enum
 
 import numpy as np
 import pandas as pd
-from numpy.polynomial import chebyshev
 
 from grashof.analysis import (
     DriverLaw,
     Extremes,
     Kinematics,
     even_motion,
-    rotatability,
     solve_kinematics,
-    transmission_angle,
     transmission_extremes,
 )
 from grashof.analysis.four_bar.even_motion import EvenMotion
 from grashof.analysis.four_bar.extremes import counted_on, dense_places, refined
-from grashof.analysis.four_bar.mobility import CHANGE
-from grashof.analysis.four_bar.transmission import quality
-from grashof.problems import AssemblyError, FourBar
+from grashof.analysis.numerics.quadrature import held
+from grashof.problems import AssemblyError
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.study.quantities import Quantity
 from grashof.study.sweep import INSET, Sweep
+from grashof.survey.ends import End, end_of, rounding_of, towards_change, towards_dead
 
 _CONSTANT = 1e-12  # least and largest values apart, as a share: the quantity is constant
 _ROUNDING = 2e-15  # of a driver angle
-_ALONG = 1e-6  # half turns
-_DEAD = 1e-6  # rad
-_BEYOND = 0.1  # rad: over so much of the motion rates are continued to a change point by a polynomial of
-_DEGREE = 12
 _PARABOLAS = 1e-5, 1e-7, 1e-9  # shares of the motion
 _CELLS = ("min", "theta2_min_deg", "max", "theta2_max_deg")
 
@@ -121,21 +113,13 @@ class _Samples:
         return size <= float(np.max(quantity.of(self.sweep.state(beside)))) / 2
 
 
-class _End(Enum):
-    """What a range of the driver ends with, by how near to it rates have digits, rad."""
-
-    DEAD = INSET  # they grow without bound
-    CHANGE = 2e-3  # the motion goes on as it came, but rounding hides it
-    OPEN = 0.0  # the other half turn begins
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class _Range:
     """A range of the driver, sampled all the way and as near to its ends as rates have digits."""
 
     low: float
     high: float
-    ends: tuple[_End, _End]
+    ends: tuple[End, End]
     whole: _Samples
     inner: _Samples
     law: DriverLaw
@@ -144,8 +128,8 @@ class _Range:
     def of(cls, sweep: Sweep, low: float, high: float, law: DriverLaw) -> _Range:
         whole = _Samples.between(sweep, low, high)
         if sweep.turns:
-            return cls(low, high, (_End.OPEN, _End.OPEN), whole, whole, law)
-        ends = _kind(sweep.spec.linkage, low), _kind(sweep.spec.linkage, high)
+            return cls(low, high, (End.OPEN, End.OPEN), whole, whole, law)
+        ends = end_of(sweep.spec.linkage, low), end_of(sweep.spec.linkage, high)
         inner = _Samples.between(sweep, low + ends[0].value, high - ends[1].value)
         return cls(low, high, ends, whole, inner, law)
 
@@ -160,7 +144,7 @@ def _extreme(part: _Range, quantity: Quantity, values: FloatArray) -> dict[str, 
     try:
         found = _found(part, quantity, values)
     except AssemblyError:  # at the very end of a range
-        found = Extremes(*np.full(4, np.nan).tolist())
+        found = Extremes(np.nan, np.nan, np.nan, np.nan)
     if found is None:
         return None
     least, largest = found.low, found.high
@@ -177,13 +161,17 @@ def _extreme(part: _Range, quantity: Quantity, values: FloatArray) -> dict[str, 
 def _found(part: _Range, quantity: Quantity, values: FloatArray) -> Extremes | None:
     if quantity.key == "mu_deg":
         mu = transmission_extremes(part.whole.sweep.spec.linkage, part.low, part.high)
-        return Extremes(*np.degrees([mu.low, mu.high]).tolist(), mu.at_low, mu.at_high)
+        return Extremes(float(np.degrees(mu.low)), float(np.degrees(mu.high)), mu.at_low, mu.at_high)
     if not (quantity.position or part.law.motor.steady):
         return _of_uneven_drive(part, quantity)
-    found = part.samples(quantity).extremes(quantity, values)
-    if found is None or quantity.position or part.whole.sweep.turns:
-        return found
-    return _with_its_ends(part, quantity, found)
+    samples = part.samples(quantity)
+    if not (quantity.position and np.isnan(values).any()):
+        found = samples.extremes(quantity, values)
+        whole = found is None or samples is part.whole
+        return found if found is None or whole else _with_its_ends(part, quantity, found)
+    # No position at the change point of a kite, where A comes to lie on O4.
+    found = part.inner.extremes(quantity, part.inner.values(quantity))
+    return found if found is None else _with_its_ends(part, quantity, found)
 
 
 def _of_uneven_drive(part: _Range, quantity: Quantity) -> Extremes:
@@ -213,42 +201,26 @@ def _counted(angle: float) -> float:
 
 
 def _with_its_ends(part: _Range, quantity: Quantity, found: Extremes) -> Extremes:
-    """The extremes of a rate, with what it tends to where the motion ends."""
+    """The extremes of what may have no digits near the ends of a range, with what it tends to there."""
+
+    def curve(theta2: FloatArray) -> FloatArray:
+        return np.asarray(quantity.of(part.whole.sweep.state(theta2)), dtype=np.float64)
+
     values, places = [found.low, found.high], [found.at_low, found.at_high]
-    motion = part.inner.motion
+    if End.CHANGE in part.ends:
+        errors = [rounding_of(curve, place) for place in places]
+        if values[1] - values[0] <= sum(errors):  # constant
+            values[1] = values[0]
+        values = [held(value, error) for value, error in zip(values, errors, strict=True)]
+    motion, room = part.inner.motion, (part.high - part.low) / 4
     for near, limit, end in zip((motion.start, motion.end), (part.low, part.high), part.ends, strict=True):
-        if end is _End.OPEN:
-            continue
-        theta2, heights = _towards(part, quantity, near, limit, end)
-        for k, sign in enumerate((-1.0, 1.0)):
-            top = int(np.argmax(sign * heights))
-            if end is _End.CHANGE and sign * heights[top] > sign * values[k]:
-                values[k], places[k] = float(heights[top]), float(theta2[top])
-            elif end is _End.DEAD and places[k] == near:
-                grows = abs(heights[top]) > 1.5 * abs(values[k])
-                values[k], places[k] = np.copysign(np.inf, values[k]) if grows else values[k], limit
+        if end is End.DEAD:
+            for k in (k for k in (0, 1) if places[k] == near):
+                values[k], places[k] = towards_dead(curve, limit, near, values[k]), limit
+        elif end is End.CHANGE:
+            theta2, heights = towards_change(curve, limit, near, room)
+            for k, sign in enumerate((-1.0, 1.0)):
+                top = int(np.argmax(sign * heights))
+                if sign * heights[top] > sign * values[k]:
+                    values[k], places[k] = float(heights[top]), float(theta2[top])
     return Extremes(*values, *places)
-
-
-def _towards(
-    part: _Range, quantity: Quantity, near: float, limit: float, end: _End
-) -> tuple[FloatArray, FloatArray]:
-    """Driver angles between the end of a range and where extremes are sought, and the values of a rate."""
-    sweep, way = part.whole.sweep, near - limit
-    if end is _End.DEAD:
-        theta2 = np.array([limit + way / 16])
-        return theta2, np.asarray(quantity.of(sweep.state(theta2)), dtype=np.float64)
-    reach = min(_BEYOND, (part.high - part.low) / 4) * np.sign(way)
-    known = near + reach * (1 + chebyshev.chebpts1(_DEGREE + 1)) / 2
-    series = chebyshev.chebfit((known - near) * 2 / reach - 1, quantity.of(sweep.state(known)), _DEGREE)
-    theta2 = np.linspace(limit, near, 65)
-    return theta2, np.asarray(chebyshev.chebval((theta2 - near) * 2 / reach - 1, series))
-
-
-def _kind(linkage: FourBar, limit: float) -> _End:
-    """What the end of a range is."""
-    half_turns = (limit - float(linkage.theta1)) / np.pi
-    near, folded = abs(half_turns - round(half_turns)) < _ALONG, round(half_turns) % 2 == 0
-    if near and abs(rotatability(linkage)[1 if folded else 0]) <= CHANGE:
-        return _End.CHANGE
-    return _End.DEAD if quality(transmission_angle(linkage, limit)) < _DEAD else _End.OPEN

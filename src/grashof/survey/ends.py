@@ -1,0 +1,80 @@
+"""What rates and forces tend to where a range of the driver ends, where rounding hides them."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from grashof.analysis import rotatability, transmission_angle
+from grashof.analysis.four_bar.mobility import CHANGE
+from grashof.analysis.four_bar.transmission import quality
+from grashof.analysis.numerics.quadrature import Curve, held
+from grashof.problems import FourBar
+from grashof.problems.values.arrays import FloatArray
+from grashof.study.sweep import INSET
+
+_ALONG = 1e-6  # half turns
+_DEAD = 1e-6  # rad
+_FAR = 0.2, 0.4  # rad: over so much of the motion rates are continued to a change point, by polynomials of
+_DEGREE = 16
+_BESIDE = np.linspace(-1, 1, 9)
+_CLOSE = 1e-7  # rad: over so much a curve is a parabola but for rounding
+_DOUBT = 8.0  # times how far it is from one: a value may be wrong by so much
+
+
+class End(Enum):
+    """What a range of the driver ends with; how near to it rates have digits, rad."""
+
+    DEAD = INSET  # they grow without bound
+    CHANGE = 2e-3  # the motion goes on as it came
+    OPEN = 0.0  # the other half turn begins
+
+
+def end_of(linkage: FourBar, limit: float) -> End:
+    """What a range ends with at a driver angle."""
+    half_turns = (limit - float(linkage.theta1)) / np.pi
+    near, folded = abs(half_turns - round(half_turns)) < _ALONG, round(half_turns) % 2 == 0
+    if near and abs(rotatability(linkage)[1 if folded else 0]) <= CHANGE:
+        return End.CHANGE
+    return End.DEAD if quality(transmission_angle(linkage, limit)) < _DEAD else End.OPEN
+
+
+def towards_dead(curve: Curve, limit: float, near: float, value: float) -> float:
+    """The value near a dead position, infinite where it grows on towards it."""
+    closer = float(curve(np.array([limit + (near - limit) / 16]))[0])
+    return float(np.copysign(np.inf, value)) if abs(closer) > 1.5 * abs(value) else value
+
+
+def towards_change(curve: Curve, limit: float, near: float, room: float) -> tuple[FloatArray, FloatArray]:
+    """Driver angles from a change point to where rates have digits, and values with those that hold.
+
+    Infinite where the value grows without bound, as the force of bars in one line; else by polynomials
+    through the curve beyond, no further than `room`.
+    """
+    way = near - limit
+    closer = limit + way * np.array([1.0, 1 / 4, 1 / 16])
+    size = np.abs(curve(closer))
+    if (size[1:] > 2 * size[:-1]).all() and size[-1] > rounding_of(curve, float(closer[-1])):
+        return np.array([limit]), np.copysign(np.inf, curve(closer[-1:]))
+    theta2: FloatArray = np.linspace(limit, near, 65)
+    one, other = (_continued(curve, limit, near, np.copysign(min(far, room), way), theta2) for far in _FAR)
+    error = 2 * float(np.abs(one - other).max())
+    return theta2, np.array([held(value, error) for value in one.tolist()])
+
+
+def rounding_of(curve: Curve, theta2: float) -> float:
+    """What rounding may do to a value of a curve at a driver angle."""
+    values = curve(theta2 + _CLOSE * _BESIDE)
+    smooth = chebyshev.chebval(_BESIDE, chebyshev.chebfit(_BESIDE, values, 2))
+    return _DOUBT * float(np.abs(values - smooth).max())
+
+
+def _continued(curve: Curve, limit: float, near: float, reach: float, theta2: FloatArray) -> FloatArray:
+    """A curve between the end of a range and where it has digits, by a polynomial through it beyond."""
+    start = limit + max(near - limit, reach / 16, key=abs)
+    scaled = (theta2 - start) * 2 / reach - 1
+    nodes = chebyshev.chebpts1(_DEGREE + 1)
+    series = chebyshev.chebfit(nodes, curve(start + reach * (1 + nodes) / 2), _DEGREE)
+    return np.asarray(chebyshev.chebval(scaled, series))
