@@ -64,6 +64,7 @@ from grashof.analysis.forces.statics import Advantage, Holding, advantage, holdi
 from grashof.analysis.forces.strength import StrengthHistory, strength_at
 from grashof.analysis.forces.strength_peaks import SafetyFactor, StrengthPeak, StrengthSummary, strength_over
 from grashof.analysis.forces.structure import BAR_MEASURES, PIN_MEASURES, Structure
+from grashof.analysis.forces.system_of_equations import SystemOfEquations, system_of_equations
 from grashof.analysis.four_bar.differences import Deviation, central_differences, compare_differences
 from grashof.analysis.four_bar.driver import DriverMotion, driver_motion
 from grashof.analysis.four_bar.driver_law import DriverLaw
@@ -156,6 +157,7 @@ __all__ = [
     "StrengthPeak",
     "StrengthSummary",
     "Structure",
+    "SystemOfEquations",
     "TorqueBalance",
     "TorsionSpring",
     "Verdict",
@@ -230,6 +232,7 @@ __all__ = [
     "strength_at",
     "strength_over",
     "system_centre",
+    "system_of_equations",
     "transmission_angle",
     "transmission_extremes",
     "triangular_plate",
