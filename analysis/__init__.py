@@ -16,6 +16,7 @@ from grashof.analysis.curves.fit import (
 from grashof.analysis.curves.fourier import FourierSeries, coupler_fourier, coupler_harmonics, fourier_series
 from grashof.analysis.curves.interpolation import NewtonPolynomial, newton_interpolation, spline
 from grashof.analysis.curves.line_and_circle import BestCircle, BestLine, best_circle, best_line, circularity
+from grashof.analysis.curves.path_fits import FittedPath, PathFit
 from grashof.analysis.curves.straightness import straightest_half_turn, straightness
 from grashof.analysis.forces.balancing import (
     ForceBalance,
@@ -126,6 +127,7 @@ __all__ = [
     "Equilibria",
     "EvenMotion",
     "Extremes",
+    "FittedPath",
     "Flywheel",
     "ForceBalance",
     "FourierSeries",
@@ -143,6 +145,7 @@ __all__ = [
     "NotAFunctionWarning",
     "OutputStroke",
     "OverTask",
+    "PathFit",
     "PointMotion",
     "PolynomialFit",
     "Position",

@@ -38,7 +38,7 @@ class SystemOfEquations:
     @property
     def solution(self) -> FloatArray:
         """The unknowns, shape (..., 9), N and N length; NaN where the linkage is open or dead."""
-        known = np.isfinite(self.matrix).all(axis=(-2, -1)) & np.isfinite(self.right_side).all(axis=-1)
+        known = np.asarray(np.isfinite(self.matrix).all(axis=(-2, -1)) & np.isfinite(self.right_side).all(-1))
         matrix = np.where(known[..., None, None], self.matrix, np.eye(len(self.UNKNOWNS)))
         right_side = np.where(known[..., None], self.right_side, np.nan)
         found: FloatArray = np.linalg.solve(matrix, right_side[..., None])
