@@ -44,8 +44,8 @@ class History:
         ProblemError
             It would begin where the linkage is open.
         """
-        time = study.asked.times
-        if time is None:
+        wanted = time = study.asked.times
+        if wanted is None or time is None:
             return None
         if not study.sweep.turns:
             law, gone = study.way
@@ -53,7 +53,7 @@ class History:
         motion = study.driver(time)
         angle = motion.theta2 % TURN if study.sweep.turns else motion.theta2
         state = solve_kinematics(study.linkage, *motion._replace(theta2=angle))
-        return cls(time, motion.theta2, state, len(time) == len(study.asked.times))
+        return cls(time, motion.theta2, state, len(time) == len(wanted))
 
     @property
     def theta2_deg(self) -> FloatArray:

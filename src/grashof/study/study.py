@@ -12,7 +12,7 @@ from grashof.problems import FourBar, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.checks import refuse
 from grashof.problems.values.dynamics_spec import metres
-from grashof.study.asked import Asked
+from grashof.study.asked import Asked as Asked
 from grashof.study.sweep import Sweep
 
 _TOUCHING = 1e-9  # rad: a driver angle so far beyond a dead position is in it
