@@ -16,6 +16,7 @@ from grashof.analysis.curves.fit import (
 from grashof.analysis.curves.fourier import FourierSeries, coupler_fourier, coupler_harmonics, fourier_series
 from grashof.analysis.curves.interpolation import NewtonPolynomial, newton_interpolation, spline
 from grashof.analysis.curves.line_and_circle import BestCircle, BestLine, best_circle, best_line, circularity
+from grashof.analysis.curves.path_fits import FittedPath, PathFit
 from grashof.analysis.curves.straightness import straightest_half_turn, straightness
 from grashof.analysis.forces.balancing import (
     ForceBalance,
@@ -64,6 +65,7 @@ from grashof.analysis.forces.statics import Advantage, Holding, advantage, holdi
 from grashof.analysis.forces.strength import StrengthHistory, strength_at
 from grashof.analysis.forces.strength_peaks import SafetyFactor, StrengthPeak, StrengthSummary, strength_over
 from grashof.analysis.forces.structure import BAR_MEASURES, PIN_MEASURES, Structure
+from grashof.analysis.forces.system_of_equations import SystemOfEquations, system_of_equations
 from grashof.analysis.four_bar.differences import Deviation, central_differences, compare_differences
 from grashof.analysis.four_bar.driver import DriverMotion, driver_motion
 from grashof.analysis.four_bar.driver_law import DriverLaw
@@ -125,6 +127,7 @@ __all__ = [
     "Equilibria",
     "EvenMotion",
     "Extremes",
+    "FittedPath",
     "Flywheel",
     "ForceBalance",
     "FourierSeries",
@@ -142,6 +145,7 @@ __all__ = [
     "NotAFunctionWarning",
     "OutputStroke",
     "OverTask",
+    "PathFit",
     "PointMotion",
     "PolynomialFit",
     "Position",
@@ -156,6 +160,7 @@ __all__ = [
     "StrengthPeak",
     "StrengthSummary",
     "Structure",
+    "SystemOfEquations",
     "TorqueBalance",
     "TorsionSpring",
     "Verdict",
@@ -230,6 +235,7 @@ __all__ = [
     "strength_at",
     "strength_over",
     "system_centre",
+    "system_of_equations",
     "transmission_angle",
     "transmission_extremes",
     "triangular_plate",

@@ -1,26 +1,29 @@
-"""The values of the two engineering reports that Grashof grew from, beside the right ones.
+"""The two engineering reports that Grashof grew from: every figure and table, with right figures.
 
-    python scripts/reproduce_reports.py
+    python scripts/reproduce_reports.py --out reports
 
-What the reports print stands here as text; every right value is computed by `grashof.analysis`.
+Prints two tables of published and right values, and writes a folder with the counterpart of each figure and table
+of the reports, a page of them all (index.html), and their numbers as CSV. What the reports print stands as text;
+every right value is computed by `grashof`.
 """
 
 import argparse
 import warnings
+from pathlib import Path
 
 import numpy as np
+from reports.folder import write_folder
+from reports.published import ELEVEN, JOB, LUGGAGE, MASSES, POSE_1, STEP
+from reports.pumpjack import bodies
 from rich.console import Console
 from rich.table import Table
 
 from grashof.analysis import (
-    Body,
     Loads,
-    Masses,
     NotAFunctionWarning,
     central_differences,
     extremes,
     fit_polynomial,
-    given_masses,
     greatest_error,
     inverse_dynamics,
     newton_interpolation,
@@ -29,28 +32,15 @@ from grashof.analysis import (
     solve_kinematics,
     solve_position,
     system_centre,
-    uniform_bars,
     worst_transmission,
     worst_transmission_cycle,
 )
-from grashof.problems import FourBar, load_linkage_spec
+from grashof.problems import load_linkage_spec
 from grashof.problems.values.arrays import FloatArray
 
 # quantity, as published, right, cause
 Row = tuple[str, str, str, str]
 SAME = "same"
-
-# The luggage linkage as its report prints it: lengths, ground direction, driver angles of poses 1 and 4. The
-# direction is printed as 51.45 deg; the audit's torques at its samples agree to the last digit with 51.4499.
-R1, R2, R3, R4 = 3.91882993, 3.23490430, 4.09244415, 3.70202612
-GROUND, POSE_1, JOB = np.radians([51.4499, 74.03230655, 121.9353869])
-LUGGAGE = FourBar((0, 0), (R1 * np.cos(GROUND), R1 * np.sin(GROUND)), R2, R3, R4)
-# Slender bars: the printed inertias, 0.3282, 0.6646 and 0.4920, are these rounded.
-_BARS = ((0.3764, R2), (0.4762, R3), (0.4308, R4))
-MASSES = given_masses(LUGGAGE, [m for m, _ in _BARS], [m * length**2 / 12 for m, length in _BARS])
-# Its 101 samples run over the job and a whole turn; curves are fitted through eleven of the first thirty-one.
-STEP = (2 * np.pi + JOB) / 100
-ELEVEN = np.arange(0.0, 31.0, 3.0)
 
 
 def pumpjack() -> list[Row]:
@@ -64,12 +54,7 @@ def pumpjack() -> list[Row]:
     stroke = output_stroke(linkage)
     ends = np.sort(solve_kinematics(linkage, stroke.theta2, omega2).b.acceleration_magnitude)[::-1]
     a = solve_kinematics(linkage, 0.0, omega2).a
-    # Bars of 0.2 x 0.2 m, 7800 kg/m3, the beam 7850; from B over O4 to the horsehead it is A + C long.
-    bars = uniform_bars(linkage, np.array([7800, 7800, 7850]) * 0.2**2)
-    length = float(linkage.r4) + (spec.output_arm or 0.0)
-    mass = length * 7850 * 0.2**2
-    beam = Body(mass, mass * length**2 / 12, (float(linkage.r4) - length / 2, 0.0))
-    whole = Masses(bars.crank, bars.coupler, beam)
+    bars, whole = bodies(spec)
     upright = solve_kinematics(linkage, np.pi / 2, omega2)
     centre, centre_whole = (_pair(system_centre(masses, upright).position) for masses in (bars, whole))
     return [
@@ -177,16 +162,21 @@ def _pair(point: FloatArray) -> str:
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Print both tables."""
-    argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args(argv)
+    """Print both tables, and write the folder."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--out", type=Path, default=Path("reports"), help="folder; reports by default")
+    folder = parser.parse_args(argv).out
     console = Console(width=250, highlight=False, markup=False)
-    for title, rows in (("1. The pumpjack", pumpjack()), ("2. The luggage linkage", luggage())):
+    rows = {"pumpjack": pumpjack(), "luggage": luggage()}
+    for title, table_rows in zip(("1. The pumpjack", "2. The luggage linkage"), rows.values(), strict=True):
         table = Table(title=title, title_justify="left")
         for name in ("quantity", "as published", "right", "cause"):
             table.add_column(name, no_wrap=True)
-        for row in rows:
+        for row in table_rows:
             table.add_row(*row)
         console.print(table)
+    files = write_folder(folder, rows)
+    console.print(f"{len(files)} files in {folder}; open {files[-1]}")
     return 0
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from numpy.polynomial import Polynomial, chebyshev, legendre
+from numpy.polynomial import chebyshev, legendre
 
 from grashof.analysis.four_bar.even_motion import EvenMotion, even_motion
 from grashof.analysis.four_bar.position import solve_position
@@ -62,12 +62,15 @@ class PolynomialFit(ReadOnly):
     @property
     def powers(self) -> FloatArray:
         """Coefficients of 1, t, t^2 ... of the parameter itself, shape of `coefficients`."""
-        columns = self.coefficients.reshape(self.degree + 1, -1).T
-        plain = np.zeros(columns.shape)
-        for row, column in zip(plain, columns, strict=True):
-            power = Polynomial(chebyshev.cheb2poly(column), domain=[self.low, self.high]).convert().coef
-            row[: len(power)] = power
-        return plain.T.reshape(self.coefficients.shape)
+        span = self.high - self.low
+        shift, scale, count = -(self.low + self.high) / span, 2 / span, self.degree + 1
+        # Rows: the Chebyshev polynomials of shift + scale t in powers of t, by their recurrence.
+        basis = np.zeros((count, count))
+        basis[0, 0], basis[1, :2] = 1, (shift, scale)
+        for k in range(1, self.degree):
+            basis[k + 1] = 2 * shift * basis[k] - basis[k - 1]
+            basis[k + 1, 1:] += 2 * scale * basis[k, :-1]
+        return np.tensordot(basis, self.coefficients, axes=(0, 0))
 
     def __call__(self, parameter: npt.ArrayLike) -> FloatArray:
         """Value at any parameter, shape (...) or (..., K)."""

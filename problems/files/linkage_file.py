@@ -125,7 +125,7 @@ def linkage_catalogue() -> tuple[str, ...]:
     Examples
     --------
     >>> linkage_catalogue()
-    ('lufkin-c912d', 'pumpjack')
+    ('lufkin-c912d', 'luggage-report', 'pumpjack')
     """
     return _LINKAGES.names
 

@@ -29,7 +29,9 @@ from grashof.problems import (
     load_with_text,
     problem_text,
 )
+from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.problem import EFFORTS
+from grashof.study.asked import FIT_POINTS, ON_REQUEST, STEP
 
 TRACEBACK = "GRASHOF_TRACEBACK"  # environment variable: unexpected errors with their traceback
 # Typer makes the base of its usage errors public only through this one.
@@ -278,6 +280,40 @@ def analyse(
     pictures: Annotated[
         bool, typer.Option("--pictures", help="Plots of all sections as PNG and SVG, not in the page alone.")
     ] = False,
+    at: Annotated[
+        str | None,
+        typer.Option(help="Driver angles, deg, to look at closely: 0,90,180,270.", show_default=False),
+    ] = None,
+    seconds: Annotated[
+        float | None,
+        typer.Option(
+            help="Length of a history over time, or of the free motion, s.",
+            show_default="no history; 5 of the free motion",
+        ),
+    ] = None,
+    step: Annotated[float | None, typer.Option(help="Of the history, s.", show_default=str(STEP))] = None,
+    start_deg: Annotated[
+        float | None,
+        typer.Option(
+            help="Driver angle at its beginning.", show_default="0, or the end of the driver's first range"
+        ),
+    ] = None,
+    with_: Annotated[
+        str | None,
+        typer.Option("--with", help=f"Longer sections, of {', '.join(ON_REQUEST)}.", show_default=False),
+    ] = None,
+    every: Annotated[bool, typer.Option("--all", help="All of these.")] = False,
+    fit_from_deg: Annotated[
+        float | None,
+        typer.Option(
+            help="Driver angle from which paths are fitted.",
+            show_default="the task motion of a design, or all that the driver does",
+        ),
+    ] = None,
+    fit_to_deg: Annotated[
+        float | None, typer.Option(help="Driver angle up to which they are.", show_default=False)
+    ] = None,
+    fit_points: Annotated[int, typer.Option(help="Points through which they are.")] = FIT_POINTS,
     dwell_deg: Annotated[
         float | None,
         typer.Option(help="Report how long link 4 dwells in a band so wide.", show_default=False),
@@ -293,7 +329,6 @@ def analyse(
     release_rpm: Annotated[
         float | None, typer.Option(help="Speed of the driver at the release.", show_default=False)
     ] = None,
-    seconds: Annotated[float | None, typer.Option(help="Length of that motion, s.", show_default="5")] = None,
 ) -> None:
     """Report motion and forces of LINKAGE; write tables, a summary, a page and plots.
 
@@ -305,10 +340,17 @@ def analyse(
             out,
             pictures=pictures,
             speed_rpm=speed_rpm,
+            at_deg=_numbers(at, "--at"),
+            seconds=seconds,
+            step=step,
+            start_deg=start_deg,
+            sections=ON_REQUEST if every else _words(with_),
+            fit_from_deg=fit_from_deg,
+            fit_to_deg=fit_to_deg,
+            fit_points=fit_points,
             dwell_deg=dwell_deg,
             release_deg=release,
             release_rpm=release_rpm,
-            seconds=seconds,
         )
 
 
@@ -391,6 +433,17 @@ def main() -> None:
     # Drawings go to files: a backend meant for windows, or a misspelt one, must not stand in the way.
     os.environ["MPLBACKEND"] = "agg"
     app(prog_name="grashof")
+
+
+def _words(given: str | None) -> tuple[str, ...]:
+    return tuple(word.strip() for word in given.split(",")) if given is not None else ()
+
+
+def _numbers(given: str | None, option: str) -> tuple[float, ...]:
+    try:
+        return tuple(map(float, _words(given)))
+    except ValueError:
+        raise wrong_value(option, given, "numbers with commas between them, such as 0,90,180") from None
 
 
 def _one_line(error: Exception) -> str:

@@ -10,7 +10,8 @@ as text, and the same bytes each time.
 from grashof.figures.animation import animate, save_animation
 from grashof.figures.curves import plot_dynamics, plot_kinematics
 from grashof.figures.files import draw_design, draw_motion, save
-from grashof.figures.linkage import plot_coupler_curve, plot_design_space, plot_linkage
+from grashof.figures.linkage import plot_coupler_curve, plot_design_space, plot_linkage, plot_task
+from grashof.figures.section_plots import plot_section
 
 __all__ = [
     "animate",
@@ -21,6 +22,8 @@ __all__ = [
     "plot_dynamics",
     "plot_kinematics",
     "plot_linkage",
+    "plot_section",
+    "plot_task",
     "save",
     "save_animation",
 ]

@@ -5,18 +5,21 @@ from __future__ import annotations
 import os
 import subprocess
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 from matplotlib.animation import FuncAnimation, writers
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.text import Annotation, Text
 
 from grashof.analysis import Position, solve_position
 from grashof.analysis.numerics.smooth_polygon import smooth_polygon
 from grashof.figures.linkage import figure_of, new_axes, plane
 from grashof.figures.parts import (
     BODY,
+    GROUND,
     PATH,
     Links,
     body_outline,
@@ -28,7 +31,7 @@ from grashof.figures.parts import (
     stands,
 )
 from grashof.figures.subject import Linkage, Subject
-from grashof.problems import Problem, ProblemError
+from grashof.problems import FourBar, Problem, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 
 _WRITERS = {".gif": "pillow", ".mp4": "ffmpeg"}
@@ -40,6 +43,7 @@ def animate(
     *,
     seconds: float = 4.0,
     fps: float = 25.0,
+    annotated: bool = False,
     ax: Axes | None = None,
 ) -> FuncAnimation:
     """Move a linkage through one turn of its driver, or from limit to limit and back.
@@ -55,6 +59,9 @@ def animate(
         Length of the motion; it begins again where it ends.
     fps : float
         Frames a second.
+    annotated : bool
+        With the names of the moving points, and the driver angle; of a driver that turns steadily also the
+        time that it takes at its own speed.
     ax : Axes, optional
 
     Returns
@@ -76,6 +83,8 @@ def animate(
     trace = smooth_polygon(lambda turn: solve_position(subject.linkage, _driver(subject, turn)).p, turns)
     axes = new_axes(ax)
     moving, figure = _Moving(axes, subject, state, *trace), figure_of(axes)
+    if annotated:
+        moving.annotate(axes, subject, state)
     if ax is None:  # laid out once: a new layout for every frame would take most of the time
         figure.draw_without_rendering()
         figure.set_layout_engine("none")
@@ -164,6 +173,9 @@ class _Moving:
     ) -> None:
         linkage, problem = subject.linkage, subject.problem
         self._stands, self._path = stands(linkage, state), path
+        self._names: dict[str, Annotation] = {}
+        self._told: list[str] = []
+        self._clock: Text | None = None
         frames = len(state.p)
         self._drawn = np.searchsorted(turns, np.arange(frames) / frames, side="right")
         self._links = Links(axes, self._stands[0], named=False)
@@ -178,18 +190,46 @@ class _Moving:
             for corners in self._corners[:1]
         ]
         draw_ground(axes, linkage)
-        plane(axes, subject)
+        plane(axes, subject.spec.length_unit)
         joints = [place for stand in self._stands for name, place in stand.items() if name in linkage.JOINTS]
         axes.update_datalim(np.concatenate([joints, path, *self._corners]))
         name_points(axes, {name.upper(): getattr(linkage, name) for name in linkage.GROUND})
 
+    def annotate(self, axes: Axes, subject: Subject, state: Position) -> None:
+        """Name the moving points, and tell driver angle and time."""
+        named = {name: place for name, place in self._stands[0].items() if name in FourBar.MOVING}
+        self._names = {
+            name: axes.annotate(
+                name.upper(), tuple(place), (6, 6), textcoords="offset points", color=GROUND, zorder=8
+            )
+            for name, place in named.items()
+        }
+        self._told = list(_clock(subject, state.theta2))
+        self._clock = axes.text(0.01, 0.99, self._told[0], transform=axes.transAxes, va="top", zorder=8)
+
     def show(self, frame: int) -> list[Artist]:
         """Put everything where it is in a frame; what has moved."""
+        for name, text in self._names.items():
+            text.xy = tuple(self._stands[frame][name])
+        if self._clock is not None:
+            self._clock.set_text(self._told[frame])
         self._links.move(self._stands[frame])
         self._trace.set_data(*self._path[: self._drawn[frame]].T)
         for body in self._bodies:
             body.set_xy(self._corners[frame])
-        return [*self._links.artists, self._trace, *self._bodies]
+        told = [] if self._clock is None else [*self._names.values(), self._clock]
+        return [*self._links.artists, self._trace, *self._bodies, *told]
+
+
+def _clock(subject: Subject, theta2: FloatArray) -> Iterator[str]:
+    """What is told in each frame."""
+    sweep, frames = subject.sweep, len(theta2)
+    dynamics = subject.spec.dynamics
+    steady = dynamics is None or dynamics.motor is None or dynamics.motor.steady
+    turn = 60 / abs(sweep.speed_rpm) if sweep.turns and steady and sweep.speed_rpm else None
+    for frame, angle in enumerate(np.degrees(theta2) % 360):
+        time = "" if turn is None else f"t = {turn * frame / frames:.2f} s, "
+        yield f"{time}theta2 = {angle:.0f} deg"
 
 
 def _carried(subject: Subject, state: Position) -> list[FloatArray]:

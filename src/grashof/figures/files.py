@@ -65,14 +65,19 @@ def draw_design(problem: Problem, candidate: Candidate, rank: int) -> Figure:
 
 
 def draw_motion(
-    linkage: Linkage, problem: Problem | None = None, *, seconds: float = 4.0, fps: float = 25.0
+    linkage: Linkage,
+    problem: Problem | None = None,
+    *,
+    seconds: float = 4.0,
+    fps: float = 25.0,
+    annotated: bool = False,
 ) -> FuncAnimation:
     """Moving picture of a linkage, 600 by 500 pixels; see `animate`."""
     with rc_context(STYLE):
         axes = Figure(figsize=(6.0, 5.0)).add_axes((0.1, 0.1, 0.87, 0.81))
         title = Subject.of(linkage, problem).spec.title
         fit_title(axes, shortened(title))
-        return animate(linkage, problem, seconds=seconds, fps=fps, ax=axes)
+        return animate(linkage, problem, seconds=seconds, fps=fps, annotated=annotated, ax=axes)
 
 
 def fit_title(axes: Axes, text: str) -> None:

@@ -20,6 +20,7 @@ from grashof.figures.parts import (
     draw_path,
     draw_scene,
     draw_sense,
+    draw_targets,
     draw_task,
     in_points,
     name_points,
@@ -86,7 +87,7 @@ def plot_linkage(
     draw_task(ax, subject)
     draw_ground(ax, subject.linkage)
     draw_sense(ax, subject)
-    plane(ax, subject)
+    plane(ax, subject.spec.length_unit)
     names: dict[tuple[float, ...], str] = {}
     for name, place in positions[-1].items():
         names.setdefault(tuple(place), name.upper())  # P may lie in a joint
@@ -94,6 +95,35 @@ def plot_linkage(
     last = "target" if subject.problem is not None and theta2 is None else "position"
     heading = f"light to dark: first to last {last}" if len(positions) > 1 else None
     ax.legend(loc="best", title=heading, title_fontsize="small", fontsize="small")
+    return ax
+
+
+def plot_task(problem: Problem, *, ax: Axes | None = None) -> Axes:
+    """Draw what a problem asks for: its scene, and its points or the body in its poses.
+
+    Parameters
+    ----------
+    problem : Problem
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+        Equal scales, in the problem's unit. A pose without a place is not drawn.
+
+    Examples
+    --------
+    >>> from grashof import load
+    >>> from matplotlib.figure import Figure
+    >>> plot_task(load("luggage"), ax=Figure().subplots()).get_xlabel()
+    'x (m)'
+    """
+    ax, task = new_axes(ax), problem.task
+    draw_scene(ax, problem)
+    draw_targets(ax, task, np.full((len(task), 2), np.nan), np.full(len(task), np.nan))
+    plane(ax, problem.length_unit)
+    if ax.get_legend_handles_labels()[0]:
+        ax.legend(loc="best", fontsize="small")
     return ax
 
 
@@ -140,7 +170,7 @@ def plot_coupler_curve(linkage: Linkage, problem: Problem | None = None, *, ax: 
         zorder=3,
     )  # fmt: skip
     draw_task(ax, subject)
-    plane(ax, subject)
+    plane(ax, subject.spec.length_unit)
     ax.legend(loc="best", fontsize="small")
     return ax
 
@@ -257,9 +287,9 @@ def _positions(subject: Subject, theta2: npt.ArrayLike | None) -> list[dict[str,
     return stands(subject.linkage, state)
 
 
-def plane(ax: Axes, subject: Subject) -> None:
+def plane(ax: Axes, length_unit: str) -> None:
     """Equal scales, and the unit on both axes."""
-    unit = f" ({subject.spec.length_unit})" if subject.spec.length_unit else ""
+    unit = f" ({length_unit})" if length_unit else ""
     ax.set_xlabel(f"x{unit}", parse_math=False)
     ax.set_ylabel(f"y{unit}", parse_math=False)
     ax.set_aspect("equal", adjustable="datalim")

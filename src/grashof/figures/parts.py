@@ -200,13 +200,17 @@ def draw_task(axes: Axes, subject: Subject) -> None:
     """The points of a path, or the body in every pose of a motion; about a dozen of many."""
     if subject.problem is None or subject.verdict is None:
         return
-    task = subject.problem.task
+    state = solve_position(subject.linkage, subject.verdict.theta2, subject.verdict.assembly)
+    draw_targets(axes, subject.problem.task, state.p, state.theta3 + subject.linkage.body_angle)
+
+
+def draw_targets(axes: Axes, task: Task, places: FloatArray, angles: FloatArray) -> None:
+    """The same, with places, shape (N, 2), and angles, shape (N,), for what a pose leaves free, or NaN."""
     if task.only_points:
         _draw_points(axes, task)
         return
-    state = solve_position(subject.linkage, subject.verdict.theta2, subject.verdict.assembly)
     for pose in _dozen(len(task)):
-        _draw_pose(axes, task, subject.linkage, state, pose)
+        _draw_pose(axes, task, pose, places[pose], float(angles[pose]))
 
 
 def targets_shown(task: Task) -> list[int]:
@@ -224,13 +228,15 @@ def body_outline(task: Task, place: FloatArray, angle: float) -> FloatArray | No
     return corners
 
 
-def _draw_pose(axes: Axes, task: Task, linkage: FourBar, state: Position, pose: int) -> None:
-    """The body in a pose; what the pose leaves free is as the design has it, and the body then dashed."""
+def _draw_pose(axes: Axes, task: Task, pose: int, place: FloatArray, angle: float) -> None:
+    """The body in a pose; what the pose leaves free is as it is given here, and the body then dashed."""
     placed, oriented = bool(task.has_position[pose]), bool(task.has_angle[pose])
-    place = task.positions[pose] if placed else state.p[pose]
-    angle = float(task.angles[pose] if oriented else state.theta3[pose] + linkage.body_angle)
+    place = task.positions[pose] if placed else place
+    angle = float(task.angles[pose]) if oriented else angle
+    if np.isnan(place).any():  # free, and nothing stands there
+        return
     corners = body_outline(task, place, angle)
-    if corners is not None:
+    if corners is not None and np.isfinite(angle):
         style = "solid" if placed and oriented else "dashed"
         label = "body" if pose == 0 else None
         axes.fill(*corners.T, facecolor=BODY, alpha=0.15, zorder=2)

@@ -5,24 +5,36 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from grashof.sections.coupler_plane import coupler_plane
+from grashof.sections.differences import differences
 from grashof.sections.dwell import dwell_section
 from grashof.sections.energies import energy_section
+from grashof.sections.equations import equations
 from grashof.sections.equilibrium import equilibrium
+from grashof.sections.fits import fits
 from grashof.sections.hodographs import hodographs
 from grashof.sections.mass_centres import mass_centres
 from grashof.sections.mechanical_advantage import mechanical_advantage
+from grashof.sections.newton_raphson import newton_raphson
+from grashof.sections.over_time import over_time
 from grashof.sections.pin_forces import pin_forces
+from grashof.sections.positions import positions
 from grashof.sections.pumping_unit import pumping_unit
 from grashof.sections.release import release
 from grashof.sections.strength import strength
 from grashof.study.section import Section
 from grashof.study.study import LinkageStudy
 
-# In the order in which they are reported. None where the file has no data for it.
+# In the order in which they are reported. None where the file has no data for it, or nobody asked for it.
 SECTIONS: tuple[Callable[[LinkageStudy], Section | None], ...] = (
+    over_time,
+    positions,
     mass_centres,
+    fits,
+    newton_raphson,
+    differences,
     mechanical_advantage,
     pin_forces,
+    equations,
     hodographs,
     coupler_plane,
     dwell_section,

@@ -5,39 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+import numpy.typing as npt
 
-from grashof.analysis import Kinematics, Loads, Masses, stated_loads, stated_masses
-from grashof.problems import FourBar, LinkageSpec
-from grashof.problems.values.arrays import FloatArray
+from grashof.analysis import DriverLaw, DriverMotion, Kinematics, Loads, Masses, stated_loads, stated_masses
+from grashof.problems import FourBar, LinkageSpec, ProblemError
+from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.checks import refuse
 from grashof.problems.values.dynamics_spec import metres
+from grashof.study.asked import Asked as Asked
 from grashof.study.sweep import Sweep
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Asked:
-    """What an analysis is asked for besides what it always reports.
-
-    Parameters
-    ----------
-    speed_rpm : float, optional
-        Of the driver, counter-clockwise; by default that of the file, or else 1 rad/s.
-    at_deg : tuple of float, deg
-        Driver angles at which the linkage is looked at closely.
-    dwell_deg : float, deg, optional
-        The band in which link 4 counts as dwelling.
-    release_deg, release_rpm : float, deg and rpm, optional
-        Driver angle at which the linkage is let go, and the driver's speed there: none by default.
-    seconds : float, s, optional
-        How long that motion is followed.
-    """
-
-    speed_rpm: float | None = None
-    at_deg: tuple[float, ...] = ()
-    dwell_deg: float | None = None
-    release_deg: float | None = None
-    release_rpm: float | None = None
-    seconds: float | None = None
+_TOUCHING = 1e-9  # rad: a driver angle so far beyond a dead position is in it
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -99,7 +77,83 @@ class LinkageStudy:
         """Kinematics of each range of the driver at the angles of the tables."""
         return self.sweep.states()
 
-    def joined(self, parts: list[FloatArray]) -> FloatArray:
+    @property
+    def start(self) -> float:
+        """Driver angle at time 0, rad, in a range of the driver.
+
+        Raises
+        ------
+        ProblemError
+            The linkage is open at the angle asked for.
+        """
+        if self.asked.start_deg is not None:
+            return float(self.in_range([self.asked.start_deg], "start_deg")[0])
+        return 0.0 if self.sweep.turns else self.sweep.laws[0].start
+
+    @property
+    def way(self) -> tuple[DriverLaw, float]:
+        """How the driver goes on from `start`, and the time that its motion has taken up to there, s.
+
+        At a change point, where two ranges meet, it is the one ahead.
+        """
+        start, laws = self.start, self.sweep.laws
+        ahead = start + 1e-6 * np.sign(laws[0].rotation)
+        law = next((law for law in laws if law.holds(ahead)), None)
+        law = law or next((law for law in laws if law.holds(start)), laws[0])
+        gone = float(law.time_at(start))
+        return law, gone if np.isfinite(gone) else 0.0  # at no speed there is no time
+
+    def driver(self, time: npt.ArrayLike) -> DriverMotion:
+        """How the driver moves at times from `start` on, shape (N,), s.
+
+        Turn after turn; a driver that does not turn fully stops at a dead position. The angle is counted on.
+        """
+        law, gone = self.way
+        now = gone + np.asarray(time, dtype=np.float64)
+        if np.isinf(law.duration):  # at rest
+            still = np.zeros(now.shape)
+            return DriverMotion(still + self.start, still, still, still)
+        if not self.sweep.turns:
+            return law.at_time(np.minimum(now, law.duration))
+        turns = np.floor(now / law.duration + 1e-12)
+        motion = law.at_time(np.maximum(now - turns * law.duration, 0.0))
+        return motion._replace(theta2=motion.theta2 + turns * law.rotation)
+
+    def in_range(self, angles_deg: npt.ArrayLike, name: str) -> FloatArray:
+        """Driver angles, shape (N,), deg, as those of its ranges, rad.
+
+        Parameters
+        ----------
+        angles_deg : array_like, shape (N,), deg
+        name : str
+            What the message calls them.
+
+        Raises
+        ------
+        ProblemError
+            The linkage is open at one of them.
+        """
+        angles = np.radians(np.atleast_1d(np.asarray(angles_deg, dtype=np.float64)))
+        if self.sweep.turns:
+            return np.where((angles >= 0) & (angles <= TURN), angles, angles % TURN)
+        found = np.full(angles.shape, np.nan)
+        for low, high in self.sweep.ranges:
+            turned = low + (angles - low + _TOUCHING) % TURN - _TOUCHING
+            inside = np.isnan(found) & (turned <= high + _TOUCHING)
+            found[inside] = np.clip(turned[inside], low, high)
+        if np.isnan(found).any():
+            wrong = np.degrees(angles[np.isnan(found)][0])
+            raise ProblemError(f"{name} is {wrong:.6g}; the driver moves {self.reach}")
+        return found
+
+    @property
+    def reach(self) -> str:
+        """The ranges of the driver in words."""
+        ranges = (f"from {np.degrees(low):.6g} to {np.degrees(high):.6g}" for low, high in self.sweep.ranges)
+        return f"{' and '.join(ranges)} deg"
+
+    @staticmethod
+    def joined(parts: list[FloatArray]) -> FloatArray:
         """Values of each range one after the other, a row of NaN between them, so that lines break."""
         gaps = [np.full((1, *part.shape[1:]), np.nan) for part in parts]
         rows = [piece for pair in zip(parts, gaps, strict=True) for piece in pair]

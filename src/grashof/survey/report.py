@@ -13,9 +13,10 @@ from grashof.analysis.numerics.smooth_polygon import smooth_polygon
 from grashof.problems import LinkageSpec
 from grashof.problems.values.arrays import FloatArray
 from grashof.sections import SECTIONS
+from grashof.study.asked import Asked
 from grashof.study.quantities import dynamic_quantities, kinematic_quantities, table_of
 from grashof.study.section import Fact, Section
-from grashof.study.study import Asked, LinkageStudy
+from grashof.study.study import LinkageStudy
 from grashof.study.sweep import Sweep, dead_positions_unwarned
 from grashof.survey.extremes import extremes_table
 from grashof.survey.facts import facts_of

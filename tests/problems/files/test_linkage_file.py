@@ -35,7 +35,7 @@ def written(folder: Path, text: str) -> Path:
 
 def test_catalogue_is_what_is_shipped() -> None:
     shipped = {path.stem for path in (ROOT / "problems" / "data" / "linkages").glob("*.toml")}
-    assert set(linkage_catalogue()) == shipped == {"pumpjack", "lufkin-c912d"}
+    assert set(linkage_catalogue()) == shipped == {"pumpjack", "lufkin-c912d", "luggage-report"}
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]
     assert "data/linkages/*.toml" in settings["package-data"]["*"]
 
@@ -137,7 +137,7 @@ def test_a_name_that_is_none() -> None:
             "luggage",
             "^luggage: is a problem; solve it, then name a design: luggage-designs/candidates.json#1$",
         ),
-        ("chair", "the catalogue has lufkin-c912d, pumpjack"),
+        ("chair", "the catalogue has lufkin-c912d, luggage-report, pumpjack"),
         ("d/candidates.csv#3", "is a table; name the design as d/candidates.json#3$"),
         ("candidates.csv", "is a table; name the design as candidates.json#1$"),
         ("", "neither a linkage of the catalogue nor a file"),

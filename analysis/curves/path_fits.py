@@ -1,0 +1,145 @@
+"""Paths fitted with polynomials: y over x, as is often tried, and x and y over the driver angle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from grashof.analysis.curves.fit import PolynomialFit, fit_polynomial
+from grashof.analysis.curves.interpolation import NewtonPolynomial, newton_interpolation
+from grashof.problems.values.arrays import FloatArray
+
+DEGREES, NEWTON_DEGREES = (1, 2, 3, 4), (2, 3, 4)
+_BETWEEN = 20  # places on the path from point to point, at which errors are looked for
+_EQUAL = 1e-9  # of the size of a path: places so close are one
+Y_OF_X, OF_THETA2 = "y over x", "x and y over theta2"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FittedPath:
+    """A path with the points on it that are fitted.
+
+    Parameters
+    ----------
+    key, label : str
+    theta2 : ndarray, shape (N,), rad
+        Driver angles of the points, in equal steps.
+    points : ndarray, shape (N, 2)
+    fine, path : ndarray, shape (M,) and (M, 2)
+        Driver angles and the path itself, `_BETWEEN` places from point to point.
+    """
+
+    key: str
+    label: str
+    theta2: FloatArray
+    points: FloatArray
+    fine: FloatArray
+    path: FloatArray
+
+    @staticmethod
+    def angles(start: float, end: float, count: int) -> tuple[FloatArray, FloatArray]:
+        """Driver angles of so many points, and of the places between them."""
+        return np.linspace(start, end, count), np.linspace(start, end, _BETWEEN * (count - 1) + 1)
+
+    @property
+    def turns_back(self) -> bool:
+        """Whether x turns back along the path, so that y is no function of x."""
+        step = np.diff(self.path[:, 0])
+        return not (np.all(step > 0) or np.all(step < 0))
+
+    @property
+    def fits(self) -> list[PathFit]:
+        """All fits of this path: of either kind, by least squares and through neighbouring points."""
+        every = (_regression(self, of, degree) for of in (Y_OF_X, OF_THETA2) for degree in DEGREES)
+        through = (
+            _interpolation(self, of, degree) for of in (Y_OF_X, OF_THETA2) for degree in NEWTON_DEGREES
+        )
+        return [*every, *through]
+
+    def parts(self, of: str) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Parameter and values at the points, and both on the path."""
+        if of == Y_OF_X:
+            return self.points[:, 0], self.points[:, 1], self.path[:, 0], self.path[:, 1]
+        return self.theta2, self.points, self.fine, self.path
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PathFit:
+    """A fit of a path.
+
+    Parameters
+    ----------
+    of : str
+        `Y_OF_X` or `OF_THETA2`.
+    newton : bool
+        Interpolating through each point and the next ones, or else by least squares through all.
+    degree : int
+    pieces : tuple
+        The one polynomial of least squares; or those of Newton, each through `degree` + 1 points, which
+        stand for the path from their first point to the next (the last of them up to its end). None where
+        two points have one x.
+    r2 : float
+        NaN of those through the points.
+    error_points, error_path : float, length
+        Greatest distance from the points, and from the path between them, too, at equal parameters; NaN
+        without polynomials.
+    line : ndarray, shape (M, 2)
+        As it is drawn.
+    """
+
+    of: str
+    newton: bool
+    degree: int
+    pieces: tuple[PolynomialFit | NewtonPolynomial | None, ...]
+    r2: float
+    error_points: float
+    error_path: float
+    line: FloatArray
+
+
+def _regression(path: FittedPath, of: str, degree: int) -> PathFit:
+    places, values, fine, true = path.parts(of)
+    if _different(path, of, places) <= degree:
+        return PathFit(of, False, degree, (None,), np.nan, np.nan, np.nan, np.full((1, 2), np.nan))
+    fit = fit_polynomial(places, values, degree)
+    grid = np.linspace(fine.min(), fine.max(), len(fine))
+    line = np.stack([grid, fit(grid)], axis=-1) if of == Y_OF_X else fit(fine)
+    return PathFit(of, False, degree, (fit,), fit.r2, fit.error_max, _greatest(fit(fine) - true), line)
+
+
+def _interpolation(path: FittedPath, of: str, degree: int) -> PathFit:
+    places, values, fine, true = path.parts(of)
+    pieces, lines, errors = list[NewtonPolynomial | None](), list[FloatArray](), list[float]()
+    last = len(places) - 1 - degree
+    for first in range(last + 1):
+        nodes = slice(first, first + degree + 1)
+        if _different(path, of, places[nodes]) <= degree:
+            pieces.append(None)
+            continue
+        piece = newton_interpolation(places[nodes], values[nodes])
+        until = first + 1 if first < last else len(places) - 1
+        used = slice(_BETWEEN * first, _BETWEEN * until + 1)
+        errors.append(_greatest(piece(fine[used]) - true[used]))
+        if of == Y_OF_X:
+            ways = pairwise(places[first : until + 1])
+            x = np.concatenate([np.linspace(*way, _BETWEEN) for way in ways])
+            lines.append(np.stack([x, piece(x)], axis=-1))
+        else:
+            lines.append(piece(fine[used]))
+        pieces.append(piece)
+    line = np.concatenate(lines) if lines else np.full((1, 2), np.nan)
+    error_points = 0.0 if lines else np.nan
+    return PathFit(of, True, degree, tuple(pieces), np.nan, error_points, max(errors, default=np.nan), line)
+
+
+def _different(path: FittedPath, of: str, places: FloatArray) -> int:
+    """How many of the places differ by more than rounding."""
+    size = np.ptp(path.path, axis=0).max() if of == Y_OF_X else np.ptp(path.fine)
+    return 1 + int((np.diff(np.sort(places)) > _EQUAL * size).sum())
+
+
+def _greatest(miss: FloatArray) -> float:
+    size = np.abs(miss) if miss.ndim == 1 else np.hypot(*miss.T)
+    return float(size.max())

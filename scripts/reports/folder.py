@@ -1,0 +1,142 @@
+"""The folder of counterparts: a picture or table for each item, and a page of them all."""
+
+import base64
+import tomllib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from matplotlib.figure import Figure
+
+from grashof.figures import save, save_animation
+from reports.luggage import Luggage
+from reports.material import Made
+from reports.pumpjack import Pumpjack
+
+HERE = Path(__file__).parent
+REPORTS = {"pumpjack": "The pumpjack", "luggage": "Unloading luggage"}
+_ROWS = 30  # of a table on the page; the CSV has them all
+Row = tuple[str, str, str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """A figure, table or statement of a report, and its counterpart.
+
+    Parameters
+    ----------
+    report, figure, id, title : str
+    make : str
+        The method that makes the counterpart.
+    reported, right, wrong : str
+        What the report shows or prints, what is right, with names of figures in braces, and what was wrong.
+    args : sequence
+        Of the method.
+    """
+
+    report: str
+    figure: str
+    id: str
+    title: str
+    make: str
+    reported: str
+    right: str
+    wrong: str
+    args: Sequence[Any] = ()
+
+    @property
+    def stem(self) -> str:
+        """How its files begin."""
+        return f"{self.report}-{self.id}"
+
+
+def items() -> list[Item]:
+    """All items, in the order of the reports."""
+    text = (HERE / "items.toml").read_text(encoding="utf-8")
+    return [Item(**given) for given in tomllib.loads(text)["item"]]
+
+
+def write_folder(
+    folder: Path, rows: Mapping[str, Sequence[Row]], chosen: Callable[[Item], bool] = lambda _: True
+) -> list[Path]:
+    """Write the counterparts of the chosen items, and index.html.
+
+    Parameters
+    ----------
+    folder : Path
+        Made if it is not there; files of the same names are replaced.
+    rows : mapping
+        The table of published and right values, by report.
+    chosen : callable
+        Which items are written.
+
+    Returns
+    -------
+    list of Path
+        The files, the page last.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    sources = {"pumpjack": Pumpjack(), "luggage": Luggage()}
+    told: dict[str, list[dict[str, Any]]] = {name: [] for name in REPORTS}
+    written: list[Path] = []
+    for item in filter(chosen, items()):
+        source = sources[item.report]
+        if item.make == "printed":
+            columns = ("quantity", "as published", "right", "cause")
+            made = Made(tables={"": pd.DataFrame(rows[item.report], columns=columns)})
+        else:
+            made = getattr(source, item.make)(*item.args)
+        pictures, tables = _write(folder, item.stem, made)
+        written += [*pictures, *(path for path, _ in tables)]
+        told[item.report].append(
+            {
+                "item": item, "right": item.right.format(**source.numbers),
+                "wrong": item.wrong.format(**source.numbers),
+                "pictures": [_inline(path) for path in pictures],
+                "tables": [{"file": path.name, **_short(table)} for path, table in tables],
+            }
+        )  # fmt: skip
+    pages = Environment(loader=FileSystemLoader(HERE), autoescape=True, undefined=StrictUndefined)
+    page = pages.get_template("page.html").render(reports=REPORTS, told=told)
+    (folder / "index.html").write_text(page, encoding="utf-8")
+    return [*written, folder / "index.html"]
+
+
+def _write(folder: Path, stem: str, made: Made) -> tuple[list[Path], list[tuple[Path, pd.DataFrame]]]:
+    pictures, tables = [], []
+    for end, figure in made.figures.items():
+        name = f"{stem}-{end}" if end else stem
+        path = folder / f"{name}.{'png' if isinstance(figure, Figure) else 'gif'}"
+        if isinstance(figure, Figure):
+            save(figure, [path])
+        else:
+            save_animation(figure, path)
+        pictures.append(path)
+    for end, table in made.tables.items():
+        path = folder / f"{f'{stem}-{end}' if end else stem}.csv"
+        table.to_csv(path, index=False, lineterminator="\n")
+        tables.append((path, table))
+    return pictures, tables
+
+
+def _inline(path: Path) -> dict[str, str]:
+    kind = path.suffix.removeprefix(".")
+    content = base64.b64encode(path.read_bytes()).decode()
+    return {"file": path.name, "source": f"data:image/{kind};base64,{content}"}
+
+
+def _short(table: pd.DataFrame) -> dict[str, Any]:
+    """Headings and cells of a table that is short enough to be read; else only how long it is."""
+    if len(table) > _ROWS:
+        return {"columns": [], "rows": [], "count": len(table)}
+    cells = [[_cell(value) for value in row] for row in table.itertuples(index=False)]
+    return {"columns": list(map(str, table.columns)), "rows": cells, "count": len(table)}
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, float):
+        return "" if value != value else f"{value + 0.0:.7g}"
+    return {True: "yes", False: "no"}[value] if isinstance(value, bool) else str(value)

@@ -1,0 +1,360 @@
+"""The report on unloading luggage: what it shows and prints, with right figures."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from hand_tuned_search import GUESSES, Tried, outcome, tried
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+
+from grashof.analysis import Verdict, extremes_of, inverse_dynamics, solve_position, verify
+from grashof.figures import plot_linkage, plot_task
+from grashof.figures.files import STYLE
+from grashof.problems import FourBar, LinkageSpec, load, load_linkage_spec
+from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.study.asked import Asked
+from grashof.study.section import DRIVER_ANGLE, Plot
+from grashof.study.study import LinkageStudy
+from reports import published
+from reports.material import WIDTH, Analysis, Made, lines, shown
+
+_FINE = 10  # steps of our curves for one of the report's
+_DENSE = 7200  # of a turn, for means
+COUNTED = "driver angle theta2, counted on (deg)"
+
+
+class Luggage:
+    """The linkage of the report, at 1 rad/s, over its job and a turn."""
+
+    def __init__(self) -> None:
+        self.problem, self.spec = load("luggage"), load_linkage_spec("luggage-report")
+        # The samples start where the report's do, counted from the ground line.
+        self.start = float(self.linkage.theta1) + published.POSE_1 - published.GROUND
+        last, step = (published.SAMPLES - 1) * published.STEP, published.STEP
+        asked: dict[str, Any] = {"seconds": last, "start_deg": float(np.degrees(self.start))}
+        self.samples = Analysis.of(self.spec, step=step, sections=("differences",), **asked)
+        self.fine = Analysis.of(self.spec, step=step / _FINE, sections=("newton-raphson",), **asked)
+
+    @property
+    def linkage(self) -> FourBar:
+        """The linkage itself."""
+        return self.spec.linkage
+
+    @cached_property
+    def verdict(self) -> Verdict:
+        """What the judge says, at a tolerance that the residuals allow."""
+        wanted = replace(self.problem.requirements, tolerance=2e-6)
+        return verify(self.linkage, self.problem.task, wanted)
+
+    @property
+    def poses_deg(self) -> list[float]:
+        """Driver angles at the poses."""
+        return [float(angle) for angle in np.degrees(self.verdict.theta2)]
+
+    @cached_property
+    def fits(self) -> Analysis:
+        """Paths fitted through the report's eleven points."""
+        first, last = np.degrees(self.start + published.STEP * published.ELEVEN[[0, -1]])
+        points = len(published.ELEVEN)
+        return Analysis.of(self.spec, fit_from_deg=float(first), fit_to_deg=float(last), fit_points=points)
+
+    @cached_property
+    def guesses(self) -> list[Tried]:
+        """The report's guesses, run and judged."""
+        return [tried(self.problem, guess) for guess in GUESSES]
+
+    @cached_property
+    def studies(self) -> Mapping[bool, LinkageStudy]:
+        """Without gravity, as in the report, and with it."""
+        given = self.spec.dynamics
+        heavy = replace(given, gravity=(0.0, -published.GRAVITY)) if given is not None else None
+        specs: dict[bool, LinkageSpec] = {False: self.spec, True: replace(self.spec, dynamics=heavy)}
+        return {gravity: LinkageStudy.of(spec, Asked()) for gravity, spec in specs.items()}
+
+    def torque(self, theta2: FloatArray, *, gravity: bool) -> FloatArray:
+        """Drive torque at driver angles, rad, N m."""
+        study = self.studies[gravity]
+        masses = study.masses
+        if masses is None:
+            return np.zeros(np.shape(theta2))
+        return inverse_dynamics(study.sweep.state(theta2 % TURN), masses, study.loads).torque
+
+    @cached_property
+    def torque_table(self) -> pd.DataFrame:
+        """Greatest, least, effective and mean torque at the samples, over the turn and on the job."""
+        begin, end = self.verdict.theta2[[0, -1]]
+        rows = []
+        for gravity in (False, True):
+
+            def curve(theta2: FloatArray, gravity: bool = gravity) -> FloatArray:
+                return self.torque(theta2, gravity=gravity)
+
+            at_samples = curve(self.start + published.STEP * np.arange(published.SAMPLES))
+            turn, job = extremes_of(curve, 0.0, TURN, closed=True), extremes_of(curve, begin, end)
+            over_turn = curve(np.arange(_DENSE) * TURN / _DENSE)
+            nodes, weights = np.polynomial.legendre.leggauss(400)
+            on_job = curve((begin + end) / 2 + (end - begin) / 2 * nodes)
+            for where, high, low, square, mean in (
+                (
+                    "101 samples",
+                    at_samples.max(),
+                    at_samples.min(),
+                    np.mean(at_samples**2),
+                    at_samples.mean(),
+                ),
+                ("the whole turn", turn.high, turn.low, np.mean(over_turn**2), over_turn.mean()),
+                ("the job", job.high, job.low, weights @ on_job**2 / 2, weights @ on_job / 2),
+            ):
+                row = {"over": where, "gravity_m_s2": published.GRAVITY if gravity else 0.0}
+                rows.append({**row, "max": high, "min": low, "rms": np.sqrt(square), "mean": mean})
+        table = pd.DataFrame(rows)
+        table["mean"] = table["mean"].where(
+            table["mean"].abs() > 1e-9 * table["rms"], 0.0
+        )  # less is rounding
+        return table
+
+    @cached_property
+    def numbers(self) -> dict[str, float | str]:
+        """All that the words of the items quote."""
+        found: dict[str, float | str] = {
+            "step": float(np.degrees(published.STEP)),
+            "low_1": 100 * (1 - published.STEP / published.H),
+            "low_2": 100 * (1 - (published.STEP / published.H) ** 2),
+            "mu_task": float(np.degrees(self.verdict.transmission_min_task)),
+            "mu_turn": float(np.degrees(self.verdict.transmission_min_cycle)),
+            "o2_y": float(self.linkage.o2[1]), "o4_y": float(self.linkage.o4[1]),
+            "miss": self.verdict.error_max * 1e6,
+        }  # fmt: skip
+        for name, value in zip(("left", "right"), self._residuals(), strict=True):
+            found[f"residual_{name}"] = value * 1e6
+        for place, short in (("101 samples", "samples"), ("the whole turn", "turn"), ("the job", "job")):
+            for gravity, mark in ((0.0, ""), (published.GRAVITY, "_heavy")):
+                table = self.torque_table
+                row = table[(table["over"] == place) & (table["gravity_m_s2"] == gravity)].iloc[0]
+                found |= {f"{short}_{key}{mark}": float(row[key]) for key in ("max", "min", "rms", "mean")}
+        for each in self.guesses:
+            found[f"{each.guess.name}_comes_to"] = outcome(each)
+            found[f"{each.guess.name}_residual"] = 1e6 * max(each.left.residual, each.right.residual)
+        deviations = self.samples.tables["differences-deviations"]
+        for (derivative, order), rows in deviations.groupby(["derivative", "order"]):
+            found[f"off_{derivative}_{order}"] = 100 * float(rows["share"].max())
+        return found | self._fit_numbers
+
+    @property
+    def _fit_numbers(self) -> dict[str, float]:
+        found: dict[str, float] = {}
+        short = {"y over x": "y", "x and y over theta2": "t"}
+        for row in self.fits.tables["fits"].to_dict("records"):
+            link = str(row["path"])[-1]
+            by = "newton" if row["by"] == "Newton interpolation" else "fit"
+            key = f"{by}_{short[str(row['fit'])]}_{row['degree']}_{link}"
+            found |= {key: float(row["error_path"]), f"r2_{key}": float(row["r2"])}
+        factors = self.fits.tables["fits-coefficients"]
+        straight = factors[(factors["fit"] == "y over x") & (factors["degree"] == 1)]
+        slopes = zip(straight["path"], straight["c1"], strict=True)
+        return found | {f"slope_{str(path)[-1]}": float(slope) for path, slope in slopes}
+
+    def _residuals(self) -> tuple[float, float]:
+        """Root of the sum of squares of what each dyad leaves open at the driver angles printed."""
+        task, first = self.problem.task, solve_position(self.linkage, self.verdict.theta2[0])
+        place = task.positions @ np.array([1, 1j])
+        body = np.exp(1j * (task.angles - task.angles[0])) - 1
+        found = []
+        for pivot, joint, turns in (
+            (self.linkage.o2, first.a, published.BETA),
+            (self.linkage.o4, first.b, published.GAMMA),
+        ):
+            link, arm = complex(*(joint - pivot)), place[0] - complex(*joint)
+            gap = link * (np.exp(1j * np.radians([0.0, *turns])) - 1) + arm * body - (place - place[0])
+            found.append(float(np.sqrt((np.abs(gap) ** 2).sum())))
+        return found[0], found[1]
+
+    # The items.
+
+    def task(self) -> Made:
+        """Poses, staircase and box."""
+        with rc_context(STYLE):
+            figure = Figure(figsize=(WIDTH, 5.4), layout="constrained")
+            plot_task(self.problem, ax=figure.subplots())
+        task = self.problem.task
+        table = pd.DataFrame({"x_m": task.positions[:, 0], "y_m": task.positions[:, 1]})
+        table["angle_deg"] = np.degrees(task.angles).round(12)
+        return Made({"": figure}, {"": table})
+
+    def in_poses(self) -> Made:
+        """The linkage in its four poses."""
+        return Made({"": self._drawn(None)}, {"": self._positions(self.poses_deg)})
+
+    def pose(self, number: int) -> Made:
+        """The linkage in one pose, in place of a photograph of the prototype."""
+        angle = self.poses_deg[number - 1]
+        return Made({"": self._drawn(np.radians(angle))}, {"": self._positions([angle])})
+
+    def _drawn(self, theta2: float | None) -> Figure:
+        with rc_context(STYLE):
+            figure = Figure(figsize=(WIDTH, 6.4), layout="constrained")
+            plot_linkage(self.spec, self.problem, theta2=theta2, ax=figure.subplots())
+        return figure
+
+    def _positions(self, angles_deg: list[float]) -> pd.DataFrame:
+        return Analysis.of(self.spec, at_deg=tuple(angles_deg)).tables["positions"]
+
+    def guess(self, name: str) -> Made:
+        """A guess of the report: what BFGS makes of it, and what the judge says of that."""
+        each = next(each for each in self.guesses if each.guess.name == name)
+        rows = []
+        for side, given, dyad in (
+            ("left", each.guess.left, each.left),
+            ("right", each.guess.right, each.right),
+        ):
+            turns = np.degrees(dyad.turns)
+            came = (dyad.link.real, dyad.link.imag, dyad.arm.real, dyad.arm.imag, *turns)
+            names = ("W_x", "W_y", "Z_x", "Z_y", "turn_1_deg", "turn_2_deg", "turn_3_deg")
+            for what, values in (("guess", given), ("came to", came)):
+                row = {"dyad": side, "of": what, **dict(zip(names, map(float, values), strict=True))}
+                rows.append(row | ({"residual_m": dyad.residual} if what == "came to" else {}))
+        verdict = each.verdict
+        lengths = dict(zip(("r1", "r2", "r3", "r4"), each.linkage.lengths.tolist(), strict=True))
+        judged = {
+            **lengths, "class": str(verdict.grashof_class), "one circuit": verdict.circuit_ok,
+            "one branch": verdict.branch_ok, "in order": verdict.order_ok,
+            "turns fully": verdict.full_rotation,
+            "mu on the way, deg": float(np.degrees(verdict.transmission_min_task)),
+            "mu over the turn, deg": float(np.degrees(verdict.transmission_min_cycle)),
+        }  # fmt: skip
+        figure = None
+        if verdict.branch_ok:
+            with rc_context(STYLE):
+                figure = Figure(figsize=(WIDTH, 6.0), layout="constrained")
+                plot_linkage(each.linkage, self.problem, ax=figure.subplots())
+        tables = {"": pd.DataFrame(rows), "judged": pd.DataFrame([judged])}
+        return Made({} if figure is None else {"": figure}, tables)
+
+    def result(self) -> Made:
+        """Table 7 beside the catalogue's linkage, and what the report does not say of it."""
+        left, right = self._residuals()
+        lengths = [float(length) for length in self.linkage.lengths]
+        state = solve_position(self.linkage, self.verdict.theta2)
+        driver = np.degrees(self.verdict.theta2 - self.verdict.theta2[0])[1:]
+        output = np.degrees(np.unwrap(state.theta4) - state.theta4[0])[1:]
+        names = ["LFval", "RFval", "r1", "r2", "r3", "r4"]
+        printed = [*published.RESIDUALS, published.R1, published.R2, published.R3, published.R4]
+        ours = [left, right, *lengths]
+        for name, given, found in (("beta", published.BETA, driver), ("gamma", published.GAMMA, output)):
+            for number, (told, angle) in enumerate(zip(given, found, strict=True), start=1):
+                names.append(f"{name}{number}, deg")
+                printed.append(told)
+                ours.append(float(angle + 360 * round((told - angle) / 360)))
+        table = pd.DataFrame({"quantity": names, "printed": printed, "catalogue": ours})
+        errors = pd.DataFrame(
+            {
+                "pose": range(1, len(self.verdict.theta2) + 1), "theta2_deg": self.poses_deg,
+                "position_error_m": self.verdict.position_error,
+                "angle_error_deg": np.degrees(self.verdict.angle_error),
+            }
+        )  # fmt: skip
+        return Made(tables={"": table, "poses": errors})
+
+    def newton_raphson(self) -> Made:
+        """theta3 and theta4 by Newton-Raphson, and the steps it takes."""
+        angles, steps = (self._over_angle(key) for key in ("newton-raphson", "newton-raphson-steps"))
+        return shown(angles, steps)
+
+    def _over_angle(self, key: str) -> Plot:
+        return self.fine.over_angle(key)
+
+    def centre(self, link: int, rate: str = "place") -> Made:
+        """Place, velocity or acceleration of a centre of mass."""
+        return shown(self._over_angle(f"g{link}-{rate}"))
+
+    def angular(self, rate: str) -> Made:
+        """omega3 and omega4, or alpha3 and alpha4."""
+        return shown(self._over_angle(f"angular-{rate}"))
+
+    def angular_differences(self, rate: str, order: int) -> Made:
+        """The same by central differences at the samples of the report."""
+        key, derivative = {"velocity": ("omega", 1), "acceleration": ("alpha", 2)}[rate]
+        series: dict[str, FloatArray] = {}
+        for link in (3, 4):
+            plot = self.samples.over_angle(f"differences-{key}{link}")
+            series |= {f"{key}{link}, exact": plot.series["exact"]}
+            series |= self._both(f"{key}{link}", plot.series[f"order {order}"], derivative, order)
+        return shown(replace(plot, title=f"angular {rate} by differences of order {order}", series=series))
+
+    def centre_differences(self, link: int, rate: str, order: int) -> Made:
+        """Velocity or acceleration of a centre by central differences at the samples of the report."""
+        plot = self.samples.over_angle(f"differences-g{link}-{rate}")
+        series: dict[str, FloatArray] = {}
+        for axis in "xy":
+            series |= {f"{axis}, exact": plot.series[f"{axis}, exact"]}
+            by_order = plot.series[f"{axis}, order {order}"]
+            series |= self._both(axis, by_order, {"velocity": 1, "acceleration": 2}[rate], order)
+        return shown(replace(plot, title=f"{plot.title}, order {order}", series=series))
+
+    def _both(self, name: str, values: FloatArray, derivative: int, order: int) -> dict[str, FloatArray]:
+        """Differences with the step of the samples, and with the 5 deg that the report divides by."""
+        as_published = values * (published.STEP / published.H) ** derivative
+        return {f"{name}, order {order}": values, f"{name} as published": as_published}
+
+    def links(self) -> Made:
+        """The specification of the links: masses, centres, inertias."""
+        table = self.samples.tables["masses"].copy()
+        lengths = [float(getattr(self.linkage, f"r{link}")) for link in (2, 3, 4)]
+        table.insert(1, "length", [*lengths, np.nan])
+        bars = [mass * length**2 / 12 for mass, length in published.BARS]
+        table["inertia_slender_bar"] = [*bars, np.nan]
+        return Made(tables={"": table})
+
+    def equations(self) -> Made:
+        """The nine equations at each pose."""
+        angles = tuple(self.poses_deg)
+        table = Analysis.of(self.spec, at_deg=angles, sections=("equations",)).tables["equations"]
+        first = table[table["theta2_deg"] == table["theta2_deg"].iloc[0]].drop(columns="theta2_deg")
+        return Made(tables={"": first, "every-pose": table})
+
+    def torque_at_samples(self) -> Made:
+        """The drive torque at the report's samples, between what it prints as greatest and least."""
+        theta2 = self.start + published.STEP * np.arange(published.SAMPLES)
+        high, low = published.TORQUE[:2]
+        levels = {"greatest as published": high, "least as published": low}
+        return self._torque(theta2, COUNTED, {name: float(level) for name, level in levels.items()})
+
+    def torque_over_turn(self) -> Made:
+        """The drive torque over the whole turn on a fine grid."""
+        return self._torque(np.linspace(0, TURN, 1441), DRIVER_ANGLE, {})
+
+    def torque_on_job(self) -> Made:
+        """The drive torque from the first pose to the last."""
+        return self._torque(np.linspace(*self.verdict.theta2[[0, -1]], 481), COUNTED, {})
+
+    def _torque(self, theta2: FloatArray, over: str, levels: Mapping[str, float]) -> Made:
+        series = {
+            "without gravity": self.torque(theta2, gravity=False),
+            "with gravity": self.torque(theta2, gravity=True),
+        }
+        plot = Plot("torque", "drive torque", "N m", series, np.degrees(theta2), over)
+        made = shown(lines(plot, besides={name: np.array(level) for name, level in levels.items()}))
+        return replace(made, tables={**made.tables, "figures": self.torque_table})
+
+    def regression(self, link: int) -> Made:
+        """The path of a centre with regressions y(x), and beside it the fits of x and y over theta2."""
+        return self._fit(link, "regression", "parametric", "least squares")
+
+    def interpolation(self, link: int) -> Made:
+        """The path of a centre with Newton's interpolation y(x), and beside it that over theta2."""
+        return self._fit(link, "newton", "parametric-newton", "Newton interpolation")
+
+    def _fit(self, link: int, wrong: str, right: str, by: str) -> Made:
+        plots = [self.fits.plots[f"fits-{key}-g{link}"] for key in (wrong, right)]
+        label = f"the centre of link {link}"
+        named = [replace(plot, title=plot.title.removeprefix(f"path of {label}: ")) for plot in plots]
+        quality, factors = (
+            table[(table["path"] == label) & (table["by"] == by)].drop(columns=["path", "by"])
+            for table in (self.fits.tables["fits"], self.fits.tables["fits-coefficients"])
+        )
+        tables = {"": quality.dropna(axis=1, how="all"), "coefficients": factors.dropna(axis=1, how="all")}
+        return Made(shown(*named, beside=True).figures, tables)

@@ -1,0 +1,96 @@
+"""What items are made of: analyses, figures of their plots, tables."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib import rc_context
+from matplotlib.animation import FuncAnimation
+from matplotlib.figure import Figure
+
+from grashof.figures import plot_section
+from grashof.figures.files import STYLE
+from grashof.problems import LinkageSpec
+from grashof.problems.values.arrays import FloatArray
+from grashof.sections import SECTIONS
+from grashof.study.asked import Asked
+from grashof.study.section import Plot
+from grashof.study.study import LinkageStudy
+from grashof.study.sweep import dead_positions_unwarned
+
+WIDTH, HEIGHT = 8.5, 4.2
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Made:
+    """Counterpart of a figure or table: pictures, still or moving, and tables, by the ends of their names."""
+
+    figures: Mapping[str, Figure | FuncAnimation] = field(default_factory=dict)
+    tables: Mapping[str, pd.DataFrame] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Analysis:
+    """What the sections of an analysis say, by key."""
+
+    study: LinkageStudy
+    plots: Mapping[str, Plot]
+    tables: Mapping[str, pd.DataFrame]
+
+    @classmethod
+    def of(cls, spec: LinkageSpec, **asked: Any) -> "Analysis":
+        """The analysis of a linkage, asked as `grashof analyse` is."""
+        study = LinkageStudy.of(spec, Asked(**asked))
+        with dead_positions_unwarned():
+            sections = [section for each in SECTIONS if (section := each(study)) is not None]
+        plots = {plot.key: plot for section in sections for plot in section.plots}
+        tables = {key: table for section in sections for key, table in section.tables.items()}
+        return cls(study, plots, tables)
+
+    def over_angle(self, key: str) -> Plot:
+        """A plot over time as one over the driver's angle, counted on from turn to turn."""
+        angle = self.tables["over-time"]["theta2_total_deg"].to_numpy()
+        return replace(
+            self.plots[f"{key}-over-time"],
+            title=self.plots[f"{key}-over-time"].title.removesuffix(" over time"),
+            places=angle, over="driver angle theta2, counted on (deg)",
+        )  # fmt: skip
+
+
+def lines(plot: Plot, wanted: Sequence[str] = (), besides: Mapping[str, FloatArray] | None = None) -> Plot:
+    """Some lines of a plot, or all, and others besides; levels are lines, too."""
+    chosen = {label: values for label, values in plot.series.items() if not wanted or label in wanted}
+    count = 0 if plot.places is None else len(plot.places)
+    more = {label: np.broadcast_to(np.asarray(values), count) for label, values in (besides or {}).items()}
+    return replace(plot, series={**chosen, **more})
+
+
+def drawn(*plots: Plot, beside: bool = False) -> Figure:
+    """A figure with a panel for each plot, one above the other or beside it."""
+    with rc_context(STYLE):
+        tracks = plots[0].places is None
+        size = (WIDTH, (5.2 if tracks else HEIGHT) if len(plots) == 1 or beside else 1.0 + 2.6 * len(plots))
+        figure = Figure(figsize=size, layout="constrained")
+        shape = (1, len(plots)) if beside else (len(plots), 1)
+        for plot, axes in zip(plots, figure.subplots(*shape, squeeze=False).ravel(), strict=True):
+            plot_section(plot, axes)
+    return figure
+
+
+def numbers_of(plot: Plot) -> pd.DataFrame:
+    """The numbers that a plot shows."""
+    if plot.places is not None:
+        return pd.DataFrame({plot.over: plot.places, **plot.series}).dropna(subset=plot.over)
+    parts = [
+        pd.DataFrame({"line": label, "x": track[:, 0], "y": track[:, 1]}).dropna()
+        for label, track in {**plot.series, **plot.points}.items()
+    ]
+    return pd.concat(parts, ignore_index=True)
+
+
+def shown(*plots: Plot, beside: bool = False) -> Made:
+    """Plots with their numbers."""
+    tables = {plot.key if len(plots) > 1 else "": numbers_of(plot) for plot in plots}
+    return Made({"": drawn(*plots, beside=beside)}, tables)

@@ -1,0 +1,197 @@
+"""Polynomials through the paths of P and the centres of mass: what y over x is worth, and what is right."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pandas as pd
+
+from grashof.analysis import PolynomialFit, verify
+from grashof.analysis.curves.path_fits import OF_THETA2, Y_OF_X, FittedPath, PathFit
+from grashof.problems import ProblemError
+from grashof.problems.values.arrays import FloatArray
+from grashof.sections.mass_centres import centre_labels, centres_of
+from grashof.study.section import Fact, Plot, Section
+from grashof.study.study import LinkageStudy
+from grashof.study.sweep import INSET
+
+KEY = "fits"
+_BY = ("least squares", "Newton interpolation")
+_ROOM = 1.0  # times the size of a path: so far beyond it a curve is drawn
+
+
+def fits(study: LinkageStudy) -> Section | None:
+    """Regressions and interpolations over part of the motion, if they are asked for."""
+    if not study.asked.wants(KEY):
+        return None
+    start, end, words = fit_motion(study)
+    paths = list(_paths(study, start, end))
+    found = [path.fits for path in paths]
+    tables = {
+        KEY: quality_table(paths, found),
+        f"{KEY}-coefficients": coefficient_table(paths, found),
+        f"{KEY}-points": _points(paths),
+    }
+    plots = [plot for path, each in zip(paths, found, strict=True) for plot in _plots(study, path, each)]
+    facts = tuple(_facts(tables[KEY], study.spec.unit))
+    return Section(KEY, "Fits of paths", facts, tables, tuple(plots), tuple(_notes(study, paths, words)))
+
+
+def fit_motion(study: LinkageStudy) -> tuple[float, float, str]:
+    """First and last driver angle of what is fitted, rad, and what that is.
+
+    Raises
+    ------
+    ProblemError
+        The driver does not get from the one to the other that is asked for.
+    """
+    asked, problem = study.asked, study.spec.problem
+    if asked.fit_from_deg is not None and asked.fit_to_deg is not None:
+        start, end = _asked_for(study, asked.fit_from_deg, asked.fit_to_deg)
+        return start, end, "over the part asked for"
+    if problem is not None and not problem.task.closed:
+        verdict = verify(study.linkage, problem.task, problem.requirements, problem=problem)
+        if verdict.branch_ok and (verdict.assembly == study.linkage.assembly).all():
+            ends = float(verdict.theta2.min()), float(verdict.theta2.max())
+            start, end = ends if verdict.direction > 0 else ends[::-1]
+            return start, end, "over the task motion"
+    low, high = study.sweep.ranges[0]
+    if study.sweep.turns:
+        return low, high, "over the whole turn"
+    whole = "all that the driver does" if len(study.sweep.ranges) == 1 else "its first range"
+    return low + INSET, high - INSET, f"over {whole}"
+
+
+def _asked_for(study: LinkageStudy, from_deg: float, to_deg: float) -> tuple[float, float]:
+    if study.sweep.turns:
+        start, end = np.radians([from_deg, to_deg])
+        return float(start), float(end)
+    (start,), (end,) = (
+        study.in_range([angle], name) for name, angle in (("fit_from_deg", from_deg), ("fit_to_deg", to_deg))
+    )
+    if not any(low <= start <= high and low <= end <= high for low, high in study.sweep.ranges):
+        raise ProblemError(
+            f"fit_from_deg is {from_deg:.6g} and fit_to_deg {to_deg:.6g}, with a dead position between them; "
+            f"the driver moves {study.reach}"
+        )
+    return float(start), float(end)
+
+
+def _paths(study: LinkageStudy, start: float, end: float) -> Iterator[FittedPath]:
+    theta2, fine = FittedPath.angles(start, end, study.asked.fit_points)
+    at_points, between = study.sweep.state(theta2), study.sweep.state(fine)
+    there, along = centres_of(study, at_points), centres_of(study, between)
+    for key, label in centre_labels(study).items():
+        if key != "g":
+            yield FittedPath(key, label, theta2, there[key].position, fine, along[key].position)
+    yield FittedPath("p", "P", theta2, at_points.p.position, fine, between.p.position)
+
+
+def _points(paths: list[FittedPath]) -> pd.DataFrame:
+    theta2 = paths[0].theta2
+    columns: dict[str, FloatArray] = {
+        "theta2_deg": np.degrees(theta2),
+    }
+    for path in paths:
+        columns |= {f"{path.key}_{axis}": path.points[:, index] for index, axis in enumerate("xy")}
+    table = pd.DataFrame(columns)
+    table.insert(0, "point", range(1, len(theta2) + 1))
+    return table
+
+
+def quality_table(paths: list[FittedPath], found: list[list[PathFit]]) -> pd.DataFrame:
+    """How well each fit stands for its path: a row for each."""
+    return pd.DataFrame(
+        [
+            {
+                "path": path.label,
+                "fit": fit.of,
+                "by": _BY[fit.newton],
+                "degree": fit.degree,
+                "r2": fit.r2,
+                "error_points": fit.error_points,
+                "error_path": fit.error_path,
+            }
+            for path, each in zip(paths, found, strict=True)
+            for fit in each
+        ]
+    )
+
+
+def coefficient_table(paths: list[FittedPath], found: list[list[PathFit]]) -> pd.DataFrame:
+    """Coefficients: of powers of x or theta2 (rad) from least squares, divided differences from Newton.
+
+    Those of Newton belong to 1, (t - t0), (t - t0)(t - t1), ..., t0 being the place of `first_point`.
+    """
+    rows = [
+        {"path": path.label, **row}
+        for path, each in zip(paths, found, strict=True)
+        for fit in each
+        for row in _coefficients(fit)
+    ]
+    return pd.DataFrame(rows)
+
+
+def _coefficients(fit: PathFit) -> Iterator[dict[str, object]]:
+    for number, piece in enumerate(fit.pieces, start=1):
+        if piece is None:
+            continue
+        found = piece.powers if isinstance(piece, PolynomialFit) else piece.coefficients
+        named = {"by": _BY[fit.newton], "degree": fit.degree, "first_point": number}
+        names = (Y_OF_X,) if fit.of == Y_OF_X else ("x over theta2", "y over theta2")
+        for name, column in zip(names, found.reshape(len(found), -1).T, strict=True):
+            factors = {f"c{power}": float(value) for power, value in enumerate(column)}
+            yield {"fit": name, **named, **factors}
+
+
+def _plots(study: LinkageStudy, path: FittedPath, found: list[PathFit]) -> Iterator[Plot]:
+    for of, newton, key, what in (
+        (Y_OF_X, False, "regression", "regression y over x"),
+        (Y_OF_X, True, "newton", "Newton interpolation y over x"),
+        (OF_THETA2, False, "parametric", "x and y by polynomials in theta2"),
+        (OF_THETA2, True, "parametric-newton", "x and y by Newton interpolation over theta2"),
+    ):
+        drawn = {
+            f"degree {fit.degree}": _near(path, fit.line)
+            for fit in found
+            if (fit.of, fit.newton) == (of, newton)
+        }
+        series, points = {"path": path.path, **drawn}, {"points fitted": path.points}
+        title = f"path of {path.label}: {what}"
+        yield Plot(f"{KEY}-{key}-{path.key}", title, study.spec.unit, series, points=points)
+
+
+def _near(path: FittedPath, line: FloatArray) -> FloatArray:
+    """A line as far as it stays near the path."""
+    low, high = path.path.min(axis=0), path.path.max(axis=0)
+    room = _ROOM * float((high - low).max())
+    inside = ((line >= low - room) & (line <= high + room)).all(axis=1, keepdims=True)
+    return np.where(inside, line, np.nan)
+
+
+def _facts(quality: pd.DataFrame, unit: str) -> Iterator[Fact]:
+    best = quality[quality["degree"] == quality["degree"].max()]
+    for (of, by), rows in best.groupby(["fit", "by"], sort=False):
+        method = "regression" if by == _BY[False] else "newton"
+        label = f"paths by {by}, {of}, degree {rows['degree'].max()}: largest error"
+        yield Fact(
+            f"fit_{method}_{'y_of_x' if of == Y_OF_X else 'of_theta2'}_error",
+            label,
+            float(rows["error_path"].max()),
+            unit,
+        )
+
+
+def _notes(study: LinkageStudy, paths: list[FittedPath], words: str) -> Iterator[str]:
+    count, (first, last) = len(paths[0].theta2), np.degrees(paths[0].theta2[[0, -1]])
+    between = f"from theta2 = {first:.6g} to {last:.6g} deg"
+    yield f"{count} points {words}, {between}; errors are those over the path between the points, too"
+    back = [path.label for path in paths if path.turns_back]
+    if back:
+        yield (
+            f"x turns back along the path of {', '.join(back)}: y is no function of x there, and no degree "
+            "mends it; the fits of x and y over theta2 are right"
+        )
+    if study.masses is None:
+        yield "the file states no masses: points halfway between joints"

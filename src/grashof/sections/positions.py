@@ -1,0 +1,56 @@
+"""The linkage at chosen driver angles: where everything is, how it moves, and a drawing of all of them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+
+from grashof.analysis import Kinematics, solve_position
+from grashof.problems.values.arrays import FloatArray
+from grashof.sections.mass_centres import centres_of
+from grashof.study.quantities import dynamic_quantities, kinematic_quantities, table_of
+from grashof.study.section import Plot, Section
+from grashof.study.study import LinkageStudy
+
+_SMALL = ("_x", "_y")
+
+
+def positions(study: LinkageStudy) -> Section | None:
+    """A row and a drawing for each driver angle that is asked for, if any is."""
+    if not study.asked.at_deg:
+        return None
+    theta2 = study.in_range(study.asked.at_deg, "at_deg")
+    state = study.sweep.state(theta2)
+    tables = {"positions": position_table(study, state)}
+    return Section("positions", "Chosen driver angles", (), tables, (_drawing(study, state),))
+
+
+def position_table(study: LinkageStudy, state: Kinematics) -> pd.DataFrame:
+    """A row for each driver angle of a state, shape (N,): angles, joints, P, centres, rates, torque."""
+    quantities = kinematic_quantities(study.spec) + dynamic_quantities(study)
+    # Of vectors other than positions the size says enough here; the other tables have their components.
+    listed = [each for each in quantities if each.position or not each.key.endswith(_SMALL)]
+    columns = {str(key): values.to_numpy() for key, values in table_of(listed, [state]).items()}
+    for each in listed:
+        if each.period is not None:  # chosen angles are no sequence to count on along
+            columns[each.key] = (columns[each.key] + 180) % 360 - 180
+    for name, motion in centres_of(study, state).items():
+        columns |= {f"{name}_{axis}": motion.position[:, index] for index, axis in enumerate("xy")}
+    return pd.DataFrame(columns)
+
+
+def _drawing(study: LinkageStudy, state: Kinematics) -> Plot:
+    linkage = study.linkage
+    a, b, p = state.a.position, state.b.position, state.p.position
+    still = np.broadcast_to(linkage.o2, a.shape), np.broadcast_to(linkage.o4, a.shape)
+    bars = np.stack([still[0], a, b, still[1], np.full(a.shape, np.nan), a, p, b], axis=1)
+    labels = [f"theta2 = {angle:.6g} deg" for angle in study.asked.at_deg]
+    series: dict[str, FloatArray] = {"path of P": _path(study)}
+    series |= {label: bars[number] for number, label in enumerate(labels)}
+    pivots = {name.upper(): getattr(linkage, name)[None] for name in linkage.GROUND}
+    title = "the linkage at chosen driver angles"
+    return Plot("positions", title, study.spec.unit, series, points={**pivots, "P": p})
+
+
+def _path(study: LinkageStudy) -> FloatArray:
+    return study.joined([solve_position(study.linkage, angles).p for angles in study.sweep.angles()])

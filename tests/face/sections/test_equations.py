@@ -1,0 +1,61 @@
+"""The nine equations as a table."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, load_linkage_spec
+
+ONLY = ("equations",)
+NAMES = ["F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y", "T12"]
+
+
+def test_the_table_solves_to_the_forces_of_the_analysis(sections: Any) -> None:
+    section = sections("pumpjack", sections=ONLY, at_deg=(0, 60))["equations"]
+    table = section.tables["equations"]
+    assert len(table) == 18
+    rows = table[table["theta2_deg"] == 60]
+    solved = np.linalg.solve(rows[NAMES].to_numpy(), rows["right_side"].to_numpy())
+    np.testing.assert_allclose(solved, rows["solution"], rtol=1e-12, atol=1e-9)
+    assert rows["unknown"].tolist() == NAMES
+    assert rows["solution"].iloc[-1] == pytest.approx(5507.7, rel=2e-3)  # at g = 9.81 it is 5507.711
+    assert section.facts[0].value < 1e-8
+
+
+def test_arms_are_in_metres_and_forces_in_newtons_in_every_unit(sections: Any) -> None:
+    """The pumpjack in inches has the same equations."""
+    spec, inch = load_linkage_spec("pumpjack"), 0.0254
+    bar, given = spec.linkage, spec.dynamics
+    assert given is not None
+    assert given.inertias is not None
+    small = FourBar(bar.o2 / inch, bar.o4 / inch, bar.r2 / inch, bar.r3 / inch, bar.r4 / inch)
+    inertias = [inertia / inch**2 for inertia in given.inertias]
+    dynamics = DynamicsSpec(
+        masses=given.masses, inertias=inertias, speed_rpm=given.speed_rpm, gravity=given.gravity
+    )
+    tables = [
+        sections(each, sections=ONLY, at_deg=(75,))["equations"].tables["equations"]
+        for each in (spec, LinkageSpec(small, "small", length_unit="in", dynamics=dynamics))
+    ]
+    for name in [*NAMES, "right_side", "solution"]:
+        np.testing.assert_allclose(tables[1][name], tables[0][name], rtol=1e-9, atol=1e-9)
+
+
+def test_dead_positions_and_linkages_without_masses(sections: Any) -> None:
+    assert "neither masses nor loads" in sections("lufkin-c912d", sections=ONLY)["equations"].notes[0]
+    swinging = LinkageSpec(
+        FourBar((0, 0), (4, 0), 2, 2, 3),
+        "swinging",
+        length_unit="mm",
+        dynamics=DynamicsSpec(mass_per_length=1.0),
+    )
+    middle = sections(swinging, sections=ONLY)["equations"].tables["equations"]
+    assert middle["theta2_deg"].unique() == pytest.approx([0])
+    assert np.isfinite(middle["solution"]).all()
+    limit = float(np.degrees(np.arccos((16 + 4 - 25) / 16)))
+    dead = sections(swinging, sections=ONLY, at_deg=(limit,))["equations"]
+    assert dead.tables["equations"]["solution"].isna().all()
+    assert dead.facts[0].value == 0
