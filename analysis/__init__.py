@@ -29,6 +29,7 @@ from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics, virtual
 from grashof.analysis.forces.energy import Energies, Powers, energies, mechanical_energy, powers
 from grashof.analysis.forces.equilibrium import Equilibria, equilibria
 from grashof.analysis.forces.flywheel import Flywheel, size_flywheel
+from grashof.analysis.forces.flywheel_speed import flywheel_speed
 from grashof.analysis.forces.free_response import Ending, FreeResponse, free_response, generalised_inertia
 from grashof.analysis.forces.loads import (
     AppliedForce,
@@ -199,6 +200,7 @@ __all__ = [
     "extremes",
     "extremes_of",
     "fit_polynomial",
+    "flywheel_speed",
     "fourier_series",
     "free_response",
     "full_rotation",

@@ -318,6 +318,13 @@ def analyse(
         float | None,
         typer.Option(help="Report how long link 4 dwells in a band so wide.", show_default=False),
     ] = None,
+    balance: Annotated[
+        bool, typer.Option("--balance", help="Report counterweights, before and after.")
+    ] = False,
+    flywheel: Annotated[
+        float | None,
+        typer.Option(help="Report the flywheel for this fluctuation of speed: 0.05.", show_default=False),
+    ] = None,
     release: Annotated[
         float | None,
         typer.Option(
@@ -349,6 +356,8 @@ def analyse(
             fit_to_deg=fit_to_deg,
             fit_points=fit_points,
             dwell_deg=dwell_deg,
+            balance=balance,
+            flywheel=flywheel,
             release_deg=release,
             release_rpm=release_rpm,
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from grashof.sections.balancing import balancing
 from grashof.sections.coupler_plane import coupler_plane
 from grashof.sections.differences import differences
 from grashof.sections.dwell import dwell_section
@@ -11,6 +12,7 @@ from grashof.sections.energies import energy_section
 from grashof.sections.equations import equations
 from grashof.sections.equilibrium import equilibrium
 from grashof.sections.fits import fits
+from grashof.sections.flywheel import flywheel
 from grashof.sections.hodographs import hodographs
 from grashof.sections.mass_centres import mass_centres
 from grashof.sections.mechanical_advantage import mechanical_advantage
@@ -39,6 +41,8 @@ SECTIONS: tuple[Callable[[LinkageStudy], Section | None], ...] = (
     coupler_plane,
     dwell_section,
     energy_section,
+    balancing,
+    flywheel,
     equilibrium,
     release,
     strength,

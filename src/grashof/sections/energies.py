@@ -6,9 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from grashof.analysis import Kinematics, Loads, Masses, energies, extremes_of, powers
-from grashof.problems.values.arrays import TURN
-from grashof.study.columns import Columns, curves, over_driver, table
+from grashof.analysis import Kinematics, Loads, Masses, energies, powers
+from grashof.study.columns import Columns, curves, degrees, over_driver, table, turn_extremes
 from grashof.study.section import Fact, Section
 from grashof.study.study import LinkageStudy
 
@@ -54,10 +53,7 @@ def _columns(state: Kinematics, masses: Masses, loads: Loads, joule: float) -> C
 def _facts(study: LinkageStudy, masses: Masses) -> Iterator[Fact]:
     if not (study.sweep.turns and masses.total > 0):
         return
-    found = extremes_of(
-        lambda t: energies(study.sweep.state(t), masses).kinetic.sum(axis=0), 0.0, TURN, closed=True
-    )
+    found = turn_extremes(study, lambda state: energies(state, masses).kinetic.sum(axis=0))
     for name, value, at in (("least", found.low, found.at_low), ("largest", found.high, found.at_high)):
         yield Fact(f"kinetic_energy_{name}", f"kinetic energy, {name}", value * study.metre**2, "J")
-        angle = float(np.round(np.degrees(at) % 360, 9))
-        yield Fact(f"kinetic_energy_{name}_theta2_deg", f"kinetic energy, {name}: theta2", angle, "deg")
+        yield Fact(f"kinetic_energy_{name}_theta2_deg", f"kinetic energy, {name}: theta2", degrees(at), "deg")

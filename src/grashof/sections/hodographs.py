@@ -6,9 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from grashof.analysis import Kinematics, extremes_of
-from grashof.problems.values.arrays import TURN
-from grashof.study.columns import Columns, curves, over_driver, table, tracks
+from grashof.analysis import Kinematics
+from grashof.study.columns import Columns, curves, degrees, over_driver, table, tracks, turn_extremes
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
 
@@ -47,7 +46,7 @@ def _motion(state: Kinematics) -> Columns:
 def _facts(study: LinkageStudy) -> Iterator[Fact]:
     if not study.sweep.turns:  # without limit towards dead positions
         return
-    found = extremes_of(lambda t: np.hypot(*study.sweep.state(t).p.jerk.T), 0.0, TURN, closed=True)
+    found = turn_extremes(study, lambda state: np.hypot(*state.p.jerk.T))
     yield Fact("p_jerk_largest", "jerk of P, largest", found.high, f"{study.spec.unit}/s3")
-    at = float(np.round(np.degrees(found.at_high) % 360, 9))
-    yield Fact("p_jerk_largest_theta2_deg", "jerk of P, largest: theta2", at, "deg")
+    label = "jerk of P, largest: theta2"
+    yield Fact("p_jerk_largest_theta2_deg", label, degrees(found.at_high), "deg")

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from grashof.analysis import Kinematics, advantage, extremes_of, holding, output_stroke
-from grashof.problems.values.arrays import TURN, FloatArray
-from grashof.study.columns import Columns, curves, over_driver, table
+from grashof.analysis import Kinematics, advantage, holding, output_stroke
+from grashof.problems.values.arrays import FloatArray
+from grashof.study.columns import Columns, curves, degrees, over_driver, table, turn_extremes
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
 
@@ -64,19 +64,15 @@ def _holding_plots(columns: Columns) -> Iterator[Plot]:
 def _facts(study: LinkageStudy) -> Iterator[Fact]:
     linkage = study.linkage
     if study.sweep.turns:
-        found = extremes_of(lambda t: advantage(linkage, t).velocity_ratio, 0.0, TURN, closed=True)
+        found = turn_extremes(study, lambda state: advantage(linkage, state.theta2).velocity_ratio)
         for name, ratio, at in (("least", found.low, found.at_low), ("largest", found.high, found.at_high)):
             label = f"velocity ratio omega4 / omega2, {name}"
             yield Fact(f"velocity_ratio_{name}", label, ratio)
-            yield Fact(f"velocity_ratio_{name}_theta2_deg", f"{label}: theta2", _angle(at), "deg")
+            yield Fact(f"velocity_ratio_{name}_theta2_deg", f"{label}: theta2", degrees(at), "deg")
         if most := max(abs(found.low), abs(found.high)):
             yield Fact("mechanical_advantage_least", "mechanical advantage |T4 / T2|, least", 1 / most)
     stands = output_stroke(linkage).theta2
     stands = np.sort(stands[np.abs(advantage(linkage, stands).velocity_ratio) < _STANDS])
     for number, at in enumerate(stands, start=1):
         label = f"mechanical advantage without limit, {number}: theta2"
-        yield Fact(f"toggle_{number}_theta2_deg", label, _angle(at), "deg")
-
-
-def _angle(theta2: float) -> float:
-    return float(np.round(np.degrees(theta2) % 360, 9))
+        yield Fact(f"toggle_{number}_theta2_deg", label, degrees(at), "deg")

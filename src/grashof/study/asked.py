@@ -39,6 +39,11 @@ class Asked:
         The band in which link 4 counts as dwelling.
     release_deg, release_rpm : float, deg and rpm, optional
         Driver angle at which the linkage is let go, and the driver's speed there: none by default.
+    balance : bool
+        Whether counterweights are sought.
+    flywheel : float, optional
+        Fluctuation of the driver's speed that a flywheel is sought for: largest less least as a share of
+        the mean.
     sections : tuple of str
         Of `ON_REQUEST`.
     fit_from_deg, fit_to_deg : float, deg, optional
@@ -61,6 +66,8 @@ class Asked:
     dwell_deg: float | None = None
     release_deg: float | None = None
     release_rpm: float | None = None
+    balance: bool = False
+    flywheel: float | None = None
     sections: tuple[str, ...] = ()
     fit_from_deg: float | None = None
     fit_to_deg: float | None = None

@@ -1,0 +1,168 @@
+"""Counterweights against the force that shakes the ground, and for an even drive torque: before and after."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from grashof.analysis import (
+    Body,
+    Kinematics,
+    Loads,
+    Masses,
+    balance_force,
+    balance_turn,
+    driver_samples,
+    inverse_dynamics,
+)
+from grashof.analysis.four_bar.means import mean_over
+from grashof.analysis.numerics.peaks import peaks
+from grashof.problems import ProblemError
+from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.study.columns import Columns, curves, over_driver, table
+from grashof.study.section import Fact, Section
+from grashof.study.study import LinkageStudy
+
+_BARE, _FORCE, _RMS, _PEAK = "as it is", "shaking force", "torque, rms", "torque, peak"
+_KEYS = {_BARE: "before", _FORCE: "force", _RMS: "rms", _PEAK: "peak"}
+_PLOTS = (
+    ("shaking_force", "balancing-shaking-force", "shaking force", "N"),
+    ("shaking_moment", "balancing-shaking-moment", "shaking moment about O2", "N m"),
+    ("torque", "balancing-torque", "drive torque", "N m"),
+)
+_NOTHING = 1e-12  # share of the greatest: rounding
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Way:
+    """Masses with the counterweights of one aim, by the links that they are on."""
+
+    masses: Masses
+    weights: Mapping[int, Body]
+
+
+def balancing(study: LinkageStudy) -> Section | None:
+    """Counterweights for each aim, and what forces and torque they leave; None unless they are asked for."""
+    if not study.asked.balance:
+        return None
+    masses, loads = study.masses, study.loads
+    if masses is None or not masses.total > 0:
+        raise ProblemError("balance needs masses; [dynamics] states none")
+    ways, notes = _ways(study, masses, loads)
+    columns = over_driver(study, lambda state: _columns(state, ways, loads, study.metre))
+    plots = [
+        curves(columns, key, title, unit, {way: f"{name}_{_KEYS[way]}" for way in ways})
+        for name, key, title, unit in _PLOTS
+    ]
+    rows = pd.DataFrame([_row(study, name, way, loads) for name, way in ways.items()])
+    if "shaking_force_peak" in rows:
+        small = rows["shaking_force_peak"] < _NOTHING * rows["shaking_force_peak"].max()
+        rows.loc[small, "shaking_force_peak"] = 0.0
+    tables = {"balancing": rows, "balancing-curves": table(columns)}
+    return Section("balancing", "Balancing", tuple(_facts(study, rows)), tables, tuple(plots), notes)
+
+
+def _ways(study: LinkageStudy, masses: Masses, loads: Loads) -> tuple[dict[str, _Way], tuple[str, ...]]:
+    """What is compared, and why less of it where that is so."""
+    linkage, steady = study.linkage, all(law.motor.steady for law in study.sweep.laws)
+    force = balance_force(linkage, masses)
+    weights = {2: force.crank_weight, 4: force.output_weight}
+    ways = {_BARE: _Way(masses, {}), _FORCE: _Way(force.masses, weights)}
+    notes = [
+        "counterweights are points at r2 from O2 and r4 from O4; others of the same mass times radius do",
+        "shaking force and moment are those of inertia; weights and loads are left out",
+    ]
+    why = (
+        "gravity is zero, so no counterweight evens out the torque"
+        if not loads.gravity_vector().any()
+        else "the driver does not turn fully, so no counterweight evens out its torque"
+        if not study.sweep.turns
+        else "the torque of a driver that starts and stops is not evened out"
+        if not steady
+        else ""
+    )
+    if why:
+        return ways, (*notes, why)
+    omega2, radius = study.sweep.speed_rpm * TURN / 60, float(linkage.r2)
+    for name, measure in ((_RMS, "rms"), (_PEAK, "peak")):
+        found = balance_turn(linkage, masses, omega2, loads, radius, measure)
+        ways[name] = _Way(found.masses, {2: found.crank_weight})
+    return ways, tuple(notes)
+
+
+def _columns(state: Kinematics, ways: Mapping[str, _Way], loads: Loads, metre: float) -> Columns:
+    columns: dict[str, FloatArray] = {}
+    for name, way in ways.items():
+        force, moment, torque = _magnitudes(state, way.masses, loads, metre, signed=True)
+        key = _KEYS[name]
+        columns |= {f"shaking_force_{key}": force, f"shaking_moment_{key}": moment, f"torque_{key}": torque}
+    return columns
+
+
+def _magnitudes(
+    state: Kinematics, masses: Masses, loads: Loads, metre: float, *, signed: bool = False
+) -> FloatArray:
+    """Shaking force, shaking moment and drive torque, each a row; N and N m."""
+    inertia, torque = inverse_dynamics(state, masses), inverse_dynamics(state, masses, loads).torque
+    force = np.hypot(inertia.shaking_force[:, 0], inertia.shaking_force[:, 1]) * metre
+    rows = np.stack([force, inertia.shaking_moment * metre**2, torque * metre**2])
+    return rows if signed else np.abs(rows)
+
+
+def _row(study: LinkageStudy, name: str, way: _Way, loads: Loads) -> dict[str, object]:
+    row: dict[str, object] = {"aim": name}
+    for link in (2, 4):
+        weight = way.weights.get(link)
+        mass = 0.0 if weight is None else float(weight.mass)
+        at = np.zeros(2) if weight is None else weight.centre
+        row |= {
+            f"mass_{link}": mass,
+            f"u_{link}": float(at[0]),
+            f"v_{link}": float(at[1]),
+            f"mass_times_radius_{link}": mass * float(np.hypot(*at)),
+        }
+    return row | (_figures(study, way.masses, loads) if study.sweep.turns else {})
+
+
+def _figures(study: LinkageStudy, masses: Masses, loads: Loads) -> dict[str, object]:
+    """Peaks over the turn, and the root mean square of the torque."""
+
+    def rows(theta2: FloatArray) -> FloatArray:
+        return _magnitudes(study.sweep.state(theta2), masses, loads, study.metre)
+
+    (force, moment, torque), _ = peaks(rows, [driver_samples(study.linkage, 0.0, TURN)])
+    found = {
+        "shaking_force_peak": float(force),
+        "shaking_moment_peak": float(moment),
+        "torque_peak": float(torque),
+    }
+    if all(law.motor.steady for law in study.sweep.laws):
+        square, _ = mean_over(study.linkage, lambda theta2: rows(theta2)[2] ** 2, 0.0, TURN)
+        found["torque_rms"] = float(np.sqrt(square))
+    return dict(found)
+
+
+def _facts(study: LinkageStudy, rows: pd.DataFrame) -> Iterator[Fact]:
+    unit = study.spec.unit
+    for row in rows.to_dict("records"):
+        aim, key = row["aim"], _KEYS[row["aim"]]
+        for link in (2, 4):
+            if row[f"mass_{link}"] > 0:
+                label = f"counterweight on link {link} for {aim}"
+                name = f"balance_{key}_{link}"
+                product = row[f"mass_times_radius_{link}"]
+                yield Fact(f"{name}_mass_radius", f"{label}: mass times radius", product, f"kg {unit}")
+                angle = float(np.degrees(np.arctan2(row[f"v_{link}"], row[f"u_{link}"])))
+                yield Fact(f"{name}_angle_deg", f"{label}: direction from the link", angle, "deg")
+        for column, label, per in (
+            ("shaking_force_peak", "shaking force, peak", "N"),
+            ("shaking_moment_peak", "shaking moment, peak", "N m"),
+            ("torque_peak", "drive torque, peak", "N m"),
+            ("torque_rms", "drive torque, rms", "N m"),
+        ):
+            if column in rows and np.isfinite(row[column]):
+                what = label if aim == _BARE else f"{label}, balanced for {aim}"
+                yield Fact(f"balance_{key}_{column}", what, row[column], per)

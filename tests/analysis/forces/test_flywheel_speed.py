@@ -1,0 +1,65 @@
+"""The speed with a flywheel: its fluctuation, and the motion that the wheel really makes."""
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline
+
+from grashof.analysis import (
+    Body,
+    Loads,
+    Masses,
+    Spring,
+    flywheel_speed,
+    free_response,
+    inverse_dynamics,
+    size_flywheel,
+    solve_kinematics,
+    uniform_bars,
+)
+from grashof.problems import FourBar
+
+TURN = 2 * np.pi
+JACK = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
+BARS = uniform_bars(JACK, (312, 312, 314))
+LOADS = Loads(gravity=(0, -9.81), springs=(Spring(1, (0, 6), 4, (2, 0), 9e3, 1.0),))
+
+
+@pytest.mark.parametrize("omega2", [TURN / 3, -TURN / 3])
+@pytest.mark.parametrize("fluctuation", [0.05, 0.3])
+def test_the_speed_varies_by_the_fluctuation_about_its_mean(omega2: float, fluctuation: float) -> None:
+    wheel = size_flywheel(JACK, BARS, omega2, fluctuation, LOADS)
+    theta2 = np.linspace(0, TURN, 2001)
+    speed = flywheel_speed(JACK, BARS, omega2, wheel, theta2, LOADS)
+    assert np.ptp(speed) == pytest.approx(fluctuation * abs(omega2), rel=1e-5)
+    assert (speed.max() + speed.min()) / 2 == pytest.approx(omega2, rel=1e-5)
+    assert speed[0] == pytest.approx(speed[-1], rel=1e-9)
+    fastest = theta2[np.abs(speed).argmax()]
+    assert np.abs(np.exp(1j * fastest) - np.exp(1j * wheel.fastest)) < 0.01
+
+
+def test_energy_of_the_wheel_is_the_integral_of_the_torque() -> None:
+    wheel = size_flywheel(JACK, BARS, 2.0, 0.1, LOADS)
+    theta2 = np.linspace(0, TURN, 721)
+    speed = flywheel_speed(JACK, BARS, 2.0, wheel, theta2, LOADS)
+    torque = inverse_dynamics(solve_kinematics(JACK, theta2, 2.0), BARS, LOADS).torque
+    gained = CubicSpline(theta2, wheel.mean_torque - torque).antiderivative()(theta2)
+    energy = wheel.inertia * speed**2 / 2
+    np.testing.assert_allclose(energy - energy[0], gained, atol=1e-6 * np.ptp(gained))
+
+
+def test_a_heavy_wheel_really_turns_so() -> None:
+    """Driven by the mean torque, with the wheel on the crank."""
+    omega2, fluctuation = TURN / 3, 0.002
+    wheel = size_flywheel(JACK, BARS, omega2, fluctuation, LOADS)
+    crank = BARS.crank + Body(0.0, wheel.inertia)
+    with_wheel = Masses(crank, BARS.coupler, BARS.output)
+    start = float(flywheel_speed(JACK, BARS, omega2, wheel, np.array([0.0]), LOADS)[0])
+    free = free_response(
+        JACK, with_wheel, np.linspace(0, 3, 301), 0.0, start, torque=wheel.mean_torque, loads=LOADS
+    )
+    theta2 = np.minimum(free.state.theta2, TURN)
+    expected = flywheel_speed(JACK, BARS, omega2, wheel, theta2, LOADS)
+    turn = free.state.theta2 <= TURN
+    assert turn.sum() > 290
+    off = np.abs(free.state.omega2 - expected)[turn]
+    assert off.max() < 0.02 * fluctuation * omega2
