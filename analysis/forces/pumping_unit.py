@@ -17,6 +17,8 @@ from grashof.problems import FourBar, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.pumping_unit import CRANK, PumpingUnitSpec
 
+_ROCKS = 1e-9  # rad: a beam that rocks by less stands still
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RodMotion:
@@ -89,7 +91,7 @@ def beam_limits(linkage: FourBar) -> FloatArray:
         The crank does not turn fully, or the beam does.
     """
     limits = output_stroke(linkage).theta4
-    if not (full_rotation(linkage) and np.isfinite(limits).all()):
+    if not (full_rotation(linkage) and np.ptp(limits) > _ROCKS):
         raise ProblemError("pumping_unit: the crank does not turn fully while the beam rocks")
     return limits
 
