@@ -243,10 +243,13 @@ def _outermost(
     """Largest height (the curve's value times sign) and where it is."""
     top = int(np.argmax(heights))
     best, where = float(heights[top]), float(at[top])
-    inner = heights[1:-1]
-    peaks = np.flatnonzero((inner >= heights[:-2]) & (inner >= heights[2:])) + 1
-    if closed:
-        peaks = np.append(peaks, [0, len(at) - 1])
+    beyond = (heights[-2], heights[1]) if closed else (-np.inf, -np.inf)
+    padded = np.concatenate([beyond[:1], heights, beyond[1:]])
+    before, after = padded[:-2], padded[2:]
+    with np.errstate(invalid="ignore"):
+        bend = heights - before + heights - after  # a peak rises by less
+        inside = np.isfinite(bend) & (heights >= before) & (heights >= after)
+    peaks = np.flatnonzero(inside & (heights + bend >= best))
     for peak in peaks[np.argsort(-heights[peaks], kind="stable")[:_CANDIDATES]]:
         near = sign * heights[peak]
 
@@ -256,8 +259,8 @@ def _outermost(
                 values = values - period * np.round((values - near) / period)
             return sign * values
 
-        for place in _stationary(counted, at, int(peak), closed):
-            height = float(counted(np.array([place]))[0])
+        places = np.array(_stationary(counted, at, int(peak), closed))
+        for place, height in zip(places.tolist(), counted(places).tolist(), strict=True):
             if height >= best or (height >= best - 4e-16 * abs(best) and abs(place - where) < 1e-3):
                 best, where = max(height, best), place
     return best, where
