@@ -162,6 +162,10 @@ inertia = 0.02
 [section]
 width = 0.2
 height = 0.1
+[strength]
+yield_stress = 235e6
+elastic_modulus = 2.1e11
+pin_diameter = [0.1, 0.1, 0.1, 0.2]
 """
 _PROBLEMS = (
     f'kind = "motion"\nlength_unit = "m"\n[motion]\nposes = [[5, 4, 0], [3.5, 4, -5], [2, 3, -5]]\n'

@@ -32,7 +32,7 @@ from reports import published
 from reports.material import HEIGHT, WIDTH, Analysis, Made, lines, shown
 
 _DENSE = 7201
-# N: polished-rod loads, up and down; assumed, as the report has none. They change while the head stands still.
+# N: polished-rod loads, up and down; assumed, as the report has none. They change while the head rests.
 ROD_UP, ROD_DOWN, SOFT = 20e3, 9e3, 0.1
 _CROSS = {
     "linestyle": "none",

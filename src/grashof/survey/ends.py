@@ -20,7 +20,7 @@ _DEAD = 1e-6  # rad
 _FAR = 0.2, 0.4  # rad: over so much of the motion rates are continued to a change point, by polynomials of
 _DEGREE = 16
 _BESIDE = np.linspace(-1, 1, 9)
-_CLOSE = 1e-7  # rad: over so much a curve is a parabola but for rounding
+_CLOSE = 1e-9  # rad: over so much a curve is a parabola but for rounding
 _DOUBT = 8.0  # times how far it is from one: a value may be wrong by so much
 
 

@@ -13,10 +13,12 @@ from grashof.analysis import (
     Kinematics,
     even_motion,
     solve_kinematics,
+    transmission_angle,
     transmission_extremes,
 )
 from grashof.analysis.four_bar.even_motion import EvenMotion
 from grashof.analysis.four_bar.extremes import counted_on, dense_places, refined
+from grashof.analysis.four_bar.transmission import quality
 from grashof.analysis.numerics.quadrature import held
 from grashof.problems import AssemblyError
 from grashof.problems.values.arrays import TURN, FloatArray
@@ -26,6 +28,7 @@ from grashof.survey.ends import End, end_of, rounding_of, towards_change, toward
 
 _CONSTANT = 1e-12  # least and largest values apart, as a share: the quantity is constant
 _ROUNDING = 2e-15  # of a driver angle
+_NEARLY_DEAD = 1e-2  # rad
 _PARABOLAS = 1e-5, 1e-7, 1e-9  # shares of the motion
 _CELLS = ("min", "theta2_min_deg", "max", "theta2_max_deg")
 
@@ -133,6 +136,10 @@ class _Range:
         inner = _Samples.between(sweep, low + ends[0].value, high - ends[1].value)
         return cls(low, high, ends, whole, inner, law)
 
+    def curve(self, quantity: Quantity, theta2: FloatArray) -> FloatArray:
+        """Values of a quantity at driver angles."""
+        return np.asarray(quantity.of(self.whole.sweep.state(theta2)), dtype=np.float64)
+
     def samples(self, quantity: Quantity) -> _Samples:
         """Those in which the extremes of a quantity are sought."""
         return self.whole if quantity.position else self.inner
@@ -165,13 +172,25 @@ def _found(part: _Range, quantity: Quantity, values: FloatArray) -> Extremes | N
     if not (quantity.position or part.law.motor.steady):
         return _of_uneven_drive(part, quantity)
     samples = part.samples(quantity)
-    if not (quantity.position and np.isnan(values).any()):
-        found = samples.extremes(quantity, values)
-        whole = found is None or samples is part.whole
-        return found if found is None or whole else _with_its_ends(part, quantity, found)
-    # No position at the change point of a kite, where A comes to lie on O4.
-    found = part.inner.extremes(quantity, part.inner.values(quantity))
-    return found if found is None else _with_its_ends(part, quantity, found)
+    if quantity.position and np.isnan(values).any():  # at the change point of a kite A comes to lie on O4
+        samples, values = part.inner, part.inner.values(quantity)
+    found = samples.extremes(quantity, values)
+    if found is None or (quantity.position and samples is part.whole):
+        return found
+    found = _with_digits_that_hold(part, quantity, found)
+    return found if samples is part.whole else _with_its_ends(part, quantity, found)
+
+
+def _with_digits_that_hold(part: _Range, quantity: Quantity, found: Extremes) -> Extremes:
+    """The extremes of a rate; near a dead position rounding of the driver angle takes digits away."""
+    linkage, places = part.whole.sweep.spec.linkage, [found.at_low, found.at_high]
+    if not (quality(transmission_angle(linkage, places)) < _NEARLY_DEAD).any():
+        return found
+    errors = [rounding_of(lambda at: part.curve(quantity, at), place) for place in places]
+    low, high = found.low, found.high
+    if high - low <= sum(errors):  # constant
+        return replace(found, high=low)
+    return replace(found, low=held(low, errors[0]), high=held(high, errors[1]))
 
 
 def _of_uneven_drive(part: _Range, quantity: Quantity) -> Extremes:
@@ -202,16 +221,11 @@ def _counted(angle: float) -> float:
 
 def _with_its_ends(part: _Range, quantity: Quantity, found: Extremes) -> Extremes:
     """The extremes of what may have no digits near the ends of a range, with what it tends to there."""
+    values, places = [found.low, found.high], [found.at_low, found.at_high]
 
     def curve(theta2: FloatArray) -> FloatArray:
-        return np.asarray(quantity.of(part.whole.sweep.state(theta2)), dtype=np.float64)
+        return part.curve(quantity, theta2)
 
-    values, places = [found.low, found.high], [found.at_low, found.at_high]
-    if End.CHANGE in part.ends:
-        errors = [rounding_of(curve, place) for place in places]
-        if values[1] - values[0] <= sum(errors):  # constant
-            values[1] = values[0]
-        values = [held(value, error) for value, error in zip(values, errors, strict=True)]
     motion, room = part.inner.motion, (part.high - part.low) / 4
     for near, limit, end in zip((motion.start, motion.end), (part.low, part.high), part.ends, strict=True):
         if end is End.DEAD:

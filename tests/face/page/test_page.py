@@ -203,7 +203,7 @@ def test_an_analysis_shows_every_curve_and_figure() -> None:
     report = report_on(load_linkage_spec("pumpjack"))
     page = analysis_page(report, RECORD)
     parts = Parts(page)
-    plots = [plot for group in parts.data["groups"] for plot in group if "over" not in plot]
+    plots = [plot for group in parts.data["groups"] for plot in group if {"places", "angles"} <= {*plot}]
     shown = [parts.data["columns"][line["values"]] for plot in plots for line in plot["series"]]
     for name in ("kinematics", "dynamics"):
         for key, values in report.tables[name].drop(columns=["theta2_deg", "omega2"]).items():

@@ -185,7 +185,7 @@ def test_any_plot_is_saved_and_every_file_has_its_own_name(opened: Open, tmp_pat
     keys = page.evaluate(
         "JSON.parse(document.querySelector('#data').textContent).groups.flat().map((p) => p.key)"
     )
-    assert len(set(keys)) == len(keys) == 44
+    assert len(set(keys)) == len(keys) == 46
     names = set()
     for number, button in enumerate(page.locator(".save button").all()[-14:]):
         if number == 10:

@@ -104,7 +104,7 @@ def test_every_plot_of_an_analysis_has_a_key_of_its_own() -> None:
 
 
 def test_small_tables_are_shown_and_large_ones_named_with_their_size(page: Groups) -> None:
-    assert page.links == ["table-mass-centres.csv", "table-few.csv", "table-many.csv"]
+    assert page.links == ["table-masses.csv", "table-mass-centres.csv", "table-few.csv", "table-many.csv"]
     assert ": 361 rows, 2 columns" in page.groups[-3]
 
 

@@ -89,9 +89,9 @@ class AnalysisPage {
     this.player.set(turns ? Math.PI / 3 : (low + high) / 2);
   }
 
-  // The part of a plot over the driver angle that lies in the range; null for all of it.
+  // The part of a plot over the driver angle that lies in the range; null for all of it, as of tracks.
   windowOf({ places }) {
-    if (this.designs.length < 2) return null;
+    if (this.designs.length < 2 || !places) return null;
     const { low, high } = this.designs[this.range];
     const inside = (place) => place !== null && place >= low * DEG - 1e-3 && place <= high * DEG + 1e-3;
     return extent(places.filter(inside));
