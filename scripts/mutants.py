@@ -167,7 +167,32 @@ yield_stress = 235e6
 elastic_modulus = 2.1e11
 pin_diameter = [0.1, 0.1, 0.1, 0.2]
 """
+# The same in other words.
+_OTHERWISE = """
+[dynamics]
+masses = [1, 2, 3]
+inertias = [1, 2, 3]
+centres = [[0.5, 0], [2, 0.1], [1, 0]]
+[section]
+area = 0.01
+inertia = [1e-5, 1e-5, 2e-5]
+extreme_fibre = 0.1
+inertia_across = 1e-5
+shear_factor = 2
+[strength]
+yield_stress = 235e6
+pin_diameter = 0.1
+pin_shear_strength = 1e8
+bearing_strength = 2e8
+pin_thickness = 0.05
+double_shear = true
+[friction]
+moment = 2
+[motor]
+values = [[0, 0], [1, 20], [2, 40]]
+"""
 _PROBLEMS = (
+    f'kind = "motion"\nlength_unit = "m"\n[motion]\nposes = [[5, 4, 0], [2, 3, -5]]\n{_OTHERWISE}',
     f'kind = "motion"\nlength_unit = "m"\n[motion]\nposes = [[5, 4, 0], [3.5, 4, -5], [2, 3, -5]]\n'
     "[requirements]\nlink_length = [0.3, 8]\n"
     f"[objective]\nmaximise = {{ transmission = 1, torque = 0.2 }}\n{_ACTING}",
@@ -193,6 +218,7 @@ _PROBLEMS = (
     f'kind = "motion"\n{_HEAD}[motion]\nposes = [[0, 0, 10], [30, 10, 10], [60, 5, 10]]\n{_SEARCH}',
 )
 _LINKAGES = (
+    f'length_unit = "m"\no4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n{_OTHERWISE}',
     f'length_unit = "m"\no4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n{_ACTING}',
     f"{_HEAD}r1 = 4\nground_angle_deg = 20\nr2 = 1\nr3 = 4\nr4 = 3\ncoupler_point = [2, 1]\nassembly = -1\n"
     "body_angle_deg = 30\noutput_arm = 5\n[dynamics]\nspeed_rpm = -20\ngravity = [0, -9.81]\n"
@@ -439,8 +465,9 @@ def tables_of(table: dict[str, Any], path: str = "") -> Iterator[tuple[str, dict
     """A document and all tables in it, with their key paths."""
     yield path, table
     for key, value in table.items():
-        if isinstance(value, dict):
-            yield from tables_of(value, f"{path}.{key}".lstrip("."))
+        for each in value if isinstance(value, list) else [value]:
+            if isinstance(each, dict):
+                yield from tables_of(each, f"{path}.{key}".lstrip("."))
 
 
 def _keys(document: dict[str, Any]) -> Iterator[str]:

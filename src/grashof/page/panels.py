@@ -69,7 +69,12 @@ def _groups(unit: str) -> list[tuple[str, str, list[Panel]]]:
         ("accelerations", f"acceleration of {every}", f"{unit}/s²", accelerations),
     ]
     power: list[Panel] = [
-        ("torque-factor", "torque factor of the output arm", unit, {"torque_factor": "factor"}),
+        (
+            "torque-factor",
+            "torque factor of the output arm",
+            unit,
+            {"torque_factor": "size", "torque_factor_signed": "signed"},
+        ),
         ("torque", "drive torque", "N m", {"torque": "torque"}),
         ("power", "drive power", "W", {"power": "power"}),
     ]

@@ -17,7 +17,7 @@ from grashof.figures.survey_plots import section_pictures
 from grashof.output.analysis_files import print_report, write_report
 from grashof.output.folder import ANALYSIS_RECORD, is_own_name
 from grashof.problems import load_linkage_spec
-from grashof.sections import SECTIONS
+from grashof.sections.mass_centres import mass_centres
 from grashof.survey import Fact, LinkageReport, Plot, Section, report_on
 
 Grashof = Callable[..., Any]
@@ -133,7 +133,7 @@ def test_a_report_without_facts_of_sections_ends_with_the_extremes(
 def test_pictures_of_sections_are_written_when_they_are_asked_for(
     grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("grashof.survey.report.SECTIONS", SECTIONS[:1])
+    monkeypatch.setattr("grashof.survey.report.SECTIONS", (mass_centres,))
     monkeypatch.setattr("grashof.figures.files.save", lambda _, paths: [path.touch() for path in paths])
     folder = tmp_path / "lufkin-c912d-analysis"
     done = grashof("analyse", "lufkin-c912d", "--pictures")
