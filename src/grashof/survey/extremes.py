@@ -29,6 +29,7 @@ from grashof.survey.ends import End, end_of, rounding_of, towards_change, toward
 _CONSTANT = 1e-12  # least and largest values apart, as a share: the quantity is constant
 _ROUNDING = 2e-15  # of a driver angle
 _NEARLY_DEAD = 1e-2  # rad
+_FINE = 1e-8  # relative error, as it is estimated, up to which all digits count
 _PARABOLAS = 1e-5, 1e-7, 1e-9  # shares of the motion
 _CELLS = ("min", "theta2_min_deg", "max", "theta2_max_deg")
 
@@ -184,13 +185,29 @@ def _found(part: _Range, quantity: Quantity, values: FloatArray) -> Extremes | N
 def _with_digits_that_hold(part: _Range, quantity: Quantity, found: Extremes) -> Extremes:
     """The extremes of a rate; near a dead position rounding of the driver angle takes digits away."""
     linkage, places = part.whole.sweep.spec.linkage, [found.at_low, found.at_high]
-    if not (quality(transmission_angle(linkage, places)) < _NEARLY_DEAD).any():
+    ways = quality(transmission_angle(linkage, places)).tolist()
+    if min(ways) >= _NEARLY_DEAD:
         return found
-    errors = [rounding_of(lambda at: part.curve(quantity, at), place) for place in places]
     low, high = found.low, found.high
+    errors = [
+        _error(part, quantity, value, place, way)
+        for value, place, way in zip((low, high), places, ways, strict=True)
+    ]
     if high - low <= sum(errors):  # constant
         return replace(found, high=low)
-    return replace(found, low=held(low, errors[0]), high=held(high, errors[1]))
+    low, high = (
+        held(value, error) if error > _FINE * abs(value) else value
+        for value, error in zip((low, high), errors, strict=True)
+    )
+    return replace(found, low=low, high=high)
+
+
+def _error(part: _Range, quantity: Quantity, value: float, place: float, way: float) -> float:
+    """What rounding may do to an extreme value; of a size, which may be sharp, by way of its square."""
+    if not quantity.never_negative:
+        return rounding_of(lambda at: part.curve(quantity, at), place, way)
+    square = rounding_of(lambda at: part.curve(quantity, at) ** 2, place, way)
+    return square / (2 * max(value, float(np.sqrt(square)))) if square > 0 else 0.0
 
 
 def _of_uneven_drive(part: _Range, quantity: Quantity) -> Extremes:
