@@ -29,8 +29,7 @@ def coupler_plane(study: LinkageStudy) -> Section:
     pivots = {name.upper(): np.array([getattr(linkage, name)]) for name in linkage.GROUND}
     frame = {"A": (0.0, 0.0), "B": (float(linkage.r3), 0.0), "P": tuple(linkage.coupler_point)}
     shown = [np.where(far[:, None], np.nan, points) for points in (fixed, moving)]
-    angles, notes = _angles(study)
-    circles, diameter = _circles(study, angles), {"diameter": "inflection_diameter"}
+    circles, diameter = _circles(study, _angles(study)), {"diameter": "inflection_diameter"}
     named = {name: np.array([place]) for name, place in frame.items()}
     of_fixed, of_moving = (
         "fixed centrode: I13 in the frame",
@@ -42,8 +41,8 @@ def coupler_plane(study: LinkageStudy) -> Section:
         _circle_plot(study, circles),
         curves(columns, "inflection-diameter", "diameter of the inflection circle", unit, diameter),
     )
-    tables = {"centrodes": table(columns)} | ({"coupler-circles": circles} if len(circles) else {})
-    return Section("coupler-plane", "Centrodes and inflection circle", (), tables, plots, (*_NOTES, *notes))
+    tables = {"centrodes": table(columns), "coupler-circles": circles}
+    return Section("coupler-plane", "Centrodes and inflection circle", (), tables, plots, _NOTES)
 
 
 def _columns(study: LinkageStudy, state: Kinematics) -> Columns:
@@ -57,20 +56,17 @@ def _columns(study: LinkageStudy, state: Kinematics) -> Columns:
     }
 
 
-def _angles(study: LinkageStudy) -> tuple[FloatArray, tuple[str, ...]]:
-    """The driver angles asked for at which the linkage closes; by default one. In deg."""
-    if not study.asked.at_deg:
-        low, high = study.sweep.ranges[0]
-        return np.degrees([low if study.sweep.turns else (low + high) / 2]), ()
-    angles = np.array(study.asked.at_deg, dtype=np.float64)
-    closes = np.isfinite(solve_position(study.linkage, np.radians(angles)).theta3)
-    lost = ", ".join(f"{angle:g}" for angle in angles[~closes])
-    return angles[closes], (f"the linkage does not close at theta2 = {lost} deg",) if lost else ()
+def _angles(study: LinkageStudy) -> FloatArray:
+    """The driver angles asked for; by default one. In rad."""
+    if study.asked.at_deg:
+        return study.in_range(study.asked.at_deg, "at_deg")
+    low, high = study.sweep.ranges[0]
+    return np.array([low if study.sweep.turns else (low + high) / 2])
 
 
 def _circles(study: LinkageStudy, angles: FloatArray) -> pd.DataFrame:
-    found = coupler_circles(study.linkage, np.radians(angles))
-    columns = {"theta2_deg": angles}
+    found = coupler_circles(study.linkage, angles)
+    columns = {"theta2_deg": np.degrees(angles).round(9)}
     for name in ("pole", "inflection", "bresse", "acceleration_pole"):
         columns |= {f"{name}_{axis}": getattr(found, name)[:, index] for index, axis in enumerate("xy")}
         if name in ("inflection", "bresse"):

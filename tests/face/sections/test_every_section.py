@@ -21,6 +21,7 @@ from grashof.problems.values.acting import (
     TorsionSpringSpec,
 )
 from grashof.problems.values.motor import MotorSpec
+from grashof.study.asked import ON_REQUEST
 from grashof.survey import Section
 
 Sections = Callable[..., dict[str, Section]]
@@ -49,14 +50,16 @@ LOADED = DynamicsSpec(
     friction=FrictionSpec(coulomb=0.1, pin_radius=0.05, viscous=2.0),
     motor=MotorSpec(profile="trapezoid", gear_ratio=30, gear_efficiency=0.9, inertia=0.02),
 )
-ASKED: dict[str, Any] = {"at_deg": (10.0, 90.0, 200.0), "dwell_deg": 2.0}
+ASKED: dict[str, Any] = {"dwell_deg": 2.0, "sections": ON_REQUEST}
+MOVED: dict[str, Any] = {"balance": True, "flywheel": 0.1, "release_deg": 20.0, "seconds": 0.2}
 
 
 @pytest.fixture(scope="module", params=[*LINKAGES, "pumpjack", "lufkin-c912d", "still", "loaded"])
 def made(request: pytest.FixtureRequest, sections: Sections) -> dict[str, Section]:
     if request.param in LINKAGES:
         spec = LinkageSpec(LINKAGES[request.param], request.param, length_unit="mm", dynamics=HEAVY)
-        return sections(spec, **ASKED)
+        turns = request.param in ("crank-rocker", "double-crank")
+        return sections(spec, **ASKED, **(MOVED if turns else {"balance": True}))
     if request.param == "loaded":
         return sections(replace(load_linkage_spec("pumpjack"), dynamics=LOADED), **ASKED)
     if request.param == "still":

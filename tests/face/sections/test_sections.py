@@ -107,11 +107,13 @@ def test_names_on_the_command_line(grashof: Any, tmp_path: Any, monkeypatch: pyt
         "fits-coefficients", "fits-points", "newton-raphson", "differences", "differences-deviations",
         "equations",
     }  # fmt: skip
-    assert {path.stem for path in folder.glob("table-*.csv")} == {f"table-{name}" for name in names}
+    written = {path.stem.removeprefix("table-") for path in folder.glob("table-*.csv")}
+    assert names <= written
     some = grashof("analyse", "pumpjack", "--with", "equations, fits")
     assert some.exit_code == 0
     left = {"masses", "mass-centres", "fits", "fits-coefficients", "fits-points", "equations"}
-    assert {path.stem for path in folder.glob("table-*.csv")} == {f"table-{name}" for name in left}
+    written -= {path.stem.removeprefix("table-") for path in folder.glob("table-*.csv")}
+    assert written == names - left
     for wrong, message in (
         (("--at", "0;90"), "--at is '0;90'; it must be numbers with commas between them, such as 0,90,180"),
         (
