@@ -170,7 +170,7 @@ def even_motion(linkage: FourBar, start: float, end: float) -> EvenMotion:
     --------
     >>> nearly_dead = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=4.5, r4=2.501)
     >>> np.degrees(even_motion(nearly_dead, 0.0, np.pi).theta2([0, 0.25, 0.5, 0.75, 1])).round(3).tolist()
-    [0.0, 2.674, 20.246, 81.842, 180.0]
+    [0.0, 3.126, 16.409, 74.602, 180.0]
     """
     plain = EvenMotion(float(start), float(end), _Way.PLAIN)
     home = _home(linkage, min(start, end), max(start, end))

@@ -130,7 +130,7 @@ def transmission_extremes(linkage: FourBar, start: float, end: float) -> Extreme
     >>> rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3)
     >>> found = transmission_extremes(rocker, *driver_ranges(rocker)[0])
     >>> np.degrees([found.low, found.high]).round(4).tolist()
-    [36.3361, 180.0]
+    [41.4096, 180.0]
     """
     theta1, (low, high) = float(linkage.theta1), sorted((start, end))
     along = np.arange(np.ceil((low - theta1) / np.pi), np.floor((high - theta1) / np.pi) + 1)
