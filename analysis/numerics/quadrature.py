@@ -18,7 +18,7 @@ _SETTLED = 1e-13  # share of the integral of the magnitude: halving a panel chan
 _NARROW = 1e-14  # share of the whole: no panel is narrower
 _ROUNDING = 1e-15  # share of the integral of the magnitude
 _UNSETTLED = 4.0  # times the last change: what may follow of a panel that is left as it is
-_FULL = 1e-10  # relative error up to which all digits of a number count
+_FULL = 1e-9  # relative error up to which all digits of a number count
 _MOST = 1 << 18  # values of the curve, beyond which it is left as it is
 
 

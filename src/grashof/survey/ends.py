@@ -19,8 +19,8 @@ _ALONG = 1e-6  # half turns
 _DEAD = 1e-6  # rad
 _FAR = 0.2, 0.4  # rad: over so much of the motion rates are continued to a change point, by polynomials of
 _DEGREE = 16
-_BESIDE = np.linspace(-1, 1, 9)
-_CLOSE = 1e-7  # rad: over so much a curve is a parabola but for rounding
+_BESIDE = np.linspace(-1, 1, 17)
+_CLOSE = 1e-4  # of the way to a dead position: over so much a curve is a polynomial but for rounding
 _DOUBT = 8.0  # times how far it is from one: a value may be wrong by so much
 
 
@@ -56,7 +56,7 @@ def towards_change(curve: Curve, limit: float, near: float, room: float) -> tupl
     way = near - limit
     closer = limit + way * np.array([1.0, 1 / 4, 1 / 16])
     size = np.abs(curve(closer))
-    if (size[1:] > 2 * size[:-1]).all() and size[-1] > rounding_of(curve, float(closer[-1])):
+    if (size[1:] > 2 * size[:-1]).all() and size[-1] > rounding_of(curve, float(closer[-1]), abs(way) / 16):
         return np.array([limit]), np.copysign(np.inf, curve(closer[-1:]))
     theta2: FloatArray = np.linspace(limit, near, 65)
     one, other = (_continued(curve, limit, near, np.copysign(min(far, room), way), theta2) for far in _FAR)
@@ -64,10 +64,10 @@ def towards_change(curve: Curve, limit: float, near: float, room: float) -> tupl
     return theta2, np.array([held(value, error) for value in one.tolist()])
 
 
-def rounding_of(curve: Curve, theta2: float) -> float:
-    """What rounding may do to a value of a curve at a driver angle."""
-    values = curve(theta2 + _CLOSE * _BESIDE)
-    smooth = chebyshev.chebval(_BESIDE, chebyshev.chebfit(_BESIDE, values, 2))
+def rounding_of(curve: Curve, theta2: float, way: float) -> float:
+    """What rounding may do to a value of a curve at a driver angle, about so far from a dead position."""
+    values = curve(theta2 + _CLOSE * way * _BESIDE)
+    smooth = chebyshev.chebval(_BESIDE, chebyshev.chebfit(_BESIDE, values, 6))
     return _DOUBT * float(np.abs(values - smooth).max())
 
 

@@ -7,9 +7,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pandas as pd
 
-from grashof.analysis import Extremes, Kinematics, even_motion, transmission_extremes
+from grashof.analysis import (
+    Extremes,
+    Kinematics,
+    even_motion,
+    transmission_angle,
+    transmission_extremes,
+)
 from grashof.analysis.four_bar.even_motion import EvenMotion
 from grashof.analysis.four_bar.extremes import counted_on, dense_places, refined
+from grashof.analysis.four_bar.transmission import quality
 from grashof.analysis.numerics.quadrature import held
 from grashof.problems import AssemblyError
 from grashof.problems.values.arrays import TURN, FloatArray
@@ -19,6 +26,8 @@ from grashof.survey.ends import End, end_of, rounding_of, towards_change, toward
 
 _CONSTANT = 1e-12  # least and largest values apart, as a share: the quantity is constant
 _ROUNDING = 2e-15  # of a driver angle
+_NEARLY_DEAD = 1e-2  # rad
+_FINE = 1e-8  # relative error, as it is estimated, up to which all digits count
 _PARABOLAS = 1e-5, 1e-7, 1e-9  # shares of the motion
 _CELLS = ("min", "theta2_min_deg", "max", "theta2_max_deg")
 
@@ -125,6 +134,10 @@ class _Range:
         inner = _Samples.between(sweep, low + ends[0].value, high - ends[1].value)
         return cls(low, high, ends, whole, inner)
 
+    def curve(self, quantity: Quantity, theta2: FloatArray) -> FloatArray:
+        """Values of a quantity at driver angles."""
+        return np.asarray(quantity.of(self.whole.sweep.state(theta2)), dtype=np.float64)
+
     def samples(self, quantity: Quantity) -> _Samples:
         """Those in which the extremes of a quantity are sought."""
         return self.whole if quantity.position else self.inner
@@ -155,13 +168,40 @@ def _found(part: _Range, quantity: Quantity, values: FloatArray) -> Extremes | N
         mu = transmission_extremes(part.whole.sweep.spec.linkage, part.low, part.high)
         return Extremes(float(np.degrees(mu.low)), float(np.degrees(mu.high)), mu.at_low, mu.at_high)
     samples = part.samples(quantity)
-    if not (quantity.position and np.isnan(values).any()):
-        found = samples.extremes(quantity, values)
-        whole = found is None or samples is part.whole
-        return found if found is None or whole else _with_its_ends(part, quantity, found)
-    # No position at the change point of a kite, where A comes to lie on O4.
-    found = part.inner.extremes(quantity, part.inner.values(quantity))
-    return found if found is None else _with_its_ends(part, quantity, found)
+    if quantity.position and np.isnan(values).any():  # at the change point of a kite A comes to lie on O4
+        samples, values = part.inner, part.inner.values(quantity)
+    found = samples.extremes(quantity, values)
+    if found is None or (quantity.position and samples is part.whole):
+        return found
+    found = _with_digits_that_hold(part, quantity, found)
+    return found if samples is part.whole else _with_its_ends(part, quantity, found)
+
+
+def _with_digits_that_hold(part: _Range, quantity: Quantity, found: Extremes) -> Extremes:
+    """The extremes of a rate; near a dead position rounding of the driver angle takes digits away."""
+    linkage, places = part.whole.sweep.spec.linkage, [found.at_low, found.at_high]
+    ways = quality(transmission_angle(linkage, places)).tolist()
+    if min(ways) >= _NEARLY_DEAD:
+        return found
+    low, high = found.low, found.high
+    errors = [
+        _error(part, quantity, value, place, way)
+        for value, place, way in zip((low, high), places, ways, strict=True)
+    ]
+    constant = high - low <= sum(errors)
+    low, high = (
+        held(value, error) if error > _FINE * abs(value) else value
+        for value, error in zip((low, high), errors, strict=True)
+    )
+    return replace(found, low=low, high=low if constant else high)
+
+
+def _error(part: _Range, quantity: Quantity, value: float, place: float, way: float) -> float:
+    """What rounding may do to an extreme value; of a size, which may be sharp, by way of its square."""
+    if not quantity.never_negative:
+        return rounding_of(lambda at: part.curve(quantity, at), place, way)
+    square = rounding_of(lambda at: part.curve(quantity, at) ** 2, place, way)
+    return square / (2 * max(value, float(np.sqrt(square)))) if square > 0 else 0.0
 
 
 def _counted(angle: float) -> float:
@@ -171,16 +211,11 @@ def _counted(angle: float) -> float:
 
 def _with_its_ends(part: _Range, quantity: Quantity, found: Extremes) -> Extremes:
     """The extremes of what may have no digits near the ends of a range, with what it tends to there."""
+    values, places = [found.low, found.high], [found.at_low, found.at_high]
 
     def curve(theta2: FloatArray) -> FloatArray:
-        return np.asarray(quantity.of(part.whole.sweep.state(theta2)), dtype=np.float64)
+        return part.curve(quantity, theta2)
 
-    values, places = [found.low, found.high], [found.at_low, found.at_high]
-    if End.CHANGE in part.ends:
-        errors = [rounding_of(curve, place) for place in places]
-        if values[1] - values[0] <= sum(errors):  # constant
-            values[1] = values[0]
-        values = [held(value, error) for value, error in zip(values, errors, strict=True)]
     motion, room = part.inner.motion, (part.high - part.low) / 4
     for near, limit, end in zip((motion.start, motion.end), (part.low, part.high), part.ends, strict=True):
         if end is End.DEAD:
