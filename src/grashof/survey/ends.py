@@ -19,8 +19,8 @@ _ALONG = 1e-6  # half turns
 _DEAD = 1e-6  # rad
 _FAR = 0.2, 0.4  # rad: over so much of the motion rates are continued to a change point, by polynomials of
 _DEGREE = 16
-_BESIDE = np.linspace(-1, 1, 9)
-_CLOSE = 1e-4  # of the way to a dead position: over so much a curve is a parabola but for rounding
+_BESIDE = np.linspace(-1, 1, 17)
+_CLOSE = 1e-4  # of the way to a dead position: over so much a curve is a polynomial but for rounding
 _DOUBT = 8.0  # times how far it is from one: a value may be wrong by so much
 
 
@@ -67,7 +67,7 @@ def towards_change(curve: Curve, limit: float, near: float, room: float) -> tupl
 def rounding_of(curve: Curve, theta2: float, way: float) -> float:
     """What rounding may do to a value of a curve at a driver angle, about so far from a dead position."""
     values = curve(theta2 + _CLOSE * way * _BESIDE)
-    smooth = chebyshev.chebval(_BESIDE, chebyshev.chebfit(_BESIDE, values, 2))
+    smooth = chebyshev.chebval(_BESIDE, chebyshev.chebfit(_BESIDE, values, 6))
     return _DOUBT * float(np.abs(values - smooth).max())
 
 

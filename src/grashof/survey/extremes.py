@@ -193,13 +193,12 @@ def _with_digits_that_hold(part: _Range, quantity: Quantity, found: Extremes) ->
         _error(part, quantity, value, place, way)
         for value, place, way in zip((low, high), places, ways, strict=True)
     ]
-    if high - low <= sum(errors):  # constant
-        return replace(found, high=low)
+    constant = high - low <= sum(errors)
     low, high = (
         held(value, error) if error > _FINE * abs(value) else value
         for value, error in zip((low, high), errors, strict=True)
     )
-    return replace(found, low=low, high=high)
+    return replace(found, low=low, high=low if constant else high)
 
 
 def _error(part: _Range, quantity: Quantity, value: float, place: float, way: float) -> float:
