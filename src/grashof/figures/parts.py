@@ -12,6 +12,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
+from matplotlib.text import Annotation
 
 from grashof.analysis import Position, solve_position
 from grashof.analysis.four_bar.position import places
@@ -29,7 +30,9 @@ SCENE, GROUND, KEPT_OUT = "#5d6d7e", "#17202a", "#909497"
 # Targets up to which the linkage is drawn at each, and up to which each carries its number.
 _CROWD, _CROWD_OF_POINTS = 8, 6
 _NUMBERED = 24
-_SIDES = ((7, -12), (7, 6), (-20, 6), (-20, -12))  # pt: where a name may stand beside its point
+# pt: where a name may stand beside its point, the usual places first.
+_SIDES = ((7, -12), (7, 6), (-20, 6), (-20, -12), (10, -3), (-22, -3), (-5, 9), (-5, -17))
+_LETTER, _KEPT_OFF = (6.5, 7.0), 5.5  # pt: size of a letter, and how far its middle line keeps off bars
 _TEXT = (16.0, 11.0)  # pt: texts of two characters so far apart do not cover each other
 
 
@@ -109,16 +112,48 @@ def _at(points: Mapping[str, FloatArray], names: Sequence[str]) -> FloatArray:
 
 
 def name_points(axes: Axes, points: Mapping[str, FloatArray]) -> None:
-    """Write names beside points of shape (2,), each where it covers none written before.
+    """Write names beside points of shape (2,), each where it covers no text and, if that can be, no line.
 
-    The axes' limits stand by then.
+    The axes' limits stand by then, and all else is drawn.
     """
     places = in_points(axes, np.array(list(points.values())))
-    taken: list[FloatArray] = []
+    taken, ends = _written(axes), _segments(axes)
     for (name, point), place in zip(points.items(), places, strict=True):
-        side = next((side for side in _SIDES if apart(place + side, taken)), _SIDES[0])
+        free = [side for side in _SIDES if apart(place + side, taken)] or _SIDES[:1]
+        side = next((side for side in free if _clear(place + side, name, ends)), free[0])
         taken.append(place + side)
         axes.annotate(name, tuple(point), side, textcoords="offset points", color=GROUND, zorder=8)
+
+
+def _written(axes: Axes) -> list[FloatArray]:
+    """Where short texts are, pt."""
+    found = [text for text in axes.texts if isinstance(text, Annotation) and text.get_text()]
+    if not found:
+        return []
+    places = in_points(axes, np.array([text.xy for text in found])) + [text.xyann for text in found]
+    right = [text.get_horizontalalignment() == "right" for text in found]
+    back = [_LETTER[0] * len(text.get_text()) * at_right for text, at_right in zip(found, right, strict=True)]
+    return list(places - np.stack([back, np.zeros(len(found))], axis=-1))
+
+
+def _segments(axes: Axes) -> FloatArray:
+    """The two ends of every piece of the lines and outlines that are drawn, pt, shape (M, 2, 2)."""
+    drawn = [np.asarray(line.get_xydata()) for line in axes.lines if line.get_linestyle() != "None"]
+    drawn += [patch.get_xy() for patch in axes.patches if isinstance(patch, Polygon)]
+    pieces = [np.stack([each[:-1], each[1:]], axis=1) for each in drawn]
+    every = np.concatenate([np.zeros((0, 2, 2)), *pieces])
+    return in_points(axes, every[np.isfinite(every).all(axis=(1, 2))].reshape(-1, 2)).reshape(-1, 2, 2)
+
+
+def _clear(place: FloatArray, name: str, ends: FloatArray) -> bool:
+    """Whether a name whose lower left corner is at a place, pt, keeps off all lines."""
+    middle = place + np.array([_LETTER[0] * len(name), _LETTER[1]]) / 2
+    reach = np.linspace(-0.3, 0.3, 3)[:, None] * [_LETTER[0] * len(name), 0] + middle
+    start, way = ends[:, None, 0], ends[:, None, 1] - ends[:, None, 0]
+    size = np.maximum((way**2).sum(axis=-1), 1e-12)
+    share = np.clip(((reach - start) * way).sum(axis=-1) / size, 0, 1)
+    gap = start + share[..., None] * way - reach
+    return bool((np.hypot(gap[..., 0], gap[..., 1]) > _KEPT_OFF).all())
 
 
 def in_points(axes: Axes, places: FloatArray) -> FloatArray:
@@ -246,7 +281,8 @@ def _draw_pose(axes: Axes, task: Task, pose: int, place: FloatArray, angle: floa
         )  # fmt: skip
     if oriented:
         arrow = place + _turned(angle)[:, 0] * 0.08 * task.size
-        axes.annotate("", arrow, place, arrowprops={"arrowstyle": "->", "color": BODY}, zorder=6)
+        look = {"arrowstyle": "->", "color": BODY}
+        axes.annotate("", tuple(arrow), tuple(place), arrowprops=look, zorder=6)
     _number(axes, pose, place)
 
 

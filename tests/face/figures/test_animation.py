@@ -57,6 +57,30 @@ def frames_of(moving: FuncAnimation, axes: Axes) -> dict[str, Any]:
     return told
 
 
+def test_names_move_along_and_the_time_is_told() -> None:
+    """Of a driver that turns steadily the time at its own speed, of one that swings the angle alone."""
+    jack = load_linkage_spec("pumpjack")
+    axes = Figure().subplots()
+    moving = animate(jack, seconds=1, fps=8, annotated=True, ax=axes)
+    told = {text.get_text(): text for text in axes.texts}
+    for frame in moving.new_frame_seq():
+        moving._draw_frame(frame)
+        state = solve_position(jack.linkage, 2 * np.pi * frame / 8)
+        for name, place in (("A", state.a), ("B", state.b), ("P", state.p)):
+            np.testing.assert_allclose(told[name].xy, place, atol=1e-12)
+        assert told["t = 0.00 s, theta2 = 0 deg"].get_text() == (
+            f"t = {3 * frame / 8:.2f} s, theta2 = {45 * frame} deg"
+        )
+    moving._draw_was_started = True
+    axes = Figure().subplots()
+    swinging = animate(ROCKER, seconds=1, fps=8, annotated=True, ax=axes)
+    swinging._draw_was_started = True
+    assert any(text.get_text().startswith("theta2 = ") for text in axes.texts)
+    plain = Figure().subplots()
+    animate(ROCKER, seconds=1, fps=8, ax=plain)._draw_was_started = True
+    assert {text.get_text() for text in plain.texts} == {"O2", "O4"}
+
+
 def test_links_keep_their_lengths_and_p_draws_its_path() -> None:
     linkage, axes = load_linkage("pumpjack"), Figure().subplots()
     told = frames_of(animate(linkage, seconds=1, fps=12, ax=axes), axes)

@@ -14,8 +14,10 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
+from matplotlib.path import Path as Line
 
-from grashof import plot_coupler_curve, plot_design_space, plot_dynamics, plot_kinematics, plot_linkage
+from grashof import load, plot_coupler_curve, plot_design_space, plot_dynamics, plot_kinematics, plot_linkage
 from grashof.analysis import (
     Loads,
     driver_ranges,
@@ -25,12 +27,13 @@ from grashof.analysis import (
     virtual_work_torque,
 )
 from grashof.analysis.judge.planted import planted_path
-from grashof.figures import parts
+from grashof.figures import parts, plot_task
 from grashof.figures.files import save
 from grashof.problems import (
     AssemblyError,
     FourBar,
     LinkageSpec,
+    MotionTask,
     NoSolutionError,
     Problem,
     ProblemError,
@@ -202,6 +205,35 @@ def test_names_and_numbers_stand_apart(few: Result) -> None:
         ax.figure.draw_without_rendering()
         boxes = [text.get_window_extent() for text in ax.texts]
         assert not any(one.overlaps(other) for one, other in combinations(boxes, 2))
+
+
+def test_names_stand_off_the_lines() -> None:
+    """At every tenth degree of the pumpjack no letter lies on a bar, and few on the path of P."""
+    jack = load_linkage_spec("pumpjack")
+    covered = 0
+    for angle in np.radians(np.arange(0, 360, 10)):
+        ax = plot_linkage(jack, theta2=angle, ax=axes())
+        ax.figure.draw_without_rendering()
+        lines = [line for line in ax.lines if line.get_linestyle() != "None"]
+        paths = [ax.transData.transform(np.asarray(line.get_xydata())) for line in lines]
+        for text in ax.texts:
+            box = text.get_window_extent().shrunk(0.6, 0.6)
+            covered += any(Line(path).intersects_bbox(box, filled=False) for path in paths)
+    assert covered <= 5
+
+
+def test_a_task_alone_is_drawn_with_what_it_states() -> None:
+    luggage = load("luggage")
+    ax = plot_task(luggage, ax=axes())
+    assert [text.get_text() for text in ax.texts if text.get_text()] == ["1", "2", "3", "4"]
+    corners = [patch.get_xy() for patch in ax.patches if isinstance(patch, Polygon)]
+    assert len(corners) == 8  # a face and an outline each
+    np.testing.assert_allclose(corners[0][0], [5, 4], atol=1e-12)
+    points = plot_task(load("path-vertical-line"), ax=axes())
+    assert points.lines[0].get_xydata().tolist() == load("path-vertical-line").task.positions.tolist()
+    free = MotionTask([[0, 0], [np.nan, np.nan], [2, 1]], [0.0, 0.5, np.nan])
+    some = plot_task(Problem(task=free), ax=axes())
+    assert [text.get_text() for text in some.texts if text.get_text()] == ["1", "3"]
 
 
 def test_without_dynamics_the_colour_tells_nothing_or_the_error(few: Result) -> None:
