@@ -28,9 +28,9 @@ from grashof.study.study import LinkageStudy
 
 # In the order in which they are reported. None where the file has no data for it, or nobody asked for it.
 SECTIONS: tuple[Callable[[LinkageStudy], Section | None], ...] = (
+    mass_centres,
     over_time,
     positions,
-    mass_centres,
     fits,
     newton_raphson,
     differences,

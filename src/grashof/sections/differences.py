@@ -99,7 +99,7 @@ def differences(study: LinkageStudy) -> Section | None:
 def _even_samples(study: LinkageStudy) -> tuple[Samples, list[_Part]]:
     """What is shown, and the parts of it in equal steps with their neighbours."""
     if (history := History.of(study)) is not None:
-        return Samples.over_time(history), [_Part(history.state, history.time, over_time=True)]
+        return Samples.over_time(study, history), [_Part(history.state, history.time, over_time=True)]
     if study.sweep.turns:  # beyond either end the motion goes on as it began
         angles = np.linspace(-_BESIDE, 360 + _BESIDE, 361 + 2 * _BESIDE) * _DEGREE
         return Samples.over_driver(study), [_Part(study.sweep.state(angles), angles, _BESIDE)]
@@ -108,7 +108,7 @@ def _even_samples(study: LinkageStudy) -> tuple[Samples, list[_Part]]:
         steps = max(int((high - low) / _DEGREE), 2 * _BESIDE + 2)
         angles = np.linspace(low, high, steps + 1)[1:-1]  # in a dead position there is no rate
         parts.append(_Part(study.sweep.state(angles), angles))
-    return Samples.of(tuple(part.state for part in parts)), parts
+    return Samples.of(study, tuple(part.state for part in parts)), parts
 
 
 def _rates(study: LinkageStudy, parts: list[_Part]) -> Iterator[Rate]:

@@ -25,7 +25,7 @@ def mass_centres(study: LinkageStudy) -> Section:
     if not (weights := mass_table(study)).empty:
         tables["masses"] = weights
     history = History.of(study)
-    for samples in (Samples.over_driver(study), *([Samples.over_time(history)] if history else [])):
+    for samples in (Samples.over_driver(study), *([Samples.over_time(study, history)] if history else [])):
         table, drawn = _motion(study, samples)
         tables[f"mass-centres{samples.mark}"] = table
         plots += drawn

@@ -22,7 +22,7 @@ def over_time(study: LinkageStudy) -> Section | None:
     history = History.of(study)
     if history is None:
         return None
-    spec, samples = study.spec, Samples.over_time(history)
+    spec, samples = study.spec, Samples.over_time(study, history)
     quantities = table_of(kinematic_quantities(spec) + dynamic_quantities(study), [history.state])
     total = np.degrees(history.total)
     columns: dict[str, FloatArray] = {"theta2_total_deg": np.asarray(np.round(total, 12), dtype=np.float64)}
@@ -39,7 +39,7 @@ def over_time(study: LinkageStudy) -> Section | None:
 
 
 def _plots(study: LinkageStudy, history: History, columns: dict[str, FloatArray]) -> tuple[Plot, ...]:
-    samples, unit = Samples.over_time(history), study.spec.unit
+    samples, unit = Samples.over_time(study, history), study.spec.unit
     time, wrapped = sawtooth(history.time, columns["theta2_total_deg"])
     driver = Plot("theta2-over-time", "driver angle theta2 over time", "deg", {"theta2": wrapped}, time, TIME)
     rows = [

@@ -37,7 +37,7 @@ def greatest_drawn(plot: Plot) -> float:
     >>> greatest_drawn(Plot("b", "b", "", {"sin": np.sin(np.radians(angle))}, angle))
     inf
     """
-    if plot.unit == "deg":
+    if plot.bounded or plot.unit == "deg":
         return np.inf  # angles stay finite
     centre = middle(plot) if plot.places is None else None
     sizes = [np.abs(each) if centre is None else _distance(each, centre) for each in plot.series.values()]

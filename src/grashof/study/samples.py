@@ -28,6 +28,8 @@ class Samples:
         What begins each row of a table: time, driver angle. A row of NaN divides two ranges.
     over : str
         What curves are drawn over, with its unit.
+    turns : bool
+        The driver turns fully, so that no rate grows without bound.
     mark, words : str
         What is added to the keys of plots and tables, and to the titles of plots.
     """
@@ -35,34 +37,35 @@ class Samples:
     states: tuple[Kinematics, ...]
     columns: Mapping[str, FloatArray]
     over: str
+    turns: bool
     mark: str = ""
     words: str = ""
 
     @classmethod
     def over_driver(cls, study: LinkageStudy) -> Samples:
         """At the driver angles of the tables."""
-        return cls.of(tuple(study.states))
+        return cls.of(study, tuple(study.states))
 
     @classmethod
-    def of(cls, states: tuple[Kinematics, ...]) -> Samples:
+    def of(cls, study: LinkageStudy, states: tuple[Kinematics, ...]) -> Samples:
         """Over the driver angle, in each of its ranges."""
-        columns = {"theta2_deg": LinkageStudy.joined([np.degrees(state.theta2) for state in states])}
+        columns = {"theta2_deg": study.joined([np.degrees(state.theta2) for state in states])}
         if len(states) > 1:
             numbers = [np.full(state.shape, float(number)) for number, state in enumerate(states, start=1)]
-            columns = {"range": LinkageStudy.joined(numbers), **columns}
-        return cls(states, columns, DRIVER_ANGLE)
+            columns = {"range": study.joined(numbers), **columns}
+        return cls(states, columns, DRIVER_ANGLE, study.sweep.turns)
 
     @classmethod
-    def over_time(cls, history: History) -> Samples:
+    def over_time(cls, study: LinkageStudy, history: History) -> Samples:
         """At the times of a history."""
         columns = {"time_s": history.time, "theta2_deg": history.theta2_deg}
-        return cls((history.state,), columns, TIME, "-over-time", " over time")
+        return cls((history.state,), columns, TIME, study.sweep.turns, "-over-time", " over time")
 
     @classmethod
     def asked(cls, study: LinkageStudy) -> Samples:
         """Over time where a history is asked for, or else over the driver angle."""
         history = History.of(study)
-        return cls.over_driver(study) if history is None else cls.over_time(history)
+        return cls.over_driver(study) if history is None else cls.over_time(study, history)
 
     @property
     def places(self) -> FloatArray:
@@ -72,10 +75,12 @@ class Samples:
     def plot(self, key: str, title: str, unit: str, series: Mapping[str, FloatArray]) -> Plot:
         """Curves over these samples."""
         angles = None if self.over == DRIVER_ANGLE else self.columns["theta2_deg"]
-        finite = {label: line(values) for label, values in series.items()}
+        shown = np.array if self.turns else line
+        finite = {label: shown(values) for label, values in series.items()}
         return Plot(
-            f"{key}{self.mark}", f"{title}{self.words}", unit, finite, self.places, self.over, angles=angles
-        )
+            f"{key}{self.mark}", f"{title}{self.words}", unit, finite, self.places, self.over, angles=angles,
+            bounded=self.turns,
+        )  # fmt: skip
 
     def table(self, columns: Mapping[str, FloatArray]) -> pd.DataFrame:
         """A row for each sample; empty where a value is not finite."""

@@ -55,6 +55,8 @@ class Plot:
     angles : ndarray, shape (N,), optional
         Driver angles (deg) of the points of tracks, or of places that are none: a mark then follows the
         linkage.
+    bounded : bool
+        Nothing in it grows without bound, however sharp its peaks are between samples that lie apart.
     """
 
     key: str
@@ -65,6 +67,7 @@ class Plot:
     over: str = DRIVER_ANGLE
     points: Mapping[str, FloatArray] = field(default_factory=dict)
     angles: FloatArray | None = None
+    bounded: bool = False
 
     @property
     def swings(self) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -107,3 +109,12 @@ def test_lines_break_where_they_jump_through_infinity() -> None:
     values = np.array([1.0, 50, -50, -1, 2, 30, 40, 3])
     np.testing.assert_array_equal(broken_beyond(values, 10), [1, np.nan, -50, -1, 2, 30, 40, 3])
     np.testing.assert_array_equal(broken_beyond(values, np.inf), values)
+
+
+def test_what_is_known_to_be_bounded_is_drawn_whole_however_few_its_samples_are() -> None:
+    """A peak between samples 5 deg apart stands alone, as a pole does."""
+    place = np.arange(0.0, 481.0, 5.0)
+    peak = 1 / (1 + ((place - 208) / 3) ** 2)
+    coarse = Plot("p", "p", "N", {"a": peak}, place, "time (s)")
+    assert np.isfinite(greatest_drawn(coarse))
+    assert greatest_drawn(replace(coarse, bounded=True)) == np.inf
