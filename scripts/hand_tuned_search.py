@@ -222,8 +222,9 @@ def judged_pairs(problem: Problem, dyads: Sequence[Dyad]) -> Pairs:
     good = crank_rocker & (worst_transmission_cycle(batch) >= np.radians(GOOD))
     least, most = np.transpose(wanted.link_lengths)
     made = ((batch.lengths >= least) & (batch.lengths <= most)).all(axis=-1)
-    for each in (row, column) if wanted.coupler_arms is not None else ():
-        made &= (np.abs(arm[each]) >= wanted.coupler_arms[0]) & (np.abs(arm[each]) <= wanted.coupler_arms[1])
+    shortest, longest = wanted.coupler_arms or (0.0, np.inf)
+    for each in (row, column):
+        made &= (np.abs(arm[each]) >= shortest) & (np.abs(arm[each]) <= longest)
     mu = worst_transmission(batch, theta2[:, 0], end)
     usable = in_order & turning & made & (mu >= np.radians(wanted.transmission_min_deg))
     return Pairs(exact, *(_spread(exact, each) for each in (in_order, crank_rocker, usable, good)))

@@ -2,9 +2,9 @@
 
     python scripts/reproduce_reports.py --out reports
 
-Prints two tables of published and right values, and writes a folder with the counterpart of each figure and table
-of the reports, a page of them all (index.html), and their numbers as CSV. What the reports print stands as text;
-every right value is computed by `grashof`.
+Prints two tables of published and right values, and writes a folder with the counterpart of each figure and
+table of the reports, a page of them all (index.html), and their numbers as CSV. What the reports print stands
+as text; every right value is computed by `grashof`.
 """
 
 import argparse
@@ -12,7 +12,7 @@ import warnings
 from pathlib import Path
 
 import numpy as np
-from reports.folder import write_folder
+from reports.folder import COLUMNS, Row, write_folder
 from reports.published import ELEVEN, JOB, LUGGAGE, MASSES, POSE_1, STEP
 from reports.pumpjack import bodies
 from rich.console import Console
@@ -38,8 +38,6 @@ from grashof.analysis import (
 from grashof.problems import load_linkage_spec
 from grashof.problems.values.arrays import FloatArray
 
-# quantity, as published, right, cause
-Row = tuple[str, str, str, str]
 SAME = "same"
 
 
@@ -170,7 +168,7 @@ def main(argv: list[str] | None = None) -> int:
     rows = {"pumpjack": pumpjack(), "luggage": luggage()}
     for title, table_rows in zip(("1. The pumpjack", "2. The luggage linkage"), rows.values(), strict=True):
         table = Table(title=title, title_justify="left")
-        for name in ("quantity", "as published", "right", "cause"):
+        for name in COLUMNS:
             table.add_column(name, no_wrap=True)
         for row in table_rows:
             table.add_row(*row)

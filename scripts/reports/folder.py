@@ -2,7 +2,7 @@
 
 import base64
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,6 +19,7 @@ from reports.pumpjack import Pumpjack
 HERE = Path(__file__).parent
 REPORTS = {"pumpjack": "The pumpjack", "luggage": "Unloading luggage"}
 _ROWS = 30  # of a table on the page; the CSV has them all
+COLUMNS = ("quantity", "as published", "right", "cause")
 Row = tuple[str, str, str, str]
 
 
@@ -59,10 +60,8 @@ def items() -> list[Item]:
     return [Item(**given) for given in tomllib.loads(text)["item"]]
 
 
-def write_folder(
-    folder: Path, rows: Mapping[str, Sequence[Row]], chosen: Callable[[Item], bool] = lambda _: True
-) -> list[Path]:
-    """Write the counterparts of the chosen items, and index.html.
+def write_folder(folder: Path, rows: Mapping[str, Sequence[Row]]) -> list[Path]:
+    """Write the counterparts of all items, and index.html.
 
     Parameters
     ----------
@@ -70,8 +69,6 @@ def write_folder(
         Made if it is not there; files of the same names are replaced.
     rows : mapping
         The table of published and right values, by report.
-    chosen : callable
-        Which items are written.
 
     Returns
     -------
@@ -79,26 +76,26 @@ def write_folder(
         The files, the page last.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    sources = {"pumpjack": Pumpjack(), "luggage": Luggage()}
+    sources: dict[str, Pumpjack | Luggage] = {"pumpjack": Pumpjack(), "luggage": Luggage()}
     told: dict[str, list[dict[str, Any]]] = {name: [] for name in REPORTS}
     written: list[Path] = []
-    for item in filter(chosen, items()):
+    for item in items():
         source = sources[item.report]
         if item.make == "printed":
-            columns = ("quantity", "as published", "right", "cause")
-            made = Made(tables={"": pd.DataFrame(rows[item.report], columns=columns)})
+            made = Made(tables={"": pd.DataFrame(rows[item.report], columns=COLUMNS)})
         else:
             made = getattr(source, item.make)(*item.args)
         pictures, tables = _write(folder, item.stem, made)
         written += [*pictures, *(path for path, _ in tables)]
         told[item.report].append(
             {
-                "item": item, "right": item.right.format(**source.numbers),
+                "item": item,
+                "right": item.right.format(**source.numbers),
                 "wrong": item.wrong.format(**source.numbers),
                 "pictures": [_inline(path) for path in pictures],
                 "tables": [{"file": path.name, **_short(table)} for path, table in tables],
             }
-        )  # fmt: skip
+        )
     pages = Environment(loader=FileSystemLoader(HERE), autoescape=True, undefined=StrictUndefined)
     page = pages.get_template("page.html").render(reports=REPORTS, told=told)
     (folder / "index.html").write_text(page, encoding="utf-8")

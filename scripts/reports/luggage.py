@@ -277,28 +277,41 @@ class Luggage:
 
     def angular_differences(self, rate: str, order: int) -> Made:
         """The same by central differences at the samples of the report."""
-        key, derivative = {"velocity": ("omega", 1), "acceleration": ("alpha", 2)}[rate]
-        series: dict[str, FloatArray] = {}
-        for link in (3, 4):
-            plot = self.samples.over_angle(f"differences-{key}{link}")
-            series |= {f"{key}{link}, exact": plot.series["exact"]}
-            series |= self._both(f"{key}{link}", plot.series[f"order {order}"], derivative, order)
-        return shown(replace(plot, title=f"angular {rate} by differences of order {order}", series=series))
+        name = {"velocity": "omega", "acceleration": "alpha"}[rate]
+        plots = {f"{name}{link}": self.samples.over_angle(f"differences-{name}{link}") for link in (3, 4)}
+        exact = {key: plot.series["exact"] for key, plot in plots.items()}
+        by_order = {key: plot.series[f"order {order}"] for key, plot in plots.items()}
+        title = f"angular {rate}"
+        return self._differences(replace(plots[f"{name}3"], title=title), rate, order, exact, by_order)
 
     def centre_differences(self, link: int, rate: str, order: int) -> Made:
         """Velocity or acceleration of a centre by central differences at the samples of the report."""
         plot = self.samples.over_angle(f"differences-g{link}-{rate}")
-        series: dict[str, FloatArray] = {}
-        for axis in "xy":
-            series |= {f"{axis}, exact": plot.series[f"{axis}, exact"]}
-            by_order = plot.series[f"{axis}, order {order}"]
-            series |= self._both(axis, by_order, {"velocity": 1, "acceleration": 2}[rate], order)
-        return shown(replace(plot, title=f"{plot.title}, order {order}", series=series))
+        exact, by_order = (
+            {axis: plot.series[f"{axis}, {name}"] for axis in "xy"} for name in ("exact", f"order {order}")
+        )
+        return self._differences(plot, rate, order, exact, by_order)
 
-    def _both(self, name: str, values: FloatArray, derivative: int, order: int) -> dict[str, FloatArray]:
-        """Differences with the step of the samples, and with the 5 deg that the report divides by."""
-        as_published = values * (published.STEP / published.H) ** derivative
-        return {f"{name}, order {order}": values, f"{name} as published": as_published}
+    def _differences(
+        self,
+        plot: Plot,
+        rate: str,
+        order: int,
+        exact: Mapping[str, FloatArray],
+        by_order: Mapping[str, FloatArray],
+    ) -> Made:
+        """With the step of the samples, with the 5 deg that the report divides by, and the errors of both."""
+        derivative = {"velocity": 1, "acceleration": 2}[rate]
+        values, errors = dict[str, FloatArray](), dict[str, FloatArray]()
+        for name, right in exact.items():
+            published_one = by_order[name] * (published.STEP / published.H) ** derivative
+            found = {f"{name}, order {order}": by_order[name], f"{name} as published": published_one}
+            values |= {f"{name}, exact": right, **found}
+            errors |= {label: each - right for label, each in found.items()}
+        return shown(
+            replace(plot, series=values),
+            replace(plot, key="errors", title=f"error of the {rate}", series=errors),
+        )
 
     def links(self) -> Made:
         """The specification of the links: masses, centres, inertias."""
@@ -329,7 +342,7 @@ class Luggage:
 
     def torque_on_job(self) -> Made:
         """The drive torque from the first pose to the last."""
-        return self._torque(np.linspace(*self.verdict.theta2[[0, -1]], 481), COUNTED, {})
+        return self._torque(np.linspace(self.verdict.theta2[0], self.verdict.theta2[-1], 481), COUNTED, {})
 
     def _torque(self, theta2: FloatArray, over: str, levels: Mapping[str, float]) -> Made:
         series = {

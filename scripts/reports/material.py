@@ -2,12 +2,14 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import cycle
 from typing import Any
 
 import numpy as np
 import pandas as pd
 from matplotlib import rc_context
 from matplotlib.animation import FuncAnimation
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from grashof.figures import plot_section
@@ -21,6 +23,8 @@ from grashof.study.study import LinkageStudy
 from grashof.study.sweep import dead_positions_unwarned
 
 WIDTH, HEIGHT = 8.5, 4.2
+PUBLISHED = "as published"  # how the names of lines end that are the report's
+_TOLD, _DOTS = "#b03a2e", ((1, 1.2), (4, 1.2, 1, 1.2))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,23 +64,42 @@ class Analysis:
 
 
 def lines(plot: Plot, wanted: Sequence[str] = (), besides: Mapping[str, FloatArray] | None = None) -> Plot:
-    """Some lines of a plot, or all, and others besides; levels are lines, too."""
+    """Some lines of a plot, or all, and others besides; a single number is a level."""
     chosen = {label: values for label, values in plot.series.items() if not wanted or label in wanted}
     count = 0 if plot.places is None else len(plot.places)
     more = {label: np.broadcast_to(np.asarray(values), count) for label, values in (besides or {}).items()}
-    return replace(plot, series={**chosen, **more})
+    return replace(plot, series={**chosen, **more}, bounded=True)
 
 
 def drawn(*plots: Plot, beside: bool = False) -> Figure:
-    """A figure with a panel for each plot, one above the other or beside it."""
+    """A figure with a panel for each plot, one above the other or beside it; what is published dotted."""
     with rc_context(STYLE):
         tracks = plots[0].places is None
-        size = (WIDTH, (5.2 if tracks else HEIGHT) if len(plots) == 1 or beside else 1.0 + 2.6 * len(plots))
+        size = (WIDTH, (5.2 if tracks else HEIGHT) if len(plots) == 1 or beside else 1.4 + 2.8 * len(plots))
         figure = Figure(figsize=size, layout="constrained")
         shape = (1, len(plots)) if beside else (len(plots), 1)
         for plot, axes in zip(plots, figure.subplots(*shape, squeeze=False).ravel(), strict=True):
-            plot_section(plot, axes)
+            told = {label: values for label, values in plot.series.items() if label.endswith(PUBLISHED)}
+            ours = {label: values for label, values in plot.series.items() if label not in told}
+            plot_section(replace(plot, series=ours), axes)
+            for (label, values), dots in zip(told.items(), cycle(_DOTS), strict=False):
+                axes.plot(plot.places, values, color=_TOLD, linestyle=(0, dots), linewidth=1.3, label=label)
+            if not tracks:
+                _name_above(axes)
     return figure
+
+
+def _name_above(axes: Axes) -> None:
+    """The legend over the axes, where it hides no line."""
+    if old := axes.get_legend():
+        old.remove()
+    named = [line for line in axes.lines if not str(line.get_label()).startswith("_")]
+    if len(named) > 1:
+        columns = min(len(named), 4)
+        axes.legend(
+            handles=named, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, frameon=False,
+            fontsize="small", borderaxespad=0.2,
+        )  # fmt: skip
 
 
 def numbers_of(plot: Plot) -> pd.DataFrame:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -34,7 +35,8 @@ from reports.material import HEIGHT, WIDTH, Analysis, Made, lines, shown
 _DENSE = 7201
 # N: polished-rod loads, up and down; assumed, as the report has none. They change while the head rests.
 ROD_UP, ROD_DOWN, SOFT = 20e3, 9e3, 0.1
-_CROSS = {
+_BESIDE = 0.05  # m: so near a cross its name is that of the dot
+_CROSS: dict[str, Any] = {
     "linestyle": "none",
     "marker": "x",
     "markersize": 7,
@@ -56,7 +58,7 @@ def bodies(spec: LinkageSpec) -> tuple[Masses, Masses]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AsPublished:
-    """What the report's code computes: theta4 taken as theta_s + mu in place of theta3 + mu, all else right."""
+    """What the report's code computes, with theta_s + mu for theta4 in place of theta3 + mu."""
 
     theta4_deg: FloatArray
     omega3: FloatArray
@@ -140,8 +142,8 @@ class Pumpjack:
             "speed_b": lambda s: s.b.speed, "push_b": lambda s: s.b.acceleration_magnitude,
             "px": lambda s: s.p.position[..., 0], "py": lambda s: s.p.position[..., 1],
         }.items():  # fmt: skip
-            ends = extremes(linkage, of, self.omega2)
-            found |= {f"{name}_least": ends.low, f"{name}_greatest": ends.high}
+            reach = extremes(linkage, of, self.omega2)
+            found |= {f"{name}_least": reach.low, f"{name}_greatest": reach.high}
         theta4 = np.degrees(stroke.theta4) % 360
         found |= {"theta4_least": float(theta4.min()), "theta4_greatest": float(theta4.max())}
         a = self.state(0.0).a
@@ -266,9 +268,8 @@ class Pumpjack:
     def strokes(self) -> Made:
         """The horsehead's height over time, and how long it takes up and down."""
         time, travel, speed = self._head()
-        arm = f"{self.spec.output_arm:g} m from O4"
         plots = (
-            Plot("head", f"travel of the horsehead, {arm}", "m", {"travel": travel}, time, "time (s)"),
+            Plot("head", "travel of the horsehead", "m", {"travel": travel}, time, "time (s)"),
             Plot("head-speed", "speed of the horsehead", "m/s", {"speed": speed}, time, "time (s)"),
         )
         up, down = self.stroke_times
@@ -325,7 +326,7 @@ class Pumpjack:
         """Torque factor, and the drive torque under an assumed rod load with and without a counterweight."""
         angle, torques, factor = self._loaded
         factors = Plot("factor", "torque factor of the horsehead", "m", {"torque factor": factor}, angle)
-        drive = Plot("torque", "drive torque under an assumed rod load", "N m", torques, angle)
+        drive = Plot("torque", "drive torque", "N m", torques, angle)
         return shown(factors, drive)
 
     @cached_property
@@ -381,8 +382,11 @@ def _mark(axes: Axes, right: dict[str, FloatArray], told: dict[str, tuple[float,
             *place[:, None], linestyle="none", marker=marker, markersize=7, markerfacecolor=f"C{number}",
             markeredgecolor="black", label=f"centre: {name}", zorder=8,
         )  # fmt: skip
-    for number, place in enumerate(told.values()):
-        axes.plot(*np.array(place)[:, None], **_CROSS, label="as published" if number == 0 else None)  # type: ignore[arg-type]
+    for number, (name, cross) in enumerate(told.items()):
+        axes.plot(*np.array(cross)[:, None], **_CROSS, label="as published" if number == 0 else None)
+        if np.hypot(*(right[name] - cross)) > _BESIDE:
+            words = name.removesuffix(" with the whole beam")
+            axes.annotate(words, cross, (7, -11), textcoords="offset points", color=_CROSS["color"])
     axes.legend(loc="best", fontsize="small", ncols=2)
 
 
