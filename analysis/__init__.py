@@ -50,6 +50,7 @@ from grashof.analysis.forces.mass import (
     uniform_bar,
     uniform_bars,
 )
+from grashof.analysis.forces.motor import motor_torque
 from grashof.analysis.forces.pumping_unit import (
     ReducerTorque,
     RodMotion,
@@ -212,6 +213,7 @@ __all__ = [
     "instant_centres",
     "inverse_dynamics",
     "mechanical_energy",
+    "motor_torque",
     "newton_interpolation",
     "newton_position",
     "output_stroke",

@@ -16,6 +16,7 @@ from grashof.sections.flywheel import flywheel
 from grashof.sections.hodographs import hodographs
 from grashof.sections.mass_centres import mass_centres
 from grashof.sections.mechanical_advantage import mechanical_advantage
+from grashof.sections.motor import motor
 from grashof.sections.newton_raphson import newton_raphson
 from grashof.sections.over_time import over_time
 from grashof.sections.pin_forces import pin_forces
@@ -41,6 +42,7 @@ SECTIONS: tuple[Callable[[LinkageStudy], Section | None], ...] = (
     coupler_plane,
     dwell_section,
     energy_section,
+    motor,
     balancing,
     flywheel,
     equilibrium,
