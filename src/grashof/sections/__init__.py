@@ -24,6 +24,7 @@ from grashof.sections.positions import positions
 from grashof.sections.pumping_unit import pumping_unit
 from grashof.sections.release import release
 from grashof.sections.strength import strength
+from grashof.sections.tolerance import tolerance
 from grashof.study.section import Section
 from grashof.study.study import LinkageStudy
 
@@ -41,6 +42,7 @@ SECTIONS: tuple[Callable[[LinkageStudy], Section | None], ...] = (
     hodographs,
     coupler_plane,
     dwell_section,
+    tolerance,
     energy_section,
     motor,
     balancing,
