@@ -50,6 +50,7 @@ from grashof.analysis.forces.mass import (
     uniform_bar,
     uniform_bars,
 )
+from grashof.analysis.forces.motor import motor_torque
 from grashof.analysis.forces.pumping_unit import (
     ReducerTorque,
     RodMotion,
@@ -96,6 +97,7 @@ from grashof.analysis.four_bar.transmission import (
     worst_transmission_cycle,
 )
 from grashof.analysis.judge.design import Constraint, Design
+from grashof.analysis.judge.made_moves import MadeMoves, made_moves, output_sensitivity
 from grashof.analysis.judge.over_task import OverTask, over_task
 from grashof.analysis.judge.tolerance import Robustness, robustness, sensitivity
 from grashof.analysis.judge.verdict import Defect, Verdict
@@ -140,6 +142,7 @@ __all__ = [
     "Joint",
     "Kinematics",
     "Loads",
+    "MadeMoves",
     "Masses",
     "NewtonPolynomial",
     "NewtonPosition",
@@ -211,9 +214,12 @@ __all__ = [
     "holding",
     "instant_centres",
     "inverse_dynamics",
+    "made_moves",
     "mechanical_energy",
+    "motor_torque",
     "newton_interpolation",
     "newton_position",
+    "output_sensitivity",
     "output_stroke",
     "over_task",
     "powers",

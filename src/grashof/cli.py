@@ -325,6 +325,13 @@ def analyse(
         float | None,
         typer.Option(help="Report the flywheel for this fluctuation of speed: 0.05.", show_default=False),
     ] = None,
+    tolerance: Annotated[
+        float | None,
+        typer.Option(
+            help="Report how far P and link 4 move where dimensions are off by so much (length unit).",
+            show_default=False,
+        ),
+    ] = None,
     release: Annotated[
         float | None,
         typer.Option(
@@ -358,6 +365,7 @@ def analyse(
             dwell_deg=dwell_deg,
             balance=balance,
             flywheel=flywheel,
+            tolerance=tolerance,
             release_deg=release,
             release_rpm=release_rpm,
         )

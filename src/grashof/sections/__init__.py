@@ -16,6 +16,7 @@ from grashof.sections.flywheel import flywheel
 from grashof.sections.hodographs import hodographs
 from grashof.sections.mass_centres import mass_centres
 from grashof.sections.mechanical_advantage import mechanical_advantage
+from grashof.sections.motor import motor
 from grashof.sections.newton_raphson import newton_raphson
 from grashof.sections.over_time import over_time
 from grashof.sections.pin_forces import pin_forces
@@ -23,6 +24,7 @@ from grashof.sections.positions import positions
 from grashof.sections.pumping_unit import pumping_unit
 from grashof.sections.release import release
 from grashof.sections.strength import strength
+from grashof.sections.tolerance import tolerance
 from grashof.study.section import Section
 from grashof.study.study import LinkageStudy
 
@@ -40,7 +42,9 @@ SECTIONS: tuple[Callable[[LinkageStudy], Section | None], ...] = (
     hodographs,
     coupler_plane,
     dwell_section,
+    tolerance,
     energy_section,
+    motor,
     balancing,
     flywheel,
     equilibrium,

@@ -15,16 +15,14 @@ from grashof.analysis import (
     Masses,
     balance_force,
     balance_turn,
-    driver_samples,
     inverse_dynamics,
 )
-from grashof.analysis.four_bar.means import mean_over
-from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.study.columns import Columns, curves, over_driver, table
 from grashof.study.section import Fact, Section
 from grashof.study.study import LinkageStudy
+from grashof.study.turn import turn_means, turn_peaks
 
 _BARE, _FORCE, _RMS, _PEAK = "as it is", "shaking force", "torque, rms", "torque, peak"
 _KEYS = {_BARE: "before", _FORCE: "force", _RMS: "rms", _PEAK: "peak"}
@@ -130,19 +128,17 @@ def _row(study: LinkageStudy, name: str, way: _Way, loads: Loads) -> dict[str, o
 def _figures(study: LinkageStudy, masses: Masses, loads: Loads) -> dict[str, object]:
     """Peaks over the turn, and the root mean square of the torque."""
 
-    def rows(theta2: FloatArray) -> FloatArray:
-        return _magnitudes(study.sweep.state(theta2), masses, loads, study.metre)
+    def rows(state: Kinematics) -> FloatArray:
+        return _magnitudes(state, masses, loads, study.metre)
 
-    (force, moment, torque), _ = peaks(rows, [driver_samples(study.linkage, 0.0, TURN)])
-    found = {
+    (force, moment, torque), _ = turn_peaks(study, rows)
+    square = turn_means(study, lambda state: rows(state)[2:] ** 2)
+    return {
         "shaking_force_peak": float(force),
         "shaking_moment_peak": float(moment),
         "torque_peak": float(torque),
+        "torque_rms": float(np.sqrt(square[0])),
     }
-    if all(law.motor.steady for law in study.sweep.laws):
-        square, _ = mean_over(study.linkage, lambda theta2: rows(theta2)[2] ** 2, 0.0, TURN)
-        found["torque_rms"] = float(np.sqrt(square))
-    return dict(found)
 
 
 def _facts(study: LinkageStudy, rows: pd.DataFrame) -> Iterator[Fact]:

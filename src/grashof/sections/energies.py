@@ -7,9 +7,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from grashof.analysis import Kinematics, Loads, Masses, energies, powers
-from grashof.study.columns import Columns, curves, degrees, over_driver, table, turn_extremes
+from grashof.study.columns import Columns, curves, over_driver, table
 from grashof.study.section import Fact, Section
 from grashof.study.study import LinkageStudy
+from grashof.study.turn import degrees, turn_extremes
 
 
 def energy_section(study: LinkageStudy) -> Section | None:

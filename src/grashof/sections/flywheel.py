@@ -9,9 +9,9 @@ from grashof.analysis import flywheel_speed, size_flywheel
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import TURN
 from grashof.problems.values.checks import number_within
-from grashof.study.columns import degrees
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
+from grashof.study.turn import degrees
 
 
 def flywheel(study: LinkageStudy) -> Section | None:

@@ -8,9 +8,10 @@ import numpy as np
 
 from grashof.analysis import Kinematics, advantage, holding, output_stroke
 from grashof.problems.values.arrays import FloatArray
-from grashof.study.columns import Columns, curves, degrees, over_driver, table, turn_extremes
+from grashof.study.columns import Columns, curves, over_driver, table
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
+from grashof.study.turn import degrees, turn_extremes
 
 _STANDS = 1e-9  # |omega4 / omega2| at which link 4 stands
 

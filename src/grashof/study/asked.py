@@ -44,6 +44,8 @@ class Asked:
     flywheel : float, optional
         Fluctuation of the driver's speed that a flywheel is sought for: largest less least as a share of
         the mean.
+    tolerance : float, length, optional
+        By which each dimension is off.
     sections : tuple of str
         Of `ON_REQUEST`.
     fit_from_deg, fit_to_deg : float, deg, optional
@@ -68,6 +70,7 @@ class Asked:
     release_rpm: float | None = None
     balance: bool = False
     flywheel: float | None = None
+    tolerance: float | None = None
     sections: tuple[str, ...] = ()
     fit_from_deg: float | None = None
     fit_to_deg: float | None = None

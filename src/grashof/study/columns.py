@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 import numpy as np
 import pandas as pd
 
-from grashof.analysis import Extremes, Kinematics, even_motion, extremes_of
-from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.analysis import Kinematics
+from grashof.problems.values.arrays import FloatArray
 from grashof.study.section import DRIVER_ANGLE, Plot
 from grashof.study.study import LinkageStudy
 
@@ -39,19 +39,6 @@ def over_driver(study: LinkageStudy, of: Callable[[Kinematics], Columns]) -> dic
         values = study.joined([part[key] for part in parts])
         joined |= components(key, values) if values.ndim == 2 else {key: values}
     return joined
-
-
-def turn_extremes(study: LinkageStudy, of: Callable[[Kinematics], FloatArray]) -> Extremes:
-    """Least and largest value over the turn of a driver that turns fully, and their driver angles, rad."""
-    motion = even_motion(study.linkage, 0.0, TURN)
-    found = extremes_of(lambda share: of(study.sweep.state(motion.theta2(share))), 0.0, 1.0, closed=True)
-    at_low, at_high = motion.theta2([found.at_low, found.at_high]).tolist()
-    return Extremes(found.low, found.high, at_low, at_high)
-
-
-def degrees(theta2: float) -> float:
-    """A driver angle as facts state it, from 0 to 360 deg."""
-    return float(np.round(np.degrees(theta2) % 360, 9) % 360)
 
 
 def components(key: str, vectors: FloatArray) -> dict[str, FloatArray]:

@@ -50,7 +50,7 @@ LOADED = DynamicsSpec(
     friction=FrictionSpec(coulomb=0.1, pin_radius=0.05, viscous=2.0),
     motor=MotorSpec(profile="trapezoid", gear_ratio=30, gear_efficiency=0.9, inertia=0.02),
 )
-ASKED: dict[str, Any] = {"dwell_deg": 2.0, "sections": ON_REQUEST}
+ASKED: dict[str, Any] = {"dwell_deg": 2.0, "sections": ON_REQUEST, "tolerance": 0.01}
 MOVED: dict[str, Any] = {"balance": True, "flywheel": 0.1, "release_deg": 20.0, "seconds": 0.2}
 
 

@@ -129,7 +129,7 @@ def test_what_is_refused(sections: Sections, spec: LinkageSpec, asked: dict[str,
 
 def test_options_of_the_command(grashof: Callable[..., Any], tmp_path: Path) -> None:
     options = ("--release", "100", "--release-rpm", "-2", "--seconds", "0.5", "--dwell-deg", "1")
-    options = (*options, "--balance", "--flywheel", "0.05")
+    options = (*options, "--balance", "--flywheel", "0.05", "--tolerance", "0.01")
     done = grashof("analyse", "pumpjack", *options)
     assert done.exit_code == 0, done.output
     motion = pd.read_csv(tmp_path / "pumpjack-analysis" / "table-release.csv")
@@ -137,6 +137,7 @@ def test_options_of_the_command(grashof: Callable[..., Any], tmp_path: Path) -> 
     assert motion["omega2"].iloc[0] == pytest.approx(-np.pi / 15)
     assert (tmp_path / "pumpjack-analysis" / "table-balancing.csv").exists()
     assert (tmp_path / "pumpjack-analysis" / "table-flywheel.csv").exists()
+    assert (tmp_path / "pumpjack-analysis" / "table-tolerance.csv").exists()
     refused = grashof("analyse", "pumpjack", "--release-rpm", "3")
     assert refused.exit_code == 2
     told = "grashof: release_rpm does not go without release; it is the speed at that angle"

@@ -1,0 +1,128 @@
+"""How far a linkage of inexact dimensions is from its nominal motion, at any driver angle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+import numpy.typing as npt
+
+from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.judge.tolerance import sensitivity
+from grashof.problems import FourBar
+from grashof.problems.values.arrays import FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MadeMoves:
+    """How far P and link 4 are off, linearised, where dimensions are off by a tolerance.
+
+    Parameters
+    ----------
+    point : ndarray, shape (..., 6), length
+        Distance of P where one of r1, r2, r3, r4, u, v is off.
+    theta4 : ndarray, shape (..., 6), rad
+        The same of the angle of link 4, signed.
+    point_worst, theta4_worst : ndarray, shape (...), length and rad
+        All dimensions off, in the worst combination of senses.
+    point_rms, theta4_rms : ndarray, shape (...), length and rad
+        Root of the sum of squares: all off independently, the tolerance being so many times the standard
+        deviation of a dimension as these are of the result.
+    """
+
+    point: FloatArray
+    theta4: FloatArray
+    point_worst: FloatArray
+    theta4_worst: FloatArray
+    point_rms: FloatArray
+    theta4_rms: FloatArray
+
+
+def made_moves(linkage: FourBar, theta2: npt.ArrayLike, tolerance: float) -> MadeMoves:
+    """Moves of P and of link 4 at held driver angles, where dimensions are off by a tolerance.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        A single linkage.
+    theta2 : array_like, shape (...), rad
+    tolerance : float, length
+        Of each dimension.
+
+    Returns
+    -------
+    MadeMoves
+        NaN where the linkage cannot close, without bound towards a dead position.
+
+    Notes
+    -----
+    O2 and the direction of the ground line are held, as in `sensitivity`. The worst combination of senses
+    is one of the corners of the box of deviations, as distance is convex.
+
+    Examples
+    --------
+    A square, P at B: a longer output link lifts P by as much, and link 4 stays upright.
+
+    >>> square = FourBar(o2=(0, 0), o4=(2, 0), r2=2, r3=2, r4=2, coupler_point=(2, 0), assembly=1)
+    >>> moves = made_moves(square, np.pi / 2, 0.1)
+    >>> float(moves.point[3].round(9)), float(moves.theta4_worst.round(9))
+    (0.1, 0.1)
+    """
+    slope = sensitivity(linkage, theta2) * tolerance
+    turns = output_sensitivity(linkage, theta2) * tolerance
+    senses = np.array(list(product((1.0, -1.0), repeat=len(FourBar.DIMENSIONS) - 1)))
+    senses = np.concatenate([np.ones((len(senses), 1)), senses], axis=1)  # the others are their opposites
+    with np.errstate(invalid="ignore", over="ignore"):
+        moved = slope[..., :2, :] @ senses.T
+        point = np.hypot(slope[..., 0, :], slope[..., 1, :])
+        return MadeMoves(
+            point=point,
+            theta4=turns,
+            point_worst=np.hypot(moved[..., 0, :], moved[..., 1, :]).max(axis=-1),
+            theta4_worst=np.abs(turns).sum(axis=-1),
+            point_rms=np.sqrt((point**2).sum(axis=-1)),
+            theta4_rms=np.sqrt((turns**2).sum(axis=-1)),
+        )
+
+
+def output_sensitivity(linkage: FourBar, theta2: npt.ArrayLike) -> FloatArray:
+    """Derivatives of theta4 by the dimensions r1, r2, r3, r4, u, v, at held driver angles.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        One, or a batch whose axes broadcast against `theta2`.
+    theta2 : array_like, shape (...), rad
+
+    Returns
+    -------
+    ndarray, shape (..., 6), rad/length
+
+    Notes
+    -----
+    The component along AB of the varied loop equation r2 + r3 = r1 + r4 (as vectors) holds no dtheta3:
+
+        r4 sin(theta4 - theta3) dtheta4
+            = dr1 cos(theta1 - theta3) + dr4 cos(theta4 - theta3) - dr2 cos(theta2 - theta3) - dr3
+
+    Examples
+    --------
+    >>> square = FourBar(o2=(0, 0), o4=(2, 0), r2=2, r3=2, r4=2, assembly=1)
+    >>> (output_sensitivity(square, np.pi / 2).round(9) + 0.0).tolist()
+    [0.5, 0.0, -0.5, 0.0, 0.0, 0.0]
+    """
+    state = solve_position(linkage, theta2)
+    theta3, theta4 = state.theta3, state.theta4
+    none = np.zeros_like(theta3)
+    parts = (
+        np.cos(linkage.theta1 - theta3),
+        -np.cos(state.theta2 - theta3),
+        np.full_like(theta3, -1.0),
+        np.cos(theta4 - theta3),
+        none,
+        none,
+    )
+    with np.errstate(divide="ignore", invalid="ignore"):
+        turned: FloatArray = np.stack(parts, axis=-1) / (linkage.r4 * np.sin(theta4 - theta3))[..., None]
+    return turned

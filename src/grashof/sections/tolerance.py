@@ -1,0 +1,81 @@
+"""How far P and the output move where the dimensions of the linkage are inexact."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from grashof.analysis import Kinematics, made_moves
+from grashof.problems import FourBar
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.checks import GREATEST, number_within, positive_number
+from grashof.study.columns import Columns, curves, over_driver, table
+from grashof.study.section import Fact, Section
+from grashof.study.study import LinkageStudy
+from grashof.study.turn import degrees, turn_peaks
+
+_ALL = {"worst": "worst senses", "rms": "root of the sum of squares"}
+
+
+def tolerance(study: LinkageStudy) -> Section | None:
+    """Moves of P and of link 4 over the driver angle; None unless a tolerance is asked for."""
+    if study.asked.tolerance is None:
+        return None
+    off = number_within(positive_number(study.asked.tolerance, "tolerance"), 0.0, GREATEST, "tolerance")
+    unit = study.spec.unit
+    columns = over_driver(study, lambda state: _columns(state, off))
+    each = {dimension: f"p_{dimension}" for dimension in FourBar.DIMENSIONS}
+    turns = {dimension: f"theta4_{dimension}_deg" for dimension in FourBar.DIMENSIONS[:4]}
+    whole = {"worst": "p_worst", "root of squares": "p_rms"}
+    turned = {"worst": "theta4_worst_deg", "root of squares": "theta4_rms_deg"}
+    plots = (
+        curves(columns, "tolerance-of-p", "move of P, one dimension off", unit, each),
+        curves(columns, "tolerance-of-p-all", "move of P, all dimensions off", unit, whole),
+        curves(columns, "tolerance-of-theta4", "turn of link 4, one dimension off", "deg", turns),
+        curves(columns, "tolerance-of-theta4-all", "turn of link 4, all dimensions off", "deg", turned),
+    )
+    facts = (Fact("tolerance", "each dimension is off by", off, unit), *_facts(study, off))
+    notes = ("the driver angle is held; moves are linear in the tolerance, without limit in dead positions",)
+    return Section("tolerance", "Inexact dimensions", facts, {"tolerance": table(columns)}, plots, notes)
+
+
+def _columns(state: Kinematics, off: float) -> Columns:
+    found = made_moves(state.linkage, state.theta2, off)
+    columns: dict[str, FloatArray] = {
+        f"p_{dimension}": found.point[:, k] for k, dimension in enumerate(FourBar.DIMENSIONS)
+    }
+    columns |= {"p_worst": found.point_worst, "p_rms": found.point_rms}
+    columns |= {
+        f"theta4_{dimension}_deg": np.degrees(found.theta4[:, k])
+        for k, dimension in enumerate(FourBar.DIMENSIONS[:4])
+    }
+    return columns | {
+        "theta4_worst_deg": np.degrees(found.theta4_worst),
+        "theta4_rms_deg": np.degrees(found.theta4_rms),
+    }
+
+
+def _facts(study: LinkageStudy, off: float) -> Iterator[Fact]:
+    if not study.sweep.turns:  # without limit in the dead positions
+        return
+
+    def rows(state: Kinematics) -> FloatArray:
+        found = made_moves(state.linkage, state.theta2, off)
+        moves = (found.point_worst, found.point_rms, found.theta4_worst, found.theta4_rms)
+        return np.stack([*moves, *found.point.T])
+
+    values, places = turn_peaks(study, rows)
+    what = (("p", "P", study.spec.unit, 1.0), ("theta4", "link 4", "deg", 180 / np.pi))
+    for k, (key, part, unit, scale) in enumerate(what):
+        for j, (name, how) in enumerate(_ALL.items()):
+            label = f"largest {'move' if key == 'p' else 'turn'} of {part}, all off: {how}"
+            ending = "_deg" if unit == "deg" else ""
+            yield Fact(f"tolerance_{key}_{name}{ending}", label, float(values[2 * k + j]) * scale, unit)
+            if name == "worst":
+                at = degrees(float(places[2 * k]))
+                yield Fact(f"tolerance_{key}_worst_theta2_deg", f"{label}, at theta2", at, "deg")
+    most = int(np.argmax(values[4:]))
+    label = "dimension that moves P most"
+    yield Fact("tolerance_dimension", label, FourBar.DIMENSIONS[most])
+    yield Fact("tolerance_dimension_move", f"{label}: by", float(values[4 + most]), study.spec.unit)

@@ -1,0 +1,47 @@
+"""Inexact dimensions of a linkage alone: its peaks, and what is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from grashof.analysis import solve_position
+from grashof.analysis.judge.tolerance import made_linkages
+from grashof.problems import FourBar, LinkageSpec, ProblemError, load_linkage_spec
+from grashof.survey import Section
+
+Sections = Callable[..., dict[str, Section]]
+LUFKIN = load_linkage_spec("lufkin-c912d")
+
+
+def test_made_linkages_move_by_no_more(sections: Sections) -> None:
+    found = sections(LUFKIN, tolerance=0.01)["tolerance"]
+    table = found.tables["tolerance"]
+    theta2 = np.radians(table["theta2_deg"].to_numpy())
+    errors = np.random.default_rng(1).choice([-0.01, 0.01], (300, 6))
+    made, _ = made_linkages(LUFKIN.linkage, errors)
+    states, nominal = solve_position(made[:, None], theta2), solve_position(LUFKIN.linkage, theta2)
+    way = np.hypot(*np.moveaxis(states.p - nominal.p, -1, 0))
+    assert (way <= table["p_worst"].to_numpy() * 1.001).all()
+    turned = np.degrees(np.abs((states.theta4 - nominal.theta4 + np.pi) % (2 * np.pi) - np.pi))
+    assert (turned <= table["theta4_worst_deg"].to_numpy() * 1.001).all()
+    assert turned.max() > 0.98 * table["theta4_worst_deg"].max()
+    facts: dict[str, Any] = {fact.key: fact.value for fact in found.facts}
+    assert facts["tolerance_theta4_worst_deg"] >= table["theta4_worst_deg"].max()
+    assert facts["tolerance_theta4_worst_deg"] == pytest.approx(table["theta4_worst_deg"].max(), rel=1e-3)
+    assert facts["tolerance_dimension"] == "r2"  # P is A
+
+
+def test_a_driver_that_swings_has_no_limit(sections: Sections) -> None:
+    rocker = LinkageSpec(FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1)), "it")
+    found = sections(rocker, tolerance=0.01)["tolerance"]
+    assert [fact.key for fact in found.facts] == ["tolerance"]
+
+
+@pytest.mark.parametrize("given", [0.0, -1.0, np.nan, 1e30])
+def test_what_is_refused(sections: Sections, given: float) -> None:
+    with pytest.raises(ProblemError, match="tolerance is"):
+        sections(LUFKIN, tolerance=given)
