@@ -188,6 +188,8 @@ def even_motion(linkage: FourBar, start: float, end: float) -> EvenMotion:
 def _home(linkage: FourBar, low: float, high: float) -> tuple[_Way, float, float, float] | None:
     """How the driver moves between two angles, the angle that it is counted from, and a and b."""
     r1, r2, r3, r4 = map(float, linkage.lengths)
+    if not r1 * r2 > 0:  # the ground pivots coincide: all links turn together
+        return None
     stretched, folded = rotatability(linkage).tolist()
     scale = (r1 + r2 + r3 + r4) / (4 * r1 * r2)
     a = folded * scale * (abs(r1 - r2) + abs(r3 - r4)) if abs(folded) > CHANGE else 1.0
