@@ -36,9 +36,9 @@ def luggage() -> Problem:
         coupler_arms=(0.3, 8),
     )
     dynamics = DynamicsSpec(
-        masses=[0.3764, 0.4762, 0.4308],  # kg: links 2, 3 and 4
-        inertias=[0.3282, 0.6646, 0.4920],  # kg m2, about their centres
-        gravity=[0, -9.81],
+        masses=(0.3764, 0.4762, 0.4308),  # kg: links 2, 3 and 4
+        inertias=(0.3282, 0.6646, 0.4920),  # kg m2, about their centres
+        gravity=(0, -9.81),
     )
     return Problem(
         name="luggage",
