@@ -6,11 +6,15 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from grashof.analysis import Kinematics, Loads, Masses, energies, powers
+from grashof.analysis import Kinematics, Loads, Masses, energies, powers, solve_kinematics
+from grashof.analysis.four_bar.means import mean_in_time
+from grashof.problems.values.arrays import FloatArray
 from grashof.study.columns import Columns, curves, over_driver, table
 from grashof.study.section import Fact, Section
 from grashof.study.study import LinkageStudy
 from grashof.study.turn import degrees, turn_extremes
+
+_CERTAIN = 1e-7  # share of the work put in within which an efficiency is known
 
 
 def energy_section(study: LinkageStudy) -> Section | None:
@@ -32,7 +36,7 @@ def energy_section(study: LinkageStudy) -> Section | None:
         curves(columns, "powers", "power that changes the energy", "W", given),
     )
     notes = ("the energy of weights counts from the origin", "powers together are the rate of the energy")
-    facts = tuple(_facts(study, masses))
+    facts = (*_facts(study, masses), *_losses(study, masses, loads))
     return Section("energies", "Energies", facts, {"energies": table(columns)}, plots, notes)
 
 
@@ -58,3 +62,21 @@ def _facts(study: LinkageStudy, masses: Masses) -> Iterator[Fact]:
     for name, value, at in (("least", found.low, found.at_low), ("largest", found.high, found.at_high)):
         yield Fact(f"kinetic_energy_{name}", f"kinetic energy, {name}", value * study.metre**2, "J")
         yield Fact(f"kinetic_energy_{name}_theta2_deg", f"kinetic energy, {name}: theta2", degrees(at), "deg")
+
+
+def _losses(study: LinkageStudy, masses: Masses, loads: Loads) -> Iterator[Fact]:
+    """What friction takes in a turn, and the efficiency that follows: of the work put in, what it leaves."""
+    friction, law = study.spec.dynamics and study.spec.dynamics.friction, study.sweep.laws[0]
+    if friction is None or not study.sweep.turns or not np.isfinite(law.duration):
+        return
+
+    def given(place: FloatArray) -> FloatArray:
+        found = powers(solve_kinematics(study.linkage, *law.at_place(place)), masses, loads)
+        return np.stack(np.broadcast_arrays(found.drive, found.loads, found.friction))
+
+    mean, error = mean_in_time(study.linkage, law, given)
+    put_in, lost = float(np.maximum(mean[:2], 0.0).sum()), -float(mean[2])
+    if np.isfinite(lost) and 0 < lost <= put_in * (1 + _CERTAIN) and error.max() < _CERTAIN * put_in:
+        work = lost * law.duration * study.metre**2
+        yield Fact("friction_work", "work of friction in the joints, a turn", work, "J")
+        yield Fact("efficiency", "efficiency: work put in that friction leaves", max(1 - lost / put_in, 0.0))
