@@ -25,6 +25,7 @@ from grashof.analysis import (
     Verdict,
     driver_ranges,
     full_rotation,
+    rotatability,
     verify,
     worst_transmission,
     worst_transmission_cycle,
@@ -222,6 +223,7 @@ def judged_pairs(problem: Problem, dyads: Sequence[Dyad]) -> Pairs:
     good = crank_rocker & (worst_transmission_cycle(batch) >= np.radians(GOOD))
     least, most = np.transpose(wanted.link_lengths)
     made = ((batch.lengths >= least) & (batch.lengths <= most)).all(axis=-1)
+    made &= (rotatability(batch) >= wanted.rotatability_margin).all(axis=-1)
     shortest, longest = wanted.coupler_arms or (0.0, np.inf)
     for each in (row, column):
         made &= (np.abs(arm[each]) >= shortest) & (np.abs(arm[each]) <= longest)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from matplotlib.figure import Figure
@@ -18,6 +19,7 @@ from reports.pumpjack import Pumpjack
 
 HERE = Path(__file__).parent
 REPORTS = {"pumpjack": "The pumpjack", "luggage": "Unloading luggage"}
+_ROUNDING = 1e-14  # of values about 1: less is shown as 0
 _ROWS = 30  # of a table on the page; the CSV has them all
 COLUMNS = ("quantity", "as published", "right", "cause")
 Row = tuple[str, str, str, str]
@@ -135,5 +137,5 @@ def _short(table: pd.DataFrame) -> dict[str, Any]:
 
 def _cell(value: Any) -> str:
     if isinstance(value, float):
-        return "" if value != value else f"{value + 0.0:.7g}"
+        return "" if np.isnan(value) else f"{value:.7g}" if abs(value) > _ROUNDING else "0"
     return {True: "yes", False: "no"}[value] if isinstance(value, bool) else str(value)
