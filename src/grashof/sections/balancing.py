@@ -86,7 +86,10 @@ def _ways(study: LinkageStudy, masses: Masses, loads: Loads) -> tuple[dict[str, 
         return ways, (*notes, why)
     omega2, radius = study.sweep.speed_rpm * TURN / 60, float(linkage.r2)
     for name, measure in ((_RMS, "rms"), (_PEAK, "peak")):
-        found = balance_turn(linkage, masses, omega2, loads, radius, measure)
+        try:
+            found = balance_turn(linkage, masses, omega2, loads, radius, measure)
+        except ProblemError as error:  # numbers beyond the floats
+            raise ProblemError(f"balance: the torque is not evened out: {error}") from None
         ways[name] = _Way(found.masses, {2: found.crank_weight})
     return ways, tuple(notes)
 
