@@ -14,10 +14,15 @@ from grashof.problems.values.arrays import FloatArray
 Curve = Callable[[FloatArray], FloatArray]
 
 NODES, WEIGHTS = legendre.leggauss(16)  # of a panel from -1 to 1
-_SETTLED = 1e-13  # share of the integral of the magnitude: halving a panel changes it by no more
+_TERMS = legendre.legvander(NODES, 15) * (WEIGHTS[:, None] * (np.arange(16) + 0.5))
+_TO_ENDS = np.stack([_TERMS @ (-1.0) ** np.arange(16), _TERMS.sum(axis=1)], axis=1)  # of the polynomial
+_GAP = (1 - NODES[-1]) / 2  # share of a panel beyond its last node
+_SPLIT = 0.4636  # not the middle, beside which a jump would leave the sum over both parts as it was
+_SETTLED = 1e-13  # share of the integral of the magnitude: splitting a panel changes it by no more
+_LEAST_ERROR = 1.5e-12  # the same: some changes are this small by chance
 _NARROW = 1e-14  # share of the whole: no panel is narrower
-_ROUNDING = 1e-15  # share of the integral of the magnitude
-_UNSETTLED = 4.0  # times the last change: what may follow of a panel that is left as it is
+_DOUBT = 2.0  # times the last change of a panel: it may be wrong by so much
+_SHRINKS = 0.95  # share of a change that the next one has at most, where there is an integral
 _FULL = 1e-9  # relative error up to which all digits of a number count
 _MOST = 1 << 18  # values of the curve, beyond which it is left as it is
 
@@ -33,7 +38,8 @@ class Panels:
     parts : ndarray, shape (..., M)
         Integral over each of them.
     error : ndarray, shape (...)
-        What their sum may be wrong by: the last change that halving the panels made, and rounding.
+        What their sum may be wrong by, from the last change that splitting the panels made. Infinite where
+        there is no integral.
     """
 
     edges: FloatArray
@@ -56,7 +62,7 @@ class Panels:
 
 
 def integrate(curve: Curve, edges: npt.ArrayLike) -> Panels:
-    """Integral of one curve or several, by panels that are halved until the sum stays as it is.
+    """Integral of one curve or several, by panels that are split until the sum stays as it is.
 
     Parameters
     ----------
@@ -72,9 +78,10 @@ def integrate(curve: Curve, edges: npt.ArrayLike) -> Panels:
 
     Notes
     -----
-    Gauss-Legendre sums of 16 nodes over each panel and over its halves. Panels about a kink or jump are
-    halved down to rounding; a curve that is smooth in panels a few times as wide as its narrowest
-    peak takes few.
+    Gauss-Legendre sums of 16 nodes over each panel and over two parts of it. Panels with a kink or jump
+    are split down to rounding, and so are those whose polynomials do not meet the next ones: a jump
+    beyond the last node of a panel leaves its sums alone. A curve that is smooth in panels a few times as
+    wide as its narrowest peak takes few.
 
     Examples
     --------
@@ -83,29 +90,29 @@ def integrate(curve: Curve, edges: npt.ArrayLike) -> Panels:
     (0.29, True)
     """
     edges = np.asarray(edges, dtype=np.float64)
-    low, high = edges[:-1], edges[1:]
-    narrowest = _NARROW * np.abs(edges[-1] - edges[0])
-    whole, _ = _sums(curve, low, high)
-    settled, error, spent = np.zeros(whole.shape[:-1]), np.zeros(whole.shape[:-1]), 0
-    done: list[tuple[FloatArray, FloatArray]] = []
-    while low.size:
-        ends = np.stack([low, (low + high) / 2, high], axis=1)
-        first, last = ends[:, :2].ravel(), ends[:, 1:].ravel()
-        halves, sizes = _sums(curve, first, last)
-        spent += first.size * len(NODES)
-        change, size = np.abs(_paired(halves) - whole), _paired(sizes)
-        scale = (settled + size.sum(axis=-1))[..., None]
-        rough = (change > _SETTLED * scale).reshape(-1, low.size).any(axis=0)
-        kept = ~rough | (np.abs(high - low) <= narrowest) | (spent > _MOST)
-        error = error + (np.where(rough, _UNSETTLED, 1.0) * change)[..., kept].sum(axis=-1)
-        settled = settled + size[..., kept].sum(axis=-1)
-        both = np.repeat(kept, 2)
-        done.append((first[both], halves[..., both]))
-        low, high, whole = first[~both], last[~both], halves[..., ~both]
-    begins = np.concatenate([each for each, _ in done])
-    order = np.argsort(begins if edges[-1] >= edges[0] else -begins, kind="stable")
-    parts = np.concatenate([each for _, each in done], axis=-1)[..., order]
-    return Panels(np.append(begins[order], edges[-1]), parts, np.asarray(error + _ROUNDING * settled))
+    narrowest, spent = _NARROW * float(np.abs(edges[-1] - edges[0])), 0
+    rough = _Pieces.over(curve, edges[:-1], edges[1:])
+    done, error = rough[:0], np.zeros(rough.part.shape[:-1])
+    before = np.full(rough.part.shape, np.inf)
+    while rough.low.size:
+        ends = np.stack([rough.low, rough.low + _SPLIT * (rough.high - rough.low), rough.high], axis=1)
+        parts = _Pieces.over(curve, ends[:, :2].ravel(), ends[:, 1:].ravel())
+        spent += parts.low.size * len(NODES)
+        change, narrow = np.abs(_paired(parts.part) - rough.part), rough.width <= narrowest
+        unsettled = change > _SETTLED * (done.size.sum(axis=-1) + parts.size.sum(axis=-1))[..., None]
+        kept = ~unsettled.reshape(-1, narrow.size).any(axis=0) | narrow | (spent > _MOST)
+        doubt = np.where(unsettled & narrow, _to_come(change, before), _DOUBT) * change
+        error = error + doubt[..., kept].sum(axis=-1)
+        done, rough = done.and_those(parts[np.repeat(kept, 2)]), parts[np.repeat(~kept, 2)]
+        before = np.repeat(change[..., ~kept], 2, axis=-1)
+        if not rough.low.size and spent <= _MOST:
+            done = done[np.argsort(done.low if edges[-1] >= edges[0] else -done.low, kind="stable")]
+            apart = done.apart(narrowest)
+            rough, done = done[apart], done[~apart]
+            before = np.full(rough.part.shape, np.inf)
+    done = done[np.argsort(done.low if edges[-1] >= edges[0] else -done.low, kind="stable")]
+    least = _LEAST_ERROR * done.size.sum(axis=-1)
+    return Panels(np.append(done.low, edges[-1]), done.part, np.asarray(error + least))
 
 
 def held(value: float, error: float) -> float:
@@ -131,13 +138,66 @@ def gauss_legendre(edges: FloatArray) -> tuple[FloatArray, FloatArray]:
     return (edges[:-1, None] + half + half * NODES).ravel(), (half * WEIGHTS).ravel()
 
 
-def _sums(curve: Curve, low: FloatArray, high: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Gauss-Legendre sums of a curve and of its magnitude over panels, shape (..., panels)."""
-    half = (high - low)[:, None] / 2
-    values = np.asarray(curve(((low + high)[:, None] / 2 + half * NODES).ravel()), dtype=np.float64)
-    values = values.reshape(*values.shape[:-1], *half.shape[:1], len(NODES))
-    return values @ WEIGHTS * half[:, 0], np.abs(values) @ WEIGHTS * np.abs(half[:, 0])
+@dataclass(frozen=True, slots=True, eq=False)
+class _Pieces:
+    """Panels with the sums over them.
+
+    Parameters
+    ----------
+    low, high : ndarray, shape (M,)
+    part, size : ndarray, shape (..., M)
+        Integrals of the curve and of its magnitude.
+    ends : ndarray, shape (..., M, 2)
+        Values, at both ends, of the polynomial through the nodes.
+    """
+
+    low: FloatArray
+    high: FloatArray
+    part: FloatArray
+    size: FloatArray
+    ends: FloatArray
+
+    @classmethod
+    def over(cls, curve: Curve, low: FloatArray, high: FloatArray) -> _Pieces:
+        half = (high - low) / 2
+        places = (low + high)[:, None] / 2 + half[:, None] * NODES
+        values = np.asarray(curve(places.ravel()), dtype=np.float64)
+        values = values.reshape(*values.shape[:-1], *places.shape)
+        sizes = np.abs(values) @ WEIGHTS * np.abs(half)
+        return cls(low, high, values @ WEIGHTS * half, sizes, values @ _TO_ENDS)
+
+    @property
+    def width(self) -> FloatArray:
+        return np.abs(self.high - self.low)
+
+    def __getitem__(self, kept: slice | npt.NDArray[np.bool_] | npt.NDArray[np.int64]) -> _Pieces:
+        part, size, ends = self.part[..., kept], self.size[..., kept], self.ends[..., kept, :]
+        return _Pieces(self.low[kept], self.high[kept], part, size, ends)
+
+    def and_those(self, others: _Pieces) -> _Pieces:
+        return _Pieces(
+            np.concatenate([self.low, others.low]),
+            np.concatenate([self.high, others.high]),
+            np.concatenate([self.part, others.part], axis=-1),
+            np.concatenate([self.size, others.size], axis=-1),
+            np.concatenate([self.ends, others.ends], axis=-2),
+        )
+
+    def apart(self, narrowest: float) -> npt.NDArray[np.bool_]:
+        """Those, in order, beside whose ends a jump may hide that counts, shape (M,)."""
+        jump = np.abs(self.ends[..., 1:, 0] - self.ends[..., :-1, 1])
+        none = np.zeros((*jump.shape[:-1], 1))
+        beside = np.maximum(np.concatenate([none, jump], -1), np.concatenate([jump, none], -1))
+        hidden = beside * _GAP * self.width > _SETTLED * self.size.sum(axis=-1, keepdims=True)
+        return np.asarray(hidden.reshape(-1, len(self.low)).any(axis=0) & (self.width > narrowest))
 
 
 def _paired(halves: FloatArray) -> FloatArray:
     return np.asarray(halves[..., ::2] + halves[..., 1::2])
+
+
+def _to_come(change: FloatArray, before: FloatArray) -> FloatArray:
+    """Times its last change that a panel may yet change by; infinite where splitting does not lessen it."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        share = change / before
+        return np.where(share < _SHRINKS, np.maximum(share / (1 - share), _DOUBT), np.inf)
