@@ -12,7 +12,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.study.columns import Columns, curves, over_driver, table
 from grashof.study.section import Fact, Section
 from grashof.study.study import LinkageStudy
-from grashof.study.turn import degrees, turn_extremes
+from grashof.study.turn import degrees, turn_extremes, varies
 
 _CERTAIN = 1e-7  # share of the work put in within which an efficiency is known
 
@@ -61,7 +61,9 @@ def _facts(study: LinkageStudy, masses: Masses) -> Iterator[Fact]:
     found = turn_extremes(study, lambda state: energies(state, masses).kinetic.sum(axis=0))
     for name, value, at in (("least", found.low, found.at_low), ("largest", found.high, found.at_high)):
         yield Fact(f"kinetic_energy_{name}", f"kinetic energy, {name}", value * study.metre**2, "J")
-        yield Fact(f"kinetic_energy_{name}_theta2_deg", f"kinetic energy, {name}: theta2", degrees(at), "deg")
+        if varies(found):
+            label = f"kinetic energy, {name}: theta2"
+            yield Fact(f"kinetic_energy_{name}_theta2_deg", label, degrees(at), "deg")
 
 
 def _losses(study: LinkageStudy, masses: Masses, loads: Loads) -> Iterator[Fact]:

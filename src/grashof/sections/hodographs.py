@@ -10,7 +10,7 @@ from grashof.analysis import Kinematics
 from grashof.study.columns import Columns, curves, over_driver, table, tracks
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
-from grashof.study.turn import degrees, turn_extremes
+from grashof.study.turn import degrees, turn_extremes, varies
 
 
 def hodographs(study: LinkageStudy) -> Section:
@@ -50,4 +50,5 @@ def _facts(study: LinkageStudy) -> Iterator[Fact]:
     found = turn_extremes(study, lambda state: np.hypot(*state.p.jerk.T))
     yield Fact("p_jerk_largest", "jerk of P, largest", found.high, f"{study.spec.unit}/s3")
     label = "jerk of P, largest: theta2"
-    yield Fact("p_jerk_largest_theta2_deg", label, degrees(found.at_high), "deg")
+    if varies(found):
+        yield Fact("p_jerk_largest_theta2_deg", label, degrees(found.at_high), "deg")

@@ -12,6 +12,7 @@ from grashof.analysis.numerics.peaks import peaks
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.study.study import LinkageStudy
 
+_CONSTANT = 1e-12  # least and largest value apart, as a share
 Rows = Callable[[Kinematics], FloatArray]  # of states, shape (N,), shape (R, N)
 
 
@@ -49,6 +50,11 @@ def turn_means(study: LinkageStudy, rows: Rows) -> FloatArray:
         study.linkage, law, lambda place: rows(solve_kinematics(study.linkage, *law.at_place(place)))
     )
     return mean
+
+
+def varies(found: Extremes) -> bool:
+    """Whether a quantity varies by more than rounding, so that its extremes have a place."""
+    return found.stroke > _CONSTANT * max(abs(found.low), abs(found.high))
 
 
 def degrees(theta2: float) -> float:

@@ -126,3 +126,9 @@ def test_a_band_that_is_none_is_refused(sections: Sections) -> None:
     for band in (0.0, -1.0, 400.0, np.nan):
         with pytest.raises(ProblemError, match="dwell_deg is"):
             sections(JACK, dwell_deg=band)
+
+
+def test_what_is_constant_is_largest_nowhere(sections: Sections) -> None:
+    """P is A: its jerk has one size all around."""
+    facts = {fact.key for fact in sections(load_linkage_spec("lufkin-c912d"))["hodographs"].facts}
+    assert facts == {"p_jerk_largest"}
