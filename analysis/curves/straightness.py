@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from grashof.analysis.curves.line_and_circle import BestLine
 from grashof.analysis.four_bar.even_motion import EvenMotion, even_motion
 from grashof.analysis.four_bar.mobility import full_rotation
 from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.four_bar.transmission import transmission_angle
 from grashof.analysis.numerics.peaks import greatest, own
 from grashof.analysis.numerics.quadrature import Panels, gauss_legendre, integrate
 from grashof.problems import AssemblyError, FourBar
@@ -23,6 +24,9 @@ _STARTS = 144  # of half turns
 _EVEN = 1e-9  # share by which the straightness of half turns may differ where all are equally straight
 _STILL = 1e-13  # share of r2: P does not move
 _AT_END = 1e-12
+_EVENLY = 1e-5
+_NARROW, _NARROW_AT_CHANGE = 1e-14, 1e-4  # shares of the motion: rates at change points have few digits
+_NO_PANELS = Panels(np.zeros(1), np.zeros((6, 0)), np.zeros(6))
 _ROUNDING = 4 * float(np.finfo(np.float64).eps)
 _MOST_ROUNDS = 60
 _LADDER = np.array([0.0, 1e-8, 1e-5, 1e-3, 0.03])
@@ -141,18 +145,21 @@ class _Path:
     linkage: FourBar
     motion: EvenMotion
     origin: complex
+    pace: float
     panels: Panels
 
     @classmethod
     def of(cls, linkage: FourBar, start: float, end: float) -> _Path:
         motion = even_motion(linkage, start, end)
         origin = complex(solve_position(linkage, motion.theta2(0.5)).p @ _COMPLEX)
-        panels = integrate(lambda share: _moments(linkage, motion, origin, share), motion.edges(_PANELS))
+        bare = cls(linkage, motion, origin, _pace(linkage, motion), _NO_PANELS)
+        narrowest = _NARROW_AT_CHANGE if np.isnan(bare.pace) else _NARROW
+        panels = integrate(bare.moments, motion.edges(_PANELS), narrowest)
         if not np.isfinite(panels.total).all():
             raise ProblemError("the linkage cannot be assembled at all driver angles between the two given")
         if panels.total[0] <= _STILL * float(linkage.r2):
             raise ProblemError("the points are all one; a line needs two different ones")
-        return cls(linkage, motion, origin, panels)
+        return replace(bare, panels=panels)
 
     def straightest(self) -> float:
         """Driver angle at which the straightest half turn begins."""
@@ -257,7 +264,7 @@ class _Path:
         between = turned[(turned > fits.first[0]) & (turned < fits.last[0])]
         share, weight = gauss_legendre(np.concatenate([fits.first, between, fits.last]))
         off = ((self._p(share) - centre) * along.conjugate()).imag
-        square = weight @ (off**2 * _moments(self.linkage, self.motion, self.origin, share)[0])
+        square = weight @ (off**2 * self.moments(share)[0])
         at = centre + self.origin
         return BestLine(
             point=frozen_array([at.real, at.imag]),
@@ -275,10 +282,28 @@ class _Path:
     def _gone(self, share: FloatArray) -> FloatArray:
         """Length of the path from its start, and integrals over it, shape (6, K)."""
         turns = np.floor(share)
-        inside = self.panels.until(
-            lambda at: _moments(self.linkage, self.motion, self.origin, at), share - turns
-        )
-        return inside + self.panels.total[:, None] * turns
+        return self.panels.until(self.moments, share - turns) + self.panels.total[:, None] * turns
+
+    def moments(self, share: FloatArray) -> FloatArray:
+        """Length, x, y, x^2, x y and y^2 of the path for each share of the motion, shape (6, N)."""
+        theta2 = self.motion.theta2(share)
+        if np.isnan(self.pace):
+            p, rate, _ = coupler_curve(self.linkage, theta2)
+            with np.errstate(invalid="ignore"):
+                return _rows(p - self.origin, np.abs(rate * self.motion.rate(share)))
+        # d theta2 = pace sin mu dt; d theta3 = r2 sin(theta4 - theta2) / (r3 sin(theta3 - theta4)) d theta2.
+        linkage, state = self.linkage, solve_position(self.linkage, theta2)
+        turn2 = self.pace * np.abs(np.sin(state.theta4 - state.theta3))
+        turn3 = -linkage.assembly * self.pace * linkage.r2 / linkage.r3 * np.sin(state.theta4 - theta2)
+        crank, arm = (state.a - linkage.o2) @ _COMPLEX, (state.p - state.a) @ _COMPLEX
+        return _rows(state.p @ _COMPLEX - self.origin, np.abs(turn2 * crank + turn3 * arm))
+
+
+def _pace(linkage: FourBar, motion: EvenMotion) -> float:
+    """D theta2 over sin mu dt, which is constant; NaN at a change point, where the motion leaves it out."""
+    share = np.array([0.2, 0.45, 0.7])
+    each = motion.rate(share) / np.sin(transmission_angle(linkage, motion.theta2(share)))
+    return float(each[1]) if np.ptp(each) <= _EVENLY * np.abs(each).min() else np.nan
 
 
 def _lowest_bracket(
@@ -290,13 +315,6 @@ def _lowest_bracket(
     first = int(np.argmin(lower))
     kept = slice(first, first + 2)
     return places[kept], ratio[kept], slope[kept]
-
-
-def _moments(linkage: FourBar, motion: EvenMotion, origin: complex, share: FloatArray) -> FloatArray:
-    """Length, x, y, x^2, x y and y^2 of the path for each share of the motion, shape (6, N)."""
-    p, rate, _ = coupler_curve(linkage, motion.theta2(share))
-    with np.errstate(invalid="ignore"):
-        return _rows(p - origin, np.abs(rate * motion.rate(share)))
 
 
 def _rows(z: ComplexArray, speed: FloatArray) -> FloatArray:

@@ -20,7 +20,6 @@ _GAP = (1 - NODES[-1]) / 2  # share of a panel beyond its last node
 _SPLIT = 0.4636  # not the middle, beside which a jump would leave the sum over both parts as it was
 _SETTLED = 1e-13  # share of the integral of the magnitude: splitting a panel changes it by no more
 _LEAST_ERROR = 1.5e-12  # the same: some changes are this small by chance
-_NARROW = 1e-14  # share of the whole: no panel is narrower
 _DOUBT = 2.0  # times the last change of a panel: it may be wrong by so much
 _SHRINKS = 0.95  # share of a change that the next one has at most, where there is an integral
 _FULL = 1e-9  # relative error up to which all digits of a number count
@@ -61,7 +60,7 @@ class Panels:
         return np.asarray(before[..., index] + np.where(half > 0, part, 0.0))
 
 
-def integrate(curve: Curve, edges: npt.ArrayLike) -> Panels:
+def integrate(curve: Curve, edges: npt.ArrayLike, narrowest: float = 1e-14) -> Panels:
     """Integral of one curve or several, by panels that are split until the sum stays as it is.
 
     Parameters
@@ -70,6 +69,8 @@ def integrate(curve: Curve, edges: npt.ArrayLike) -> Panels:
         From places, shape (N,), to values, shape (..., N).
     edges : array_like, shape (M + 1,)
         Where it is integrated from and to, and ends of panels between, in order.
+    narrowest : float
+        Share of the whole below which no panel is split.
 
     Returns
     -------
@@ -90,7 +91,7 @@ def integrate(curve: Curve, edges: npt.ArrayLike) -> Panels:
     (0.29, True)
     """
     edges = np.asarray(edges, dtype=np.float64)
-    narrowest, spent = _NARROW * float(np.abs(edges[-1] - edges[0])), 0
+    least, spent = narrowest * float(np.abs(edges[-1] - edges[0])), 0
     rough = _Pieces.over(curve, edges[:-1], edges[1:])
     done, error = rough[:0], np.zeros(rough.part.shape[:-1])
     before = np.full(rough.part.shape, np.inf)
@@ -98,7 +99,7 @@ def integrate(curve: Curve, edges: npt.ArrayLike) -> Panels:
         ends = np.stack([rough.low, rough.low + _SPLIT * (rough.high - rough.low), rough.high], axis=1)
         parts = _Pieces.over(curve, ends[:, :2].ravel(), ends[:, 1:].ravel())
         spent += parts.low.size * len(NODES)
-        change, narrow = np.abs(_paired(parts.part) - rough.part), rough.width <= narrowest
+        change, narrow = np.abs(_paired(parts.part) - rough.part), rough.width <= least
         unsettled = change > _SETTLED * (done.size.sum(axis=-1) + parts.size.sum(axis=-1))[..., None]
         kept = ~unsettled.reshape(-1, narrow.size).any(axis=0) | narrow | (spent > _MOST)
         doubt = np.where(unsettled & narrow, _to_come(change, before), _DOUBT) * change
@@ -107,12 +108,12 @@ def integrate(curve: Curve, edges: npt.ArrayLike) -> Panels:
         before = np.repeat(change[..., ~kept], 2, axis=-1)
         if not rough.low.size and spent <= _MOST:
             done = done[np.argsort(done.low if edges[-1] >= edges[0] else -done.low, kind="stable")]
-            apart = done.apart(narrowest)
+            apart = done.apart(least)
             rough, done = done[apart], done[~apart]
             before = np.full(rough.part.shape, np.inf)
     done = done[np.argsort(done.low if edges[-1] >= edges[0] else -done.low, kind="stable")]
-    least = _LEAST_ERROR * done.size.sum(axis=-1)
-    return Panels(np.append(done.low, edges[-1]), done.part, np.asarray(error + least))
+    error = error + _LEAST_ERROR * done.size.sum(axis=-1)
+    return Panels(np.append(done.low, edges[-1]), done.part, np.asarray(error))
 
 
 def held(value: float, error: float) -> float:

@@ -1,5 +1,8 @@
 """Distances of closed curves: shapes with a known answer, and the definitions on dense samples."""
 
+from collections.abc import Callable
+from itertools import pairwise
+
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -53,6 +56,80 @@ def test_a_curve_is_at_no_distance_from_itself_wherever_it_begins(seed: int) -> 
         assert curve_distances(linkage, repeated, sense) == pytest.approx(
             tuple(distances * size(points)), abs=1e-9
         )
+
+
+@pytest.mark.parametrize("radius", [0.5, 2.0])
+def test_a_polygon_about_or_in_a_circle_to_rounding(radius: float) -> None:
+    """The corners are on the circle of that radius, the middles of the sides nearer to the centre."""
+    hausdorff, _ = curve_distances(DISC, radius * CIRCLE, 1)
+    furthest = 1 - radius * np.cos(np.pi / 400) if radius < 1 else radius - 1
+    assert hausdorff == pytest.approx(furthest, rel=1e-12)
+
+
+def test_a_corner_and_a_ridge_to_rounding() -> None:
+    """From the corner of a square to a circle in it; from the middle of a slot to both of its sides."""
+    hausdorff, _ = curve_distances(DISC, np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]]), 1)
+    assert hausdorff == pytest.approx(np.sqrt(2) - 1, rel=1e-12)
+    slot = np.array([[2.0, 1.0], [-0.5, 0.0], [2.0, -0.1]])
+    hausdorff, _ = curve_distances(DISC, slot, 1)
+    angle = np.linspace(0, 2 * np.pi, 400_001)
+    circle = np.exp(1j * angle)
+    far = np.full(len(circle), np.inf)
+    for a, b in zip(slot @ [1, 1j], np.roll(slot, -1, axis=0) @ [1, 1j], strict=True):
+        share = np.clip(((circle - a) * np.conj(b - a)).real / abs(b - a) ** 2, 0, 1)
+        far = np.minimum(far, np.abs(circle - a - share * (b - a)))
+    assert hausdorff == pytest.approx(max(far.max(), np.sqrt(5) - 1), rel=1e-9)
+
+
+@pytest.mark.quick(1, 2)
+@pytest.mark.parametrize("seed", range(6))
+def test_the_hausdorff_distance_to_nine_digits(seed: int) -> None:
+    """Against a dense search on both, ever closer about what is furthest."""
+    rng = np.random.default_rng(seed)
+    linkage = random_full_crank(rng)
+    corners = solve_position(linkage, np.sort(rng.uniform(0, 2 * np.pi, 5 + 3 * seed))).p
+    corners = corners + 10 ** rng.uniform(-3, -1) * size(corners) * rng.normal(size=corners.shape)
+    hausdorff, _ = curve_distances(linkage, corners, 1)
+    loop = np.append(corners, corners[:1], axis=0) @ np.array([1, 1j])
+
+    def p(theta2: Array) -> npt.NDArray[np.complex128]:
+        return solve_position(linkage, theta2).p @ np.array([1, 1j])
+
+    def q(place: Array) -> npt.NDArray[np.complex128]:
+        return np.interp(place, np.arange(len(loop)), loop)
+
+    def from_polygon(theta2: Array) -> Array:
+        points, far = p(theta2), np.inf
+        for a, b in pairwise(loop):
+            share = np.clip(((points - a) * np.conj(b - a)).real / abs(b - a) ** 2, 0, 1)
+            far = np.minimum(far, np.abs(points - a - share * (b - a)))
+        return far
+
+    dense = np.linspace(0, 2 * np.pi, 20_001)
+
+    def from_curve(place: Array) -> Array:
+        points = q(place)[:, None]
+        near = dense[np.abs(points - p(dense)).argmin(axis=1)]
+        width = 2 * np.pi / 20_000
+        for _ in range(4):
+            around = near[:, None] + width * np.linspace(-1, 1, 33)
+            far = np.abs(points - p(around))
+            near, width = around[np.arange(len(near)), far.argmin(axis=1)], width / 12
+        return far.min(axis=1)
+
+    def furthest(curve: Callable[[Array], Array], end: float, count: int) -> float:
+        at = np.linspace(0, end, count)
+        values, best = curve(at), 0.0
+        for top in np.argsort(-values)[:4]:
+            place, width = at[top], at[1]
+            for _ in range(8):
+                around = np.clip(place + width * np.linspace(-1, 1, 33), 0, end)
+                place, width = around[curve(around).argmax()], width / 12
+            best = max(best, float(curve(np.array([place]))[0]))
+        return best
+
+    expected = max(furthest(from_polygon, 2 * np.pi, 20_001), furthest(from_curve, len(loop) - 1.0, 2001))
+    assert hausdorff == pytest.approx(expected, rel=1e-9)
 
 
 def brute_frechet(one: Array, other: Array) -> float:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grashof.analysis import solve_position
+from grashof.analysis import driver_ranges, solve_position
 from grashof.analysis.curves.fit import (
     NotAFunctionWarning,
     coupler_fit_r2,
@@ -161,6 +161,29 @@ def test_r2_of_a_motion_is_the_limit_of_many_samples(seed: int, degree: int) -> 
         misses.append(abs(coupler_fit_r2(linkage, start, start + turn, degree) - sampled))
     assert misses[1] < 1e-3 * (1 - sampled) + 1e-13
     assert misses[1] < 0.26 * misses[0] + 1e-13
+
+
+@pytest.mark.parametrize("degree", [4, 8])
+@pytest.mark.parametrize("r4", [2.501, 2.5 + 1e-5, 2.499, 2.5])
+def test_r2_near_a_change_point(r4: float, degree: int) -> None:
+    """Against panels that close up towards the ground line, and the dead positions where there are some."""
+    linkage = FourBar((0, 0), (4, 0), 2, 4.5, r4, (2, 1))
+    low, high = driver_ranges(linkage)[0]
+    edges = np.concatenate(
+        [[low], *((k * np.pi + s * 2.0 ** -np.arange(0, 44)) for k in range(-1, 3) for s in (-1, 1))]
+    )
+    ends = np.concatenate([low + 2.0 ** -np.arange(0, 44), high - 2.0 ** -np.arange(0, 44), [high], edges])
+    edges = np.unique(ends[(ends >= low) & (ends <= high)])
+    node, weight = np.polynomial.legendre.leggauss(12)
+    half = np.diff(edges)[:, None] / 2
+    theta2, root = (edges[:-1, None] + half * (1 + node)).ravel(), np.sqrt((half * weight).ravel())[:, None]
+    p = solve_position(linkage, theta2).p
+    basis = np.linalg.qr(
+        root * np.polynomial.legendre.legvander((theta2 - low) * 2 / (high - low) - 1, degree)
+    )[0]
+    misses = [root * p - each @ (each.T @ (root * p)) for each in (basis, basis[:, :1])]
+    expected = 1 - (misses[0] ** 2).sum() / (misses[1] ** 2).sum()
+    assert coupler_fit_r2(linkage, low, high, degree) == pytest.approx(expected, abs=1e-11)
 
 
 def test_r2_of_a_crank_pin_is_that_of_an_arc() -> None:

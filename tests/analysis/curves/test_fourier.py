@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.integrate import quad_vec
 
 from grashof.analysis import solve_position
-from grashof.analysis.curves.fourier import coupler_fourier, fourier_series
+from grashof.analysis.curves.fourier import coupler_fourier, coupler_harmonics, fourier_series
 from grashof.analysis.judge.planted import random_full_crank
 from grashof.problems import FourBar
 from grashof.problems.values.errors import ProblemError
@@ -69,7 +70,54 @@ def test_a_coupler_curve_is_reconstructed_between_its_samples(seed: int) -> None
     assert (np.diff(series.error_rms) <= 1e-15).all()
 
 
+NEARLY_DEAD = FourBar((0, 0), (4, 0), 2, 4.5, 2.501, (2, 1))
+CRANKS = [random_full_crank(np.random.default_rng(seed)) for seed in range(5)]
+
+
+@pytest.mark.parametrize(
+    "linkage", [NEARLY_DEAD, *(random_full_crank(np.random.default_rng(s)) for s in range(5))]
+)
+def test_first_harmonics_are_those_of_the_curve_itself(linkage: FourBar) -> None:
+    """However close it comes to a change point: against adaptive quadrature and a dense search."""
+    first = coupler_harmonics(linkage, top=4)
+    theta1, harmonics = float(linkage.theta1), np.arange(-4, 5)
+
+    def moments(theta2: float) -> np.ndarray:
+        z = complex(*(solve_position(linkage, theta2).p - linkage.o2))
+        return np.append(z * np.exp(-1j * harmonics * theta2), abs(z) ** 2) / (2 * np.pi)
+
+    whole = quad_vec(
+        moments, theta1, theta1 + 2 * np.pi, epsabs=1e-12, epsrel=1e-12, points=[theta1 + np.pi]
+    )[0]
+    expected, square = whole[:-1], whole[-1].real
+    size = np.sqrt(square)
+    shifted = expected + np.where(harmonics == 0, complex(*linkage.o2), 0.0)
+    np.testing.assert_allclose(first.coefficients, shifted, rtol=0, atol=1e-11 * size)
+    power = np.abs(expected) ** 2
+    both = power[5:] + power[:4][::-1]
+    np.testing.assert_allclose(first.content, both / (square - power[4]), rtol=1e-9)
+    near = np.concatenate([sign * np.logspace(-7, 0.5, 6000) for sign in (-1, 1)])
+    dense = theta1 + np.concatenate([np.linspace(0, 2 * np.pi, 100_001), near, np.pi + near])
+    p = solve_position(linkage, dense).p
+    for up_to in range(5):
+        miss = np.hypot(*(first(dense, up_to) - p).T)
+        assert miss.max() <= first.error_max[up_to] * (1 + 1e-9)
+        assert first.error_max[up_to] == pytest.approx(miss.max(), rel=1e-5)
+        left = square - power[np.abs(harmonics) <= up_to].sum()
+        assert first.error_rms[up_to] == pytest.approx(np.sqrt(left), rel=1e-8)
+
+
+def test_first_harmonics_of_the_crank_pin() -> None:
+    first = coupler_harmonics(FourBar(o2=(1, 2), o4=(5, 2), r2=1.5, r3=4, r4=3.2))
+    assert first.content.tolist() == [pytest.approx(1), 0, 0, 0, 0]
+    assert first.error_max.tolist() == [pytest.approx(1.5), 0, 0, 0, 0, 0]
+
+
 def test_bad_input_is_named() -> None:
+    with pytest.raises(ProblemError, match="top is 0"):
+        coupler_harmonics(NEARLY_DEAD, top=0)
+    with pytest.raises(ProblemError, match="does not turn fully"):
+        coupler_harmonics(FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3))
     with pytest.raises(ProblemError, match="there are 2 points"):
         fourier_series([[0, 0], [1, 1]])
     with pytest.raises(ProblemError, match="does not turn fully"):

@@ -16,11 +16,14 @@ from grashof.analysis import (
     Masses,
     balance_force,
     balance_torque,
+    balance_turn,
     inverse_dynamics,
+    output_stroke,
     solve_kinematics,
     uniform_bars,
 )
-from grashof.problems import FourBar, ProblemError
+from grashof.analysis.four_bar.means import mean_over
+from grashof.problems import AssemblyError, FourBar, ProblemError
 
 CHECKED = settings(max_examples=30)
 TURN = 2 * np.pi
@@ -77,6 +80,40 @@ def test_no_other_counterweight_makes_the_torque_more_even(measure: str) -> None
     assert np.hypot(*found.crank_weight.centre) == pytest.approx(1.0)
 
 
+@pytest.mark.parametrize("measure", ["rms", "peak"])
+def test_no_other_counterweight_makes_the_torque_of_a_turn_more_even(measure: str) -> None:
+    """Between samples, too: against dense ones, and the counterweights beside it."""
+    rods = AppliedForce(4, (-4.572, 0), lambda state: _rods(state.omega4), turning=True)
+    loads, speed = Loads(gravity=(0, -9.81), forces=(rods,)), TURN / 3
+    bars = uniform_bars(JACK, (312, 312, 314))
+    found = balance_turn(JACK, bars, speed, loads, 1.0, measure)
+    toggles = output_stroke(JACK).theta2  # where the load jumps
+    beside = np.concatenate([toggles - 1e-9, toggles + 1e-9])
+
+    def size(moment: np.ndarray) -> float:
+        mass = float(np.hypot(*moment))
+        heavier = Masses(bars.crank + Body(mass, 0.0, moment / mass), bars.coupler, bars.output)
+
+        def torque(theta2: np.ndarray) -> np.ndarray:
+            return inverse_dynamics(solve_kinematics(JACK, theta2, speed), heavier, loads).torque
+
+        if measure == "rms":
+            return float(np.sqrt(mean_over(JACK, lambda at: torque(at) ** 2, 0.0, TURN)[0]))
+        return float(np.abs(torque(np.concatenate([np.linspace(0, TURN, 20_001), beside]))).max())
+
+    chosen = found.crank_weight.mass * found.crank_weight.centre
+    least = size(chosen)
+    for angle in np.arange(0, TURN, TURN / 12):
+        for far in (0.1, 3.0, 100.0):
+            other = chosen + far * np.array([np.cos(angle), np.sin(angle)])
+            assert size(other) >= least * (1 - 3e-8)
+    assert len(found.torque_after) == 361
+    state = solve_kinematics(JACK, np.radians(np.arange(361)), speed)
+    np.testing.assert_allclose(found.torque_after, inverse_dynamics(state, found.masses, loads).torque)
+    samples = balance_torque(state, bars, loads, 1.0, measure)
+    assert found.crank_weight.mass == pytest.approx(samples.crank_weight.mass, rel=0.01)
+
+
 def _rods(omega4: np.ndarray) -> np.ndarray:
     """Polished rod load, larger on the upstroke, across the beam."""
     load = np.where(omega4 > 0, 9000.0, 4000.0)
@@ -92,5 +129,9 @@ def test_bad_input_is_said() -> None:
         balance_torque(solve_kinematics(JACK, [0.0, 1.0], 1.0, 2.0), bars, gravity, 1.0)
     with pytest.raises(ProblemError, match="measure is 'mean'"):
         balance_torque(state, bars, gravity, 1.0, "mean")
+    with pytest.raises(ProblemError, match="measure is 'mean'"):
+        balance_turn(JACK, bars, 1.0, gravity, 1.0, "mean")
+    with pytest.raises(AssemblyError, match="turn fully"):
+        balance_turn(FourBar((0, 0), (4, 0), 2, 2, 3), bars, 1.0, gravity, 1.0)
     with pytest.raises(ProblemError, match="radius"):
         balance_force(JACK, bars, crank_radius=0.0)

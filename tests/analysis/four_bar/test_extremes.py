@@ -8,7 +8,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from grashof.analysis import Extremes, GrashofClass, extremes, extremes_of, solve_kinematics
+from grashof.analysis import (
+    Extremes,
+    GrashofClass,
+    dead_ends,
+    driver_ranges,
+    extremes,
+    extremes_of,
+    solve_kinematics,
+    transmission_angle,
+    transmission_extremes,
+)
 from grashof.problems import AssemblyError, DeadPositionWarning, FourBar, ProblemError
 
 CHECKED = settings(max_examples=10)
@@ -105,6 +115,70 @@ def test_extremes_of_a_rocking_driver_end_in_its_dead_positions() -> None:
     angles = solve_kinematics(rocker, np.linspace(-1, 1, 10001)).theta4
     assert swing.low == pytest.approx(angles.min(), abs=1e-7)
     assert swing.high == pytest.approx(angles.max(), abs=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("linkage", "expected"),
+    [
+        (FourBar((0, 0), (4, 0), 2, 2, 3), [(None, 180.0)]),  # through theta1: stretched at both ends
+        (FourBar((1, 2), (5, 2), 2, 4.5, 2.499), [(0.0, None)]),  # through theta1 + pi: folded
+        (FourBar((0, 0), (4, 0), 3, 1, 3), [(0.0, 180.0), (0.0, 180.0)]),
+        (FourBar((0, 0), (0, 4), 2, 4.5, 2.5), [(0.0, None)]),  # a change point, folded
+        (FourBar((0, 0), (4, 0), 1, 3, 2), [(None, 180.0)]),  # stretched
+        (FourBar((0, 0), (4, 0), 1, 4, 1), [(0.0, 180.0)]),  # both
+    ],
+)
+def test_mu_is_0_or_180_deg_at_dead_positions(
+    linkage: FourBar, expected: list[tuple[float | None, float | None]]
+) -> None:
+    for (low, high), ends in zip(driver_ranges(linkage).tolist(), expected, strict=False):
+        for start, end in (
+            (low, high),
+            dead_ends(linkage, low, high),
+            (high, low),
+            (low + TURN, high + TURN),
+        ):
+            found = transmission_extremes(linkage, start, end)
+            inner = transmission_angle(linkage, low + (high - low) * np.linspace(0, 1, 5001)[1:-1])
+            for value, end_value, sampled in zip(
+                (found.low, found.high), ends, (inner.min(), inner.max()), strict=True
+            ):
+                if end_value is None:
+                    assert value == pytest.approx(sampled, abs=1e-5)
+                else:
+                    assert np.degrees(value) == end_value
+            assert min(start, end) <= found.at_low <= max(start, end)
+
+
+@pytest.mark.parametrize("kind", [GrashofClass.CRANK_ROCKER, GrashofClass.DOUBLE_CRANK])
+@given(data=st.data())
+@CHECKED
+def test_mu_of_a_turn_is_outermost_on_the_ground_line(
+    four_bars: Drawer, kind: GrashofClass, data: st.DataObject
+) -> None:
+    linkage = data.draw(four_bars(kind))
+    found, generic = transmission_extremes(linkage, 0.0, TURN), extremes(linkage, mu_of)
+    assert (found.low, found.high) == pytest.approx((generic.low, generic.high), rel=1e-13)
+    part = transmission_extremes(linkage, 0.3, 1.1)
+    inner = transmission_angle(linkage, np.linspace(0.3, 1.1, 5001))
+    assert (part.low, part.high) == pytest.approx((inner.min(), inner.max()), abs=1e-6)
+
+
+def mu_of(state: Any) -> Any:
+    return transmission_angle(state.linkage, state.theta2)
+
+
+def test_extremes_within_a_thousandth_of_a_radian() -> None:
+    """Near a change point the output jerks where no even sample is: mu is 0.08 deg at worst."""
+    linkage = FourBar((0, 0), (4, 0), 2, 4.5, 2.500005, (2, 1))
+    assert np.degrees(transmission_extremes(linkage, 0.0, TURN).low) == pytest.approx(0.0764, abs=1e-4)
+    for quantity in (lambda state: state.alpha4, lambda state: state.b.acceleration_magnitude):
+        found = extremes(linkage, quantity)
+        near = np.concatenate([sign * np.logspace(-7, -1, 40_001) for sign in (-1, 1)])
+        values = quantity(solve_kinematics(linkage, np.concatenate([near, np.linspace(0.1, 6.2, 40_001)])))
+        assert (found.low, found.high) == pytest.approx((values.min(), values.max()), rel=1e-6)
+        assert found.low <= values.min()
+        assert found.high >= values.max()
 
 
 def test_bad_input_is_said() -> None:
