@@ -147,9 +147,7 @@ def test_means_in_time_of_a_driver_that_starts_and_stops(profile: str) -> None:
     """Half the speed is gone at when half the time has, by symmetry: the mean angle is that halfway."""
     linkage = FourBar((0, 0), (4, 0), 1, 4, 3)
     law = DriverLaw(0.2, 1.5, 2.0, MotorSpec(profile=profile))
-    (angle, speed), error = mean_in_time(
-        linkage, law, lambda theta2: np.stack([theta2, law.at_angle(theta2).omega2])
-    )
+    (angle, speed), error = mean_in_time(linkage, law, lambda place: np.stack(law.at_place(place)[:2]))
     assert angle == pytest.approx(0.95, abs=1e-9)
     assert speed == pytest.approx(2.0, rel=1e-8)
     assert error[0] < 1e-9
