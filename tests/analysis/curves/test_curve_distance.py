@@ -81,7 +81,7 @@ def test_a_corner_and_a_ridge_to_rounding() -> None:
     assert hausdorff == pytest.approx(max(far.max(), np.sqrt(5) - 1), rel=1e-9)
 
 
-@pytest.mark.quick(1, 2)
+@pytest.mark.quick("1", "2")
 @pytest.mark.parametrize("seed", range(6))
 def test_the_hausdorff_distance_to_nine_digits(seed: int) -> None:
     """Against a dense search on both, ever closer about what is furthest."""
