@@ -87,7 +87,7 @@ def plot_kinematics(
     panels = _panels(quantities, KINEMATICS)
     sweep = Sweep.of(Subject.of(linkage, problem).spec, speed_rpm)
     with dead_positions_unwarned():
-        table = table_of(kinematic_quantities(sweep.spec), sweep.states())
+        table = table_of(kinematic_quantities(sweep.spec), sweep.states_drawn())
     return draw_curves(sweep, table, panels, ax)
 
 
@@ -126,7 +126,7 @@ def plot_dynamics(
     if not found:
         raise ProblemError(f"{sweep.spec.name} has no masses; a table [dynamics] or a problem states them")
     with dead_positions_unwarned():
-        table = table_of(found, sweep.states())
+        table = table_of(found, sweep.states_drawn())
     return draw_curves(sweep, table, panels, ax)
 
 

@@ -47,7 +47,7 @@ def _curves(report: LinkageReport, table: str, panels: list[Panel]) -> Figure:
     with rc_context(STYLE):
         figure = Figure(figsize=(8.5, 1.6 + 2.4 * len(panels)), layout="constrained")
         rows = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
-        draw_curves(report.sweep, report.tables[table], panels, rows)
+        draw_curves(report.sweep, report.drawn[table], panels, rows)
         fit_title(rows[0], _title(report))
     return figure
 

@@ -38,8 +38,7 @@ def motion_sections(report: LinkageReport) -> list[Section]:
     Torque and power: torque-factor
     Points A, B and P: place-of-p, velocity-of-p, acceleration-of-p
     """
-    tables = [report.tables[name] for name in ("kinematics", "dynamics") if name in report.tables]
-    table = pd.concat(tables, axis=1)
+    table = pd.concat(list(report.drawn.values()), axis=1)
     table = _parted(table.loc[:, ~table.columns.duplicated()])
     theta2 = table["theta2_deg"].to_numpy()
     sections = []

@@ -16,6 +16,7 @@ from grashof.analysis import (
     Kinematics,
     dead_ends,
     driver_ranges,
+    even_motion,
     full_rotation,
     solve_kinematics,
     transmission_angle,
@@ -28,6 +29,7 @@ from grashof.problems.values.motor import MotorSpec
 INSET = 1e-6  # rad: extremes of rates are sought so far from a dead position
 _DEAD = 1e-7  # sin(theta4 - theta3), as `solve_kinematics` counts it
 _STEPS = 360
+_FAR = 1 / 90  # of its motion
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +114,21 @@ class Sweep:
         """Driver angles of each range, rad."""
         for low, high in self.ranges:
             yield driver_angles(low, high, _STEPS, even=self.turns)
+
+    def states_drawn(self) -> list[Kinematics]:
+        """Kinematics of each range at the angles that a curve is drawn through.
+
+        Those of the tables; where the linkage moves far between two of them, near a change point, also
+        others, which it moves evenly between.
+        """
+        return [self.state(angles) for angles in self._angles_drawn()]
+
+    def _angles_drawn(self) -> Iterator[FloatArray]:
+        for (low, high), angles in zip(self.ranges, self.angles(), strict=True):
+            motion = even_motion(self.spec.linkage, low, high)
+            far = np.diff(motion.share(angles)).max() > _FAR
+            between = motion.theta2(np.linspace(0, 1, _STEPS + 1)) if far else angles[:0]
+            yield np.unique(np.concatenate([angles, between]))
 
 
 def _within(theta2: FloatArray, ends: tuple[float, float]) -> BoolArray:

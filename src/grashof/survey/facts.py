@@ -131,8 +131,9 @@ def _path_facts(sweep: Sweep) -> Iterator[Fact]:
 
 
 def _straight_facts(spec: LinkageSpec, low: float, high: float, turns: bool) -> Iterator[Fact]:
-    """The straightest half turn; of a driver that swings the whole of its first range."""
-    unit, what = spec.unit, "straightest half turn of P" if turns else "path of P, range 1"
+    """The half turn of least width over length; of a driver that swings the whole of its first range."""
+    unit = spec.unit
+    what = "straightest half turn of P" if turns else "path of P, range 1"
     try:
         if turns:
             low, line = straightest_half_turn(spec.linkage)
@@ -144,6 +145,8 @@ def _straight_facts(spec: LinkageSpec, low: float, high: float, turns: bool) -> 
     yield Fact("straight_from_deg", f"{what}: from theta2", float(np.degrees(low)), "deg")
     yield Fact("straight_to_deg", f"{what}: to theta2", float(np.degrees(high)), "deg")
     yield Fact("straight_length", f"{what}: length along its best line", line.length, unit)
+    least = ", least over length" if turns else ""
+    yield Fact("straight_width", f"{what}: width{least}", line.width, unit)
     yield Fact("straight_deviation", f"{what}: largest distance from it", line.deviation_max, unit)
 
 
@@ -155,14 +158,14 @@ def _mass_facts(study: LinkageStudy, masses: Masses) -> Iterator[Fact]:
         yield Fact("gravity", "gravity", f"{x:g}, {y:g}", "m/s2")
     if study.sweep.turns:
         mean, rms = _torque_over_turn(study)
-        yield Fact("torque_mean", "drive torque, mean over the turn", mean, "N m")
-        yield Fact("torque_rms", "drive torque, rms over the turn", rms, "N m")
+        for name, value in (("mean", mean), ("rms", rms)):
+            if np.isfinite(value):  # friction may lock the linkage
+                yield Fact(f"torque_{name}", f"drive torque, {name} over the turn", value, "N m")
 
 
 def _torque_over_turn(study: LinkageStudy) -> tuple[float, float]:
     """Mean and root mean square of the drive torque over time, with as many digits as are certain."""
     torque = next(quantity for quantity in dynamic_quantities(study) if quantity.key == "torque")
-
     law = study.sweep.laws[0]
 
     def powers(place: FloatArray) -> FloatArray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import pandas as pd
@@ -14,7 +14,7 @@ from grashof.problems import LinkageSpec
 from grashof.problems.values.arrays import FloatArray
 from grashof.sections import SECTIONS
 from grashof.study.asked import Asked
-from grashof.study.quantities import dynamic_quantities, kinematic_quantities, table_of
+from grashof.study.quantities import Quantity, dynamic_quantities, kinematic_quantities, table_of
 from grashof.study.section import Fact, Section
 from grashof.study.study import LinkageStudy
 from grashof.study.sweep import Sweep, dead_positions_unwarned
@@ -38,6 +38,8 @@ class LinkageReport:
         What a reader has to know about limits.
     sections : tuple of Section
         What it says besides, by subject.
+    drawn : mapping of str to DataFrame
+        The tables over the driver angle with as many rows as it takes to draw them.
     """
 
     sweep: Sweep
@@ -46,6 +48,7 @@ class LinkageReport:
     tables: Mapping[str, pd.DataFrame]
     notes: tuple[str, ...]
     sections: tuple[Section, ...] = ()
+    drawn: Mapping[str, pd.DataFrame] = field(default_factory=dict)
 
 
 def report_on(spec: LinkageSpec, asked: Asked | None = None) -> LinkageReport:
@@ -74,9 +77,20 @@ def report_on(spec: LinkageSpec, asked: Asked | None = None) -> LinkageReport:
         if dynamic := dynamic_quantities(study):
             tables["dynamics"] = table_of(dynamic, states)
         tables["extremes"] = extremes_table(sweep, quantities + dynamic)
+        drawn = _drawn(sweep, {"kinematics": quantities, "dynamics": dynamic}, tables)
         facts = tuple(facts_of(study, tables))
         sections = tuple(section for make in SECTIONS if (section := make(study)) is not None)
-    return LinkageReport(sweep, masses, facts, tables, _notes(sweep), sections)
+    return LinkageReport(sweep, masses, facts, tables, _notes(sweep), sections, drawn)
+
+
+def _drawn(
+    sweep: Sweep, quantities: Mapping[str, list[Quantity]], tables: Mapping[str, pd.DataFrame]
+) -> dict[str, pd.DataFrame]:
+    states = sweep.states_drawn()
+    known = {name: tables[name] for name in quantities if name in tables}
+    if sum(len(state.theta2) for state in states) == len(known["kinematics"]):
+        return known
+    return {name: table_of(quantities[name], states) for name in known}
 
 
 def _notes(sweep: Sweep) -> tuple[str, ...]:

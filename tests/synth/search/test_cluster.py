@@ -13,6 +13,7 @@ from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import Timer
+from time import sleep
 
 from distributed import Client, LocalCluster
 
@@ -22,6 +23,13 @@ from grashof.synth.shards import Shard, solve_shard
 
 MORE = {"effort": 4}
 SEARCHES = {"luggage": {"starts": 400, "enough": 200}, "path-ellipse": {"effort": 0.6}, "dwell": MORE}
+
+
+def kill_a_worker(cluster):
+    # while a lost process is being started again, the other one is there, or in a moment this one
+    while not (pids := [worker.pid for worker in list(cluster.workers.values()) if worker.pid]):
+        sleep(0.05)
+    os.kill(pids[0], signal.SIGKILL)
 
 
 def in_one_shard(name, executor=None):
@@ -37,7 +45,7 @@ if __name__ == "__main__":
                 workers=2) for given in SEARCHES.items()]
         for way in (*ways, partial(in_one_shard, "luggage")):
             alone = way()
-            lost = Timer(1.0, os.kill, (cluster.workers[0].pid, signal.SIGKILL))
+            lost = Timer(1.0, kill_a_worker, (cluster,))
             lost.start()
             shared = way(executor=client.get_executor())
             lost.join()
