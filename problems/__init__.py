@@ -18,7 +18,9 @@ from grashof.problems.values.errors import (
     ProblemError,
     SolverError,
 )
-from grashof.problems.values.linkage import FourBar
+from grashof.problems.values.four_bar import FourBar
+from grashof.problems.values.inverted_slider_crank import InvertedSliderCrank
+from grashof.problems.values.linkage import Linkage
 from grashof.problems.values.linkage_spec import LinkageSpec
 from grashof.problems.values.manufacturing import Manufacturing
 from grashof.problems.values.motion_task import MotionTask
@@ -27,6 +29,7 @@ from grashof.problems.values.path_task import PathTask
 from grashof.problems.values.problem import Problem, Search
 from grashof.problems.values.requirements import Requirements, Rotatability, TransmissionOver
 from grashof.problems.values.section import CrossSection, SectionSpec
+from grashof.problems.values.slider_crank import SliderCrank
 from grashof.problems.values.strength import StrengthSpec
 from grashof.problems.values.task import Task
 
@@ -39,6 +42,8 @@ __all__ = [
     "FourBar",
     "GrashofError",
     "GrashofWarning",
+    "InvertedSliderCrank",
+    "Linkage",
     "LinkageSpec",
     "Manufacturing",
     "MotionTask",
@@ -51,6 +56,7 @@ __all__ = [
     "Rotatability",
     "Search",
     "SectionSpec",
+    "SliderCrank",
     "SolverError",
     "StrengthSpec",
     "Task",

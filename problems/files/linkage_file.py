@@ -23,7 +23,7 @@ from grashof.problems.values.checks import (
 )
 from grashof.problems.values.dynamics_spec import DynamicsSpec
 from grashof.problems.values.errors import ProblemError, shown
-from grashof.problems.values.linkage import FourBar
+from grashof.problems.values.four_bar import FourBar
 from grashof.problems.values.linkage_spec import LinkageSpec, ListedDesign
 from grashof.problems.values.problem import Problem
 

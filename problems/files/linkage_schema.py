@@ -13,7 +13,7 @@ from grashof.problems.files.tables import Table, Text, listed, of_length, stated
 from grashof.problems.values.checks import GREATEST, finite_number, number_within
 from grashof.problems.values.dynamics_spec import metres
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.linkage import FourBar
+from grashof.problems.values.four_bar import FourBar
 from grashof.problems.values.linkage_spec import LinkageSpec
 
 

@@ -1,9 +1,8 @@
-"""The four-bar linkage as a value: what it is made of, not how it moves."""
+"""What every kind of linkage is as a value: parameters, links, lengths; all else goes through these rows."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -11,90 +10,40 @@ import numpy.typing as npt
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.display import Displayed
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.linkage_parts import Link, Parameter, joints_of, points_of
+from grashof.problems.values.linkage_parts import Link, Parameter
 
 
-@dataclass(frozen=True, slots=True, init=False, eq=False)
-class FourBar(Displayed):
-    """A planar four-bar linkage, or a batch of them.
+class Linkage(Displayed):
+    """A planar linkage, or a batch of them: base of `FourBar`, `SliderCrank` and `InvertedSliderCrank`.
 
-    Link 2 (O2-A) is the driver, link 3 (A-B) the coupler, link 4 (O4-B) the output, link 1
-    (O2-O4) the ground. A batch has the same leading axes on every field; index it to take
-    linkages out or, as with arrays, to add axes: ``batch[:, None]``.
-
-    Parameters
-    ----------
-    o2, o4 : array_like, shape (..., 2), length
-        Ground pivots of driver and output.
-    r2, r3, r4 : array_like, shape (...), length
-        Lengths O2A, AB, O4B.
-    coupler_point : array_like, shape (..., 2), length
-        P in the coupler's frame: origin A, u along AB, v to its left.
-    assembly : array_like, shape (...)
-        Sign of sin(theta4 - theta3): +1 when B lies left of the directed line A->O4, else -1.
-    body_angle : array_like, shape (...), rad
-        Orientation of the guided body minus theta3.
-
-    Raises
-    ------
-    ProblemError
-        A length that is not positive, an assembly other than +1 or -1, a number that is not
-        finite, or shapes that do not fit together.
-
-    Examples
-    --------
-    >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
-    >>> float(crank_rocker.r1), crank_rocker.shape
-    (4.0, ())
+    Link 2 (O2-A) is the driver, link 3 carries the coupler point P, link 4 closes the loop, link 1 is
+    the ground. A batch has the same leading axes on every field; index it to take linkages out or, as
+    with arrays, to add axes: ``batch[:, None]``.
     """
 
-    # What a four-bar is; files, tables, drawings and plates go through these rows.
-    PARAMETERS: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("o2", "place"),
-        Parameter("o4", "place"),
-        Parameter("r2", "length"),
-        Parameter("r3", "length"),
-        Parameter("r4", "length"),
-        Parameter("coupler_point", "arm", column="p"),
-        Parameter("assembly", "sign"),
-        Parameter("body_angle", "angle"),
-    )
-    LINKS: ClassVar[tuple[Link, ...]] = (
-        Link(1, "ground", ("o2", "o4")),
-        Link(2, "driver", ("o2", "a")),
-        Link(3, "coupler", ("a", "b", "p")),
-        Link(4, "output", ("o4", "b")),
-    )
-    GROUND: ClassVar[tuple[str, ...]] = LINKS[0].points
-    POINTS: ClassVar[tuple[str, ...]] = points_of(LINKS)
-    MOVING: ClassVar[tuple[str, ...]] = POINTS[len(GROUND) :]
-    JOINTS: ClassVar[dict[str, tuple[int, ...]]] = joints_of(LINKS)
-    PIVOTS: ClassVar[tuple[str, ...]] = tuple(filter(JOINTS.__contains__, POINTS))
-    LENGTHS: ClassVar[tuple[str, ...]] = tuple(f"r{link.number}" for link in LINKS)
-    # What is made, and may come out inexactly.
-    DIMENSIONS: ClassVar[tuple[str, ...]] = (*LENGTHS, "u", "v")
+    __slots__ = ()
+
+    MECHANISM: ClassVar[str]  # in files and tables
+    # What the kind is; files, tables, drawings and plates go through these rows.
+    PARAMETERS: ClassVar[tuple[Parameter, ...]]
+    LINKS: ClassVar[tuple[Link, ...]]
+    SLIDES: ClassVar[tuple[tuple[int, int], ...]] = ()  # links that slide on each other
+    GROUND: ClassVar[tuple[str, ...]]
+    POINTS: ClassVar[tuple[str, ...]]
+    MOVING: ClassVar[tuple[str, ...]]
+    JOINTS: ClassVar[dict[str, tuple[int, ...]]]
+    PIVOTS: ClassVar[tuple[str, ...]]
+    LENGTHS: ClassVar[tuple[str, ...]]  # of links, all positive
+    DIMENSIONS: ClassVar[tuple[str, ...]]  # what is made, and may come out inexactly
 
     o2: FloatArray
-    o4: FloatArray
     r2: FloatArray
-    r3: FloatArray
-    r4: FloatArray
     coupler_point: FloatArray
     assembly: FloatArray
     body_angle: FloatArray
 
-    def __init__(
-        self,
-        o2: npt.ArrayLike,
-        o4: npt.ArrayLike,
-        r2: npt.ArrayLike,
-        r3: npt.ArrayLike,
-        r4: npt.ArrayLike,
-        coupler_point: npt.ArrayLike = (0.0, 0.0),
-        assembly: npt.ArrayLike = 1,
-        body_angle: npt.ArrayLike = 0.0,
-    ) -> None:
-        given = (o2, o4, r2, r3, r4, coupler_point, assembly, body_angle)
+    def _keep(self, *given: npt.ArrayLike) -> None:
+        """Set the fields to values in the order of `PARAMETERS`, checked, with the same batch axes."""
         arrays = {row: row.array(value) for row, value in zip(self.PARAMETERS, given, strict=True)}
         shapes = [array.shape[:-1] if row.paired else array.shape for row, array in arrays.items()]
         try:
@@ -113,20 +62,13 @@ class FourBar(Displayed):
         return np.shape(self.r2)
 
     @property
-    def r1(self) -> FloatArray:
-        """Length O2O4, shape (...)."""
-        ground = self.o4 - self.o2
-        return np.hypot(ground[..., 0], ground[..., 1])
-
-    @property
     def theta1(self) -> FloatArray:
-        """Direction O2->O4 in rad, shape (...)."""
-        ground = self.o4 - self.o2
-        return np.arctan2(ground[..., 1], ground[..., 0])
+        """Direction of the ground link in rad, shape (...)."""
+        raise NotImplementedError
 
     @property
     def lengths(self) -> FloatArray:
-        """r1, r2, r3, r4; shape (..., 4)."""
+        """Of the links, as `LENGTHS` names them; shape (..., L)."""
         return np.stack([getattr(self, name) for name in self.LENGTHS], axis=-1)
 
     @property
@@ -142,43 +84,43 @@ class FourBar(Displayed):
 
     @property
     def columns(self) -> dict[str, float]:
-        """The lengths r1, r2, ... and all parameters by their columns in tables. Of a single linkage."""
+        """The lengths of the links and all parameters by their columns in tables. Of a single linkage."""
         found = dict(zip(self.LENGTHS, self.lengths.tolist(), strict=True))
         for row, value in zip(self.PARAMETERS, self.parameters, strict=True):
             numbers = np.degrees(value) if row.kind == "angle" else value
             found |= zip(row.columns, np.ravel(numbers).tolist(), strict=True)
         return found | {"assembly": int(self.assembly)}
 
-    def scaled(self, factor: float, origin: FloatArray) -> FourBar:
+    def scaled(self, factor: float, origin: FloatArray) -> Self:
         """The linkage with all lengths times a factor, its places measured from `origin`, shape (2,)."""
 
         def change(row: Parameter, value: FloatArray) -> FloatArray:
             moved = value - origin if row.kind == "place" else value
             return moved * factor if row.in_length else moved
 
-        return FourBar(*map(change, self.PARAMETERS, self.parameters))
+        return type(self)(*map(change, self.PARAMETERS, self.parameters))
 
-    def __getitem__(self, index: Any) -> FourBar:
+    def __getitem__(self, index: Any) -> Self:
         index = index if isinstance(index, tuple) else (index,)
         rows = zip(self.PARAMETERS, self.parameters, strict=True)
-        return FourBar(*(value[(*index, slice(None)) if row.paired else index] for row, value in rows))
+        return type(self)(*(value[(*index, slice(None)) if row.paired else index] for row, value in rows))
 
     def __repr__(self) -> str:
         """Of a single linkage: Python that makes it, in full precision."""
         if self.shape:
-            return f"<FourBar: batch of shape {self.shape}>"
+            return f"<{type(self).__name__}: batch of shape {self.shape}>"
         stated = {name: tuple(x) if isinstance(x, list) else x for name, x in self.stated.items()}
-        return f"FourBar({', '.join(f'{name}={value!r}' for name, value in stated.items())})"
+        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in stated.items())})"
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, FourBar):
+        if type(other) is not type(self):
             return NotImplemented
         return all(map(np.array_equal, self.parameters, other.parameters))
 
     def __hash__(self) -> int:
         # Adding zero turns -0.0 into 0.0, which it equals.
-        return hash(tuple((np.asarray(value) + 0.0).tobytes() for value in self.parameters))
+        return hash((self.MECHANISM, *((np.asarray(value) + 0.0).tobytes() for value in self.parameters)))
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Through the constructor: arrays come out of a pickle writeable.
-        return FourBar, self.parameters
+        return type(self), self.parameters

@@ -24,14 +24,15 @@ class Parameter:
     ----------
     name : str
         In Python and JSON.
-    kind : {"place", "arm", "length", "sign", "angle"}
-        x and y; u and v in the frame of a link; angles are in rad, in files and tables in deg.
+    kind : {"place", "arm", "length", "distance", "sign", "angle"}
+        x and y; u and v in the frame of a link; a distance may be negative or zero; angles are in rad,
+        in files and tables in deg.
     column : str
         What its columns in tables begin with, where that is not the name.
     """
 
     name: str
-    kind: Literal["place", "arm", "length", "sign", "angle"]
+    kind: Literal["place", "arm", "length", "distance", "sign", "angle"]
     column: str = ""
 
     @property
@@ -42,7 +43,7 @@ class Parameter:
     @property
     def in_length(self) -> bool:
         """Whether its numbers are in the unit of length."""
-        return self.kind in ("place", "arm", "length")
+        return self.kind in ("place", "arm", "length", "distance")
 
     @property
     def key(self) -> str:

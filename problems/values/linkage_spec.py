@@ -8,7 +8,7 @@ from grashof.problems.values.checks import plain_text
 from grashof.problems.values.display import Displayed
 from grashof.problems.values.dynamics_spec import DynamicsSpec
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.linkage import FourBar
+from grashof.problems.values.four_bar import FourBar
 from grashof.problems.values.problem import Problem
 from grashof.problems.values.pumping_unit import PumpingUnitSpec
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.arrays import Limits
-from grashof.problems.values.linkage import FourBar
+from grashof.problems.values.four_bar import FourBar
 
 
 class Unit(StrEnum):

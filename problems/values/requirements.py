@@ -13,7 +13,7 @@ from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.box import ANYWHERE, Box
 from grashof.problems.values.checks import GREATEST, finite_number, limits, number_within
 from grashof.problems.values.errors import wrong_value
-from grashof.problems.values.linkage import FourBar
+from grashof.problems.values.four_bar import FourBar
 from grashof.problems.values.quantities import MEASURED, Kind, Limit, Needs, Over, Quantity, Unit, limit
 from grashof.problems.values.read_only import ReadOnly
 from grashof.problems.values.task import Task

@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from grashof.problems import FourBar, ProblemError
+from grashof.problems import FourBar, InvertedSliderCrank, Linkage, ProblemError, SliderCrank
 
 
 def crank_rocker() -> FourBar:
@@ -165,3 +166,24 @@ def test_the_text_of_a_linkage_is_python_that_makes_it() -> None:
     assert repr(crank_rocker()).startswith("FourBar(o2=(1.0, 2.0), o4=(4.0, 6.0), r2=1.0, r3=")
     assert "assembly=-1," in repr(crank_rocker())
     assert repr(batch_of(3)) == "<FourBar: batch of shape (3,)>"
+
+
+@pytest.mark.parametrize(
+    "linkage",
+    [
+        SliderCrank((0, 1 / 3), 1, np.pi, -0.25, 0.7, (0.1 + 0.2, -1e20), -1, 1e-300),
+        InvertedSliderCrank((0, 1 / 3), (4e-7, -0.1), 1, -0.5, (0.3, 2), -1, 1e-300),
+    ],
+)
+def test_slider_kinds_are_values_like_four_bars(linkage: Linkage) -> None:
+    assert eval(repr(linkage)) == linkage  # noqa: S307
+    assert pickle.loads(pickle.dumps(linkage)) == linkage
+    assert hash(pickle.loads(pickle.dumps(linkage))) == hash(linkage)
+    batch = linkage[None, None]
+    assert batch.shape == (1, 1)
+    assert batch[0, 0] == linkage
+    doubled = linkage.scaled(2.0, np.array([1.0, -1.0]))
+    assert doubled.scaled(0.5, np.array([-2.0, 2.0])) == linkage
+    assert doubled.columns["offset"] == 2 * linkage.columns["offset"]
+    with pytest.raises(ProblemError, match=r"r2 is -1; it must be greater than zero"):
+        replace(linkage, r2=-1)
