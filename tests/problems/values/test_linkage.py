@@ -171,8 +171,8 @@ def test_the_text_of_a_linkage_is_python_that_makes_it() -> None:
 @pytest.mark.parametrize(
     "linkage",
     [
-        SliderCrank((0, 1 / 3), 1, np.pi, -0.25, 0.7, (0.1 + 0.2, -1e20), -1, 1e-300),
-        InvertedSliderCrank((0, 1 / 3), (4e-7, -0.1), 1, -0.5, (0.3, 2), -1, 1e-300),
+        SliderCrank((0, 1.25), 1, np.pi, -0.25, 0.7, (0.1 + 0.2, -1e20), -1, 1e-300),
+        InvertedSliderCrank((0, 1.25), (4.5, -0.5), 1, -0.5, (0.3, 2), -1, 1e-300),
     ],
 )
 def test_slider_kinds_are_values_like_four_bars(linkage: Linkage) -> None:
