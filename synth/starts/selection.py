@@ -10,7 +10,6 @@ import scipy
 from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth.programme.along_motion import ALONG, SCREENED, magnitudes, value_of
-from grashof.synth.programme.formulas import FORMULAS
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS, Many, Screened
 from grashof.synth.programme.start import Start
@@ -89,7 +88,7 @@ def closest_starts(scaled: ScaledProblem, linkages: Screened, group: str, most: 
 
 def starts_of(scaled: ScaledProblem, linkages: Screened, picked: IntArray) -> list[Start]:
     """Starts at some of the linkages."""
-    return [Start.of_screened(linkages, int(index), scaled.objective) for index in picked]
+    return [Start.of_screened(linkages, int(index), scaled.objective, scaled.kind) for index in picked]
 
 
 def _spread(
@@ -164,10 +163,10 @@ def _worth(scaled: ScaledProblem, linkages: Screened, key: str) -> FloatArray:
         ways = linkages.theta2, linkages.direction, linkages.assembly
         peak = magnitudes(scaled.problem, key, linkages.points, *ways, SCREENED).max(axis=1)
         worth = QUANTITIES[key].better * value_of(key, peak)
-    elif key in FORMULAS:
-        (part,) = FORMULAS[key]
+    elif key in scaled.kind.formulas:
+        (part,) = scaled.kind.formulas[key]
         o2, o4, a, b, p = linkages.points.T
-        pairs = Many(p, o2, a[:, None], o4, b[:, None], linkages.theta2)
+        pairs = Many(p, o2, a[:, None], o4, b[:, None], linkages.theta2, kind=scaled.kind)
         value = part.of(pairs)[:, 0]
         worth = QUANTITIES[key].better * value / scaled.scale(QUANTITIES[key])
     return worth
