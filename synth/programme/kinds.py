@@ -23,9 +23,17 @@ from grashof.synth.programme.frame import Frame
 from grashof.synth.programme.vector import Vector
 
 # r2, r3, r4 (n,) of loops, and their derivatives (n, 3 lengths, 3 proportions).
-Lengths: TypeAlias = tuple[tuple[FloatArray, FloatArray, FloatArray], FloatArray]
+Shapes: TypeAlias = tuple[tuple[FloatArray, FloatArray, FloatArray], FloatArray]
 # e3, e4 (n, N), r3 (n, N) or (n, 1), and whether the loop closes everywhere (n,).
 Closed: TypeAlias = tuple[ComplexArray, ComplexArray, FloatArray, BoolArray]
+
+
+class Lengths(View):
+    """Lengths alone; the offset of slider kinds in place of r4."""
+
+    def __init__(self, r1: Any, r2: Any, r3: Any, r4: Any) -> None:
+        self.r1, self.r2, self.r3, self.r4, self.offset = r1, r2, r3, r4, r4
+        self.double_crank = (r1 > 0) & (r2 > r1)
 
 
 class LoopOf(Protocol):
@@ -79,7 +87,7 @@ class Kind(ABC):
         """Shares of the lengths that are not negative where the driver turns fully."""
 
     @abstractmethod
-    def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Lengths:
+    def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
         """Lengths of loops from free numbers (n, 3): full cranks with their margin, unless any will do."""
 
     @abstractmethod
@@ -112,6 +120,12 @@ class Kind(ABC):
 
         Places as complex numbers, all lengths in the unit of the points.
         """
+
+    def completed(
+        self, pivots: Mapping[str, complex], turned: complex, found: Mapping[str, float]
+    ) -> dict[str, complex]:
+        """O4 and B of points that its programme has no unknowns for, from those `found` and e3."""
+        return {}
 
     def coupler(self, points: ComplexArray) -> ComplexArray:
         """Direction of the coupler, from points (..., 5)."""
@@ -175,7 +189,7 @@ class _FourBar(Kind):
     def turns_fully(self, d: View) -> Any:
         return formulas.turns_fully(d.r1, d.r2, d.r3, d.r4)
 
-    def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Lengths:
+    def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
         if wanted.rotatability is Rotatability.ANY:
             return _any_lengths(proportions)
         return _full_crank_lengths(proportions, longer_driver, wanted.rotatability_margin)
@@ -245,7 +259,7 @@ class _SliderCrank(Kind):
         total = d.r2 + d.r3
         return (d.r3 - d.r2 - d.offset) / total, (d.r3 - d.r2 + d.offset) / total
 
-    def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Lengths:
+    def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
         a, b, _ = proportions.T
         if wanted.rotatability is Rotatability.ANY:
             r2, zero = np.exp(a), np.zeros_like(a)
@@ -304,6 +318,12 @@ class _SliderCrank(Kind):
     def theta1_of(self, points: ComplexArray) -> float:
         return float(np.angle(1j * (points[1] - points[3])))
 
+    def completed(
+        self, pivots: Mapping[str, complex], turned: complex, found: Mapping[str, float]
+    ) -> dict[str, complex]:
+        along = -1j * np.exp(1j * found["theta1"])
+        return {"o4": complex(pivots["b"] + abs(pivots["b"] - pivots["a"]) * along)}
+
 
 @dataclass(frozen=True, slots=True)
 class _InvertedSliderCrank(Kind):
@@ -330,7 +350,7 @@ class _InvertedSliderCrank(Kind):
         longer, total = (1 - 2 * d.double_crank) * (d.r1 - d.r2), d.r1 + d.r2
         return (longer - d.offset) / total, (longer + d.offset) / total
 
-    def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Lengths:
+    def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
         a, b, _ = proportions.T
         if wanted.rotatability is Rotatability.ANY:
             r2, zero = np.exp(a), np.zeros_like(a)
@@ -389,6 +409,11 @@ class _InvertedSliderCrank(Kind):
         return o4 + 1j * lengths[3] * turned
 
 
+    def completed(
+        self, pivots: Mapping[str, complex], turned: complex, found: Mapping[str, float]
+    ) -> dict[str, complex]:
+        return {"b": pivots["o4"] + 1j * found["offset"] * turned}
+
 
 FOUR_BAR: Kind = _FourBar()
 KINDS: Mapping[str, Kind] = {
@@ -409,7 +434,7 @@ def _rows(*rows: list[FloatArray]) -> FloatArray:
 
 def _full_crank_lengths(
     proportions: FloatArray, longer_driver: BoolArray, margin: float
-) -> Lengths:
+) -> Shapes:
     """r2, r3, r4 with r1 = 1: all full cranks with the margin, from three free numbers each.
 
     r2 = sigmoid(a) or its inverse; with k = (1 + margin) / (1 - margin) and S the sum of the lengths
@@ -435,7 +460,7 @@ def _full_crank_lengths(
     return (r2, (total + difference) / 2, (total - difference) / 2), derivative
 
 
-def _any_lengths(proportions: FloatArray) -> Lengths:
+def _any_lengths(proportions: FloatArray) -> Shapes:
     lengths = np.exp(proportions)
     r2, r3, r4 = lengths.T
     return (r2, r3, r4), lengths[:, :, None] * np.eye(3)

@@ -10,7 +10,7 @@ import numpy as np
 from grashof.analysis import Verdict, solve_position
 from grashof.problems import FourBar, Objective
 from grashof.problems.values.arrays import ComplexArray
-from grashof.synth.programme.kinds import FOUR_BAR, Kind
+from grashof.synth.programme.kinds import FOUR_BAR, Kind, Lengths
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 
@@ -162,6 +162,11 @@ class Start:
     def lengths(self) -> tuple[float, float, float, float]:
         """r1, r2, r3, r4 in sizes; of slider kinds the offset in place of r4, and 0 for what they lack."""
         return self.kind.lengths_of(self.points)
+
+    @property
+    def turns_fully(self) -> bool:
+        """Whether the loop closes all round the turn."""
+        return bool(self.kind.turns_fully(Lengths(*self.lengths)))
 
     def gives(self, *parts: str) -> bool:
         """Whether a requirement, or a part of it, may be missed."""

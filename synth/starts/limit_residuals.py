@@ -13,6 +13,7 @@ from grashof.problems.values.quantities import Kind
 from grashof.problems.values.requirements import LIMITS
 from grashof.synth.programme.dual import Dual
 from grashof.synth.programme.formulas import LOGARITHMIC, View
+from grashof.synth.programme.kinds import Lengths
 from grashof.synth.programme.vector import Vector
 from grashof.synth.starts.closed_loop import Loop, SearchTargets, body_turns
 
@@ -75,7 +76,8 @@ class Placement(View):
         self.theta2_start, self.direction = self.theta1 + first, np.sign(last.value - first.value)
         self.driver_turn, self.double_crank = np.abs(last - first), self.relative.double_crank
         required = target.wanted.rotatability is not Rotatability.ANY
-        self.turns = required | target.kind.turns_fully(_Lengths(loop))
+        lengths = (each[:, None] for each in (np.ones_like(loop.r2), loop.r2, loop.r3, loop.r4))
+        self.turns = required | target.kind.turns_fully(Lengths(*lengths))
 
     @cached_property
     def a(self) -> Vector:  # type: ignore[override]
@@ -122,15 +124,6 @@ class Placement(View):
         weights = self._target.turn_weights
         slope = np.einsum("i,sim->sm", weights, self.by_theta3) / weights.sum()
         return Dual(body_turns(self._target, self.loop)[1][:, None], -slope[:, None])
-
-
-class _Lengths(View):
-    """Lengths of loops without derivatives, (n, 1)."""
-
-    def __init__(self, loop: Loop) -> None:
-        self.r1, self.double_crank = np.ones((len(loop.r2), 1)), loop.r2[:, None] > 1
-        self.r2, self.r3, self.r4 = (each[:, None] for each in (loop.r2, loop.r3, loop.r4))
-        self.offset = self.r4
 
 
 def oversteps(target: SearchTargets, at: Placement) -> tuple[FloatArray, FloatArray]:
