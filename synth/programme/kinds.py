@@ -21,6 +21,12 @@ from grashof.synth.programme import formulas, slider_formulas
 from grashof.synth.programme.formulas import Part, View
 from grashof.synth.programme.frame import Frame
 from grashof.synth.programme.vector import Vector
+from grashof.synth.theory.closure import (
+    Closure,
+    FourBarClosure,
+    InvertedSliderCrankClosure,
+    SliderCrankClosure,
+)
 
 # r2, r3, r4 (n,) of loops, and their derivatives (n, 3 lengths, 3 proportions).
 Shapes: TypeAlias = tuple[tuple[FloatArray, FloatArray, FloatArray], FloatArray]
@@ -59,6 +65,7 @@ class Kind(ABC):
     formulas: ClassVar[Mapping[str, tuple[Part, ...]]]
     smooth: ClassVar[Mapping[str, tuple[Part, ...]]]  # in place of those with a kink
     one_assembly: ClassVar[bool]
+    closure: ClassVar[Closure]
     turns_with_coupler: ClassVar[bool] = False  # the output link
 
     @property
@@ -164,6 +171,7 @@ class _FourBar(Kind):
     freedoms, proportions = 9, 3
     formulas, smooth = formulas.FORMULAS, formulas.SMOOTH
     one_assembly = False
+    closure = FourBarClosure()
 
     def folded(self, d: View) -> Any:
         return formulas.folded(d)
@@ -242,6 +250,7 @@ class _SliderCrank(Kind):
     freedoms, proportions = 8, 2
     formulas, smooth = slider_formulas.SLIDER_CRANK, slider_formulas.SMOOTH_SLIDER_CRANK
     one_assembly = True
+    closure = SliderCrankClosure()
 
     def folded(self, d: View) -> Any:
         return d.offset - d.r2
@@ -333,6 +342,7 @@ class _InvertedSliderCrank(Kind):
     freedoms, proportions = 8, 2
     formulas, smooth = slider_formulas.INVERTED, slider_formulas.SMOOTH_INVERTED
     one_assembly, turns_with_coupler = True, True
+    closure = InvertedSliderCrankClosure()
 
     def folded(self, d: View) -> Any:
         return (d.r1 - d.r2) ** 2
