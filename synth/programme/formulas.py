@@ -197,7 +197,9 @@ SMOOTH = {"link_ratio": _PAIRS}
 LOGARITHMIC = {"link_length", "r1", "r2", "r3", "r4", "link_ratio"}  # ratios count, not differences
 
 
-def parts_of(limited: Collection[str], *formulas: Mapping[str, tuple[Part, ...]]) -> Iterator[tuple[str, Part]]:
+def parts_of(
+    limited: Collection[str], *formulas: Mapping[str, tuple[Part, ...]]
+) -> Iterator[tuple[str, Part]]:
     """Parts of all that is limited, each with its field of `Requirements`.
 
     Parameters

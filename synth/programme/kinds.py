@@ -114,8 +114,10 @@ class Kind(ABC):
         """
 
     @abstractmethod
-    def many(self, d: Any, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray) -> FloatArray:
-        """What a `Many` has of lengths and directions beside its dyads; signed sin mu at the targets (n, N)."""
+    def many(
+        self, d: Any, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray
+    ) -> FloatArray:
+        """Give a `Many` its lengths and directions beside those of the dyads; signed sin mu (n, N)."""
 
     @abstractmethod
     def lengths_of(self, points: ComplexArray) -> tuple[float, float, float, float]:
@@ -128,11 +130,11 @@ class Kind(ABC):
         Places as complex numbers, all lengths in the unit of the points.
         """
 
+    @abstractmethod
     def completed(
         self, pivots: Mapping[str, complex], turned: complex, found: Mapping[str, float]
     ) -> dict[str, complex]:
-        """O4 and B of points that its programme has no unknowns for, from those `found` and e3."""
-        return {}
+        """O4 and B where its programme has no unknowns for them, from those `found` and e3."""
 
     def coupler(self, points: ComplexArray) -> ComplexArray:
         """Direction of the coupler, from points (..., 5)."""
@@ -223,7 +225,9 @@ class _FourBar(Kind):
         o4 = o2 + ground
         return o4, o4[:, None] + (ground * loop.r4)[:, None] * loop.e4
 
-    def many(self, d: Any, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray) -> FloatArray:
+    def many(
+        self, d: Any, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray
+    ) -> FloatArray:
         ground, coupler, output = (o4 - o2)[:, None], b - a, b - o4[:, None]
         d.o4, d.r4 = as_vector(o4[:, None]), np.abs(output[:, :1])
         d.bp = d.p_from(b)
@@ -240,6 +244,11 @@ class _FourBar(Kind):
     def arguments(self, points: ComplexArray) -> dict[str, Any]:
         o2, o4, a, b, _ = np.moveaxis(points, -1, 0)
         return {"o2": o2, "o4": o4, "r2": np.abs(a - o2), "r3": np.abs(b - a), "r4": np.abs(b - o4)}
+
+    def completed(
+        self, _pivots: Mapping[str, complex], _turned: complex, _found: Mapping[str, float]
+    ) -> dict[str, complex]:
+        return {}
 
 
 @dataclass(frozen=True, slots=True)
@@ -278,9 +287,7 @@ class _SliderCrank(Kind):
         most = (1 - margin) / (1 + margin)
         r2, by_a = most * sigmoid, most * sigmoid * (1 - sigmoid)
         room = 1 - r2 - margin * (1 + r2)
-        by_lengths = _rows(
-            [by_a, 0 * a], [0 * a, 0 * a], [-(1 + margin) * by_a * tanh, room * (1 - tanh**2)]
-        )
+        by_lengths = _rows([by_a, 0 * a], [0 * a, 0 * a], [-(1 + margin) * by_a * tanh, room * (1 - tanh**2)])
         return (r2, np.ones_like(r2), room * tanh), by_lengths
 
     def closed(
@@ -299,7 +306,9 @@ class _SliderCrank(Kind):
         b = a + ground[:, None] * loop.e3
         return b[:, 0] - 1j * ground, b
 
-    def many(self, d: Any, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray) -> FloatArray:
+    def many(
+        self, d: Any, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray
+    ) -> FloatArray:
         along, coupler = (o4 - b[:, 0])[:, None], b - a
         d.r3, d.theta1, d.bp = np.abs(coupler[:, :1]), np.angle(1j * along), d.p_from(b)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -393,7 +402,9 @@ class _InvertedSliderCrank(Kind):
         o4 = o2 + ground
         return o4, o4[:, None] + (ground * loop.r4)[:, None] * loop.e4
 
-    def many(self, d: Any, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray) -> FloatArray:
+    def many(
+        self, d: Any, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray
+    ) -> FloatArray:
         ground, rod = (o4 - o2)[:, None], b - a
         d.o4, d.r1, d.theta1 = as_vector(o4[:, None]), np.abs(ground), np.angle(ground)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -418,7 +429,6 @@ class _InvertedSliderCrank(Kind):
     ) -> ComplexArray:
         return o4 + 1j * lengths[3] * turned
 
-
     def completed(
         self, pivots: Mapping[str, complex], turned: complex, found: Mapping[str, float]
     ) -> dict[str, complex]:
@@ -442,9 +452,7 @@ def _rows(*rows: list[FloatArray]) -> FloatArray:
     return np.stack([np.stack([*row, zero], axis=-1) for row in rows], axis=1)
 
 
-def _full_crank_lengths(
-    proportions: FloatArray, longer_driver: BoolArray, margin: float
-) -> Shapes:
+def _full_crank_lengths(proportions: FloatArray, longer_driver: BoolArray, margin: float) -> Shapes:
     """r2, r3, r4 with r1 = 1: all full cranks with the margin, from three free numbers each.
 
     r2 = sigmoid(a) or its inverse; with k = (1 + margin) / (1 - margin) and S the sum of the lengths

@@ -83,7 +83,13 @@ class ScaledProblem:
         targets = np.where(task.has_position, frame.inward(task.positions), 0.0)
         turns = np.nan_to_num(task.angles)
         kind = KINDS[problem.mechanism[0]]
-        by_dyads = kind is FOUR_BAR and exact and task.is_whole and not task.is_timed and not (task.closed and task.returns)
+        by_dyads = (
+            kind is FOUR_BAR
+            and exact
+            and task.is_whole
+            and not task.is_timed
+            and not (task.closed and task.returns)
+        )
         return cls(
             problem=problem,
             frame=frame,

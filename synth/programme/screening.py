@@ -143,7 +143,11 @@ class Many(View):
         if o4 is not None and b is not None:
             self.b = as_vector(b)
             if kind is FOUR_BAR:
-                self.o4, self.bp, self.r4 = as_vector(o4[:, None]), self.p_from(b), np.abs(b[:, :1] - o4[:, None])
+                self.o4, self.bp, self.r4 = (
+                    as_vector(o4[:, None]),
+                    self.p_from(b),
+                    np.abs(b[:, :1] - o4[:, None]),
+                )
         if o2 is not None and o4 is not None and a is not None and b is not None:
             self.sine = kind.many(self, o2, o4, a, b)
             self.double_crank = self.r2 > getattr(self, "r1", np.inf)
@@ -157,6 +161,20 @@ class Many(View):
     def p_from(self, pivot: ComplexArray) -> Vector:
         """From a pivot (n, N) to the coupler point, at the first target."""
         return as_vector((self._p - pivot[:, 0])[:, None])
+
+
+def coupler_along(kind: Kind, points: ComplexArray, theta2: FloatArray) -> ComplexArray:
+    """From A to B of linkages of slider kinds (n, 5) at driver angles (n, k); NaN where the loop is open."""
+    o2, o4, a, b, p = points.T
+    view = Many(p, o2, a[:, None], o4, b[:, None], kind=kind)
+    unit = view.r1 if kind.turns_with_coupler else view.r3
+    lengths = (view.r2 / unit, np.ones_like(view.r2), view.offset / unit)
+    relative = theta2 - view.theta1
+    r2, r3, offset = (each[:, 0] for each in lengths)
+    e3, _, rod, _ = kind.closed((r2, r3, offset), np.exp(1j * relative), np.ones_like(relative))
+    closed = np.abs(kind.cos_mu(view, kind.at_angle(view, relative))) <= 1
+    coupler: ComplexArray = np.where(closed, unit * rod * e3 * np.exp(1j * view.theta1), np.nan)
+    return coupler
 
 
 def _oversteps(view: Many, wanted: Requirements, dyad: int | None) -> Iterator[tuple[str, FloatArray]]:

@@ -94,7 +94,9 @@ class Start:
         """The start that a linkage makes where the judge found it nearest to the targets, in order."""
         state = solve_position(linkage, verdict.theta2, verdict.assembly)
         visit = np.argsort(verdict.direction * verdict.theta2, kind="stable")
-        o2, a, b, p = (complex(scaled.frame.inward(x)) for x in (linkage.o2, state.a[0], state.b[0], state.p[0]))
+        o2, a, b, p = (
+            complex(scaled.frame.inward(x)) for x in (linkage.o2, state.a[0], state.b[0], state.p[0])
+        )
         o4 = scaled.kind.o4_of(linkage, b, scaled.frame)
         return cls(
             o2=o2,

@@ -108,9 +108,7 @@ class Unknowns:
 def _lengths(build: Builder, kind: Kind) -> ca.SX:
     """r1, r2, r3, r4 as far as the kind has them, and its offset."""
     has = [k for k, name in enumerate(("r1", "r2", "r3", "r4")) if name in kind.linkage.LENGTHS]
-    found = build.unknown(
-        "r", len(has), lambda _, start: np.array(start.lengths)[has], always(SHORTEST, FAR)
-    )
+    found = build.unknown("r", len(has), lambda _, start: np.array(start.lengths)[has], always(SHORTEST, FAR))
     if len(has) == 4:
         return found
     r = ca.SX(4, 1)
