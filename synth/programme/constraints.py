@@ -180,7 +180,7 @@ def require_modes(build: Builder, form: Form, x: Unknowns, places: Places) -> No
     build.row(x.direction * (x.theta2[form.targets - 1] - x.theta2[0]), limits=always(0.0, TURN))
     if form.same_branch:
         for a, b, across in zip(places.a, places.b, places.across, strict=True):
-            build.require(("same_branch",), x.assembly * cross(b - a, across) / _area(form, x) - 1e-6)
+            build.require(("same_branch",), x.assembly * (cross(b - a, across) / _area(form, x)) - 1e-6)
     if form.crank:
         margin = build.parameter(lambda scaled, _: scaled.wanted.rotatability_margin + INSET)
         margins = form.kind.margins(Symbols(form, x, places))

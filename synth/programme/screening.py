@@ -42,6 +42,7 @@ class Screened:
         Root mean square distance from the targets.
     body_angle : ndarray, shape (n,), rad
         From the coupler to the body, where the first pose does not fix it; else zero.
+    kind : Kind
     """
 
     points: ComplexArray
@@ -54,12 +55,14 @@ class Screened:
     coupler: ComplexArray
     error: FloatArray
     body_angle: FloatArray
+    kind: Kind = FOUR_BAR
 
     def __len__(self) -> int:
         return len(self.points)
 
     def __getitem__(self, index: IntArray | BoolArray | slice) -> Screened:
-        return Screened(*(getattr(self, name)[index] for name in self.__slots__))
+        arrays = (getattr(self, name)[index] for name in self.__slots__ if name != "kind")
+        return Screened(*arrays, self.kind)
 
     @property
     def feasible(self) -> BoolArray:
@@ -72,8 +75,8 @@ class Screened:
         o2, _, a, b, p = self.points.T[..., None]
         coupler = np.take_along_axis(self.coupler, self.visit, axis=1)
         at_a = o2 + np.abs(a - o2) * np.exp(1j * self.theta2)
-        arm = (p - a) * np.abs(b - a) / (b - a)  # what slides on the coupler changes its length
-        return np.stack([at_a, at_a + coupler, at_a + arm * coupler / np.abs(coupler)])
+        turned = coupler if self.kind is FOUR_BAR else coupler * np.abs(b - a) / np.abs(coupler)
+        return np.stack([at_a, at_a + coupler, at_a + (p - a) / (b - a) * turned])
 
 
 @dataclass(frozen=True, slots=True)
@@ -271,6 +274,7 @@ def judge(
         coupler=coupler,
         error=error,
         body_angle=np.zeros(len(points)) if body_angle is None else body_angle,
+        kind=found.kind,
     )
 
 

@@ -182,9 +182,7 @@ class Start:
         return first, last
 
     @classmethod
-    def of_screened(
-        cls, linkages: Screened, index: int, objective: Objective | None, kind: Kind = FOUR_BAR
-    ) -> Start:
+    def of_screened(cls, linkages: Screened, index: int, objective: Objective | None) -> Start:
         """The start that entry `index` of screened linkages makes."""
         visit = linkages.visit[index]
         o2, o4, a, b, p = (complex(point) for point in linkages.points[index])
@@ -201,7 +199,7 @@ class Start:
             assembly=int(linkages.assembly[index]),
             objective=objective,
             body_angle=float(linkages.body_angle[index]),
-            kind=kind,
+            kind=linkages.kind,
         )
 
 

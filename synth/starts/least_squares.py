@@ -250,7 +250,7 @@ def _distinct(placed: Placed) -> IntArray:
 
 
 def _start(scaled: ScaledProblem, linkages: Screened, error: FloatArray, index: int) -> Start:
-    start = Start.of_screened(linkages, index, scaled.objective, scaled.kind)
+    start = Start.of_screened(linkages, index, scaled.objective)
     fitted = _all_fitted(search_targets(scaled)) and not scaled.constraints
     met = bool(linkages.feasible[index]) and linkages.error[index] < FOUND
     return replace(start, promise=float(error[index]), settled=met or fitted)

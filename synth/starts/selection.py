@@ -89,7 +89,7 @@ def closest_starts(scaled: ScaledProblem, linkages: Screened, group: str, most: 
 
 def starts_of(scaled: ScaledProblem, linkages: Screened, picked: IntArray) -> list[Start]:
     """Starts at some of the linkages."""
-    return [Start.of_screened(linkages, int(index), scaled.objective, scaled.kind) for index in picked]
+    return [Start.of_screened(linkages, int(index), scaled.objective) for index in picked]
 
 
 def _spread(

@@ -32,6 +32,8 @@ class Closed:
 
     Parameters
     ----------
+    coupler : ndarray of complex, shape (N,)
+        From A to B.
     e3, e4 : ndarray of complex, shape (N,)
         Directions of the coupler, and of O4B or across what slides.
     rod : ndarray, shape (N,)
@@ -43,6 +45,7 @@ class Closed:
         Of a slider-crank the point of the slide's line that lies r3 ahead of B at the first angle.
     """
 
+    coupler: ComplexArray
     e3: ComplexArray
     e4: ComplexArray
     rod: FloatArray
@@ -84,7 +87,7 @@ class FourBarClosure(Closure):
         coupler = coupler_of(o4 - a, r3, r4, assembly)
         e3, e4 = coupler / r3, (a + coupler - o4) / r4
         moved = (e4.real, e4.imag, -e4.real, -e4.imag, _along(e2, e4), _along(e3, e4), -1.0)
-        return Closed(e3, e4, np.full(len(e2), r3), moved, o4)
+        return Closed(coupler, e3, e4, np.full(len(e2), r3), moved, o4)
 
 
 class SliderCrankClosure(Closure):
@@ -107,7 +110,7 @@ class SliderCrankClosure(Closure):
         from_o2 = r2 * e2 + r3 * e3
         by_theta1 = (from_o2 * e4.conj()).imag
         moved = (0.0, 0.0, by_theta1, 0.0, _along(e2, e4), _along(e3, e4), -1.0)
-        return Closed(e3, e4, np.full(len(e2), r3), moved, complex(o2 + from_o2[0] - 1j * r3 * e4[0]))
+        return Closed(r3 * e3, e3, e4, np.full(len(e2), r3), moved, complex(o2 + from_o2[0] - 1j * r3 * e4[0]))
 
 
 class InvertedSliderCrankClosure(Closure):
@@ -130,7 +133,7 @@ class InvertedSliderCrankClosure(Closure):
             e3 = diagonal / (rod - 1j * offset)
         e4 = 1j * e3
         moved = (e4.real, e4.imag, -e4.real, -e4.imag, _along(e2, e4), 0.0, -1.0)
-        return Closed(e3, e4, rod, moved, o4)
+        return Closed(rod * e3, e3, e4, rod, moved, o4)
 
 
 def _along(one: ComplexArray, other: ComplexArray) -> FloatArray:

@@ -126,12 +126,11 @@ def _linearised(
         by_move = np.stack([np.broadcast_to(column, a.shape) for column in moves], axis=1)
         by_point = by_move + 1j * (arm * e3)[:, None] * by_turn
         by_turn[:, 9] = 1.0
-        coupler = loop.rod * e3
     off = (p - wish.points)[wish.has_point]
     turned = np.angle(e3 * np.exp(1j * (body_angle - wish.turns)))[wish.has_turn]
     slope = by_point[wish.has_point]
     return (
-        (np.array([o2, loop.o4, a[0], a[0] + coupler[0], p[0]]), coupler),
+        (np.array([o2, loop.o4, a[0], a[0] + loop.coupler[0], p[0]]), loop.coupler),
         np.concatenate([off.real, off.imag, turned]),
         np.concatenate([slope.real, slope.imag, by_turn[wish.has_turn]]),
     )
