@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import casadi as ca
@@ -32,7 +32,8 @@ LEAST_SQUARE = 1e-8  # sizes squared: scales the squared distances to about 1
 class Places:
     """A, B and P at every target, in the order of visit, and the vectors from A and B to P in one frame.
 
-    `across` is there a vector along e4: from O4 to B, or across what slides.
+    `across` gives a vector along e4 at a target: from O4 to B, or across what slides. It is made anew each time:
+    what rows share changes the last digits of their derivatives.
     """
 
     a: list[ca.SX]
@@ -40,7 +41,7 @@ class Places:
     p: list[ca.SX]
     ap: ca.SX
     bp: ca.SX
-    across: list[ca.SX]
+    across: Callable[[int], ca.SX]
 
 
 class Symbols(View):
@@ -58,7 +59,8 @@ class Symbols(View):
         self.body_turn, self.direction = x.body_turn, x.direction
         self.driver_turn = x.direction * (x.theta2[form.targets - 1] - x.theta2[0])
         self.turns, self.double_crank = x.turns, x.double_crank
-        self.output_turn = vector(places.across[0]).angle_to(vector(places.across[-1]))
+        first, last = (vector(places.across(k)) for k in (0, form.targets - 1))
+        self.output_turn = first.angle_to(last)
         self.output_travel = ca.dot(places.b[-1] - places.b[0], -quarter_turn(unit(x.theta1)))
 
 
@@ -120,7 +122,7 @@ def close_at_poses(build: Builder, form: Form, x: Unknowns) -> Places:
         build.zero(a[k] - x.o2 - x.r[1] * unit(x.theta2[k]))
         build.zero((ca.sumsqr(b[k] - x.o4) - x.r[3] ** 2) / 2)
     build.zero((ca.sumsqr(x.b - x.a) - x.r[2] ** 2) / 2)
-    return Places(a, b, p, body - x.a, body - x.b, [point - x.o4 for point in b])
+    return Places(a, b, p, body - x.a, body - x.b, lambda k: b[k] - x.o4)
 
 
 def close_at_points(build: Builder, form: Form, x: Unknowns, targets: Targets) -> Places:
@@ -144,19 +146,21 @@ def close_at_points(build: Builder, form: Form, x: Unknowns, targets: Targets) -
     return Places(a, b, p, x.arm, x.arm - ca.vertcat(x.r[2], 0), across)
 
 
-def _closed(form: Form, x: Unknowns, a: list[ca.SX]) -> tuple[list[ca.SX], list[ca.SX], list[ca.SX]]:
-    """B, the vector along e4, and what is zero where the loop closes, at every target."""
+def _closed(
+    form: Form, x: Unknowns, a: list[ca.SX]
+) -> tuple[list[ca.SX], Callable[[int], ca.SX], list[ca.SX]]:
+    """B at every target, `Places.across`, and what is zero where the loop closes."""
     turned = [unit(x.theta3[k]) for k in range(form.targets)]
     if form.kind.turns_with_coupler:
         across = [quarter_turn(along) for along in turned]
         b = [x.o4 + x.r[3] * side for side in across]
-        return b, across, [ca.dot(at - x.o4, side) - x.r[3] for at, side in zip(a, across, strict=True)]
+        closing = [ca.dot(at - x.o4, side) - x.r[3] for at, side in zip(a, across, strict=True)]
+        return b, across.__getitem__, closing
     b = [at + x.r[2] * along for at, along in zip(a, turned, strict=True)]
     if "o4" in form.kind.linkage.GROUND:
-        across = [point - x.o4 for point in b]
-        return b, across, [(ca.sumsqr(output) - x.r[3] ** 2) / 2 for output in across]
-    across = [unit(x.theta1)] * form.targets
-    return b, across, [ca.dot(point - x.o2, across[0]) - x.r[3] for point in b]
+        return b, lambda k: b[k] - x.o4, [(ca.sumsqr(point - x.o4) - x.r[3] ** 2) / 2 for point in b]
+    normal = unit(x.theta1)
+    return b, lambda _: normal, [ca.dot(point - x.o2, normal) - x.r[3] for point in b]
 
 
 def square(form: Form, x: Unknowns, places: Places, targets: Targets) -> ca.SX:
@@ -179,8 +183,9 @@ def require_modes(build: Builder, form: Form, x: Unknowns, places: Places) -> No
         build.row(x.direction * (x.theta2[k + 1] - x.theta2[k]), limits=always(least, np.inf))
     build.row(x.direction * (x.theta2[form.targets - 1] - x.theta2[0]), limits=always(0.0, TURN))
     if form.same_branch:
-        for a, b, across in zip(places.a, places.b, places.across, strict=True):
-            build.require(("same_branch",), x.assembly * (cross(b - a, across) / _area(form, x)) - 1e-6)
+        for k, (a, b) in enumerate(zip(places.a, places.b, strict=True)):
+            sine = cross(b - a, places.across(k)) / _area(form, x)
+            build.require(("same_branch",), x.assembly * sine - 1e-6)
     if form.crank:
         margin = build.parameter(lambda scaled, _: scaled.wanted.rotatability_margin + INSET)
         margins = form.kind.margins(Symbols(form, x, places))
@@ -203,8 +208,8 @@ def stand_nearest(build: Builder, form: Form, x: Unknowns, places: Places, targe
     total = ca.SX(0)
     for k in np.flatnonzero(form.nearest).tolist():
         a, b, p = places.a[k], places.b[k], places.p[k]
-        across = places.across[k]
-        d, n = ca.dot(across, quarter_turn(b - a)), -ca.dot(across, quarter_turn(a - x.o2))
+        d = ca.dot(places.across(k), quarter_turn(b - a))
+        n = -ca.dot(places.across(k), quarter_turn(a - x.o2))
         row = ca.SX(0)
         if form.positions[k]:
             missed = targets.weights[k] * (p - targets.points[k])
@@ -256,7 +261,7 @@ def _reach(form: Form, x: Unknowns, places: Places, k: int) -> ca.SX:
     """What decides the transmission angle (`Kind.at_angle`), at a target."""
     if "o4" in form.kind.linkage.GROUND:
         return ca.sumsqr(places.a[k] - x.o4)
-    return x.r[3] - ca.dot(places.a[k] - x.o2, places.across[k])
+    return x.r[3] - ca.dot(places.a[k] - x.o2, places.across(k))
 
 
 def _passing(form: Form, number: int) -> Fill:
