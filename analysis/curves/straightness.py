@@ -14,7 +14,7 @@ from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.four_bar.transmission import transmission_angle
 from grashof.analysis.numerics.peaks import greatest, own
 from grashof.analysis.numerics.quadrature import Panels, gauss_legendre, integrate
-from grashof.problems import AssemblyError, FourBar
+from grashof.problems import AssemblyError, Linkage
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, frozen_array
 from grashof.problems.values.errors import ProblemError
 
@@ -34,12 +34,12 @@ _BESIDE = np.concatenate([-_LADDER[:0:-1], _LADDER])  # shares of a gap, about w
 _COMPLEX = np.array([1, 1j])
 
 
-def straightness(linkage: FourBar, theta2_start: float, theta2_end: float) -> BestLine:
+def straightness(linkage: Linkage, theta2_start: float, theta2_end: float) -> BestLine:
     """How straight the path of P is between two driver angles.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     theta2_start, theta2_end : float, rad
 
@@ -60,6 +60,7 @@ def straightness(linkage: FourBar, theta2_start: float, theta2_end: float) -> Be
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> hoeken = FourBar(o2=(0, 0), o4=(2.2, 0), r2=1, r3=2.8, r4=2.8, coupler_point=(5.6, 0))
     >>> line = straightness(hoeken, np.pi / 2, 3 * np.pi / 2)
     >>> round(line.length, 3), round(100 * line.width / line.length, 3)
@@ -69,12 +70,12 @@ def straightness(linkage: FourBar, theta2_start: float, theta2_end: float) -> Be
     return path.line(path.fits(np.zeros(1), np.ones(1)))
 
 
-def straightest_half_turn(linkage: FourBar) -> tuple[float, BestLine]:
+def straightest_half_turn(linkage: Linkage) -> tuple[float, BestLine]:
     """Half a turn of the driver over which P moves along a line most nearly.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage whose driver turns fully.
 
     Returns
@@ -92,6 +93,7 @@ def straightest_half_turn(linkage: FourBar) -> tuple[float, BestLine]:
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> hoeken = FourBar(o2=(0, 0), o4=(2.2, 0), r2=1, r3=2.8, r4=2.8, coupler_point=(5.6, 0))
     >>> start, line = straightest_half_turn(hoeken)
     >>> round(float(np.degrees(start)), 6), round(100 * line.width / line.length, 3)
@@ -142,14 +144,14 @@ class _Fits:
 class _Path:
     """The path of P over a motion, counted from a point on it, with integrals over its length."""
 
-    linkage: FourBar
+    linkage: Linkage
     motion: EvenMotion
     origin: complex
     pace: float
     panels: Panels
 
     @classmethod
-    def of(cls, linkage: FourBar, start: float, end: float) -> _Path:
+    def of(cls, linkage: Linkage, start: float, end: float) -> _Path:
         motion = even_motion(linkage, start, end)
         origin = complex(solve_position(linkage, motion.theta2(0.5)).p @ _COMPLEX)
         bare = cls(linkage, motion, origin, _pace(linkage, motion), _NO_PANELS)
@@ -299,7 +301,7 @@ class _Path:
         return _rows(state.p @ _COMPLEX - self.origin, np.abs(turn2 * crank + turn3 * arm))
 
 
-def _pace(linkage: FourBar, motion: EvenMotion) -> float:
+def _pace(linkage: Linkage, motion: EvenMotion) -> float:
     """D theta2 over sin mu dt, which is constant; NaN at a change point, where the motion leaves it out."""
     share = np.array([0.2, 0.45, 0.7])
     each = motion.rate(share) / np.sin(transmission_angle(linkage, motion.theta2(share)))

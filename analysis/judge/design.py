@@ -12,7 +12,7 @@ import numpy as np
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.judge.one_at_a_time import one_at_a_time
 from grashof.analysis.judge.verdict import Verdict
-from grashof.problems import FourBar, ProblemError
+from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray, IntArray
 
 
@@ -48,7 +48,7 @@ class Design:
     p: Sequence[Any]
 
     @classmethod
-    def of(cls, linkage: FourBar, theta2: FloatArray, assembly: IntArray) -> Design:
+    def of(cls, linkage: Linkage, theta2: FloatArray, assembly: IntArray) -> Design:
         """The numbers of a linkage at driver angles in the order of visit, shape (N,)."""
         state = solve_position(linkage, theta2, assembly)
         r1, r2, r3, r4 = linkage.lengths  # not Python's floats: (r1 - 5)**0.5 would be complex below 5
@@ -68,7 +68,7 @@ class Design:
         )
 
     @classmethod
-    def judged(cls, linkage: FourBar, verdict: Verdict) -> Design:
+    def judged(cls, linkage: Linkage, verdict: Verdict) -> Design:
         """The numbers of a linkage with its verdict."""
         visit = np.argsort(verdict.direction * verdict.theta2, kind="stable")
         return cls.of(linkage, verdict.theta2[visit], verdict.assembly[visit])
@@ -89,6 +89,7 @@ def greatest(constraint: Constraint, design: Design, what: str = "constraint") -
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> linkage = FourBar(o2=(0, 0), o4=(4, 1), r2=1, r3=4, r4=3, coupler_point=(2, 1))
     >>> design = Design.of(linkage, np.array([0.3]), np.array([1]))
     >>> greatest(lambda design: (design.o2[1] - design.o4[1]) ** 2 - 0.01, design)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from grashof.analysis.four_bar.position import places, solve_position
 from grashof.analysis.judge.task_motion import Targets, TaskMotion
-from grashof.problems import FourBar, Requirements, Task
+from grashof.problems import FourBar, Linkage, Requirements, Task
 from grashof.problems.values.areas import solid
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 
@@ -116,7 +116,7 @@ def segment_depth(area: Area, begin: FloatArray, end: FloatArray, rounds: int = 
 
 
 def intrusions(
-    linkage: FourBar,
+    linkage: Linkage,
     task: Task,
     wanted: Requirements,
     targets: Targets,
@@ -128,7 +128,7 @@ def intrusions(
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     task : MotionTask or PathTask
     wanted : Requirements
@@ -183,7 +183,7 @@ def _lines() -> dict[str, tuple[str, ...]]:
 
 
 def _depth_of(
-    area: Area, linkage: FourBar, ends: tuple[str, ...], assembly: IntArray
+    area: Area, linkage: Linkage, ends: tuple[str, ...], assembly: IntArray
 ) -> Callable[[FloatArray, int], FloatArray]:
     """Depth of a point, or of the link between two, by driver angles of shape (n,) and rounds."""
 
@@ -200,7 +200,7 @@ def _depth_of(
 
 
 def _body_depth(
-    area: Area, linkage: FourBar, outline: FloatArray, assembly: IntArray
+    area: Area, linkage: Linkage, outline: FloatArray, assembly: IntArray
 ) -> Callable[[FloatArray, int], FloatArray]:
     """Depth of the body's closed outline in an area, or of an area's corners in the body."""
     corner = outline @ np.array([1, 1j])

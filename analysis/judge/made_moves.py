@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.judge.tolerance import sensitivity
-from grashof.problems import FourBar
+from grashof.problems import FourBar, Linkage
 from grashof.problems.values.arrays import FloatArray
 
 
@@ -39,12 +39,12 @@ class MadeMoves:
     theta4_rms: FloatArray
 
 
-def made_moves(linkage: FourBar, theta2: npt.ArrayLike, tolerance: float) -> MadeMoves:
+def made_moves(linkage: Linkage, theta2: npt.ArrayLike, tolerance: float) -> MadeMoves:
     """Moves of P and of link 4 at held driver angles, where dimensions are off by a tolerance.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     theta2 : array_like, shape (...), rad
     tolerance : float, length
@@ -86,12 +86,12 @@ def made_moves(linkage: FourBar, theta2: npt.ArrayLike, tolerance: float) -> Mad
         )
 
 
-def output_sensitivity(linkage: FourBar, theta2: npt.ArrayLike) -> FloatArray:
+def output_sensitivity(linkage: Linkage, theta2: npt.ArrayLike) -> FloatArray:
     """Derivatives of theta4 by the dimensions r1, r2, r3, r4, u, v, at held driver angles.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         One, or a batch whose axes broadcast against `theta2`.
     theta2 : array_like, shape (...), rad
 

@@ -15,7 +15,7 @@ from grashof.analysis.four_bar.stroke import output_stroke
 from grashof.analysis.judge.over_task import OverTask, motion_ends, over_task, torque_peak
 from grashof.analysis.judge.tolerance import robustness
 from grashof.analysis.judge.verdict import Verdict
-from grashof.problems import FourBar, Problem
+from grashof.problems import FourBar, Linkage, Problem
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.mechanisms import LENGTHS, PARAMETERS
 from grashof.problems.values.quantities import Needs
@@ -30,7 +30,7 @@ class Values(Mapping[str, float]):
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     verdict : Verdict
         Of `verify`.
@@ -38,7 +38,7 @@ class Values(Mapping[str, float]):
         Its task, and what else it states: dynamics, manufacturing.
     """
 
-    def __init__(self, linkage: FourBar, verdict: Verdict, problem: Problem) -> None:
+    def __init__(self, linkage: Linkage, verdict: Verdict, problem: Problem) -> None:
         self.linkage, self.verdict, self.problem = linkage, verdict, problem
         self._known: dict[str, float] = {}
 
@@ -54,7 +54,7 @@ class Values(Mapping[str, float]):
     def __len__(self) -> int:
         return len(MEASURES)
 
-    def are_of(self, linkage: FourBar, verdict: Verdict, problem: Problem) -> bool:
+    def are_of(self, linkage: Linkage, verdict: Verdict, problem: Problem) -> bool:
         """Whether they are those of this very design, by a problem that states the same."""
         stated = attrgetter("requirements", "dynamics", "manufacturing", "length_unit")
         alike = self.problem is problem or stated(self.problem) == stated(problem)

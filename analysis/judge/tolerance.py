@@ -16,7 +16,7 @@ import numpy.typing as npt
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.four_bar.transmission import transmission_angle
 from grashof.analysis.judge.verdict import Verdict
-from grashof.problems import FourBar, Manufacturing, Task
+from grashof.problems import FourBar, Linkage, Manufacturing, Task
 from grashof.problems.values.arrays import BoolArray, FloatArray
 
 SAMPLES = 20_000  # made linkages: a share has a standard error of at most 0.0036
@@ -46,12 +46,12 @@ class Robustness:
     share_made: float
 
 
-def robustness(linkage: FourBar, task: Task, verdict: Verdict, manufacturing: Manufacturing) -> Robustness:
+def robustness(linkage: Linkage, task: Task, verdict: Verdict, manufacturing: Manufacturing) -> Robustness:
     """Effect of inexact dimensions on a single design; the same values whenever it is asked.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     task : Task
     verdict : Verdict
@@ -90,12 +90,12 @@ def robustness(linkage: FourBar, task: Task, verdict: Verdict, manufacturing: Ma
     )
 
 
-def sensitivity(linkage: FourBar, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None) -> FloatArray:
+def sensitivity(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None) -> FloatArray:
     """Derivatives of the coupler's position by the dimensions, at held driver angles.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         One, or a batch whose axes broadcast against `theta2`.
     theta2 : array_like, shape (...), rad
         Driver angle, global.
@@ -153,7 +153,7 @@ def dimension_errors(manufacturing: Manufacturing, samples: int, rng: np.random.
     return manufacturing.deviation * rng.standard_normal((samples, len(FourBar.DIMENSIONS)))
 
 
-def measured_sensitivity(linkage: FourBar, task: Task, verdict: Verdict) -> FloatArray:
+def measured_sensitivity(linkage: Linkage, task: Task, verdict: Verdict) -> FloatArray:
     """Sensitivity at each target, shape (N, 3, 6), with angles as the lengths they count as."""
     counts = np.array([1.0, 1.0, task.angle_length if task.has_angle.any() else 0.0])
     return counts[:, None] * sensitivity(linkage, verdict.theta2, verdict.assembly)
@@ -174,7 +174,7 @@ def yield_linear(slope: FloatArray, band: float, errors: FloatArray) -> float:
 
 
 def yield_monte_carlo(
-    linkage: FourBar, task: Task, verdict: Verdict, band: float, errors: FloatArray
+    linkage: Linkage, task: Task, verdict: Verdict, band: float, errors: FloatArray
 ) -> float:
     """Share of made linkages whose worst target moves by at most `band`, by exact positions.
 
@@ -183,7 +183,7 @@ def yield_monte_carlo(
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         The nominal one, single.
     task : Task
     verdict : Verdict
@@ -208,18 +208,18 @@ def yield_monte_carlo(
     return within / len(errors)
 
 
-def made_linkages(linkage: FourBar, errors: FloatArray) -> tuple[FourBar, BoolArray]:
+def made_linkages(linkage: Linkage, errors: FloatArray) -> tuple[Linkage, BoolArray]:
     """Linkages of deviating dimensions, and which of them there can be: all lengths above zero.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         The nominal one, single.
     errors : ndarray, shape (S, 6), length
 
     Returns
     -------
-    FourBar, ndarray of bool
+    Linkage, ndarray of bool
         Shape (S,); an impossible one is the nominal one.
     """
     possible: BoolArray = np.all(linkage.lengths + errors[:, :4] > 0, axis=1)
@@ -238,7 +238,7 @@ def _linear_moves(slope: FloatArray, errors: FloatArray) -> FloatArray:
     return moves
 
 
-def _nearest_to_dead(linkage: FourBar, task: Task, verdict: Verdict) -> FloatArray:
+def _nearest_to_dead(linkage: Linkage, task: Task, verdict: Verdict) -> FloatArray:
     """Driver angles of the task motion where O2A lies along the ground line, shape (0 to 2,), rad.
 
     There, or at the ends of the motion, the diagonal A-O4 is shortest and longest, whatever the lengths.
