@@ -32,8 +32,8 @@ LEAST_SQUARE = 1e-8  # sizes squared: scales the squared distances to about 1
 class Places:
     """A, B and P at every target, in the order of visit, and the vectors from A and B to P in one frame.
 
-    `across` gives a vector along e4 at a target: from O4 to B, or across what slides. It is made anew each time:
-    what rows share changes the last digits of their derivatives.
+    `across` gives a vector along e4 at a target: from O4 to B, or across what slides. It is made anew each
+    time: what rows share changes the last digits of their derivatives.
     """
 
     a: list[ca.SX]

@@ -6,7 +6,8 @@ import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.programme.keep_out_depth import inside, points_kept_out
-from grashof.synth.programme.kinds import FOUR_BAR, Kind
+from grashof.synth.programme.kind import Kind
+from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened, coupler_along
 from grashof.synth.theory.closure import coupler_of

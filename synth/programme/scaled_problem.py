@@ -12,7 +12,8 @@ from grashof.problems import Linkage, Objective, Problem, Requirements, Rotatabi
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.quantities import Quantity
 from grashof.synth.programme.frame import Frame
-from grashof.synth.programme.kinds import FOUR_BAR, KINDS, Kind
+from grashof.synth.programme.kind import Kind
+from grashof.synth.programme.kinds import FOUR_BAR, KINDS
 from grashof.synth.theory.burmester import Displacements
 
 

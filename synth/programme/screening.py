@@ -11,7 +11,8 @@ from grashof.problems import Requirements, Rotatability, TransmissionOver
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.problems.values.requirements import LIMITS
 from grashof.synth.programme.formulas import Part, View, parts_of, range_of
-from grashof.synth.programme.kinds import FOUR_BAR, Kind, as_vector
+from grashof.synth.programme.kind import Kind, as_vector
+from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.vector import Vector
 
 # The requirements that can stand in the way, named by their fields.

@@ -39,7 +39,10 @@ def _apart(names: tuple[str, ...]) -> dict[str, tuple[Part, ...]]:
 
 
 def _stroke(d: View) -> Any:
-    """Between the limit positions, with crank and rod in line; from target to target of a driver that swings."""
+    """Between the limit positions, with crank and rod in line.
+
+    From the first target to the last where the driver does not turn fully.
+    """
     far, near = (
         np.sqrt(np.maximum((d.r3 + sign * d.r2) ** 2 - d.offset**2, 1e-12 * d.r3**2)) for sign in (1.0, -1.0)
     )

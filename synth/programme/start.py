@@ -10,7 +10,8 @@ import numpy as np
 from grashof.analysis import Verdict, solve_position
 from grashof.problems import FourBar, Objective
 from grashof.problems.values.arrays import ComplexArray
-from grashof.synth.programme.kinds import FOUR_BAR, Kind, Lengths
+from grashof.synth.programme.kind import Kind, Lengths
+from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 

@@ -13,7 +13,8 @@ from grashof.problems.values.requirements import LIMITS, QUANTITIES
 from grashof.synth.programme.along_motion import ALONG
 from grashof.synth.programme.burden import Burden
 from grashof.synth.programme.driver_way import drive_of
-from grashof.synth.programme.kinds import FOUR_BAR, Kind
+from grashof.synth.programme.kind import Kind
+from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 

@@ -10,7 +10,7 @@ import numpy as np
 from grashof.problems import Rotatability
 from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
 from grashof.synth.programme.builder import Builder, Fill, always
-from grashof.synth.programme.kinds import Kind
+from grashof.synth.programme.kind import Kind
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import Form
@@ -32,7 +32,7 @@ class Unknowns:
     Parameters
     ----------
     o2, o4, a, b : SX, shape (2,), sizes
-        The moving pivots at the first target; B of an inverted slider-crank is none, nor has a slider-crank O4.
+        The moving pivots at the first target; an inverted slider-crank has no B here, a slider-crank no O4.
     r : SX, shape (4,), sizes
         Of slider kinds the offset in place of r4, and 0 for what they lack.
     theta1, tau : SX, rad

@@ -13,7 +13,8 @@ import numpy as np
 from grashof.problems import Requirements
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, Limits
 from grashof.synth.programme.formulas import Part, parts_of, range_of
-from grashof.synth.programme.kinds import FOUR_BAR, Kind
+from grashof.synth.programme.kind import Kind
+from grashof.synth.programme.kinds import FOUR_BAR
 
 PROPORTIONS = 3  # unknowns of every kind; of slider kinds the last one does nothing
 SHORTEST = 1e-3  # of the longest step between targets: no step counts as less

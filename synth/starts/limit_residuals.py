@@ -13,7 +13,7 @@ from grashof.problems.values.quantities import Kind
 from grashof.problems.values.requirements import LIMITS
 from grashof.synth.programme.dual import Dual
 from grashof.synth.programme.formulas import LOGARITHMIC, View
-from grashof.synth.programme.kinds import Lengths
+from grashof.synth.programme.kind import Lengths
 from grashof.synth.programme.vector import Vector
 from grashof.synth.starts.closed_loop import Loop, SearchTargets, body_turns
 

@@ -39,8 +39,8 @@ class Closed:
     rod : ndarray, shape (N,)
         From A to B along e3.
     moved : tuple of ndarray, shape (N,)
-        For each of the dimensions (see `Closure.dimensions`) by how much B, moved with it, gets out of its place
-        along e4.
+        For each of the dimensions (see `Closure.dimensions`) by how much B, moved with it, gets out of its
+        place along e4.
     o4 : complex
         Of a slider-crank the point of the slide's line that lies r3 ahead of B at the first angle.
     """
@@ -110,7 +110,9 @@ class SliderCrankClosure(Closure):
         from_o2 = r2 * e2 + r3 * e3
         by_theta1 = (from_o2 * e4.conj()).imag
         moved = (0.0, 0.0, by_theta1, 0.0, _along(e2, e4), _along(e3, e4), -1.0)
-        return Closed(r3 * e3, e3, e4, np.full(len(e2), r3), moved, complex(o2 + from_o2[0] - 1j * r3 * e4[0]))
+        return Closed(
+            r3 * e3, e3, e4, np.full(len(e2), r3), moved, complex(o2 + from_o2[0] - 1j * r3 * e4[0])
+        )
 
 
 class InvertedSliderCrankClosure(Closure):
@@ -139,3 +141,6 @@ class InvertedSliderCrankClosure(Closure):
 def _along(one: ComplexArray, other: ComplexArray) -> FloatArray:
     product: FloatArray = (one * other.conj()).real
     return product
+
+
+FOUR_BAR_CLOSURE: Closure = FourBarClosure()

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from grashof.synth.theory.closure import Closure, FourBarClosure
+from grashof.synth.theory.closure import FOUR_BAR_CLOSURE, Closure
 
 STEPS = 4
 MANY = 64  # targets: of more, each driver angle is eliminated by itself
@@ -35,7 +35,7 @@ class Wish:
     turns: FloatArray
     has_turn: BoolArray
     timed: bool
-    closure: Closure = FourBarClosure()
+    closure: Closure = FOUR_BAR_CLOSURE
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +83,8 @@ def polish_path(
     _, _, a, b, p = points
     arm = (p - a) * abs(b - a) / (b - a)
     unknowns = np.concatenate([
-        wish.closure.dimensions(points), [arm.real, arm.imag], [body_angle], theta2[:1] if wish.timed else theta2,
+        wish.closure.dimensions(points), [arm.real, arm.imag, body_angle],
+        theta2[:1] if wish.timed else theta2,
     ])  # fmt: skip
     gaps = theta2 - theta2[0]
     for _ in range(STEPS):
