@@ -12,6 +12,7 @@ from grashof.analysis.four_bar.even_motion import EvenMotion, even_motion
 from grashof.analysis.four_bar.mobility import full_rotation
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.four_bar.transmission import transmission_angle
+from grashof.analysis.loops.kinds import kind_of
 from grashof.analysis.numerics.peaks import greatest, own
 from grashof.analysis.numerics.quadrature import Panels, gauss_legendre, integrate
 from grashof.problems import AssemblyError, Linkage
@@ -60,7 +61,8 @@ def straightness(linkage: Linkage, theta2_start: float, theta2_end: float) -> Be
 
     Examples
     --------
-    >>> from grashof.problems import FourBar
+    >>> from grashof.analysis.loops.kinds import kind_of
+    from grashof.problems import FourBar
     >>> hoeken = FourBar(o2=(0, 0), o4=(2.2, 0), r2=1, r3=2.8, r4=2.8, coupler_point=(5.6, 0))
     >>> line = straightness(hoeken, np.pi / 2, 3 * np.pi / 2)
     >>> round(line.length, 3), round(100 * line.width / line.length, 3)
@@ -93,7 +95,8 @@ def straightest_half_turn(linkage: Linkage) -> tuple[float, BestLine]:
 
     Examples
     --------
-    >>> from grashof.problems import FourBar
+    >>> from grashof.analysis.loops.kinds import kind_of
+    from grashof.problems import FourBar
     >>> hoeken = FourBar(o2=(0, 0), o4=(2.2, 0), r2=1, r3=2.8, r4=2.8, coupler_point=(5.6, 0))
     >>> start, line = straightest_half_turn(hoeken)
     >>> round(float(np.degrees(start)), 6), round(100 * line.width / line.length, 3)
@@ -293,10 +296,11 @@ class _Path:
             p, rate, _ = coupler_curve(self.linkage, theta2)
             with np.errstate(invalid="ignore"):
                 return _rows(p - self.origin, np.abs(rate * self.motion.rate(share)))
-        # d theta2 = pace sin mu dt; d theta3 = r2 sin(theta4 - theta2) / (r3 sin(theta3 - theta4)) d theta2.
+        # d theta2 = pace sin mu dt, and d theta3 by d theta2 is divided by sin mu.
         linkage, state = self.linkage, solve_position(self.linkage, theta2)
         turn2 = self.pace * np.abs(np.sin(state.theta4 - state.theta3))
-        turn3 = -linkage.assembly * self.pace * linkage.r2 / linkage.r3 * np.sin(state.theta4 - theta2)
+        turn3 = self.pace * kind_of(linkage).carried(linkage, theta2, state.theta3, state.theta4)
+        turn3 = linkage.assembly * turn3
         crank, arm = (state.a - linkage.o2) @ _COMPLEX, (state.p - state.a) @ _COMPLEX
         return _rows(state.p @ _COMPLEX - self.origin, np.abs(turn2 * crank + turn3 * arm))
 

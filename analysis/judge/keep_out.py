@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from grashof.analysis.four_bar.position import places, solve_position
 from grashof.analysis.judge.task_motion import Targets, TaskMotion
-from grashof.problems import FourBar, Linkage, Requirements, Task
+from grashof.problems import Linkage, Requirements, Task
 from grashof.problems.values.areas import solid
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 
@@ -151,8 +151,10 @@ def intrusions(
     area, deepest = Area.of(wanted.keep_out), dict[str, float]()
     parts: dict[str, tuple[str, ...]] = {}
     for name in wanted.keep_out_for:
+        if name not in (*linkage.POINTS, "links", "body"):  # O4 of a slider-crank
+            continue
         if name != "body":
-            parts |= _lines() if name == "links" else {name.upper(): (name,)}
+            parts |= _lines(linkage) if name == "links" else {name.upper(): (name,)}
         elif task.body is not None:
             at = _body_depth(area, linkage, task.body, targets.assembly[:1] if joined else targets.assembly)
             over = (
@@ -172,13 +174,16 @@ def intrusions(
     return {part: found for part, found in deepest.items() if found > SLACK * task.size}
 
 
-def _lines() -> dict[str, tuple[str, ...]]:
+def _lines(linkage: Linkage) -> dict[str, tuple[str, ...]]:
     """The links, then the lines to the coupler point, by name; the ends of each."""
+    joined = {*linkage.JOINTS, "b"}
     named = {
-        f"{'link' if FourBar.JOINTS.keys() >= set(ends) else 'line'} {''.join(ends).upper()}": ends
-        for link in FourBar.LINKS[1:]
+        f"{'link' if joined >= set(ends) else 'line'} {''.join(ends).upper()}": ends
+        for link in linkage.LINKS[1:]
         for ends in link.lines
     }
+    if (3, 4) in linkage.SLIDES:  # the rod reaches as far as its block
+        named["link AB"] = ("a", "b")
     return dict(sorted(named.items(), key=lambda part: part[0].startswith("line")))
 
 

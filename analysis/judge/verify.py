@@ -197,7 +197,8 @@ def _rotatability(linkage: Linkage, task: Task, wanted: Requirements) -> list[De
         allowed = f"from {margin:g} ({why})"
         defects.append(Defect("rotatability", "the margin of full rotation", least, allowed, miss))
     kind = {Rotatability.CRANK_ROCKER: 1, Rotatability.DOUBLE_CRANK: -1}.get(wanted.rotatability, 0)
-    difference = float(linkage.r1 - linkage.r2)
+    # As far as O4 of a slider-crank: it lies at infinity.
+    difference = float(getattr(linkage, "r1", np.inf) - linkage.r2)
     miss = -kind * difference / float(linkage.lengths.sum())
     if miss > SLACK:
         which = "greater" if kind > 0 else "less"
