@@ -74,10 +74,10 @@ class Candidate(Displayed):
 
     @property
     def _words(self) -> str:
-        lengths = ", ".join(f"{length:.4g}" for length in self.linkage.lengths)
+        names, lengths = self.linkage.LENGTHS, ", ".join(f"{length:.4g}" for length in self.linkage.lengths)
         worst = np.degrees(self.verdict.transmission_min_task)
         return (
-            f"{self.id}: {self.verdict.grashof_class}, r1 to r4 {lengths}, mu {worst:.1f} deg over the task"
+            f"{self.id}: {self.verdict.grashof_class}, {names[0]} to {names[-1]} {lengths}, mu {worst:.1f} deg over the task"
         )
 
     def error(self, problem: Problem) -> float:

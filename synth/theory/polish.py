@@ -10,6 +10,7 @@ from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, 
 from grashof.synth.theory.closure import FOUR_BAR_CLOSURE, Closure
 
 STEPS = 4
+MORE_STEPS, DONE = 12, 1e-10  # at most so many where, as on short arcs, much is left after those
 MANY = 64  # targets: of more, each driver angle is eliminated by itself
 
 
@@ -87,9 +88,11 @@ def polish_path(
         theta2[:1] if wish.timed else theta2,
     ])  # fmt: skip
     gaps = theta2 - theta2[0]
-    for _ in range(STEPS):
+    for step in range(MORE_STEPS):
         _, residual, jacobian = _linearised(unknowns, gaps, assembly, wish)
         if not (np.isfinite(residual).all() and np.isfinite(jacobian).all()):
+            break
+        if step >= STEPS and np.abs(residual).max(initial=0.0) < DONE:
             break
         if wish.timed or len(theta2) <= MANY:
             jacobian = jacobian if wish.timed else _spread(jacobian, wish)
