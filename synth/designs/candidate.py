@@ -74,11 +74,11 @@ class Candidate(Displayed):
 
     @property
     def _words(self) -> str:
-        names, lengths = self.linkage.LENGTHS, ", ".join(f"{length:.4g}" for length in self.linkage.lengths)
+        lengths = ", ".join(f"{length:.4g}" for length in self.linkage.lengths)
+        names = f"{self.linkage.LENGTHS[0]} to {self.linkage.LENGTHS[-1]}"
         worst = np.degrees(self.verdict.transmission_min_task)
-        return (
-            f"{self.id}: {self.verdict.grashof_class}, {names[0]} to {names[-1]} {lengths}, mu {worst:.1f} deg over the task"
-        )
+        kind = self.verdict.grashof_class
+        return f"{self.id}: {kind}, {names} {lengths}, mu {worst:.1f} deg over the task"
 
     def error(self, problem: Problem) -> float:
         """What the design misses the task by, in sizes of the task.

@@ -12,6 +12,7 @@ from grashof.analysis.judge.design import Constraint, Design, OwnObjective
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
 from grashof.synth.programme.builder import FREE, NONNEGATIVE, Builder, Fill, always
 from grashof.synth.programme.formulas import View
+from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.on_symbols import on_symbols
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
@@ -299,30 +300,34 @@ def keep_out(build: Builder, form: Form, x: Unknowns, places: Places) -> None:
         build.require(("keep_out",), ca.dot(plane[:2], held[k // PLANES]) - plane[2])
 
 
-def require_own(build: Builder, x: Unknowns, places: Places, constraints: Sequence[Constraint]) -> None:
+def require_own(
+    build: Builder, form: Form, x: Unknowns, places: Places, constraints: Sequence[Constraint]
+) -> None:
     """The user's own constraints, on the symbols of the design in the problem's unit."""
     for constraint in constraints:
-        value = on_symbols(constraint, symbolic_design(build, x, places))
+        value = on_symbols(constraint, symbolic_design(build, form, x, places))
         for one in value if isinstance(value, (list, tuple)) else [value]:
             build.require(("constraints",), -ca.vec(ca.SX(one)) - OWN_INSET)
 
 
-def own_goal(build: Builder, x: Unknowns, places: Places, objective: OwnObjective) -> ca.SX:
+def own_goal(build: Builder, form: Form, x: Unknowns, places: Places, objective: OwnObjective) -> ca.SX:
     """The user's own objective, in units of what it is at the start."""
     unit = build.parameter(lambda scaled, start: magnitude_at(scaled, start, objective))
-    return ca.SX(on_symbols(objective, symbolic_design(build, x, places))) / unit
+    return ca.SX(on_symbols(objective, symbolic_design(build, form, x, places))) / unit
 
 
-def symbolic_design(build: Builder, x: Unknowns, places: Places) -> Design:
+def symbolic_design(build: Builder, form: Form, x: Unknowns, places: Places) -> Design:
     """What a user's function sees of the unknowns."""
     scale = build.parameter(lambda scaled, _: scaled.frame.scale)
     origin = build.parameter(lambda scaled, _: interleaved(scaled.frame.origin), 2)
-    coupler, arm = places.b[0] - places.a[0], places.p[0] - places.a[0]
-    along, beside = ca.dot(coupler, arm) / x.r[2], cross(coupler, arm) / x.r[2]
-    r1, r2, r3, r4 = (scale * length for length in ca.vertsplit(x.r))
-    o2, o4 = scale * x.o2 + origin, scale * x.o4 + origin
+    arm = x.arm
+    if form.kind is FOUR_BAR:
+        coupler, to_p = places.b[0] - places.a[0], places.p[0] - places.a[0]
+        arm = ca.vertcat(ca.dot(coupler, to_p) / x.r[2], cross(coupler, to_p) / x.r[2])
+    named = form.kind.named([scale * length for length in ca.vertsplit(x.r)], x.theta1)
+    o2, o4 = scale * x.o2 + origin, None if x.o4.is_empty() else scale * x.o4 + origin
     a, b, p = ([scale * point + origin for point in track] for track in (places.a, places.b, places.p))
-    return Design(o2, o4, r1, r2, r3, r4, x.theta1, scale * ca.vertcat(along, beside), x.theta2, a, b, p)
+    return Design(o2=o2, o4=o4, coupler_point=scale * arm, theta2=x.theta2, a=a, b=b, p=p, **named)
 
 
 def _off(x: Unknowns, targets: Targets, k: int) -> ca.SX:

@@ -9,7 +9,7 @@ inverted slider-crank r3 is there the variable length from A along the rod to B.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol, TypeAlias
 
@@ -26,6 +26,9 @@ from grashof.synth.theory.closure import Closure
 Shapes: TypeAlias = tuple[tuple[FloatArray, FloatArray, FloatArray], FloatArray]
 # e3, e4 (n, N), r3 (n, N) or (n, 1), and whether the loop closes everywhere (n,).
 Closed: TypeAlias = tuple[ComplexArray, ComplexArray, FloatArray, BoolArray]
+
+
+_LENGTHS = ("r1", "r2", "r3", "r4")
 
 
 class Lengths(View):
@@ -128,6 +131,18 @@ class Kind(ABC):
         self, pivots: Mapping[str, complex], turned: complex, found: Mapping[str, float]
     ) -> dict[str, complex]:
         """O4 and B where its programme has no unknowns for them, from those `found` and e3."""
+
+    def named(self, lengths: Sequence[Any], theta1: Any) -> dict[str, Any]:
+        """What a `Design` has of r1, r2, r3, r4, or the offset there, and of the ground's direction."""
+        names = self.linkage.LENGTHS
+        found = {
+            name: length if name in names else None for name, length in zip(_LENGTHS, lengths, strict=True)
+        }
+        offset = None if "r4" in names else lengths[3]
+        slide = theta1 - np.pi / 2 if "slide_angle" in self.formulas else None
+        return {
+            **found, "theta1": theta1, "offset": offset, "slide_angle": slide, "mechanism": self.mechanism
+        }  # fmt: skip
 
     def coupler(self, points: ComplexArray) -> ComplexArray:
         """Direction of the coupler, from points (..., 5)."""

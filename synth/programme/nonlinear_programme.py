@@ -178,10 +178,10 @@ def _stated(
     bound_transmission(build, form, x, places)
     require_limits(build, form, x, places)
     keep_out(build, form, x, places)
-    require_own(build, x, places, constraints)
+    require_own(build, form, x, places, constraints)
     cost = cost_of_goals(build, form, x, places)
     if form.own_goal and own_objective is not None:
-        cost += own_goal(build, x, places, own_objective)
+        cost += own_goal(build, form, x, places, own_objective)
     if form.fits:  # the error comes first; the rest only settles what the error leaves open
         cost = targets.error_scale * square(form, x, places, targets) - 1e-8 * x.tau
     if form.stay:
