@@ -7,14 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.forces.loads import (
-    Friction,
-    Joint,
-    Loads,
-    joint_rotation,
-    known_joint_moments,
-    wrenches,
-)
+from grashof.analysis.forces.joints import Joint, joint_motion, moving_origins, origin, output_rate
+from grashof.analysis.forces.loads import Friction, Loads, known_joint_moments, wrenches
 from grashof.analysis.forces.mass import Masses
 from grashof.analysis.four_bar.kinematics import Kinematics
 from grashof.analysis.four_bar.position import close_loop, sides
@@ -29,9 +23,11 @@ class Advantage:
     Parameters
     ----------
     velocity_ratio : ndarray
-        omega4 / omega2; infinite in a dead position of the driver.
+        omega4 / omega2; infinite in a dead position of the driver. Of a slider-crank the slider's velocity
+        over omega2, length/rad.
     torque_ratio : ndarray
-        T4 / T2 = omega2 / omega4, the mechanical advantage; infinite where link 4 stands.
+        T4 / T2 = omega2 / omega4, the mechanical advantage; infinite where link 4 stands. Of a
+        slider-crank the force on the slider along its slide for a unit of torque, rad/length.
     way : ndarray, length/rad
         Of P for each radian of the driver.
     force_ratio : ndarray
@@ -53,7 +49,7 @@ class Holding:
     torque : ndarray, shape (...), N length
         On link 2, counter-clockwise; the other two are for a free driver.
     moment : ndarray, shape (...), N length
-        On link 4, counter-clockwise.
+        On link 4, counter-clockwise; of a slider-crank the force on the slider along its slide, N.
     force : ndarray, shape (...), N
         At P, along `direction`.
     direction : ndarray, shape (..., 2)
@@ -92,11 +88,11 @@ def advantage(linkage: FourBar, theta2: npt.ArrayLike) -> Advantage:
     ([0.279919, -0.116888], [3.5725, -8.5552])
     """
     virtual, _ = virtual_motion(linkage, theta2)
-    way, crank = virtual.p.speed, virtual.omega2
+    way, crank, output = virtual.p.speed, virtual.omega2, output_rate(virtual)
     with np.errstate(divide="ignore", invalid="ignore"):
         return Advantage(
-            velocity_ratio=virtual.omega4 / crank,
-            torque_ratio=crank / virtual.omega4,
+            velocity_ratio=output / crank,
+            torque_ratio=crank / output,
             way=way / crank,
             force_ratio=linkage.r2 * crank / way,
         )
@@ -141,7 +137,7 @@ def holding(linkage: FourBar, theta2: npt.ArrayLike, masses: Masses, loads: Load
     with np.errstate(divide="ignore", invalid="ignore"):
         return Holding(
             torque=-power / virtual.omega2,
-            moment=-power / virtual.omega4,
+            moment=-power / output_rate(virtual),
             force=-power / speed,
             direction=virtual.p.velocity / speed[..., None],
         )
@@ -183,10 +179,11 @@ def load_power(virtual: Kinematics, state: Kinematics, loads: Loads) -> FloatArr
     outside, power = wrenches(state, loads), np.zeros(state.shape)
     for link in (2, 3, 4):
         power = power + outside[link].moment * virtual.angular(link)[1]
-    if outside[3].force.any():  # A is the one origin of a link's frame that moves
-        power = power + (outside[3].force * virtual.a.velocity).sum(axis=-1)
+    for link in moving_origins(state.linkage):
+        if outside[link].force.any():
+            power = power + (outside[link].force * origin(virtual, link).velocity).sum(axis=-1)
     moments = known_joint_moments(state, loads)
     for joint in Joint:
         if moments[joint].any():
-            power = power + moments[joint] * joint_rotation(virtual, joint)[1]
+            power = power + moments[joint] * joint_motion(virtual, joint)[1]
     return power

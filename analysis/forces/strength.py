@@ -16,7 +16,7 @@ from grashof.analysis.forces.along_bar import (
     greatest_size,
 )
 from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics
-from grashof.analysis.forces.loads import Joint
+from grashof.analysis.forces.joints import Joint
 from grashof.analysis.forces.section_forces import BarForces, section_forces
 from grashof.analysis.forces.stress import von_mises
 from grashof.analysis.forces.structure import UNITS, Structure

@@ -10,7 +10,7 @@ import numpy as np
 
 from grashof.analysis.forces.along_bar import Along
 from grashof.analysis.forces.dynamics import inverse_dynamics
-from grashof.analysis.forces.loads import Joint
+from grashof.analysis.forces.joints import Joint
 from grashof.analysis.forces.strength import LINKS, most_telling, pin_measures, strength_at
 from grashof.analysis.forces.structure import BAR_MEASURES, PIN_MEASURES, Structure, limits_of
 from grashof.analysis.four_bar.kinematics import Kinematics

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.forces.loads import JOINED, Joint, Loads
+from grashof.analysis.forces.joints import JOINED, Joint
+from grashof.analysis.forces.loads import Loads
 from grashof.analysis.forces.mass import Masses
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.section import SectionSpec
