@@ -66,6 +66,15 @@ def bars_of(linkage: Linkage) -> dict[int, Bar]:
     raise TypeError(f"{type(linkage).__name__} is no kind of linkage whose bars are known")
 
 
+def bar_lengths(linkage: Linkage) -> dict[int, float]:
+    """Lengths of the bars of a single linkage between their joints, by link.
+
+    That of a rod which slides through a block is `longest_travel`, at which it buckles most easily.
+    """
+    found = {link: float(bar.reach) for link, bar in bars_of(linkage).items()}
+    return found | ({3: float(longest_travel(linkage))} if isinstance(linkage, InvertedSliderCrank) else {})
+
+
 def longest_travel(linkage: InvertedSliderCrank) -> FloatArray:
     """Greatest distance between A and B on the rod of an inverted slider-crank, shape (...), length.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -164,8 +164,10 @@ class Limit:
     value: float
 
 
-def limits_of(structure: Structure, lengths: Mapping[int, float]) -> Iterator[Limit]:
-    """All that the strength limits, by links (of lengths between their joints) and joints in turn."""
+def limits_of(
+    structure: Structure, lengths: Mapping[int, float], pins: Sequence[Joint] = tuple(Joint)
+) -> Iterator[Limit]:
+    """All that the strength limits, by links (of lengths between their joints) and pins in turn."""
     strength = structure.strength
     if strength is None:
         return
@@ -174,6 +176,6 @@ def limits_of(structure: Structure, lengths: Mapping[int, float]) -> Iterator[Li
         yield Limit("yield", "yield", part, "stress", strength.yield_stress)
         for key, load in structure.buckling_loads(link, length).items():
             yield Limit(key, _BUCKLING[key], part, "thrust", float(load))
-    for joint in Joint if strength.pin_diameter is not None else ():
+    for joint in pins if strength.pin_diameter is not None else ():
         yield Limit("pin_shear", "shear of the pin", joint.name, "pin_shear", strength.shear_limit)
         yield Limit("bearing", "bearing pressure", joint.name, "bearing", strength.bearing_limit)
