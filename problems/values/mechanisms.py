@@ -49,6 +49,12 @@ def having(column: str) -> tuple[str, ...]:
     )
 
 
+def not_had(what: str, asked: Sequence[str], kinds: Sequence[str]) -> str:
+    """What is wrong where something is given that only other kinds of linkages have."""
+    ending = "has it" if len(kinds) == 1 else "have it"
+    return f"{what} does not go with mechanism {' and '.join(asked)}; only {' and '.join(kinds)} {ending}"
+
+
 def mechanisms(given: str | Sequence[str]) -> tuple[str, ...]:
     """Words for kinds of linkages, checked: one of them, or a list.
 

@@ -23,7 +23,7 @@ from grashof.problems.values.checks import (
 from grashof.problems.values.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.manufacturing import Manufacturing
-from grashof.problems.values.mechanisms import FOUR_BAR, mechanisms
+from grashof.problems.values.mechanisms import FOUR_BAR, mechanisms, not_had
 from grashof.problems.values.motion_task import MotionTask
 from grashof.problems.values.objective import GOALS, Objective
 from grashof.problems.values.path_task import PathTask
@@ -187,8 +187,7 @@ class Problem(ReadOnly):
         if self.requirements.rotatability in ROCKING:
             having[f'requirements.rotatability = "{self.requirements.rotatability}"'] = (FOUR_BAR,)
         return [
-            f"{where} does not go with mechanism {' and '.join(self.mechanism)}; "
-            f"only {' and '.join(kinds)} {'has' if len(kinds) == 1 else 'have'} it"
+            not_had(where, self.mechanism, kinds)
             for where, kinds in having.items()
             if not set(kinds) & set(self.mechanism)
         ]
