@@ -35,6 +35,8 @@ def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
     limited = wanted.limited
     joined = values.verdict.branch_ok or not wanted.same_branch  # another defect reports that it is not
     for name, limit in limited.items():
+        if values.linkage.MECHANISM not in limit.quantity.kinds:  # of a list of several kinds
+            continue
         if not values.problem.states(limit.quantity.needs):
             raise ProblemError(f"requirements.{name} needs a problem with {limit.quantity.needs.value}")
         if limit.quantity.over is Over.TASK and not joined:

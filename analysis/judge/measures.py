@@ -17,6 +17,7 @@ from grashof.analysis.judge.tolerance import robustness
 from grashof.analysis.judge.verdict import Verdict
 from grashof.problems import FourBar, Problem
 from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.problems.values.mechanisms import LENGTHS, PARAMETERS
 from grashof.problems.values.quantities import Needs
 from grashof.problems.values.requirements import QUANTITIES
 
@@ -105,7 +106,12 @@ def _angle_error(number: Callable[[FloatArray], float], values: Values) -> float
 
 
 def _column(name: str, values: Values) -> float:
-    return values.linkage.columns[name]
+    return values.linkage.columns.get(name, np.nan)
+
+
+def _of_linkage(name: str, values: Values) -> float:
+    """A field of the linkage; NaN where its kind has none."""
+    return float(getattr(values.linkage, name, np.nan))
 
 
 def _link_ratio(values: Values) -> float:
@@ -114,7 +120,7 @@ def _link_ratio(values: Values) -> float:
 
 
 def _made(key: str, values: Values) -> float:
-    return values.made[key]
+    return values.made.get(key, np.nan)
 
 
 def _output_swing(values: Values) -> float:
@@ -145,8 +151,8 @@ def _signed_advantage(values: Values) -> float:
 
 # Of every quantity that is one number.
 MEASURES: dict[str, Callable[[Values], float]] = {
-    **{name: partial(_column, name) for row in FourBar.PARAMETERS if row.paired for name in row.columns},
-    **{name: attrgetter(f"linkage.{name}") for name in FourBar.LENGTHS},
+    **{name: partial(_column, name) for row in PARAMETERS if row.paired for name in row.columns},
+    **{name: partial(_of_linkage, name) for name in (*LENGTHS, "offset", "slide_angle")},
     "body_angle": lambda values: _angle_error(lambda _: float(values.linkage.body_angle), values),
     "ground_angle": attrgetter("linkage.theta1"),
     "link_ratio": _link_ratio,
@@ -164,6 +170,7 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     "driver_rotation": lambda values: float(np.ptp(values.verdict.theta2)),
     "driver_sense": attrgetter("verdict.direction"),
     "output_swing": _output_swing,
+    "stroke": partial(_of_linkage, "stroke"),
     "time_ratio": lambda values: float(output_stroke(values.linkage).time_ratio),
     "mechanical_advantage": lambda values: _omega2(values) / values["omega4_max"],
     "mechanical_advantage_min": _signed_advantage,

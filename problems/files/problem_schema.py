@@ -33,6 +33,7 @@ from grashof.problems.values.checks import near_miss, noted, outline, refuse, re
 from grashof.problems.values.dynamics_spec import metres
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.manufacturing import Manufacturing
+from grashof.problems.values.mechanisms import ANY_KINDS, FOUR_BAR, mechanisms
 from grashof.problems.values.motion_task import MotionTask
 from grashof.problems.values.objective import GOALS, Objective
 from grashof.problems.values.path_task import PathTask
@@ -304,10 +305,18 @@ class SearchTable(Table):
         return Search(**given)
 
 
+Mechanism = Annotated[
+    Annotated[str, Tag(WORD)] | Annotated[list[Any], Tag(LIST)],
+    Discriminator(tag, custom_error_type=WRONG, custom_error_message=ANY_KINDS),
+    AfterValidator(mechanisms),
+]
+
+
 class _Task(Table):
     """What is asked; the keys of a file come in this order."""
 
     kind: Annotated[str, one_of("motion", "path")]
+    mechanism: Mechanism = FOUR_BAR
     title: Text = ""
     source: Text = ""
     length_unit: Text = ""
@@ -347,6 +356,7 @@ class ProblemFile(MachineTables, _Task):
             dynamics=self.dynamics_spec(),
             manufacturing=None if self.manufacturing is None else self.manufacturing.value(),
             search=self.search.value(),
+            mechanism=mechanisms(self.mechanism),
         )
         if "objective" in self.model_fields_set and not problem.by_objective:
             raise ProblemError(NO_OBJECTIVE)

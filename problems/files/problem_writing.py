@@ -11,6 +11,7 @@ import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.box import Box
+from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.problems.values.problem import Problem
 from grashof.problems.values.requirements import Requirements
 from grashof.problems.values.task import Task
@@ -36,7 +37,9 @@ def problem_toml(problem: Problem) -> str:
     <BLANKLINE>
     <BLANKLINE>
     """
-    head = {"kind": problem.task.kind, **{key: getattr(problem, key) for key in _WORDS}}
+    kinds = problem.mechanism
+    asked = {} if kinds == (FOUR_BAR,) else {"mechanism": kinds[0] if len(kinds) == 1 else kinds}
+    head = {"kind": problem.task.kind, **asked, **{key: getattr(problem, key) for key in _WORDS}}
     lines = [f"{key} = {_value(value)}" for key, value in head.items()]
     for name, given in _tables(problem):
         heading = f"[[{name}]]" if isinstance(given, list) else f"[{name}]"

@@ -8,7 +8,7 @@ from grashof.problems.values.checks import plain_text
 from grashof.problems.values.display import Displayed
 from grashof.problems.values.dynamics_spec import DynamicsSpec
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.four_bar import FourBar
+from grashof.problems.values.linkage import Linkage
 from grashof.problems.values.problem import Problem
 from grashof.problems.values.pumping_unit import PumpingUnitSpec
 
@@ -19,7 +19,7 @@ class LinkageSpec(Displayed):
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
     name, title, source, length_unit : str
     output_arm : float, length, optional
         Radius about O4 of what the output link drives, such as a horsehead: its stroke and torque
@@ -32,7 +32,7 @@ class LinkageSpec(Displayed):
         Of a design out of a list: what it was found for.
     """
 
-    linkage: FourBar
+    linkage: Linkage
     name: str
     title: str = ""
     source: str = ""

@@ -23,12 +23,13 @@ from grashof.problems.values.checks import (
 from grashof.problems.values.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.manufacturing import Manufacturing
+from grashof.problems.values.mechanisms import FOUR_BAR, mechanisms, not_had
 from grashof.problems.values.motion_task import MotionTask
 from grashof.problems.values.objective import GOALS, Objective
 from grashof.problems.values.path_task import PathTask
 from grashof.problems.values.quantities import Needs, Quantity, Unit
 from grashof.problems.values.read_only import ReadOnly
-from grashof.problems.values.requirements import QUANTITIES, Requirements
+from grashof.problems.values.requirements import LIMITS, QUANTITIES, Requirements, Rotatability
 from grashof.problems.values.task import Task
 
 LEAST_TOLERANCE = 1e-4  # sizes: from here on a tolerance is a zone about each target
@@ -37,6 +38,7 @@ NO_OBJECTIVE = (
     "requirements.error_factor"
 )
 EFFORTS = (0.2, 10_000.0)
+ROCKING = (Rotatability.CRANK_ROCKER, Rotatability.DOUBLE_CRANK)  # told by link 4, which has to turn
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,6 +104,8 @@ class Problem(ReadOnly):
         How exactly linkages are made; without it there are no columns of made ones.
     dynamics : DynamicsSpec, optional
         Masses, speed and gravity; without it there are no torques and forces.
+    mechanism : str or sequence of str
+        The kinds of linkages that may do it, such as ("four-bar", "slider-crank"); one list of all.
     """
 
     task: Task
@@ -115,6 +119,7 @@ class Problem(ReadOnly):
     outlines: tuple[FloatArray, ...] = ()
     manufacturing: Manufacturing | None = None
     dynamics: DynamicsSpec | None = None
+    mechanism: tuple[str, ...] = (FOUR_BAR,)
 
     def __post_init__(self) -> None:
         for name, kind in _KINDS.items():
@@ -122,6 +127,7 @@ class Problem(ReadOnly):
                 raise ProblemError(f"problem.{name} is {shown(value)}; it must be {_named(kind)}")
         for name in ("name", "title", "source", "length_unit"):
             plain_text(getattr(self, name), name)
+        object.__setattr__(self, "mechanism", mechanisms(self.mechanism))
         if isinstance(self.outlines, str) or not isinstance(self.outlines, Iterable):
             raise wrong_value("scene.outlines", self.outlines, "a list of outlines")
         wrong: list[str] = []
@@ -136,6 +142,7 @@ class Problem(ReadOnly):
                     "dynamics has no mass; mass_per_length is needed, masses and inertias, density or "
                     "payload, or else loads, springs or friction"
                 )
+        wrong += self._not_of_these_kinds()
         wrong += self._without_value()
         wrong += self._undecided()
         refuse(wrong)
@@ -146,8 +153,7 @@ class Problem(ReadOnly):
 
     def _without_value(self) -> list[str]:
         """What is weighed or limited though the problem does not state what it takes."""
-        asked = {f"objective.maximise.{name}": GOALS[name] for name, w in self.objective.stated.items() if w}
-        asked |= {f"requirements.{name}": limit.quantity for name, limit in self.requirements.limited.items()}
+        asked = self._asked
         missing = {
             Needs.DYNAMICS: "dynamics is missing",
             Needs.MANUFACTURING: "manufacturing is missing",
@@ -167,6 +173,44 @@ class Problem(ReadOnly):
                 if quantity.needs is Needs.DYNAMICS
             ]
         return wrong
+
+    @property
+    def _asked(self) -> dict[str, Quantity]:
+        """What is weighed or limited, by its key path."""
+        goals = {f"objective.maximise.{name}": GOALS[name] for name, w in self.objective.stated.items() if w}
+        limited = self.requirements.limited.items()
+        return goals | {f"requirements.{name}": limit.quantity for name, limit in limited}
+
+    def _not_of_these_kinds(self) -> list[str]:
+        """What is weighed or limited though no kind of linkage that is asked for has it."""
+        having = {where: quantity.kinds for where, quantity in self._asked.items()}
+        if self.requirements.rotatability in ROCKING:
+            having[f'requirements.rotatability = "{self.requirements.rotatability}"'] = (FOUR_BAR,)
+        return [
+            not_had(where, self.mechanism, kinds)
+            for where, kinds in having.items()
+            if not set(kinds) & set(self.mechanism)
+        ]
+
+    def for_kind(self, kind: str) -> Problem:
+        """The same for one kind of linkage alone, without the limits and goals that it has not.
+
+        Examples
+        --------
+        >>> from grashof.problems import PathTask
+        >>> task, wanted = PathTask([[0, 0], [1, 0], [2, 0]]), Requirements(r2=(1, 2), r4=(3, 4))
+        >>> alone = Problem(task=task, requirements=wanted, mechanism=["four-bar", "slider-crank"])
+        >>> alone.for_kind("slider-crank").requirements == Requirements(r2=(1, 2))
+        True
+        """
+        usual = Requirements()
+        lacking = {name for name, limit in LIMITS.items() if kind not in limit.quantity.kinds}
+        wanted = replace(self.requirements, **{name: getattr(usual, name) for name in lacking})
+        if kind != FOUR_BAR and wanted.rotatability in ROCKING:
+            wanted = replace(wanted, rotatability=Rotatability.FULL_CRANK)
+        weights = {name: w for name, w in self.objective.stated.items() if kind in GOALS[name].kinds}
+        objective = Objective(**{"transmission": 0.0} | weights) if any(weights.values()) else Objective()
+        return replace(self, mechanism=(kind,), requirements=wanted, objective=objective)
 
     def states(self, needs: Needs) -> bool:
         """Whether it states what a quantity needs to have a value."""

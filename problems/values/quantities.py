@@ -16,6 +16,7 @@ import numpy as np
 
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.four_bar import FourBar
+from grashof.problems.values.mechanisms import DIMENSIONS, KINDS, LENGTHS, PARAMETERS, having
 
 
 class Unit(StrEnum):
@@ -91,6 +92,8 @@ class Quantity:
         What it is called in a sentence, where that is not its label.
     short : str
         Heading where there is little room, where that is not its label.
+    kinds : tuple of str
+        The kinds of linkages that have it.
     """
 
     key: str
@@ -104,6 +107,7 @@ class Quantity:
     listed: bool = True
     words: str = ""
     short: str = ""
+    kinds: tuple[str, ...] = tuple(KINDS)
 
     def __post_init__(self) -> None:
         for name in ("words", "short"):
@@ -119,21 +123,35 @@ def _length(key: str, label: str = "", **others: Any) -> Quantity:
     return Quantity(key, label or key, Unit.LENGTH, **others)
 
 
+def _stated(*kinds: str) -> list[Quantity]:
+    """The columns of such parameters."""
+    rows = [row for row in PARAMETERS if row.kind in kinds]
+    return [_length(name, kinds=having(name)) for row in rows for name in row.columns]
+
+
+def _move(name: str) -> Quantity:
+    about = f"how far the worst target moves per unit of change of {name}"
+    return Quantity(
+        f"move_{name}", f"move by {name}", Unit.RATIO, Over.TARGETS, -1, Needs.MANUFACTURING, about=about,
+        kinds=having(name),
+    )  # fmt: skip
+
+
 _BOX = "diagonal of the box around O2, O4 and all that A, B and P reach from the first target to the last"
 _FITTED = "what least squares makes small: root mean square of positions and angles together, weighted"
 _WORST = "worst transmission angle over the"
-_MOVED = "how far the worst target moves per unit of change of {}"
 _MISSED: dict[str, Any] = {"over": Over.TARGETS, "better": -1}
 _OVERALL: dict[str, Any] = {"over": Over.TASK, "about": "from the first target to the last"}
+TURNING = having("o4")  # kinds whose link 4 turns
 _DRIVEN: dict[str, Any] = {**_OVERALL, "better": -1, "needs": Needs.DYNAMICS}
 
 # In the order of the columns of candidates.csv; those that a field of `Requirements` declares follow.
 MEASURED: dict[str, Quantity] = {
     quantity.key: quantity
     for quantity in (
-        *(_length(name) for row in FourBar.PARAMETERS if row.kind == "place" for name in row.columns),
-        *(_length(name, digits=4) for name in FourBar.LENGTHS),
-        *(_length(name) for row in FourBar.PARAMETERS if row.kind == "arm" for name in row.columns),
+        *_stated("place"),
+        *(_length(name, digits=4, kinds=having(name)) for name in LENGTHS),
+        *_stated("arm"),
         Quantity("body_angle", "body angle", Unit.ANGLE, about="orientation of the body minus theta3"),
         Quantity("theta2_start", "driver angle at the first target", Unit.ANGLE, Over.TARGETS),
         Quantity("theta2_end", "driver angle at the last target", Unit.ANGLE, Over.TARGETS),
@@ -149,7 +167,7 @@ MEASURED: dict[str, Quantity] = {
         Quantity(
             "transmission_min_cycle", "mu turn", Unit.ANGLE, Over.CYCLE, +1, digits=3, words=f"{_WORST} turn"
         ),
-        Quantity("omega4_max", "omega4", Unit.ANGULAR_VELOCITY, better=-1, **_OVERALL),
+        Quantity("omega4_max", "omega4", Unit.ANGULAR_VELOCITY, better=-1, kinds=TURNING, **_OVERALL),
         Quantity("point_speed_max", "speed of P", Unit.VELOCITY, better=-1, **_OVERALL),
         Quantity("point_acceleration_max", "acceleration of P", Unit.ACCELERATION, better=-1, **_OVERALL),
         Quantity(
@@ -165,18 +183,15 @@ MEASURED: dict[str, Quantity] = {
         _length("size", over=Over.TASK, better=-1, digits=4, about=_BOX),
         _length("hausdorff", "Hausdorff distance", over=Over.CYCLE, better=-1, needs=Needs.CLOSED),
         _length("frechet", "Fréchet distance", over=Over.CYCLE, better=-1, needs=Needs.CLOSED),
-        *(
-            Quantity(
-                f"move_{name}", f"move by {name}", Unit.RATIO, Over.TARGETS, -1, Needs.MANUFACTURING,
-                about=_MOVED.format(name),
-            )
-            for name in FourBar.DIMENSIONS
-        ),
+        *(_move(name) for name in FourBar.DIMENSIONS),
         _length("worst_move", "worst move", over=Over.TARGETS, better=-1, needs=Needs.MANUFACTURING),
         Quantity("share_within_linear", "within, linear", Unit.SHARE, Over.TARGETS, +1, Needs.MANUFACTURING),
         Quantity(
             "share_within_made", "made within", Unit.SHARE, Over.TARGETS, +1, Needs.MANUFACTURING, digits=3
         ),
+        *_stated("distance"),
+        Quantity("slide_angle", "direction of the slide", Unit.ANGLE, kinds=having("slide_angle")),
+        *(_move(name) for name in DIMENSIONS if name not in FourBar.DIMENSIONS),
     )
 }  # fmt: skip
 

@@ -14,7 +14,18 @@ from grashof.problems.values.box import ANYWHERE, Box
 from grashof.problems.values.checks import GREATEST, finite_number, limits, number_within
 from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.four_bar import FourBar
-from grashof.problems.values.quantities import MEASURED, Kind, Limit, Needs, Over, Quantity, Unit, limit
+from grashof.problems.values.mechanisms import KINDS, SLIDER_CRANK, having
+from grashof.problems.values.quantities import (
+    MEASURED,
+    TURNING,
+    Kind,
+    Limit,
+    Needs,
+    Over,
+    Quantity,
+    Unit,
+    limit,
+)
 from grashof.problems.values.read_only import ReadOnly
 from grashof.problems.values.task import Task
 
@@ -37,17 +48,20 @@ class TransmissionOver(StrEnum):
 
 _SWING = "of link 4 between its limit positions, over the task where the driver cannot turn"
 _STROKES = "time of the slow stroke of link 4 over that of the quick one"
+_TRAVEL = "of the slide between its limit positions, over the task where the driver cannot turn"
 _FIRST_TO_LAST = "from the first target to the last"
 _FROM_ZERO = (0.0, GREATEST)
 
 
 def _place(name: str, over: Over) -> Quantity:
-    return Quantity(name, f"place of {name.upper()}", Unit.LENGTH, over, listed=False)
+    kinds = having(name) if over is Over.DESIGN else tuple(KINDS)
+    return Quantity(name, f"place of {name.upper()}", Unit.LENGTH, over, listed=False, kinds=kinds)
 
 
 def _bracket(name: str) -> Quantity:
     words = f"place of {name.upper()} on the body"
-    return Quantity(f"{name}_on_body", words, Unit.LENGTH, needs=Needs.ANGLES, listed=False)
+    kinds = tuple(word for word, kind in KINDS.items() if name in kind.LINKS[2].points)
+    return Quantity(f"{name}_on_body", words, Unit.LENGTH, needs=Needs.ANGLES, listed=False, kinds=kinds)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,6 +101,10 @@ class Requirements(ReadOnly):
         (lo, hi) for the distances A-P and B-P.
     o2, o4, a, b : Box, optional
         Where the ground pivots may lie; where A and B may be at every target.
+    offset : tuple of float, optional
+        (lo, hi) for the signed offset of a slide: of its line from O2, of an inverted one from O4.
+    slide_angle_deg : float, deg, optional
+        Direction of the slide of a slider-crank.
     ground_angle_deg : float, deg, optional
         Direction O2->O4.
     theta2_start_deg : float, deg, optional
@@ -100,6 +118,9 @@ class Requirements(ReadOnly):
     output_swing_deg : tuple of float, deg, optional
         (lo, hi) for the swing of link 4 between its limit positions, O2, A, B in line; over the task motion
         where the driver does not turn fully, and 360 where link 4 does.
+    stroke : tuple of float, optional
+        (lo, hi) for the travel of a slider-crank's slide between its limit positions; over the task motion
+        where the driver does not turn fully.
     time_ratio : tuple of float, optional
         (lo, hi) for the time of the slow stroke of link 4 over that of the quick one, the driver turning
         steadily; of a driver that does not turn fully there is none.
@@ -138,6 +159,8 @@ class Requirements(ReadOnly):
     r2: Limits | None = limit("r2", Kind.BETWEEN, allowed=_FROM_ZERO)
     r3: Limits | None = limit("r3", Kind.BETWEEN, allowed=_FROM_ZERO)
     r4: Limits | None = limit("r4", Kind.BETWEEN, allowed=_FROM_ZERO)
+    offset: Limits | None = limit("offset", Kind.BETWEEN, allowed=(-GREATEST, GREATEST))
+    slide_angle_deg: float | None = limit("slide_angle", Kind.EQUAL)
     coupler_arms: Limits | None = limit(
         Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False),
         Kind.BETWEEN,
@@ -155,7 +178,8 @@ class Requirements(ReadOnly):
     a: Box | None = limit(_place("a", Over.TARGETS), Kind.INSIDE)
     b: Box | None = limit(_place("b", Over.TARGETS), Kind.INSIDE)
     ground_angle_deg: float | None = limit(
-        Quantity("ground_angle", "direction of O2O4", Unit.ANGLE, listed=False), Kind.EQUAL
+        Quantity("ground_angle", "direction of O2O4", Unit.ANGLE, listed=False, kinds=having("o4")),
+        Kind.EQUAL,
     )
     theta2_start_deg: float | None = limit("theta2_start", Kind.EQUAL)
     size: Limits | None = limit("size", Kind.BETWEEN, allowed=_FROM_ZERO)
@@ -182,9 +206,14 @@ class Requirements(ReadOnly):
         words={"either": (-1.0, 1.0), "ccw": (1.0, 1.0), "cw": (-1.0, -1.0)},
     )
     output_swing_deg: Limits | None = limit(
-        Quantity("output_swing", "output swing", Unit.ANGLE, Over.CYCLE, +1, about=_SWING),
+        Quantity("output_swing", "output swing", Unit.ANGLE, Over.CYCLE, +1, about=_SWING, kinds=TURNING),
         Kind.BETWEEN,
         allowed=(0.0, 360.0),
+    )
+    stroke: Limits | None = limit(
+        Quantity("stroke", "stroke", Unit.LENGTH, Over.CYCLE, +1, about=_TRAVEL, kinds=(SLIDER_CRANK,)),
+        Kind.BETWEEN,
+        allowed=_FROM_ZERO,
     )
     time_ratio: Limits | None = limit(
         Quantity("time_ratio", "time ratio", Unit.RATIO, Over.CYCLE, +1, about=_STROKES),
@@ -192,7 +221,15 @@ class Requirements(ReadOnly):
         allowed=(1.0, 1e6),
     )
     mechanical_advantage_min: float | None = limit(
-        Quantity("mechanical_advantage", "mechanical advantage", Unit.RATIO, Over.TASK, +1, listed=False),
+        Quantity(
+            "mechanical_advantage",
+            "mechanical advantage",
+            Unit.RATIO,
+            Over.TASK,
+            +1,
+            listed=False,
+            kinds=TURNING,
+        ),
         Kind.AT_LEAST,
         allowed=(0.0, 1e6),
     )
@@ -317,6 +354,7 @@ _ADVANTAGE = Quantity(
     Unit.RATIO,
     Over.TASK,
     about="omega2 / omega4 where it is least over the task motion, with its sign",
+    kinds=TURNING,
 )
 # All quantities of a design, by key; those that are listed in the order of the columns.
 QUANTITIES = MEASURED | {limited.quantity.key: limited.quantity for limited in LIMITS.values()}

@@ -48,7 +48,7 @@ def facts(candidate: Candidate) -> dict[str, Any]:
     verdict = candidate.verdict
     return {
         "id": candidate.id,
-        "mechanism": "four-bar",
+        "mechanism": candidate.linkage.MECHANISM,
         "family": candidate.family or candidate.id,
         "cognate_of": candidate.cognate_of or None,
         "best_at": candidate.best_at or None,

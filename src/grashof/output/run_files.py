@@ -161,7 +161,9 @@ def _written(problem: Problem) -> list[str]:
     return [
         each.key
         for each in LISTED
-        if problem.states(each.needs) and (each.over in over or each.needs is Needs.MANUFACTURING)
+        if problem.states(each.needs)
+        and set(each.kinds) & set(problem.mechanism)
+        and (each.over in over or each.needs is Needs.MANUFACTURING)
     ]
 
 

@@ -156,8 +156,9 @@ def test_what_the_problem_does_not_state_has_no_value(values: Values) -> None:
     angles = (
         set() if values.problem.task.has_angle.any() else {"body_angle", "angle_error_max", "angle_error_rms"}
     )
+    lacking = {key for key in MEASURES if values.linkage.MECHANISM not in QUANTITIES[key].kinds}
     swings = output_stroke(values.linkage).time_ratio  # none where the output link has no limit positions
-    assert unknown == needing | closed | angles | (set() if np.isfinite(swings) else {"time_ratio"})
+    assert unknown == needing | closed | angles | lacking | (set() if np.isfinite(swings) else {"time_ratio"})
 
 
 def test_what_is_known_goes_with_a_pickle(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from grashof.problems import Box, MotionTask, Objective, Problem, ProblemError, Requirements, Search
 from grashof.problems.files.problem_schema import RequirementsTable, problem_from
+from grashof.problems.values.mechanisms import KINDS
 
 POSES = "poses = [[5, 4, 0], [3.5, 4, -5], [2, 3, -5], [1, 0, 0]]"
 HEAD = f'kind = "motion"\n[motion]\n{POSES}\n'
@@ -88,6 +89,9 @@ b_on_body = [1, 2]
 mechanical_advantage_min = 0.5
 time_ratio = [1.2, 1.6]
 output_swing_deg = [40, 60]
+offset = [-1, 2]
+slide_angle_deg = 30
+stroke = [4, 5]
 [dynamics]
 payload = 1
 [manufacturing]
@@ -155,7 +159,10 @@ def test_the_examples_above_use_every_requirement() -> None:
     fields = {field.name for field in dataclasses.fields(Requirements)}
     assert set(RequirementsTable.model_fields) == fields
     used: set[str] = set()
-    for text in (EVERY_KEY, EVERY_LIMIT.replace("[motion]", 'length_unit = "m"\n[motion]')):
+    for text in (
+        EVERY_KEY,
+        EVERY_LIMIT.replace("[motion]", f'length_unit = "m"\nmechanism = {[*KINDS]}\n[motion]'),
+    ):
         given, names = problem(text).requirements, set(tomllib.loads(text)["requirements"])
         assert [name for name in names if getattr(given, name) == getattr(Requirements(), name)] == []
         used |= names

@@ -1,0 +1,95 @@
+"""The kinds of linkages: which there are, which of them has what, and which a problem asks for."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+from grashof.problems.values.checks import near_miss, noted, refuse
+from grashof.problems.values.errors import ProblemError, shown, wrong_value
+from grashof.problems.values.four_bar import FourBar
+from grashof.problems.values.inverted_slider_crank import InvertedSliderCrank
+from grashof.problems.values.linkage import Linkage
+from grashof.problems.values.linkage_parts import Parameter
+from grashof.problems.values.slider_crank import SliderCrank
+
+# By the word for it in files and tables; the first is what is meant where none is named.
+KINDS: dict[str, type[Linkage]] = {
+    kind.MECHANISM: kind for kind in (FourBar, SliderCrank, InvertedSliderCrank)
+}
+FOUR_BAR, SLIDER_CRANK, INVERTED = KINDS
+# The parameters of all kinds, each once, in the order of tables.
+PARAMETERS: tuple[Parameter, ...] = tuple(
+    dict.fromkeys(row for kind in KINDS.values() for row in kind.PARAMETERS)
+)
+LENGTHS: tuple[str, ...] = tuple(sorted({name for kind in KINDS.values() for name in kind.LENGTHS}))
+DIMENSIONS: tuple[str, ...] = (
+    *LENGTHS,
+    *(row.name for row in PARAMETERS if row.kind == "distance"),
+    "u",
+    "v",
+)
+_ANY = f"{', '.join(list(KINDS)[:-1])} or {list(KINDS)[-1]}"
+ANY_KINDS = f"{_ANY}, or a list of these"
+
+
+def having(column: str) -> tuple[str, ...]:
+    """The kinds that have a length or parameter, by its name or its column in tables.
+
+    Examples
+    --------
+    >>> having("r4"), having("offset")
+    (('four-bar',), ('slider-crank', 'inverted-slider-crank'))
+    """
+    return tuple(
+        word
+        for word, kind in KINDS.items()
+        if column in (*kind.LENGTHS, *kind.DIMENSIONS)
+        or any(column in (row.name, row.key, *row.columns) for row in kind.PARAMETERS)
+    )
+
+
+def not_had(what: str, asked: Sequence[str], kinds: Sequence[str]) -> str:
+    """What is wrong where something is given that only other kinds of linkages have."""
+    ending = "has it" if len(kinds) == 1 else "have it"
+    return f"{what} does not go with mechanism {' and '.join(asked)}; only {' and '.join(kinds)} {ending}"
+
+
+def mechanisms(given: str | Sequence[str]) -> tuple[str, ...]:
+    """Words for kinds of linkages, checked: one of them, or a list.
+
+    Raises
+    ------
+    ProblemError
+        No such kind, none at all, or one twice.
+
+    Examples
+    --------
+    >>> mechanisms("slider-crank"), mechanisms(["four-bar", "slider-crank"])
+    (('slider-crank',), ('four-bar', 'slider-crank'))
+    >>> mechanisms(["four-bar", "slider-crnk"])
+    Traceback (most recent call last):
+        ...
+    grashof.problems.values.errors.ProblemError: mechanism[1] is 'slider-crnk'; did you mean slider-crank?
+    """
+    if isinstance(given, str):
+        return (mechanism(given),)
+    if not isinstance(given, Sequence) or not len(given):
+        raise wrong_value("mechanism", given, ANY_KINDS)
+    wrong: list[str] = []
+    for index, word in enumerate(given):
+        with noted(wrong):
+            mechanism(word, f"mechanism[{index}]")
+    refuse(wrong)
+    refuse([f"mechanism has {word} {count} times" for word, count in Counter(given).items() if count > 1])
+    return tuple(given)
+
+
+def mechanism(word: str, where: str = "mechanism") -> str:
+    """A word for a kind of linkages, checked."""
+    if isinstance(word, str) and word in KINDS:
+        return word
+    meant = near_miss(word, list(KINDS)) if isinstance(word, str) else None
+    if meant is not None:
+        raise ProblemError(f"{where} is {shown(word)}; did you mean {meant}?")
+    raise wrong_value(where, word, _ANY)

@@ -1,0 +1,161 @@
+"""Kinds of linkages in problem files: which are asked for, and what belongs to which."""
+
+import tomllib
+from dataclasses import replace
+
+import pytest
+
+from grashof.problems import Objective, PathTask, Problem, ProblemError, Requirements
+from grashof.problems.files.problem_file import problem_of
+from grashof.problems.files.problem_schema import problem_from
+from grashof.problems.files.problem_writing import problem_toml
+from grashof.problems.values.mechanisms import KINDS, having
+from grashof.problems.values.requirements import LIMITS, QUANTITIES
+
+POINTS = "[path]\npoints = [[0, 0], [1, 0], [2, 1], [3, 0]]\n"
+TASK = PathTask([[0, 0], [1, 0], [2, 1], [3, 0]])
+
+
+def problem(mechanism: str, requirements: str = "") -> Problem:
+    head = f"mechanism = {mechanism}\n" if mechanism else ""
+    text = f'kind = "path"\n{head}{POINTS}[requirements]\n{requirements}'
+    return problem_from(tomllib.loads(text), "test")
+
+
+def message(mechanism: str, requirements: str = "") -> str:
+    with pytest.raises(ProblemError) as caught:
+        problem(mechanism, requirements)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("given", "meant"),
+    [
+        ("", ("four-bar",)),
+        ('"four-bar"', ("four-bar",)),
+        ('"slider-crank"', ("slider-crank",)),
+        ('["inverted-slider-crank"]', ("inverted-slider-crank",)),
+        ('["slider-crank", "four-bar"]', ("slider-crank", "four-bar")),
+    ],
+)
+def test_the_kinds_that_are_asked_for_come_back(given: str, meant: tuple[str, ...]) -> None:
+    asked = problem(given)
+    assert asked.mechanism == meant
+    again = problem_of(problem_toml(asked), "here", "test")
+    assert again.mechanism == meant
+
+
+def test_a_problem_for_four_bars_is_written_as_ever() -> None:
+    assert "mechanism" not in problem_toml(Problem(task=TASK))
+
+
+@pytest.mark.parametrize(
+    ("given", "line"),
+    [
+        ('"slider-crnk"', "mechanism is 'slider-crnk'; did you mean slider-crank?"),
+        ('"Slider-Crank"', "mechanism is 'Slider-Crank'; did you mean slider-crank?"),
+        ('["four-bar", "foubar"]', "mechanism[1] is 'foubar'; did you mean four-bar?"),
+        (
+            '"wheel"',
+            "mechanism is 'wheel'; it must be four-bar, slider-crank or inverted-slider-crank",
+        ),
+        ('["four-bar", "four-bar"]', "mechanism has four-bar 2 times"),
+        (
+            "[]",
+            "mechanism is []; it must be four-bar, slider-crank or inverted-slider-crank, or a list of these",
+        ),
+        (
+            "4",
+            "mechanism is 4; it must be four-bar, slider-crank or inverted-slider-crank, or a list of these",
+        ),
+        (
+            "[4]",
+            "mechanism[0] is 4; it must be four-bar, slider-crank or inverted-slider-crank",
+        ),
+        (
+            '[["four-bar"]]',
+            "mechanism[0] is ['four-bar']; it must be four-bar, slider-crank or inverted-slider-crank",
+        ),
+    ],
+)
+def test_what_is_no_kind_is_refused_in_one_line(given: str, line: str) -> None:
+    assert message(given) == line
+
+
+def test_requirements_that_no_kind_has_are_refused_with_those_that_have_them() -> None:
+    assert message('"slider-crank"', "r4 = [1, 2]\no4 = [0, 0]\nground_angle_deg = 3").splitlines() == [
+        "requirements.r4 does not go with mechanism slider-crank; only four-bar has it",
+        "requirements.o4 does not go with mechanism slider-crank; only four-bar and inverted-slider-crank "
+        "have it",
+        "requirements.ground_angle_deg does not go with mechanism slider-crank; only four-bar and "
+        "inverted-slider-crank have it",
+    ]
+    assert message("", "stroke = [1, 2]") == (
+        "requirements.stroke does not go with mechanism four-bar; only slider-crank has it"
+    )
+    assert message('["slider-crank", "inverted-slider-crank"]', 'rotatability = "crank-rocker"') == (
+        'requirements.rotatability = "crank-rocker" does not go with mechanism slider-crank and '
+        "inverted-slider-crank; only four-bar has it"
+    )
+
+
+def test_a_mixed_list_may_limit_what_one_of_its_kinds_has() -> None:
+    asked = problem(
+        '["four-bar", "slider-crank"]', "r4 = [1, 2]\noffset = [-1, 1]\nstroke = [2, 3]\nslide_angle_deg = 20"
+    )
+    assert (asked.requirements.r4, asked.requirements.offset) == ((1, 2), (-1, 1))
+    assert (asked.requirements.stroke, asked.requirements.slide_angle_deg) == ((2, 3), 20)
+
+
+def test_goals_that_no_kind_has_are_refused() -> None:
+    with pytest.raises(
+        ProblemError, match=r"objective.maximise.output_swing does not go with mechanism slider-crank"
+    ):
+        problem_from(
+            tomllib.loads(
+                f'kind = "path"\nmechanism = "slider-crank"\n{POINTS}[objective]\nmaximise = "output_swing"'
+            ),
+            "test",
+        )
+
+
+@pytest.mark.parametrize("name", LIMITS)
+def test_kinds_that_have_a_limit_are_known(name: str) -> None:
+    kinds = LIMITS[name].quantity.kinds
+    assert set(kinds) <= set(KINDS)
+    for column in (name, f"{name}_x"):
+        if having(column):
+            assert kinds == having(column)
+
+
+def test_every_column_of_a_linkage_is_a_quantity_of_its_kind() -> None:
+    for word, kind in KINDS.items():
+        columns = {*kind.LENGTHS, *(name for row in kind.PARAMETERS for name in row.columns)} - {"assembly"}
+        listed = {quantity.column: quantity for quantity in QUANTITIES.values()}
+        assert columns <= listed.keys()
+        assert all(word in listed[name].kinds for name in columns)
+
+
+def test_python_may_say_it_with_a_word() -> None:
+    assert Problem(task=TASK, mechanism="slider-crank").mechanism == ("slider-crank",)  # type: ignore[arg-type]
+    with pytest.raises(ProblemError, match=r"requirements.offset does not go with mechanism four-bar"):
+        Problem(task=TASK, requirements=Requirements(offset=(0, 1)))
+
+
+def test_a_problem_for_one_kind_keeps_what_the_kind_has() -> None:
+    every = Problem(
+        task=TASK,
+        requirements=Requirements(r2=(1, 2), r4=(1, 2), offset=(0, 1), rotatability="crank-rocker"),  # type: ignore[arg-type]
+        objective=Objective(0.0, output_swing=1.0, compactness=0.5),
+        mechanism=tuple(KINDS),
+    )
+    assert every.for_kind("four-bar").requirements == replace(every.requirements, offset=None)
+    assert every.for_kind("four-bar").objective == every.objective
+    slider = every.for_kind("slider-crank")
+    assert slider.mechanism == ("slider-crank",)
+    assert slider.requirements == Requirements(r2=(1, 2), offset=(0, 1))
+    assert slider.objective == Objective(0.0, compactness=0.5)
+    assert (
+        replace(every, objective=Objective(0.0, output_swing=1.0)).for_kind("slider-crank").objective
+        == Objective()
+    )
