@@ -16,7 +16,7 @@ from grashof.analysis.forces.joints import Joint, joint_motion, margin
 from grashof.analysis.forces.loads import Friction, Loads, known_joint_moments, torsion_moments
 from grashof.analysis.forces.mass import Masses
 from grashof.analysis.forces.statics import load_power
-from grashof.analysis.four_bar.kinematics import Kinematics, solve_kinematics
+from grashof.analysis.four_bar.kinematics import Kinematics, SlideMotion, solve_kinematics
 from grashof.analysis.numerics.collocation import Acceleration, Events, Panel, Path, integrate_motion
 from grashof.problems import AssemblyError, DeadPositionWarning, ProblemError
 from grashof.problems.values.arrays import FloatArray
@@ -299,10 +299,14 @@ def _scaled(unit: Kinematics, omega2: FloatArray, alpha2: FloatArray) -> Kinemat
         omega2**2 * bend + alpha2 * rate
         for bend, rate in ((unit.alpha3, unit.omega3), (unit.alpha4, unit.omega4))
     )
+    slide = unit.slide
+    if slide is not None:
+        bend = omega2**2 * slide.acceleration + alpha2 * slide.velocity
+        slide = SlideMotion(slide.travel, omega2 * slide.velocity, bend, none)
     return Kinematics(
         unit.linkage, unit.theta2, unit.theta3, unit.theta4,
         omega2 * unit.omega2, omega2 * unit.omega3, omega2 * unit.omega4,
-        alpha2, alpha3, alpha4, none, none, none,
+        alpha2, alpha3, alpha4, none, none, none, slide,
     )  # fmt: skip
 
 

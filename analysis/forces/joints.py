@@ -7,6 +7,7 @@ from enum import IntEnum
 import numpy as np
 
 from grashof.analysis.four_bar.kinematics import Kinematics, PointMotion
+from grashof.analysis.loops.kinds import kind_of
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkage import Linkage
 
@@ -52,21 +53,14 @@ def joint_motion(state: Kinematics, joint: int) -> tuple[FloatArray, FloatArray]
     ndarray, shape (...), rad and rad/s; or length and length/s
         The travel of B from the foot of O2 on the line of the slide, or from A along the rod.
     """
+    if joint == slide_of(state.linkage) and state.slide is not None:
+        return state.slide.travel, state.slide.velocity
     first, second = JOINED[joint]
-    if joint == slide_of(state.linkage):
-        return _travel(state, first)
     angle, rate = state.angular(second)[:2]
     if first == 1:
         return angle, rate
     before, rate_before = state.angular(first)[:2]
     return angle - before, rate - rate_before
-
-
-def _travel(state: Kinematics, first: int) -> tuple[FloatArray, FloatArray]:
-    """Along a slide; as B is on the line through the first link's origin's foot, that does not turn it."""
-    along, begin, end = slide_direction(state), origin(state, first), state.b
-    way, rate = end.position - begin.position, end.velocity - begin.velocity
-    return (way * along).sum(axis=-1), (rate * along).sum(axis=-1)
 
 
 def slide_direction(state: Kinematics) -> FloatArray:
@@ -117,7 +111,5 @@ def moving_origins(linkage: Linkage) -> tuple[int, ...]:
 
 def frame_angle(state: Kinematics, link: int) -> FloatArray:
     """Direction of the u-axis of a link's frame, shape (...), rad: that of a slider is along its slide."""
-    if link == 4 and slide_of(state.linkage) is Joint.O4:
-        along: FloatArray = np.broadcast_to(state.linkage.theta1 - np.pi / 2, state.shape)
-        return along
-    return state.angular(link)[0]
+    theta = state.angular(link)[0]
+    return kind_of(state.linkage).direction4(state.linkage, theta) if link == 4 else theta

@@ -10,10 +10,10 @@ import numpy.typing as npt
 from grashof.analysis.forces.joints import Joint, joint_motion, moving_origins, origin, output_rate
 from grashof.analysis.forces.loads import Friction, Loads, known_joint_moments, wrenches
 from grashof.analysis.forces.mass import Masses
+from grashof.analysis.forces.virtual_motion import virtual_motion
 from grashof.analysis.four_bar.kinematics import Kinematics
-from grashof.analysis.four_bar.position import close_loop, sides
-from grashof.problems import FourBar
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.linkage import Linkage
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,12 +62,12 @@ class Holding:
     direction: FloatArray
 
 
-def advantage(linkage: FourBar, theta2: npt.ArrayLike) -> Advantage:
+def advantage(linkage: Linkage, theta2: npt.ArrayLike) -> Advantage:
     """Velocity ratio, mechanical advantage and force ratio at given driver angles.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
     theta2 : array_like, shape (...), rad
 
     Returns
@@ -82,6 +82,7 @@ def advantage(linkage: FourBar, theta2: npt.ArrayLike) -> Advantage:
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> norton = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
     >>> found = advantage(norton, np.radians([40, 250]))
     >>> found.velocity_ratio.round(6).tolist(), found.torque_ratio.round(4).tolist()
@@ -98,12 +99,12 @@ def advantage(linkage: FourBar, theta2: npt.ArrayLike) -> Advantage:
         )
 
 
-def holding(linkage: FourBar, theta2: npt.ArrayLike, masses: Masses, loads: Loads) -> Holding:
+def holding(linkage: Linkage, theta2: npt.ArrayLike, masses: Masses, loads: Loads) -> Holding:
     """What keeps a linkage at rest at given driver angles: a torque, a moment on link 4, a force at P.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
     theta2 : array_like, shape (...), rad
     masses : Masses
     loads : Loads
@@ -125,6 +126,7 @@ def holding(linkage: FourBar, theta2: npt.ArrayLike, masses: Masses, loads: Load
     A bar of 3 kg as the output of a square, P at B: half of its weight times the length.
 
     >>> from grashof.analysis.forces.mass import Body
+    >>> from grashof.problems import FourBar
     >>> square = FourBar(o2=(0, 0), o4=(2, 0), r2=2, r3=2, r4=2, coupler_point=(2, 0), assembly=1)
     >>> bar = Masses(Body(0), Body(0), Body(3.0, 0.0, (1.0, 0.0)))
     >>> held = holding(square, np.radians(60), bar, Loads(gravity=(0, -10)))
@@ -141,26 +143,6 @@ def holding(linkage: FourBar, theta2: npt.ArrayLike, masses: Masses, loads: Load
             force=-power / speed,
             direction=virtual.p.velocity / speed[..., None],
         )
-
-
-def virtual_motion(linkage: FourBar, theta2: npt.ArrayLike) -> tuple[Kinematics, Kinematics]:
-    """Positions with velocities that the linkage allows, and the same at rest.
-
-    The driver turns counter-clockwise by |sin(theta4 - theta3)|, so that the others have a limit in a
-    dead position: the rates of `solve_kinematics` times that.
-    """
-    loop = close_loop(sides(linkage), np.asarray(theta2, dtype=np.float64))
-    theta3, theta4 = np.arctan2(loop.sin3, loop.cos3), np.arctan2(loop.sin4, loop.cos4)
-    theta2 = np.broadcast_to(np.asarray(theta2, dtype=np.float64), np.shape(theta3))[()]
-    none = np.zeros(np.shape(theta3))
-    omega2 = linkage.assembly * loop.sine
-    omega3 = linkage.assembly * linkage.r2 / linkage.r3 * (loop.cos4 * loop.sin2 - loop.sin4 * loop.cos2)
-    omega4 = linkage.assembly * linkage.r2 / linkage.r4 * (loop.cos3 * loop.sin2 - loop.sin3 * loop.cos2)
-    higher = (none,) * 6
-    return (
-        Kinematics(linkage, theta2, theta3, theta4, omega2, omega3, omega4, *higher),
-        Kinematics(linkage, theta2, theta3, theta4, none, none, none, *higher),
-    )
 
 
 def virtual_power(virtual: Kinematics, state: Kinematics, masses: Masses, loads: Loads) -> FloatArray:
