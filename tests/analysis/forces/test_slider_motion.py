@@ -43,22 +43,21 @@ def lossless(spec: DynamicsSpec) -> DynamicsSpec:
     return replace(spec, loads=(), dampers=(), friction=None)
 
 
+@pytest.mark.parametrize(("omega2", "lasts", "margin"), [(40.0, 2.0, 0.2), (-40.0, 2.0, 0.3)])
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_released_linkage_keeps_its_energy_for_ten_turns(
-    kind: type[Linkage], slider_loads: Specs, made: Maker
+    kind: type[Linkage], omega2: float, lasts: float, margin: float, slider_loads: Specs, made: Maker
 ) -> None:
-    for linkage in made(kind, 3, margin=0.2):
+    for linkage in made(kind, 1, margin=margin):
         # A spring about a joint that turns fully is wound by less than half a turn, so its moment jumps.
         turning = kind is InvertedSliderCrank and linkage.r2 > linkage.r1
         springs = [each for each in slider_loads[kind].torsion_springs if each.between != (2, 3)]
         spec = replace(lossless(slider_loads[kind]), torsion_springs=() if turning else tuple(springs))
         masses, loads = stated_masses(linkage, spec), stated_loads(spec, 1.0)
-        for omega2 in (25.0, -25.0):
-            time = np.linspace(0, 4.0, 200)
-            free = free_response(linkage, masses, time, 0.4, omega2, loads=loads)
-            assert free.ending is Ending.TIME
-            assert abs(free.state.theta2[-1] - 0.4) > 10 * TURN
-            assert np.ptp(free.energy) < 1e-11 * np.abs(free.energy).max()
+        free = free_response(linkage, masses, np.linspace(0, lasts, 99), 0.4, omega2, loads=loads)
+        assert free.ending is Ending.TIME
+        assert abs(free.state.theta2[-1] - 0.4) > 10 * TURN
+        assert np.ptp(free.energy) < 1e-11 * np.abs(free.energy).max()
 
 
 @pytest.mark.parametrize("kind", KINDS)
