@@ -1,4 +1,4 @@
-"""Section forces, stresses and pins of slider kinds: equilibrium before each cut, closed forms, dense search."""
+"""Section forces, stresses and pins of slider kinds: equilibrium at each cut, closed forms, dense search."""
 
 from collections.abc import Callable
 
