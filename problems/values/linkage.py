@@ -100,6 +100,11 @@ class Linkage(Displayed):
 
         return type(self)(*map(change, self.PARAMETERS, self.parameters))
 
+    def changed(self, **parameters: npt.ArrayLike) -> Self:
+        """The linkage with other values of some of its parameters."""
+        stated = {row.name: value for row, value in zip(self.PARAMETERS, self.parameters, strict=True)}
+        return type(self)(**(stated | parameters))
+
     def __getitem__(self, index: Any) -> Self:
         index = index if isinstance(index, tuple) else (index,)
         rows = zip(self.PARAMETERS, self.parameters, strict=True)
