@@ -58,7 +58,7 @@ def plot_kinematics(
 
     Parameters
     ----------
-    linkage : FourBar, LinkageSpec or Candidate
+    linkage : Linkage, LinkageSpec or Candidate
     problem : Problem, optional
     quantities : str or sequence of str
         Of "angle", "angular velocity", "speed", "angular acceleration", "acceleration"; all by default.
@@ -103,7 +103,7 @@ def plot_dynamics(
 
     Parameters
     ----------
-    linkage : FourBar, LinkageSpec or Candidate
+    linkage : Linkage, LinkageSpec or Candidate
     problem : Problem, optional
     quantities : str or sequence of str
         Of "torque", "joint force", "shaking force"; all by default.

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from grashof.page.designs import linkage_data
 from grashof.page.panels import motion_sections
 from grashof.page.plot_data import Columns, is_thinned, plot_data
 from grashof.page.render import render
@@ -17,8 +18,8 @@ from grashof.survey.report import LinkageReport
 from grashof.wording.numbers import number_text, value_text
 
 _SCRIPTS = (
-    "linkage.js", "svg.js", "stage.js", "player.js", "axes.js", "picture.js", "curves.js", "tracks.js",
-    "saving.js", "analysis.js",
+    "kinds.js", "linkage.js", "svg.js", "stage.js", "player.js", "axes.js", "picture.js", "curves.js",
+    "tracks.js", "saving.js", "analysis.js",
 )  # fmt: skip
 _EXTREMES = (("min", "least"), ("theta2_min_deg", "at θ2"), ("max", "largest"), ("theta2_max_deg", "at θ2"))
 _SMALL = 30  # rows up to which a table stands in the page; a larger one is a file beside it
@@ -52,7 +53,7 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         "scene": {"unit": spec.length_unit},
         "designs": [
             {
-                "linkage": spec.linkage.stated,
+                "linkage": linkage_data(spec.linkage),
                 "low": low,
                 "high": high,
                 "turns": sweep.turns,

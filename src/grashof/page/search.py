@@ -20,8 +20,8 @@ from grashof.synth.search.tally import DISTINCT, Tally
 from grashof.wording.problem import goals, summary
 
 _SCRIPTS = (
-    "linkage.js", "svg.js", "stage.js", "player.js", "axes.js", "picture.js", "curves.js", "scatter.js",
-    "table.js", "compare.js", "search.js",
+    "kinds.js", "linkage.js", "svg.js", "stage.js", "player.js", "axes.js", "picture.js", "curves.js",
+    "scatter.js", "table.js", "compare.js", "search.js",
 )  # fmt: skip
 
 
