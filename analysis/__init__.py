@@ -75,9 +75,8 @@ from grashof.analysis.four_bar.driver_samples import driver_samples
 from grashof.analysis.four_bar.even_motion import EvenMotion, even_motion
 from grashof.analysis.four_bar.extremes import Extremes, extremes, extremes_of, transmission_extremes
 from grashof.analysis.four_bar.instant_centres import InstantCentres, instant_centres
-from grashof.analysis.four_bar.kinematics import Kinematics, PointMotion, solve_kinematics
+from grashof.analysis.four_bar.kinematics import Kinematics, PointMotion, SlideMotion, solve_kinematics
 from grashof.analysis.four_bar.mobility import (
-    GrashofClass,
     branch_index,
     circuit_index,
     dead_ends,
@@ -102,6 +101,7 @@ from grashof.analysis.judge.over_task import OverTask, over_task
 from grashof.analysis.judge.tolerance import Robustness, robustness, sensitivity
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.judge.verify import verify
+from grashof.analysis.loops.loop import GrashofClass
 
 __all__ = [
     "BAR_MEASURES",
@@ -159,6 +159,7 @@ __all__ = [
     "RodMotion",
     "SafetyFactor",
     "SectionForce",
+    "SlideMotion",
     "Spring",
     "StrengthHistory",
     "StrengthPeak",

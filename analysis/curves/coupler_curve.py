@@ -10,8 +10,9 @@ import numpy.typing as npt
 
 from grashof.analysis.four_bar.mobility import driver_ranges, range_index, rotatability
 from grashof.analysis.four_bar.position import Position, solve_position
+from grashof.analysis.loops.kinds import kind_of
 from grashof.analysis.numerics.minimisation import Model
-from grashof.problems import FourBar
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
 
 PIECES = 180  # of each range of the driver, when points are sought on the curve
@@ -20,13 +21,13 @@ _FINE = 180  # samples of half a turn, or of a range, by which the nodes are pla
 
 
 def coupler_curve(
-    linkage: FourBar, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None
+    linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
     """P = x + i y and its first two derivatives by the driver angle.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
     theta2 : array_like, shape (...), rad
     assembly : array_like, shape (...), optional
         The linkage's own by default.
@@ -38,8 +39,7 @@ def coupler_curve(
 
     Notes
     -----
-    The loop r2 e^(i theta2) + r3 e^(i theta3) = r1 e^(i theta1) + r4 e^(i theta4), differentiated
-    once and twice, each time multiplied by the conjugate of the direction that drops out.
+    The equations of the loop, differentiated once and twice; see `grashof.analysis.loops`.
     """
     state = solve_position(linkage, theta2, assembly)
     omega3, alpha3 = coupler_rates(linkage, state)
@@ -52,22 +52,13 @@ def coupler_curve(
     return state.p[..., 0] + 1j * state.p[..., 1], rate, bend
 
 
-def coupler_rates(linkage: FourBar, state: Position) -> tuple[FloatArray, FloatArray]:
+def coupler_rates(linkage: Linkage, state: Position) -> tuple[FloatArray, FloatArray]:
     """First and second derivative of theta3 by the driver angle; see `coupler_curve`."""
-    r2, r3, r4 = linkage.r2, linkage.r3, linkage.r4
-    spread = np.sin(state.theta3 - state.theta4)
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        omega3 = r2 * np.sin(state.theta4 - state.theta2) / (r3 * spread)
-        omega4 = r2 * np.sin(state.theta3 - state.theta2) / (r4 * spread)
-        inward = r2 * np.cos(state.theta2 - state.theta4) + r3 * omega3**2 * np.cos(
-            state.theta3 - state.theta4
-        )
-        alpha3 = (r4 * omega4**2 - inward) / (r3 * spread)
-    return omega3, alpha3
+    return kind_of(linkage).coupler_rates(linkage, state.theta2, state.theta3, state.theta4)
 
 
 def squared_distance(
-    linkage: FourBar, points: ComplexArray, assembly: IntArray, weights: FloatArray | float = 1.0
+    linkage: Linkage, points: ComplexArray, assembly: IntArray, weights: FloatArray | float = 1.0
 ) -> Callable[[FloatArray], Model]:
     """Squared distance from each point, weighted, as a function of its driver angle."""
 
@@ -111,12 +102,12 @@ class Track:
     cyclic: bool
 
 
-def tracks(linkage: FourBar, pieces: int, same_branch: bool) -> list[Track]:
+def tracks(linkage: Linkage, pieces: int, same_branch: bool) -> list[Track]:
     """Every motion that the driver can make.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     pieces : int
         Of each range of the driver.
@@ -139,7 +130,7 @@ def tracks(linkage: FourBar, pieces: int, same_branch: bool) -> list[Track]:
 
 
 def between(
-    linkage: FourBar, start: float, end: float, ends: tuple[float, float], pieces: int, same_branch: bool
+    linkage: Linkage, start: float, end: float, ends: tuple[float, float], pieces: int, same_branch: bool
 ) -> Track:
     """The part from `start` to `end` > `start` of the driver's range with these ends."""
     own = int(linkage.assembly)
@@ -148,7 +139,7 @@ def between(
     return _track(linkage, nodes, signs, *ends, cyclic=False)
 
 
-def range_around(linkage: FourBar, theta2: float) -> tuple[float, float]:
+def range_around(linkage: Linkage, theta2: float) -> tuple[float, float]:
     """Ends of the driver's range that holds an angle, counted from it; NaN when none does.
 
     Infinite for a driver that turns fully.
@@ -162,7 +153,7 @@ def range_around(linkage: FourBar, theta2: float) -> tuple[float, float]:
     return float(min(low, theta2)), float(max(high, theta2))
 
 
-def _turn(linkage: FourBar, pieces: int, signs: IntArray) -> Track:
+def _turn(linkage: Linkage, pieces: int, signs: IntArray) -> Track:
     # Closer about the ground line: there a linkage near a change point runs away from its driver.
     half = _closer_at_ends(0.0, np.pi)
     fine = linkage.theta1 + np.concatenate([half, half[1:] + np.pi])
@@ -171,7 +162,7 @@ def _turn(linkage: FourBar, pieces: int, signs: IntArray) -> Track:
     return _track(linkage, nodes, signs, -np.inf, np.inf, cyclic=True)
 
 
-def _swing(linkage: FourBar, low: float, high: float, pieces: int, signs: IntArray) -> Track:
+def _swing(linkage: Linkage, low: float, high: float, pieces: int, signs: IntArray) -> Track:
     nodes = _nodes(linkage, _closer_at_ends(low, high), pieces, signs)
     return _track(linkage, nodes, signs, low, high, cyclic=False)
 
@@ -181,7 +172,7 @@ def _closer_at_ends(low: float, high: float) -> FloatArray:
     return low + (high - low) * share
 
 
-def _nodes(linkage: FourBar, fine: FloatArray, pieces: int, signs: IntArray) -> FloatArray:
+def _nodes(linkage: Linkage, fine: FloatArray, pieces: int, signs: IntArray) -> FloatArray:
     """`pieces` + 1 of the angles between which P and the driver, half and half, move equally far."""
     p = solve_position(linkage, fine, signs[:, None]).p
     step = np.hypot(*np.moveaxis(np.diff(p, axis=1), -1, 0)).max(axis=0)
@@ -193,7 +184,7 @@ def _nodes(linkage: FourBar, fine: FloatArray, pieces: int, signs: IntArray) -> 
 
 
 def _track(
-    linkage: FourBar, nodes: FloatArray, signs: IntArray, floor: float, ceiling: float, *, cyclic: bool
+    linkage: Linkage, nodes: FloatArray, signs: IntArray, floor: float, ceiling: float, *, cyclic: bool
 ) -> Track:
     p = solve_position(linkage, nodes, signs[:, None]).p @ np.array([1, 1j])
     low, high = nodes[:-1], nodes[1:]

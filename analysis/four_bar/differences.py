@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.analysis.four_bar.kinematics import solve_kinematics
-from grashof.problems import FourBar, ProblemError
+from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray
 
 # Weights of f(x - k h) to f(x + k h), times h or h^2, by derivative and order of accuracy.
@@ -103,13 +103,13 @@ class Deviation:
 
 
 def compare_differences(
-    linkage: FourBar, theta2: npt.ArrayLike, omega2: float = 1.0, assembly: int | None = None
+    linkage: Linkage, theta2: npt.ArrayLike, omega2: float = 1.0, assembly: int | None = None
 ) -> tuple[Deviation, ...]:
     """Central differences of positions against the analytic velocities and accelerations.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     theta2 : array_like, shape (N,), rad
         In equal steps.
@@ -124,6 +124,7 @@ def compare_differences(
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> norton = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
     >>> worst = compare_differences(norton, np.radians(np.arange(0, 361, 5.0)))[0]
     >>> worst.quantity, worst.accuracy, round(worst.share, 4), float(np.degrees(worst.theta2).round(3))

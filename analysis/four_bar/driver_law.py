@@ -13,7 +13,7 @@ import scipy
 
 from grashof.analysis.four_bar.driver import DriverMotion
 from grashof.analysis.four_bar.kinematics import Kinematics, solve_kinematics
-from grashof.problems import FourBar
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
 from grashof.problems.values.motor import MotorSpec
 
@@ -89,7 +89,7 @@ class DriverLaw:
         share = (np.asarray(theta2, dtype=np.float64) - self.start) / self.rotation
         return np.asarray((share >= 0) & (share <= 1))
 
-    def state(self, linkage: FourBar, theta2: npt.ArrayLike) -> Kinematics:
+    def state(self, linkage: Linkage, theta2: npt.ArrayLike) -> Kinematics:
         """Kinematics of a linkage at driver angles of the motion."""
         return solve_kinematics(linkage, *self.at_angle(theta2))
 

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from grashof.problems import FourBar
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 
 _SAMPLES = 481
 _NEAR = np.logspace(-8, -2, 31)  # rad, about the positions that come closest to a dead one
 
 
-def driver_samples(linkage: FourBar, start: float, end: float) -> FloatArray:
+def driver_samples(linkage: Linkage, start: float, end: float) -> FloatArray:
     """Driver angles between two ends, close where a dead position may be near.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     start, end : float, rad
         In either order; both are among the samples.
@@ -29,6 +29,7 @@ def driver_samples(linkage: FourBar, start: float, end: float) -> FloatArray:
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> samples = driver_samples(FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3), 0.5, 6.0)
     >>> float(samples[0]), float(samples[-1]), bool((samples == np.pi).any())
     (0.5, 6.0, True)

@@ -9,8 +9,9 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from grashof.analysis.four_bar.mobility import CHANGE, driver_ranges, rotatability
-from grashof.problems import FourBar
+from grashof.analysis.four_bar.mobility import driver_ranges
+from grashof.analysis.loops.kinds import kind_of
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, FloatArray
 
 _SLACK = 1e-9  # rad: so far past the end of a range rounding may lie
@@ -136,12 +137,12 @@ class EvenMotion:
         return np.asarray(part / (2 * _quarter_period(self.modulus)) + turns)
 
 
-def even_motion(linkage: FourBar, start: float, end: float) -> EvenMotion:
+def even_motion(linkage: Linkage, start: float, end: float) -> EvenMotion:
     """A variable over which a linkage moves evenly between two driver angles.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     start, end : float, rad
         Driver angles, in either order; more than a turn apart where the driver turns fully.
@@ -168,6 +169,7 @@ def even_motion(linkage: FourBar, start: float, end: float) -> EvenMotion:
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> nearly_dead = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=4.5, r4=2.501)
     >>> np.degrees(even_motion(nearly_dead, 0.0, np.pi).theta2([0, 0.25, 0.5, 0.75, 1])).round(3).tolist()
     [0.0, 3.126, 16.409, 74.602, 180.0]
@@ -177,7 +179,8 @@ def even_motion(linkage: FourBar, start: float, end: float) -> EvenMotion:
     if home is None:
         return plain
     way, centre, a, b = home
-    c, x = float(np.sqrt(abs(a) / (1 + a))), float(np.sqrt((1 + b) / abs(b)))
+    c = 1.0 if np.isinf(a) else float(np.sqrt(abs(a) / (1 + a)))
+    x = 1.0 if np.isinf(b) else float(np.sqrt((1 + b) / abs(b)))
     modulus = {_Way.TURNS: c / x, _Way.THROUGH: c / np.hypot(c, x), _Way.BESIDE: c / x}[way]
     size = c if way is _Way.TURNS else -x if way is _Way.BESIDE and start + end < 2 * centre else x
     motion = replace(plain, way=way, centre=centre, scale=size, modulus=float(modulus))
@@ -185,15 +188,11 @@ def even_motion(linkage: FourBar, start: float, end: float) -> EvenMotion:
     return replace(motion, first=first, last=last)
 
 
-def _home(linkage: FourBar, low: float, high: float) -> tuple[_Way, float, float, float] | None:
+def _home(linkage: Linkage, low: float, high: float) -> tuple[_Way, float, float, float] | None:
     """How the driver moves between two angles, the angle that it is counted from, and a and b."""
-    r1, r2, r3, r4 = map(float, linkage.lengths)
-    if not r1 * r2 > 0:  # the ground pivots coincide: all links turn together
+    a, b = kind_of(linkage).even(linkage)
+    if np.isnan(a):
         return None
-    stretched, folded = rotatability(linkage).tolist()
-    scale = (r1 + r2 + r3 + r4) / (4 * r1 * r2)
-    a = folded * scale * (abs(r1 - r2) + abs(r3 - r4)) if abs(folded) > CHANGE else 1.0
-    b = stretched * scale * (r1 + r2 + r3 + r4) if abs(stretched) > CHANGE else 1.0
     theta1 = float(linkage.theta1)
     if a > 0 and b > 0:
         return _Way.TURNS, theta1, a, b

@@ -12,9 +12,10 @@ from numpy.polynomial import chebyshev
 
 from grashof.analysis.four_bar.even_motion import even_motion
 from grashof.analysis.four_bar.kinematics import Kinematics, solve_kinematics
-from grashof.analysis.four_bar.mobility import CHANGE, dead_ends, driver_ranges, full_rotation, rotatability
+from grashof.analysis.four_bar.mobility import dead_ends, driver_ranges, full_rotation, rotatability
 from grashof.analysis.four_bar.transmission import ground_line_transmission, quality, transmission_angle
-from grashof.problems import AssemblyError, FourBar, ProblemError
+from grashof.analysis.loops.loop import CHANGE
+from grashof.problems import AssemblyError, Linkage, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 
 Quantity: TypeAlias = Callable[[Kinematics], FloatArray]
@@ -50,7 +51,7 @@ class Extremes:
 
 
 def extremes(
-    linkage: FourBar,
+    linkage: Linkage,
     quantity: Quantity,
     omega2: float = 1.0,
     start: float | None = None,
@@ -61,7 +62,7 @@ def extremes(
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     quantity : callable
         From a `Kinematics` to values, such as ``lambda state: state.b.speed``.
@@ -87,6 +88,7 @@ def extremes(
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> norton = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
     >>> swing = extremes(norton, lambda state: state.theta4)
     >>> np.degrees([swing.stroke, swing.at_low, swing.at_high]).round(4).tolist()
@@ -106,12 +108,12 @@ def extremes(
     return Extremes(found.low, found.high, at_low, at_high)
 
 
-def transmission_extremes(linkage: FourBar, start: float, end: float) -> Extremes:
+def transmission_extremes(linkage: Linkage, start: float, end: float) -> Extremes:
     """Least and largest transmission angle between two driver angles, in closed form.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage that closes all the way.
     start, end : float, rad
         In either order.
@@ -127,6 +129,7 @@ def transmission_extremes(linkage: FourBar, start: float, end: float) -> Extreme
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3)
     >>> found = transmission_extremes(rocker, *driver_ranges(rocker)[0])
     >>> np.degrees([found.low, found.high]).round(4).tolist()
@@ -188,7 +191,7 @@ def refined(
     return Extremes(-low, high, at_low, at_high)
 
 
-def motion_between(linkage: FourBar, start: float | None, end: float | None) -> tuple[float, float, bool]:
+def motion_between(linkage: Linkage, start: float | None, end: float | None) -> tuple[float, float, bool]:
     """Ends of the motion, and whether it is a whole turn."""
     turns = bool(full_rotation(linkage))
     if start is None or end is None:

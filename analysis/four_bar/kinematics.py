@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from grashof.analysis.four_bar.mobility import driver_ranges
-from grashof.analysis.four_bar.position import Sides, close_loop, sides
+from grashof.analysis.four_bar.position import sides
+from grashof.analysis.loops.kinds import kind_of
+from grashof.analysis.loops.loop import Sides
 from grashof.analysis.numerics.blockwise import in_blocks
-from grashof.problems import AssemblyError, DeadPositionWarning, FourBar, ProblemError
+from grashof.problems import AssemblyError, DeadPositionWarning, Linkage, ProblemError
 from grashof.problems.values.arrays import BoolArray, FloatArray
 from grashof.problems.values.errors import wrong_value
 
-# Below this sin(theta4 - theta3) its digits are rounding: one unit in the last place of the driver
+# Below this sine of the transmission angle its digits are rounding: one unit in the last place of the driver
 # angle or of a length changes the velocities by more than a tenth.
 _DEAD = 1e-7
 
@@ -46,6 +50,24 @@ class PointMotion:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class SlideMotion:
+    """How far a slide has gone, and its rates.
+
+    Parameters
+    ----------
+    travel : ndarray, shape (...), length
+        Of the slider along its slide, from where O2 is nearest to it; or of the rod through its block: B
+        from A, along the rod.
+    velocity, acceleration, jerk : ndarray, shape (...), length over s to s^3
+    """
+
+    travel: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    jerk: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Kinematics:
     """How every link turns, for each driver angle; NaN where the linkage cannot close.
 
@@ -54,15 +76,17 @@ class Kinematics:
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
     theta2, theta3, theta4 : ndarray, shape (...), rad
-        Directions O2->A, A->B, O4->B; theta3 and theta4 in [-pi, pi].
+        Directions of links 2, 3 and 4, of a four-bar O2->A, A->B, O4->B; theta3 and theta4 in [-pi, pi].
     omega2, omega3, omega4 : ndarray, shape (...), rad/s
     alpha2, alpha3, alpha4 : ndarray, shape (...), rad/s^2
     jerk2, jerk3, jerk4 : ndarray, shape (...), rad/s^3
+    slide : SlideMotion, optional
+        None of a linkage without a slide.
     """
 
-    linkage: FourBar
+    linkage: Linkage
     theta2: FloatArray
     theta3: FloatArray
     theta4: FloatArray
@@ -75,6 +99,7 @@ class Kinematics:
     jerk2: FloatArray
     jerk3: FloatArray
     jerk4: FloatArray
+    slide: SlideMotion | None = None
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -88,8 +113,8 @@ class Kinematics:
 
     @property
     def b(self) -> PointMotion:
-        """Joint B, as the end of link 4."""
-        return self.point(4, _along(self.linkage.r4))
+        """B, as a point of link 4."""
+        return self.point(4, _along(kind_of(self.linkage).b_from(self.linkage)))
 
     @property
     def p(self) -> PointMotion:
@@ -114,7 +139,8 @@ class Kinematics:
         link : int
             2, 3 or 4.
         at : array_like, shape (..., 2), length
-            (u, v) in the link's frame: origin O2, A or O4, u towards A, B or B, v to its left.
+            (u, v) in the link's frame: origin O2, A or O4, u towards A, B or B, v to its left. The frame of
+            a slider begins in B, u along its slide; that of a block in O4, u along theta4.
 
         Returns
         -------
@@ -127,6 +153,7 @@ class Kinematics:
 
         Examples
         --------
+        >>> from grashof.problems import FourBar
         >>> norton = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
         >>> state = solve_kinematics(norton, np.radians(40), omega2=25, alpha2=15)
         >>> state.point(4, (80, 0)).velocity.round(3).tolist()
@@ -135,15 +162,26 @@ class Kinematics:
         at = np.asarray(at, dtype=np.float64)
         if at.shape[-1:] != (2,):
             raise ProblemError(f"at has shape {at.shape}; it must be (..., 2)")
-        carried = _carried(at, self.angular(link))
-        if link == 3:
-            carried = carried + _carried(_along(self.linkage.r2), self.angular(2))
-        carried[0] += self.linkage.o4 if link == 4 else self.linkage.o2
+        turning = self.angular(link)
+        if link == 4:
+            turning = (kind_of(self.linkage).direction4(self.linkage, self.theta4), *turning[1:])
+        carried = _carried(at, turning)
+        for before, length in self._before(link):
+            carried = carried + _carried(_along(length), self.angular(before))
+        carried[0] += self.linkage.o4 if link == 4 and "o4" in self.linkage.GROUND else self.linkage.o2
         return PointMotion(*carried)
+
+    def _before(self, link: int) -> tuple[tuple[int, FloatArray], ...]:
+        """The links between the ground and the origin of a link's frame, with their lengths."""
+        if link == 3:
+            return ((2, self.linkage.r2),)
+        if link == 4 and "o4" not in self.linkage.GROUND:
+            return (2, self.linkage.r2), (3, self.linkage.r3)
+        return ()
 
 
 def solve_kinematics(
-    linkage: FourBar,
+    linkage: Linkage,
     theta2: npt.ArrayLike,
     omega2: npt.ArrayLike = 1.0,
     alpha2: npt.ArrayLike = 0.0,
@@ -154,7 +192,7 @@ def solve_kinematics(
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         One, or a batch whose axes broadcast against the driver's (``batch[:, None]`` for all
         linkages at all angles).
     theta2, omega2, alpha2, jerk2 : array_like, shape (...), rad over s^0 to s^3
@@ -175,24 +213,25 @@ def solve_kinematics(
     Warns
     -----
     DeadPositionWarning
-        Coupler and output lie in one line at an angle named, so their rates are infinite.
+        The transmission angle is 0 or 180 deg at an angle named, so that rates are infinite.
 
     Notes
     -----
-    The loop r2 e^{i theta2} + r3 e^{i theta3} - r4 e^{i theta4} = const, differentiated, is two
-    linear equations for each derivative; crossing it with e^{i theta4} or e^{i theta3} leaves one
-    unknown each (Norton, *Design of Machinery*, secs. 6.7, 7.3). The determinant,
-    sin(theta4 - theta3), comes from the area of A-B-O4 and keeps its digits near a dead position.
+    The equations of the loop, differentiated, are two linear ones for each derivative; their formulas are
+    in `grashof.analysis.loops`, a file each kind (Norton, *Design of Machinery*, secs. 6.7, 7.3).
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> norton = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
     >>> state = solve_kinematics(norton, np.radians(40), omega2=25, alpha2=15)
     >>> [float(value.round(6)) for value in (state.omega3, state.omega4, state.alpha3, state.alpha4)]
     [-4.120914, 6.997985, 296.089193, 470.13353]
     """
     driver = [np.asarray(value, dtype=np.float64) for value in (theta2, omega2, alpha2, jerk2)]
-    solved = in_blocks(_solve, [*map(np.asarray, sides(linkage, assembly)), *driver], 9)
+    loop_sides = sides(linkage, assembly)
+    slides = kind_of(linkage).slides
+    solved = in_blocks(_solution(type(loop_sides)), [*map(np.asarray, loop_sides), *driver], 9 + 4 * slides)
     *rates, dead = solved
     shape = dead.shape
     theta2, omega2, alpha2, jerk2 = (np.broadcast_to(value, shape)[()] for value in driver)
@@ -200,63 +239,28 @@ def solve_kinematics(
         raise AssemblyError(_cannot_close(linkage, float(theta2)))
     if dead.any():
         _warn_of(theta2, dead > 0)
-    theta3, theta4, omega3, omega4, alpha3, alpha4, jerk3, jerk4 = (rate[()] for rate in rates)
+    theta3, theta4, omega3, omega4, alpha3, alpha4, jerk3, jerk4, *slide = (rate[()] for rate in rates)
     return Kinematics(
-        linkage, theta2, theta3, theta4, omega2, omega3, omega4, alpha2, alpha3, alpha4, jerk2, jerk3, jerk4
-    )
+        linkage, theta2, theta3, theta4, omega2, omega3, omega4, alpha2, alpha3, alpha4, jerk2, jerk3, jerk4,
+        SlideMotion(*slide) if slides else None,
+    )  # fmt: skip
 
 
-def _solve(*operands: FloatArray) -> tuple[FloatArray, ...]:
-    """Angles, velocities, accelerations, jerks of links 3 and 4, and 1 where the position is dead."""
-    loop_sides, (theta2, omega2, alpha2, jerk2) = Sides(*operands[:7]), operands[7:]
-    _, _, r2, r3, r4, sign, _ = loop_sides
-    loop = close_loop(loop_sides, theta2)
-    cos2, sin2, cos3, sin3, cos4, sin4, sine, _, _ = loop
-    dead = np.abs(sine) <= _DEAD
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        inverse = 1 / (np.where(dead, np.copysign(0.0, sign), sine) if dead.any() else sine)
-        over3, over4 = inverse / r3, inverse / r4
-        # Sines and cosines of the angles between the links.
-        sine42, sine32 = cos4 * sin2 - sin4 * cos2, cos3 * sin2 - sin3 * cos2
-        cosine42, cosine32 = cos4 * cos2 + sin4 * sin2, cos3 * cos2 + sin3 * sin2
-        cosine43 = cos4 * cos3 + sin4 * sin3
-        tip2 = r2 * omega2
-        omega3, omega4 = tip2 * sine42 * over3, tip2 * sine32 * over4
-        tip3, tip4 = r3 * omega3, r4 * omega4
-        # Centripetal terms, then their rates: with zeta - omega^3 for alpha and 3 omega alpha for
-        # omega^2 the equations of the jerk are those of the acceleration.
-        pull2, pull3, pull4 = tip2 * omega2, tip3 * omega3, tip4 * omega4
-        push2 = r2 * alpha2
-        alpha3 = (push2 * sine42 + pull2 * cosine42 + pull3 * cosine43 - pull4) * over3
-        alpha4 = (push2 * sine32 + pull2 * cosine32 + pull3 - pull4 * cosine43) * over4
-        push2 = r2 * (jerk2 - omega2**2 * omega2)
-        pull2, pull3, pull4 = 3 * tip2 * alpha2, 3 * tip3 * alpha3, 3 * tip4 * alpha4
-        jerk3 = (push2 * sine42 + pull2 * cosine42 + pull3 * cosine43 - pull4) * over3 + omega3**2 * omega3
-        jerk4 = (push2 * sine32 + pull2 * cosine32 + pull3 - pull4 * cosine43) * over4 + omega4**2 * omega4
-        if dead.any():
-            rates = (omega3, omega4, alpha3, alpha4, jerk3, jerk4)
-            leading = _leading_at_dead(omega3, omega4, r3, r4, np.sign(cosine43), sign)
-            omega3, omega4, alpha3, alpha4, jerk3, jerk4 = (
-                np.where(dead, infinite, rate) for infinite, rate in zip(leading, rates, strict=True)
-            )
-    theta3, theta4 = np.arctan2(sin3, cos3), np.arctan2(sin4, cos4)
-    return theta3, theta4, omega3, omega4, alpha3, alpha4, jerk3, jerk4, dead.astype(np.float64)
+def _solution(kind: type[Any]) -> Callable[..., tuple[FloatArray, ...]]:
+    """Angles, velocities, accelerations, jerks of links 3 and 4, those of a slide, and 1 where it is dead."""
+    parts = len(kind._fields)
 
+    def solve(*operands: FloatArray) -> tuple[FloatArray, ...]:
+        loop_sides: Sides = kind(*operands[:parts])
+        theta2, *driver = operands[parts:]
+        loop = loop_sides.close(theta2)
+        dead = np.abs(loop.sine) <= _DEAD
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            rates = loop_sides.rates(loop, dead, *driver)
+        theta3, theta4 = np.arctan2(loop.sin3, loop.cos3), np.arctan2(loop.sin4, loop.cos4)
+        return theta3, theta4, *rates, dead.astype(np.float64)
 
-def _leading_at_dead(
-    omega3: FloatArray, omega4: FloatArray, r3: FloatArray, r4: FloatArray, same: FloatArray, sign: FloatArray
-) -> tuple[FloatArray, ...]:
-    """Infinite rates of links 3 and 4 with the sign of the term that grows fastest.
-
-    With s = sin(theta4 - theta3) and `same` = cos(theta4 - theta3) = +-1, omega goes like 1/s,
-    alpha like 1/s^3 and the jerk, its rate, like -3 s'/s^4.
-    """
-    bend3, bend4 = same / r3 - 1 / r4, 1 / r3 - same / r4
-    alpha3, alpha4 = sign * bend3 * np.abs(omega3), sign * bend4 * np.abs(omega4)
-    # r3 omega3 and r4 omega4 agree up to `same`; their difference decides the sign of s'.
-    closing = same * np.sign(omega4) * (1 / r4 - same / r3)
-    jerk3, jerk4 = -bend3 * closing * np.abs(omega3), -bend4 * closing * np.abs(omega4)
-    return omega3, omega4, alpha3, alpha4, jerk3, jerk4
+    return solve
 
 
 def _carried(at: FloatArray, angular: tuple[FloatArray, ...]) -> FloatArray:
@@ -306,7 +310,7 @@ def _warn_of(theta2: FloatArray, dead: BoolArray) -> None:
     )
 
 
-def _cannot_close(linkage: FourBar, theta2: float) -> str:
+def _cannot_close(linkage: Linkage, theta2: float) -> str:
     ranges = driver_ranges(linkage)
     open_at = f"the linkage cannot close at driver angle {np.degrees(theta2):.6g} deg"
     ends = [f"{low:.6g} to {high:.6g}" for low, high in np.degrees(ranges) if np.isfinite(low)]

@@ -9,18 +9,18 @@ import numpy as np
 from grashof.analysis.four_bar.driver_law import DriverLaw
 from grashof.analysis.four_bar.even_motion import even_motion
 from grashof.analysis.numerics.quadrature import Curve, integrate
-from grashof.problems import FourBar
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 
 
 def mean_over(
-    linkage: FourBar, curve: Curve, start: float, end: float, panels: int = 36
+    linkage: Linkage, curve: Curve, start: float, end: float, panels: int = 36
 ) -> tuple[FloatArray, FloatArray]:
     """Mean of one quantity or several over a motion of the driver, as over time at a steady speed.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     curve : callable
         From driver angles, shape (N,), to values, shape (..., N).
@@ -36,6 +36,7 @@ def mean_over(
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> norton = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
     >>> mean, error = mean_over(norton, lambda theta2: np.sin(theta2) ** 2, 0.0, np.pi)
     >>> float(mean.round(12)), bool(error < 1e-12)
@@ -50,7 +51,7 @@ def mean_over(
 
 
 def mean_in_time(
-    linkage: FourBar, law: DriverLaw, curve: Curve, panels: int = 36
+    linkage: Linkage, law: DriverLaw, curve: Curve, panels: int = 36
 ) -> tuple[FloatArray, FloatArray]:
     """Mean over the time that the driver takes from one angle to another; parameters as for `mean_over`.
 

@@ -1,47 +1,28 @@
-"""How far a four-bar can move: Grashof class, rotatability, driver ranges, circuits and branches."""
+"""How far a linkage can move: its class, rotatability, driver ranges, circuits and branches."""
 
 from __future__ import annotations
-
-from enum import StrEnum
 
 import numpy as np
 import numpy.typing as npt
 
 from grashof.analysis.four_bar.position import close_loop, sides
-from grashof.problems import FourBar
+from grashof.analysis.loops.kinds import kind_of
+from grashof.analysis.loops.loop import CHANGE, GrashofClass
+from grashof.problems import FourBar, Linkage
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 
-CHANGE = 1e-12  # share of r1+r2+r3+r4 within which a linkage has a change point
 _OUTWARDS = np.concatenate([[0], 2.0 ** np.arange(14)]) * np.finfo(np.float64).eps  # rad: rounding of an end
 
 
-class GrashofClass(StrEnum):
-    """Kinds of four-bar by which links turn fully (link 2 is the driver)."""
-
-    CRANK_ROCKER = "crank-rocker"
-    DOUBLE_CRANK = "double-crank"
-    DOUBLE_ROCKER = "double-rocker"
-    ROCKER_CRANK = "rocker-crank"
-    CHANGE_POINT = "change-point"
-    NON_GRASHOF = "non-Grashof"
-
-
-_BY_SHORTEST = (
-    GrashofClass.DOUBLE_CRANK,
-    GrashofClass.CRANK_ROCKER,
-    GrashofClass.DOUBLE_ROCKER,
-    GrashofClass.ROCKER_CRANK,
-)
-
-
-def grashof_class(linkage: FourBar, tolerance: float = CHANGE) -> GrashofClass:
-    """Grashof class of a single linkage.
+def grashof_class(linkage: Linkage, tolerance: float = CHANGE) -> GrashofClass:
+    """Grashof class of a single linkage, or what takes its place with a slide.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
     tolerance : float
-        s + l and p + q count as equal (change point) within this share of their sum.
+        s + l and p + q count as equal (change point) within this share of their sum; of a linkage with a
+        slide, its `rotatability` counts as zero.
 
     Returns
     -------
@@ -50,22 +31,19 @@ def grashof_class(linkage: FourBar, tolerance: float = CHANGE) -> GrashofClass:
     Notes
     -----
     With shortest s, longest l and the others p, q: s + l < p + q is Grashof, and the shortest
-    link names the kind (Grashof 1883; Norton, *Design of Machinery*, sec. 2.13).
+    link names the kind (Grashof 1883; Norton, *Design of Machinery*, sec. 2.13). With a slide the driver
+    of a slider-crank turns fully and that of a slider-rocker swings; of an inverted one whose driver turns
+    fully the block swings (crank-shaper) or turns (Whitworth).
 
     Examples
     --------
     >>> str(grashof_class(FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)))
     'crank-rocker'
     """
-    lengths = linkage.lengths
-    shortest, p, q, longest = np.sort(lengths)
-    excess = p + q - shortest - longest
-    if abs(excess) <= tolerance * lengths.sum():
-        return GrashofClass.CHANGE_POINT
-    return _BY_SHORTEST[int(np.argmin(lengths))] if excess > 0 else GrashofClass.NON_GRASHOF
+    return kind_of(linkage).class_of(linkage, tolerance)
 
 
-def triple_rocker_kind(linkage: FourBar) -> str:
+def triple_rocker_kind(linkage: Linkage) -> str:
     """Barker's kind of a non-Grashof linkage, RRR1 to RRR4 by its longest link; '' for the others.
 
     Notes
@@ -73,22 +51,24 @@ def triple_rocker_kind(linkage: FourBar) -> str:
     Barker 1985, *A complete classification of planar four-bar linkages*: the number is that of the
     longest link (ground, driver, coupler, output).
     """
-    if grashof_class(linkage) is not GrashofClass.NON_GRASHOF:
+    if not isinstance(linkage, FourBar) or grashof_class(linkage) is not GrashofClass.NON_GRASHOF:
         return ""
     return f"RRR{int(np.argmax(linkage.lengths)) + 1}"
 
 
-def rotatability(linkage: FourBar) -> FloatArray:
-    """The two differences whose signs decide how the driver turns, as shares of r1+r2+r3+r4.
+def rotatability(linkage: Linkage) -> FloatArray:
+    """The two differences whose signs decide how the driver turns, as shares of the lengths.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
 
     Returns
     -------
     ndarray, shape (..., 2)
-        (r3 + r4 - r1 - r2) and (|r1 - r2| - |r3 - r4|). Both positive: the driver turns fully. Both
+        (r3 + r4 - r1 - r2) and (|r1 - r2| - |r3 - r4|), as shares of r1 + r2 + r3 + r4. Of a slider-crank
+        (r3 - r2 - offset) and (r3 - r2 + offset), of r2 + r3 + |offset|; of an inverted one 1 and
+        (|r1 - r2| - |offset|), of r1 + r2 + |offset|. Both positive: the driver turns fully. Both
         negative: it swings in two separate ranges. Otherwise it swings in one, through
         theta1 + pi when the first is positive, through theta1 when the second is.
 
@@ -97,13 +77,10 @@ def rotatability(linkage: FourBar) -> FloatArray:
     The diagonal A-O4 runs from |r1 - r2| to r1 + r2 and has to stay between |r3 - r4| and r3 + r4
     (McCarthy & Soh, *Geometric Design of Linkages*, sec. 2.2).
     """
-    r1, r2, r3, r4 = np.moveaxis(linkage.lengths, -1, 0)
-    stretched, folded = r3 + r4 - r1 - r2, np.abs(r1 - r2) - np.abs(r3 - r4)
-    shares: FloatArray = np.stack([stretched, folded], axis=-1) / (r1 + r2 + r3 + r4)[..., None]
-    return shares
+    return kind_of(linkage).shares(linkage)
 
 
-def full_rotation(linkage: FourBar) -> BoolArray:
+def full_rotation(linkage: Linkage) -> BoolArray:
     """Whether the driver turns fully without a dead position, shape (...).
 
     A linkage with a change point does not: it has one there.
@@ -112,12 +89,12 @@ def full_rotation(linkage: FourBar) -> BoolArray:
     return turns
 
 
-def passes_change_point(linkage: FourBar, start: float, end: float) -> bool:
+def passes_change_point(linkage: Linkage, start: float, end: float) -> bool:
     """Whether a motion of the driver takes a linkage to a change point, where all joints are in line.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     start, end : float, rad
         Driver angles of the motion, in either order.
@@ -139,12 +116,12 @@ def passes_change_point(linkage: FourBar, start: float, end: float) -> bool:
     return bool((folded and (passed % 2 == 0).any()) or (stretched and (passed % 2 == 1).any()))
 
 
-def driver_ranges(linkage: FourBar) -> FloatArray:
+def driver_ranges(linkage: Linkage) -> FloatArray:
     """Driver angles at which the linkage can be assembled.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
 
     Returns
     -------
@@ -154,8 +131,9 @@ def driver_ranges(linkage: FourBar) -> FloatArray:
 
     Notes
     -----
-    cos(theta2 - theta1) runs between (r1^2 + r2^2 - (r3 +- r4)^2) / (2 r1 r2) (McCarthy & Soh,
-    sec. 2.2.2).
+    With phi = theta2 - theta1, counted across the slide of a slider-crank, the loop closes where
+    sin^2(phi/2) + a >= 0 and cos^2(phi/2) + b >= 0. Of a four-bar cos(phi) runs between
+    (r1^2 + r2^2 - (r3 +- r4)^2) / (2 r1 r2) (McCarthy & Soh, sec. 2.2.2).
 
     Examples
     --------
@@ -163,19 +141,12 @@ def driver_ranges(linkage: FourBar) -> FloatArray:
     >>> np.degrees(driver_ranges(triple_rocker)[0]).round(3).tolist()
     [-108.21, 108.21]
     """
-    r1, r2, r3, r4 = np.moveaxis(linkage.lengths, -1, 0)
-    # Half-angle forms of the law of cosines keep their digits near 0 and pi.
-    half_stretched = np.arctan2(
-        np.sqrt(np.maximum((r3 + r4) ** 2 - (r1 - r2) ** 2, 0)),
-        np.sqrt(np.maximum((r1 + r2) ** 2 - (r3 + r4) ** 2, 0)),
-    )
-    half_folded = np.arctan2(
-        np.sqrt(np.maximum((r3 - r4) ** 2 - (r1 - r2) ** 2, 0)),
-        np.sqrt(np.maximum((r1 + r2) ** 2 - (r3 - r4) ** 2, 0)),
-    )
+    a, more_a, b, more_b, assembled = kind_of(linkage).span(linkage)
+    # Half-angle forms keep their digits near 0 and pi.
+    half_stretched = np.arctan2(np.sqrt(np.maximum(more_b, 0)), np.sqrt(np.maximum(-b, 0)))
+    half_folded = np.arctan2(np.sqrt(np.maximum(-a, 0)), np.sqrt(np.maximum(more_a, 0)))
     reach, gap = 2 * half_stretched, 2 * half_folded  # pi and 0 where there is no limit
     through_ground, through_back = half_folded == 0, half_stretched == np.pi / 2
-    assembled = ((r3 + r4) >= np.abs(r1 - r2)) & (np.abs(r3 - r4) <= r1 + r2)
     low = np.where(through_ground, -reach, gap)
     high = np.where(through_back & ~through_ground, 2 * np.pi - gap, reach)
     two = ~through_ground & ~through_back & assembled
@@ -185,12 +156,12 @@ def driver_ranges(linkage: FourBar) -> FloatArray:
     return ranges
 
 
-def dead_ends(linkage: FourBar, low: float, high: float) -> tuple[float, float]:
+def dead_ends(linkage: Linkage, low: float, high: float) -> tuple[float, float]:
     """Ends of a driver's range, put outwards by so much of their rounding that they are dead positions.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     low, high : float, rad
         A range of `driver_ranges`.
@@ -198,7 +169,7 @@ def dead_ends(linkage: FourBar, low: float, high: float) -> tuple[float, float]:
     Returns
     -------
     low, high : float, rad
-        `solve_position` has links 3 and 4 in one line there. As they are where that cannot be.
+        `solve_position` has a transmission angle of 0 or 180 deg there. As they are where that cannot be.
 
     Notes
     -----
@@ -212,12 +183,12 @@ def dead_ends(linkage: FourBar, low: float, high: float) -> tuple[float, float]:
     return float(places[0, first[0]]), float(places[1, first[1]])
 
 
-def range_index(linkage: FourBar, theta2: npt.ArrayLike, slack: float = 1e-9) -> tuple[IntArray, FloatArray]:
+def range_index(linkage: Linkage, theta2: npt.ArrayLike, slack: float = 1e-9) -> tuple[IntArray, FloatArray]:
     """The driver range that each angle lies in, and the angle as counted inside that range.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     theta2 : array_like, shape (...), rad
     slack : float, rad
@@ -242,12 +213,12 @@ def range_index(linkage: FourBar, theta2: npt.ArrayLike, slack: float = 1e-9) ->
     return index, inside
 
 
-def circuit_index(linkage: FourBar, theta2: npt.ArrayLike, assembly: npt.ArrayLike) -> IntArray:
+def circuit_index(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike) -> IntArray:
     """Circuit that each position lies on: positions on different ones cannot be joined by motion.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     theta2 : array_like, shape (...), rad
     assembly : array_like, shape (...)
@@ -276,7 +247,7 @@ def circuit_index(linkage: FourBar, theta2: npt.ArrayLike, assembly: npt.ArrayLi
     return np.broadcast_to(index, np.broadcast_shapes(np.shape(index), np.shape(assembly)))
 
 
-def branch_index(linkage: FourBar, theta2: npt.ArrayLike, assembly: npt.ArrayLike) -> IntArray:
+def branch_index(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike) -> IntArray:
     """Branch that each position lies on: between different ones of a circuit lies a dead position.
 
     Parameters and shapes as for `circuit_index`.
@@ -290,5 +261,5 @@ def branch_index(linkage: FourBar, theta2: npt.ArrayLike, assembly: npt.ArrayLik
     return np.where(index < 0, -1, 2 * index + (np.asarray(assembly) < 0))
 
 
-def _turns(linkage: FourBar) -> bool:
+def _turns(linkage: Linkage) -> bool:
     return bool((rotatability(linkage) >= 0).all())

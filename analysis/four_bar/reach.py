@@ -7,18 +7,18 @@ import numpy as np
 from grashof.analysis.four_bar.even_motion import even_motion
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.numerics.peaks import greatest, own
-from grashof.problems import FourBar
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 
 _SAMPLES = 361
 
 
-def reach_box(linkage: FourBar, start: float, end: float) -> FloatArray:
+def reach_box(linkage: Linkage, start: float, end: float) -> FloatArray:
     """Box around O2, O4 and all that A, B and P reach between two driver angles.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     start, end : float, rad
 
@@ -33,6 +33,7 @@ def reach_box(linkage: FourBar, start: float, end: float) -> FloatArray:
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
     >>> reach_box(crank_rocker, 0.0, 2 * np.pi).round(6).tolist()
     [[-1.0, -1.0], [4.0, 3.0]]

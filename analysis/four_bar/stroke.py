@@ -8,7 +8,8 @@ import numpy as np
 
 from grashof.analysis.four_bar.mobility import full_rotation
 from grashof.analysis.four_bar.position import solve_position
-from grashof.problems import FourBar
+from grashof.analysis.loops.kinds import kind_of
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 
 
@@ -45,12 +46,12 @@ class OutputStroke:
         return np.hypot(way[..., 0], way[..., 1])
 
 
-def output_stroke(linkage: FourBar) -> OutputStroke:
+def output_stroke(linkage: Linkage) -> OutputStroke:
     """Limit positions of the output link on the linkage's own assembly.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
 
     Returns
     -------
@@ -64,6 +65,7 @@ def output_stroke(linkage: FourBar) -> OutputStroke:
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> norton = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
     >>> stroke = output_stroke(norton)
     >>> np.degrees(stroke.theta2).round(4).tolist(), float(np.degrees(stroke.swing).round(4))
@@ -71,17 +73,7 @@ def output_stroke(linkage: FourBar) -> OutputStroke:
     >>> float(stroke.time_ratio.round(6))
     1.355573
     """
-    r1, r2, r3, r4 = np.moveaxis(linkage.lengths, -1, 0)
-    reach = np.stack([r2 + r3, np.abs(r3 - r2)], axis=-1)
-    r1, r4 = r1[..., None], r4[..., None]
-    with np.errstate(invalid="ignore", divide="ignore"):
-        half = np.arctan2(
-            np.sqrt((r4 - (r1 - reach)) * (r4 + (r1 - reach))), np.sqrt((r1 + reach - r4) * (r1 + reach + r4))
-        )
-    # B lies left of A->O4 when it lies left of O2->O4 as seen along O2->B, unless A lies beyond B.
-    side = linkage.assembly[..., None] * np.stack([np.ones_like(r2), np.sign(r3 - r2)], axis=-1)
-    opposite = np.stack([np.zeros_like(r2), np.where(r3 > r2, np.pi, 0.0)], axis=-1)
-    theta2 = (linkage.theta1[..., None] + 2 * side * half + opposite) % (2 * np.pi)
+    theta2 = kind_of(linkage).limits(linkage) % (2 * np.pi)
     state = solve_position(linkage[..., None], theta2)
     turned = (np.diff(state.theta4, axis=-1)[..., 0] + np.pi) % (2 * np.pi) - np.pi
     theta4 = state.theta4[..., :1] + np.stack([np.zeros_like(turned), turned], axis=-1)

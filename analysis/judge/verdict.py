@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.analysis.four_bar.mobility import GrashofClass
+from grashof.analysis.loops.loop import GrashofClass
 from grashof.problems.values.arrays import FloatArray, IntArray
 
 

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from grashof.analysis import Verdict
-from grashof.analysis.four_bar.mobility import GrashofClass
 from grashof.analysis.judge.verdict import Defect
+from grashof.analysis.loops.loop import GrashofClass
 from grashof.problems import FourBar, Objective, Problem
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import Round, Start

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import strategies as st
 
 from grashof.analysis import GrashofClass
-from grashof.problems import FourBar
+from grashof.problems import FourBar, InvertedSliderCrank, Linkage, SliderCrank
 
 _SHORTEST_IN = {
     GrashofClass.DOUBLE_CRANK: 0,
@@ -140,3 +140,67 @@ def _lengths(draw: st.DrawFn, kind: GrashofClass) -> list[float]:
     others = draw(st.permutations([*middle, longest]))
     others.insert(_SHORTEST_IN[kind], 1.0)
     return others
+
+
+@pytest.fixture(scope="session")
+def linkages() -> Callable[[GrashofClass], st.SearchStrategy[Linkage]]:
+    """Strategy for linkages of a class of any kind, as `four_bars`."""
+    return lambda kind: _SLIDING[kind](kind) if kind in _SLIDING else _four_bars(kind)
+
+
+@st.composite
+def _slider_cranks(draw: st.DrawFn, kind: GrashofClass) -> SliderCrank:
+    r2 = draw(st.integers(8, 24)) / 8
+    if kind is GrashofClass.SLIDER_CRANK:
+        r3 = r2 + draw(st.floats(0.2, 3))
+        offset = (r3 - r2) * draw(st.floats(-0.9, 0.9))
+    elif draw(st.booleans()):  # swings beside the line square to the slide, in two ranges
+        r3 = r2 * draw(st.floats(0.2, 0.9))
+        offset = (r2 - r3) * draw(st.floats(-0.9, 0.9))
+    else:
+        r3 = r2 * draw(st.floats(0.3, 3))
+        least, most = abs(r3 - r2), r3 + r2
+        offset = (least + (most - least) * draw(st.floats(0.1, 0.9))) * draw(st.sampled_from([-1, 1]))
+    scale, place = np.exp(draw(st.floats(-2, 2))), st.floats(-3, 3)
+    return SliderCrank(
+        o2=scale * np.array([draw(place), draw(place)]),
+        r2=scale * r2,
+        r3=scale * r3,
+        offset=scale * offset,
+        slide_angle=draw(st.floats(-np.pi, np.pi)),
+        coupler_point=(scale * draw(place), scale * draw(place)),
+        assembly=draw(st.sampled_from([-1, 1])),
+        body_angle=draw(st.floats(-np.pi, np.pi)),
+    )
+
+
+@st.composite
+def _inverted(draw: st.DrawFn, kind: GrashofClass) -> InvertedSliderCrank:
+    short, long = 1.0, 1 + draw(st.floats(0.2, 3))
+    least, most = long - short, long + short
+    turned = draw(st.booleans()) if kind is GrashofClass.INVERTED_SLIDER_ROCKER else None
+    r1, r2 = (short, long) if turned or kind is GrashofClass.WHITWORTH else (long, short)
+    share = draw(st.floats(0.1, 0.9)) * draw(st.sampled_from([-1, 1]))
+    offset = least * share if turned is None else np.sign(share) * (least + (most - least) * abs(share))
+    if turned is None and draw(st.booleans()):
+        offset = 0.0
+    scale, place, theta1 = np.exp(draw(st.floats(-2, 2))), st.floats(-3, 3), draw(st.floats(-np.pi, np.pi))
+    o2 = scale * np.array([draw(place), draw(place)])
+    return InvertedSliderCrank(
+        o2=o2,
+        o4=o2 + scale * r1 * np.array([np.cos(theta1), np.sin(theta1)]),
+        r2=scale * r2,
+        offset=scale * offset,
+        coupler_point=(scale * draw(place), scale * draw(place)),
+        assembly=draw(st.sampled_from([-1, 1])),
+        body_angle=draw(st.floats(-np.pi, np.pi)),
+    )
+
+
+_SLIDING: dict[GrashofClass, Callable[[GrashofClass], st.SearchStrategy[Linkage]]] = {
+    GrashofClass.SLIDER_CRANK: _slider_cranks,
+    GrashofClass.SLIDER_ROCKER: _slider_cranks,
+    GrashofClass.CRANK_SHAPER: _inverted,
+    GrashofClass.WHITWORTH: _inverted,
+    GrashofClass.INVERTED_SLIDER_ROCKER: _inverted,
+}

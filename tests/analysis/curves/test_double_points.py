@@ -10,11 +10,12 @@ from hypothesis import strategies as st
 from grashof.analysis import GrashofClass, driver_ranges, solve_position
 from grashof.analysis.curves.double_points import DoublePoints, all_double_points, double_points
 from grashof.analysis.judge.planted import random_full_crank
+from grashof.analysis.loops.four_bar import FOUR_BAR_CLASSES
 from grashof.problems import FourBar
 from grashof.problems.values.errors import ProblemError
 
 FourBars = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
-CLASSES = [kind for kind in GrashofClass if kind is not GrashofClass.CHANGE_POINT]
+CLASSES = [kind for kind in FOUR_BAR_CLASSES if kind is not GrashofClass.CHANGE_POINT]
 
 
 def crossings(theta2: np.ndarray, z: np.ndarray) -> np.ndarray:

@@ -21,6 +21,7 @@ from grashof.analysis import (
     triple_rocker_kind,
 )
 from grashof.analysis.four_bar.mobility import range_index
+from grashof.analysis.loops.four_bar import FOUR_BAR_CLASSES
 from grashof.problems import FourBar
 
 CHECKED = settings(max_examples=25)
@@ -30,7 +31,7 @@ STEP = 0.01  # rad along the curve of closed loops
 Brute = Callable[..., tuple[npt.NDArray[np.complex128], ...]]
 Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
 Angles = tuple[float, float, float]
-SMOOTH = [kind for kind in GrashofClass if kind is not GrashofClass.CHANGE_POINT]
+SMOOTH = [kind for kind in FOUR_BAR_CLASSES if kind is not GrashofClass.CHANGE_POINT]
 SWINGING = [GrashofClass.DOUBLE_ROCKER, GrashofClass.ROCKER_CRANK, GrashofClass.NON_GRASHOF]
 CIRCUITS = {kind: 1 if kind is GrashofClass.NON_GRASHOF else 2 for kind in SMOOTH}
 BRANCHES = {

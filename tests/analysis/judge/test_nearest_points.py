@@ -12,12 +12,13 @@ from grashof.analysis import GrashofClass, driver_ranges, full_rotation, solve_p
 from grashof.analysis.judge.meet import meet
 from grashof.analysis.judge.planted import planted_path, random_full_crank, uneven_driver_angles
 from grashof.analysis.judge.task_motion import Targets, TaskMotion
+from grashof.analysis.loops.four_bar import FOUR_BAR_CLASSES
 from grashof.problems import FourBar, PathTask, Requirements
 
 Array = npt.NDArray[np.float64]
 FourBars = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
 TURN = 2 * np.pi
-CLASSES = [kind for kind in GrashofClass if kind is not GrashofClass.CHANGE_POINT]
+CLASSES = [kind for kind in FOUR_BAR_CLASSES if kind is not GrashofClass.CHANGE_POINT]
 STILL = [[0, 0], [1, 0], [0, 1]]
 
 

@@ -1,0 +1,25 @@
+"""The kinds of linkages by their types."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from grashof.analysis.loops.four_bar import FourBarKind
+from grashof.analysis.loops.inverted_slider_crank import InvertedSliderCrankKind
+from grashof.analysis.loops.loop import Kind
+from grashof.analysis.loops.slider_crank import SliderCrankKind
+from grashof.problems.values.four_bar import FourBar
+from grashof.problems.values.inverted_slider_crank import InvertedSliderCrank
+from grashof.problems.values.linkage import Linkage
+from grashof.problems.values.slider_crank import SliderCrank
+
+_KINDS: dict[type[Linkage], Kind[Any]] = {
+    FourBar: FourBarKind(),
+    SliderCrank: SliderCrankKind(),
+    InvertedSliderCrank: InvertedSliderCrankKind(),
+}
+
+
+def kind_of(linkage: Linkage) -> Kind[Any]:
+    """How the loop of a linkage closes."""
+    return _KINDS[type(linkage)]

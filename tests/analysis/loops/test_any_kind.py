@@ -1,0 +1,400 @@
+"""Every kind of linkage against Newton's method on the equations of its loop, and textbook figures."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from grashof.analysis import (
+    GrashofClass,
+    branch_index,
+    circuit_index,
+    driver_ranges,
+    full_rotation,
+    grashof_class,
+    output_stroke,
+    rotatability,
+    solve_kinematics,
+    solve_position,
+    transmission_angle,
+    worst_transmission,
+    worst_transmission_cycle,
+)
+from grashof.analysis.curves.coupler_curve import coupler_curve, coupler_rates
+from grashof.analysis.four_bar.even_motion import even_motion
+from grashof.analysis.four_bar.mobility import dead_ends
+from grashof.analysis.four_bar.position import close_loop, sides
+from grashof.analysis.four_bar.transmission import quality
+from grashof.analysis.loops.kinds import kind_of
+from grashof.problems import DeadPositionWarning, FourBar, InvertedSliderCrank, SliderCrank
+
+CLASSES = [kind for kind in GrashofClass if kind is not GrashofClass.CHANGE_POINT]
+few = settings(max_examples=25)
+
+
+def inside(linkage, share):
+    """A driver angle at a share of the first range of a linkage."""
+    low, high = driver_ranges(linkage)[0]
+    return float(low + (high - low) * share)
+
+
+def unknowns(linkage, state):
+    """What the second opinion solves for: theta3, and theta4 or a length."""
+    if isinstance(linkage, FourBar):
+        return np.array([state.theta3, state.theta4])
+    if isinstance(linkage, SliderCrank):
+        slide = np.array([np.cos(linkage.slide_angle), np.sin(linkage.slide_angle)])
+        return np.array([state.theta3, (state.b - linkage.o2) @ slide])
+    return np.array([state.theta3, (state.b - state.a) @ [np.cos(state.theta3), np.sin(state.theta3)]])
+
+
+@pytest.mark.parametrize("kind", CLASSES)
+def test_the_class_is_the_one_drawn(linkages, kind) -> None:
+    @few
+    @given(linkages(kind))
+    def check(linkage) -> None:
+        assert grashof_class(linkage) is kind
+        turning = {
+            GrashofClass.CRANK_ROCKER, GrashofClass.DOUBLE_CRANK, GrashofClass.SLIDER_CRANK,
+            GrashofClass.CRANK_SHAPER, GrashofClass.WHITWORTH,
+        }  # fmt: skip
+        assert bool(full_rotation(linkage)) == (kind in turning)
+
+    check()
+
+
+@pytest.mark.parametrize("kind", CLASSES)
+def test_positions_are_those_of_the_loop_equations(linkages, second_opinion, kind) -> None:
+    @few
+    @given(linkages(kind), st.floats(0.02, 0.98), st.sampled_from([-1, 1]))
+    def check(linkage, share, assembly) -> None:
+        theta2 = inside(linkage, share)
+        state = solve_position(linkage, theta2, assembly)
+        other = second_opinion(linkage)
+        found = other.at(theta2, assembly)
+        ours = unknowns(linkage, state)
+        away = (ours - found + np.pi) % (2 * np.pi) - np.pi if isinstance(linkage, FourBar) else ours - found
+        away[0] = (away[0] + np.pi) % (2 * np.pi) - np.pi
+        size = float(linkage.lengths.sum())
+        sine = float(other.sine(found))
+        assert np.abs(away / [1, 1 if isinstance(linkage, FourBar) else size]).max() < 1e-12 / abs(sine)
+        # B is on its links, P on link 3.
+        assert close_loop(sides(linkage, assembly), np.asarray(theta2)).sine == pytest.approx(sine, abs=1e-11)
+        assert np.sin(transmission_angle(linkage, theta2)) == pytest.approx(abs(sine), abs=1e-9)
+
+    check()
+
+
+@pytest.mark.parametrize("kind", CLASSES)
+def test_rates_are_the_derivatives_of_positions(linkages, second_opinion, kind) -> None:
+    @few
+    @given(linkages(kind), st.floats(0.1, 0.9), st.floats(-2, 2), st.floats(-3, 3), st.floats(-3, 3))
+    def check(linkage, share, omega2, alpha2, jerk2) -> None:
+        theta2 = inside(linkage, share)
+        assume(transmission_angle(linkage, theta2) > 0.15)
+        assume(transmission_angle(linkage, theta2) < np.pi - 0.15)
+        ends = np.array([theta2, theta2])
+        state = solve_kinematics(linkage, theta2, omega2, alpha2, jerk2)
+        start = unknowns(linkage, solve_position(linkage, theta2))
+        by_angle = second_opinion(linkage).derivatives(theta2, start, 0.01)
+        assert np.isfinite(by_angle).all()
+        first, second, third = by_angle[1:]
+        # By the chain rule over time.
+        rate = first * omega2
+        bend = second * omega2**2 + first * alpha2
+        jerk = third * omega2**3 + 3 * second * omega2 * alpha2 + first * jerk2
+        links = [(state.omega3, state.alpha3, state.jerk3)]
+        if isinstance(linkage, FourBar):
+            links.append((state.omega4, state.alpha4, state.jerk4))
+        else:
+            links.append((state.slide.velocity, state.slide.acceleration, state.slide.jerk))
+            assert state.slide.travel == pytest.approx(start[1], rel=1e-9)
+        for column, found in enumerate(links):
+            truth = np.array([rate, bend, jerk])[:, column]
+            scale = np.abs([first, second, third])[:, column].max() * 10
+            assert np.abs(np.array(found) - truth).max() <= 1e-7 * (scale + 1)
+        whole = coupler_rates(linkage, solve_position(linkage, theta2))
+        assert whole == pytest.approx((first[0], second[0]), rel=1e-7, abs=1e-9)
+        if isinstance(linkage, InvertedSliderCrank):
+            assert (state.omega4, state.alpha4, state.jerk4) == (state.omega3, state.alpha3, state.jerk3)
+        if isinstance(linkage, SliderCrank):
+            assert (state.omega4, state.alpha4, state.jerk4) == (0, 0, 0)
+        assert ends.shape == (2,)
+
+    check()
+
+
+@pytest.mark.parametrize("kind", CLASSES)
+def test_points_move_as_their_places_do(linkages, kind) -> None:
+    """B and P, and points of link 4, against central differences of places."""
+
+    @few
+    @given(linkages(kind), st.floats(0.15, 0.85))
+    def check(linkage, share) -> None:
+        theta2 = inside(linkage, share)
+        mu = transmission_angle(linkage, theta2)
+        assume(0.2 < mu < np.pi - 0.2)
+        step = 1e-3
+        around = theta2 + step * np.arange(-4, 5)
+        weights = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 0, 4 / 5, -1 / 5, 4 / 105, -1 / 280]) / step
+        state, places = solve_kinematics(linkage, theta2), solve_position(linkage, around)
+        size = float(linkage.lengths.sum())
+        motions = {"a": state.a, "b": state.b, "p": state.p}
+        for point, motion in motions.items():
+            track = getattr(places, point)
+            assert np.allclose(motion.position, track[4], rtol=0, atol=1e-10 * size)
+            assert np.allclose(motion.velocity, weights @ track, rtol=1e-6, atol=1e-6 * size)
+        many = solve_kinematics(linkage, around)
+        for link in (2, 3, 4):
+            found, track = (
+                state.point(link, (0.3 * size, -0.2 * size)),
+                many.point(link, (0.3 * size, -0.2 * size)),
+            )
+            assert np.allclose(found.velocity, weights @ track.position, rtol=1e-6, atol=1e-6 * size)
+            assert np.allclose(found.acceleration, weights @ track.velocity, rtol=1e-5, atol=1e-5 * size)
+            assert np.allclose(found.jerk, weights @ track.acceleration, rtol=1e-4, atol=1e-3 * size)
+
+    check()
+
+
+@pytest.mark.parametrize("kind", CLASSES)
+def test_the_loop_closes_within_the_ranges_alone(linkages, second_opinion, kind) -> None:
+    @settings(max_examples=15)
+    @given(linkages(kind))
+    def check(linkage) -> None:
+        ranges = driver_ranges(linkage)
+        other = second_opinion(linkage)
+        turns = bool(full_rotation(linkage))
+        assert turns == (np.nan_to_num(ranges[:, 1] - ranges[:, 0]).sum() > 2 * np.pi - 1e-9)
+        for theta2 in np.linspace(-np.pi, np.pi, 7) + 0.01:
+            closes = bool((((theta2 - ranges[:, 0]) % (2 * np.pi)) < ranges[:, 1] - ranges[:, 0]).any())
+            near = np.abs((ranges - theta2 + np.pi) % (2 * np.pi) - np.pi)
+            if not turns and np.nanmin(near) < 1e-3:
+                continue
+            assert closes == np.isfinite(other.at(float(theta2), 1)).all()
+            assert closes == np.isfinite(solve_position(linkage, theta2).theta3)
+        for low, high in ranges[np.isfinite(ranges[:, 0])] if not turns else []:
+            # The determinant goes to zero at either end, as the root of the way to it.
+            for end, sense in ((low, 1), (high, -1)):
+                state = solve_position(linkage, end + sense * 1e-8)
+                assert abs(other.sine(unknowns(linkage, state))) < 1e-2
+            ends = np.array(dead_ends(linkage, low, high))
+            assert (close_loop(sides(linkage), ends).sine == 0).all()
+            assert np.abs(ends - [low, high]).max() < 1e-11
+
+    check()
+
+
+@pytest.mark.parametrize("kind", CLASSES)
+def test_circuits_are_what_a_continued_motion_joins(linkages, second_opinion, kind) -> None:
+    """Newton's method, led along the driver, stays on one branch between dead positions."""
+
+    @settings(max_examples=15)
+    @given(linkages(kind), st.floats(0.05, 0.95), st.floats(0.05, 0.95), st.sampled_from([-1, 1]))
+    def check(linkage, first, last, assembly) -> None:
+        angles = np.linspace(inside(linkage, first), inside(linkage, last), 240)
+        other = second_opinion(linkage)
+        x = unknowns(linkage, solve_position(linkage, angles[0], assembly))
+        for theta2 in angles[1:]:
+            x = other.solve(theta2, x)
+        end = unknowns(linkage, solve_position(linkage, angles[-1], assembly))
+        assert abs((x[0] - end[0] + np.pi) % (2 * np.pi) - np.pi) < 1e-8
+        assert np.ptp(branch_index(linkage, angles, assembly)) == 0
+        assert np.ptp(circuit_index(linkage, angles, assembly)) == 0
+        both = circuit_index(linkage, angles[0], np.array([1, -1]))
+        assert (both[0] != both[1]) == bool(full_rotation(linkage))
+
+    check()
+
+
+@pytest.mark.parametrize("kind", CLASSES)
+def test_the_worst_transmission_is_that_of_dense_positions(linkages, second_opinion, kind) -> None:
+    @settings(max_examples=15)
+    @given(linkages(kind), st.floats(0.02, 0.98), st.floats(0.02, 0.98))
+    def check(linkage, first, last) -> None:
+        start, end = inside(linkage, first), inside(linkage, last)
+        fine = np.linspace(start, end, 2001)
+        state = solve_position(linkage, fine)
+        other = second_opinion(linkage)
+        columns = zip(state.theta3, state.theta4, state.a, state.b, strict=True)
+        every = [
+            abs(other.sine(unknowns(linkage, type(state)(0, theta3, theta4, a, b, b))))
+            for theta3, theta4, a, b in columns
+        ]  # fmt: skip
+        worst = np.sin(worst_transmission(linkage, start, end))
+        assert worst <= min(every) + 1e-9
+        assert worst == pytest.approx(min(every), abs=2e-3)
+        if full_rotation(linkage):
+            around = quality(transmission_angle(linkage, np.linspace(0, 2 * np.pi, 4001)))
+            assert worst_transmission_cycle(linkage) == pytest.approx(around.min(), abs=1e-3)
+
+    check()
+
+
+@pytest.mark.parametrize("kind", CLASSES)
+def test_limit_positions_are_where_the_output_rests(linkages, kind) -> None:
+    @few
+    @given(linkages(kind))
+    def check(linkage) -> None:
+        stroke = output_stroke(linkage)
+        for theta2 in stroke.theta2[np.isfinite(stroke.theta2)]:
+            mu = transmission_angle(linkage, theta2)
+            if quality(mu) < 1e-3:
+                continue
+            state = solve_kinematics(linkage, theta2)
+            rest = state.slide.velocity if isinstance(linkage, SliderCrank) else state.omega4
+            size = float(linkage.lengths.sum()) if isinstance(linkage, SliderCrank) else 1.0
+            assert abs(rest) < 1e-6 * size
+        if full_rotation(linkage):
+            fine = solve_position(linkage, np.linspace(0, 2 * np.pi, 20001))
+            if isinstance(linkage, SliderCrank):
+                travel = solve_kinematics(linkage, fine.theta2).slide.travel
+                assert stroke.chord == pytest.approx(np.ptp(travel), rel=1e-5)
+            swing = np.ptp(np.unwrap(fine.theta4))
+            if kind in (GrashofClass.CRANK_ROCKER, GrashofClass.CRANK_SHAPER):
+                assert stroke.swing == pytest.approx(swing, rel=1e-5)
+            if kind is GrashofClass.WHITWORTH:
+                assert swing == pytest.approx(2 * np.pi, abs=1e-9)
+                assert np.isnan(stroke.theta2).all()
+
+    check()
+
+
+@pytest.mark.parametrize("kind", CLASSES)
+def test_coupler_rates_grow_without_digits_lost_near_dead_positions(linkages, kind) -> None:
+    @few
+    @given(linkages(kind), st.sampled_from([0, 1]), st.floats(-7, -2))
+    def check(linkage, end, exponent) -> None:
+        assume(not full_rotation(linkage))
+        theta2 = driver_ranges(linkage)[0][end] + (1 - 2 * end) * 10**exponent
+        state = solve_kinematics(linkage, theta2)
+        # theta3 goes as the root of the way to the end: rate = 1/2 (theta3 - theta3 end) / way, nearly.
+        assert np.isfinite([state.omega3, state.alpha3, state.jerk3]).all()
+        p, rate, _ = coupler_curve(linkage, theta2)
+        assert np.isfinite([p, rate]).all()
+        assert (rate.real, rate.imag) == pytest.approx(tuple(state.p.velocity), rel=1e-5)
+
+    check()
+
+
+@pytest.mark.parametrize("kind", CLASSES)
+def test_rates_in_a_dead_position_have_the_signs_they_grow_with(linkages, kind) -> None:
+    @few
+    @given(linkages(kind), st.sampled_from([0, 1]), st.sampled_from([-1.0, 1.0]))
+    def check(linkage, end, omega2) -> None:
+        assume(not full_rotation(linkage))
+        low, high = driver_ranges(linkage)[0]
+        dead = dead_ends(linkage, low, high)[end]
+        with pytest.warns(DeadPositionWarning):
+            there = solve_kinematics(linkage, dead, omega2)
+        near = solve_kinematics(linkage, (low, high)[end] + (1 - 2 * end) * 1e-9, omega2)
+        names = ["omega3", "alpha3", "jerk3"]
+        if not isinstance(linkage, SliderCrank):
+            names += ["omega4", "alpha4", "jerk4"]
+        for name in names:
+            assert getattr(there, name) == np.sign(getattr(near, name)) * np.inf
+        if near.slide is not None:
+            for name in ("velocity", "acceleration", "jerk"):
+                assert getattr(there.slide, name) == np.sign(getattr(near.slide, name)) * np.inf
+
+    check()
+
+
+@pytest.mark.parametrize("kind", CLASSES)
+def test_even_motion_has_neither_jumps_nor_crowds(linkages, kind) -> None:
+    @few
+    @given(linkages(kind), st.floats(0, 0.4), st.floats(0.6, 1))
+    def check(linkage, first, last) -> None:
+        start, end = inside(linkage, first), inside(linkage, last)
+        motion = even_motion(linkage, start, end)
+        share = np.linspace(0, 1, 361)
+        theta2 = motion.theta2(share)
+        assert (np.diff(theta2) >= 0).all()
+        assert motion.share(theta2[10:-10]) == pytest.approx(share[10:-10], abs=1e-6)
+        theta3 = np.unwrap(solve_position(linkage, theta2).theta3)
+        assert np.abs(np.diff(theta3)).max() < 0.2
+        slope = (motion.theta2(share[5:-5] + 1e-6) - motion.theta2(share[5:-5] - 1e-6)) / 2e-6
+        assert motion.rate(share[5:-5]) == pytest.approx(slope, rel=1e-5, abs=1e-6)
+
+    check()
+
+
+@pytest.mark.parametrize("kind", CLASSES)
+def test_dimensions_turn_the_links_as_linkages_made_so_show(linkages, kind) -> None:
+    @few
+    @given(linkages(kind), st.floats(0.2, 0.8))
+    def check(linkage, share) -> None:
+        from grashof.analysis.judge.tolerance import made_linkages
+
+        theta2 = inside(linkage, share)
+        mu = transmission_angle(linkage, theta2)
+        assume(0.3 < mu < np.pi - 0.3)
+        state = solve_position(linkage, theta2)
+        step = 1e-6 * float(linkage.lengths.sum())
+        deviations = np.eye(len(linkage.DIMENSIONS)) * step
+        for found, name in zip(
+            kind_of(linkage).turned(linkage, state.theta2, state.theta3, state.theta4),
+            ("theta3", "theta4"),
+            strict=True,
+        ):
+            apart = [
+                getattr(solve_position(made_linkages(linkage, sign * deviations)[0], theta2), name)
+                for sign in (1, -1)
+            ]
+            slope = ((apart[0] - apart[1] + np.pi) % (2 * np.pi) - np.pi) / (2 * step)
+            assert found == pytest.approx(slope[:-2], rel=1e-5, abs=1e-4 / float(linkage.lengths.sum()))
+
+    check()
+
+
+def test_nortons_offset_slider_crank() -> None:
+    """Norton, *Design of Machinery*, example 4-2: r2 = 40, r3 = 120, offset -20 mm, theta2 = 60 deg.
+
+    His theta3 is at the slider, 152.91 deg, and d = 114 mm: the open circuit, whose rod points from B to A.
+    """
+    # d = a cos theta2 - b cos theta3 with sin theta3 = (a sin theta2 - c) / b, his offset c = -20.
+    linkage = SliderCrank(o2=(0, 0), r2=40, r3=120, offset=-20)
+    state = solve_kinematics(linkage, np.radians(60))
+    assert np.degrees(state.theta3) + 180 == pytest.approx(152.91, abs=5e-3)
+    assert state.slide.travel == pytest.approx(126.84, abs=5e-3)
+    crossed = solve_kinematics(linkage, np.radians(60), assembly=-1)
+    assert crossed.slide.travel == pytest.approx(-86.84, abs=5e-3)
+
+
+@pytest.mark.parametrize("swing", [20.0, 60.0, 120.0])
+def test_a_crank_shaper_has_the_textbook_ratio(swing: float) -> None:
+    shaper = InvertedSliderCrank(o2=(1, 2), o4=(1, -3), r2=5 * np.sin(np.radians(swing / 2)))
+    stroke = output_stroke(shaper)
+    assert np.degrees(stroke.swing) == pytest.approx(swing, abs=1e-12)
+    assert stroke.time_ratio == pytest.approx((180 + swing) / (180 - swing), rel=1e-13)
+    assert np.degrees(worst_transmission_cycle(shaper)) == pytest.approx(90)
+
+
+def test_a_centric_slider_crank_has_twice_its_crank_as_stroke() -> None:
+    stroke = output_stroke(SliderCrank(o2=(3, 1), r2=40, r3=120, slide_angle=0.7, assembly=-1))
+    assert stroke.chord == pytest.approx(80, rel=1e-14)
+    assert stroke.time_ratio == pytest.approx(1, rel=1e-14)
+
+
+def test_an_offset_slider_crank_has_the_stroke_of_its_two_triangles() -> None:
+    linkage = SliderCrank(o2=(0, 0), r2=2, r3=7, offset=3)
+    assert output_stroke(linkage).chord == pytest.approx(np.sqrt(81 - 9) - np.sqrt(25 - 9), rel=1e-14)
+    cosine = 5 / 7  # the worst transmission angle over a turn: cos mu = (r2 + |offset|) / r3
+    assert np.cos(worst_transmission_cycle(linkage)) == pytest.approx(cosine, rel=1e-14)
+
+
+def test_rotatability_of_slides_is_the_room_they_leave() -> None:
+    assert rotatability(SliderCrank(o2=(0, 0), r2=2, r3=7, offset=3)) == pytest.approx([2 / 12, 8 / 12])
+    inverted = InvertedSliderCrank(o2=(0, 0), o4=(0, 5), r2=2, offset=-1)
+    assert rotatability(inverted) == pytest.approx([1, 2 / 8])
+
+
+def test_an_inverted_slider_crank_that_never_closes_has_no_range() -> None:
+    far = InvertedSliderCrank(o2=(0, 0), o4=(0, 5), r2=2, offset=8)
+    assert np.isnan(driver_ranges(far)).all()
+    assert np.isnan(solve_position(far, [0.0, 1.0]).b).all()
+    away = SliderCrank(o2=(0, 0), r2=2, r3=1, offset=-4)
+    assert np.isnan(driver_ranges(away)).all()
+    assert np.isnan(solve_position(away, [0.0, 1.0]).p).all()
