@@ -31,11 +31,11 @@ from grashof.analysis.forces.equilibrium import Equilibria, equilibria
 from grashof.analysis.forces.flywheel import Flywheel, size_flywheel
 from grashof.analysis.forces.flywheel_speed import flywheel_speed
 from grashof.analysis.forces.free_response import Ending, FreeResponse, free_response, generalised_inertia
+from grashof.analysis.forces.joints import Joint
 from grashof.analysis.forces.loads import (
     AppliedForce,
     AppliedMoment,
     Friction,
-    Joint,
     Loads,
     Spring,
     TorsionSpring,

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from grashof.problems.values.checks import plain_text
+from grashof.problems.values.checks import plain_text, refuse
 from grashof.problems.values.display import Displayed
+from grashof.problems.values.dynamics_of_kind import misplaced
 from grashof.problems.values.dynamics_spec import DynamicsSpec
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkage import Linkage
@@ -47,6 +48,8 @@ class LinkageSpec(Displayed):
             plain_text(getattr(self, name), name)
         if self.pumping_unit is not None and self.output_arm is None:
             raise ProblemError("output_arm is missing; pumping_unit needs that of the horsehead")
+        if self.dynamics is not None:
+            refuse(misplaced(self.dynamics, type(self.linkage)))
 
     @property
     def unit(self) -> str:
