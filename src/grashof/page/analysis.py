@@ -15,6 +15,7 @@ from grashof.page.render import render
 from grashof.problems.values.checks import counted
 from grashof.study.section import DRIVER_ANGLE, Fact, Section
 from grashof.survey.report import LinkageReport
+from grashof.wording.linkage import dimensions_text
 from grashof.wording.numbers import number_text, value_text
 
 _SCRIPTS = (
@@ -65,7 +66,6 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         "columns": columns.found,
         "driver": DRIVER_ANGLE,
     }
-    lengths = [f"{float(length):.6g}" for length in spec.linkage.lengths]
     return render(
         "analysis.html",
         _SCRIPTS,
@@ -73,7 +73,7 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         title=spec.title or spec.name,
         spec=spec,
         report=report,
-        lengths=lengths,
+        dimensions=dimensions_text(spec),
         ranges=[f"{np.degrees(low):.6g} to {np.degrees(high):.6g} deg" for low, high in sweep.ranges],
         facts=_facts(report.facts),
         groups=[_group(section) for section in sections],
