@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from grashof.analysis import Position
+from grashof.analysis.four_bar.slide import slide_travel
 from grashof.problems import InvertedSliderCrank, Linkage, SliderCrank
 from grashof.problems.values.arrays import FloatArray
 
@@ -31,18 +32,6 @@ def half_block(linkage: Linkage) -> float:
     return _HALF * float(linkage.r2)
 
 
-def slid(linkage: Linkage, state: Position) -> FloatArray:
-    """How far the slide of a linkage is, shape (N,): along it from O2, or along the rod from A; else NaN."""
-    if isinstance(linkage, SliderCrank):
-        along, way = linkage.slide_angle, state.b - linkage.o2
-    elif isinstance(linkage, InvertedSliderCrank):
-        along, way = state.theta3, state.b - state.a
-    else:
-        return np.full(np.shape(state.theta2), np.nan)
-    far: FloatArray = way[..., 0] * np.cos(along) + way[..., 1] * np.sin(along)
-    return far
-
-
 def slide_points(linkage: Linkage, state: Position, travel: Travel) -> dict[str, FloatArray]:
     """Corners of the block and ends of the rod in N positions, by their names, each of shape (N, 2)."""
     if isinstance(linkage, SliderCrank):
@@ -52,7 +41,10 @@ def slide_points(linkage: Linkage, state: Position, travel: Travel) -> dict[str,
         found = _block(linkage, state.b, state.theta3)
         over, half = float(linkage.coupler_point[0]), half_block(linkage)
         ends = np.stack(
-            [np.minimum(slid(linkage, state), travel.low), np.maximum(slid(linkage, state), travel.high)]
+            [
+                np.minimum(slide_travel(linkage, state), travel.low),
+                np.maximum(slide_travel(linkage, state), travel.high),
+            ]
         )
         low = np.where(ends[0] < 0, ends[0] - half, 0.0)
         high = np.where(ends[1] > 0, ends[1] + half, 0.0)

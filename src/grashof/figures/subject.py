@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.analysis import Verdict, solve_position, verify
-from grashof.figures.slides import Travel, slid
+from grashof.analysis.four_bar.slide import slide_travel
+from grashof.figures.slides import Travel
 from grashof.problems import DynamicsSpec, LinkageSpec, Problem, ProblemError
 from grashof.problems import Linkage as AnyKind
 from grashof.study.sweep import Sweep
@@ -73,7 +74,7 @@ class Subject:
         """How far its slide goes; NaN where it has none."""
         if not self.linkage.SLIDES:
             return Travel(np.nan, np.nan)
-        far = [slid(self.linkage, solve_position(self.linkage, each)) for each in self.sweep.angles()]
+        far = [slide_travel(self.linkage, solve_position(self.linkage, each)) for each in self.sweep.angles()]
         every = np.concatenate(far)
         return Travel(float(np.nanmin(every)), float(np.nanmax(every)))
 
