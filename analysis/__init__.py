@@ -61,6 +61,11 @@ from grashof.analysis.forces.pumping_unit import (
     rod_load,
     rod_motion,
 )
+from grashof.analysis.forces.reciprocating import (
+    ReciprocatingBalance,
+    balance_reciprocating,
+    shaking_harmonics,
+)
 from grashof.analysis.forces.section_forces import BarForces, SectionForce, section_forces
 from grashof.analysis.forces.stated import stated_loads, stated_masses
 from grashof.analysis.forces.statics import Advantage, Holding, advantage, holding
@@ -154,6 +159,7 @@ __all__ = [
     "PolynomialFit",
     "Position",
     "Powers",
+    "ReciprocatingBalance",
     "ReducerTorque",
     "Robustness",
     "RodMotion",
@@ -172,6 +178,7 @@ __all__ = [
     "advantage",
     "all_double_points",
     "balance_force",
+    "balance_reciprocating",
     "balance_torque",
     "balance_turn",
     "beam_limits",
@@ -233,6 +240,7 @@ __all__ = [
     "rotatability",
     "section_forces",
     "sensitivity",
+    "shaking_harmonics",
     "size_flywheel",
     "solve_kinematics",
     "solve_position",

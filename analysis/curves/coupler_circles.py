@@ -10,7 +10,7 @@ import numpy.typing as npt
 from grashof.analysis.four_bar.instant_centres import instant_centres
 from grashof.analysis.four_bar.kinematics import PointMotion, solve_kinematics
 from grashof.analysis.four_bar.position import solve_position
-from grashof.problems import FourBar
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 
 _FAR = 1e12  # lengths of link 2
@@ -57,12 +57,12 @@ class CouplerCircles:
     acceleration_pole: FloatArray
 
 
-def centrodes(linkage: FourBar, theta2: npt.ArrayLike) -> Centrodes:
+def centrodes(linkage: Linkage, theta2: npt.ArrayLike) -> Centrodes:
     """Fixed and moving centrode of the coupler at given driver angles.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
     theta2 : array_like, shape (...), rad
 
     Returns
@@ -76,6 +76,7 @@ def centrodes(linkage: FourBar, theta2: npt.ArrayLike) -> Centrodes:
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> crossed = FourBar(o2=(0, 0), o4=(2, 0), r2=3, r3=2, r4=3, assembly=-1)    # rolling ellipses
     >>> found = centrodes(crossed, [1.0, 2.0])
     >>> (np.hypot(*found.fixed.T) + np.hypot(*(found.fixed - crossed.o4).T)).round(9).tolist()
@@ -90,12 +91,12 @@ def centrodes(linkage: FourBar, theta2: npt.ArrayLike) -> Centrodes:
     return Centrodes(state.a + from_a, moving)
 
 
-def coupler_circles(linkage: FourBar, theta2: npt.ArrayLike) -> CouplerCircles:
+def coupler_circles(linkage: Linkage, theta2: npt.ArrayLike) -> CouplerCircles:
     """Inflection circle, Bresse's circle and acceleration pole of the coupler.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
     theta2 : array_like, shape (...), rad
 
     Returns
@@ -116,6 +117,7 @@ def coupler_circles(linkage: FourBar, theta2: npt.ArrayLike) -> CouplerCircles:
     --------
     In Norton's linkage, the curvature of a path on the inflection circle:
 
+    >>> from grashof.problems import FourBar
     >>> from dataclasses import replace
     >>> from grashof.analysis.curves.curvature import curvature
     >>> norton = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
@@ -151,7 +153,7 @@ def _pole_acceleration(a: PointMotion, arm: FloatArray, omega: FloatArray, alpha
     return acceleration
 
 
-def _unless_far(arm: FloatArray, linkage: FourBar) -> FloatArray:
+def _unless_far(arm: FloatArray, linkage: Linkage) -> FloatArray:
     """From A to the pole; NaN where it is at infinity but for rounding."""
     far = np.hypot(arm[..., 0], arm[..., 1]) > _FAR * linkage.r2
     return np.where(far[..., None], np.nan, arm)

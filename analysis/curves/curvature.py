@@ -8,7 +8,7 @@ import numpy.typing as npt
 from grashof.analysis.curves.coupler_curve import coupler_curve
 from grashof.analysis.four_bar.even_motion import even_motion
 from grashof.analysis.four_bar.mobility import driver_ranges, full_rotation
-from grashof.problems import FourBar
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.checks import number_within
 from grashof.problems.values.errors import ProblemError
@@ -19,12 +19,12 @@ _BEYOND = 1e-6  # rad: searched past the ends, so that a minimum on an end is se
 SLACK = 1e-9  # rad: what lies so close to the end of a motion still lies in it
 
 
-def curvature(linkage: FourBar, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None) -> FloatArray:
+def curvature(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None) -> FloatArray:
     """Curvature of the coupler curve at given driver angles.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         One, or a batch whose axes broadcast against `theta2`.
     theta2 : array_like, shape (...), rad
     assembly : array_like, shape (...), optional
@@ -44,6 +44,7 @@ def curvature(linkage: FourBar, theta2: npt.ArrayLike, assembly: npt.ArrayLike |
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, coupler_point=(4, 0))
     >>> np.abs(curvature(crank_rocker, [1.0, 2.0])).round(9).tolist()    # P is B: the rocker's arc
     [0.333333333, 0.333333333]
@@ -54,7 +55,7 @@ def curvature(linkage: FourBar, theta2: npt.ArrayLike, assembly: npt.ArrayLike |
 
 
 def cusps(
-    linkage: FourBar,
+    linkage: Linkage,
     theta2_start: float | None = None,
     theta2_end: float | None = None,
     tolerance: float = 1e-6,
@@ -63,7 +64,7 @@ def cusps(
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage, on its own assembly.
     theta2_start, theta2_end : float, rad, optional
         Part of the motion; without them all that the driver can do.
@@ -89,6 +90,7 @@ def cusps(
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, coupler_point=(4, 0))
     >>> np.degrees(cusps(crank_rocker)).round(4).tolist()    # P is B, still at the ends of its swing
     [-131.8103, 36.8699]
@@ -106,7 +108,7 @@ def cusps(
 
 
 def driver_intervals(
-    linkage: FourBar, theta2_start: float | None, theta2_end: float | None
+    linkage: Linkage, theta2_start: float | None, theta2_end: float | None
 ) -> list[tuple[float, float]]:
     """The part of the motion asked for, low end first; without ends all that the driver can do."""
     if theta2_start is not None and theta2_end is not None:
@@ -124,7 +126,7 @@ def driver_intervals(
     return [(float(low), float(high)) for low, high in ends if high > low]
 
 
-def _slowest(linkage: FourBar, low: float, high: float) -> FloatArray:
+def _slowest(linkage: Linkage, low: float, high: float) -> FloatArray:
     """Driver angles at which the speed of P has a minimum, at an end too."""
 
     def slope(theta2: FloatArray) -> FloatArray:

@@ -8,7 +8,7 @@ from grashof.analysis.curves.coupler_curve import coupler_curve, tracks
 from grashof.analysis.four_bar.even_motion import even_motion
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.numerics.peaks import greatest
-from grashof.problems import FourBar
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
 
 _CURVE = 720
@@ -23,12 +23,12 @@ _ROUNDS = 9
 _COMPLEX = np.array([1, 1j])
 
 
-def curve_distances(linkage: FourBar, points: FloatArray, direction: int) -> tuple[float, float]:
+def curve_distances(linkage: Linkage, points: FloatArray, direction: int) -> tuple[float, float]:
     """Distances between the polygon through points and the coupler curve over a turn of the driver.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage whose driver turns fully.
     points : ndarray, shape (N, 2), length
         Corners of the polygon; the last may repeat the first.
@@ -51,6 +51,7 @@ def curve_distances(linkage: FourBar, points: FloatArray, direction: int) -> tup
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)  # P is A: a circle of radius 1
     >>> angle = np.linspace(0, 2 * np.pi, 1000)
     >>> circle = 1.5 * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
@@ -67,7 +68,7 @@ def curve_distances(linkage: FourBar, points: FloatArray, direction: int) -> tup
     return hausdorff, max(hausdorff, _frechet(_distances(target, curve), _distances(curve, target).T))
 
 
-def _from_curve(linkage: FourBar, corners: ComplexArray) -> float:
+def _from_curve(linkage: Linkage, corners: ComplexArray) -> float:
     """Greatest distance of a point of the curve from the polygon."""
     motion = even_motion(linkage, 0.0, TURN)
 
@@ -79,7 +80,7 @@ def _from_curve(linkage: FourBar, corners: ComplexArray) -> float:
     return float(greatest(distance, places, most=_FURTHEST, rounds=_ROUNDS)[0][0])
 
 
-def _from_target(linkage: FourBar, corners: ComplexArray) -> float:
+def _from_target(linkage: Linkage, corners: ComplexArray) -> float:
     """Greatest distance of a point of the polygon from the curve."""
     length = np.abs(np.roll(corners, -1) - corners)
     gone = np.concatenate([[0.0], np.cumsum(length)])
@@ -101,7 +102,7 @@ def _from_target(linkage: FourBar, corners: ComplexArray) -> float:
     return float(greatest(distance, places, most=_FURTHEST, rounds=_ROUNDS)[0][0])
 
 
-def _nearest(linkage: FourBar, points: ComplexArray, theta2: FloatArray, reach: FloatArray) -> FloatArray:
+def _nearest(linkage: Linkage, points: ComplexArray, theta2: FloatArray, reach: FloatArray) -> FloatArray:
     """Distance of points from the curve about some driver angles, by a few of Newton's steps."""
     best = np.full(theta2.shape, np.inf)
     for _ in range(_NEWTON):

@@ -17,7 +17,7 @@ from grashof.analysis.four_bar.extremes import (
 )
 from grashof.analysis.four_bar.kinematics import solve_kinematics
 from grashof.analysis.numerics.peaks import greatest
-from grashof.problems import FourBar
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.errors import wrong_value
 
@@ -51,7 +51,7 @@ class Dwell:
 
 
 def dwell(
-    linkage: FourBar,
+    linkage: Linkage,
     quantity: Quantity,
     tolerance: float,
     start: float | None = None,
@@ -73,6 +73,7 @@ def dwell(
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> norton = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
     >>> rest = dwell(norton, lambda state: state.theta4, np.radians(1))
     >>> np.degrees([rest.start, rest.end]).round(3).tolist()
@@ -119,7 +120,7 @@ class _Samples:
 
     @classmethod
     def of(
-        cls, linkage: FourBar, curve: Curve, ends: tuple[float, float], closed: bool, period: float | None
+        cls, linkage: Linkage, curve: Curve, ends: tuple[float, float], closed: bool, period: float | None
     ) -> _Samples:
         at = even_motion(linkage, *ends).theta2(dense_places(0.0, 1.0, closed))
         values = counted_on(at, curve(at), period)

@@ -13,7 +13,7 @@ from numpy.polynomial import chebyshev, legendre
 from grashof.analysis.four_bar.even_motion import EvenMotion, even_motion
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.numerics.quadrature import gauss_legendre
-from grashof.problems import FourBar
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.checks import finite_rows, whole_number
 from grashof.problems.values.errors import ProblemError
@@ -192,13 +192,13 @@ def greatest_error(
 
 
 def coupler_fit_r2(
-    linkage: FourBar, theta2_start: npt.ArrayLike, theta2_end: npt.ArrayLike, degree: int = 4
+    linkage: Linkage, theta2_start: npt.ArrayLike, theta2_end: npt.ArrayLike, degree: int = 4
 ) -> FloatArray:
     """How well a polynomial in the driver angle stands for the path of P over a motion.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         One or a batch.
     theta2_start, theta2_end : array_like, shape (...), rad
         Ends of the motion, in either sense; they broadcast against the linkages.
@@ -219,6 +219,7 @@ def coupler_fit_r2(
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, coupler_point=(2, 1))
     >>> coupler_fit_r2(crank_rocker, [0, 0], [1, 2 * np.pi]).round(6).tolist()
     [1.0, 0.996347]
@@ -253,7 +254,7 @@ def samples(parameter: npt.ArrayLike, values: npt.ArrayLike) -> tuple[FloatArray
     return t, y
 
 
-def _settled_r2(linkage: FourBar, start: float, end: float, degree: int) -> float:
+def _settled_r2(linkage: Linkage, start: float, end: float, degree: int) -> float:
     if start == end:
         return np.nan
     motion, panels, before = even_motion(linkage, start, end), _FEWEST, np.inf
@@ -264,7 +265,7 @@ def _settled_r2(linkage: FourBar, start: float, end: float, degree: int) -> floa
         panels, before = 2 * panels, r2
 
 
-def _r2_by_panels(linkage: FourBar, motion: EvenMotion, panels: int, degree: int) -> float:
+def _r2_by_panels(linkage: Linkage, motion: EvenMotion, panels: int, degree: int) -> float:
     share, weight = gauss_legendre(motion.edges(panels))
     theta2, counts = motion.theta2(share), weight * np.abs(motion.rate(share))
     root = np.sqrt(counts / counts.sum())[:, None]

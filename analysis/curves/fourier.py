@@ -11,7 +11,7 @@ from grashof.analysis.four_bar.even_motion import even_motion
 from grashof.analysis.four_bar.mobility import full_rotation
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.numerics.peaks import greatest, own
-from grashof.problems import FourBar
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
 from grashof.problems.values.checks import finite_rows, whole_number
 from grashof.problems.values.errors import ProblemError
@@ -99,12 +99,12 @@ def fourier_series(points: npt.ArrayLike) -> FourierSeries:
     )
 
 
-def coupler_harmonics(linkage: FourBar, top: int = 5) -> FourierSeries:
+def coupler_harmonics(linkage: Linkage, top: int = 5) -> FourierSeries:
     """First harmonics of the coupler curve in the driver angle, and how far they alone are from it.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single one whose driver turns fully.
     top : int
         Harmonics up to this one, from 1.
@@ -127,6 +127,7 @@ def coupler_harmonics(linkage: FourBar, top: int = 5) -> FourierSeries:
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, coupler_point=(2, 1))
     >>> first = coupler_harmonics(crank_rocker, top=3)
     >>> first.error_max.round(6).tolist(), first.content.round(6).tolist()
@@ -173,12 +174,12 @@ def coupler_harmonics(linkage: FourBar, top: int = 5) -> FourierSeries:
     )
 
 
-def coupler_fourier(linkage: FourBar, samples: int = 256) -> FourierSeries:
+def coupler_fourier(linkage: Linkage, samples: int = 256) -> FourierSeries:
     """Fourier series of the coupler curve in the driver angle.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single one whose driver turns fully.
     samples : int
         Equal steps of one turn.
@@ -195,6 +196,7 @@ def coupler_fourier(linkage: FourBar, samples: int = 256) -> FourierSeries:
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, coupler_point=(2, 1))
     >>> series = coupler_fourier(crank_rocker)
     >>> bool(np.abs(series(0.7) - solve_position(crank_rocker, 0.7).p).max() < 1e-12)
@@ -217,7 +219,7 @@ def _shares(power: FloatArray, whole: float) -> FloatArray:
         return np.asarray(power / whole)
 
 
-def _refuse_swings(linkage: FourBar) -> None:
+def _refuse_swings(linkage: Linkage) -> None:
     if not full_rotation(linkage):
         raise ProblemError(
             "the driver does not turn fully; a Fourier series is of a closed curve over its turn"

@@ -9,7 +9,7 @@ import numpy.typing as npt
 import scipy
 
 from grashof.analysis.four_bar.position import solve_position
-from grashof.problems import FourBar
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.checks import finite_rows, whole_number
 from grashof.problems.values.errors import ProblemError
@@ -171,12 +171,12 @@ def best_circle(points: npt.ArrayLike) -> BestCircle:
     )
 
 
-def circularity(linkage: FourBar, theta2_start: float, theta2_end: float, samples: int = 361) -> BestCircle:
+def circularity(linkage: Linkage, theta2_start: float, theta2_end: float, samples: int = 361) -> BestCircle:
     """How circular the path of P is between two driver angles.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     theta2_start, theta2_end : float, rad
     samples : int
@@ -193,6 +193,7 @@ def circularity(linkage: FourBar, theta2_start: float, theta2_end: float, sample
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, coupler_point=(4, 0))
     >>> circle = circularity(crank_rocker, 0, 3)
     >>> round(float(circle.centre[0]), 9), round(circle.radius, 9)
@@ -201,7 +202,7 @@ def circularity(linkage: FourBar, theta2_start: float, theta2_end: float, sample
     return best_circle(along_path(linkage, theta2_start, theta2_end, samples))
 
 
-def along_path(linkage: FourBar, theta2_start: float, theta2_end: float, samples: int) -> FloatArray:
+def along_path(linkage: Linkage, theta2_start: float, theta2_end: float, samples: int) -> FloatArray:
     """Points of the path of P, shape (samples, 2), nearly equally spaced along it."""
     count = whole_number(samples, 3, "samples")
     theta2 = np.linspace(theta2_start, theta2_end, 4 * count)

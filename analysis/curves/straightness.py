@@ -12,9 +12,10 @@ from grashof.analysis.four_bar.even_motion import EvenMotion, even_motion
 from grashof.analysis.four_bar.mobility import full_rotation
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.four_bar.transmission import transmission_angle
+from grashof.analysis.loops.kinds import kind_of
 from grashof.analysis.numerics.peaks import greatest, own
 from grashof.analysis.numerics.quadrature import Panels, gauss_legendre, integrate
-from grashof.problems import AssemblyError, FourBar
+from grashof.problems import AssemblyError, Linkage
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, frozen_array
 from grashof.problems.values.errors import ProblemError
 
@@ -34,12 +35,12 @@ _BESIDE = np.concatenate([-_LADDER[:0:-1], _LADDER])  # shares of a gap, about w
 _COMPLEX = np.array([1, 1j])
 
 
-def straightness(linkage: FourBar, theta2_start: float, theta2_end: float) -> BestLine:
+def straightness(linkage: Linkage, theta2_start: float, theta2_end: float) -> BestLine:
     """How straight the path of P is between two driver angles.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     theta2_start, theta2_end : float, rad
 
@@ -60,6 +61,8 @@ def straightness(linkage: FourBar, theta2_start: float, theta2_end: float) -> Be
 
     Examples
     --------
+    >>> from grashof.analysis.loops.kinds import kind_of
+    from grashof.problems import FourBar
     >>> hoeken = FourBar(o2=(0, 0), o4=(2.2, 0), r2=1, r3=2.8, r4=2.8, coupler_point=(5.6, 0))
     >>> line = straightness(hoeken, np.pi / 2, 3 * np.pi / 2)
     >>> round(line.length, 3), round(100 * line.width / line.length, 3)
@@ -69,12 +72,12 @@ def straightness(linkage: FourBar, theta2_start: float, theta2_end: float) -> Be
     return path.line(path.fits(np.zeros(1), np.ones(1)))
 
 
-def straightest_half_turn(linkage: FourBar) -> tuple[float, BestLine]:
+def straightest_half_turn(linkage: Linkage) -> tuple[float, BestLine]:
     """Half a turn of the driver over which P moves along a line most nearly.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage whose driver turns fully.
 
     Returns
@@ -92,6 +95,8 @@ def straightest_half_turn(linkage: FourBar) -> tuple[float, BestLine]:
 
     Examples
     --------
+    >>> from grashof.analysis.loops.kinds import kind_of
+    from grashof.problems import FourBar
     >>> hoeken = FourBar(o2=(0, 0), o4=(2.2, 0), r2=1, r3=2.8, r4=2.8, coupler_point=(5.6, 0))
     >>> start, line = straightest_half_turn(hoeken)
     >>> round(float(np.degrees(start)), 6), round(100 * line.width / line.length, 3)
@@ -142,14 +147,14 @@ class _Fits:
 class _Path:
     """The path of P over a motion, counted from a point on it, with integrals over its length."""
 
-    linkage: FourBar
+    linkage: Linkage
     motion: EvenMotion
     origin: complex
     pace: float
     panels: Panels
 
     @classmethod
-    def of(cls, linkage: FourBar, start: float, end: float) -> _Path:
+    def of(cls, linkage: Linkage, start: float, end: float) -> _Path:
         motion = even_motion(linkage, start, end)
         origin = complex(solve_position(linkage, motion.theta2(0.5)).p @ _COMPLEX)
         bare = cls(linkage, motion, origin, _pace(linkage, motion), _NO_PANELS)
@@ -291,15 +296,16 @@ class _Path:
             p, rate, _ = coupler_curve(self.linkage, theta2)
             with np.errstate(invalid="ignore"):
                 return _rows(p - self.origin, np.abs(rate * self.motion.rate(share)))
-        # d theta2 = pace sin mu dt; d theta3 = r2 sin(theta4 - theta2) / (r3 sin(theta3 - theta4)) d theta2.
+        # d theta2 = pace sin mu dt, and d theta3 by d theta2 is divided by sin mu.
         linkage, state = self.linkage, solve_position(self.linkage, theta2)
         turn2 = self.pace * np.abs(np.sin(state.theta4 - state.theta3))
-        turn3 = -linkage.assembly * self.pace * linkage.r2 / linkage.r3 * np.sin(state.theta4 - theta2)
+        turn3 = self.pace * kind_of(linkage).carried(linkage, theta2, state.theta3, state.theta4)
+        turn3 = linkage.assembly * turn3
         crank, arm = (state.a - linkage.o2) @ _COMPLEX, (state.p - state.a) @ _COMPLEX
         return _rows(state.p @ _COMPLEX - self.origin, np.abs(turn2 * crank + turn3 * arm))
 
 
-def _pace(linkage: FourBar, motion: EvenMotion) -> float:
+def _pace(linkage: Linkage, motion: EvenMotion) -> float:
     """D theta2 over sin mu dt, which is constant; NaN at a change point, where the motion leaves it out."""
     share = np.array([0.2, 0.45, 0.7])
     each = motion.rate(share) / np.sin(transmission_angle(linkage, motion.theta2(share)))

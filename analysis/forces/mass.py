@@ -238,6 +238,7 @@ def system_centre(masses: Masses, state: Kinematics) -> PointMotion:
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> jack = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
     >>> bars = uniform_bars(jack, (312, 312, 314))
     >>> from grashof.analysis.four_bar.kinematics import solve_kinematics

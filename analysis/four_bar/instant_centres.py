@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.analysis.four_bar.position import solve_position
-from grashof.problems import FourBar
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 
 
@@ -19,11 +19,11 @@ class InstantCentres:
     Parameters
     ----------
     i12, i23, i34, i14 : ndarray
-        The joints O2, A, B, O4.
+        The joints O2, A, B, O4; NaN for that of a slide, which is at infinity, square to it.
     i13 : ndarray
-        About which the coupler turns: where lines O2A and O4B meet.
+        About which the coupler turns: where lines O2A and O4B meet, or their like through infinity.
     i24 : ndarray
-        Where driver and output have the same velocity: where lines AB and O2O4 meet.
+        Where driver and output have the same velocity: where lines AB and O2O4 meet, likewise.
     """
 
     i12: FloatArray
@@ -35,13 +35,13 @@ class InstantCentres:
 
 
 def instant_centres(
-    linkage: FourBar, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None
+    linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None
 ) -> InstantCentres:
     """Instant centres for given driver angles.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         One, or a batch whose axes broadcast against `theta2`.
     theta2 : array_like, shape (...), rad
     assembly : array_like, shape (...), optional
@@ -60,19 +60,28 @@ def instant_centres(
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> norton = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
     >>> instant_centres(norton, np.radians(40)).i24.round(4).tolist()
     [-38.8733, 0.0]
     """
     state = solve_position(linkage, theta2, assembly)
-    o2, o4 = (np.broadcast_to(pivot, state.a.shape) for pivot in (linkage.o2, linkage.o4))
+    o2 = np.broadcast_to(linkage.o2, state.a.shape)
+    none = np.full(state.a.shape, np.nan)
+    o4 = np.broadcast_to(getattr(linkage, "o4", none), state.a.shape)
+    across = np.stack([np.cos(state.theta4), np.sin(state.theta4)], axis=-1)  # square to a slide
+    of4 = state.b - o4, o4 - o2, state.b - state.a  # along I14-I34, I12-I14, I23-I34
+    if (1, 4) in linkage.SLIDES:
+        of4 = across, across, state.b - state.a
+    if (3, 4) in linkage.SLIDES:
+        of4 = across, o4 - o2, across
     return InstantCentres(
         i12=o2,
         i23=state.a,
-        i34=state.b,
+        i34=none if (3, 4) in linkage.SLIDES else state.b,
         i14=o4,
-        i13=_meeting(o2, state.a - o2, o4, state.b - o4),
-        i24=_meeting(o2, o4 - o2, state.a, state.b - state.a),
+        i13=_meeting(o2, state.a - o2, state.b if (1, 4) in linkage.SLIDES else o4, of4[0]),
+        i24=_meeting(o2, of4[1], state.a, of4[2]),
     )
 
 

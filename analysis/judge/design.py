@@ -12,13 +12,16 @@ import numpy as np
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.judge.one_at_a_time import one_at_a_time
 from grashof.analysis.judge.verdict import Verdict
-from grashof.problems import FourBar, ProblemError
+from grashof.problems import FourBar, Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray, IntArray
 
 
 @dataclass(frozen=True, slots=True)
 class Design:
     """A linkage at its targets, in the problem's unit; numbers, or the symbols that stand for them.
+
+    What its kind has not is None: o4, r1 and r4 of a slider-crank, r3 and r4 of an inverted one, offset and
+    slide_angle of a four-bar.
 
     Parameters
     ----------
@@ -32,6 +35,10 @@ class Design:
         Driver angle at each target, in the order of visit.
     a, b, p : N times two coordinates, length
         Moving pivots and coupler point there.
+    offset : scalar, length
+    slide_angle : scalar, rad
+    mechanism : str
+        Its kind, such as "four-bar".
     """
 
     o2: Any
@@ -46,29 +53,33 @@ class Design:
     a: Sequence[Any]
     b: Sequence[Any]
     p: Sequence[Any]
+    offset: Any = None
+    slide_angle: Any = None
+    mechanism: str = FourBar.MECHANISM
 
     @classmethod
-    def of(cls, linkage: FourBar, theta2: FloatArray, assembly: IntArray) -> Design:
+    def of(cls, linkage: Linkage, theta2: FloatArray, assembly: IntArray) -> Design:
         """The numbers of a linkage at driver angles in the order of visit, shape (N,)."""
         state = solve_position(linkage, theta2, assembly)
-        r1, r2, r3, r4 = linkage.lengths  # not Python's floats: (r1 - 5)**0.5 would be complex below 5
+        # Not Python's floats: (r1 - 5)**0.5 would be complex below 5.
+        lengths = dict(zip(linkage.LENGTHS, linkage.lengths, strict=True))
         return cls(
             o2=linkage.o2,
-            o4=linkage.o4,
-            r1=r1,
-            r2=r2,
-            r3=r3,
-            r4=r4,
+            o4=getattr(linkage, "o4", None),
+            **{name: lengths.get(name) for name in ("r1", "r2", "r3", "r4")},
             theta1=linkage.theta1,
             coupler_point=linkage.coupler_point,
             theta2=np.asarray(theta2),
             a=list(state.a),
             b=list(state.b),
             p=list(state.p),
+            offset=getattr(linkage, "offset", None),
+            slide_angle=getattr(linkage, "slide_angle", None),
+            mechanism=linkage.MECHANISM,
         )
 
     @classmethod
-    def judged(cls, linkage: FourBar, verdict: Verdict) -> Design:
+    def judged(cls, linkage: Linkage, verdict: Verdict) -> Design:
         """The numbers of a linkage with its verdict."""
         visit = np.argsort(verdict.direction * verdict.theta2, kind="stable")
         return cls.of(linkage, verdict.theta2[visit], verdict.assembly[visit])
@@ -89,6 +100,7 @@ def greatest(constraint: Constraint, design: Design, what: str = "constraint") -
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> linkage = FourBar(o2=(0, 0), o4=(4, 1), r2=1, r3=4, r4=3, coupler_point=(2, 1))
     >>> design = Design.of(linkage, np.array([0.3]), np.array([1]))
     >>> greatest(lambda design: (design.o2[1] - design.o4[1]) ** 2 - 0.01, design)

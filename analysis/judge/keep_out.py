@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from grashof.analysis.four_bar.position import places, solve_position
 from grashof.analysis.judge.task_motion import Targets, TaskMotion
-from grashof.problems import FourBar, Requirements, Task
+from grashof.problems import Linkage, Requirements, Task
 from grashof.problems.values.areas import solid
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 
@@ -116,7 +116,7 @@ def segment_depth(area: Area, begin: FloatArray, end: FloatArray, rounds: int = 
 
 
 def intrusions(
-    linkage: FourBar,
+    linkage: Linkage,
     task: Task,
     wanted: Requirements,
     targets: Targets,
@@ -128,7 +128,7 @@ def intrusions(
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     task : MotionTask or PathTask
     wanted : Requirements
@@ -151,8 +151,10 @@ def intrusions(
     area, deepest = Area.of(wanted.keep_out), dict[str, float]()
     parts: dict[str, tuple[str, ...]] = {}
     for name in wanted.keep_out_for:
+        if name not in (*linkage.POINTS, "links", "body"):  # O4 of a slider-crank
+            continue
         if name != "body":
-            parts |= _lines() if name == "links" else {name.upper(): (name,)}
+            parts |= _lines(linkage) if name == "links" else {name.upper(): (name,)}
         elif task.body is not None:
             at = _body_depth(area, linkage, task.body, targets.assembly[:1] if joined else targets.assembly)
             over = (
@@ -172,18 +174,21 @@ def intrusions(
     return {part: found for part, found in deepest.items() if found > SLACK * task.size}
 
 
-def _lines() -> dict[str, tuple[str, ...]]:
+def _lines(linkage: Linkage) -> dict[str, tuple[str, ...]]:
     """The links, then the lines to the coupler point, by name; the ends of each."""
+    joined = {*linkage.JOINTS, "b"}
     named = {
-        f"{'link' if FourBar.JOINTS.keys() >= set(ends) else 'line'} {''.join(ends).upper()}": ends
-        for link in FourBar.LINKS[1:]
+        f"{'link' if joined >= set(ends) else 'line'} {''.join(ends).upper()}": ends
+        for link in linkage.LINKS[1:]
         for ends in link.lines
     }
+    if (3, 4) in linkage.SLIDES:  # the rod reaches as far as its block
+        named["link AB"] = ("a", "b")
     return dict(sorted(named.items(), key=lambda part: part[0].startswith("line")))
 
 
 def _depth_of(
-    area: Area, linkage: FourBar, ends: tuple[str, ...], assembly: IntArray
+    area: Area, linkage: Linkage, ends: tuple[str, ...], assembly: IntArray
 ) -> Callable[[FloatArray, int], FloatArray]:
     """Depth of a point, or of the link between two, by driver angles of shape (n,) and rounds."""
 
@@ -200,7 +205,7 @@ def _depth_of(
 
 
 def _body_depth(
-    area: Area, linkage: FourBar, outline: FloatArray, assembly: IntArray
+    area: Area, linkage: Linkage, outline: FloatArray, assembly: IntArray
 ) -> Callable[[FloatArray, int], FloatArray]:
     """Depth of the body's closed outline in an area, or of an area's corners in the body."""
     corner = outline @ np.array([1, 1j])

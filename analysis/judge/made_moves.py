@@ -10,7 +10,8 @@ import numpy.typing as npt
 
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.judge.tolerance import sensitivity
-from grashof.problems import FourBar
+from grashof.analysis.loops.kinds import kind_of
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 
 
@@ -20,9 +21,9 @@ class MadeMoves:
 
     Parameters
     ----------
-    point : ndarray, shape (..., 6), length
-        Distance of P where one of r1, r2, r3, r4, u, v is off.
-    theta4 : ndarray, shape (..., 6), rad
+    point : ndarray, shape (..., D), length
+        Distance of P where one of the `DIMENSIONS` is off.
+    theta4 : ndarray, shape (..., D), rad
         The same of the angle of link 4, signed.
     point_worst, theta4_worst : ndarray, shape (...), length and rad
         All dimensions off, in the worst combination of senses.
@@ -39,12 +40,12 @@ class MadeMoves:
     theta4_rms: FloatArray
 
 
-def made_moves(linkage: FourBar, theta2: npt.ArrayLike, tolerance: float) -> MadeMoves:
+def made_moves(linkage: Linkage, theta2: npt.ArrayLike, tolerance: float) -> MadeMoves:
     """Moves of P and of link 4 at held driver angles, where dimensions are off by a tolerance.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     theta2 : array_like, shape (...), rad
     tolerance : float, length
@@ -64,6 +65,7 @@ def made_moves(linkage: FourBar, theta2: npt.ArrayLike, tolerance: float) -> Mad
     --------
     A square, P at B: a longer output link lifts P by as much, and link 4 stays upright.
 
+    >>> from grashof.problems import FourBar
     >>> square = FourBar(o2=(0, 0), o4=(2, 0), r2=2, r3=2, r4=2, coupler_point=(2, 0), assembly=1)
     >>> moves = made_moves(square, np.pi / 2, 0.1)
     >>> float(moves.point[3].round(9)), float(moves.theta4_worst.round(9))
@@ -71,7 +73,7 @@ def made_moves(linkage: FourBar, theta2: npt.ArrayLike, tolerance: float) -> Mad
     """
     slope = sensitivity(linkage, theta2) * tolerance
     turns = output_sensitivity(linkage, theta2) * tolerance
-    senses = np.array(list(product((1.0, -1.0), repeat=len(FourBar.DIMENSIONS) - 1)))
+    senses = np.array(list(product((1.0, -1.0), repeat=len(linkage.DIMENSIONS) - 1)))
     senses = np.concatenate([np.ones((len(senses), 1)), senses], axis=1)  # the others are their opposites
     with np.errstate(invalid="ignore", over="ignore"):
         moved = slope[..., :2, :] @ senses.T
@@ -86,43 +88,30 @@ def made_moves(linkage: FourBar, theta2: npt.ArrayLike, tolerance: float) -> Mad
         )
 
 
-def output_sensitivity(linkage: FourBar, theta2: npt.ArrayLike) -> FloatArray:
-    """Derivatives of theta4 by the dimensions r1, r2, r3, r4, u, v, at held driver angles.
+def output_sensitivity(linkage: Linkage, theta2: npt.ArrayLike) -> FloatArray:
+    """Derivatives of theta4 by the dimensions, of a four-bar r1, r2, r3, r4, u, v, at held driver angles.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         One, or a batch whose axes broadcast against `theta2`.
     theta2 : array_like, shape (...), rad
 
     Returns
     -------
-    ndarray, shape (..., 6), rad/length
+    ndarray, shape (..., D), rad/length
 
     Notes
     -----
-    The component along AB of the varied loop equation r2 + r3 = r1 + r4 (as vectors) holds no dtheta3:
-
-        r4 sin(theta4 - theta3) dtheta4
-            = dr1 cos(theta1 - theta3) + dr4 cos(theta4 - theta3) - dr2 cos(theta2 - theta3) - dr3
+    See `Kind.turned`; zeros of a slider-crank, whose link 4 does not turn.
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> square = FourBar(o2=(0, 0), o4=(2, 0), r2=2, r3=2, r4=2, assembly=1)
     >>> (output_sensitivity(square, np.pi / 2).round(9) + 0.0).tolist()
     [0.5, 0.0, -0.5, 0.0, 0.0, 0.0]
     """
     state = solve_position(linkage, theta2)
-    theta3, theta4 = state.theta3, state.theta4
-    none = np.zeros_like(theta3)
-    parts = (
-        np.cos(linkage.theta1 - theta3),
-        -np.cos(state.theta2 - theta3),
-        np.full_like(theta3, -1.0),
-        np.cos(theta4 - theta3),
-        none,
-        none,
-    )
-    with np.errstate(divide="ignore", invalid="ignore"):
-        turned: FloatArray = np.stack(parts, axis=-1) / (linkage.r4 * np.sin(theta4 - theta3))[..., None]
-    return turned
+    _, turned = kind_of(linkage).turned(linkage, state.theta2, state.theta3, state.theta4)
+    return np.concatenate([turned, np.zeros((*turned.shape[:-1], 2))], axis=-1)

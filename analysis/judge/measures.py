@@ -15,7 +15,7 @@ from grashof.analysis.four_bar.stroke import output_stroke
 from grashof.analysis.judge.over_task import OverTask, motion_ends, over_task, torque_peak
 from grashof.analysis.judge.tolerance import robustness
 from grashof.analysis.judge.verdict import Verdict
-from grashof.problems import FourBar, Problem
+from grashof.problems import Linkage, Problem
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.mechanisms import LENGTHS, PARAMETERS
 from grashof.problems.values.quantities import Needs
@@ -30,7 +30,7 @@ class Values(Mapping[str, float]):
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     verdict : Verdict
         Of `verify`.
@@ -38,14 +38,15 @@ class Values(Mapping[str, float]):
         Its task, and what else it states: dynamics, manufacturing.
     """
 
-    def __init__(self, linkage: FourBar, verdict: Verdict, problem: Problem) -> None:
+    def __init__(self, linkage: Linkage, verdict: Verdict, problem: Problem) -> None:
         self.linkage, self.verdict, self.problem = linkage, verdict, problem
         self._known: dict[str, float] = {}
 
     def __getitem__(self, key: str) -> float:
         if key not in self._known:
-            measure = MEASURES[key]
-            self._known[key] = float(measure(self)) if self.problem.states(QUANTITIES[key].needs) else np.nan
+            quantity = QUANTITIES[key]
+            has = self.linkage.MECHANISM in quantity.kinds and self.problem.states(quantity.needs)
+            self._known[key] = float(MEASURES[key](self)) if has else np.nan
         return self._known[key]
 
     def __iter__(self) -> Iterator[str]:
@@ -54,7 +55,7 @@ class Values(Mapping[str, float]):
     def __len__(self) -> int:
         return len(MEASURES)
 
-    def are_of(self, linkage: FourBar, verdict: Verdict, problem: Problem) -> bool:
+    def are_of(self, linkage: Linkage, verdict: Verdict, problem: Problem) -> bool:
         """Whether they are those of this very design, by a problem that states the same."""
         stated = attrgetter("requirements", "dynamics", "manufacturing", "length_unit")
         alike = self.problem is problem or stated(self.problem) == stated(problem)
@@ -87,7 +88,7 @@ class Values(Mapping[str, float]):
         if self.problem.manufacturing is None:
             return {}
         found = robustness(self.linkage, self.problem.task, self.verdict, self.problem.manufacturing)
-        moves = zip((f"move_{name}" for name in FourBar.DIMENSIONS), found.moves.tolist(), strict=True)
+        moves = zip((f"move_{name}" for name in self.linkage.DIMENSIONS), found.moves.tolist(), strict=True)
         shares = {"share_within_linear": found.share_linear, "share_within_made": found.share_made}
         return {**dict(moves), "worst_move": found.worst_move, **shares}
 
@@ -129,12 +130,27 @@ def _output_swing(values: Values) -> float:
     if values.verdict.full_rotation:
         swing = float(output_stroke(linkage).swing)
         return TURN if np.isnan(swing) else swing
-    start, end = motion_ends(values.problem.task, values.verdict)
-    turned = output_stroke(linkage).theta2 + TURN * np.arange(-3, 4)[:, None]
-    inside = turned[(turned > min(start, end)) & (turned < max(start, end))]
-    theta2 = np.sort(np.concatenate([np.linspace(start, end, 181), inside]))
-    theta4 = solve_position(linkage, theta2, values.verdict.assembly[0]).theta4
+    limits = output_stroke(linkage).theta2
+    theta4 = solve_position(linkage, _with(limits, values), values.verdict.assembly[0]).theta4
     return float(np.ptp(np.unwrap(theta4)))
+
+
+def _stroke(values: Values) -> float:
+    """Of the slider, likewise."""
+    limits = output_stroke(values.linkage)
+    if values.verdict.full_rotation:
+        return float(limits.chord)
+    b = solve_position(values.linkage, _with(limits.theta2, values), values.verdict.assembly[0]).b
+    first = np.argmax(np.hypot(*(b - b[0]).T))  # an end of the way, as B goes to and fro on a line
+    return float(np.hypot(*(b - b[first]).T).max())
+
+
+def _with(theta2: FloatArray, values: Values) -> FloatArray:
+    """Driver angles over the task motion, among them those of the given ones that lie in it."""
+    start, end = motion_ends(values.problem.task, values.verdict)
+    turned = theta2 + TURN * np.arange(-3, 4)[:, None]
+    inside = turned[(turned > min(start, end)) & (turned < max(start, end))]
+    return np.sort(np.concatenate([np.linspace(start, end, 181), inside]))
 
 
 def _omega2(values: Values) -> float:
@@ -170,7 +186,7 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     "driver_rotation": lambda values: float(np.ptp(values.verdict.theta2)),
     "driver_sense": attrgetter("verdict.direction"),
     "output_swing": _output_swing,
-    "stroke": partial(_of_linkage, "stroke"),
+    "stroke": _stroke,
     "time_ratio": lambda values: float(output_stroke(values.linkage).time_ratio),
     "mechanical_advantage": lambda values: _omega2(values) / values["omega4_max"],
     "mechanical_advantage_min": _signed_advantage,
@@ -190,18 +206,21 @@ def _place(point: str, values: Values) -> dict[str, FloatArray]:
 
 
 def _lengths(values: Values) -> dict[str, FloatArray]:
-    return dict(zip(FourBar.LENGTHS, values.linkage.lengths[:, None], strict=True))
+    return dict(zip(values.linkage.LENGTHS, values.linkage.lengths[:, None], strict=True))
 
 
 def _arms(values: Values) -> dict[str, FloatArray]:
     arm = complex(*values.linkage.coupler_point)
-    return {"A-P": np.abs([arm]), "B-P": np.abs([arm - complex(values.linkage.r3)])}
+    arms = {"A-P": np.abs([arm])}
+    if "b" in values.linkage.LINKS[2].points:
+        arms["B-P"] = np.abs([arm - complex(values.linkage.r3)])
+    return arms
 
 
-def _on_body(of_a: float, values: Values) -> dict[str, FloatArray]:
-    """A (`of_a` 0) or B (1) in the frame of the body, whose origin is P."""
+def _on_body(of_a: bool, values: Values) -> dict[str, FloatArray]:
+    """A or B in the frame of the body, whose origin is P."""
     linkage = values.linkage
-    arm = of_a * linkage.r3 - complex(*linkage.coupler_point)
+    arm = (0.0 if of_a else linkage.r3) - complex(*linkage.coupler_point)
     place = arm * np.exp(-1j * linkage.body_angle)
     return {"x": np.array([place.real]), "y": np.array([place.imag])}
 
@@ -214,6 +233,6 @@ PARTS: Mapping[str, Callable[[Values], Mapping[str, FloatArray]]] = {
     "o4": partial(_place, "linkage.o4"),
     "a": partial(_place, "at_targets.a"),
     "b": partial(_place, "at_targets.b"),
-    "a_on_body": partial(_on_body, 0.0),
-    "b_on_body": partial(_on_body, 1.0),
+    "a_on_body": partial(_on_body, True),
+    "b_on_body": partial(_on_body, False),
 }

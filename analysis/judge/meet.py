@@ -11,16 +11,16 @@ from grashof.analysis.judge.points_in_order import met_in_order
 from grashof.analysis.judge.poses_in_order import poses_in_order
 from grashof.analysis.judge.task_motion import Targets, TaskMotion, task_motion
 from grashof.analysis.judge.timed_targets import met_in_time
-from grashof.problems import FourBar, Requirements, Task
+from grashof.problems import Linkage, Requirements, Task
 from grashof.problems.values.arrays import TURN
 
 
-def meet(linkage: FourBar, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
+def meet(linkage: Linkage, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
     """Driver angle, assembly and error at each target, and the motion between them, from the linkage alone.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     task : Task
     wanted : Requirements
@@ -36,6 +36,7 @@ def meet(linkage: FourBar, task: Task, wanted: Requirements) -> tuple[Targets, T
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> from grashof.analysis import solve_position
     >>> from grashof.problems import PathTask
     >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, coupler_point=(2, 1))
@@ -51,7 +52,7 @@ def meet(linkage: FourBar, task: Task, wanted: Requirements) -> tuple[Targets, T
     return targets, motion.closed() if task.closed else motion
 
 
-def _points_or_timed(linkage: FourBar, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
+def _points_or_timed(linkage: Linkage, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
     start = None if wanted.theta2_start_deg is None else float(np.radians(wanted.theta2_start_deg))
     method = met_in_time if task.is_timed else met_in_order if wanted.order else met_singly
     anywhere = (start or 0.0) + np.nan_to_num(task.driver_turns), np.full(len(task), int(linkage.assembly)), 1
@@ -62,7 +63,7 @@ def _points_or_timed(linkage: FourBar, task: Task, wanted: Requirements) -> tupl
     return Targets.of(linkage, task, theta2, assembly), motion
 
 
-def _poses(linkage: FourBar, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
+def _poses(linkage: Linkage, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
     targets = nearest_to_poses(linkage, task)
     motion = task_motion(linkage, targets.theta2, wanted.order)
     if wanted.order and not (wanted.is_exact(task) and task.is_whole):

@@ -9,11 +9,11 @@ import numpy as np
 from grashof.analysis.curves.coupler_curve import coupler_rates
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.numerics.minimisation import Model
-from grashof.problems import FourBar, Task
+from grashof.problems import Linkage, Task
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray
 
 
-def misses(linkage: FourBar, task: Task, theta2: FloatArray, assembly: IntArray) -> FloatArray:
+def misses(linkage: Linkage, task: Task, theta2: FloatArray, assembly: IntArray) -> FloatArray:
     """|dp|^2 + (angle_length * dangle)^2 of what targets have, shape (..., N); inf where it cannot close."""
     state = solve_position(linkage, theta2, assembly)
     gap = state.p - task.positions
@@ -25,13 +25,13 @@ def misses(linkage: FourBar, task: Task, theta2: FloatArray, assembly: IntArray)
 
 
 def squares(
-    linkage: FourBar, task: Task, assembly: IntArray, order: slice = slice(None)
+    linkage: Linkage, task: Task, assembly: IntArray, order: slice = slice(None)
 ) -> Callable[[FloatArray], Model]:
     """The misses, weighted, as functions of the driver angles, shape (..., N).
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     task : Task
     assembly : ndarray of int, shape (..., N)

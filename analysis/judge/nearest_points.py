@@ -8,13 +8,13 @@ from grashof.analysis.curves.coupler_curve import PIECES, Track, squared_distanc
 from grashof.analysis.judge.assignment import nearest_guess
 from grashof.analysis.judge.points_in_order import Met
 from grashof.analysis.numerics.minimisation import lowest
-from grashof.problems import FourBar, Task
+from grashof.problems import Linkage, Task
 from grashof.problems.values.arrays import TURN
 
 _VALLEYS = 3
 
 
-def met_singly(linkage: FourBar, task: Task, same_branch: bool, theta2_start: float | None) -> Met | None:
+def met_singly(linkage: Linkage, task: Task, same_branch: bool, theta2_start: float | None) -> Met | None:
     """Each point by itself as near as possible, on the motion on which the sum of squares is least.
 
     Returns
@@ -37,7 +37,7 @@ def met_singly(linkage: FourBar, task: Task, same_branch: bool, theta2_start: fl
     return best
 
 
-def _tracks_through(linkage: FourBar, same_branch: bool, theta2: float | None) -> list[Track]:
+def _tracks_through(linkage: Linkage, same_branch: bool, theta2: float | None) -> list[Track]:
     every = tracks(linkage, PIECES, same_branch)
     if theta2 is None or len(every) == 1:
         return every

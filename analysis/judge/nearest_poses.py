@@ -7,7 +7,7 @@ import numpy as np
 from grashof.analysis.four_bar.mobility import driver_ranges
 from grashof.analysis.judge.misses import misses, squares, wrapped
 from grashof.analysis.judge.task_motion import Targets
-from grashof.problems import FourBar, Task
+from grashof.problems import Linkage, Task
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray
 
 _EXACT = 1e-13  # errors below this share of the size are rounding
@@ -16,12 +16,12 @@ _VALLEYS = 6
 _BESIDE = 41  # samples about each valley: beside a cusp may lie a deeper one
 
 
-def nearest_to_poses(linkage: FourBar, task: Task) -> Targets:
+def nearest_to_poses(linkage: Linkage, task: Task) -> Targets:
     """Driver angle, assembly and error at each pose, from the linkage alone.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     task : Task
         Whose targets may leave position or angle free.
@@ -54,7 +54,7 @@ def nearest_to_poses(linkage: FourBar, task: Task) -> Targets:
     return Targets.of(linkage, task, angle[chosen, target], signs[chosen, target])
 
 
-def valleys(linkage: FourBar, task: Task) -> tuple[FloatArray, IntArray, FloatArray]:
+def valleys(linkage: Linkage, task: Task) -> tuple[FloatArray, IntArray, FloatArray]:
     """Driver angles, assemblies and misses in the lowest valleys of the miss of each pose, (K, N)."""
     angle, signs = _scan(linkage, task)
     angle, miss = _descend(linkage, task, angle, signs)
@@ -70,7 +70,7 @@ def _rounding(task: Task) -> float:
 
 
 def _descend(
-    linkage: FourBar, task: Task, angle: FloatArray, signs: IntArray
+    linkage: Linkage, task: Task, angle: FloatArray, signs: IntArray
 ) -> tuple[FloatArray, FloatArray]:
     """Driver angles after Gauss-Newton steps, and what they miss by; each shape (K, N)."""
     ends, model = driver_ranges(linkage), squares(linkage, task, signs)
@@ -91,7 +91,7 @@ def _descend(
     return angle, best
 
 
-def _scan(linkage: FourBar, task: Task) -> tuple[FloatArray, IntArray]:
+def _scan(linkage: Linkage, task: Task) -> tuple[FloatArray, IntArray]:
     """Driver angles and assemblies in the lowest valleys of the miss over all driver angles, (K, N)."""
     ends = driver_ranges(linkage)
     ranges = ends[np.isfinite(ends[:, 0])]

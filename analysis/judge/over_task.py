@@ -18,7 +18,7 @@ from grashof.analysis.four_bar.means import mean_in_time
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.judge.verdict import Verdict
 from grashof.analysis.numerics.peaks import peaks
-from grashof.problems import DeadPositionWarning, DynamicsSpec, FourBar, Problem, Task
+from grashof.problems import DeadPositionWarning, DynamicsSpec, Linkage, Problem, Task
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics_spec import metres
 from grashof.problems.values.motor import MotorSpec
@@ -62,12 +62,12 @@ class OverTask:
 _NONE = OverTask(np.nan, np.nan, np.nan, np.nan)
 
 
-def over_task(linkage: FourBar, problem: Problem, verdict: Verdict) -> OverTask:
+def over_task(linkage: Linkage, problem: Problem, verdict: Verdict) -> OverTask:
     """Figures of a single linkage over the motion from the first target to the last.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     problem : Problem
         Its task; its dynamics give the driver's speed (else 1 rad/s) and the masses.
@@ -115,7 +115,7 @@ def over_task(linkage: FourBar, problem: Problem, verdict: Verdict) -> OverTask:
     return OverTask(float(omega4), float(speed), float(acceleration), fit, *forces)
 
 
-def torque_peak(linkage: FourBar, problem: Problem, verdict: Verdict) -> float:
+def torque_peak(linkage: Linkage, problem: Problem, verdict: Verdict) -> float:
     """The drive torque's greatest magnitude as `over_task` has it, N m; NaN without dynamics."""
     if problem.dynamics is None:
         return np.nan
@@ -130,13 +130,13 @@ def torque_peak(linkage: FourBar, problem: Problem, verdict: Verdict) -> float:
         return float(peaks(lambda place: loaded(place)[:1], law.stretches(theta2))[0][0])
 
 
-def _as_used(linkage: FourBar, verdict: Verdict) -> FourBar:
+def _as_used(linkage: Linkage, verdict: Verdict) -> Linkage:
     """The linkage on the assembly on which it meets the first target."""
     used = np.asarray(verdict.assembly[0], dtype=np.float64)
     return linkage if used == linkage.assembly else replace(linkage, assembly=used)
 
 
-def _joined(linkage: FourBar, verdict: Verdict, theta2: FloatArray) -> bool:
+def _joined(linkage: Linkage, verdict: Verdict, theta2: FloatArray) -> bool:
     """Whether a motion joins the targets; at its very ends rounding may open the loop."""
     return verdict.branch_ok and not np.isnan(solve_position(linkage, theta2[1:-1]).theta3).any()
 
@@ -158,7 +158,7 @@ def driver_law(problem: Problem, start: float, end: float) -> DriverLaw:
     return DriverLaw(start, rotation, float(omega2), motor or MotorSpec())
 
 
-def _speeds(linkage: FourBar, law: DriverLaw) -> Curves:
+def _speeds(linkage: Linkage, law: DriverLaw) -> Curves:
     """|omega4|, speed and acceleration of P, each a row, over places of the law."""
 
     def curves(place: FloatArray) -> FloatArray:
@@ -168,7 +168,7 @@ def _speeds(linkage: FourBar, law: DriverLaw) -> Curves:
     return curves
 
 
-def _loaded(linkage: FourBar, spec: DynamicsSpec, metre: float, law: DriverLaw) -> Curves:
+def _loaded(linkage: Linkage, spec: DynamicsSpec, metre: float, law: DriverLaw) -> Curves:
     """|torque| in N m and the greatest joint force in N, each a row, over places of the law."""
     masses = stated_masses(linkage, spec, metre)
     loads = stated_loads(spec, metre, lambda state: law.time_at(state.theta2))
@@ -181,7 +181,7 @@ def _loaded(linkage: FourBar, spec: DynamicsSpec, metre: float, law: DriverLaw) 
     return curves
 
 
-def _sampled(linkage: FourBar, start: float, end: float) -> FloatArray:
+def _sampled(linkage: Linkage, start: float, end: float) -> FloatArray:
     """Driver angles from the lower end to the upper, close where a dead position is near."""
     low, high = min(start, end), max(start, end)
     spread = low + (high - low) * (1 - np.cos(np.linspace(0, np.pi, _SAMPLES))) / 2

@@ -20,7 +20,7 @@ from grashof.analysis.curves.coupler_curve import (
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.judge.assignment import Guess, ordered_guesses
 from grashof.analysis.numerics.minimisation import lowest, lowest_in_order
-from grashof.problems import FourBar, Task
+from grashof.problems import Linkage, Task
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
 
 _BASINS = 4
@@ -32,7 +32,7 @@ _LOOK = np.linspace(-1, 1, 25)
 Met: TypeAlias = tuple[FloatArray, IntArray, int]
 
 
-def met_in_order(linkage: FourBar, task: Task, same_branch: bool, theta2_start: float | None) -> Met | None:
+def met_in_order(linkage: Linkage, task: Task, same_branch: bool, theta2_start: float | None) -> Met | None:
     """The least weighted squares of distances over driver angles that do not go back, within one turn.
 
     Returns
@@ -68,7 +68,7 @@ def met_in_order(linkage: FourBar, task: Task, same_branch: bool, theta2_start: 
 
 
 def _beside(
-    linkage: FourBar, guesses: list[tuple[Guess, _Passage]], theta2: FloatArray, value: FloatArray
+    linkage: Linkage, guesses: list[tuple[Guess, _Passage]], theta2: FloatArray, value: FloatArray
 ) -> FloatArray:
     """Angles moved over into the next valley where that is deeper, as it may be beside a cusp."""
     room = (TURN - (theta2[:, -1:] - theta2[:, :1])) / 2
@@ -155,7 +155,7 @@ def _with(guess: Guess, theta2: float, assembly: int, distance: float, at: int) 
     )
 
 
-def _passages(linkage: FourBar, task: Task, same_branch: bool, theta2_start: float | None) -> list[_Passage]:
+def _passages(linkage: Linkage, task: Task, same_branch: bool, theta2_start: float | None) -> list[_Passage]:
     points = task.positions @ np.array([1, 1j])
     if theta2_start is None:
         every = tracks(linkage, PIECES, same_branch)
@@ -178,7 +178,7 @@ def _passages(linkage: FourBar, task: Task, same_branch: bool, theta2_start: flo
     return passages
 
 
-def _refined(linkage: FourBar, guesses: list[tuple[Guess, _Passage]]) -> tuple[FloatArray, FloatArray]:
+def _refined(linkage: Linkage, guesses: list[tuple[Guess, _Passage]]) -> tuple[FloatArray, FloatArray]:
     theta2, floor, ceiling, assembly = (
         np.array([getattr(guess, name) for guess, _ in guesses])
         for name in ("theta2", "floor", "ceiling", "assembly")

@@ -11,7 +11,7 @@ from grashof.analysis.judge.misses import misses, squares
 from grashof.analysis.judge.nearest_poses import valleys
 from grashof.analysis.judge.task_motion import Targets, TaskMotion, task_motion
 from grashof.analysis.numerics.minimisation import lowest_in_order
-from grashof.problems import FourBar, Task
+from grashof.problems import Linkage, Task
 from grashof.problems.values.arrays import TURN, FloatArray
 
 SAMPLES = 120  # of a turn of the driver, or of a range
@@ -21,7 +21,7 @@ FREE = np.array(np.inf)
 
 
 def poses_in_order(
-    linkage: FourBar, task: Task, nearest: Targets, motion: TaskMotion
+    linkage: Linkage, task: Task, nearest: Targets, motion: TaskMotion
 ) -> tuple[Targets, TaskMotion]:
     """Driver angles that do not go back, within one turn, with the least weighted squares.
 
@@ -30,7 +30,7 @@ def poses_in_order(
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     task : Task
     nearest : Targets
@@ -83,7 +83,7 @@ def poses_in_order(
     return Targets.of(linkage, task, shortest, own), ordered
 
 
-def _by_range(linkage: FourBar, task: Task) -> list[tuple[FloatArray, FloatArray, float, float]]:
+def _by_range(linkage: Linkage, task: Task) -> list[tuple[FloatArray, FloatArray, float, float]]:
     """Driver angles (M,) and weighted misses there (N, M), with the ends of each range of the driver."""
     angle, signs, _ = valleys(linkage, task)
     bottoms = angle[signs == int(linkage.assembly)]

@@ -9,7 +9,7 @@ import numpy as np
 from grashof.analysis.four_bar.mobility import range_index, rotatability
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.judge.misses import wrapped
-from grashof.problems import FourBar, Task
+from grashof.problems import Linkage, Task
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray
 
 STEADY = 1e-9  # rad: a driver step so small counts as none
@@ -37,7 +37,7 @@ class Targets:
     angle_error: FloatArray
 
     @classmethod
-    def of(cls, linkage: FourBar, task: Task, theta2: FloatArray, assembly: IntArray) -> Targets:
+    def of(cls, linkage: Linkage, task: Task, theta2: FloatArray, assembly: IntArray) -> Targets:
         """The errors at given driver angles and assemblies, each of shape (N,)."""
         state = solve_position(linkage, theta2, assembly)
         gap = state.p - task.positions
@@ -83,12 +83,12 @@ class TaskMotion:
         return replace(self, end=self.start + self.direction * TURN)
 
 
-def task_motion(linkage: FourBar, theta2: FloatArray, ordered: bool) -> TaskMotion:
+def task_motion(linkage: Linkage, theta2: FloatArray, ordered: bool) -> TaskMotion:
     """The motion of the driver through given angles.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     theta2 : ndarray, shape (N,), rad
         Driver angle at each target.

@@ -11,14 +11,14 @@ from grashof.analysis.four_bar.mobility import driver_ranges, rotatability
 from grashof.analysis.judge.misses import misses, squares
 from grashof.analysis.judge.points_in_order import Met
 from grashof.analysis.numerics.minimisation import Model, lowest
-from grashof.problems import FourBar, Task
+from grashof.problems import Linkage, Task
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray
 
 _STARTS = 360
 _BASINS = 4
 
 
-def met_in_time(linkage: FourBar, task: Task, same_branch: bool, theta2_start: float | None) -> Met | None:
+def met_in_time(linkage: Linkage, task: Task, same_branch: bool, theta2_start: float | None) -> Met | None:
     """The least weighted squares over the driver angle at the first target, in either sense.
 
     Returns
@@ -43,7 +43,7 @@ def met_in_time(linkage: FourBar, task: Task, same_branch: bool, theta2_start: f
     return theta2, signs[side], 1 - 2 * int(sense[best])
 
 
-def _model(linkage: FourBar, task: Task, turns: FloatArray, signs: IntArray) -> Callable[[FloatArray], Model]:
+def _model(linkage: Linkage, task: Task, turns: FloatArray, signs: IntArray) -> Callable[[FloatArray], Model]:
     """Sum of the squares, as a function of the driver angle at the first target; shapes (S,)."""
     by_target = squares(linkage, task, signs[:, None, None])
 
@@ -59,7 +59,7 @@ def _model(linkage: FourBar, task: Task, turns: FloatArray, signs: IntArray) -> 
 
 
 def _valleys(
-    linkage: FourBar, task: Task, turns: FloatArray, signs: IntArray
+    linkage: Linkage, task: Task, turns: FloatArray, signs: IntArray
 ) -> tuple[FloatArray, IntArray, FloatArray, FloatArray]:
     """Driver angle at the first target in the deepest valleys, sense (row of `turns`), and bounds."""
     found = []
@@ -76,7 +76,7 @@ def _valleys(
     return columns[1], columns[2].astype(np.int64), columns[3], columns[4]
 
 
-def _ranges(linkage: FourBar, turn: float, same_branch: bool) -> list[tuple[float, float]]:
+def _ranges(linkage: Linkage, turn: float, same_branch: bool) -> list[tuple[float, float]]:
     """Where the driver may stand at the first target for the whole rotation `turn` to be possible."""
     if not same_branch or (rotatability(linkage) >= 0).all():
         return [(float(linkage.theta1), float(linkage.theta1) + TURN)]

@@ -1,14 +1,15 @@
 """What becomes of a design when its dimensions are made inexactly.
 
-O2, the direction of the ground line and the driver's angle at every target are held: a motor turns the
-driver to the nominal angles, measured from the frame. The dimensions r1 (which moves O4 along the ground
-line), r2, r3, r4, u and v vary.
+O2, the direction of the ground line or slide and the driver's angle at every target are held: a motor
+turns the driver to the nominal angles, measured from the frame. The `DIMENSIONS` of the linkage vary: of a
+four-bar r1 (which moves O4 along the ground line), r2, r3, r4, u and v.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import product
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -16,8 +17,11 @@ import numpy.typing as npt
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.four_bar.transmission import transmission_angle
 from grashof.analysis.judge.verdict import Verdict
-from grashof.problems import FourBar, Manufacturing, Task
+from grashof.analysis.loops.kinds import kind_of
+from grashof.problems import Linkage, Manufacturing, Task
 from grashof.problems.values.arrays import BoolArray, FloatArray
+
+AnyKind = TypeVar("AnyKind", bound=Linkage)
 
 SAMPLES = 20_000  # made linkages: a share has a standard error of at most 0.0036
 _POSITIONS = 200_000  # most positions solved for a design: long paths get fewer samples, ...
@@ -31,8 +35,8 @@ class Robustness:
 
     Parameters
     ----------
-    moves : ndarray, shape (6,), length per length
-        How far the worst target moves per unit of change of r1, r2, r3, r4, u, v.
+    moves : ndarray, shape (D,), length per length
+        How far the worst target moves per unit of change of each of the `DIMENSIONS`.
     worst_move : float, length
         How far the worst target moves, linearised, when all dimensions are off by the tolerance in
         the worst combination of senses.
@@ -46,12 +50,12 @@ class Robustness:
     share_made: float
 
 
-def robustness(linkage: FourBar, task: Task, verdict: Verdict, manufacturing: Manufacturing) -> Robustness:
+def robustness(linkage: Linkage, task: Task, verdict: Verdict, manufacturing: Manufacturing) -> Robustness:
     """Effect of inexact dimensions on a single design; the same values whenever it is asked.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     task : Task
     verdict : Verdict
@@ -79,9 +83,10 @@ def robustness(linkage: FourBar, task: Task, verdict: Verdict, manufacturing: Ma
     [3.56, 2.67, 3.59, 4.97, 1.0, 1.0]
     """
     samples = min(SAMPLES, max(_FEWEST, _POSITIONS // len(task)))
-    errors = dimension_errors(manufacturing, samples, np.random.default_rng(0))
+    dimensions = len(linkage.DIMENSIONS)
+    errors = dimension_errors(manufacturing, samples, np.random.default_rng(0), dimensions)
     slope = measured_sensitivity(linkage, task, verdict)
-    senses = list(product((1.0, -1.0), repeat=len(FourBar.DIMENSIONS)))
+    senses = list(product((1.0, -1.0), repeat=dimensions))
     return Robustness(
         moves=np.sqrt((slope**2).sum(axis=1)).max(axis=0),
         worst_move=float(_linear_moves(slope, manufacturing.length_tolerance * np.array(senses)).max()),
@@ -90,12 +95,12 @@ def robustness(linkage: FourBar, task: Task, verdict: Verdict, manufacturing: Ma
     )
 
 
-def sensitivity(linkage: FourBar, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None) -> FloatArray:
+def sensitivity(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None) -> FloatArray:
     """Derivatives of the coupler's position by the dimensions, at held driver angles.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         One, or a batch whose axes broadcast against `theta2`.
     theta2 : array_like, shape (...), rad
         Driver angle, global.
@@ -104,57 +109,46 @@ def sensitivity(linkage: FourBar, theta2: npt.ArrayLike, assembly: npt.ArrayLike
 
     Returns
     -------
-    ndarray, shape (..., 3, 6), length/length and rad/length
-        Rows: x and y of P, theta3. Columns: r1, r2, r3, r4, u, v. NaN where the linkage cannot close,
-        without bound towards a dead position.
+    ndarray, shape (..., 3, D), length/length and rad/length
+        Rows: x and y of P, theta3. Columns: the `DIMENSIONS`, of a four-bar r1, r2, r3, r4, u, v. NaN
+        where the linkage cannot close, without bound towards a dead position.
 
     Notes
     -----
-    The component along O4B of the varied loop equation r2 + r3 = r1 + r4 (as vectors) holds no dtheta4:
-
-        r3 sin(theta3 - theta4) dtheta3
-            = dr2 cos(theta2 - theta4) + dr3 cos(theta3 - theta4) - dr1 cos(theta1 - theta4) - dr4
+    The varied equations of the loop give dtheta3, by `Kind.turned` of the linkage's kind.
 
     Examples
     --------
     A square, P at B: a longer output link lifts P by as much, and turns the coupler.
 
+    >>> from grashof.problems import FourBar
     >>> square = FourBar(o2=(0, 0), o4=(2, 0), r2=2, r3=2, r4=2, coupler_point=(2, 0), assembly=1)
     >>> (sensitivity(square, np.pi / 2)[:, 3] + 0.0).round(9).tolist()
     [0.0, 1.0, 0.5]
     """
     state = solve_position(linkage, theta2, assembly)
-    theta3, theta4 = state.theta3, state.theta4
+    theta2, theta3, theta4 = state.theta2, state.theta3, state.theta4
+    turn, _ = kind_of(linkage).turned(linkage, theta2, theta3, theta4)
     with np.errstate(divide="ignore", invalid="ignore"):
-        turn = (
-            np.stack(
-                [
-                    -np.cos(linkage.theta1 - theta4),
-                    np.cos(state.theta2 - theta4),
-                    np.cos(theta3 - theta4),
-                    np.full_like(theta3, -1.0),
-                ],
-                axis=-1,
-            )
-            / (linkage.r3 * np.sin(theta3 - theta4))[..., None]
-        )
-        along, ahead = np.exp(1j * theta3), np.exp(1j * state.theta2)
+        along, ahead = np.exp(1j * theta3), np.exp(1j * theta2)
         arm = (linkage.coupler_point @ np.array([1, 1j])) * along
         carried = 1j * arm[..., None] * turn
-    carried[..., 1] += ahead
+    carried[..., linkage.DIMENSIONS.index("r2")] += ahead
     none = np.zeros((*theta3.shape, 2))
     moved = np.concatenate([carried, np.stack([along, 1j * along], axis=-1)], axis=-1)
     turned = np.concatenate([turn, none], axis=-1)
     return np.stack([moved.real, moved.imag, turned], axis=-2)
 
 
-def dimension_errors(manufacturing: Manufacturing, samples: int, rng: np.random.Generator) -> FloatArray:
-    """Random deviations of the dimensions r1, r2, r3, r4, u, v, shape (samples, 6), length."""
-    return manufacturing.deviation * rng.standard_normal((samples, len(FourBar.DIMENSIONS)))
+def dimension_errors(
+    manufacturing: Manufacturing, samples: int, rng: np.random.Generator, dimensions: int = 6
+) -> FloatArray:
+    """Random deviations of the dimensions of a linkage, six of a four-bar, shape (samples, D), length."""
+    return manufacturing.deviation * rng.standard_normal((samples, dimensions))
 
 
-def measured_sensitivity(linkage: FourBar, task: Task, verdict: Verdict) -> FloatArray:
-    """Sensitivity at each target, shape (N, 3, 6), with angles as the lengths they count as."""
+def measured_sensitivity(linkage: Linkage, task: Task, verdict: Verdict) -> FloatArray:
+    """Sensitivity at each target, shape (N, 3, D), with angles as the lengths they count as."""
     counts = np.array([1.0, 1.0, task.angle_length if task.has_angle.any() else 0.0])
     return counts[:, None] * sensitivity(linkage, verdict.theta2, verdict.assembly)
 
@@ -164,17 +158,17 @@ def yield_linear(slope: FloatArray, band: float, errors: FloatArray) -> float:
 
     Parameters
     ----------
-    slope : ndarray, shape (N, 3, 6)
+    slope : ndarray, shape (N, 3, D)
         Of `measured_sensitivity`.
     band : float, length
-    errors : ndarray, shape (S, 6), length
+    errors : ndarray, shape (S, D), length
         Deviations of the dimensions of each made linkage.
     """
     return float(np.mean(_linear_moves(slope, errors).max(axis=0) <= band))
 
 
 def yield_monte_carlo(
-    linkage: FourBar, task: Task, verdict: Verdict, band: float, errors: FloatArray
+    linkage: Linkage, task: Task, verdict: Verdict, band: float, errors: FloatArray
 ) -> float:
     """Share of made linkages whose worst target moves by at most `band`, by exact positions.
 
@@ -183,7 +177,7 @@ def yield_monte_carlo(
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         The nominal one, single.
     task : Task
     verdict : Verdict
@@ -208,40 +202,45 @@ def yield_monte_carlo(
     return within / len(errors)
 
 
-def made_linkages(linkage: FourBar, errors: FloatArray) -> tuple[FourBar, BoolArray]:
+def made_linkages(linkage: AnyKind, errors: FloatArray) -> tuple[AnyKind, BoolArray]:
     """Linkages of deviating dimensions, and which of them there can be: all lengths above zero.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         The nominal one, single.
-    errors : ndarray, shape (S, 6), length
+    errors : ndarray, shape (S, D), length
 
     Returns
     -------
-    FourBar, ndarray of bool
+    Linkage, ndarray of bool
         Shape (S,); an impossible one is the nominal one.
     """
-    possible: BoolArray = np.all(linkage.lengths + errors[:, :4] > 0, axis=1)
+    count = len(linkage.LENGTHS)  # which come first among the dimensions
+    possible: BoolArray = np.all(linkage.lengths + errors[:, :count] > 0, axis=1)
     errors = np.where(possible[:, None], errors, 0.0)
-    ground = errors[:, :1] * [np.cos(linkage.theta1), np.sin(linkage.theta1)]
-    lengths = {name: getattr(linkage, name) + errors[:, i] for i, name in enumerate(linkage.LENGTHS) if i}
-    arm = linkage.coupler_point + errors[:, 4:]
-    return replace(linkage, o4=linkage.o4 + ground, **lengths, coupler_point=arm), possible
+    changed: dict[str, Any] = {"coupler_point": linkage.coupler_point + errors[:, -2:]}
+    for column, name in enumerate(linkage.DIMENSIONS[:-2]):
+        if name == "r1":
+            along = np.array([np.cos(linkage.theta1), np.sin(linkage.theta1)])
+            changed["o4"] = linkage.o4 + errors[:, column, None] * along
+        else:
+            changed[name] = getattr(linkage, name) + errors[:, column]
+    return replace(linkage, **changed), possible
 
 
 def _linear_moves(slope: FloatArray, errors: FloatArray) -> FloatArray:
     """Moves of N targets for S deviations, shape (N, S)."""
     with np.errstate(invalid="ignore"):
-        moved = (slope.reshape(-1, len(FourBar.DIMENSIONS)) @ errors.T).reshape(len(slope), 3, -1)
+        moved = (slope.reshape(-1, slope.shape[-1]) @ errors.T).reshape(len(slope), 3, -1)
     moves: FloatArray = np.sqrt(moved[:, 0] ** 2 + moved[:, 1] ** 2 + moved[:, 2] ** 2)
     return moves
 
 
-def _nearest_to_dead(linkage: FourBar, task: Task, verdict: Verdict) -> FloatArray:
-    """Driver angles of the task motion where O2A lies along the ground line, shape (0 to 2,), rad.
+def _nearest_to_dead(linkage: Linkage, task: Task, verdict: Verdict) -> FloatArray:
+    """Driver angles of the task motion where O2A lies along theta1, shape (0 to 2,), rad.
 
-    There, or at the ends of the motion, the diagonal A-O4 is shortest and longest, whatever the lengths.
+    There, or at the ends of the motion, a linkage comes nearest to a dead position, whatever the lengths.
     """
     start, end = verdict.theta2.min(), verdict.theta2.max()
     if task.closed:

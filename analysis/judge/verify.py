@@ -23,11 +23,11 @@ from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.meet import meet
 from grashof.analysis.judge.task_motion import STEADY, Targets, TaskMotion
 from grashof.analysis.judge.verdict import Defect, Verdict
-from grashof.problems import FourBar, Problem, Requirements, Rotatability, Task
+from grashof.problems import Linkage, Problem, Requirements, Rotatability, Task
 
 
 def verify(
-    linkage: FourBar,
+    linkage: Linkage,
     task: Task,
     requirements: Requirements,
     constraints: Sequence[Constraint] = (),
@@ -39,7 +39,7 @@ def verify(
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
     task : Task
     requirements : Requirements
         Defaults that depend on the size of the task are filled in.
@@ -184,7 +184,7 @@ def _order(motion: TaskMotion, wanted: Requirements) -> list[Defect]:
     return [Defect("order", "the number of reversals of the driver between targets", reversals, "0", 1.0)]
 
 
-def _rotatability(linkage: FourBar, task: Task, wanted: Requirements) -> list[Defect]:
+def _rotatability(linkage: Linkage, task: Task, wanted: Requirements) -> list[Defect]:
     margin, why = wanted.rotatability_margin, str(wanted.rotatability)
     if wanted.rotatability is Rotatability.ANY:
         if not task.closed:
@@ -197,7 +197,8 @@ def _rotatability(linkage: FourBar, task: Task, wanted: Requirements) -> list[De
         allowed = f"from {margin:g} ({why})"
         defects.append(Defect("rotatability", "the margin of full rotation", least, allowed, miss))
     kind = {Rotatability.CRANK_ROCKER: 1, Rotatability.DOUBLE_CRANK: -1}.get(wanted.rotatability, 0)
-    difference = float(linkage.r1 - linkage.r2)
+    # As far as O4 of a slider-crank: it lies at infinity.
+    difference = float(getattr(linkage, "r1", np.inf) - linkage.r2)
     miss = -kind * difference / float(linkage.lengths.sum())
     if miss > SLACK:
         which = "greater" if kind > 0 else "less"
@@ -222,7 +223,7 @@ def _own(design: Design, constraints: Sequence[Constraint]) -> list[Defect]:
 
 
 def _kept_out(
-    linkage: FourBar, targets: Targets, motion: TaskMotion, task: Task, wanted: Requirements, *, joined: bool
+    linkage: Linkage, targets: Targets, motion: TaskMotion, task: Task, wanted: Requirements, *, joined: bool
 ) -> list[Defect]:
     # Here, not above: shapely takes a while to import, and few problems have areas.
     from grashof.analysis.judge.keep_out import intrusions

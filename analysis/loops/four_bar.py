@@ -176,6 +176,11 @@ class FourBarKind(Kind[FourBar]):
             alpha3 = (r4 * omega4**2 - inward) / (r3 * spread)
         return omega3, alpha3
 
+    def carried(
+        self, linkage: FourBar, theta2: FloatArray, theta3: FloatArray, theta4: FloatArray
+    ) -> FloatArray:
+        return np.asarray(-linkage.r2 / linkage.r3 * np.sin(theta4 - theta2))
+
     def limits(self, linkage: FourBar) -> FloatArray:
         """O2, A and B in line: triangles O2-B-O4 with O2B = r2 + r3 or |r2 - r3| (Norton, secs. 3.2, 3.4)."""
         r1, r2, r3, r4 = np.moveaxis(linkage.lengths, -1, 0)

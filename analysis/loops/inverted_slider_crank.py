@@ -153,6 +153,11 @@ class InvertedSliderCrankKind(Kind[InvertedSliderCrank]):
             velocity = across - linkage.offset * omega3
             return omega3, (across - linkage.offset * omega3**2 - 2 * omega3 * velocity) / ab
 
+    def carried(
+        self, linkage: InvertedSliderCrank, theta2: FloatArray, theta3: FloatArray, theta4: FloatArray
+    ) -> FloatArray:
+        return -linkage.r2 / self.apart(linkage, theta2 - linkage.theta1) * np.cos(theta2 - theta3)
+
     def limits(self, linkage: InvertedSliderCrank) -> FloatArray:
         """Crank square to the rod: r1 sin(theta1 - theta3) = +-r2 - offset, theta2 = theta3 +- 90 deg."""
         side = np.array([1.0, -1.0])

@@ -147,6 +147,12 @@ class Kind(ABC, Generic[L_contra]):
         """First and second derivative of theta3 by theta2."""
 
     @abstractmethod
+    def carried(
+        self, linkage: L_contra, theta2: FloatArray, theta3: FloatArray, theta4: FloatArray
+    ) -> FloatArray:
+        """Derivative of theta3 by theta2, times the sine of `Loop`: finite in dead positions, too."""
+
+    @abstractmethod
     def limits(self, linkage: L_contra) -> FloatArray:
         """Driver angles at which the output turns back, shape (..., 2), rad; NaN where there are none."""
 

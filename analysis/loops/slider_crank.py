@@ -142,6 +142,11 @@ class SliderCrankKind(Kind[SliderCrank]):
             omega3 = -linkage.r2 * np.cos(along) / span
             return omega3, (linkage.r2 * np.sin(along) + linkage.r3 * np.sin(turn) * omega3**2) / span
 
+    def carried(
+        self, linkage: SliderCrank, theta2: FloatArray, theta3: FloatArray, theta4: FloatArray
+    ) -> FloatArray:
+        return np.asarray(-linkage.r2 / linkage.r3 * np.cos(theta2 - linkage.slide_angle))
+
     def limits(self, linkage: SliderCrank) -> FloatArray:
         """O2, A and B in line: sin(theta3 - slide_angle) = offset / (r3 +- r2)."""
         r2, r3, offset = (x[..., None] for x in (linkage.r2, linkage.r3, linkage.offset))

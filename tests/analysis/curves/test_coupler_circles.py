@@ -19,6 +19,7 @@ from grashof.analysis import (
     solve_kinematics,
     solve_position,
 )
+from grashof.analysis.loops.four_bar import FOUR_BAR_CLASSES
 from grashof.problems import FourBar
 
 CHECKED = settings(max_examples=40)
@@ -36,7 +37,7 @@ def carrying(linkage: FourBar, theta2: float, place: np.ndarray) -> FourBar:
 @given(data=st.data())
 @CHECKED
 def test_points_of_the_circles(four_bars: Drawer, data: st.DataObject) -> None:
-    linkage = data.draw(four_bars(data.draw(st.sampled_from(sorted(GrashofClass)))))
+    linkage = data.draw(four_bars(data.draw(st.sampled_from(sorted(FOUR_BAR_CLASSES)))))
     low, high = driver_ranges(linkage)[0]
     theta2 = float(low + (high - low) * data.draw(st.floats(0.02, 0.97)))
     stands = solve_position(linkage, theta2)

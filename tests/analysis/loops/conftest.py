@@ -1,4 +1,4 @@
-"""A second opinion on any linkage: Newton's method on the equations of its loop, that knows no closed form."""
+"""A second opinion on any linkage: Newton's method on the equations of its loop, without closed forms."""
 
 from __future__ import annotations
 
@@ -47,7 +47,8 @@ class SecondOpinion:
 
     def sine(self, x: Any) -> Any:
         """Determinant of the equations with the assembly's sign: zero where links 3 and 4 run away."""
-        determinant = np.linalg.det(self.jacobian(x))
+        (first, second), (third, fourth) = self.jacobian(x)
+        determinant = first * fourth - second * third
         given: Any = self.linkage
         if isinstance(given, FourBar):
             return -determinant / (given.r3 * given.r4)
@@ -55,22 +56,28 @@ class SecondOpinion:
             return determinant / given.r3
         return -determinant / np.hypot(x[1], given.offset)
 
+    def size(self, theta2: Any, x: Any) -> float:
+        """How far the loop is from closed."""
+        return float(np.linalg.norm(self.gap(theta2, x)))
+
     def solve(self, theta2: Any, x: Any) -> Any:
-        """Newton's method from a guess, its steps halved while they make the gap larger; NaN without an end."""
+        """Newton's method from a guess, steps halved while they make the gap larger; NaN without an end."""
         x = np.asarray(x) + 0 * theta2
-        for _ in range(80):
+        for _ in range(40):
             gap = self.gap(theta2, x)
             size = np.linalg.norm(gap)
+            if size == 0:
+                break
             try:
                 step = np.linalg.solve(self.jacobian(x), gap)
             except np.linalg.LinAlgError:
                 break
             share = 1.0
             while (
-                share > 1e-6 and np.linalg.norm(self.gap(theta2, x - share * step)) > (1 - share / 4) * size
+                share > 1e-3 and np.linalg.norm(self.gap(theta2, x - share * step)) > (1 - share / 4) * size
             ):
                 share /= 2
-            if share <= 1e-6:
+            if share <= 1e-3:
                 break
             x = x - share * step
         scale = sum(np.abs(self.linkage.lengths)) + np.abs(self.linkage.o2).max()
