@@ -166,18 +166,17 @@ class Kinematics:
         if link == 4:
             turning = (kind_of(self.linkage).direction4(self.linkage, self.theta4), *turning[1:])
         carried = _carried(at, turning)
-        for before, length in self._before(link):
+        pivot, way = self._way_to(link)
+        for before, length in way:
             carried = carried + _carried(_along(length), self.angular(before))
-        carried[0] += self.linkage.o4 if link == 4 and "o4" in self.linkage.GROUND else self.linkage.o2
+        carried[0] += pivot
         return PointMotion(*carried)
 
-    def _before(self, link: int) -> tuple[tuple[int, FloatArray], ...]:
-        """The links between the ground and the origin of a link's frame, with their lengths."""
-        if link == 3:
-            return ((2, self.linkage.r2),)
-        if link == 4 and "o4" not in self.linkage.GROUND:
-            return (2, self.linkage.r2), (3, self.linkage.r3)
-        return ()
+    def _way_to(self, link: int) -> tuple[FloatArray, tuple[tuple[int, FloatArray], ...]]:
+        """A ground pivot, and the links from it on to the origin of a link's frame, with their lengths."""
+        if link == 4:
+            return kind_of(self.linkage).way_to_4(self.linkage)
+        return self.linkage.o2, ((2, self.linkage.r2),) if link == 3 else ()
 
 
 def solve_kinematics(

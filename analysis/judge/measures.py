@@ -15,7 +15,7 @@ from grashof.analysis.four_bar.stroke import output_stroke
 from grashof.analysis.judge.over_task import OverTask, motion_ends, over_task, torque_peak
 from grashof.analysis.judge.tolerance import robustness
 from grashof.analysis.judge.verdict import Verdict
-from grashof.problems import Linkage, Problem
+from grashof.problems import FourBar, Linkage, Problem, SliderCrank
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.mechanisms import LENGTHS, PARAMETERS
 from grashof.problems.values.quantities import Needs
@@ -212,7 +212,7 @@ def _lengths(values: Values) -> dict[str, FloatArray]:
 def _arms(values: Values) -> dict[str, FloatArray]:
     arm = complex(*values.linkage.coupler_point)
     arms = {"A-P": np.abs([arm])}
-    if "b" in values.linkage.LINKS[2].points:
+    if isinstance(values.linkage, FourBar | SliderCrank):
         arms["B-P"] = np.abs([arm - complex(values.linkage.r3)])
     return arms
 
@@ -220,7 +220,8 @@ def _arms(values: Values) -> dict[str, FloatArray]:
 def _on_body(of_a: bool, values: Values) -> dict[str, FloatArray]:
     """A or B in the frame of the body, whose origin is P."""
     linkage = values.linkage
-    arm = (0.0 if of_a else linkage.r3) - complex(*linkage.coupler_point)
+    length = linkage.r3 if not of_a and isinstance(linkage, FourBar | SliderCrank) else 0.0
+    arm = length - complex(*linkage.coupler_point)
     place = arm * np.exp(-1j * linkage.body_angle)
     return {"x": np.array([place.real]), "y": np.array([place.imag])}
 

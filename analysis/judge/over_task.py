@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -133,7 +133,7 @@ def torque_peak(linkage: Linkage, problem: Problem, verdict: Verdict) -> float:
 def _as_used(linkage: Linkage, verdict: Verdict) -> Linkage:
     """The linkage on the assembly on which it meets the first target."""
     used = np.asarray(verdict.assembly[0], dtype=np.float64)
-    return linkage if used == linkage.assembly else replace(linkage, assembly=used)
+    return linkage if used == linkage.assembly else linkage.changed(assembly=used)
 
 
 def _joined(linkage: Linkage, verdict: Verdict, theta2: FloatArray) -> bool:

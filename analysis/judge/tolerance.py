@@ -7,9 +7,9 @@ four-bar r1 (which moves O4 along the ground line), r2, r3, r4, u and v.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import product
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -219,14 +219,15 @@ def made_linkages(linkage: AnyKind, errors: FloatArray) -> tuple[AnyKind, BoolAr
     count = len(linkage.LENGTHS)  # which come first among the dimensions
     possible: BoolArray = np.all(linkage.lengths + errors[:, :count] > 0, axis=1)
     errors = np.where(possible[:, None], errors, 0.0)
-    changed: dict[str, Any] = {"coupler_point": linkage.coupler_point + errors[:, -2:]}
+    stated = {row.name: value for row, value in zip(linkage.PARAMETERS, linkage.parameters, strict=True)}
+    made = {"coupler_point": linkage.coupler_point + errors[:, -2:]}
     for column, name in enumerate(linkage.DIMENSIONS[:-2]):
         if name == "r1":
             along = np.array([np.cos(linkage.theta1), np.sin(linkage.theta1)])
-            changed["o4"] = linkage.o4 + errors[:, column, None] * along
+            made["o4"] = stated["o4"] + errors[:, column, None] * along
         else:
-            changed[name] = getattr(linkage, name) + errors[:, column]
-    return replace(linkage, **changed), possible
+            made[name] = stated[name] + errors[:, column]
+    return linkage.changed(**made), possible
 
 
 def _linear_moves(slope: FloatArray, errors: FloatArray) -> FloatArray:

@@ -150,7 +150,8 @@ class FourBarKind(Kind[FourBar]):
 
     def apart(self, linkage: FourBar, phi: FloatArray) -> FloatArray:
         """The squared diagonal as (r1 - r2)^2 + 4 r1 r2 sin^2(phi/2), without cancellation near 0."""
-        return np.sqrt((linkage.r1 - linkage.r2) ** 2 + 4 * linkage.r1 * linkage.r2 * np.sin(phi / 2) ** 2)
+        r1, r2 = linkage.r1, linkage.r2
+        return np.asarray(np.sqrt((r1 - r2) ** 2 + 4 * r1 * r2 * np.sin(phi / 2) ** 2))
 
     def apart_on_line(self, linkage: FourBar) -> tuple[FloatArray, FloatArray]:
         return np.abs(linkage.r1 - linkage.r2), linkage.r1 + linkage.r2
@@ -218,6 +219,9 @@ class FourBarKind(Kind[FourBar]):
                 np.stack(by3, axis=-1) / (linkage.r3 * np.sin(theta3 - theta4))[..., None],
                 np.stack(by4, axis=-1) / (linkage.r4 * np.sin(theta4 - theta3))[..., None],
             )
+
+    def way_to_4(self, linkage: FourBar) -> tuple[FloatArray, tuple[tuple[int, FloatArray], ...]]:
+        return linkage.o4, ()
 
     def b_from(self, linkage: FourBar) -> FloatArray:
         return linkage.r4

@@ -130,7 +130,8 @@ class InvertedSliderCrankKind(Kind[InvertedSliderCrank]):
 
     def apart(self, linkage: InvertedSliderCrank, phi: FloatArray) -> FloatArray:
         """The squared diagonal as (r1 - r2)^2 + 4 r1 r2 sin^2(phi/2), without cancellation near 0."""
-        return np.sqrt((linkage.r1 - linkage.r2) ** 2 + 4 * linkage.r1 * linkage.r2 * np.sin(phi / 2) ** 2)
+        r1, r2 = linkage.r1, linkage.r2
+        return np.asarray(np.sqrt((r1 - r2) ** 2 + 4 * r1 * r2 * np.sin(phi / 2) ** 2))
 
     def apart_on_line(self, linkage: InvertedSliderCrank) -> tuple[FloatArray, FloatArray]:
         return np.abs(linkage.r1 - linkage.r2), linkage.r1 + linkage.r2
@@ -156,7 +157,8 @@ class InvertedSliderCrankKind(Kind[InvertedSliderCrank]):
     def carried(
         self, linkage: InvertedSliderCrank, theta2: FloatArray, theta3: FloatArray, theta4: FloatArray
     ) -> FloatArray:
-        return -linkage.r2 / self.apart(linkage, theta2 - linkage.theta1) * np.cos(theta2 - theta3)
+        diagonal = self.apart(linkage, theta2 - linkage.theta1)
+        return np.asarray(-linkage.r2 / diagonal * np.cos(theta2 - theta3))
 
     def limits(self, linkage: InvertedSliderCrank) -> FloatArray:
         """Crank square to the rod: r1 sin(theta1 - theta3) = +-r2 - offset, theta2 = theta3 +- 90 deg."""
@@ -177,6 +179,9 @@ class InvertedSliderCrankKind(Kind[InvertedSliderCrank]):
         with np.errstate(divide="ignore", invalid="ignore"):
             by: FloatArray = np.stack(parts, axis=-1) / ab[..., None]
         return by, by
+
+    def way_to_4(self, linkage: InvertedSliderCrank) -> tuple[FloatArray, tuple[tuple[int, FloatArray], ...]]:
+        return linkage.o4, ()
 
     def b_from(self, linkage: InvertedSliderCrank) -> FloatArray:
         return linkage.offset

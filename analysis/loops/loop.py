@@ -163,6 +163,10 @@ class Kind(ABC, Generic[L_contra]):
         """Derivatives of theta3 and theta4 by `DIMENSIONS` without u and v, at held theta2, (..., D - 2)."""
 
     @abstractmethod
+    def way_to_4(self, linkage: L_contra) -> tuple[FloatArray, tuple[tuple[int, FloatArray], ...]]:
+        """A ground pivot, and the lengths of the links from it on to the origin of the frame of link 4."""
+
+    @abstractmethod
     def b_from(self, linkage: L_contra) -> FloatArray:
         """How far B is along the u-axis of link 4, shape (...)."""
 

@@ -166,6 +166,9 @@ class SliderCrankKind(Kind[SliderCrank]):
         with np.errstate(divide="ignore", invalid="ignore"):
             return by / (linkage.r3 * np.cos(turn))[..., None], np.zeros_like(by)
 
+    def way_to_4(self, linkage: SliderCrank) -> tuple[FloatArray, tuple[tuple[int, FloatArray], ...]]:
+        return linkage.o2, ((2, linkage.r2), (3, linkage.r3))
+
     def b_from(self, linkage: SliderCrank) -> FloatArray:
         return np.zeros_like(linkage.r2)
 

@@ -100,10 +100,10 @@ class Linkage(Displayed):
 
         return type(self)(*map(change, self.PARAMETERS, self.parameters))
 
-    def assembled(self, assembly: npt.ArrayLike) -> Self:
-        """The same on one assembly or the other, +1 or -1."""
-        rows = zip(self.PARAMETERS, self.parameters, strict=True)
-        return type(self)(*(assembly if row.kind == "sign" else value for row, value in rows))
+    def changed(self, **parameters: npt.ArrayLike) -> Self:
+        """The linkage with other values of some of its parameters."""
+        stated = {row.name: value for row, value in zip(self.PARAMETERS, self.parameters, strict=True)}
+        return type(self)(**(stated | parameters))
 
     def __getitem__(self, index: Any) -> Self:
         index = index if isinstance(index, tuple) else (index,)

@@ -86,7 +86,7 @@ class Subject:
 
 def _posed(spec: LinkageSpec, problem: Problem, verdict: Verdict) -> LinkageSpec:
     """The linkage with the unit and masses that its problem states."""
-    linkage = spec.linkage.assembled(verdict.assembly[0])
+    linkage = spec.linkage.changed(assembly=verdict.assembly[0])
     dynamics = (problem.dynamics or DynamicsSpec()).turning(verdict.direction)
     title = spec.title if problem is spec.problem else problem.title or problem.name
     return LinkageSpec(linkage, spec.name, title, length_unit=problem.length_unit, dynamics=dynamics)

@@ -99,7 +99,7 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], frame: pd.DataFra
     frame : DataFrame
         Their rows, as `to_frame` makes them.
     """
-    linkages = [each.linkage.assembled(each.verdict.assembly[0]) for each in designs]
+    linkages = [each.linkage.changed(assembly=each.verdict.assembly[0]) for each in designs]
     travels = [
         driver_travel(linkage, each.verdict.theta2) for linkage, each in zip(linkages, designs, strict=True)
     ]
