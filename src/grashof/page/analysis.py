@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from grashof.page.designs import linkage_data
+from grashof.page.designs import legend, linkage_data
 from grashof.page.panels import motion_sections
 from grashof.page.plot_data import Columns, is_thinned, plot_data
 from grashof.page.render import render
@@ -74,6 +74,7 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         spec=spec,
         report=report,
         dimensions=dimensions_text(spec),
+        links=legend([spec.linkage.MECHANISM]),
         ranges=[f"{np.degrees(low):.6g} to {np.degrees(high):.6g} deg" for low, high in sweep.ranges],
         facts=_facts(report.facts),
         groups=[_group(section) for section in sections],

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,6 +22,7 @@ from grashof.page.render import compact
 from grashof.problems import DynamicsSpec, Linkage, Problem
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics_spec import metres
+from grashof.problems.values.mechanisms import KINDS
 from grashof.study.sweep import INSET, dead_positions_unwarned, driver_angles
 from grashof.synth import Candidate
 
@@ -81,6 +82,22 @@ def driver_travel(linkage: Linkage, theta2: FloatArray) -> Travel:
     low, high = driver_ranges(linkage)[max(int(index), 0)]
     turned = 0.0 if index < 0 else TURN * float(np.round((theta2[0] - inside) / TURN))
     return Travel(float(low) + turned, float(high) + turned, False)
+
+
+def legend(kinds: Iterable[str]) -> list[tuple[str, str]]:
+    """Style and words of each link in drawings of linkages of some kinds.
+
+    Examples
+    --------
+    >>> legend(["slider-crank"])
+    [('driver', 'driver O2-A'), ('coupler', 'coupler A-B-P'), ('output', 'slider B')]
+    """
+    found: dict[str, list[str]] = {}
+    every = list(kinds)
+    for style, index in (("driver", 1), ("coupler", 2), ("output", 3)):
+        links = [KINDS[kind].LINKS[index] for kind in every]
+        found[style] = [f"{link.name} {'-'.join(link.labels)}" for link in links]
+    return [(style, ", ".join(dict.fromkeys(words))) for style, words in found.items()]
 
 
 def linkage_data(linkage: Linkage) -> dict[str, Any]:

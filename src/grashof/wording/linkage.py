@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from grashof.problems import LinkageSpec
-from grashof.problems.values.mechanisms import FOUR_BAR
+from grashof.problems.values.mechanisms import FOUR_BAR, lengths_text
 
 
 def dimensions_text(spec: LinkageSpec) -> str:
-    """The lengths of a linkage, and what else its kind is made by.
+    """The lengths of a linkage with their unit, after its kind where that is no four-bar.
 
     Examples
     --------
@@ -17,10 +17,5 @@ def dimensions_text(spec: LinkageSpec) -> str:
     >>> dimensions_text(load_linkage_spec("pumpjack"))
     'r1 to r4 5, 1.1938, 3.7719, 3.04876 m'
     """
-    linkage = spec.linkage
-    if linkage.MECHANISM == FOUR_BAR:
-        lengths = ", ".join(f"{length:.6g}" for length in linkage.lengths)
-        return f"r1 to r4 {lengths} {spec.length_unit}".rstrip()
-    names = (*linkage.LENGTHS, *(row.name for row in linkage.PARAMETERS if row.kind == "distance"))
-    told = ", ".join(f"{name} {float(getattr(linkage, name)):.6g}" for name in names)
-    return f"{linkage.MECHANISM}, {told} {spec.length_unit}".rstrip()
+    kind = "" if spec.linkage.MECHANISM == FOUR_BAR else f"{spec.linkage.MECHANISM}, "
+    return f"{kind}{lengths_text(spec.linkage, 6)} {spec.length_unit}".rstrip()
