@@ -7,16 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from grashof.analysis.forces.joints import (
-    Joint,
-    joint_motion,
-    slide_direction,
-    slide_normal,
-    slide_of,
-)
+from grashof.analysis.forces.joints import Joint, joint_motion, slide_direction, slide_normal
 from grashof.analysis.forces.loads import Wrench, cross
 from grashof.analysis.four_bar.kinematics import Kinematics
+from grashof.problems import FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.linkage import Linkage
 
 
 class Closing(NamedTuple):
@@ -55,11 +51,10 @@ def closing(state: Kinematics, demands: dict[int, Wrench], moments: FloatArray) 
     - inverted: moments of the rod about A, and of the block about O4, of which the force along the rod
       is known; their arms are the travel and the offset.
     """
-    return _CLOSINGS[slide_of(state.linkage)](state, demands, moments)
+    return _CLOSINGS[type(state.linkage)](state.linkage, state, demands, moments)
 
 
-def _by_pins(state: Kinematics, demands: dict[int, Wrench], moments: FloatArray) -> Closing:
-    linkage = state.linkage
+def _by_pins(linkage: FourBar, state: Kinematics, demands: dict[int, Wrench], moments: FloatArray) -> Closing:
     turn3 = demands[3].moment - moments[1] + moments[2]
     turn4 = demands[4].moment - moments[2] - moments[3]
     sine = np.sin(state.theta4 - state.theta3)
@@ -68,28 +63,34 @@ def _by_pins(state: Kinematics, demands: dict[int, Wrench], moments: FloatArray)
     return Closing(f43, np.full(np.shape(along3), np.nan))
 
 
-def _by_slider(state: Kinematics, demands: dict[int, Wrench], moments: FloatArray) -> Closing:
+def _by_slider(
+    linkage: SliderCrank, state: Kinematics, demands: dict[int, Wrench], moments: FloatArray
+) -> Closing:
     along, across = slide_direction(state), slide_normal(state)
     rod = direction(state.theta3)
     turn3 = demands[3].moment - moments[1] + moments[2]
     pull = moments[3] - (demands[4].force * along).sum(axis=-1)
-    push = (turn3 / state.linkage.r3 - pull * cross(rod, along)) / cross(rod, across)
+    push = (turn3 / linkage.r3 - pull * cross(rod, along)) / cross(rod, across)
     f43 = pull[..., None] * along + push[..., None] * across
     return Closing(f43, demands[4].moment - moments[2] + np.zeros(state.shape))
 
 
-def _by_block(state: Kinematics, demands: dict[int, Wrench], moments: FloatArray) -> Closing:
+def _by_block(
+    linkage: InvertedSliderCrank, state: Kinematics, demands: dict[int, Wrench], moments: FloatArray
+) -> Closing:
     along, across = slide_direction(state), slide_normal(state)
     travel, _ = joint_motion(state, Joint.B)
     pull = -moments[2]
-    moment = demands[4].moment - moments[3] - pull * state.linkage.offset
+    moment = demands[4].moment - moments[3] - pull * linkage.offset
     push = (demands[3].moment - moments[1] + moment) / travel
     return Closing(pull[..., None] * along + push[..., None] * across, moment + np.zeros(state.shape))
 
 
-_Closer = Callable[[Kinematics, dict[int, Wrench], FloatArray], Closing]
-# By the joint that is a slide.
-_CLOSINGS: dict[Joint | None, _Closer] = {None: _by_pins, Joint.O4: _by_slider, Joint.B: _by_block}
+_CLOSINGS: dict[type[Linkage], Callable[..., Closing]] = {
+    FourBar: _by_pins,
+    SliderCrank: _by_slider,
+    InvertedSliderCrank: _by_block,
+}
 
 
 def direction(theta: FloatArray) -> FloatArray:

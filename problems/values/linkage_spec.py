@@ -9,6 +9,7 @@ from grashof.problems.values.display import Displayed
 from grashof.problems.values.dynamics_of_kind import misplaced
 from grashof.problems.values.dynamics_spec import DynamicsSpec
 from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.four_bar import FourBar
 from grashof.problems.values.linkage import Linkage
 from grashof.problems.values.problem import Problem
 from grashof.problems.values.pumping_unit import PumpingUnitSpec
@@ -48,6 +49,10 @@ class LinkageSpec(Displayed):
             plain_text(getattr(self, name), name)
         if self.pumping_unit is not None and self.output_arm is None:
             raise ProblemError("output_arm is missing; pumping_unit needs that of the horsehead")
+        if self.pumping_unit is not None and not isinstance(self.linkage, FourBar):
+            raise ProblemError(
+                f"pumping_unit does not go with mechanism {self.linkage.MECHANISM}; only four-bar has it"
+            )
         if self.dynamics is not None:
             refuse(misplaced(self.dynamics, type(self.linkage)))
 
