@@ -215,7 +215,7 @@ _PROBLEMS = (
     f"[requirements]\ntheta2_start_deg = 20\n{_MASSES.replace('masses', '# ').replace('inertias', '# ')}"
     f"mass_per_length = 0.01\n{_SEARCH}",
     f'kind = "path"\n{_HEAD}[path]\npoints = [[0, 0], [30, 10], [60, 0]]\n{_SEARCH}',
-    f'kind = "path"\nmechanism = ["slider-crank", "four-bar"]\n{_HEAD}[path]\npoints = [[0, 0], [30, 10], [60, 0]]\n'
+    f'kind = "path"\nmechanism = ["slider-crank", "four-bar"]\n{_HEAD}[path]\n{_POINTS}'
     f"[requirements]\noffset = [-90, 90]\nslide_angle_deg = 10\nstroke = [1, 900]\n{_SEARCH}",
     f'kind = "motion"\n{_HEAD}[motion]\nposes = [[0, 0, 10], [30, 10, 10], [60, 5, 10]]\n{_SEARCH}',
 )
