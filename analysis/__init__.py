@@ -31,11 +31,11 @@ from grashof.analysis.forces.equilibrium import Equilibria, equilibria
 from grashof.analysis.forces.flywheel import Flywheel, size_flywheel
 from grashof.analysis.forces.flywheel_speed import flywheel_speed
 from grashof.analysis.forces.free_response import Ending, FreeResponse, free_response, generalised_inertia
+from grashof.analysis.forces.joints import Joint
 from grashof.analysis.forces.loads import (
     AppliedForce,
     AppliedMoment,
     Friction,
-    Joint,
     Loads,
     Spring,
     TorsionSpring,
@@ -60,6 +60,11 @@ from grashof.analysis.forces.pumping_unit import (
     reducer_torque,
     rod_load,
     rod_motion,
+)
+from grashof.analysis.forces.reciprocating import (
+    ReciprocatingBalance,
+    balance_reciprocating,
+    shaking_harmonics,
 )
 from grashof.analysis.forces.section_forces import BarForces, SectionForce, section_forces
 from grashof.analysis.forces.stated import stated_loads, stated_masses
@@ -154,6 +159,7 @@ __all__ = [
     "PolynomialFit",
     "Position",
     "Powers",
+    "ReciprocatingBalance",
     "ReducerTorque",
     "Robustness",
     "RodMotion",
@@ -172,6 +178,7 @@ __all__ = [
     "advantage",
     "all_double_points",
     "balance_force",
+    "balance_reciprocating",
     "balance_torque",
     "balance_turn",
     "beam_limits",
@@ -233,6 +240,7 @@ __all__ = [
     "rotatability",
     "section_forces",
     "sensitivity",
+    "shaking_harmonics",
     "size_flywheel",
     "solve_kinematics",
     "solve_position",

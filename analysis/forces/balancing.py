@@ -18,9 +18,10 @@ from grashof.analysis.four_bar.means import mean_over
 from grashof.analysis.four_bar.mobility import full_rotation
 from grashof.analysis.numerics.minimax import least_peak
 from grashof.analysis.numerics.quadrature import Curve
-from grashof.problems import AssemblyError, FourBar, ProblemError, SolverError
+from grashof.problems import AssemblyError, FourBar, InvertedSliderCrank, ProblemError, SolverError
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 from grashof.problems.values.errors import wrong_value
+from grashof.problems.values.linkage import Linkage
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,7 +61,7 @@ class TorqueBalance:
 
 
 def balance_force(
-    linkage: FourBar,
+    linkage: Linkage,
     masses: Masses,
     crank_radius: npt.ArrayLike | None = None,
     output_radius: npt.ArrayLike | None = None,
@@ -69,20 +70,27 @@ def balance_force(
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
     masses : Masses
     crank_radius, output_radius : array_like, shape (...), length, optional
-        Distances of the counterweights from O2 and O4; by default r2 and r4.
+        Distances of the counterweights from O2 and O4; by default r2 and r4, of an inverted slider-crank
+        r2 and r2.
 
     Returns
     -------
     ForceBalance
 
+    Raises
+    ------
+    ProblemError
+        A slider-crank, which such weights cannot balance.
+
     Notes
     -----
     Linearly independent vectors (Berkof & Lowen 1969, *A new method for completely force balancing
     simple linkages*): with the coupler's direction eliminated by the loop equation, the system's
-    centre of mass stays where it is when the factors of the two remaining directions vanish.
+    centre of mass stays where it is when the factors of the two remaining directions vanish. The rod of
+    an inverted slider-crank turns with its block, so that there its direction needs not be eliminated.
     Shaking moment and drive torque usually grow.
 
     Examples
@@ -95,15 +103,29 @@ def balance_force(
     >>> bool(np.abs(centre.acceleration).max() < 1e-14)
     True
     """
-    share = _complex(masses.coupler.centre) / linkage.r3
-    crank = masses.crank.mass * _complex(masses.crank.centre)
-    crank = crank + masses.coupler.mass * linkage.r2 * (1 - share)
-    output = masses.output.mass * _complex(masses.output.centre)
-    output = output + masses.coupler.mass * linkage.r4 * share
+    crank, output = _unbalanced(linkage, masses)
     crank_weight = _counterweight(-crank, linkage.r2 if crank_radius is None else crank_radius)
-    output_weight = _counterweight(-output, linkage.r4 if output_radius is None else output_radius)
+    default = linkage.r4 if isinstance(linkage, FourBar) else linkage.r2
+    output_weight = _counterweight(-output, default if output_radius is None else output_radius)
     whole = Masses(masses.crank + crank_weight, masses.coupler, masses.output + output_weight)
     return ForceBalance(crank_weight, output_weight, whole)
+
+
+def _unbalanced(linkage: Linkage, masses: Masses) -> tuple[ComplexArray, ComplexArray]:
+    """Factors of the directions of links 2 and 4 in the moment of all masses, in the frames of these."""
+    crank = masses.crank.mass * _complex(masses.crank.centre)
+    output = masses.output.mass * _complex(masses.output.centre)
+    own = _complex(masses.coupler.centre)
+    if isinstance(linkage, FourBar):
+        share = own / linkage.r3
+        crank = crank + masses.coupler.mass * linkage.r2 * (1 - share)
+        return crank, output + masses.coupler.mass * linkage.r4 * share
+    if isinstance(linkage, InvertedSliderCrank):  # theta3 is theta4 less a right angle
+        return crank + masses.coupler.mass * linkage.r2, output - 1j * masses.coupler.mass * own
+    raise ProblemError(
+        f"a {linkage.MECHANISM} has no link 4 that turns about the ground, so counterweights on links 2 and "
+        "4 cannot keep its centre of mass at rest; balance_reciprocating makes its shaking force less"
+    )
 
 
 def balance_torque(
@@ -155,13 +177,13 @@ def balance_torque(
 
 
 def balance_turn(
-    linkage: FourBar, masses: Masses, omega2: float, loads: Loads, radius: float, measure: str = "rms"
+    linkage: Linkage, masses: Masses, omega2: float, loads: Loads, radius: float, measure: str = "rms"
 ) -> TorqueBalance:
     """The counterweight on the crank that makes the drive torque of a turn most even.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage whose driver turns fully.
     masses : Masses
     omega2 : float, rad/s
@@ -237,7 +259,7 @@ def _balanced(
     return TorqueBalance(weight, whole, before, after)
 
 
-def _least_rms(linkage: FourBar, torque: Curve, effects: Curve) -> FloatArray:
+def _least_rms(linkage: Linkage, torque: Curve, effects: Curve) -> FloatArray:
     """Moment m r with the least root mean square of torque + effects m r over the turn."""
 
     def products(theta2: FloatArray) -> FloatArray:
@@ -248,7 +270,7 @@ def _least_rms(linkage: FourBar, torque: Curve, effects: Curve) -> FloatArray:
     return np.asarray(np.linalg.solve(np.reshape(square, (2, 2)), [-fx, -fy]))
 
 
-def _least_peak_over_turn(linkage: FourBar, torque: Curve, effects: Curve) -> FloatArray:
+def _least_peak_over_turn(linkage: Linkage, torque: Curve, effects: Curve) -> FloatArray:
     """Moment m r with the least peak of |torque + effects m r| over the turn."""
     motion = even_motion(linkage, 0.0, TURN)
 

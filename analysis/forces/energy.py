@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.analysis.forces.dynamics import inverse_dynamics
-from grashof.analysis.forces.loads import Friction, Joint, Loads, joint_rotation, spring_ends, torsion_moments
+from grashof.analysis.forces.joints import Joint, joint_motion
+from grashof.analysis.forces.loads import Friction, Loads, spring_ends, torsion_moments
 from grashof.analysis.forces.mass import Masses
 from grashof.analysis.forces.statics import load_power
 from grashof.analysis.four_bar.kinematics import Kinematics
@@ -93,7 +94,7 @@ def energies(state: Kinematics, masses: Masses, loads: Loads | None = None) -> E
         stretch = np.hypot(way[..., 0], way[..., 1]) - spring.free_length
         springs = springs + spring.stiffness * stretch**2 / 2
     for torsion in loads.torsion_springs:
-        wound = torsion.wound(joint_rotation(state, torsion.joint)[0])
+        wound = torsion.wound(joint_motion(state, torsion.joint)[0])
         springs = springs + torsion.stiffness * wound**2 / 2
     return Energies(np.stack(kinetic), weight[()], springs[()])
 
@@ -119,7 +120,7 @@ def powers(state: Kinematics, masses: Masses, loads: Loads | None = None) -> Pow
     outside = replace(loads, friction=Friction(), torsion_springs=())
     given = load_power(state, state, outside) - load_power(state, state, Loads(springs=lossless))
     rubbing = found.joint_moments - torsion_moments(state, loads)
-    lost = sum((rubbing[joint] * joint_rotation(state, joint)[1] for joint in Joint), np.zeros(state.shape))
+    lost = sum((rubbing[joint] * joint_motion(state, joint)[1] for joint in Joint), np.zeros(state.shape))
     return Powers(found.power, given[()], lost[()])
 
 

@@ -12,9 +12,10 @@ from numpy.polynomial import chebyshev
 from grashof.analysis.forces.free_response import generalised_inertia
 from grashof.analysis.forces.loads import Loads
 from grashof.analysis.forces.mass import Masses
-from grashof.analysis.forces.statics import load_power, virtual_motion, virtual_power
-from grashof.problems import FourBar
+from grashof.analysis.forces.statics import load_power, virtual_power
+from grashof.analysis.forces.virtual_motion import virtual_motion
 from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.problems.values.linkage import Linkage
 
 _SAMPLES = 721
 _NOTHING = 1e-12  # share of what the loads do at most: no torque
@@ -55,13 +56,13 @@ class Equilibria:
 
 
 def equilibria(
-    linkage: FourBar, masses: Masses, loads: Loads, start: float, end: float, *, closed: bool = False
+    linkage: Linkage, masses: Masses, loads: Loads, start: float, end: float, *, closed: bool = False
 ) -> Equilibria:
     """Equilibrium positions of a linkage whose driver is free.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     masses : Masses
     loads : Loads
@@ -86,6 +87,7 @@ def equilibria(
     A pendulum as the crank, 1 m long: it hangs still and stands upright.
 
     >>> from grashof.analysis.forces.mass import Body
+    >>> from grashof.problems import FourBar
     >>> linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
     >>> pendulum = Masses(Body(2.0, 0.0, (1.0, 0.0)), Body(0), Body(0))
     >>> found = equilibria(linkage, pendulum, Loads(gravity=(0, -9.81)), 0.0, 2 * np.pi, closed=True)
@@ -115,7 +117,7 @@ def equilibria(
         return Equilibria(roots, -slopes / virtual.omega2, generalised_inertia(linkage, roots, masses))
 
 
-def _work(linkage: FourBar, masses: Masses, loads: Loads, places: FloatArray) -> float:
+def _work(linkage: Linkage, masses: Masses, loads: Loads, places: FloatArray) -> float:
     """What the power comes to where its parts do not balance each other."""
     virtual, rest = virtual_motion(linkage, places)
     gravity = float(np.hypot(*loads.gravity_vector()))

@@ -14,8 +14,9 @@ from grashof.analysis.four_bar.even_motion import even_motion
 from grashof.analysis.four_bar.kinematics import solve_kinematics
 from grashof.analysis.four_bar.mobility import full_rotation
 from grashof.analysis.numerics.quadrature import gauss_legendre, held, integrate
-from grashof.problems import AssemblyError, FourBar, ProblemError
+from grashof.problems import AssemblyError, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.problems.values.linkage import Linkage
 
 _PANELS = 36
 _HALVINGS = 60
@@ -44,13 +45,13 @@ class Flywheel:
 
 
 def size_flywheel(
-    linkage: FourBar, masses: Masses, omega2: float, fluctuation: float, loads: Loads | None = None
+    linkage: Linkage, masses: Masses, omega2: float, fluctuation: float, loads: Loads | None = None
 ) -> Flywheel:
     """Flywheel for a given fluctuation of the driver's speed.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage whose driver turns fully.
     masses : Masses
     omega2 : float, rad/s
@@ -79,6 +80,7 @@ def size_flywheel(
     Examples
     --------
     >>> from grashof.analysis.forces.mass import uniform_bars
+    >>> from grashof.problems import FourBar
     >>> jack = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
     >>> bars = uniform_bars(jack, (312, 312, 314))
     >>> wheel = size_flywheel(jack, bars, 2 * np.pi / 3, 0.05, Loads(gravity=(0, -9.81)))

@@ -11,14 +11,14 @@ from grashof.analysis.forces.mass import Masses
 from grashof.analysis.four_bar.even_motion import even_motion
 from grashof.analysis.four_bar.kinematics import solve_kinematics
 from grashof.analysis.numerics.quadrature import integrate
-from grashof.problems import FourBar
 from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.problems.values.linkage import Linkage
 
 _PANELS = 36
 
 
 def flywheel_speed(
-    linkage: FourBar,
+    linkage: Linkage,
     masses: Masses,
     omega2: float,
     wheel: Flywheel,
@@ -51,6 +51,7 @@ def flywheel_speed(
     --------
     >>> from grashof.analysis.forces.flywheel import size_flywheel
     >>> from grashof.analysis.forces.mass import uniform_bars
+    >>> from grashof.problems import FourBar
     >>> jack = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
     >>> bars, weight = uniform_bars(jack, (312, 312, 314)), Loads(gravity=(0, -9.81))
     >>> wheel = size_flywheel(jack, bars, 2.0, 0.05, weight)

@@ -12,24 +12,19 @@ import numpy.typing as npt
 
 from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.energy import mechanical_energy
-from grashof.analysis.forces.loads import (
-    Friction,
-    Joint,
-    Loads,
-    joint_rotation,
-    known_joint_moments,
-    torsion_moments,
-)
+from grashof.analysis.forces.joints import Joint, joint_motion, margin
+from grashof.analysis.forces.loads import Friction, Loads, known_joint_moments, torsion_moments
 from grashof.analysis.forces.mass import Masses
 from grashof.analysis.forces.statics import load_power
-from grashof.analysis.four_bar.kinematics import Kinematics, solve_kinematics
+from grashof.analysis.four_bar.kinematics import Kinematics, SlideMotion, solve_kinematics
 from grashof.analysis.numerics.collocation import Acceleration, Events, Panel, Path, integrate_motion
-from grashof.problems import AssemblyError, DeadPositionWarning, FourBar, ProblemError
+from grashof.problems import AssemblyError, DeadPositionWarning, ProblemError
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.linkage import Linkage
 
 Drive = float | Callable[[float, float, float], float]
 
-# sin(theta4 - theta3) at which a motion towards a dead position ends: beyond it the driver angle no
+# `margin` at which a motion towards a dead position ends: beyond it the driver angle no
 # longer shows how the linkage moves on.
 _DEAD_END = 1e-3
 _AHEAD = 1e-6  # rad of the driver: so far ahead it is seen in which sense a joint is about to turn
@@ -70,7 +65,7 @@ class FreeResponse:
 
 
 def free_response(
-    linkage: FourBar,
+    linkage: Linkage,
     masses: Masses,
     time: npt.ArrayLike,
     theta2: float,
@@ -83,7 +78,7 @@ def free_response(
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     masses : Masses
     time : array_like, shape (N,), s
@@ -121,6 +116,7 @@ def free_response(
     Examples
     --------
     >>> from grashof.analysis.forces.mass import uniform_bars
+    >>> from grashof.problems import FourBar
     >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
     >>> free = free_response(crank_rocker, uniform_bars(crank_rocker, 2.0), [0, 1, 2], 0.0, 5.0)
     >>> bool(np.ptp(free.energy) < 1e-7 * free.energy[0]), str(free.ending)
@@ -152,7 +148,7 @@ def free_response(
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         # A step that is tried may meet a dead position, before an event ends the motion there.
         warnings.simplefilter("ignore", DeadPositionWarning)
-        rubbing = _Rubbing(linkage, _rubbing(loads))
+        rubbing = _Rubbing(linkage, _rubbing(linkage, loads))
         path, ending = _moved(rates, at, theta2, omega2, tolerance, rubbing)
         end = path[-1].end
         reached = at if ending is Ending.TIME else at[at <= end]
@@ -160,7 +156,7 @@ def free_response(
     return FreeResponse(reached, state, mechanical_energy(state, masses, loads), ending, end)
 
 
-def generalised_inertia(linkage: FourBar, theta2: npt.ArrayLike, masses: Masses) -> FloatArray:
+def generalised_inertia(linkage: Linkage, theta2: npt.ArrayLike, masses: Masses) -> FloatArray:
     """Inertia of all links as the driver feels it, shape (...), kg length^2.
 
     Notes
@@ -170,6 +166,7 @@ def generalised_inertia(linkage: FourBar, theta2: npt.ArrayLike, masses: Masses)
     Examples
     --------
     >>> from grashof.analysis.forces.mass import Body
+    >>> from grashof.problems import FourBar
     >>> rod = Masses(Body(3.0, 0.2, (0.5, 0.0)), Body(0), Body(0))
     >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
     >>> float(generalised_inertia(crank_rocker, 1.0, rod).round(9))
@@ -180,32 +177,32 @@ def generalised_inertia(linkage: FourBar, theta2: npt.ArrayLike, masses: Masses)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Rubbing:
-    """Joints whose friction has the sense in which they turn, however slowly.
+    """Joints whose friction has the sense in which they turn, or slide, however slowly.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
     joints : tuple of int
     """
 
-    linkage: FourBar
+    linkage: Linkage
     joints: tuple[int, ...]
 
     def senses(self, theta2: float, sense: int) -> FloatArray:
         """In which the joints are about to turn where the driver turns in a sense, shape (4,)."""
         unit = solve_kinematics(self.linkage, np.array([theta2 + sense * _AHEAD]))
-        return np.array([sense * np.sign(joint_rotation(unit, joint)[1][0]) for joint in Joint])
+        return np.array([sense * np.sign(joint_motion(unit, joint)[1][0]) for joint in Joint])
 
     def events(self, sense: int, senses: FloatArray | None) -> Events:
         """What ends a part of the motion: a dead position near, rest, a joint that turns back."""
 
         def values(theta2: FloatArray, omega2: FloatArray) -> FloatArray:
             unit = solve_kinematics(self.linkage, theta2)
-            left = self.linkage.assembly * np.sin(unit.theta4 - unit.theta3) - _DEAD_END
+            left = self.linkage.assembly * margin(unit) - _DEAD_END
             found = [np.where(np.isfinite(left), left, -1.0)]
             if senses is not None:
                 found.append(sense * omega2)
-                found += [sense * senses[joint] * joint_rotation(unit, joint)[1] for joint in self.joints]
+                found += [sense * senses[joint] * joint_motion(unit, joint)[1] for joint in self.joints]
             return np.stack(np.broadcast_arrays(*found))
 
         return values
@@ -284,14 +281,14 @@ def _equation_of_motion(
         push = (omega2**2)[:, None] * centre.acceleration - gravity
         still = still + body.mass * (push * centre.velocity).sum(axis=-1)
         still = still + omega2**2 * body.inertia * alpha * omega
-    if loads.friction.each("radius").any():
+    if loads.friction.of(unit.linkage, "radius").any():
         rubbing = inverse_dynamics(_scaled(unit, omega2, guess), masses, loads, senses).joint_moments
     else:
         rubbing = known_joint_moments(state, loads, senses)
     rubbing = rubbing - torsion_moments(state, loads)
     for joint in Joint:
         if rubbing[joint].any():
-            still = still - rubbing[joint] * joint_rotation(unit, joint)[1]
+            still = still - rubbing[joint] * joint_motion(unit, joint)[1]
     return inertia, still
 
 
@@ -302,16 +299,20 @@ def _scaled(unit: Kinematics, omega2: FloatArray, alpha2: FloatArray) -> Kinemat
         omega2**2 * bend + alpha2 * rate
         for bend, rate in ((unit.alpha3, unit.omega3), (unit.alpha4, unit.omega4))
     )
+    slide = unit.slide
+    if slide is not None:
+        bend = omega2**2 * slide.acceleration + alpha2 * slide.velocity
+        slide = SlideMotion(slide.travel, omega2 * slide.velocity, bend, none)
     return Kinematics(
         unit.linkage, unit.theta2, unit.theta3, unit.theta4,
         omega2 * unit.omega2, omega2 * unit.omega3, omega2 * unit.omega4,
-        alpha2, alpha3, alpha4, none, none, none,
+        alpha2, alpha3, alpha4, none, none, none, slide,
     )  # fmt: skip
 
 
-def _check_start(linkage: FourBar, masses: Masses, theta2: float) -> None:
+def _check_start(linkage: Linkage, masses: Masses, theta2: float) -> None:
     start = solve_kinematics(linkage, theta2)  # names an angle at which the linkage cannot close
-    if not abs(np.sin(start.theta4 - start.theta3)) > _DEAD_END:
+    if not abs(margin(start)) > _DEAD_END:
         raise AssemblyError(
             f"the linkage stands in a dead position at driver angle {np.degrees(theta2):.6g} deg"
         )
@@ -319,8 +320,7 @@ def _check_start(linkage: FourBar, masses: Masses, theta2: float) -> None:
         raise ProblemError("the links have no inertia, so no torque gives them a motion")
 
 
-def _rubbing(loads: Loads) -> tuple[int, ...]:
+def _rubbing(linkage: Linkage, loads: Loads) -> tuple[int, ...]:
     """The joints whose friction does not vanish with their speed."""
-    return tuple(
-        joint for joint in Joint if any(loads.friction.each(name)[joint] for name in ("coulomb", "radius"))
-    )
+    coulomb, radius = (loads.friction.of(linkage, name) for name in ("coulomb", "radius"))
+    return tuple(joint for joint in Joint if coulomb[joint] or radius[joint])

@@ -4,32 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from enum import IntEnum
 from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from grashof.analysis.forces.joints import (
+    JOINED,
+    Joint,
+    frame_angle,
+    joint_motion,
+    joint_name,
+    origin,
+    slide_of,
+)
 from grashof.analysis.four_bar.kinematics import Kinematics, PointMotion
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.errors import wrong_value
+from grashof.problems.values.linkage import Linkage
 
 Varying: TypeAlias = npt.ArrayLike | Callable[[Kinematics], npt.ArrayLike]
 Pair: TypeAlias = tuple[float, float]
-
-
-class Joint(IntEnum):
-    """The four joints, in the order of arrays that have an axis for them."""
-
-    O2 = 0
-    A = 1
-    B = 2
-    O4 = 3
-
-
-# Which links a joint joins; rotations in it are those of the second relative to the first.
-JOINED = ((1, 2), (2, 3), (3, 4), (1, 4))
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +37,7 @@ class AppliedForce:
     link : int
         2, 3 or 4.
     at : pair of float, length
-        (u, v) in the link's frame.
+        (u, v) in the link's frame; of a slider from B, u along the slide.
     force : array_like, shape (..., 2), N; or callable
         Constant, or a function of the `Kinematics`: ``lambda state: ... state.theta2 ...``.
     turning : bool
@@ -132,11 +128,24 @@ class Friction:
     radius : float or sequence of 4, length
         Radius of the friction circle, coefficient times pin radius: moment for each unit of the
         joint's force.
+    slide_viscous : float, N s/length
+        Of a slide: force along it for each unit of velocity.
+    slide_coulomb : float, N
+        Force of constant size against the travel.
+    slide_mu : float
+        Force for each unit of that across the slide.
+    slide_length : float, length
+        Of the guide on which a slide's moment presses at both ends: the force across it counts as
+        max(|N|, 2 |M| / slide_length), the sum of both ends. Without it the moment M does not count.
     """
 
     viscous: npt.ArrayLike = 0.0
     coulomb: npt.ArrayLike = 0.0
     radius: npt.ArrayLike = 0.0
+    slide_viscous: float = 0.0
+    slide_coulomb: float = 0.0
+    slide_mu: float = 0.0
+    slide_length: float = 0.0
 
     def each(self, name: str) -> FloatArray:
         """One of the three for every joint, shape (4,)."""
@@ -144,6 +153,35 @@ class Friction:
         if values.shape not in ((), (4,)) or not np.isfinite(values).all() or np.any(values < 0):
             raise ProblemError(f"{name} friction is {values}; it must be one or four numbers from zero")
         return np.broadcast_to(values, 4)
+
+    def of(self, linkage: Linkage, name: str) -> FloatArray:
+        """The same for the joints of a linkage: where one is a slide, that of slides is in its place.
+
+        Raises
+        ------
+        ProblemError
+            A slide that the linkage has not, or friction of a pin where it has one.
+        """
+        each, slide = self.each(name), slide_of(linkage)
+        given = getattr(self, _OF_SLIDES[name])
+        if not np.isfinite(given) or given < 0:
+            raise wrong_value(_OF_SLIDES[name], given, "a number from zero")
+        if slide is None:
+            if given:
+                raise ProblemError(f"{_OF_SLIDES[name]} friction is {given}; a four-bar has no slide")
+            return each
+        if np.ndim(getattr(self, name)) and each[slide]:
+            raise ProblemError(
+                f"{name} friction in {slide.name} is {each[slide]:g}; that joint of a {linkage.MECHANISM} "
+                f"is a slide, so it must be 0, and {_OF_SLIDES[name]} states that of slides"
+            )
+        found = each.copy()
+        found[slide] = given
+        return found
+
+
+# By the name of what pins have.
+_OF_SLIDES = {"viscous": "slide_viscous", "coulomb": "slide_coulomb", "radius": "slide_mu"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -234,7 +272,7 @@ def placed_loads(state: Kinematics, loads: Loads) -> Iterator[PlacedLoad]:
     """All forces, moments and springs that act on the links, 1 to 4, at their places."""
     nothing, still = np.zeros(()), np.zeros(2)
     for force in loads.forces:
-        theta, value = state.angular(force.link)[0], _value(force.force, state)
+        theta, value = frame_angle(state, force.link), _value(force.force, state)
         if force.turning:
             value = turned(value, theta)
         yield PlacedLoad(force.link, force.at, value, nothing)
@@ -257,7 +295,7 @@ def wrenches(state: Kinematics, loads: Loads) -> dict[int, Wrench]:
         if load.force.any():
             place = _carried(state, load.link, load.at).position
             wrench.force = wrench.force + load.force
-            wrench.moment = wrench.moment + cross(place - _origin(state, load.link), load.force)
+            wrench.moment = wrench.moment + cross(place - origin(state, load.link).position, load.force)
         wrench.moment = wrench.moment + load.moment
     return found
 
@@ -283,16 +321,6 @@ def spring_pull(spring: Spring, first: PointMotion, second: PointMotion) -> Floa
     return pull
 
 
-def joint_rotation(state: Kinematics, joint: int) -> tuple[FloatArray, FloatArray]:
-    """Angle and angular velocity of the second link of a joint relative to the first."""
-    first, second = JOINED[joint]
-    angle, rate = state.angular(second)[:2]
-    if first == 1:
-        return angle, rate
-    before, rate_before = state.angular(first)[:2]
-    return angle - before, rate - rate_before
-
-
 def known_joint_moments(state: Kinematics, loads: Loads, senses: FloatArray | None = None) -> FloatArray:
     """Moments that joints exert on their second link, friction that grows with the force left out.
 
@@ -301,27 +329,40 @@ def known_joint_moments(state: Kinematics, loads: Loads, senses: FloatArray | No
     state : Kinematics
     loads : Loads
     senses : ndarray, shape (4,), optional
-        In which friction takes the joints to turn; by default as they do.
+        In which friction takes the joints to turn, or to slide; by default as they do.
 
     Returns
     -------
     ndarray, shape (4, ...), N length
+        In a slide the force along it, N.
     """
     moments = torsion_moments(state, loads)
-    viscous, coulomb = loads.friction.each("viscous"), loads.friction.each("coulomb")
+    viscous, coulomb = (loads.friction.of(state.linkage, name) for name in ("viscous", "coulomb"))
     for joint in Joint:
         if viscous[joint] or coulomb[joint]:
-            _, rate = joint_rotation(state, joint)
+            _, rate = joint_motion(state, joint)
             sense = np.sign(rate) if senses is None else senses[joint]
             moments[joint] -= viscous[joint] * rate + coulomb[joint] * sense
     return moments
 
 
 def torsion_moments(state: Kinematics, loads: Loads) -> FloatArray:
-    """The same of torsion springs alone."""
+    """The same of torsion springs alone.
+
+    Raises
+    ------
+    ProblemError
+        One of them is at a slide, in which links do not turn against each other.
+    """
     moments = np.zeros((4, *state.shape))
     for spring in loads.torsion_springs:
-        angle, _ = joint_rotation(state, spring.joint)
+        if spring.joint == slide_of(state.linkage):
+            where = joint_name(state.linkage, spring.joint)
+            raise ProblemError(
+                f"a torsion spring is at the {where} between links {JOINED[spring.joint]}, which do not turn "
+                "against each other; it must be at a pin"
+            )
+        angle, _ = joint_motion(state, spring.joint)
         moments[spring.joint] -= spring.stiffness * spring.wound(angle)
     return moments
 
@@ -336,7 +377,3 @@ def _carried(state: Kinematics, link: int, at: npt.ArrayLike) -> PointMotion:
     place = np.asarray(at, dtype=np.float64)
     still = np.zeros(2)
     return PointMotion(place, still, still, still)
-
-
-def _origin(state: Kinematics, link: int) -> FloatArray:
-    return state.a.position if link == 3 else state.linkage.o4 if link == 4 else state.linkage.o2

@@ -8,10 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from grashof.analysis.forces.bars import Bar, bars_of
 from grashof.analysis.four_bar.kinematics import Kinematics, PointMotion
-from grashof.problems import FourBar, ProblemError
+from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.errors import wrong_value
+from grashof.problems.values.linkage import Linkage
 from grashof.problems.values.read_only import ReadOnly
 
 
@@ -25,7 +27,8 @@ class Body(ReadOnly):
     inertia : array_like, shape (...), kg length^2
         About the centre of mass.
     centre : array_like, shape (..., 2), length
-        Centre of mass (u, v): origin O2, A or O4, u towards A, B or B, v to its left.
+        Centre of mass (u, v): origin O2, A or O4, u towards A, B or B, v to its left; of a slider from
+        B, u along the slide.
     parts : tuple of Body
         That it was put together from, whose places section forces depend on; none of a single one.
     """
@@ -160,23 +163,37 @@ def triangular_plate(base: npt.ArrayLike, apex: npt.ArrayLike, mass_per_area: np
     return Body(mass, mass * squares / 36, np.stack(np.broadcast_arrays((base + u) / 3, v / 3), axis=-1))
 
 
-def uniform_bars(linkage: FourBar, mass_per_length: npt.ArrayLike, payload: npt.ArrayLike = 0.0) -> Masses:
-    """All moving links as slender uniform bars, with a payload at P.
+def uniform_bars(
+    linkage: Linkage,
+    mass_per_length: npt.ArrayLike,
+    payload: npt.ArrayLike = 0.0,
+    widths: npt.ArrayLike = 0.0,
+) -> Masses:
+    """All moving links that are bars (see `bars_of`) as uniform ones, with a payload at P.
+
+    Sliders and blocks have no mass then.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
     mass_per_length : array_like, shape () or (3,), kg/length
         One for all, or one each for links 2, 3 and 4.
     payload : array_like, shape (...), kg
+    widths : array_like, shape () or (3,), length
+        In the plane of motion; none for slender bars.
     """
-    each = np.broadcast_to(np.asarray(mass_per_length, dtype=np.float64), 3)
-    bars = Masses(*(uniform_bar(getattr(linkage, f"r{link}"), each[link - 2]) for link in (2, 3, 4)))
+    each, wide = (
+        np.broadcast_to(np.asarray(given, dtype=np.float64), 3) for given in (mass_per_length, widths)
+    )
+    bodies = dict.fromkeys((2, 3, 4), Body(0.0))
+    for link, bar in bars_of(linkage).items():
+        bodies[link] = _along(bar, uniform_bar(bar.reach, each[link - 2], wide[link - 2]))
+    bars = Masses(*bodies.values())
     return bars.with_payload(payload, linkage.coupler_point) if np.any(np.asarray(payload) != 0) else bars
 
 
 def given_masses(
-    linkage: FourBar,
+    linkage: Linkage,
     masses: Sequence[float],
     inertias: Sequence[float],
     centres: Sequence[Sequence[float]] | None = None,
@@ -185,19 +202,25 @@ def given_masses(
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
     masses, inertias : sequence of 3 floats, kg and kg length^2
         For links 2, 3 and 4; inertias about the centres of mass.
     centres : sequence of 3 pairs, length, optional
-        In the links' frames; by default halfway between the joints.
+        In the links' frames; by default halfway between the joints of a bar, halfway along the rod of an
+        inverted slider-crank (see `bars_of`), at B of a slider and at O4 of a block.
     """
     for name, values in (("masses", masses), ("inertias", inertias), ("centres", centres)):
         if values is not None and len(values) != 3:
             raise ProblemError(f"{name} has {len(values)} entries; it must have three, for links 2, 3 and 4")
-    lengths = [getattr(linkage, f"r{link}") / 2 for link in (2, 3, 4)]
-    halfway = [np.stack([half, np.zeros_like(half)], axis=-1) for half in lengths]
+    bars, pinned = bars_of(linkage), np.zeros(2)
+    halfway = [bars[link].middle if link in bars else pinned for link in (2, 3, 4)]
     places = halfway if centres is None else [np.asarray(centre, dtype=np.float64) for centre in centres]
     return Masses(*(Body(*each) for each in zip(masses, inertias, places, strict=True)))
+
+
+def _along(bar: Bar, body: Body) -> Body:
+    """A uniform bar where it lies on its link."""
+    return Body(body.mass, body.inertia, bar.middle)
 
 
 def system_centre(masses: Masses, state: Kinematics) -> PointMotion:
@@ -215,6 +238,7 @@ def system_centre(masses: Masses, state: Kinematics) -> PointMotion:
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> jack = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
     >>> bars = uniform_bars(jack, (312, 312, 314))
     >>> from grashof.analysis.four_bar.kinematics import solve_kinematics

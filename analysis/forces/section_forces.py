@@ -9,10 +9,13 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from grashof.analysis.forces.bars import bars_of
 from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics
+from grashof.analysis.forces.joints import Joint, joint_motion, slide_of
 from grashof.analysis.forces.loads import Loads, cross, placed_loads, turned
 from grashof.analysis.forces.mass import Body, Masses
 from grashof.analysis.four_bar.kinematics import Kinematics
+from grashof.problems import ProblemError
 from grashof.problems.values.arrays import BoolArray, FloatArray
 
 _SAME = 1e-9  # share of a link's length within which places on it are one
@@ -46,10 +49,10 @@ class BarForces:
     link : int
         2, 3 or 4.
     length : ndarray, shape (...), length
-        Between its joints.
+        Between its joints; of the rod of an inverted slider-crank from A to where B is then.
     stations : ndarray, shape (..., K), length
-        Distances u from the link's origin (O2, A, O4) at which loads begin, end or act, ascending. They
-        cover both joints and all loads, so that the bar may reach beyond its joints.
+        Distances from the link's origin (O2, A, O4) towards its other joint at which loads begin, end or
+        act, ascending. They cover both joints and all loads, so that the bar may reach beyond its joints.
     normal, shear : ndarray, shape (..., K - 1, 3), N over length^0 to length^2
         Coefficients of the polynomials, constant first, in the distance from the station before.
     moment : ndarray, shape (..., K - 1, 4), N length over length^0 to length^3
@@ -129,7 +132,7 @@ def section_forces(
     masses: Masses,
     loads: Loads | None = None,
     found: Dynamics | None = None,
-    links: Sequence[int] = (2, 3, 4),
+    links: Sequence[int] | None = None,
 ) -> dict[int, BarForces]:
     """Normal force, shear force and bending moment along the links.
 
@@ -140,13 +143,18 @@ def section_forces(
     loads : Loads, optional
     found : Dynamics, optional
         Of `inverse_dynamics` for these three; by default it is computed.
-    links : sequence of int
-        Out of 2, 3 and 4.
+    links : sequence of int, optional
+        Some of those that are bars (`bars_of`); all by default.
 
     Returns
     -------
     dict of int to BarForces
         Not finite where the joint forces are not.
+
+    Raises
+    ------
+    ProblemError
+        A link that is no bar.
 
     Notes
     -----
@@ -156,7 +164,7 @@ def section_forces(
     on an arm from the joint instead. That changes nothing between the joints.
 
     A body of mass m and inertia I about its centre is spread evenly over the stretch of the bar that
-    reaches h = sqrt(3 I / m) from the centre to both sides, but no further than its farther joint; that
+    reaches h = sqrt(3 I / m) from the centre to both sides, but no further than its farther end; that
     is a uniform bar exactly, and a point mass where I = 0. Inertia that is left resists as that of wide
     sections does: by an evenly distributed couple. Force and moment are those of the whole body in any
     case. `Body.parts` are spread one by one, so that a payload stays a point.
@@ -178,6 +186,7 @@ def section_forces(
     60.0
     """
     loads = Loads() if loads is None else loads
+    links = _checked(state, links)
     found = inverse_dynamics(state, masses, loads) if found is None else found
     pushed = {link: list(_joint_loads(state, found, link)) for link in links}
     for load in placed_loads(state, loads):
@@ -209,29 +218,65 @@ class _Spread(NamedTuple):
     point: _Point  # the same where it has no length
 
 
-def _length(state: Kinematics, link: int) -> FloatArray:
-    return np.asarray(getattr(state.linkage, f"r{link}"), dtype=np.float64)
+class _Frame(NamedTuple):
+    """The bar of a link: how its own frame, u towards the other joint, lies in the link's, and its ends."""
+
+    theta: FloatArray
+    sign: FloatArray  # -1 where the other joint lies against the link's u-axis
+    length: FloatArray
+    low: FloatArray
+    high: FloatArray
+
+    def own(self, at: npt.ArrayLike) -> FloatArray:
+        """A place of the link's frame in that of the bar."""
+        place: FloatArray = np.asarray(at, dtype=np.float64) * self.sign[..., None]
+        return place
+
+    def turned(self, force: FloatArray) -> FloatArray:
+        """A vector of global axes in the frame of the bar."""
+        return turned(np.asarray(force), -self.theta) * self.sign[..., None]
 
 
-def _foot(at: FloatArray, length: FloatArray) -> FloatArray:
-    """Where a point (u, v) of a link hangs on its bar, shape (...)."""
-    u, v = at[..., 0], at[..., 1]
-    nearest = np.clip(u, 0, length)
+def _frame(state: Kinematics, link: int) -> _Frame:
+    bar, theta, ahead = bars_of(state.linkage)[link], state.angular(link)[0], np.ones(())
+    if link == 3 and slide_of(state.linkage) is Joint.B:
+        travel, _ = joint_motion(state, Joint.B)
+        sign = np.where(travel < 0, -1.0, 1.0)
+        ends = bar.low * sign, bar.high * sign
+        return _Frame(theta, sign, np.abs(travel), np.minimum(*ends), np.maximum(*ends))
+    return _Frame(theta, ahead, np.asarray(bar.high), np.asarray(bar.low), np.asarray(bar.high))
+
+
+def _checked(state: Kinematics, links: Sequence[int] | None) -> Sequence[int]:
+    bars = tuple(bars_of(state.linkage))
+    for link in links or ():
+        if link not in bars:
+            raise ProblemError(
+                f"link {link} of a {state.linkage.MECHANISM} is no bar; section forces are of links {bars}"
+            )
+    return bars if links is None else links
+
+
+def _foot(at: FloatArray, bar: _Frame) -> FloatArray:
+    """Where a point (u, v) of a bar's frame hangs on the bar, shape (...)."""
+    (u, v), same = (at[..., 0], at[..., 1]), _SAME * (bar.high - bar.low)
+    nearest = np.clip(u, bar.low, bar.high)
     beyond = np.abs(u - nearest)
-    on_joint = (beyond <= _SAME * length) | (np.abs(v) > beyond)
+    on_joint = (beyond <= same) | (np.abs(v) > beyond)
     foot = np.where(on_joint, nearest, u)
-    foot = np.where(np.abs(foot) <= _SAME * length, 0.0, foot)
-    return np.where(np.abs(foot - length) <= _SAME * length, length, foot)
+    foot = np.where(np.abs(foot) <= same, 0.0, foot)
+    return np.where(np.abs(foot - bar.length) <= same, bar.length, foot)
 
 
 def _hung(
     state: Kinematics, link: int, at: npt.ArrayLike, force: FloatArray, couple: npt.ArrayLike
 ) -> _Point:
     """A force in global axes at a point (u, v) as the bar feels it."""
-    place = np.asarray(at, dtype=np.float64)
-    foot = _foot(place, _length(state, link))
+    bar = _frame(state, link)
+    place = bar.own(at)
+    foot = _foot(place, bar)
     arm = place - np.stack([foot, np.zeros_like(foot)], axis=-1)
-    own = turned(np.asarray(force), -state.angular(link)[0])
+    own = bar.turned(force)
     return _Point(foot, own, np.asarray(couple) + cross(arm, own))
 
 
@@ -240,25 +285,32 @@ def _joint_loads(state: Kinematics, found: Dynamics, link: int) -> Iterator[_Poi
     moments, origin = found.joint_moments, np.zeros(())
     first, second = {
         2: ((found.f12, found.torque + moments[0]), (found.f32, -moments[1])),
-        3: ((-found.f32, moments[1]), (found.f43, -moments[2])),
+        3: ((-found.f32, moments[1]), (found.f43, -_in_b(state, found))),
         4: ((found.f14, moments[3]), (-found.f43, moments[2])),
     }[link]
-    theta, length = state.angular(link)[0], _length(state, link)
-    yield _Point(origin, turned(first[0], -theta), first[1])
-    yield _Point(length, turned(second[0], -theta), second[1])
+    bar = _frame(state, link)
+    yield _Point(origin, bar.turned(first[0]), first[1])
+    yield _Point(bar.length, bar.turned(second[0]), second[1])
+
+
+def _in_b(state: Kinematics, found: Dynamics) -> FloatArray:
+    """Moment on link 4 in B: of the pin, or of the block's slide."""
+    return found.slide_moment if slide_of(state.linkage) is Joint.B else found.joint_moments[Joint.B]
 
 
 def _spread(state: Kinematics, link: int, body: Body, gravity: FloatArray) -> _Spread:
     """Weight and inertia of a body, spread along the bar."""
-    length, mass, inertia = _length(state, link), np.asarray(body.mass), np.asarray(body.inertia)
-    foot = _foot(body.centre, length)
-    arm_u, arm_v = body.centre[..., 0] - foot, body.centre[..., 1]
-    farther = np.maximum(foot, length - foot)
+    bar, mass, inertia = _frame(state, link), np.asarray(body.mass), np.asarray(body.inertia)
+    centre = bar.own(body.centre)
+    foot = _foot(centre, bar)
+    arm_u, arm_v = centre[..., 0] - foot, centre[..., 1]
+    farther = np.maximum(foot - bar.low, bar.high - foot)
     half = np.where(inertia > 0, np.sqrt(3 * inertia / mass), 0.0)
-    half = np.where(half > (1 - _SAME) * farther, farther, np.where(half > _SAME * length, half, 0.0))
+    point = half <= _SAME * (bar.high - bar.low)
+    half = np.where(half > (1 - _SAME) * farther, farther, np.where(point, 0.0, half))
     turning = inertia - mass * half**2 / 3
-    theta, omega, alpha, _ = state.angular(link)
-    origin = turned(state.point(link, (0.0, 0.0)).acceleration - gravity, -theta)
+    _, omega, alpha, _ = state.angular(link)
+    origin = bar.turned(state.point(link, (0.0, 0.0)).acceleration - gravity)
     pull, line, turn = omega**2, *(_over(each, 2 * half) for each in (mass, turning))
 
     def inertial(u: FloatArray) -> FloatArray:
@@ -323,7 +375,7 @@ def _cut(link: int, state: Kinematics, points: list[_Point], spreads: list[_Spre
         normal = normal - along[..., span + 1]
         shear = shear + across[..., span + 1]
         moment = moment - couples[..., span + 1]
-    length = np.broadcast_to(_length(state, link), shape)
+    length = np.broadcast_to(_frame(state, link).length, shape)
     rest = SectionForce(normal[()], shear[()], moment[()])
     along_bar, across_bar, bending = (np.stack(piece, axis=-2) for piece in pieces)
     return BarForces(link, length, stations, along_bar, across_bar, bending, rest)

@@ -7,31 +7,32 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 
 from grashof.analysis.forces.curve_through import curve_through
+from grashof.analysis.forces.joints import JOINED, Joint, joint_motion, slide_of
 from grashof.analysis.forces.loads import (
-    JOINED,
     AppliedForce,
     AppliedMoment,
     Friction,
-    Joint,
     Loads,
     Spring,
     TorsionSpring,
 )
-from grashof.analysis.forces.mass import Body, Masses, given_masses, uniform_bar, uniform_bars
+from grashof.analysis.forces.mass import Body, Masses, given_masses, uniform_bars
 from grashof.analysis.four_bar.kinematics import Kinematics
-from grashof.problems import DynamicsSpec, FourBar, ProblemError
-from grashof.problems.values.acting import LoadSpec, Place
+from grashof.problems import DynamicsSpec, ProblemError
+from grashof.problems.values.acting import TURNING, LoadSpec, Place
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.linkage import Linkage
 
+_ROUNDING = 1e-9  # share of the greatest travel by which it may pass the rows of a load
 Clock = Callable[[Kinematics], FloatArray]
 
 
-def stated_masses(linkage: FourBar, spec: DynamicsSpec, metre: float = 1.0) -> Masses:
+def stated_masses(linkage: Linkage, spec: DynamicsSpec, metre: float = 1.0) -> Masses:
     """Moving links as a problem states them, with counterweights, and the payload at P.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
     spec : DynamicsSpec
     metre : float
         The length unit in metres; a density needs it.
@@ -39,13 +40,9 @@ def stated_masses(linkage: FourBar, spec: DynamicsSpec, metre: float = 1.0) -> M
     if spec.masses is not None and spec.inertias is not None:
         found = given_masses(linkage, spec.masses, spec.inertias, spec.centres)
     elif spec.density is not None and spec.section is not None:
-        bars = zip(linkage.LINKS[1:], spec.section.areas, spec.section.widths, strict=True)
         per_area = spec.density * metre**3  # kg for each length^3
-        found = Masses(
-            *(
-                uniform_bar(getattr(linkage, f"r{link.number}"), per_area * area, width)
-                for link, area, width in bars
-            )
+        found = uniform_bars(
+            linkage, per_area * np.array(spec.section.areas), widths=np.array(spec.section.widths)
         )
     else:
         found = uniform_bars(linkage, np.float64(spec.mass_per_length or 0.0))
@@ -83,7 +80,10 @@ def stated_loads(spec: DynamicsSpec, metre: float, clock: Clock | None = None) -
     if spec.friction is not None:
         given = spec.friction
         viscous, constant = (_each(values) / metre**2 for values in (given.viscous, given.moment))
-        friction = Friction(viscous, constant, _each(given.radius))
+        friction = Friction(
+            viscous, constant, _each(given.radius),
+            given.slide_viscous, given.slide_force / metre, given.slide_mu, given.slide_length,
+        )  # fmt: skip
     return Loads(
         gravity=np.array(spec.gravity) / metre,
         forces=tuple(_forces(spec.loads, metre, clock)),
@@ -116,8 +116,8 @@ def _ends(between: tuple[Place, Place]) -> tuple[int, tuple[float, float], int, 
 
 
 def _each(values: tuple[float, ...]) -> FloatArray:
-    """One for each joint."""
-    return np.broadcast_to(np.array(values), 4)
+    """One for each joint, or one that is meant for all pins."""
+    return np.array(values if len(values) == 4 else values[0])
 
 
 def _varying(
@@ -128,15 +128,38 @@ def _varying(
         return np.asarray(load.moment if load.force is None else load.force) / unit
     if load.over == "time" and clock is None:
         raise ProblemError("a load over time needs a driver that moves; speed_rpm is 0")
-    curve = curve_through(load.values, period=None if load.over == "time" else 360.0)
+    curve = curve_through(load.values, period=360.0 if load.over in TURNING else None)
 
     def of(state: Kinematics) -> FloatArray:
-        place = clock(state) if load.over == "time" and clock is not None else np.degrees(_angle(state, load))
+        place = clock(state) if load.over == "time" and clock is not None else _place(state, load)
         values = curve(np.broadcast_to(place, state.shape)) / unit
         return values[..., 0] if load.is_moment else values
 
     return of
 
 
-def _angle(state: Kinematics, load: LoadSpec) -> FloatArray:
-    return state.theta2 if load.over == "theta2" else state.theta4
+def _place(state: Kinematics, load: LoadSpec) -> FloatArray:
+    """Where in its rows a load is: an angle in deg, or the travel of the slide."""
+    slide = slide_of(state.linkage)
+    if load.over == "theta4" and slide is Joint.O4:
+        raise ProblemError("a load is over theta4, but a slider does not turn; it must be over travel")
+    if load.over in TURNING:
+        return np.degrees(state.theta2 if load.over == "theta2" else state.theta4)
+    if slide is None:
+        raise ProblemError("a load is over travel, but a four-bar has no slide; it must be over theta4")
+    travel, _ = joint_motion(state, slide)
+    return _within(travel, load)
+
+
+def _within(travel: FloatArray, load: LoadSpec) -> FloatArray:
+    """A travel, put back where rounding carries it past the rows of a load."""
+    low, high = (load.values or ((0.0,),))[0][0], (load.values or ((0.0,),))[-1][0]
+    slack = _ROUNDING * max(abs(low), abs(high))
+    known = np.asarray(travel)[np.isfinite(travel)]
+    least, most = known.min(initial=high), known.max(initial=low)
+    if least < low - slack or most > high + slack:
+        past = least if least < low - slack else most
+        raise ProblemError(
+            f"a load over travel covers {low:g} to {high:g}; the slide comes to {past:.6g}, too"
+        )
+    return np.clip(travel, low, high)

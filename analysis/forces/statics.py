@@ -7,19 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.forces.loads import (
-    Friction,
-    Joint,
-    Loads,
-    joint_rotation,
-    known_joint_moments,
-    wrenches,
-)
+from grashof.analysis.forces.joints import Joint, joint_motion, moving_origins, origin, output_rate
+from grashof.analysis.forces.loads import Friction, Loads, known_joint_moments, wrenches
 from grashof.analysis.forces.mass import Masses
+from grashof.analysis.forces.virtual_motion import virtual_motion
 from grashof.analysis.four_bar.kinematics import Kinematics
-from grashof.analysis.four_bar.position import close_loop, sides
-from grashof.problems import FourBar
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.linkage import Linkage
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,9 +23,11 @@ class Advantage:
     Parameters
     ----------
     velocity_ratio : ndarray
-        omega4 / omega2; infinite in a dead position of the driver.
+        omega4 / omega2; infinite in a dead position of the driver. Of a slider-crank the slider's velocity
+        over omega2, length/rad.
     torque_ratio : ndarray
-        T4 / T2 = omega2 / omega4, the mechanical advantage; infinite where link 4 stands.
+        T4 / T2 = omega2 / omega4, the mechanical advantage; infinite where link 4 stands. Of a
+        slider-crank the force on the slider along its slide for a unit of torque, rad/length.
     way : ndarray, length/rad
         Of P for each radian of the driver.
     force_ratio : ndarray
@@ -53,7 +49,7 @@ class Holding:
     torque : ndarray, shape (...), N length
         On link 2, counter-clockwise; the other two are for a free driver.
     moment : ndarray, shape (...), N length
-        On link 4, counter-clockwise.
+        On link 4, counter-clockwise; of a slider-crank the force on the slider along its slide, N.
     force : ndarray, shape (...), N
         At P, along `direction`.
     direction : ndarray, shape (..., 2)
@@ -66,12 +62,12 @@ class Holding:
     direction: FloatArray
 
 
-def advantage(linkage: FourBar, theta2: npt.ArrayLike) -> Advantage:
+def advantage(linkage: Linkage, theta2: npt.ArrayLike) -> Advantage:
     """Velocity ratio, mechanical advantage and force ratio at given driver angles.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
     theta2 : array_like, shape (...), rad
 
     Returns
@@ -86,28 +82,29 @@ def advantage(linkage: FourBar, theta2: npt.ArrayLike) -> Advantage:
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> norton = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
     >>> found = advantage(norton, np.radians([40, 250]))
     >>> found.velocity_ratio.round(6).tolist(), found.torque_ratio.round(4).tolist()
     ([0.279919, -0.116888], [3.5725, -8.5552])
     """
     virtual, _ = virtual_motion(linkage, theta2)
-    way, crank = virtual.p.speed, virtual.omega2
+    way, crank, output = virtual.p.speed, virtual.omega2, output_rate(virtual)
     with np.errstate(divide="ignore", invalid="ignore"):
         return Advantage(
-            velocity_ratio=virtual.omega4 / crank,
-            torque_ratio=crank / virtual.omega4,
+            velocity_ratio=output / crank,
+            torque_ratio=crank / output,
             way=way / crank,
             force_ratio=linkage.r2 * crank / way,
         )
 
 
-def holding(linkage: FourBar, theta2: npt.ArrayLike, masses: Masses, loads: Loads) -> Holding:
+def holding(linkage: Linkage, theta2: npt.ArrayLike, masses: Masses, loads: Loads) -> Holding:
     """What keeps a linkage at rest at given driver angles: a torque, a moment on link 4, a force at P.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
     theta2 : array_like, shape (...), rad
     masses : Masses
     loads : Loads
@@ -129,6 +126,7 @@ def holding(linkage: FourBar, theta2: npt.ArrayLike, masses: Masses, loads: Load
     A bar of 3 kg as the output of a square, P at B: half of its weight times the length.
 
     >>> from grashof.analysis.forces.mass import Body
+    >>> from grashof.problems import FourBar
     >>> square = FourBar(o2=(0, 0), o4=(2, 0), r2=2, r3=2, r4=2, coupler_point=(2, 0), assembly=1)
     >>> bar = Masses(Body(0), Body(0), Body(3.0, 0.0, (1.0, 0.0)))
     >>> held = holding(square, np.radians(60), bar, Loads(gravity=(0, -10)))
@@ -141,30 +139,10 @@ def holding(linkage: FourBar, theta2: npt.ArrayLike, masses: Masses, loads: Load
     with np.errstate(divide="ignore", invalid="ignore"):
         return Holding(
             torque=-power / virtual.omega2,
-            moment=-power / virtual.omega4,
+            moment=-power / output_rate(virtual),
             force=-power / speed,
             direction=virtual.p.velocity / speed[..., None],
         )
-
-
-def virtual_motion(linkage: FourBar, theta2: npt.ArrayLike) -> tuple[Kinematics, Kinematics]:
-    """Positions with velocities that the linkage allows, and the same at rest.
-
-    The driver turns counter-clockwise by |sin(theta4 - theta3)|, so that the others have a limit in a
-    dead position: the rates of `solve_kinematics` times that.
-    """
-    loop = close_loop(sides(linkage), np.asarray(theta2, dtype=np.float64))
-    theta3, theta4 = np.arctan2(loop.sin3, loop.cos3), np.arctan2(loop.sin4, loop.cos4)
-    theta2 = np.broadcast_to(np.asarray(theta2, dtype=np.float64), np.shape(theta3))[()]
-    none = np.zeros(np.shape(theta3))
-    omega2 = linkage.assembly * loop.sine
-    omega3 = linkage.assembly * linkage.r2 / linkage.r3 * (loop.cos4 * loop.sin2 - loop.sin4 * loop.cos2)
-    omega4 = linkage.assembly * linkage.r2 / linkage.r4 * (loop.cos3 * loop.sin2 - loop.sin3 * loop.cos2)
-    higher = (none,) * 6
-    return (
-        Kinematics(linkage, theta2, theta3, theta4, omega2, omega3, omega4, *higher),
-        Kinematics(linkage, theta2, theta3, theta4, none, none, none, *higher),
-    )
 
 
 def virtual_power(virtual: Kinematics, state: Kinematics, masses: Masses, loads: Loads) -> FloatArray:
@@ -183,10 +161,11 @@ def load_power(virtual: Kinematics, state: Kinematics, loads: Loads) -> FloatArr
     outside, power = wrenches(state, loads), np.zeros(state.shape)
     for link in (2, 3, 4):
         power = power + outside[link].moment * virtual.angular(link)[1]
-    if outside[3].force.any():  # A is the one origin of a link's frame that moves
-        power = power + (outside[3].force * virtual.a.velocity).sum(axis=-1)
+    for link in moving_origins(state.linkage):
+        if outside[link].force.any():
+            power = power + (outside[link].force * origin(virtual, link).velocity).sum(axis=-1)
     moments = known_joint_moments(state, loads)
     for joint in Joint:
         if moments[joint].any():
-            power = power + moments[joint] * joint_rotation(virtual, joint)[1]
+            power = power + moments[joint] * joint_motion(virtual, joint)[1]
     return power

@@ -16,7 +16,7 @@ from grashof.analysis.forces.along_bar import (
     greatest_size,
 )
 from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics
-from grashof.analysis.forces.loads import Joint
+from grashof.analysis.forces.joints import Joint, pins_of
 from grashof.analysis.forces.section_forces import BarForces, section_forces
 from grashof.analysis.forces.stress import von_mises
 from grashof.analysis.forces.structure import UNITS, Structure
@@ -24,7 +24,6 @@ from grashof.analysis.four_bar.kinematics import Kinematics
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.section import CrossSection
 
-LINKS = (2, 3, 4)
 _ROUNDING = 1e-12  # share of the greatest force in a bar below which other forces are none
 
 
@@ -55,7 +54,7 @@ class StrengthHistory:
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
 def strength_at(
-    state: Kinematics, structure: Structure, found: Dynamics | None = None, links: Sequence[int] = LINKS
+    state: Kinematics, structure: Structure, found: Dynamics | None = None, links: Sequence[int] | None = None
 ) -> StrengthHistory:
     """What bars and pins bear at every driver angle.
 
@@ -65,8 +64,8 @@ def strength_at(
     structure : Structure
     found : Dynamics, optional
         Of `inverse_dynamics` for them; by default it is computed.
-    links : sequence of int
-        Whose bars are looked at.
+    links : sequence of int, optional
+        Whose bars are looked at; all by default.
 
     Returns
     -------
@@ -89,7 +88,7 @@ def strength_at(
         for link, bar in forces.items()
     }
     return StrengthHistory(
-        bars, pin_measures({joint: found.joint_force(joint) for joint in Joint}, structure)
+        bars, pin_measures({joint: found.joint_force(joint) for joint in pins_of(state.linkage)}, structure)
     )
 
 

@@ -9,14 +9,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.analysis.forces.along_bar import Along
+from grashof.analysis.forces.bars import bar_lengths
 from grashof.analysis.forces.dynamics import inverse_dynamics
-from grashof.analysis.forces.loads import Joint
-from grashof.analysis.forces.strength import LINKS, most_telling, pin_measures, strength_at
+from grashof.analysis.forces.joints import Joint, pins_of
+from grashof.analysis.forces.strength import most_telling, pin_measures, strength_at
 from grashof.analysis.forces.structure import BAR_MEASURES, PIN_MEASURES, Structure, limits_of
 from grashof.analysis.four_bar.kinematics import Kinematics
 from grashof.analysis.numerics.peaks import peaks
-from grashof.problems import AssemblyError, DeadPositionWarning, FourBar
+from grashof.problems import AssemblyError, DeadPositionWarning
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.linkage import Linkage
 
 Motion = Callable[[FloatArray], Kinematics]
 _MEASURES = {measure.key: measure for measure in (*BAR_MEASURES, *PIN_MEASURES)}
@@ -85,7 +87,7 @@ class StrengthSummary:
     Parameters
     ----------
     peaks : tuple of StrengthPeak
-        Of links 2, 3, 4 and joints O2, A, B, O4 in turn.
+        Of the links that are bars and the joints that are pins, in turn.
     factors : tuple of SafetyFactor
         Of the same; none without strengths.
     """
@@ -150,11 +152,12 @@ def strength_over(structure: Structure, motion: Motion, stretches: Sequence[Floa
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeadPositionWarning)
         linkage = _closing(motion, stretches)
-        found = [peak for link in LINKS for peak in _bar_peaks(structure, motion, stretches, link)]
-        found += _pin_peaks(structure, motion, stretches)
+        lengths, pins = bar_lengths(linkage), pins_of(linkage)
+        found = [peak for link in lengths for peak in _bar_peaks(structure, motion, stretches, link)]
+        found += _pin_peaks(structure, motion, stretches, pins)
     by_part = {(peak.part, peak.key): peak for peak in found}
     factors = []
-    for limit in limits_of(structure, {link: float(getattr(linkage, f"r{link}")) for link in LINKS}):
+    for limit in limits_of(structure, lengths, pins):
         peak = by_part[limit.part, limit.measure]
         value = limit.value / peak.value if peak.value > 0 else np.inf
         factors.append(
@@ -163,7 +166,7 @@ def strength_over(structure: Structure, motion: Motion, stretches: Sequence[Floa
     return StrengthSummary(tuple(found), tuple(factors))
 
 
-def _closing(motion: Motion, stretches: Sequence[FloatArray]) -> FourBar:
+def _closing(motion: Motion, stretches: Sequence[FloatArray]) -> Linkage:
     """The linkage, which has to close all the way; at the very ends rounding may open it."""
     for samples in stretches:
         state = motion(samples[1:-1])
@@ -190,16 +193,18 @@ def _bar_peaks(
     ]
 
 
-def _pin_peaks(structure: Structure, motion: Motion, stretches: Sequence[FloatArray]) -> list[StrengthPeak]:
+def _pin_peaks(
+    structure: Structure, motion: Motion, stretches: Sequence[FloatArray], joints: Sequence[Joint]
+) -> list[StrengthPeak]:
     def values(places: FloatArray) -> FloatArray:
         found = inverse_dynamics(motion(places), structure.masses, structure.loads)
-        return np.stack([found.joint_force(joint) for joint in Joint])
+        return np.stack([found.joint_force(joint) for joint in joints])
 
     greatest, places = peaks(values, stretches)
-    pins = pin_measures(dict(zip(Joint, greatest, strict=True)), structure)
+    pins = pin_measures(dict(zip(joints, greatest, strict=True)), structure)
     return [
-        _peak(key, joint.name, float(value), places[joint], np.nan)
-        for joint, measures in pins.items()
+        _peak(key, joint.name, float(value), places[row], np.nan)
+        for row, (joint, measures) in enumerate(pins.items())
         for key, value in measures.items()
     ]
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.forces.loads import JOINED, Joint, Loads
+from grashof.analysis.forces.joints import JOINED, Joint
+from grashof.analysis.forces.loads import Loads
 from grashof.analysis.forces.mass import Masses
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.section import SectionSpec
@@ -163,8 +164,10 @@ class Limit:
     value: float
 
 
-def limits_of(structure: Structure, lengths: Mapping[int, float]) -> Iterator[Limit]:
-    """All that the strength limits, by links (of lengths between their joints) and joints in turn."""
+def limits_of(
+    structure: Structure, lengths: Mapping[int, float], pins: Sequence[Joint] = tuple(Joint)
+) -> Iterator[Limit]:
+    """All that the strength limits, by links (of lengths between their joints) and pins in turn."""
     strength = structure.strength
     if strength is None:
         return
@@ -173,6 +176,6 @@ def limits_of(structure: Structure, lengths: Mapping[int, float]) -> Iterator[Li
         yield Limit("yield", "yield", part, "stress", strength.yield_stress)
         for key, load in structure.buckling_loads(link, length).items():
             yield Limit(key, _BUCKLING[key], part, "thrust", float(load))
-    for joint in Joint if strength.pin_diameter is not None else ():
+    for joint in pins if strength.pin_diameter is not None else ():
         yield Limit("pin_shear", "shear of the pin", joint.name, "pin_shear", strength.shear_limit)
         yield Limit("bearing", "bearing pressure", joint.name, "bearing", strength.bearing_limit)

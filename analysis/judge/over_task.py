@@ -10,7 +10,7 @@ import numpy as np
 
 from grashof.analysis.curves.fit import coupler_fit_r2
 from grashof.analysis.forces.dynamics import inverse_dynamics
-from grashof.analysis.forces.loads import Joint
+from grashof.analysis.forces.joints import Joint
 from grashof.analysis.forces.stated import stated_loads, stated_masses
 from grashof.analysis.four_bar.driver_law import DriverLaw
 from grashof.analysis.four_bar.kinematics import solve_kinematics

@@ -30,7 +30,8 @@ from grashof.problems.values.strength import StrengthSpec
 
 Point = Annotated[list[float], listed("[u, v]")]
 # Columns of files, with or without their units.
-_PLACES = {over: (over, "over", f"{over}_deg" if over != "time" else "time_s") for over in OVER}
+_ENDINGS = {"theta2": "_deg", "theta4": "_deg", "time": "_s"}
+_PLACES = {over: (over, "over", over + _ENDINGS.get(over, "")) for over in OVER}
 _FORCE, _MOMENT = (("fx", "fx_n"), ("fy", "fy_n")), (("moment", "moment_nm"),)
 _ROD_LOADS = {
     CRANK: (("crank", "crank_deg"), ("load", "load_n")),
@@ -152,6 +153,10 @@ class FrictionTable(_Spec):
     pin_radius: Any = 0.0
     viscous: Any = 0.0
     moment: Any = 0.0
+    slide_mu: float = 0.0
+    slide_length: float = 0.0
+    slide_viscous: float = 0.0
+    slide_force: float = 0.0
 
 
 class MotorTable(_Spec):

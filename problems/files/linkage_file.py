@@ -1,11 +1,10 @@
-"""Linkage files: one four-bar as TOML, the catalogue of real ones, and designs out of a candidates list."""
+"""Linkage files: one linkage as TOML, the catalogue of real ones, and designs out of a candidates list."""
 
 from __future__ import annotations
 
 import json
 import os
 import re
-from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -18,13 +17,15 @@ from grashof.problems.values.checks import (
     GREATEST,
     finite_number,
     located,
+    located_in,
     number_within,
     readable,
 )
 from grashof.problems.values.dynamics_spec import DynamicsSpec
 from grashof.problems.values.errors import ProblemError, shown
-from grashof.problems.values.four_bar import FourBar
+from grashof.problems.values.linkage import Linkage
 from grashof.problems.values.linkage_spec import LinkageSpec, ListedDesign
+from grashof.problems.values.mechanisms import FOUR_BAR, KINDS, mechanism
 from grashof.problems.values.problem import Problem
 
 _LINKAGES = Catalogue("linkage", "linkages")
@@ -32,7 +33,7 @@ _LAST_RANK = 10**9
 _VERSION = r"[0-9A-Za-z.+!_-]{1,40}"
 
 
-def load_linkage(linkage: str | os.PathLike[str]) -> FourBar:
+def load_linkage(linkage: str | os.PathLike[str]) -> Linkage:
     """Linkage of the catalogue, of a TOML file, or of a candidates list.
 
     Parameters
@@ -125,7 +126,7 @@ def linkage_catalogue() -> tuple[str, ...]:
     Examples
     --------
     >>> linkage_catalogue()
-    ('lufkin-c912d', 'luggage-report', 'pumpjack')
+    ('crank-shaper', 'engine', 'lufkin-c912d', 'luggage-report', 'pumpjack')
     """
     return _LINKAGES.names
 
@@ -188,22 +189,25 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
         raise ProblemError(f"{where}: has no design {which or '(none named)'}; {hint}")
     rank = ranks[which]
     design = designs[rank]
-    keys = [row.name for row in FourBar.PARAMETERS]
+    with located_in(where):
+        kind = mechanism(design.get("mechanism", FOUR_BAR))
+    keys = {row.name: row for row in KINDS[kind].PARAMETERS}
     try:
         stated = {key: design["linkage"][key] for key in keys}
-        turned, direction = stated.pop("body_angle"), design["direction"]
+        turned = {key: stated.pop(key) for key, row in keys.items() if row.kind == "angle"}
+        direction = design["direction"]
     except (KeyError, TypeError):
         raise ProblemError(
             f"{where}: states no linkage and direction; the keys are {', '.join(keys)}"
         ) from None
     # JSON can spell what no file can hold.
     heading, unit = (readable(word) if isinstance(word, str) else word for word in (heading, unit))
-    document = {"title": heading, "length_unit": unit, "dynamics": content.get("dynamics", {}), **stated}
-    try:
+    document = {"title": heading, "length_unit": unit, "mechanism": kind, **stated}
+    document["dynamics"] = content.get("dynamics", {})
+    with located_in(where):
         spec = linkage_from(document, readable(f"{path.parent.name or path.stem}-{rank}"))
-        linkage = replace(spec.linkage, body_angle=np.asarray(finite_number(turned, "body_angle")))
-    except ProblemError as error:
-        raise located(error, where) from None
+        angles = {key: np.asarray(finite_number(angle, key)) for key, angle in turned.items()}
+        linkage = KINDS[kind](**{key: getattr(spec.linkage, key) for key in keys} | angles)
     if direction not in (1, -1):
         raise ProblemError(f"{where}: direction is {shown(direction)}; it must be +1 or -1")
     problem = _listed_problem(content, path)

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import Field, ValidationInfo, field_validator
+from pydantic import AfterValidator, Field, ValidationInfo, create_model, field_validator
 
 from grashof.problems.files.dynamics_schema import MACHINE_TABLES, MachineTables, PumpingUnitTable
 from grashof.problems.files.tables import Table, Text, listed, of_length, stated
-from grashof.problems.values.checks import GREATEST, finite_number, number_within
+from grashof.problems.values.checks import GREATEST, finite_number, noted, number_within, refused
 from grashof.problems.values.dynamics_spec import metres
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.four_bar import FourBar
+from grashof.problems.values.linkage import Linkage
+from grashof.problems.values.linkage_parts import Parameter
 from grashof.problems.values.linkage_spec import LinkageSpec
+from grashof.problems.values.mechanisms import FOUR_BAR, KINDS, PARAMETERS, mechanism, not_had
 
 
 def linkage_from(document: dict[str, Any], name: str, folder: Path | None = None) -> LinkageSpec:
@@ -43,45 +46,54 @@ def linkage_from(document: dict[str, Any], name: str, folder: Path | None = None
         ...
     grashof.problems.values.errors.ProblemError: coupler is unknown; did you mean coupler_point?
     """
-    return stated(LinkageTable, document, _TABLES, folder).spec(name)
+    kind = mechanism(document.get("mechanism", FOUR_BAR))
+    wrong = dict(_of_other_kinds(document, kind))
+    rest = {key: value for key, value in document.items() if key not in wrong}
+    lines = list(wrong.values())
+    with noted(lines):
+        found = stated(TABLES[kind][""], rest, TABLES[kind], folder)
+        if not lines:
+            return found.spec(name)
+    raise refused(lines)
 
 
-_PARAMETERS = {row.key: row for row in FourBar.PARAMETERS}
+def _of_other_kinds(document: dict[str, Any], kind: str) -> Iterator[tuple[str, str]]:
+    """Keys that only linkages of other kinds have, with what is wrong."""
+    for key in document.keys() - TABLES[kind][""].model_fields:
+        if having := [word for word, tables in TABLES.items() if key in tables[""].model_fields]:
+            yield key, not_had(key, (kind,), having)
+
+
+_PARAMETERS = {row.key: row for row in PARAMETERS}
 Point = Annotated[list[float], listed("[x, y]"), of_length(2, "[x, y]")]
+_TYPES: dict[str, Any] = {"place": Point, "arm": Point, "sign": int}
+_USUAL: dict[str, Any] = {"arm": [0.0, 0.0], "distance": 0.0, "sign": 1, "angle": 0.0}
 
 
-class _Linkage(Table):
-    """The linkage itself; the keys of a file come in this order."""
+Mechanism = Annotated[str, AfterValidator(mechanism)]
+
+
+class _Heading(Table):
+    """What every linkage file may begin with; the keys of a file come in this order."""
 
     title: Text = ""
     source: Text = ""
     length_unit: Text = ""
-    o2: Point = Field(default=[0.0, 0.0])
-    o4: Point | None = None
-    r1: float | None = None
-    ground_angle_deg: float | None = None
-    r2: float
-    r3: float
-    r4: float
-    coupler_point: Point = Field(default=[0.0, 0.0])
-    assembly: int = 1
-    body_angle_deg: float = 0.0
-    output_arm: float | None = None
+    mechanism: Mechanism = FOUR_BAR
 
 
-class LinkageTable(MachineTables, _Linkage):
-    """The whole linkage file."""
+class LinkageTable(Table):
+    """The whole linkage file, whatever the kind."""
 
-    pumping_unit: PumpingUnitTable | None = None
-
-    @field_validator(*(key for key, row in _PARAMETERS.items() if row.kind != "angle"))
+    @field_validator(*(key for key, row in _PARAMETERS.items() if row.kind != "angle"), check_fields=False)
     @classmethod
     def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
-        for number in np.ravel(_PARAMETERS[str(key.field_name)].array(given)).tolist():
-            number_within(number, -GREATEST, GREATEST, str(key.field_name))
+        if given is not None:
+            for number in np.ravel(_PARAMETERS[str(key.field_name)].array(given)).tolist():
+                number_within(number, -GREATEST, GREATEST, str(key.field_name))
         return given
 
-    @field_validator("r1", "output_arm")
+    @field_validator("r1", "output_arm", check_fields=False)
     @classmethod
     def _length(cls, length: float | None, key: ValidationInfo) -> float | None:
         where = str(key.field_name)
@@ -91,22 +103,28 @@ class LinkageTable(MachineTables, _Linkage):
             number_within(length, -GREATEST, GREATEST, where)
         return length
 
-    @field_validator("body_angle_deg", "ground_angle_deg")
+    @field_validator(
+        "ground_angle_deg",
+        *(key for key, row in _PARAMETERS.items() if row.kind == "angle"),
+        check_fields=False,
+    )
     @classmethod
     def _angle(cls, angle: float | None, key: ValidationInfo) -> float | None:
         return None if angle is None else finite_number(angle, str(key.field_name))
 
-    def value(self) -> FourBar:
+    def value(self) -> Linkage:
         """The linkage itself, checked with what belongs to it."""
         if (dynamics := self.dynamics_spec()) is not None and dynamics.acts:
             metres(self.length_unit)  # refuses one that is not known
-        if self.pumping_unit is not None:
+        if self._given("pumping_unit") is not None:
             metres(self.length_unit, "pumping_unit")
             if self.output_arm is None:
                 raise ProblemError("output_arm is missing; pumping_unit needs that of the horsehead")
-        given = {row.name: getattr(self, row.key) for row in FourBar.PARAMETERS}
-        linkage = FourBar(**given | {"o4": self._o4(), "body_angle": np.radians(self.body_angle_deg)})
-        if not linkage.r1 > 0:
+        kind = KINDS[self.mechanism]
+        given = {row.name: getattr(self, row.key) for row in kind.PARAMETERS}
+        given |= {row.name: np.radians(given[row.name]) for row in kind.PARAMETERS if row.kind == "angle"}
+        linkage = kind(**given | ({"o4": self._o4()} if "o4" in given else {}))
+        if "r1" in kind.LENGTHS and not linkage.r1 > 0:
             raise ProblemError("o4 is where o2 is; the ground pivots must be distinct")
         return linkage
 
@@ -121,18 +139,46 @@ class LinkageTable(MachineTables, _Linkage):
         angle = np.radians(self.ground_angle_deg or 0.0)
         return [float(self.o2[0] + self.r1 * np.cos(angle)), float(self.o2[1] + self.r1 * np.sin(angle))]
 
+    def _given(self, key: str) -> Any:
+        """What a key states; None where the kind has no such key."""
+        return getattr(self, key, None)
+
     def spec(self, name: str) -> LinkageSpec:
         """What the file states."""
+        unit = self._given("pumping_unit")
         return LinkageSpec(
             linkage=self.value(),
             name=name,
             title=self.title,
             source=self.source,
             length_unit=self.length_unit,
-            output_arm=self.output_arm,
+            output_arm=self._given("output_arm"),
             dynamics=self.dynamics_spec(),
-            pumping_unit=None if self.pumping_unit is None else self.pumping_unit.value(),
+            pumping_unit=None if unit is None else unit.value(),
         )
 
 
-_TABLES: dict[str, type[Table]] = {"": LinkageTable, **MACHINE_TABLES, "pumping_unit": PumpingUnitTable}
+def _keys(row: Parameter) -> Iterator[tuple[str, Any]]:
+    """The keys of a parameter, with type and default."""
+    if row.name == "o4":
+        yield from (("o4", (Point | None, None)), ("r1", (float | None, None)))
+        yield "ground_angle_deg", (float | None, None)
+    elif row.name == "o2":
+        yield "o2", (Point, Field(default=[0.0, 0.0]))
+    else:
+        yield row.key, (_TYPES.get(row.kind, float), _USUAL.get(row.kind, ...))
+
+
+def _tables(kind: type[Linkage]) -> dict[str, Any]:
+    """The tables of files of a kind: the parameters that it has, and what else goes with them."""
+    keys = {key: made for row in kind.PARAMETERS for key, made in _keys(row)}
+    also: dict[str, Any] = {"output_arm": (float | None, None)} if "o4" in keys else {}
+    unit: dict[str, Any] = {"pumping_unit": PumpingUnitTable} if kind.MECHANISM == FOUR_BAR else {}
+    begin = create_model(f"_{kind.__name__}", __base__=_Heading, **keys, **also)
+    optional = {name: (table | None, None) for name, table in unit.items()}
+    whole = create_model(f"{kind.__name__}Table", __base__=(LinkageTable, MachineTables, begin), **optional)
+    return {"": whole, **MACHINE_TABLES, **unit}
+
+
+# Of each kind, by key paths.
+TABLES: dict[str, dict[str, Any]] = {word: _tables(kind) for word, kind in KINDS.items()}

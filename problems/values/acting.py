@@ -12,10 +12,13 @@ from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.stated import Stated
 
 Pair = tuple[float, float]
-OVER = ("theta2", "theta4", "time")
+OVER = ("theta2", "theta4", "travel", "time")
+TURNING = ("theta2", "theta4")  # over angles, in deg: a whole turn
 TURN_DEG = 360.0
 # The joints by the links that they join.
 JOINTS = ((1, 2), (2, 3), (3, 4), (1, 4))
+# Of friction in a slide, one number each.
+SLIDE_KEYS = ("slide_mu", "slide_length", "slide_viscous", "slide_force")
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +30,8 @@ class Place(Stated):
     link : int
         1 (the ground, whose frame is the global one) to 4.
     at : pair of float, length
-        In the link's frame: from O2, A or O4, u towards A, B or B, v to its left.
+        In the link's frame: from O2, A or O4, u towards A, B or B, v to its left; of a slider from B,
+        u along the slide.
     """
 
     link: int
@@ -40,7 +44,7 @@ class Place(Stated):
 
 @dataclass(frozen=True, slots=True)
 class LoadSpec(Stated):
-    """A force on a link at a point, or a moment: constant, or over driver angle, output angle or time.
+    """A force on a link at a point, or a moment: constant, or over driver angle, output or time.
 
     Parameters
     ----------
@@ -52,10 +56,11 @@ class LoadSpec(Stated):
     moment : float, N m, optional
         Counter-clockwise.
     values : sequence of rows, optional
-        Instead of both: (place, fx, fy) or (place, moment), places rising, in deg or s. Between rows
-        the load follows a curve through them that rises and falls as they do.
+        Instead of both: (place, fx, fy) or (place, moment), places rising, in deg, length or s. Between
+        rows the load follows a curve through them that rises and falls as they do.
     over : str
-        What the places are: "theta2", "theta4" (deg, a whole turn) or "time" (s from the start).
+        What the places are: "theta2", "theta4" (deg, a whole turn), "travel" (length: of a slide, see
+        `FrictionSpec`) or "time" (s from the start).
     frame : str
         Axes of the force: "global", or "link", with which it turns.
 
@@ -206,7 +211,7 @@ class CounterweightSpec(Stated):
 
 @dataclass(frozen=True, slots=True)
 class FrictionSpec(Stated):
-    """Friction in the joints O2, A, B, O4: a number for each, or one for all.
+    """Friction in the joints O2, A, B, O4, a number for each, or one for all; and in a slide.
 
     Parameters
     ----------
@@ -217,19 +222,40 @@ class FrictionSpec(Stated):
         Moment for each rad/s.
     moment : float or four floats, N m
         Of constant size, against the rotation.
+    slide_mu : float
+        Coefficient of friction of the slide, for the force across it: of the slider of a slider-crank on
+        the ground, of the rod of an inverted one in its block.
+    slide_length : float, length
+        Of the guide, that its moment presses on at both ends; by default `slide_mu` leaves the moment out.
+    slide_viscous : float, N s/m
+        Force for each m/s along the slide.
+    slide_force : float, N
+        Of constant size, against the travel.
     """
 
     coulomb: tuple[float, ...] = (0.0,)
     pin_radius: tuple[float, ...] = (0.0,)
     viscous: tuple[float, ...] = (0.0,)
     moment: tuple[float, ...] = (0.0,)
+    slide_mu: float = 0.0
+    slide_length: float = 0.0
+    slide_viscous: float = 0.0
+    slide_force: float = 0.0
 
     def __post_init__(self) -> None:
         for name in self.__slots__:
-            object.__setattr__(self, name, _one_or_four(getattr(self, name), name))
+            check = from_zero if name in SLIDE_KEYS else _one_or_four
+            object.__setattr__(self, name, check(getattr(self, name), name))
+        if self.slide_length and not self.slide_mu:
+            raise ProblemError("slide_mu is missing; slide_length is of no use without it")
         if any(self.coulomb) != any(self.pin_radius):
             absent = "pin_radius" if any(self.coulomb) else "coulomb"
             raise ProblemError(f"{absent} is missing; coulomb and pin_radius are needed together")
+
+    @property
+    def of_slide(self) -> bool:
+        """Whether it states friction of a slide."""
+        return any(getattr(self, name) for name in SLIDE_KEYS)
 
     @property
     def radius(self) -> tuple[float, ...]:
@@ -276,7 +302,7 @@ def _rows(values: object, over: str) -> tuple[tuple[float, ...], ...]:
     if not (steps > 0).all():
         row = int(np.flatnonzero(~(steps > 0))[0]) + 1
         raise ProblemError(f"values[{row}] has {over} {table[row, 0]:.15g}; it must rise from row to row")
-    if over != "time":
+    if over in TURNING:
         first, last = table[0, 0], table[-1, 0]
         if abs(last - first - TURN_DEG) > 1e-9:
             raise ProblemError(

@@ -82,6 +82,15 @@ def located(error: ProblemError, where: str) -> ProblemError:
     return ProblemError("\n".join(f"{where}: {line}" for line in str(error).splitlines()))
 
 
+@contextmanager
+def located_in(where: str) -> Iterator[None]:
+    """Every line of what is refused inside begins with the place."""
+    try:
+        yield
+    except ProblemError as error:
+        raise located(error, where) from None
+
+
 def outline(values: npt.ArrayLike, where: str) -> FloatArray:
     """Array of shape (N, 2), the corners of something drawn."""
     corners = finite_rows(values, 2, where, "a corner [x, y]", GREATEST)

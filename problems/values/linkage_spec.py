@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from grashof.problems.values.checks import plain_text
+from grashof.problems.values.checks import plain_text, refuse
 from grashof.problems.values.display import Displayed
+from grashof.problems.values.dynamics_of_kind import misplaced
 from grashof.problems.values.dynamics_spec import DynamicsSpec
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.four_bar import FourBar
+from grashof.problems.values.linkage import Linkage
 from grashof.problems.values.problem import Problem
 from grashof.problems.values.pumping_unit import PumpingUnitSpec
 
@@ -19,7 +21,7 @@ class LinkageSpec(Displayed):
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
     name, title, source, length_unit : str
     output_arm : float, length, optional
         Radius about O4 of what the output link drives, such as a horsehead: its stroke and torque
@@ -32,7 +34,7 @@ class LinkageSpec(Displayed):
         Of a design out of a list: what it was found for.
     """
 
-    linkage: FourBar
+    linkage: Linkage
     name: str
     title: str = ""
     source: str = ""
@@ -47,6 +49,12 @@ class LinkageSpec(Displayed):
             plain_text(getattr(self, name), name)
         if self.pumping_unit is not None and self.output_arm is None:
             raise ProblemError("output_arm is missing; pumping_unit needs that of the horsehead")
+        if self.pumping_unit is not None and not isinstance(self.linkage, FourBar):
+            raise ProblemError(
+                f"pumping_unit does not go with mechanism {self.linkage.MECHANISM}; only four-bar has it"
+            )
+        if self.dynamics is not None:
+            refuse(misplaced(self.dynamics, type(self.linkage)))
 
     @property
     def unit(self) -> str:

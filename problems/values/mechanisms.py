@@ -61,6 +61,26 @@ def freedoms(kind: str) -> int:
     return sum(1 + row.paired for row in rows)
 
 
+def lengths_text(linkage: Linkage, digits: int = 4) -> str:
+    """The lengths of a single linkage, and the offset of its slide.
+
+    Examples
+    --------
+    >>> lengths_text(FourBar((0, 0), (4, 0), 1, 4, 3)), lengths_text(SliderCrank((0, 0), 1, 4))
+    ('r1 to r4 4, 1, 4, 3', 'r2 1, r3 4, offset 0')
+    """
+    if linkage.MECHANISM == FOUR_BAR:
+        return f"r1 to r4 {', '.join(f'{length:.{digits}g}' for length in linkage.lengths)}"
+    names = (*linkage.LENGTHS, *(row.name for row in linkage.PARAMETERS if row.kind == "distance"))
+    return ", ".join(f"{name} {float(getattr(linkage, name)):.{digits}g}" for name in names)
+
+
+def not_had(what: str, asked: Sequence[str], kinds: Sequence[str]) -> str:
+    """What is wrong where something is given that only other kinds of linkages have."""
+    ending = "has it" if len(kinds) == 1 else "have it"
+    return f"{what} does not go with mechanism {' and '.join(asked)}; only {' and '.join(kinds)} {ending}"
+
+
 def mechanisms(given: str | Sequence[str]) -> tuple[str, ...]:
     """Words for kinds of linkages, checked: one of them, or a list.
 

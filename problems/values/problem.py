@@ -20,10 +20,11 @@ from grashof.problems.values.checks import (
     refuse,
     whole_number,
 )
+from grashof.problems.values.dynamics_of_kind import misplaced
 from grashof.problems.values.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.manufacturing import Manufacturing
-from grashof.problems.values.mechanisms import FOUR_BAR, freedoms, mechanisms
+from grashof.problems.values.mechanisms import FOUR_BAR, KINDS, freedoms, mechanisms, not_had
 from grashof.problems.values.motion_task import MotionTask
 from grashof.problems.values.objective import GOALS, Objective
 from grashof.problems.values.path_task import PathTask
@@ -137,6 +138,8 @@ class Problem(ReadOnly):
                 metres(self.length_unit)  # refuses one that is not known
             with noted(wrong):
                 positive_number(self.dynamics.speed_rpm, "dynamics.speed_rpm")
+            for word in self.mechanism:
+                wrong += misplaced(self.dynamics, KINDS[word])
             wrong += self.dynamics.too_short(self.dynamics.turn_time, "a turn of the driver")
             if not self.dynamics.acts:
                 wrong.append(
@@ -144,6 +147,7 @@ class Problem(ReadOnly):
                     "payload, or else loads, springs or friction"
                 )
         wrong += self._not_of_these_kinds()
+        wrong += self._not_driven_yet()
         wrong += self._without_value()
         wrong += self._undecided()
         refuse(wrong)
@@ -196,10 +200,19 @@ class Problem(ReadOnly):
         if self.requirements.rotatability in ROCKING:
             having[f'requirements.rotatability = "{self.requirements.rotatability}"'] = (FOUR_BAR,)
         return [
-            f"{where} does not go with mechanism {' and '.join(self.mechanism)}; "
-            f"only {' and '.join(kinds)} {'has' if len(kinds) == 1 else 'have'} it"
+            not_had(where, self.mechanism, kinds)
             for where, kinds in having.items()
             if not set(kinds) & set(self.mechanism)
+        ]
+
+    def _not_driven_yet(self) -> list[str]:
+        """Torques and forces that are asked of slider kinds, for which the search has no formulas of them."""
+        others = [word for word in self.mechanism if word != FOUR_BAR]
+        return [
+            f"{where} does not go with mechanism {' and '.join(others)}; torques and forces are limited and "
+            f"weighed for {FOUR_BAR} alone"
+            for where, quantity in self._asked.items()
+            if others and quantity.needs is Needs.DYNAMICS
         ]
 
     def for_kind(self, kind: str) -> Problem:

@@ -16,7 +16,8 @@ from grashof.figures.linkage import plot_linkage
 from grashof.figures.parts import missing_glyphs_unwarned
 from grashof.figures.subject import Linkage
 from grashof.output.terminal import best_rows, heading, units
-from grashof.problems import FourBar, LinkageSpec, Problem, ProblemError
+from grashof.problems import Linkage as AnyKind
+from grashof.problems import LinkageSpec, Problem, ProblemError, SliderCrank
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.synth import Candidate, Result
@@ -25,11 +26,12 @@ _ROWS = 12  # of a batch
 _SMALL = {**STYLE, "font.size": 7, "axes.grid": False}
 
 
-def html(value: FourBar | LinkageSpec | Candidate | Result) -> str:
+def html(value: AnyKind | LinkageSpec | Candidate | Result) -> str:
     """Table and drawing of a value as HTML; all text in it is escaped.
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
     >>> "<td>crank-rocker</td>" in html(crank_rocker)
     True
@@ -60,9 +62,14 @@ def _result(result: Result) -> str:
     return f"<p>{summary}</p>{note}{_side_by_side(table, _drawing(result.best, result.problem))}"
 
 
-def _linkage(linkage: FourBar) -> dict[str, str]:
+def _linkage(linkage: AnyKind) -> dict[str, str]:
     return {
-        **{name: f"{length:.6g}" for name, length in zip(linkage.LENGTHS, linkage.lengths, strict=True)},
+        **{name: f"{float(getattr(linkage, name)):.6g}" for name in linkage.DIMENSIONS if name not in "uv"},
+        **(
+            {"slide": f"{np.degrees(linkage.slide_angle):.6g} deg"}
+            if isinstance(linkage, SliderCrank)
+            else {}
+        ),
         **{point.upper(): _pair(getattr(linkage, point)) for point in linkage.GROUND},
         "P (u, v)": _pair(linkage.coupler_point),
         "assembly": f"{int(linkage.assembly):+d}",
@@ -84,8 +91,8 @@ def _judged(candidate: Candidate) -> dict[str, str]:
     }
 
 
-def _batch(linkages: FourBar) -> str:
-    lengths = linkages.lengths.reshape(-1, 4)
+def _batch(linkages: AnyKind) -> str:
+    lengths = linkages.lengths.reshape(-1, len(linkages.LENGTHS))
     rows = [[f"{length:.6g}" for length in each] for each in lengths[:_ROWS]]
     first = f", the first {_ROWS}" if len(lengths) > _ROWS else ""
     summary = f"batch of {counted(len(lengths), 'linkage')}, shape {linkages.shape}{first}"

@@ -12,8 +12,9 @@ import numpy as np
 from grashof.analysis import Design, Verdict
 from grashof.analysis.judge.design import greatest
 from grashof.analysis.judge.measures import Values
-from grashof.problems import FourBar, Problem
+from grashof.problems import Linkage, Problem
 from grashof.problems.values.display import Displayed
+from grashof.problems.values.mechanisms import FOUR_BAR, lengths_text
 from grashof.synth.programme.merit import same_error
 from grashof.synth.theory.distinct import signature
 
@@ -24,7 +25,7 @@ class Candidate(Displayed):
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
     verdict : Verdict
     problem : Problem
         That it is for.
@@ -44,7 +45,7 @@ class Candidate(Displayed):
         Its quantities, by their keys; each is measured when it is asked for.
     """
 
-    linkage: FourBar
+    linkage: Linkage
     verdict: Verdict
     problem: Problem
     start: int
@@ -68,17 +69,20 @@ class Candidate(Displayed):
 
         It begins with a letter, so that no spreadsheet takes it for a number.
         """
-        numbers = [*signature(self.linkage), self.linkage.assembly, self.linkage.body_angle]
+        linkage = self.linkage
+        others = [
+            x for row, x in zip(linkage.PARAMETERS, linkage.parameters, strict=True) if not row.in_length
+        ]
+        numbers = [*signature(linkage), *others]
         text = " ".join(f"{number + 0.0:.5e}" for number in numbers)
+        text += "" if linkage.MECHANISM == FOUR_BAR else linkage.MECHANISM
         return "d" + hashlib.sha256(text.encode()).hexdigest()[:7]
 
     @property
     def _words(self) -> str:
-        lengths = ", ".join(f"{length:.4g}" for length in self.linkage.lengths)
-        names = f"{self.linkage.LENGTHS[0]} to {self.linkage.LENGTHS[-1]}"
+        lengths = lengths_text(self.linkage)
         worst = np.degrees(self.verdict.transmission_min_task)
-        kind = self.verdict.grashof_class
-        return f"{self.id}: {kind}, {names} {lengths}, mu {worst:.1f} deg over the task"
+        return f"{self.id}: {self.verdict.grashof_class}, {lengths}, mu {worst:.1f} deg over the task"
 
     def error(self, problem: Problem) -> float:
         """What the design misses the task by, in sizes of the task.

@@ -18,7 +18,7 @@ import pytest
 
 from grashof import load
 from grashof.problems import ProblemError
-from grashof.problems.files.linkage_schema import _TABLES as LINKAGE_TABLES
+from grashof.problems.files.linkage_schema import TABLES as LINKAGE_TABLES
 from grashof.problems.files.problem_schema import _TABLES as PROBLEM_TABLES
 
 SCRIPTS = Path(__file__).parents[2] / "scripts"
@@ -35,7 +35,7 @@ def test_the_seeds_are_right_and_use_every_key(script: Callable[[str], ModuleTyp
     mutants, fuzz = script("mutants"), script("fuzz")
     for seeds, tables in (
         (mutants.problem_seeds(), PROBLEM_TABLES),
-        (mutants.linkage_seeds(), LINKAGE_TABLES),
+        *((mutants.linkage_seeds(), tables) for tables in LINKAGE_TABLES.values()),
     ):
         used: dict[str, set[str]] = {}
         for seed in seeds:

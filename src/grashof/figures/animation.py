@@ -30,8 +30,9 @@ from grashof.figures.parts import (
     name_points,
     stands,
 )
+from grashof.figures.slides import CORNERS, ROD
 from grashof.figures.subject import Linkage, Subject
-from grashof.problems import FourBar, Problem, ProblemError
+from grashof.problems import Problem, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 
 _WRITERS = {".gif": "pillow", ".mp4": "ffmpeg"}
@@ -53,7 +54,7 @@ def animate(
 
     Parameters
     ----------
-    linkage : FourBar, LinkageSpec or Candidate
+    linkage : Linkage, LinkageSpec or Candidate
     problem : Problem, optional
     seconds : float
         Length of the motion; it begins again where it ends.
@@ -172,13 +173,14 @@ class _Moving:
         self, axes: Axes, subject: Subject, state: Position, turns: FloatArray, path: FloatArray
     ) -> None:
         linkage, problem = subject.linkage, subject.problem
-        self._stands, self._path = stands(linkage, state), path
+        travel = subject.travel
+        self._stands, self._path = stands(linkage, state, travel), path
         self._names: dict[str, Annotation] = {}
         self._told: list[str] = []
         self._clock: Text | None = None
         frames = len(state.p)
         self._drawn = np.searchsorted(turns, np.arange(frames) / frames, side="right")
-        self._links = Links(axes, self._stands[0], named=False)
+        self._links = Links(axes, type(linkage), self._stands[0], named=False)
         axes.plot(*path.T, color=PATH, linewidth=0.8, linestyle=":", zorder=2)
         (self._trace,) = axes.plot([], [], color=PATH, linewidth=1.8, zorder=3)
         self._corners = _carried(subject, state)
@@ -189,15 +191,16 @@ class _Moving:
             axes.fill(*corners.T, facecolor=BODY, edgecolor=BODY, alpha=0.7, zorder=3.5)[0]
             for corners in self._corners[:1]
         ]
-        draw_ground(axes, linkage)
+        draw_ground(axes, linkage, travel)
         plane(axes, subject.spec.length_unit)
-        joints = [place for stand in self._stands for name, place in stand.items() if name in linkage.JOINTS]
+        seen = {*linkage.JOINTS, *CORNERS, *ROD}
+        joints = [place for stand in self._stands for name, place in stand.items() if name in seen]
         axes.update_datalim(np.concatenate([joints, path, *self._corners]))
         name_points(axes, {name.upper(): getattr(linkage, name) for name in linkage.GROUND})
 
     def annotate(self, axes: Axes, subject: Subject, state: Position) -> None:
         """Name the moving points, and tell driver angle and time."""
-        named = {name: place for name, place in self._stands[0].items() if name in FourBar.MOVING}
+        named = {name: place for name, place in self._stands[0].items() if name in subject.linkage.MOVING}
         self._names = {
             name: axes.annotate(
                 name.upper(), tuple(place), (6, 6), textcoords="offset points", color=GROUND, zorder=8

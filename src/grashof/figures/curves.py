@@ -13,12 +13,14 @@ from grashof.figures.parts import COUPLER, GROUND, OUTPUT, PATH, TARGET
 from grashof.figures.subject import Linkage, Subject
 from grashof.problems import FourBar, Problem, ProblemError
 from grashof.problems.values.arrays import FloatArray
-from grashof.study.quantities import FORCES, dynamic_quantities, kinematic_quantities, table_of
+from grashof.study.kinds import forces_of
+from grashof.study.quantities import dynamic_quantities, kinematic_quantities, table_of
 from grashof.study.study import Asked, LinkageStudy
 from grashof.study.sweep import Sweep, dead_positions_unwarned
 
 AxesArray = npt.NDArray[np.object_]
-# What each panel shows: the label of its axis, and the columns of the analysis with their names.
+# What each panel shows: the label of its axis, and the columns of the analysis with their names, those of
+# all kinds of linkages together.
 Panel = tuple[str, Mapping[str, str]]
 KINEMATICS: Mapping[str, Panel] = {
     "angle": (
@@ -33,9 +35,15 @@ KINEMATICS: Mapping[str, Panel] = {
         {f"{name}_acceleration": name.upper() for name in FourBar.MOVING},
     ),
 }
+# Of linkages with a slide besides.
+SLIDE: Mapping[str, Panel] = {
+    "slide travel": ("slide ({unit})", {"slide_travel": "travel"}),
+    "slide velocity": ("slide velocity ({unit}/s)", {"slide_velocity": "velocity"}),
+    "slide acceleration": ("slide acceleration ({unit}/s²)", {"slide_acceleration": "acceleration"}),
+}
 DYNAMICS: Mapping[str, Panel] = {
     "torque": ("drive torque (N m)", {"torque": "torque"}),
-    "joint force": ("joint force (N)", FORCES),
+    "joint force": ("joint force (N)", forces_of(FourBar)),
     "shaking force": (
         "shaking force (N)",
         {"shaking_force_x": "x", "shaking_force_y": "y", "shaking_force": "size"},
@@ -58,10 +66,11 @@ def plot_kinematics(
 
     Parameters
     ----------
-    linkage : FourBar, LinkageSpec or Candidate
+    linkage : Linkage, LinkageSpec or Candidate
     problem : Problem, optional
     quantities : str or sequence of str
-        Of "angle", "angular velocity", "speed", "angular acceleration", "acceleration"; all by default.
+        Of "angle", "angular velocity", "speed", "angular acceleration", "acceleration"; all by default. Of
+        linkages with a slide also "slide travel", "slide velocity", "slide acceleration".
     speed_rpm : float, optional
         Of the driver; by default the file's or problem's, or 1 rad/s.
     ax : Axes or iterable of Axes, optional
@@ -84,8 +93,9 @@ def plot_kinematics(
     >>> [panel.get_ylabel() for panel in plot_kinematics(jack, quantities=("angle", "speed"), ax=axes)]
     ['angle (deg)', 'speed (m/s)']
     """
-    panels = _panels(quantities, KINEMATICS)
-    sweep = Sweep.of(Subject.of(linkage, problem).spec, speed_rpm)
+    spec = Subject.of(linkage, problem).spec
+    panels = _panels(quantities, {**KINEMATICS, **(SLIDE if spec.linkage.SLIDES else {})})
+    sweep = Sweep.of(spec, speed_rpm)
     with dead_positions_unwarned():
         table = table_of(kinematic_quantities(sweep.spec), sweep.states_drawn())
     return draw_curves(sweep, table, panels, ax)
@@ -103,7 +113,7 @@ def plot_dynamics(
 
     Parameters
     ----------
-    linkage : FourBar, LinkageSpec or Candidate
+    linkage : Linkage, LinkageSpec or Candidate
     problem : Problem, optional
     quantities : str or sequence of str
         Of "torque", "joint force", "shaking force"; all by default.
@@ -146,7 +156,8 @@ def draw_curves(
     """Draw columns of an analysis over the driver angle, each panel into one of the axes."""
     rows = _rows(len(panels), ax)
     theta2 = _by_range(table, "theta2_deg")
-    for axes, (label, names) in zip(rows, panels, strict=True):
+    for axes, (label, every) in zip(rows, panels, strict=True):
+        names = {name: _name(sweep, name, words) for name, words in every.items() if name in table}
         drawn = {name: _by_range(table, name) for name in names}
         for (colour, dash), (name, values) in zip(_PENS, drawn.items(), strict=False):
             axes.plot(theta2, values, color=colour, linestyle=dash, linewidth=1.5, label=names[name])
@@ -164,6 +175,11 @@ def draw_curves(
     dead = "" if sweep.turns else "; dotted: dead positions"
     rows[-1].set_xlabel(f"driver angle theta2 (deg), driver at {sweep.speed_rpm:.4g} rpm{dead}")
     return rows
+
+
+def _name(sweep: Sweep, column: str, words: str) -> str:
+    """What a column is called; a joint force is one in a slide where the kind has one there."""
+    return forces_of(type(sweep.spec.linkage)).get(column, words)
 
 
 def _rows(count: int, ax: Axes | Iterable[Axes] | None) -> AxesArray:

@@ -119,7 +119,8 @@ def save(figure: Figure, paths: Iterable[Path]) -> None:
 def _heading(problem: Problem, candidate: Candidate, rank: int) -> str:
     linkage, verdict = candidate.linkage, candidate.verdict
     unit = f" ({problem.length_unit})" if problem.length_unit else ""
-    lengths = "  ".join(f"r{i} {length:.4g}" for i, length in enumerate(linkage.lengths, start=1))
+    made = {name: getattr(linkage, name) for name in linkage.DIMENSIONS if name not in "uv"}
+    lengths = "  ".join(f"{name} {length:.4g}" for name, length in made.items())
     task, cycle = np.degrees([verdict.transmission_min_task, verdict.transmission_min_cycle])
     over = [f"{task:.1f} deg over the task"] if not problem.task.closed else []
     over += [f"{cycle:.1f} deg over the turn"] if verdict.full_rotation else []

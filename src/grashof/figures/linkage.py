@@ -49,7 +49,7 @@ def plot_linkage(
 
     Parameters
     ----------
-    linkage : FourBar, LinkageSpec or Candidate
+    linkage : Linkage, LinkageSpec or Candidate
     problem : Problem, optional
     theta2 : array_like, shape (N,) or (), rad, optional
         Driver angles to draw it at, light to dark. By default at the targets, of many at the first, the
@@ -83,13 +83,14 @@ def plot_linkage(
     draw_path(ax, subject)
     shades = np.linspace(0.3, 1, len(positions)) if len(positions) > 1 else [1.0]
     for points, shade in zip(positions, shades, strict=True):
-        Links(ax, points, shade, named=points is positions[-1])
+        Links(ax, type(subject.linkage), points, shade, named=points is positions[-1])
     draw_task(ax, subject)
-    draw_ground(ax, subject.linkage)
+    draw_ground(ax, subject.linkage, subject.travel)
     draw_sense(ax, subject)
     plane(ax, subject.spec.length_unit)
     names: dict[tuple[float, ...], str] = {}
-    for name, place in positions[-1].items():
+    for name in subject.linkage.POINTS:
+        place = positions[-1][name]
         names.setdefault(tuple(place), name.upper())  # P may lie in a joint
     name_points(ax, {name: np.array(place) for place, name in names.items()})
     last = "target" if subject.problem is not None and theta2 is None else "position"
@@ -132,7 +133,7 @@ def plot_coupler_curve(linkage: Linkage, problem: Problem | None = None, *, ax: 
 
     Parameters
     ----------
-    linkage : FourBar, LinkageSpec or Candidate
+    linkage : Linkage, LinkageSpec or Candidate
     problem : Problem, optional
     ax : Axes, optional
 
@@ -284,7 +285,7 @@ def _positions(subject: Subject, theta2: npt.ArrayLike | None) -> list[dict[str,
     if theta2 is not None and np.isnan(state.theta3).any():
         open_at = np.degrees(angles[np.isnan(state.theta3)][0])
         raise AssemblyError(f"{subject.spec.name} cannot close at theta2 = {open_at:.6g} deg")
-    return stands(subject.linkage, state)
+    return stands(subject.linkage, state, subject.travel)
 
 
 def plane(ax: Axes, length_unit: str) -> None:

@@ -17,15 +17,16 @@ from matplotlib.text import Annotation
 from grashof.analysis import Position, solve_position
 from grashof.analysis.four_bar.position import places
 from grashof.analysis.numerics.smooth_polygon import smooth_polygon
+from grashof.figures.slides import ARM, CORNERS, ROD, Travel, draw_guide, slide_points
 from grashof.figures.subject import Subject
-from grashof.problems import FourBar, Problem, Task
+from grashof.problems import Linkage, Problem, Task
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkage_parts import Link
 
 # Distinct to the colour-blind, too (after Okabe & Ito, *Color Universal Design*, 2008).
 DRIVER, COUPLER, OUTPUT, PATH = "#d55e00", "#0072b2", "#009e73", "#8c3f78"
 BODY = TARGET = "#e69f00"  # both are what is asked
-COLOURS = {"driver": DRIVER, "coupler": COUPLER, "output": OUTPUT}
+COLOURS = {"driver": DRIVER, "coupler": COUPLER, **dict.fromkeys(("output", "slider", "block"), OUTPUT)}
 SCENE, GROUND, KEPT_OUT = "#5d6d7e", "#17202a", "#909497"
 # Targets up to which the linkage is drawn at each, and up to which each carries its number.
 _CROWD, _CROWD_OF_POINTS = 8, 6
@@ -44,9 +45,9 @@ def missing_glyphs_unwarned() -> Iterator[None]:
         yield
 
 
-def stands(linkage: FourBar, state: Position) -> list[dict[str, FloatArray]]:
-    """The points of a linkage in each of N positions, by their names, each of shape (2,)."""
-    found = places(linkage, state)
+def stands(linkage: Linkage, state: Position, travel: Travel) -> list[dict[str, FloatArray]]:
+    """The points of a linkage and of what slides in each of N positions, by name, each of shape (2,)."""
+    found = places(linkage, state) | slide_points(linkage, state, travel)
     return [{name: place[k] for name, place in found.items()} for k in range(len(state.theta2))]
 
 
@@ -56,8 +57,10 @@ class Links:
     Parameters
     ----------
     axes : Axes
+    kind : type
+        Of the linkage.
     points : mapping of str to ndarray, shape (2,), length
-        Where the points of the linkage are.
+        Where the points of the linkage are, as `stands` gives them.
     shade : float
         From 0, invisible, to 1.
     named : bool
@@ -65,15 +68,20 @@ class Links:
     """
 
     def __init__(
-        self, axes: Axes, points: Mapping[str, FloatArray], shade: float = 1.0, *, named: bool = True
+        self,
+        axes: Axes,
+        kind: type[Linkage],
+        points: Mapping[str, FloatArray],
+        shade: float = 1.0,
+        *,
+        named: bool = True,
     ) -> None:
         self._drawn: list[tuple[tuple[str, ...], Line2D | Polygon]] = []
-        for names, look in _looks(named):
+        for names, look in _looks(kind, named):
             self._drawn += [(names, line) for line in axes.plot(*_at(points, names).T, alpha=shade, **look)]
-        for link in FourBar.LINKS:
-            if len(link.points) > 2:
-                look = {"color": COLOURS[link.name], "alpha": 0.1 * shade, "linewidth": 0, "zorder": 3}
-                self._drawn.append((_sides(link), axes.fill(*_at(points, _sides(link)).T, **look)[0]))
+        for names, look in _faces(kind):
+            face = axes.fill(*_at(points, names).T, linewidth=0, **look | {"alpha": look["alpha"] * shade})[0]
+            self._drawn.append((names, face))
 
     @property
     def artists(self) -> list[Artist]:
@@ -90,16 +98,36 @@ class Links:
                 artist.set_data(*corners.T)
 
 
-def _looks(named: bool) -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
+def _looks(kind: type[Linkage], named: bool) -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
     """Through which points the bars, the sides of the plate, the joints and P are drawn, and how."""
-    for link in sorted(FourBar.LINKS[1:], key=lambda link: len(link.points)):
+    for link in sorted(kind.LINKS[1:], key=lambda link: len(link.points)):
         label = f"{link.name} {'-'.join(link.labels)}" if named else None
         width = 2.4 if len(link.points) == 2 else 1.6
-        yield _sides(link), {"color": COLOURS[link.name], "linewidth": width, "label": label, "zorder": 4}
+        for names in _outlines(kind, link):
+            yield names, {"color": COLOURS[link.name], "linewidth": width, "label": label, "zorder": 4}
+            label = None
     dot: dict[str, Any] = {"marker": "o", "linestyle": "none"}
-    joints = tuple(name for name in FourBar.MOVING if name in FourBar.JOINTS)
+    joints = tuple(name for name in kind.MOVING if name in kind.JOINTS)
     yield joints, {**dot, "color": "white", "markeredgecolor": COUPLER, "markersize": 5, "zorder": 5}
     yield ("p",), {**dot, "color": PATH, "markersize": 4, "zorder": 6}
+
+
+def _faces(kind: type[Linkage]) -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
+    """The corners of what is filled: plates, and blocks, which cover what is below."""
+    for link in kind.LINKS:
+        if len(link.points) > 2:
+            yield _sides(link), {"color": COLOURS[link.name], "alpha": 0.1, "zorder": 3}
+    if kind.SLIDES:
+        yield CORNERS, {"color": COLOURS[kind.LINKS[-1].name], "alpha": 0.25, "zorder": 3}
+
+
+def _outlines(kind: type[Linkage], link: Link) -> list[tuple[str, ...]]:
+    """The lines of a link: its bar or plate, its block and bar, or the rod that a block slides on."""
+    if not any(link.number in pair for pair in kind.SLIDES):
+        return [_sides(link)]
+    if link.number == kind.LINKS[-1].number:
+        return [CORNERS, link.points] if len(link.points) > 1 else [CORNERS]
+    return [ROD, ARM]
 
 
 def _sides(link: Link) -> tuple[str, ...]:
@@ -169,8 +197,9 @@ def apart(place: FloatArray, others: Sequence[FloatArray]) -> bool:
     return not any((np.abs(place - other) < _TEXT).all() for other in others)
 
 
-def draw_ground(axes: Axes, linkage: FourBar) -> None:
-    """The ground pivots."""
+def draw_ground(axes: Axes, linkage: Linkage, travel: Travel) -> None:
+    """The ground pivots, and the guide of a slide."""
+    draw_guide(axes, linkage, travel, {"color": GROUND, "zorder": 1.8})
     for pivot in (getattr(linkage, name) for name in linkage.GROUND):
         axes.plot(*pivot[:, None], marker="^", color=GROUND, markersize=11, zorder=6)
         axes.plot(*pivot[:, None], marker="o", color="white", markersize=3, zorder=7)
@@ -211,7 +240,7 @@ def draw_path(axes: Axes, subject: Subject) -> None:
         axes.plot(*way.T, color=PATH, linewidth=1.6, label="path of P, first to last target", zorder=2)
 
 
-def _path_of_p(linkage: FourBar, theta2: FloatArray, assembly: int) -> FloatArray:
+def _path_of_p(linkage: Linkage, theta2: FloatArray, assembly: int) -> FloatArray:
     """P at some driver angles and as many between them as its path needs, shape (N, 2)."""
     return smooth_polygon(lambda angles: solve_position(linkage, angles, assembly).p, theta2)[1]
 

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import reprlib
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.analysis import Verdict, verify
-from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, Problem, ProblemError
+from grashof.analysis import Verdict, solve_position, verify
+from grashof.analysis.four_bar.slide import slide_travel
+from grashof.figures.slides import Travel
+from grashof.problems import DynamicsSpec, LinkageSpec, Problem, ProblemError
+from grashof.problems import Linkage as AnyKind
 from grashof.study.sweep import Sweep
 from grashof.synth import Candidate
 
-Linkage = FourBar | LinkageSpec | Candidate
+Linkage = AnyKind | LinkageSpec | Candidate
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,13 +46,13 @@ class Subject:
         """
         if isinstance(linkage, LinkageSpec):
             spec, problem = linkage, linkage.problem if problem is None else problem
-        elif isinstance(linkage, FourBar):
+        elif isinstance(linkage, AnyKind):
             spec = LinkageSpec(linkage, "linkage")
         elif isinstance(linkage, Candidate):
             spec = LinkageSpec(linkage.linkage, linkage.id)
         else:
             raise ProblemError(
-                f"linkage is {reprlib.repr(linkage)}; it must be a FourBar, a LinkageSpec or a Candidate"
+                f"linkage is {reprlib.repr(linkage)}; it must be a Linkage, a LinkageSpec or a Candidate"
             )
         if spec.linkage.shape:
             raise ProblemError(f"linkage is a batch of shape {spec.linkage.shape}; it must be a single one")
@@ -62,9 +65,18 @@ class Subject:
         return cls(_posed(spec, problem, verdict), problem, verdict)
 
     @property
-    def linkage(self) -> FourBar:
+    def linkage(self) -> AnyKind:
         """The linkage itself."""
         return self.spec.linkage
+
+    @property
+    def travel(self) -> Travel:
+        """How far its slide goes; NaN where it has none."""
+        if not self.linkage.SLIDES:
+            return Travel(np.nan, np.nan)
+        far = [slide_travel(self.linkage, solve_position(self.linkage, each)) for each in self.sweep.angles()]
+        every = np.concatenate(far)
+        return Travel(float(np.nanmin(every)), float(np.nanmax(every)))
 
     @property
     def sweep(self) -> Sweep:
@@ -74,7 +86,7 @@ class Subject:
 
 def _posed(spec: LinkageSpec, problem: Problem, verdict: Verdict) -> LinkageSpec:
     """The linkage with the unit and masses that its problem states."""
-    linkage = replace(spec.linkage, assembly=np.asarray(verdict.assembly[0], dtype=np.float64))
+    linkage = spec.linkage.changed(assembly=verdict.assembly[0])
     dynamics = (problem.dynamics or DynamicsSpec()).turning(verdict.direction)
     title = spec.title if problem is spec.problem else problem.title or problem.name
     return LinkageSpec(linkage, spec.name, title, length_unit=problem.length_unit, dynamics=dynamics)

@@ -8,27 +8,29 @@ from dataclasses import replace
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from grashof.figures.curves import DYNAMICS, KINEMATICS, Panel, draw_curves
+from grashof.figures.curves import DYNAMICS, KINEMATICS, SLIDE, Panel, draw_curves
 from grashof.figures.files import STYLE, fit_title, shortened
 from grashof.figures.linkage import figure_of, plot_linkage
 from grashof.figures.parts import COLOURS, GROUND
 from grashof.figures.section_plots import plot_section
-from grashof.problems import FourBar
 from grashof.survey.report import LinkageReport, mass_tracks
 
-_TRACKS = {f"link {link.number}": COLOURS[link.name] for link in FourBar.LINKS[1:]} | {"all links": GROUND}
 _KINEMATIC = {
     "angles": ("angle",),
     "velocities": ("angular velocity", "speed"),
     "accelerations": ("angular acceleration", "acceleration"),
 }
+_SLIDE = {"slide": tuple(SLIDE)}
 _DYNAMIC = {"torque": ("torque",), "forces": ("joint force", "shaking force")}
 
 
 def plots(report: LinkageReport) -> Iterator[tuple[str, Figure]]:
     """Name and figure of each plot, with units; torque and forces only with masses."""
     yield "path", _path(report)
-    for table, known, files in (("kinematics", KINEMATICS, _KINEMATIC), ("dynamics", DYNAMICS, _DYNAMIC)):
+    kinds = [("kinematics", KINEMATICS, _KINEMATIC), ("dynamics", DYNAMICS, _DYNAMIC)]
+    if report.sweep.spec.linkage.SLIDES:
+        kinds.insert(1, ("kinematics", SLIDE, _SLIDE))
+    for table, known, files in kinds:
         for name, quantities in files.items() if table in report.tables else ():
             yield name, _curves(report, table, [known[quantity] for quantity in quantities])
 
@@ -57,10 +59,12 @@ def _path(report: LinkageReport) -> Figure:
         figure = Figure(figsize=(8.5, 7.0), layout="constrained")
         axes = plot_linkage(replace(report.sweep.spec, problem=None), ax=figure.subplots())
         halfway = "" if report.masses is not None else " (halfway)"
+        links = report.sweep.spec.linkage.LINKS[1:]
+        colours = {f"link {link.number}": COLOURS[link.name] for link in links}
         for name, track in mass_tracks(report).items():
             label = f"centre of mass, {name}{'' if name == 'all links' else halfway}"
             width = 1.6 if name == "all links" else 1.0
-            axes.plot(*track.T, "--", color=_TRACKS[name], linewidth=width, label=label)
+            axes.plot(*track.T, "--", color=colours.get(name, GROUND), linewidth=width, label=label)
         axes.legend(loc="best", fontsize="small")
         fit_title(axes, _title(report))
     return figure

@@ -21,6 +21,7 @@ from grashof.output.run_files import write_csv, write_json, write_page
 from grashof.output.streams import say
 from grashof.output.terminal import console, folded
 from grashof.survey import Fact, LinkageReport, Section
+from grashof.wording.linkage import dimensions_text
 from grashof.wording.numbers import number_text, value_text
 
 _PACKAGES = ("grashof", "numpy", "scipy", "pandas", "matplotlib", "jinja2")
@@ -69,8 +70,7 @@ def write_report(folder: Path, report: LinkageReport, *, pictures: bool = False)
 def print_report(report: LinkageReport) -> None:
     """Print the summary and the extremes, no wider than the terminal where that can be."""
     spec = report.sweep.spec
-    lengths = ", ".join(f"{length:.6g}" for length in spec.linkage.lengths)
-    say(f"{spec.title or spec.name}: r1 to r4 {lengths} {spec.length_unit}".rstrip())
+    say(f"{spec.title or spec.name}: {dimensions_text(spec)}")
     for line in _fitting(_facts_table("summary", report.facts)):
         say(line)
     for line in _fitting(_extremes_table(report, 6), _extremes_table(report, 4)):
@@ -166,6 +166,7 @@ def _summary(report: LinkageReport) -> dict[str, Any]:
         "source": spec.source,
         "length_unit": spec.length_unit,
         "angle_unit": "rad",
+        "mechanism": spec.linkage.MECHANISM,
         "linkage": spec.linkage.stated,
         "notes": list(report.notes),
         "facts": {

@@ -15,8 +15,10 @@ from rich.progress import Progress as Bar
 from rich.table import Table
 
 from grashof.output.streams import say
-from grashof.problems import FourBar, Problem
+from grashof.problems import Problem
+from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
+from grashof.problems.values.mechanisms import LENGTHS, having
 from grashof.problems.values.quantities import Over, Quantity, Unit
 from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth import Candidate, Progress, Result
@@ -29,7 +31,10 @@ _WIDE = 100  # columns; narrower terminals get fewer digits
 _UNBOUNDED = 1000
 # Columns that a narrow terminal does without, first to last.
 _DROPPED = (("class",), ("O2", "O4"), ("like this",), ("best at",), ("size",), ("mu turn",))
-_JUSTIFY: dict[str, JustifyMethod] = {"O2": "center", "O4": "center", "class": "left", "best at": "left"}
+_JUSTIFY: dict[str, JustifyMethod] = {
+    **dict.fromkeys(("O2", "O4"), "center"),
+    **dict.fromkeys(("mechanism", "class", "best at"), "left"),
+}
 _TWO_LINES = ("error rms", "like this")
 
 
@@ -124,6 +129,8 @@ def best_rows(result: Result, digits: int = 4) -> list[dict[str, str]]:
     front, families = pareto_optimal(result.problem, result.candidates), result.families[:_ROWS]
     left_out = [
         *(["class"] if len(_classes(result)) == 1 else []),
+        *([] if len(result.problem.mechanism) > 1 else ["mechanism"]),
+        *([] if set(having("o4")) & set(result.problem.mechanism) else ["O4"]),
         *([] if any(len(family) > 1 for family in families) else ["like this"]),
         *([] if any(family[0].best_at for family in families) else ["best at"]),
     ]
@@ -150,7 +157,8 @@ def _decided_by(problem: Problem) -> list[Quantity]:
     """The error where there is one, the transmission angle, whatever else is weighed, size and lengths."""
     error = [] if problem.requirements.is_exact(problem.task) else ["error"]
     goals = [goal.key for goal, _ in problem.goals if goal.key != "size"]
-    keys = *error, "transmission_min_task", "transmission_min_cycle", *goals, "size", *FourBar.LENGTHS
+    made = [name for name in (*LENGTHS, "offset") if set(having(name)) & set(problem.mechanism)]
+    keys = *error, "transmission_min_task", "transmission_min_cycle", *goals, "size", *made
     return [QUANTITIES[key] for key in dict.fromkeys(keys)]
 
 
@@ -206,13 +214,20 @@ def _cells(problem: Problem, candidate: Candidate, digits: int) -> dict[str, str
     linkage = candidate.linkage
     return {
         **{each.short: _cell(each, candidate, digits) for each in _decided_by(problem)},
-        **{name: f"{x:.3g}, {y:.3g}" for name, (x, y) in (("O2", linkage.o2), ("O4", linkage.o4))},
+        **{name: _place(getattr(linkage, name.lower(), None)) for name in ("O2", "O4")},
+        "mechanism": linkage.MECHANISM,
         "class": str(candidate.verdict.grashof_class),
     }
 
 
+def _place(place: FloatArray | None) -> str:
+    return "-" if place is None else f"{place[0]:.3g}, {place[1]:.3g}"
+
+
 def _cell(quantity: Quantity, candidate: Candidate, digits: int) -> str:
     if quantity.over is Over.CYCLE and not candidate.verdict.full_rotation:
+        return "-"
+    if candidate.linkage.MECHANISM not in quantity.kinds:
         return "-"
     value = candidate.values[quantity.key] * quantity.unit.shown
     if quantity.unit is Unit.ANGLE:

@@ -8,17 +8,19 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from grashof.page.designs import legend, linkage_data
 from grashof.page.panels import motion_sections
 from grashof.page.plot_data import Columns, is_thinned, plot_data
 from grashof.page.render import render
 from grashof.problems.values.checks import counted
 from grashof.study.section import DRIVER_ANGLE, Fact, Section
 from grashof.survey.report import LinkageReport
+from grashof.wording.linkage import dimensions_text
 from grashof.wording.numbers import number_text, value_text
 
 _SCRIPTS = (
-    "linkage.js", "svg.js", "stage.js", "player.js", "axes.js", "picture.js", "curves.js", "tracks.js",
-    "saving.js", "analysis.js",
+    "kinds.js", "linkage.js", "svg.js", "stage.js", "player.js", "axes.js", "picture.js", "curves.js",
+    "tracks.js", "saving.js", "analysis.js",
 )  # fmt: skip
 _EXTREMES = (("min", "least"), ("theta2_min_deg", "at θ2"), ("max", "largest"), ("theta2_max_deg", "at θ2"))
 _SMALL = 30  # rows up to which a table stands in the page; a larger one is a file beside it
@@ -52,7 +54,7 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         "scene": {"unit": spec.length_unit},
         "designs": [
             {
-                "linkage": spec.linkage.stated,
+                "linkage": linkage_data(spec.linkage),
                 "low": low,
                 "high": high,
                 "turns": sweep.turns,
@@ -64,7 +66,6 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         "columns": columns.found,
         "driver": DRIVER_ANGLE,
     }
-    lengths = [f"{float(length):.6g}" for length in spec.linkage.lengths]
     return render(
         "analysis.html",
         _SCRIPTS,
@@ -72,7 +73,8 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         title=spec.title or spec.name,
         spec=spec,
         report=report,
-        lengths=lengths,
+        dimensions=dimensions_text(spec),
+        links=legend([spec.linkage.MECHANISM]),
         ranges=[f"{np.degrees(low):.6g} to {np.degrees(high):.6g} deg" for low, high in sweep.ranges],
         facts=_facts(report.facts),
         groups=[_group(section) for section in sections],

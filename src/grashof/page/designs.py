@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,9 +19,10 @@ from grashof.analysis import (
 from grashof.analysis.four_bar.mobility import range_index
 from grashof.analysis.judge.over_task import driver_law, motion_ends
 from grashof.page.render import compact
-from grashof.problems import FourBar, Problem
+from grashof.problems import DynamicsSpec, Linkage, Problem
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics_spec import metres
+from grashof.problems.values.mechanisms import KINDS
 from grashof.study.sweep import INSET, dead_positions_unwarned, driver_angles
 from grashof.synth import Candidate
 
@@ -50,12 +50,12 @@ class Travel(NamedTuple):
         return driver_angles(self.low + inset, self.high - inset, STEPS, even=self.turns)
 
 
-def driver_travel(linkage: FourBar, theta2: FloatArray) -> Travel:
+def driver_travel(linkage: Linkage, theta2: FloatArray) -> Travel:
     """Travel of the driver that holds its angles at the targets.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     theta2 : ndarray, shape (N,), rad
         Driver angles at the targets, unwrapped along the motion.
@@ -68,6 +68,7 @@ def driver_travel(linkage: FourBar, theta2: FloatArray) -> Travel:
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> crank = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
     >>> np.degrees(driver_travel(crank, np.radians([370.0, 500.0]))[:2]).round(9).tolist()
     [360.0, 720.0]
@@ -83,6 +84,27 @@ def driver_travel(linkage: FourBar, theta2: FloatArray) -> Travel:
     return Travel(float(low) + turned, float(high) + turned, False)
 
 
+def legend(kinds: Iterable[str]) -> list[tuple[str, str]]:
+    """Style and words of each link in drawings of linkages of some kinds.
+
+    Examples
+    --------
+    >>> legend(["slider-crank"])
+    [('driver', 'driver O2-A'), ('coupler', 'coupler A-B-P'), ('output', 'slider B')]
+    """
+    found: dict[str, list[str]] = {}
+    every = list(kinds)
+    for style, index in (("driver", 1), ("coupler", 2), ("output", 3)):
+        links = [KINDS[kind].LINKS[index] for kind in every]
+        found[style] = [f"{link.name} {'-'.join(link.labels)}" for link in links]
+    return [(style, ", ".join(dict.fromkeys(words))) for style, words in found.items()]
+
+
+def linkage_data(linkage: Linkage) -> dict[str, Any]:
+    """A linkage as the scripts have it: its kind, and what it is stated by in full precision."""
+    return {"mechanism": linkage.MECHANISM, **linkage.stated}
+
+
 def designs_of(problem: Problem, designs: Sequence[Candidate], frame: pd.DataFrame) -> list[dict[str, Any]]:
     """Designs as JSON, their values in full precision.
 
@@ -94,10 +116,7 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], frame: pd.DataFra
     frame : DataFrame
         Their rows, as `to_frame` makes them.
     """
-    linkages = [
-        replace(each.linkage, assembly=np.asarray(each.verdict.assembly[0], dtype=np.float64))
-        for each in designs
-    ]
+    linkages = [each.linkage.changed(assembly=each.verdict.assembly[0]) for each in designs]
     travels = [
         driver_travel(linkage, each.verdict.theta2) for linkage, each in zip(linkages, designs, strict=True)
     ]
@@ -106,7 +125,7 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], frame: pd.DataFra
     return [
         {
             "id": design.id,
-            "linkage": linkage.stated,
+            "linkage": linkage_data(linkage),
             **travel._asdict(),
             "direction": design.verdict.direction,
             "theta2": design.verdict.theta2.tolist(),
@@ -124,17 +143,34 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], frame: pd.DataFra
 def _torques(
     problem: Problem,
     designs: Sequence[Candidate],
-    linkages: Sequence[FourBar],
+    linkages: Sequence[Linkage],
     travels: Sequence[Travel],
-) -> list[list[float | None]] | list[None]:
+) -> list[list[float | None] | None]:
     """Drive torque over the travel of each linkage, N m; None for each without dynamics.
 
     Of a driver that starts and stops, over the task alone.
     """
-    if problem.dynamics is None or not linkages:
-        return [None] * len(linkages)
-    spec, metre = problem.dynamics, metres(problem.length_unit)
-    batch = FourBar(*map(np.stack, zip(*(each.parameters for each in linkages), strict=True)))[:, None]
+    found: list[list[float | None] | None] = [None] * len(linkages)
+    if problem.dynamics is None:
+        return found
+    for kind in dict.fromkeys(map(type, linkages)):
+        rows = [row for row, linkage in enumerate(linkages) if type(linkage) is kind]
+        chosen = ([every[row] for row in rows] for every in (designs, linkages, travels))
+        for row, torque in zip(rows, _of_one_kind(problem, problem.dynamics, *chosen), strict=True):
+            found[row] = torque
+    return found
+
+
+def _of_one_kind(
+    problem: Problem,
+    spec: DynamicsSpec,
+    designs: Sequence[Candidate],
+    linkages: Sequence[Linkage],
+    travels: Sequence[Travel],
+) -> list[list[float | None]]:
+    metre = metres(problem.length_unit)
+    kind = type(linkages[0])
+    batch = kind(*map(np.stack, zip(*(each.parameters for each in linkages), strict=True)))[:, None]
     theta2 = np.stack([travel.angles(INSET) for travel in travels])
     laws = [driver_law(problem, *motion_ends(problem.task, each.verdict)) for each in designs]
     ways = list(zip(laws, theta2, strict=True))

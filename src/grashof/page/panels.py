@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from grashof.problems import FourBar
-from grashof.study.quantities import FORCES
+from grashof.problems import Linkage
+from grashof.study.kinds import forces_of
 from grashof.study.section import Plot, Section
 from grashof.survey.report import LinkageReport
 
@@ -42,7 +42,7 @@ def motion_sections(report: LinkageReport) -> list[Section]:
     table = _parted(table.loc[:, ~table.columns.duplicated()])
     theta2 = table["theta2_deg"].to_numpy()
     sections = []
-    for key, title, panels in _groups(report.sweep.spec.unit):
+    for key, title, panels in _groups(report.sweep.spec.unit, type(report.sweep.spec.linkage)):
         plots = tuple(
             Plot(name, heading, unit, {columns[each]: table[each].to_numpy() for each in known}, theta2)
             for name, heading, unit, columns in panels
@@ -53,9 +53,9 @@ def motion_sections(report: LinkageReport) -> list[Section]:
     return sections
 
 
-def _groups(unit: str) -> list[tuple[str, str, list[Panel]]]:
+def _groups(unit: str, kind: type[Linkage]) -> list[tuple[str, str, list[Panel]]]:
     """Key, title and plots of each section."""
-    points = {name: name.upper() for name in FourBar.MOVING}
+    points, joints = {name: name.upper() for name in kind.MOVING}, forces_of(kind)
     speeds, accelerations = (
         {f"{name}_{size}": label for name, label in points.items()} for size in ("speed", "acceleration")
     )
@@ -64,6 +64,14 @@ def _groups(unit: str) -> list[tuple[str, str, list[Panel]]]:
         ("angles", "angles", "deg", {"theta3_deg": "θ3", "theta4_deg": "θ4", "mu_deg": "μ"}),
         ("angular-velocity", "angular velocity", "rad/s", {"omega3": "ω3", "omega4": "ω4"}),
         ("angular-acceleration", "angular acceleration", "rad/s²", {"alpha3": "α3", "alpha4": "α4"}),
+        ("slide", "travel of the slide", unit, {"slide_travel": "travel"}),
+        ("slide-velocity", "velocity of the slide", f"{unit}/s", {"slide_velocity": "velocity"}),
+        (
+            "slide-acceleration",
+            "acceleration of the slide",
+            f"{unit}/s²",
+            {"slide_acceleration": "acceleration"},
+        ),
         ("speeds", f"speed of {every}", f"{unit}/s", speeds),
         ("accelerations", f"acceleration of {every}", f"{unit}/s²", accelerations),
     ]
@@ -78,10 +86,12 @@ def _groups(unit: str) -> list[tuple[str, str, list[Panel]]]:
         ("power", "drive power", "W", {"power": "power"}),
     ]
     forces: list[Panel] = [
-        ("joint-forces", "joint forces", "N", FORCES),
+        ("joint-forces", "joint forces", "N", joints),
+        ("slide-force", "force across the slide", "N", {"slide_force": "force"}),
+        ("slide-moment", "moment that the slide bears", "N m", {"slide_moment": "moment"}),
         ("shaking-force", "shaking force", "N", _xy("shaking_force") | {"shaking_force": "size"}),
         ("shaking-moment", "shaking moment about O2", "N m", {"shaking_moment": "moment"}),
-        *((name, f"force {name.upper()} in {joint}", "N", _xy(name)) for name, joint in FORCES.items()),
+        *((name, f"force {name.upper()} in {joint}", "N", _xy(name)) for name, joint in joints.items()),
     ]
     places: list[Panel] = []
     for name, point in reversed(points.items()):

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from grashof.page.columns import Column, columns_of, figure_units
-from grashof.page.designs import designs_of, driver_travel
+from grashof.page.designs import designs_of, driver_travel, legend
 from grashof.page.render import render
 from grashof.page.scene import scene_of
 from grashof.problems.values.checks import counted
@@ -20,8 +20,8 @@ from grashof.synth.search.tally import DISTINCT, Tally
 from grashof.wording.problem import goals, summary
 
 _SCRIPTS = (
-    "linkage.js", "svg.js", "stage.js", "player.js", "axes.js", "picture.js", "curves.js", "scatter.js",
-    "table.js", "compare.js", "search.js",
+    "kinds.js", "linkage.js", "svg.js", "stage.js", "player.js", "axes.js", "picture.js", "curves.js",
+    "scatter.js", "table.js", "compare.js", "search.js",
 )  # fmt: skip
 
 
@@ -75,6 +75,8 @@ def search_page(result: Result, frame: pd.DataFrame, record: Mapping[str, Any], 
         alike=any(row["alike"] for row in rows),
         best_at=any(row["best_at"] for row in rows),
         classes=sorted(set(frame["grashof_class"])) if designs else [],
+        mechanisms=(kinds := list(dict.fromkeys(each.linkage.MECHANISM for each in designs))),
+        links=legend(kinds or problem.mechanism),
         counts=_counts(result.tally),
         seconds={stage: f"{time:.2f}" for stage, time in result.seconds.items()},
         record=record,
@@ -107,6 +109,7 @@ def _rows(frame: pd.DataFrame, columns: list[Column]) -> list[dict[str, Any]]:
             "first": row["id"] == row["family"],
             "best_at": "" if pd.isna(row["best_at"]) else row["best_at"],
             "pareto": bool(row["pareto"]),
+            "mechanism": row["mechanism"],
             "kind": row["grashof_class"],
             "misses": row.get("misses", ""),
             "cells": [column.text(row[column.key]) for column in columns],

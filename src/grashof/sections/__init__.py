@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from grashof.problems import ProblemError
+from grashof.problems.values.mechanisms import FOUR_BAR, not_had
+from grashof.problems.values.quantities import TURNING
 from grashof.sections.balancing import balancing
 from grashof.sections.coupler_plane import coupler_plane
 from grashof.sections.differences import differences
@@ -25,6 +28,7 @@ from grashof.sections.pumping_unit import pumping_unit
 from grashof.sections.release import release
 from grashof.sections.strength import strength
 from grashof.sections.tolerance import tolerance
+from grashof.study.asked import ON_REQUEST
 from grashof.study.section import Section
 from grashof.study.study import LinkageStudy
 
@@ -52,3 +56,25 @@ SECTIONS: tuple[Callable[[LinkageStudy], Section | None], ...] = (
     strength,
     pumping_unit,
 )
+# Those that only some kinds of linkages have, with the kinds and what asks for them.
+_ONLY: dict[Callable[[LinkageStudy], Section | None], tuple[tuple[str, ...], str]] = {
+    newton_raphson: ((FOUR_BAR,), "newton-raphson"),
+    coupler_plane: ((FOUR_BAR,), ""),
+    balancing: ((FOUR_BAR,), "balance"),
+    tolerance: ((FOUR_BAR,), "tolerance"),
+    pumping_unit: ((FOUR_BAR,), ""),
+    mechanical_advantage: (TURNING, ""),
+    dwell_section: (TURNING, "dwell_deg"),
+}
+
+
+def sections_of(study: LinkageStudy) -> tuple[Section, ...]:
+    """The sections that a linkage has; `ProblemError` where one is asked for that its kind has not."""
+    kind, asked = study.linkage.MECHANISM, study.asked
+    named = () if set(asked.sections) == set(ON_REQUEST) else asked.sections
+    suited = [make for make in SECTIONS if make not in _ONLY or kind in _ONLY[make][0]]
+    for make in SECTIONS:
+        kinds, word = _ONLY.get(make, ((), ""))
+        if make not in suited and (word in named or getattr(asked, word, None)):
+            raise ProblemError(not_had(word, (kind,), kinds))
+    return tuple(section for make in suited if (section := make(study)) is not None)

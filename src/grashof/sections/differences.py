@@ -13,6 +13,7 @@ from grashof.analysis import Kinematics, central_differences
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.sections.mass_centres import centre_labels, centres_of
 from grashof.study.history import History
+from grashof.study.kinds import turning
 from grashof.study.samples import Samples
 from grashof.study.section import Fact, Section
 from grashof.study.study import LinkageStudy
@@ -112,7 +113,7 @@ def _even_samples(study: LinkageStudy) -> tuple[Samples, list[_Part]]:
 
 
 def _rates(study: LinkageStudy, parts: list[_Part]) -> Iterator[Rate]:
-    for link in (link.number for link in study.linkage.LINKS[2:]):
+    for link in turning(type(study.linkage)):
         angles = [np.unwrap(getattr(part.state, f"theta{link}")) for part in parts]
         for derivative, (name, unit) in enumerate(_ANGULAR, start=1):
             exact = [getattr(part.state, f"{name}{link}") for part in parts]

@@ -55,15 +55,15 @@ def equation_table(theta2_deg: FloatArray, system: SystemOfEquations, metre: flo
         The length unit in metres: arms are given in metres, forces in N.
     """
     count, moment = len(theta2_deg), np.arange(9) % 3 == 2
-    forces = np.arange(9) < 8
+    forces = np.array([name.startswith("F") for name in system.unknowns])
     arms = np.where(moment, metre, 1.0)[:, None] * np.where(forces, 1.0, 1 / metre)
     matrix = (system.matrix * arms + 0.0).reshape(-1, 9)
     columns: dict[str, object] = {
         "theta2_deg": np.repeat(np.round(theta2_deg, 12), 9),
         "equation": list(system.EQUATIONS) * count,
     }
-    columns |= {name: matrix[:, index] for index, name in enumerate(system.UNKNOWNS)}
+    columns |= {name: matrix[:, index] for index, name in enumerate(system.unknowns)}
     columns["right_side"] = (system.right_side * np.where(moment, metre**2, metre)).ravel()
-    columns["unknown"] = list(system.UNKNOWNS) * count
+    columns["unknown"] = list(system.unknowns) * count
     columns["solution"] = (system.solution * np.where(forces, metre, metre**2)).ravel()
     return pd.DataFrame(columns).replace([np.inf, -np.inf], np.nan)  # in a dead position

@@ -8,6 +8,7 @@ import pandas as pd
 from grashof.analysis import Kinematics, PointMotion, system_centre
 from grashof.problems.values.arrays import FloatArray
 from grashof.study.history import History
+from grashof.study.kinds import halfway
 from grashof.study.samples import Samples
 from grashof.study.section import Plot, Section
 from grashof.study.study import LinkageStudy
@@ -62,8 +63,8 @@ def centres_of(study: LinkageStudy, state: Kinematics) -> dict[str, PointMotion]
     """Motions of the centres of the links, g2 to g4, and with masses of the system's, g."""
     masses, found = study.masses, {}
     for link in (link.number for link in study.linkage.LINKS[1:]):
-        halfway = np.array([float(getattr(study.linkage, f"r{link}")) / 2, 0.0])
-        found[f"g{link}"] = state.point(link, halfway if masses is None else masses.of(link).centre)
+        at = halfway(study.linkage, link) if masses is None else masses.of(link).centre
+        found[f"g{link}"] = state.point(link, at)
     if masses is not None and masses.total > 0:
         found["g"] = system_centre(masses, state)
     return found

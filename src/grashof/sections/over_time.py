@@ -4,17 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from grashof.problems import FourBar
 from grashof.problems.values.arrays import FloatArray
 from grashof.study.history import TIME, History
 from grashof.study.quantities import dynamic_quantities, kinematic_quantities, table_of
 from grashof.study.samples import Samples
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
-
-_SPEEDS, _ACCELERATIONS = (
-    {name.upper(): f"{name}_{size}" for name in FourBar.MOVING} for size in ("speed", "acceleration")
-)
 
 
 def over_time(study: LinkageStudy) -> Section | None:
@@ -40,6 +35,10 @@ def over_time(study: LinkageStudy) -> Section | None:
 
 def _plots(study: LinkageStudy, history: History, columns: dict[str, FloatArray]) -> tuple[Plot, ...]:
     samples, unit = Samples.over_time(study, history), study.spec.unit
+    moving = type(study.linkage).MOVING
+    speeds, accelerations = (
+        {name.upper(): f"{name}_{size}" for name in moving} for size in ("speed", "acceleration")
+    )
     time, wrapped = sawtooth(history.time, columns["theta2_total_deg"])
     driver = Plot("theta2-over-time", "driver angle theta2 over time", "deg", {"theta2": wrapped}, time, TIME)
     rows = [
@@ -47,16 +46,18 @@ def _plots(study: LinkageStudy, history: History, columns: dict[str, FloatArray]
         ("angles", "angles", "deg", {"theta3": "theta3_deg", "theta4": "theta4_deg"}),
         ("angular-velocity", "angular velocity", "rad/s", {"omega3": "omega3", "omega4": "omega4"}),
         ("angular-acceleration", "angular acceleration", "rad/s²", {"alpha3": "alpha3", "alpha4": "alpha4"}),
+        ("slide", "travel of the slide", unit, {"travel": "slide_travel"}),
+        ("slide-velocity", "velocity of the slide", f"{unit}/s", {"velocity": "slide_velocity"}),
         ("p-place", "place of P", unit, {"x": "p_x", "y": "p_y"}),
-        ("speed", "speed", f"{unit}/s", _SPEEDS),
-        ("acceleration", "acceleration", f"{unit}/s²", _ACCELERATIONS),
+        ("speed", "speed", f"{unit}/s", speeds),
+        ("acceleration", "acceleration", f"{unit}/s²", accelerations),
         ("torque", "drive torque", "N m", {"torque": "torque"}),
         ("power", "drive power", "W", {"power": "power"}),
     ]  # fmt: skip
     return driver, *(
-        samples.plot(key, title, of, {label: columns[column] for label, column in names.items()})
+        samples.plot(key, title, of, drawn)
         for key, title, of, names in rows
-        if all(column in columns for column in names.values())
+        if (drawn := {label: columns[column] for label, column in names.items() if column in columns})
     )
 
 

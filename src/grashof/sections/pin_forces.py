@@ -5,14 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.analysis import Dynamics, Kinematics, inverse_dynamics
-from grashof.problems import FourBar
 from grashof.problems.values.arrays import FloatArray
 from grashof.study.columns import Columns, over_driver, table, tracks
 from grashof.study.section import Section
 from grashof.study.study import LinkageStudy
 
-# By joint: the force on the second link that it joins, as `Dynamics` names it.
-_ON_SECOND = {"o2": ("f12", 1.0), "a": ("f32", -1.0), "b": ("f43", -1.0), "o4": ("f14", 1.0)}
+# By the links of a joint: the force on the second of them, as `Dynamics` names it.
+_ON_SECOND = {(1, 2): ("f12", 1.0), (2, 3): ("f32", -1.0), (3, 4): ("f43", -1.0), (1, 4): ("f14", 1.0)}
 
 
 def pin_forces(study: LinkageStudy) -> Section | None:
@@ -21,11 +20,12 @@ def pin_forces(study: LinkageStudy) -> Section | None:
     if masses is None:
         return None
     columns = over_driver(study, lambda s: _forces(s, inverse_dynamics(s, masses, loads), study.metre))
-    first = ", ".join(f"{joint.upper()} on {links[1]}" for joint, links in FourBar.JOINTS.items())
-    every = {joint.upper(): joint for joint in FourBar.JOINTS}
+    kind = type(study.linkage)
+    first = ", ".join(f"{joint.upper()} on {links[1]}" for joint, links in kind.JOINTS.items())
+    every = {joint.upper(): joint for joint in kind.JOINTS}
     plots = [tracks(columns, "pin-forces", f"pin forces, global axes: {first}", "N", every)]
-    for link in FourBar.LINKS[1:]:
-        joints = [joint for joint, links in FourBar.JOINTS.items() if link.number in links]
+    for link in kind.LINKS[1:]:
+        joints = [joint for joint, links in kind.JOINTS.items() if link.number in links]
         labels = {f"in {joint.upper()}": f"{joint}_on_{link.number}" for joint in joints}
         title = f"pin forces on link {link.number}, in its frame: u along it"
         plots.append(tracks(columns, f"pin-forces-on-{link.number}", title, "N", labels, "uv"))
@@ -36,22 +36,22 @@ def pin_forces(study: LinkageStudy) -> Section | None:
 
 def _forces(state: Kinematics, found: Dynamics, metre: float) -> Columns:
     columns: dict[str, FloatArray] = {}
-    for joint, links in FourBar.JOINTS.items():
-        columns[joint] = _on(found, joint, links[1]) * metre
+    for joint, links in state.linkage.JOINTS.items():
+        columns[joint] = _on(found, links, links[1]) * metre
         for link in links:
             if link != 1:
-                turned = _in_frame(_on(found, joint, link), getattr(state, f"theta{link}")) * metre
+                turned = _in_frame(_on(found, links, link), getattr(state, f"theta{link}")) * metre
                 columns |= {
                     f"{joint}_on_{link}_{axis}": part for axis, part in zip("uv", turned.T, strict=True)
                 }
     return columns
 
 
-def _on(found: Dynamics, joint: str, link: int) -> FloatArray:
-    """The force on a link in a joint, in global axes."""
-    name, sign = _ON_SECOND[joint]
+def _on(found: Dynamics, links: tuple[int, ...], link: int) -> FloatArray:
+    """The force on one of two links in the joint that joins them, in global axes."""
+    name, sign = _ON_SECOND[links[0], links[1]]
     force: FloatArray = getattr(found, name)
-    return force * (sign if link == FourBar.JOINTS[joint][1] else -sign)
+    return force * (sign if link == links[1] else -sign)
 
 
 def _in_frame(force: FloatArray, theta: FloatArray) -> FloatArray:

@@ -7,12 +7,19 @@ import pandas as pd
 
 from grashof.analysis import Kinematics, solve_position
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
 from grashof.sections.mass_centres import centres_of
 from grashof.study.quantities import dynamic_quantities, kinematic_quantities, table_of
 from grashof.study.section import Plot, Section
 from grashof.study.study import LinkageStudy
 
 _SMALL = ("_x", "_y")
+# Through which points the links are drawn; with a gap at "".
+_BARS = {
+    FOUR_BAR: ("o2", "a", "b", "o4", "", "a", "p", "b"),
+    SLIDER_CRANK: ("o2", "a", "b", "", "a", "p", "b"),
+    INVERTED: ("o2", "a", "b", "o4", "", "a", "p"),
+}
 
 
 def positions(study: LinkageStudy) -> Section | None:
@@ -41,9 +48,11 @@ def position_table(study: LinkageStudy, state: Kinematics) -> pd.DataFrame:
 
 def _drawing(study: LinkageStudy, state: Kinematics) -> Plot:
     linkage = study.linkage
-    a, b, p = state.a.position, state.b.position, state.p.position
-    still = np.broadcast_to(linkage.o2, a.shape), np.broadcast_to(linkage.o4, a.shape)
-    bars = np.stack([still[0], a, b, still[1], np.full(a.shape, np.nan), a, p, b], axis=1)
+    places = {name: getattr(state, name).position for name in linkage.MOVING}
+    p = places["p"]
+    places |= {name: np.broadcast_to(getattr(linkage, name), p.shape) for name in linkage.GROUND}
+    gap = np.full(p.shape, np.nan)
+    bars = np.stack([places.get(name, gap) for name in _BARS[linkage.MECHANISM]], axis=1)
     labels = [f"theta2 = {angle:.6g} deg" for angle in study.asked.at_deg]
     series: dict[str, FloatArray] = {"path of P": _path(study)}
     series |= {label: bars[number] for number, label in enumerate(labels)}

@@ -17,17 +17,14 @@ from grashof.analysis import (
     transmission_angle,
 )
 from grashof.analysis.four_bar.transmission import quality
-from grashof.problems import FourBar, LinkageSpec
+from grashof.problems import LinkageSpec
 from grashof.problems.values.arrays import FloatArray
+from grashof.study.kinds import forces_of, turning
 from grashof.study.study import LinkageStudy
 
 Curve = Callable[[Kinematics], FloatArray]
 _DEAD = 1e-7  # rad: what rounding of the driver angle leaves of a dead position
-# Keys of the joint forces (f32: on link 2 by link 3), and the joints that they act in.
-FORCES = {
-    f"f1{other}" if one == 1 else f"f{other}{one}": joint.upper()
-    for joint, (one, other) in FourBar.JOINTS.items()
-}
+_RATES = (("velocity", "/s"), ("acceleration", "/s2"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,8 +55,8 @@ class Quantity:
 
 def kinematic_quantities(spec: LinkageSpec) -> list[Quantity]:
     """Angles, rates and points, and the torque factor of an output arm."""
-    unit = spec.unit
-    driven = {link.number: link.name for link in FourBar.LINKS[2:]}
+    unit, kind = spec.unit, type(spec.linkage)
+    driven = turning(kind)
     found = [
         Quantity(f"theta{n}_deg", f"angle of {name} {n}", "deg", _degrees(f"theta{n}"), 360.0, position=True)
         for n, name in driven.items()
@@ -70,7 +67,9 @@ def kinematic_quantities(spec: LinkageSpec) -> list[Quantity]:
         for key, rate, per in (("omega", "velocity", "rad/s"), ("alpha", "acceleration", "rad/s2"))
         for n in driven
     ]
-    for name in FourBar.MOVING:
+    if kind.SLIDES:
+        found += _of_slide(unit)
+    for name in kind.MOVING:
         point, moves = name.upper(), lru_cache(maxsize=2)(attrgetter(name))
         place = _part_of(moves, "position")
         found += [
@@ -90,6 +89,21 @@ def kinematic_quantities(spec: LinkageSpec) -> list[Quantity]:
     return found
 
 
+def _of_slide(unit: str) -> list[Quantity]:
+    """How far a slide has gone, and its rates."""
+
+    def part(name: str) -> Curve:
+        return lambda s: np.asarray(getattr(s.slide, name))
+
+    return [
+        Quantity("slide_travel", "travel of the slide", unit, part("travel"), position=True),
+        *(
+            Quantity(f"slide_{rate}", f"{rate} of the slide", f"{unit}{per}", part(rate))
+            for rate, per in _RATES
+        ),
+    ]
+
+
 def dynamic_quantities(study: LinkageStudy) -> list[Quantity]:
     """Torque, power and forces in N, N m and W, whatever the length unit; none where nothing acts."""
     masses = study.masses
@@ -106,9 +120,14 @@ def dynamic_quantities(study: LinkageStudy) -> list[Quantity]:
         return Quantity(key, label, unit, lambda s: of(key)(s) * metre**2)
 
     found = [moment("torque", "drive torque", "N m"), moment("power", "drive power", "W")]
-    for key, joint in FORCES.items():
+    kind = type(study.linkage)
+    for key, joint in forces_of(kind).items():
         labels = (f"force {key.upper()} in {joint}", f"joint force in {joint}")
         found += _vector((key, key), labels, "N", of(key), metre)
+    if kind.SLIDES:
+        across = of("slide_force")
+        found.append(Quantity("slide_force", "force across the slide", "N", lambda s: across(s) * metre))
+        found.append(moment("slide_moment", "moment that the slide bears", "N m"))
     keys, labels = ("shaking_force", "shaking_force"), ("shaking force", "shaking force")
     found += _vector(keys, labels, "N", of("shaking_force"), metre)
     return [*found, moment("shaking_moment", "shaking moment about O2", "N m")]

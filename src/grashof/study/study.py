@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.analysis import DriverLaw, DriverMotion, Kinematics, Loads, Masses, stated_loads, stated_masses
-from grashof.problems import FourBar, LinkageSpec, ProblemError
+from grashof.problems import Linkage, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.checks import refuse
 from grashof.problems.values.dynamics_spec import metres
@@ -47,7 +47,7 @@ class LinkageStudy:
         return self.sweep.spec
 
     @property
-    def linkage(self) -> FourBar:
+    def linkage(self) -> Linkage:
         """The linkage itself."""
         return self.spec.linkage
 

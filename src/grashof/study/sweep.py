@@ -21,7 +21,7 @@ from grashof.analysis import (
     solve_kinematics,
     transmission_angle,
 )
-from grashof.problems import DeadPositionWarning, FourBar, LinkageSpec, ProblemError
+from grashof.problems import DeadPositionWarning, Linkage, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
 from grashof.problems.values.checks import GREATEST, number_within
 from grashof.problems.values.motor import MotorSpec
@@ -147,7 +147,7 @@ def driver_angles(low: float, high: float, steps: int, *, even: bool) -> FloatAr
     return angles
 
 
-def _between_dead_positions(linkage: FourBar) -> Iterator[tuple[float, float]]:
+def _between_dead_positions(linkage: Linkage) -> Iterator[tuple[float, float]]:
     for low, high in driver_ranges(linkage).tolist():
         if np.isnan(low):
             continue

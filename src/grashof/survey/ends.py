@@ -11,7 +11,7 @@ from grashof.analysis import rotatability, transmission_angle
 from grashof.analysis.four_bar.transmission import quality
 from grashof.analysis.loops.loop import CHANGE
 from grashof.analysis.numerics.quadrature import Curve, held
-from grashof.problems import FourBar
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 from grashof.study.sweep import INSET
 
@@ -32,7 +32,7 @@ class End(Enum):
     OPEN = 0.0  # the other half turn begins
 
 
-def end_of(linkage: FourBar, limit: float) -> End:
+def end_of(linkage: Linkage, limit: float) -> End:
     """What a range ends with at a driver angle."""
     half_turns = (limit - float(linkage.theta1)) / np.pi
     near, folded = abs(half_turns - round(half_turns)) < _ALONG, round(half_turns) % 2 == 0

@@ -25,8 +25,10 @@ from grashof.analysis import (
 )
 from grashof.analysis.four_bar.means import mean_in_time
 from grashof.analysis.numerics.quadrature import held
-from grashof.problems import AssemblyError, LinkageSpec, ProblemError
+from grashof.problems import AssemblyError, FourBar, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.mechanisms import FOUR_BAR, SLIDER_CRANK
+from grashof.study.kinds import LIMIT_POSITIONS, SHARES, turning
 from grashof.study.quantities import dynamic_quantities
 from grashof.study.section import Fact
 from grashof.study.study import LinkageStudy
@@ -45,8 +47,10 @@ def facts_of(study: LinkageStudy, tables: Mapping[str, pd.DataFrame]) -> Iterato
     triple = triple_rocker_kind(linkage)
     yield Fact("grashof_class", "Grashof class", f"{kind} {triple}".strip())
     stretched, folded = rotatability(linkage)
-    yield Fact("rotatability_stretched", "(r3 + r4 - r1 - r2) / sum", float(stretched))
-    yield Fact("rotatability_folded", "(|r1 - r2| - |r3 - r4|) / sum", float(folded))
+    both = (("stretched", stretched), ("folded", folded))
+    for (name, share), label in zip(both, SHARES[linkage.MECHANISM], strict=True):
+        if label:
+            yield Fact(f"rotatability_{name}", label, float(share))
     yield Fact("full_rotation", "driver turns fully", turns)
     yield Fact("speed_rpm", "driver speed", sweep.speed_rpm, "rpm")
     for number, (low, high) in enumerate([] if turns else ranges, start=1):
@@ -68,8 +72,10 @@ def facts_of(study: LinkageStudy, tables: Mapping[str, pd.DataFrame]) -> Iterato
 
 def _stroke_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame) -> Iterator[Fact]:
     linkage, unit = spec.linkage, spec.unit
-    stroke = output_stroke(linkage)
-    if not turns:  # the two toggle positions may lie on different circuits
+    stroke, moved = output_stroke(linkage), linkage.LINKS[-1].name
+    if linkage.MECHANISM == SLIDER_CRANK:
+        yield from _slide_facts(spec, turns, extremes, float(stroke.chord))
+    elif not turns:  # the two toggle positions may lie on different circuits
         swings = extremes[extremes["quantity"] == "theta4_deg"]
         for number, (low, high) in enumerate(zip(swings["min"], swings["max"], strict=True), start=1):
             mark, where = (f"_{number}", f", range {number}") if len(swings) > 1 else ("", "")
@@ -79,16 +85,18 @@ def _stroke_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame) -> Ite
                 yield Fact(f"output_stroke{mark}", f"stroke of the output arm{where}", way, unit)
     elif np.isfinite(stroke.swing):
         yield Fact("output_swing_deg", "swing of the output", float(np.degrees(stroke.swing)), "deg")
-        yield Fact("stroke_chord", "stroke of B, chord", float(stroke.chord), unit)
+        if linkage.MECHANISM == FOUR_BAR:
+            yield Fact("stroke_chord", "stroke of B, chord", float(stroke.chord), unit)
         if spec.output_arm is not None:
             way = float(spec.output_arm * stroke.swing)
             yield Fact("output_stroke", "stroke of the output arm", way, unit)
     if np.isfinite(stroke.time_ratio):
         yield Fact("time_ratio", "time ratio of the strokes", float(stroke.time_ratio))
-    for index, name in enumerate(("stretched", "folded")):
+    for index, (name, words) in enumerate(LIMIT_POSITIONS[linkage.MECHANISM].items()):
         if np.isfinite(stroke.theta4[index]):
-            for link, angle in ((2, stroke.theta2[index]), (4, stroke.theta4[index])):
-                label = f"output turns back, 2 and 3 {name}: theta{link}"
+            angles = {2: stroke.theta2[index], 4: stroke.theta4[index]}
+            for link, angle in ((n, angles[n]) for n in (2, *turning(type(linkage))) if n in angles):
+                label = f"{moved} turns back, {words}: theta{link}"
                 yield Fact(f"toggle_{name}_theta{link}_deg", label, float(np.degrees(angle)), "deg")
     if spec.output_arm is not None:
         try:
@@ -96,6 +104,17 @@ def _stroke_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame) -> Ite
         except AssemblyError:
             return
         yield Fact("torque_factor_at_0_deg", "torque factor of the output arm at theta2 = 0", factor, unit)
+
+
+def _slide_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame, chord: float) -> Iterator[Fact]:
+    """The stroke of a slide between its limit positions, or in each range of the driver."""
+    if turns:
+        yield Fact("stroke", "stroke of the slide", chord, spec.unit)
+        return
+    travels = extremes[extremes["quantity"] == "slide_travel"]
+    for number, (low, high) in enumerate(zip(travels["min"], travels["max"], strict=True), start=1):
+        mark, where = (f"_{number}", f", range {number}") if len(travels) > 1 else ("", "")
+        yield Fact(f"stroke{mark}", f"stroke of the slide{where}", float(high - low), spec.unit)
 
 
 def _path_facts(sweep: Sweep) -> Iterator[Fact]:
@@ -115,6 +134,16 @@ def _path_facts(sweep: Sweep) -> Iterator[Fact]:
                 yield Fact(f"fourier_share_{number}", f"share of harmonic {number} in the path of P", share)
         label = f"path of P from {_HARMONICS} harmonics errs by"
         yield Fact(f"fourier_error_{_HARMONICS}", label, float(series.error_max[_HARMONICS]), unit)
+    if isinstance(linkage, FourBar):
+        yield from _double_points(linkage, unit)
+    still = np.degrees(cusps(linkage))
+    yield Fact("cusps", "cusps of the path of P", len(still))
+    for number, angle in enumerate(still, start=1):
+        yield Fact(f"cusp_{number}_theta2_deg", f"cusp {number}: theta2", float(angle), "deg")
+    yield from _straight_facts(spec, low, high, turns)
+
+
+def _double_points(linkage: FourBar, unit: str) -> Iterator[Fact]:
     crossings = double_points(linkage)
     yield Fact("double_points", "double points of the path of P", len(crossings))
     for number, (point, angles) in enumerate(zip(crossings.points, crossings.theta2, strict=True), start=1):
@@ -123,11 +152,6 @@ def _path_facts(sweep: Sweep) -> Iterator[Fact]:
         for passage, angle in enumerate(np.degrees(angles), start=1):
             label = f"double point {number}, passage {passage}: theta2"
             yield Fact(f"double_point_{number}_theta2_{passage}_deg", label, float(angle), "deg")
-    still = np.degrees(cusps(linkage))
-    yield Fact("cusps", "cusps of the path of P", len(still))
-    for number, angle in enumerate(still, start=1):
-        yield Fact(f"cusp_{number}_theta2_deg", f"cusp {number}: theta2", float(angle), "deg")
-    yield from _straight_facts(spec, low, high, turns)
 
 
 def _straight_facts(spec: LinkageSpec, low: float, high: float, turns: bool) -> Iterator[Fact]:

@@ -12,8 +12,9 @@ from grashof.analysis import GrashofClass, Masses, grashof_class, solve_position
 from grashof.analysis.numerics.smooth_polygon import smooth_polygon
 from grashof.problems import LinkageSpec
 from grashof.problems.values.arrays import FloatArray
-from grashof.sections import SECTIONS
+from grashof.sections import sections_of
 from grashof.study.asked import Asked
+from grashof.study.kinds import halfway
 from grashof.study.quantities import Quantity, dynamic_quantities, kinematic_quantities, table_of
 from grashof.study.section import Fact, Section
 from grashof.study.study import LinkageStudy
@@ -79,7 +80,7 @@ def report_on(spec: LinkageSpec, asked: Asked | None = None) -> LinkageReport:
         tables["extremes"] = extremes_table(sweep, quantities + dynamic)
         drawn = _drawn(sweep, {"kinematics": quantities, "dynamics": dynamic}, tables)
         facts = tuple(facts_of(study, tables))
-        sections = tuple(section for make in SECTIONS if (section := make(study)) is not None)
+        sections = sections_of(study)
     return LinkageReport(sweep, masses, facts, tables, _notes(sweep), sections, drawn)
 
 
@@ -116,8 +117,7 @@ def mass_tracks(report: LinkageReport) -> dict[str, FloatArray]:
         )
         states = [report.sweep.state(angles) for angles in fine]
         for link in (link.number for link in linkage.LINKS[1:]):
-            halfway = np.array([float(getattr(linkage, f"r{link}")) / 2, 0.0])
-            at = halfway if masses is None else masses.of(link).centre
+            at = halfway(linkage, link) if masses is None else masses.of(link).centre
             tracks[f"link {link}"] = np.concatenate([_gap(s.point(link, at).position) for s in states])
         if masses is not None and masses.total > 0:
             tracks["all links"] = np.concatenate([_gap(system_centre(masses, s).position) for s in states])

@@ -13,14 +13,16 @@ import numpy as np
 import pandas as pd
 from pandas.api.types import is_numeric_dtype
 
+from grashof.page.designs import legend
 from grashof.page.render import render
 from grashof.page.scene import scene_of
 from grashof.problems.files.problem_file import problem_of
+from grashof.problems.values.mechanisms import FOUR_BAR, KINDS
 from grashof.sweep.result import Sweep
 from grashof.sweep.table import varied_columns
 from grashof.synth.designs.table import LISTED
 
-_SCRIPTS = ("linkage.js", "svg.js", "stage.js", "player.js", "table.js", "sweep.js")
+_SCRIPTS = ("kinds.js", "linkage.js", "svg.js", "stage.js", "player.js", "table.js", "sweep.js")
 _ROWS = 1000  # that a browser shows at once without delay
 _DIGITS = 5
 _TEXTS = ("status", "grashof_class")
@@ -61,6 +63,8 @@ def sweep_page(done: Sweep, frame: pd.DataFrame, picture: bytes, record: Mapping
     places = [int(number) - 1 for number in shown["combination"]]
     scenes, of_place = _scenes(done, places)
     rows = [[_value(row[column.key]) for column in columns] for row in shown.to_dict("records")]
+    drawn = filter(None, (done.results[place]["drawing"] for place in places))
+    kinds = {each["linkage"].get("mechanism", FOUR_BAR) for each in drawn} or {FOUR_BAR}
     data = {
         "scenes": scenes,
         "values": rows,
@@ -82,6 +86,7 @@ def sweep_page(done: Sweep, frame: pd.DataFrame, picture: bytes, record: Mapping
         headline=done.headline,
         picture=b64encode(picture).decode("ascii"),
         moves=any(done.results[place]["drawing"] for place in places),
+        links=legend(kind for kind in KINDS if kind in kinds),
         columns=columns,
         given=[column.key for column in columns].index("designs") + 1,
         rows=[

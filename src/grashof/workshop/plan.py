@@ -8,11 +8,12 @@ import numpy as np
 
 from grashof.analysis import full_rotation, solve_position
 from grashof.analysis.four_bar.position import places
-from grashof.problems import FourBar, ProblemError
+from grashof.problems import Linkage, ProblemError, SliderCrank
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import positive_number
 from grashof.workshop.plates import Plate, PlateSizes, base, link_plates, spacer
-from grashof.workshop.stacking import LINKS, Pin, Stack, poses, ranges_of_use, stack, sweep
+from grashof.workshop.slots import guide, moving_plates, slot_ends
+from grashof.workshop.stacking import Pin, Stack, base_angle, poses, ranges_of_use, stack, sweep
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,14 +42,14 @@ class Plan:
     ----------
     sizes : PlateSizes
     parts : tuple of Part
-        Base, driver, coupler, output, and spacers if there are any.
+        Base, the links that are plates, and spacers if there are any.
     pins : tuple of Pin
     layers : int
         How many, with those of the bases.
     theta2 : float, rad
         Driver angle of the assembly.
     joints : dict of str to pair of float, mm
-        O2, A, B, O4 and P in the assembly, from O2.
+        The points of the linkage in the assembly, from O2.
     notes : tuple of str
         Notes for the workshop.
     """
@@ -83,7 +84,7 @@ class Plan:
 
 
 def plan_parts(
-    linkage: FourBar,
+    linkage: Linkage,
     sizes: PlateSizes | None = None,
     mm_per_unit: float = 1.0,
     *,
@@ -94,7 +95,7 @@ def plan_parts(
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         One linkage.
     sizes : PlateSizes, optional
     mm_per_unit : float
@@ -116,21 +117,25 @@ def plan_parts(
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> crank_rocker = FourBar(o2=(0, 0), o4=(100, 0), r2=30, r3=90, r4=80)
     >>> [(part.plate.name, part.layers) for part in plan_parts(crank_rocker).parts]
     [('base', (0,)), ('driver', (1,)), ('coupler', (2,)), ('output', (1,))]
     """
     sizes = sizes or PlateSizes()
     scaled = _in_millimetres(linkage, mm_per_unit)
-    plates, note = link_plates(scaled, sizes)
+    if not scaled.SLIDES:
+        link_plates(scaled, sizes)  # what is too short is refused before what cannot be assembled
     ranges = ranges_of_use(scaled, within, theta2)
+    slot = slot_ends(scaled, ranges, sizes) if scaled.SLIDES else np.zeros(2)
+    plates, note = moving_plates(scaled, sizes, slot)
     order = stack(plates, scaled, sweep(scaled, ranges, sizes.gap), sizes)
     low, high = ranges[0]
     if theta2 is None or (theta2 - low) % (2 * np.pi) > high - low:
         theta2 = low + (high - low) / 4
     return Plan(
         sizes=sizes,
-        parts=_parts(plates, order, scaled, sizes, theta2),
+        parts=_parts(plates, order, scaled, sizes, theta2, slot),
         pins=order.pins,
         layers=max(order.layers.values()) + len(order.bases),
         theta2=theta2,
@@ -138,13 +143,14 @@ def plan_parts(
         notes=(
             _use(scaled, ranges, within),
             "pins end flush with their outer plates; their lengths leave nothing for heads or rings",
+            *_slot_note(scaled, slot),
             *_two_bases(order),
             *([note] if note else []),
         ),
     )
 
 
-def _in_millimetres(linkage: FourBar, mm_per_unit: float) -> FourBar:
+def _in_millimetres(linkage: Linkage, mm_per_unit: float) -> Linkage:
     """The linkage in mm, with O2 at the origin."""
     if linkage.shape:
         raise ProblemError(f"linkage is a batch of shape {linkage.shape}; it must be a single one")
@@ -152,17 +158,26 @@ def _in_millimetres(linkage: FourBar, mm_per_unit: float) -> FourBar:
 
 
 def _parts(
-    plates: dict[str, Plate], order: Stack, linkage: FourBar, sizes: PlateSizes, theta2: float
+    plates: dict[str, Plate],
+    order: Stack,
+    linkage: Linkage,
+    sizes: PlateSizes,
+    theta2: float,
+    slot: FloatArray,
 ) -> tuple[Part, ...]:
     where = {name: place[0] for name, place in poses(linkage, np.array([theta2])).items()}
-    on_base = np.array([0.0, 0.0, float(linkage.theta1)])
-    holes = {"O2": 0.0, "O4": float(linkage.r1)}
+    on_base = np.array([0.0, 0.0, base_angle(linkage)])
+    holes = {"O2": 0.0}
+    if not isinstance(linkage, SliderCrank):
+        ground = linkage.o4 - linkage.o2
+        holes["O4"] = float(np.hypot(*ground))
     if order.posts:
         holes = {"post 1": order.posts[0], **holes, "post 2": order.posts[1]}
     for name, along in holes.items():
         where[name] = np.array([along * np.cos(on_base[2]), along * np.sin(on_base[2]), 0.0])
-    parts = [Part(base(holes, sizes), order.bases, np.tile(on_base, (len(order.bases), 1)))]
-    parts += [Part(plates[name], (order.layers[name],), where[name][None]) for name in LINKS]
+    below = guide(linkage, holes, sizes, slot) if isinstance(linkage, SliderCrank) else base(holes, sizes)
+    parts = [Part(below, order.bases, np.tile(on_base, (len(order.bases), 1)))]
+    parts += [Part(plate, (order.layers[name],), where[name][None]) for name, plate in plates.items()]
     rings = [(layer, where[pin.name]) for pin in order.pins for layer in pin.passed]
     if rings:
         layers, there = zip(*rings, strict=True)
@@ -170,14 +185,14 @@ def _parts(
     return tuple(parts)
 
 
-def _joints(linkage: FourBar, theta2: float) -> dict[str, tuple[float, float]]:
+def _joints(linkage: Linkage, theta2: float) -> dict[str, tuple[float, float]]:
     points = places(linkage, solve_position(linkage, theta2))
     order = dict.fromkeys((*linkage.JOINTS, *linkage.POINTS))
     return {name.upper(): (float(points[name][0]), float(points[name][1])) for name in order}
 
 
 def _use(
-    linkage: FourBar, ranges: tuple[tuple[float, float], ...], within: tuple[float, float] | None
+    linkage: Linkage, ranges: tuple[tuple[float, float], ...], within: tuple[float, float] | None
 ) -> str:
     """Over which motion nothing meets."""
     if within is None and full_rotation(linkage):
@@ -186,7 +201,20 @@ def _use(
     return f"free for theta2 = {spans} deg" + ("" if within else ", between the dead positions")
 
 
+def _slot_note(linkage: Linkage, slot: FloatArray) -> list[str]:
+    if not linkage.SLIDES:
+        return []
+    joint, plate = ("B", "base") if isinstance(linkage, SliderCrank) else ("O4", "coupler")
+    long = f"{round(float(np.diff(slot)[0]), 3):.10g} mm between centres"
+    name = linkage.LINKS[-1].name
+    return [f"the {name} is pin {joint} itself, in a slot of the {plate} {long}"]
+
+
 def _two_bases(order: Stack) -> list[str]:
     if not order.posts:
         return []
-    return ["a second base carries O4 from the other side; on one base", *(f"- {pair}" for pair in order.met)]
+    last = [pin.name for pin in order.pins if not pin.name.startswith("post")][-1]
+    return [
+        f"a second base carries {last} from the other side; on one base",
+        *(f"- {pair}" for pair in order.met),
+    ]

@@ -80,11 +80,13 @@ class Plate:
         What each hole is for.
     holes : ndarray, shape (n, 2), mm
         Centres.
-    corners : ndarray, shape (1 to 3, 2), mm
-        Point, line or triangle (counter-clockwise) that the plate surrounds.
+    corners : ndarray, shape (n, 2), mm
+        Point, line or convex polygon (counter-clockwise) that the plate surrounds.
     width : float, mm
     hole : float, mm
-        Diameter.
+        Diameter, and the width of slots.
+    slots : tuple of (str, ndarray of shape (2, 2)), mm
+        What each slot is for, and the centres of its ends.
     """
 
     name: str
@@ -93,6 +95,7 @@ class Plate:
     corners: FloatArray
     width: float
     hole: float
+    slots: tuple[tuple[str, FloatArray], ...] = ()
 
     @property
     def outline(self) -> FloatArray:
@@ -104,10 +107,11 @@ class Plate:
 
     @property
     def distances(self) -> tuple[tuple[str, float], ...]:
-        """Distances between the holes (mm) by the names of their joints; of a row of four, to the next."""
+        """Distances between holes (mm) by the names of their joints, of a row of four to the next; slots."""
         holes = list(zip(self.joints, self.holes, strict=True))
         pairs = combinations(holes, 2) if len(holes) <= 3 else pairwise(holes)
-        return tuple((f"{one}-{other}", float(np.hypot(*(b - a)))) for (one, a), (other, b) in pairs)
+        apart = [(f"{one}-{other}", float(np.hypot(*(b - a)))) for (one, a), (other, b) in pairs]
+        return (*apart, *((f"slot {name}", float(np.hypot(*(b - a)))) for name, (a, b) in self.slots))
 
 
 def outline(corners: npt.ArrayLike, radius: float) -> FloatArray:
@@ -167,14 +171,14 @@ def link_plates(linkage: FourBar, sizes: PlateSizes) -> tuple[dict[str, Plate], 
     lengths = dict(zip(linkage.LENGTHS, linkage.lengths.tolist(), strict=True))
     reach = max(abs(u), abs(u - lengths["r3"]), abs(v))
     for name, length in (lengths | {"A-P": reach}).items():
-        _refuse_length(name, length, sizes)
+        refuse_length(name, length, sizes)
     plates, note = dict[str, Plate](), ""
     for link in linkage.LINKS[1:]:
         length = lengths[f"r{link.number}"]
         if len(link.points) == 2:
             plates[link.name] = bar(link.name, link.labels, (0.0, length), sizes)
         else:
-            plates[link.name], note = _with_point(link, length, u, v, sizes)
+            plates[link.name], note = with_point(link, length, u, v, sizes)
     return plates, note
 
 
@@ -196,7 +200,7 @@ def spacer(sizes: PlateSizes) -> Plate:
     return _plate("spacer", ("pin",), centre, centre, sizes)
 
 
-def _with_point(link: Link, length: float, u: float, v: float, sizes: PlateSizes) -> tuple[Plate, str]:
+def with_point(link: Link, length: float, u: float, v: float, sizes: PlateSizes) -> tuple[Plate, str]:
     """Plate of a link with a point: a triangle, or a bar where it is too near to a joint or on their line."""
     *joints, point = link.labels
     for joint, distance in zip(joints, (np.hypot(u, v), np.hypot(u - length, v)), strict=True):
@@ -216,7 +220,8 @@ def _plate(
     return Plate(name, joints, frozen_array(holes), frozen_array(corners), sizes.width, sizes.hole)
 
 
-def _refuse_length(name: str, length: float, sizes: PlateSizes) -> None:
+def refuse_length(name: str, length: float, sizes: PlateSizes) -> None:
+    """Refuse a length in mm that is too long for its width, or too short for two holes."""
     if length > _SLENDEREST * sizes.width:
         raise ProblemError(
             f"{name} is {length:.6g} mm, over {_SLENDEREST} widths of {sizes.width:g} mm; choose a "

@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
+import shapely
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.workshop.plan import Part, Plan
-from grashof.workshop.plates import Plate
+from grashof.workshop.plates import Plate, outline
 from grashof.workshop.stacking import placed
 
 CUT, ENGRAVE, PINS, NOTES = "CUT", "ENGRAVE", "ASSEMBLY_PINS", "NOTES"
@@ -121,7 +122,7 @@ def _column(plan: Plan, gap: float) -> tuple[list[Shape], tuple[float, float]]:
         low, high = part.plate.corners.min(axis=0), part.plate.corners.max(axis=0)
         wide, tall = high - low + part.plate.width
         to_corner = part.plate.width / 2 - low
-        rings = len(part.plate.holes) == 1
+        rings = len(part.plate.corners) == 1
         for copy in range(len(part.layers)):
             x, y = (copy * (wide + gap), 0.0) if rings else (0.0, copy * (tall + gap))
             shapes += _moved(_part(part, plan.sizes.thickness), x + to_corner[0], top + y + to_corner[1])
@@ -135,8 +136,9 @@ def _part(part: Part, thickness: float) -> list[Shape]:
     plate = part.plate
     shapes: list[Shape] = [Outline(CUT, plate.outline)]
     shapes += [Circle(CUT, float(x), float(y), plate.hole / 2) for x, y in plate.holes]
+    shapes += [Outline(CUT, outline(ends, plate.hole / 2)) for _, ends in plate.slots]
     words = f"{plate.name} {'-'.join(plate.joints)} t{thickness:g}"
-    if len(plate.holes) > 1:
+    if len(plate.corners) > 1:
         middle, angle, room = _room(plate)
         height = min(plate.width / 5, room / len(words))
         if height >= plate.width / 20:  # smaller ones nobody reads
@@ -147,18 +149,24 @@ def _part(part: Part, thickness: float) -> list[Shape]:
 
 def _room(plate: Plate) -> tuple[FloatArray, float, float]:
     """Where a plate's name fits: the middle of the longest gap between its holes, its angle and length."""
+    spots = np.concatenate([plate.holes, *(ends for _, ends in plate.slots)])
+    slots = [shapely.linestrings(ends) for _, ends in plate.slots]
 
     def length(pair: tuple[int, int]) -> float:
-        (start, end), others = plate.holes[list(pair)], np.delete(plate.holes, pair, axis=0)
-        along = (end - start) / np.hypot(*(end - start))
+        (start, end), others = spots[list(pair)], np.delete(spots, pair, axis=0)
+        long = float(np.hypot(*(end - start)))
+        along = (end - start) / long
         offset = others - start
         beside = np.abs(offset[:, 1] * along[0] - offset[:, 0] * along[1])
         between = (offset @ along > 0) & ((offset - (end - start)) @ along < 0)
         blocked = bool((between & (beside < plate.hole)).any())
-        return 0.0 if blocked else float(np.hypot(*(end - start)))
+        if slots and long > 2 * plate.hole:
+            line = shapely.linestrings([start + plate.hole * along, end - plate.hole * along])
+            blocked |= any(shapely.distance(line, slot) < 0.99 * plate.hole for slot in slots)
+        return 0.0 if blocked else long
 
-    pair = max(combinations(range(len(plate.holes)), 2), key=length)
-    start, end = sorted(plate.holes[list(pair)].tolist())
+    pair = max(combinations(range(len(spots)), 2), key=length)
+    start, end = sorted(spots[list(pair)].tolist())
     angle = float(np.arctan2(end[1] - start[1], end[0] - start[0]))
     return (np.array(start) + end) / 2, angle, length(pair) - 2 * plate.hole
 
@@ -175,12 +183,16 @@ def _assembly(plan: Plan) -> tuple[list[Shape], tuple[float, float]]:
             shapes.append(Outline(layer, vertices))
             holes = placed(part.plate.holes, place)
             shapes += [Circle(layer, float(x), float(y), part.plate.hole / 2) for x, y in holes]
+            for _, ends in part.plate.slots:
+                slot = outline(ends, part.plate.hole / 2)
+                slot[:, :2] = placed(slot[:, :2], place)
+                shapes.append(Outline(layer, slot))
             reach = part.plate.width / 2
             at = placed(part.plate.corners, place)
             corners += [at - reach, at + reach]
-    height = plan.sizes.width / 4
+    height, pins = plan.sizes.width / 4, {pin.name for pin in plan.pins}
     for name, (x, y) in plan.joints.items():
-        if name != "P":
+        if name in pins:
             shapes.append(Circle(PINS, x, y, plan.sizes.hole / 2))
         shapes.append(Text(NOTES, x + plan.sizes.width / 2, y + plan.sizes.width / 2, height, name))
     low, high = (extreme(np.concatenate(corners), axis=0) for extreme in (np.min, np.max))

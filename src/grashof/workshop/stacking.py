@@ -21,19 +21,34 @@ import shapely
 from grashof.analysis import driver_ranges, full_rotation, solve_position
 from grashof.analysis.four_bar.mobility import range_index
 from grashof.analysis.four_bar.position import places
-from grashof.problems import FourBar, ProblemError
+from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.workshop.plates import Plate, PlateSizes
 
-LINKS = tuple(link.name for link in FourBar.LINKS[1:])
-# What each pin joins; what is not a link is the base.
-JOINTS = {
-    joint.upper(): tuple(FourBar.LINKS[number - 1].name for number in numbers)
-    for joint, numbers in FourBar.JOINTS.items()
-}
 GeometryArray: TypeAlias = npt.NDArray[np.object_]
 _SAMPLES = 721
 _SHORTEST_STEP = 1e-9  # rad; a step across the jump at a change point is never short enough
+
+
+def plated(kind: type[Linkage]) -> tuple[str, ...]:
+    """The links that are plates: all that move, but for a slider or a block, which is a pin in a slot."""
+    return tuple(link.name for link in kind.LINKS[1:] if not (kind.SLIDES and link is kind.LINKS[-1]))
+
+
+def pinned(kind: type[Linkage]) -> dict[str, tuple[str, ...]]:
+    """What each pin joins; what is no plate that moves is the base. The pin of a slide runs in a slot.
+
+    Examples
+    --------
+    >>> from grashof.problems import SliderCrank
+    >>> pinned(SliderCrank)
+    {'O2': ('ground', 'driver'), 'A': ('driver', 'coupler'), 'B': ('coupler', 'ground')}
+    """
+    beside = {other: one for one, other in kind.SLIDES}
+    return {
+        joint.upper(): tuple(kind.LINKS[beside.get(number, number) - 1].name for number in numbers)
+        for joint, numbers in kind.JOINTS.items()
+    }
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,11 +72,11 @@ class Stack:
     Parameters
     ----------
     layers : mapping of str to int
-        Of `driver`, `coupler` and `output`; the base is on layer 0.
+        Of the links that are plates; the base is on layer 0.
     pins : tuple of Pin
-        O2, A, B, O4, and the posts between two bases.
+        Of the joints, and the posts between two bases.
     posts : tuple of float, mm
-        Where the posts stand, from O2 towards O4; none with a single base.
+        Where the posts stand along the base, from O2; none with a single base.
     met : tuple of str
         For each order that was tried before: two parts that would come too close, and where.
     """
@@ -93,13 +108,13 @@ class Motion:
 
 
 def ranges_of_use(
-    linkage: FourBar, within: tuple[float, float] | None = None, at: float | None = None
+    linkage: Linkage, within: tuple[float, float] | None = None, at: float | None = None
 ) -> tuple[tuple[float, float], ...]:
     """Driver angles that the plates are to move through.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
     within : pair of float, rad, optional
         First and last angle used.
     at : float, rad, optional
@@ -134,12 +149,12 @@ def ranges_of_use(
     return ((low, high),)
 
 
-def sweep(linkage: FourBar, ranges: tuple[tuple[float, float], ...], step: float) -> Motion:
+def sweep(linkage: Linkage, ranges: tuple[tuple[float, float], ...], step: float) -> Motion:
     """The linkage at so many driver angles that no joint moves farther than `step` from one to the next.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         One linkage, in mm.
     ranges : tuple of pair of float, rad
     step : float, mm
@@ -150,7 +165,7 @@ def sweep(linkage: FourBar, ranges: tuple[tuple[float, float], ...], step: float
     return Motion(theta2, poses(linkage, theta2))
 
 
-def poses(linkage: FourBar, theta2: FloatArray) -> dict[str, FloatArray]:
+def poses(linkage: Linkage, theta2: FloatArray) -> dict[str, FloatArray]:
     """Origin (mm) and angle (rad) of each link's plate, and of each pin, shape (n, 3)."""
     state = solve_position(linkage, theta2)
     points, still = places(linkage, state), np.zeros_like(theta2)
@@ -159,6 +174,11 @@ def poses(linkage: FourBar, theta2: FloatArray) -> dict[str, FloatArray]:
     }
     placed |= {joint.upper(): (joint, still) for joint in linkage.JOINTS}
     return {name: np.column_stack([points[at], angle]) for name, (at, angle) in placed.items()}
+
+
+def base_angle(linkage: Linkage) -> float:
+    """Along which the base lies, rad: from O2 to O4, or along the slide."""
+    return float(getattr(linkage, "slide_angle", linkage.theta1))
 
 
 def placed(points: FloatArray, place: FloatArray) -> FloatArray:
@@ -170,14 +190,14 @@ def placed(points: FloatArray, place: FloatArray) -> FloatArray:
     return result
 
 
-def stack(plates: Mapping[str, Plate], linkage: FourBar, motion: Motion, sizes: PlateSizes) -> Stack:
+def stack(plates: Mapping[str, Plate], linkage: Linkage, motion: Motion, sizes: PlateSizes) -> Stack:
     """The least number of layers on which nothing meets.
 
     Parameters
     ----------
     plates : mapping of str to Plate
-        Of the three links.
-    linkage : FourBar
+        Of the links that have one.
+    linkage : Linkage
         In mm.
     motion : Motion
         Swept in steps of at most the clearance, so that nothing can pass unseen between two of them.
@@ -187,7 +207,7 @@ def stack(plates: Mapping[str, Plate], linkage: FourBar, motion: Motion, sizes: 
     -------
     Stack
         With two bases, joined by posts outside the reach of the links, where no order on one base is free:
-        the second one carries O4 from the other side, so that its pin passes no layer.
+        the second one carries the last joint from the other side, so that its pin passes no layer.
     """
 
     @cache
@@ -201,46 +221,47 @@ def stack(plates: Mapping[str, Plate], linkage: FourBar, motion: Motion, sizes: 
         worst = int(np.argmin(gaps))
         return float(gaps[worst]), float(motion.theta2[worst])
 
+    links, joints = plated(type(linkage)), pinned(type(linkage))
     met: dict[str, None] = {}
-    for layers in _orders():
-        pins = tuple(_pin(name, layers) for name in JOINTS)
+    for layers in _orders(links, joints):
+        pins = _pins(joints, layers)
         pair = next((pair for pair in _passing(layers, pins) if gap(*pair)[0] < sizes.gap), None)
         if pair is None:
             return Stack(layers, pins, met=tuple(met))
-        met[_meeting(*pair, *gap(*pair))] = None
-    layers = {name: level for level, name in enumerate(LINKS, start=1)}
+        met[_meeting(*pair, *gap(*pair), links)] = None
+    layers, top = {name: level for level, name in enumerate(links, start=1)}, len(links) + 1
     posts = _posts(plates, linkage, motion, sizes)
-    pins = (*(_pin(name, layers) for name in ("O2", "A", "B")), Pin("O4", 3, 4))
-    pins += tuple(Pin(f"post {i}", 0, 4) for i in range(1, len(posts) + 1))
+    *lower, last = _pins(joints, layers)
+    pins = (*lower, Pin(last.name, top - 1, top))
+    pins += tuple(Pin(f"post {i}", 0, top) for i in range(1, len(posts) + 1))
     return Stack(layers, pins, posts, tuple(met))
 
 
-def _orders() -> list[dict[str, int]]:
+def _orders(links: tuple[str, ...], joints: Mapping[str, tuple[str, ...]]) -> list[dict[str, int]]:
     """The ways to lay the links in layers: fewest layers first, fewest spacers, the driver lowest."""
-    levels = range(1, len(LINKS) + 1)
-    orders = (dict(zip(LINKS, each, strict=True)) for each in product(levels, repeat=len(LINKS)))
+    levels = range(1, len(links) + 1)
+    orders = (dict(zip(links, each, strict=True)) for each in product(levels, repeat=len(links)))
 
     def possible(layers: dict[str, int]) -> bool:
         """Whether no pin joins two parts on one layer, and no layer is empty."""
-        apart = all(pin.low < pin.high for pin in (_pin(name, layers) for name in JOINTS))
+        apart = all(pin.low < pin.high for pin in _pins(joints, layers))
         return apart and set(layers.values()) == set(range(1, max(layers.values()) + 1))
 
     def cost(layers: dict[str, int]) -> tuple[int, int, int]:
-        spacers = sum(len(_pin(name, layers).passed) for name in JOINTS)
+        spacers = sum(len(pin.passed) for pin in _pins(joints, layers))
         return max(layers.values()), spacers, layers["driver"]
 
     return sorted(filter(possible, orders), key=cost)
 
 
-def _pin(name: str, layers: Mapping[str, int]) -> Pin:
-    low, high = sorted(layers.get(part, 0) for part in JOINTS[name])
-    return Pin(name, low, high)
+def _pins(joints: Mapping[str, tuple[str, ...]], layers: Mapping[str, int]) -> tuple[Pin, ...]:
+    return tuple(Pin(name, *sorted(layers.get(part, 0) for part in parts)) for name, parts in joints.items())
 
 
 def _passing(layers: Mapping[str, int], pins: tuple[Pin, ...]) -> Iterator[tuple[str, str]]:
     """Pairs of parts that are on the same layer somewhere."""
     for layer in range(1, max(layers.values()) + 1):
-        there = [name for name in LINKS if layers[name] == layer]
+        there = [name for name in layers if layers[name] == layer]
         there += [pin.name for pin in pins if layer in pin.passed]
         yield from combinations(there, 2)
 
@@ -254,25 +275,29 @@ def _cores(plates: Mapping[str, Plate], motion: Motion, name: str) -> GeometryAr
     return np.asarray(shapely.linestrings(at) if len(corners) == 2 else shapely.polygons(at))
 
 
-def _meeting(one: str, other: str, gap: float, theta2: float) -> str:
-    one, other = (name if name in LINKS else f"pin {name}" for name in (one, other))
+def _meeting(one: str, other: str, gap: float, theta2: float, links: tuple[str, ...]) -> str:
+    one, other = (name if name in links else f"pin {name}" for name in (one, other))
     how = "meet" if gap <= 0 else f"come within {gap:.2g} mm"
     return f"{one} and {other} {how} at theta2 = {round(np.degrees(theta2), 1) % 360:.1f} deg"
 
 
 def _posts(
-    plates: Mapping[str, Plate], linkage: FourBar, motion: Motion, sizes: PlateSizes
+    plates: Mapping[str, Plate], linkage: Linkage, motion: Motion, sizes: PlateSizes
 ) -> tuple[float, float]:
-    """Positions on the ground line, from O2 towards O4, that no link reaches."""
-    along = np.array([np.cos(linkage.theta1), np.sin(linkage.theta1)])
+    """Positions along the base from O2 that no link reaches."""
+    angle = base_angle(linkage)
+    along = np.array([np.cos(angle), np.sin(angle)])
     reached = np.concatenate(
-        [((placed(plates[name].corners, motion.places[name]) - linkage.o2) @ along).ravel() for name in LINKS]
+        [
+            ((placed(plate.corners, motion.places[name]) - linkage.o2) @ along).ravel()
+            for name, plate in plates.items()
+        ]
     )
     apart = sizes.width + 2 * sizes.gap
     return float(reached.min() - apart), float(reached.max() + apart)
 
 
-def _fine(linkage: FourBar, theta2: FloatArray, step: float) -> FloatArray:
+def _fine(linkage: Linkage, theta2: FloatArray, step: float) -> FloatArray:
     """Driver angles with others between them, until no point makes a longer step."""
     while True:
         points = np.stack(list(places(linkage, solve_position(linkage, theta2)).values()), axis=1)

@@ -152,15 +152,19 @@ def _linkage_sheet(page: Worksheet, one: LinkageSpec | ListedDesign) -> None:
 def _facts(spec: LinkageSpec) -> list[tuple[str, Any, str]]:
     """Properties of a linkage: name, value, unit."""
     linkage, unit = spec.linkage, spec.length_unit
-    units = {"assembly": "", "body_angle_deg": "deg"}
     return [
         ("title", spec.title or spec.name, ""),
         ("source", spec.source, ""),
-        *((name, value, units.get(name, unit)) for name, value in linkage.columns.items()),
+        ("mechanism", linkage.MECHANISM, ""),
+        *((name, value, _unit_of(name, unit)) for name, value in linkage.columns.items()),
         ("grashof_class", str(grashof_class(linkage)), ""),
         ("full_rotation", bool(full_rotation(linkage)), ""),
         ("transmission_min_cycle_deg", float(np.degrees(worst_transmission_cycle(linkage))), "deg"),
     ]
+
+
+def _unit_of(column: str, unit: str) -> str:
+    return "deg" if column.endswith("_deg") else "" if column == "assembly" else unit
 
 
 def _targets(design: ListedDesign) -> list[Sequence[Any]]:

@@ -13,8 +13,8 @@ from grashof.analysis import (
     TorsionSpring,
     solve_kinematics,
 )
+from grashof.analysis.forces.joints import joint_motion
 from grashof.analysis.forces.loads import (
-    joint_rotation,
     known_joint_moments,
     placed_loads,
     spring_ends,
@@ -47,8 +47,8 @@ def test_a_spring_of_no_length_pulls_nowhere() -> None:
     np.testing.assert_array_equal(spring_pull(point, *spring_ends(STATE, point)), 0)
 
 
-def test_joint_rotations_are_of_the_second_link_against_the_first() -> None:
-    rates = [joint_rotation(STATE, joint)[1] for joint in Joint]
+def test_joint_motions_are_of_the_second_link_against_the_first() -> None:
+    rates = [joint_motion(STATE, joint)[1] for joint in Joint]
     expected = [STATE.omega2, STATE.omega3 - STATE.omega2, STATE.omega4 - STATE.omega3, STATE.omega4]
     np.testing.assert_array_equal(rates, expected)
     moments = known_joint_moments(STATE, Loads(friction=Friction(viscous=0.5, coulomb=(1, 2, 3, 4))))

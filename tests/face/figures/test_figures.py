@@ -276,7 +276,7 @@ def test_all_quantities_by_default_a_panel_each() -> None:
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: plot_linkage(3), "linkage is 3; it must be a FourBar, a LinkageSpec or a Candidate"),
+        (lambda: plot_linkage(3), "linkage is 3; it must be a Linkage, a LinkageSpec or a Candidate"),
         (lambda: plot_linkage(FourBar((0, 0), (4, 0), [1, 2], 4, 3)), r"batch of shape \(2,\)"),
         (lambda: plot_linkage(FourBar((0, 0), (9, 0), 1, 1, 1)), "closes at no driver angle"),
         (lambda: plot_kinematics(CRANK_ROCKER, quantities=("jerk",)), "'jerk' is unknown; it must be one"),

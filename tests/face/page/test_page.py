@@ -96,7 +96,7 @@ def test_figures_are_those_of_the_list(few: Result, tmp_path: Path) -> None:
     listed = json.loads((tmp_path / "candidates.json").read_text(encoding="utf-8"))["designs"]
     assert len(parts.data["designs"]) == len(listed) == len(few)
     for shown, design in zip(parts.data["designs"], listed, strict=True):
-        assert shown["linkage"] == design["linkage"]
+        assert shown["linkage"] == {"mechanism": design["mechanism"], **design["linkage"]}
         assert shown["theta2"] == design["theta2"]
         for key in set(shown["figures"]) & set(design) - {"assembly"}:
             assert shown["figures"][key] == design[key], key

@@ -162,7 +162,7 @@ BAD = [
     (LOAD + 'force = [1, 2]\nframe = "links"', "loads[0].frame is 'links'; it must be global or link"),
     (
         LOAD + 'values = [[0, 1], [1, 2]]\nover = "theta3"',
-        "loads[0].over is 'theta3'; it must be theta2, theta4 or time",
+        "loads[0].over is 'theta3'; it must be theta2, theta4, travel or time",
     ),
     (
         LOAD + "values = [[0, 1], [350, 1]]",

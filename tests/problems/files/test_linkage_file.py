@@ -24,6 +24,7 @@ from grashof.problems import (
 from grashof.problems.files.linkage_file import load_design
 
 ROOT = Path(__file__).parents[3]
+SLIDERS = ("engine", "crank-shaper")
 PLAIN = "o4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n"
 
 
@@ -35,7 +36,7 @@ def written(folder: Path, text: str) -> Path:
 
 def test_catalogue_is_what_is_shipped() -> None:
     shipped = {path.stem for path in (ROOT / "problems" / "data" / "linkages").glob("*.toml")}
-    assert set(linkage_catalogue()) == shipped == {"pumpjack", "lufkin-c912d", "luggage-report"}
+    assert set(linkage_catalogue()) == shipped == {"pumpjack", "lufkin-c912d", "luggage-report", *SLIDERS}
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]
     assert "data/linkages/*.toml" in settings["package-data"]["*"]
 
@@ -137,7 +138,7 @@ def test_a_name_that_is_none() -> None:
             "luggage",
             "^luggage: is a problem; solve it, then name a design: luggage-designs/candidates.json#1$",
         ),
-        ("chair", "the catalogue has lufkin-c912d, luggage-report, pumpjack"),
+        ("chair", "the catalogue has crank-shaper, engine, lufkin-c912d, luggage-report, pumpjack"),
         ("d/candidates.csv#3", "is a table; name the design as d/candidates.json#3$"),
         ("candidates.csv", "is a table; name the design as candidates.json#1$"),
         ("", "neither a linkage of the catalogue nor a file"),

@@ -1,46 +1,19 @@
-// Position of a four-bar in closed form, and how far its driver goes. Angles in rad.
+// Position of a linkage in closed form, and how far its driver goes. Angles in rad.
 const TURN = 2 * Math.PI;
 const DEG = 180 / Math.PI;
 const STEPS = 180;
-// The points of a four-bar, and those on its moving links; plates lie below bars.
-const GROUND = ["o2", "o4"];
-const POINTS = [...GROUND, "a", "b", "p"];
-const LINKS = { coupler: ["a", "b", "p"], output: ["o4", "b"], driver: ["o2", "a"] };
 
 const wrapped = (angle) => angle - TURN * Math.round(angle / TURN);
 
-// B is the crossing of the circles about A and O4 on the side that the assembly names. Heron's
-// product keeps its digits near dead positions; past one, where only rounding leads, it counts as 0,
-// so the loop is always closed.
+// Where every point is; on the assembly of the linkage unless another is given.
 function positionOf(linkage, theta2, assembly = linkage.assembly) {
-  const { o2, o4, r2, r3, r4 } = linkage;
+  const { o2, o4, r2 } = linkage;
   const a = [o2[0] + r2 * Math.cos(theta2), o2[1] + r2 * Math.sin(theta2)];
-  const [x, y] = [o4[0] - a[0], o4[1] - a[1]];
-  const s = Math.hypot(x, y);
-  const [nx, ny] = s > 0 ? [x / s, y / s] : [1, 0];
-  const heron = (r3 + r4 - s) * (r3 + r4 + s) * (s - r3 + r4) * (s + r3 - r4);
-  const along = s > 0 ? (s + ((r3 - r4) * (r3 + r4)) / s) / 2 : 0;
-  const beside = assembly * (s > 0 ? Math.sqrt(Math.max(heron, 0)) / (2 * s) : r3);
-  const b = [a[0] + along * nx - beside * ny, a[1] + along * ny + beside * nx];
-  const [cos, sin] = [(b[0] - a[0]) / r3, (b[1] - a[1]) / r3];
+  const { e3, ...closed } = kindOf(linkage).close(linkage, a, assembly);
+  const [cos, sin] = e3;
   const [u, v] = linkage.coupler_point;
-  return {
-    theta2,
-    theta3: Math.atan2(sin, cos),
-    theta4: Math.atan2(b[1] - o4[1], b[0] - o4[0]),
-    o2,
-    o4,
-    a,
-    b,
-    p: [a[0] + u * cos - v * sin, a[1] + u * sin + v * cos],
-    mu: transmissionAt(linkage, s),
-  };
-}
-
-// min(mu, 180 - mu) by the law of cosines in A-B-O4, from the diagonal s.
-function transmissionAt({ r3, r4 }, s) {
-  const cosine = (r3 * r3 + r4 * r4 - s * s) / (2 * r3 * r4);
-  return Math.acos(Math.min(1, Math.abs(cosine)));
+  const p = [a[0] + u * cos - v * sin, a[1] + u * sin + v * cos];
+  return { theta2, theta3: Math.atan2(sin, cos), o2, o4, a, p, ...closed };
 }
 
 // The driver angle, moved by whole turns into the travel or held at its ends.
@@ -102,6 +75,24 @@ function coarseChords(points, chord) {
     for (const each of [k - 1, k]) if (lengths[each] > longer / 2) coarse[each] = true;
   }
   return coarse;
+}
+
+// How far a slide goes over the travel of a design: { linkage, from, to }; NaN of a linkage without one.
+const slid = new WeakMap();
+function slideOf(design) {
+  if (!slid.has(design)) {
+    const places = travelPath(design).angles.map((angle) => positionOf(design.linkage, angle).slide);
+    slid.set(design, { linkage: design.linkage, from: Math.min(...places), to: Math.max(...places) });
+  }
+  return slid.get(design);
+}
+
+// The parts of a drawing as [name, class, path] of a design in a state; `at` is where a place is drawn, and
+// `half` the half length of a block.
+function partsOf(design, state, at, half) {
+  const { parts, shapes } = kindOf(design.linkage);
+  const corners = shapes(slideOf(design), state, half);
+  return parts.map(([name, style, closed]) => [name, style, through(corners[name].map(at), closed)]);
 }
 
 // The same over the whole travel of a design; kept, as every drawing of it needs it.

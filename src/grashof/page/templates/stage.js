@@ -1,6 +1,7 @@
 // The drawing: the scene, the targets, and a linkage that follows its driver.
 const MANY_TARGETS = 24;
 const DIGIT = 7; // px: no character of an axis is wider
+const BLOCK = 13; // px: half the length of the block of a slide
 const STRIP = { left: 34, below: 18 }; // px: along the edges, for the numbers of the axes
 
 // Corners of the body that stands at a place in a direction.
@@ -36,10 +37,28 @@ function pointsToSee(scene, designs, close) {
     if (!design || close) continue;
     for (const angle of travelPath(design).angles) {
       const state = positionOf(design.linkage, angle);
-      points.push(...POINTS.map((name) => state[name]));
+      points.push(...drawnPoints(design, state));
     }
   }
   return points;
+}
+
+// All that a linkage covers in a state, but for the width of blocks.
+function drawnPoints(design, state) {
+  const shapes = kindOf(design.linkage).shapes(slideOf(design), state, 0);
+  return [...pointsOf(design.linkage).map((name) => state[name]), ...Object.values(shapes).flat()];
+}
+
+// Where the block of a slide on the ground is at the ends of its travel; null where there is none.
+function guideOf(design) {
+  const { linkage, from, to } = slideOf(design);
+  if (linkage.slide_angle === undefined) return null;
+  const [cos, sin] = [Math.cos(linkage.slide_angle), Math.sin(linkage.slide_angle)];
+  const on = (along) => [
+    linkage.o2[0] + along * cos - linkage.offset * sin,
+    linkage.o2[1] + along * sin + linkage.offset * cos,
+  ];
+  return [on(from), on(to)];
 }
 
 class Stage {
@@ -223,16 +242,18 @@ class Stage {
     theta2.forEach((angle, k) => {
       if (k % every) return;
       const state = positionOf(linkage, angle, assemblies[k]);
-      for (const name of Object.keys(LINKS).reverse()) {
-        add(layer, "path", { d: linkPath(name, (point) => this.at(state[point])), class: name });
+      for (const [, style, d] of partsOf(this.design, state, this.at, BLOCK / this.unit).reverse()) {
+        add(layer, "path", { d, class: style });
       }
     });
   }
 
-  // The parts that move, and the ground pivots.
+  // The parts that move, the ground pivots, and the guide of a slide.
   linkage() {
+    const { ground: pivots, moving, parts: links } = kindOf(this.design.linkage);
     const ground = add(this.svg, "g", { class: "ground" });
-    for (const name of GROUND) {
+    if (guideOf(this.design)) add(ground, "path", { d: this.guide(...guideOf(this.design)), class: "guide" });
+    for (const name of pivots) {
       const [x, y] = this.at(this.design.linkage[name]);
       add(ground, "path", { d: `M${px(x)} ${px(y)}l-8 13h16Z` });
       add(ground, "text", { x: x + 10, y: y + 14 }, name.toUpperCase());
@@ -240,9 +261,9 @@ class Stage {
     const layer = add(this.svg, "g", { class: "linkage" });
     const parts = {};
     if (this.scene.body) parts.body = add(layer, "path", { class: "body live" });
-    for (const name of Object.keys(LINKS)) parts[name] = add(layer, "path", { class: name });
+    for (const [name, style] of links) parts[name] = add(layer, "path", { class: style });
     parts.sense = add(layer, "path", { class: "sense" });
-    for (const name of POINTS) {
+    for (const name of [...pivots, ...moving]) {
       parts[name] = add(layer, "circle", { r: name === "p" ? 3.5 : 4, class: `joint ${name}` });
     }
     for (const name of ["A", "B", "P"]) parts[name] = add(layer, "text", {}, name);
@@ -261,11 +282,11 @@ class Stage {
     this.state = state;
     this.onDraw(state);
     if (!this.parts) return;
-    const places = Object.fromEntries(POINTS.map((name) => [name, this.at(state[name])]));
+    const places = Object.fromEntries(pointsOf(linkage).map((name) => [name, this.at(state[name])]));
     const { o2, a, b, p } = places;
     const { parts } = this;
-    for (const name of Object.keys(LINKS)) {
-      set(parts[name], { d: linkPath(name, (point) => places[point]) });
+    for (const [name, , d] of partsOf(this.design, state, this.at, BLOCK / this.unit)) {
+      set(parts[name], { d });
     }
     for (const [name, [x, y]] of Object.entries(places)) set(parts[name], { cx: px(x), cy: px(y) });
     const middle = [(a[0] + b[0] + p[0]) / 3, (a[1] + b[1] + p[1]) / 3];
@@ -285,6 +306,17 @@ class Stage {
     }
     set(parts.sense, { d: this.senseArrow(o2, direction) });
     if (parts.hold) set(parts.hold, { d: through([o2, a]) });
+  }
+
+  // A line below the block of a slide, from end to end, hatched on its far side.
+  guide(from, to) {
+    const [[x0, y0], [x1, y1]] = [this.at(from), this.at(to)];
+    const [ux, uy] = unitVector(x1 - x0, y1 - y0);
+    const on = (along, beside) => [x0 + along * ux - beside * uy, y0 + along * uy + beside * ux];
+    const [first, last] = [-1.5 * BLOCK, Math.hypot(x1 - x0, y1 - y0) + 1.5 * BLOCK];
+    const lines = [[on(first, 0.6 * BLOCK), on(last, 0.6 * BLOCK)]];
+    for (let at = first + 6; at < last; at += 8) lines.push([on(at, 0.6 * BLOCK), on(at - 6, 0.6 * BLOCK + 6)]);
+    return lines.map((ends) => through(ends)).join("");
   }
 
   // An arrow about O2, ahead of the driver in the sense in which it meets the targets.
@@ -332,10 +364,11 @@ class Stage {
 }
 
 // The angles and the place of P as text, beside the drawing and for screen readers.
-function tellPosition(stage, { theta2, theta3, theta4, p }) {
+function tellPosition(stage, { theta2, theta3, theta4, p, slide }) {
   const [driver, coupler, output] = [theta2, theta3, theta4].map((angle) => fixed(angle * DEG, 2));
   const place = p.map((value) => fixed(value, stage.decimals)).join(", ");
-  $("#angles").textContent = `θ2 ${driver}, θ3 ${coupler}, θ4 ${output} deg`;
+  const slid = slide === undefined ? "" : `, ${withUnit(`slide ${fixed(slide, stage.decimals)}`, stage.scene.unit)}`;
+  $("#angles").textContent = `θ2 ${driver}, θ3 ${coupler}, θ4 ${output} deg${slid}`;
   $("#place").textContent = withUnit(`P ${place}`, stage.scene.unit);
   const degrees = (theta2 * DEG).toFixed(1);
   set(stage.svg, { "aria-valuenow": degrees, "aria-valuetext": `${degrees} degrees` });

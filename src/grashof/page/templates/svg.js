@@ -31,9 +31,6 @@ function through(points, closed = false) {
   return parts.join("") + (closed ? "Z" : "");
 }
 
-// A link through its points, where they are in the drawing; a plate is closed.
-const linkPath = (name, at) => through(LINKS[name].map(at), LINKS[name].length > 2);
-
 // Round numbers between two limits, about so many of them, and how many decimals they need.
 function ticks(low, high, about, steps = [1, 2, 5, 10]) {
   const rough = (high - low) / Math.max(about, 1);

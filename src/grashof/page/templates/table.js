@@ -149,7 +149,7 @@ function thumbnail(design, width = 66, height = 44) {
   const { theta2, linkage, low, high } = design;
   const path = pathOf(linkage, anglesBetween(low, high, design.turns, 36), 0.04).points;
   const state = positionOf(linkage, theta2[theta2.length >> 1]);
-  const points = [...path, ...POINTS.map((name) => state[name])];
+  const points = [...path, ...drawnPoints(design, state)];
   const [xs, ys] = [points.map((point) => point[0]), points.map((point) => point[1])];
   const [left, right, bottom, top] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
   const unit = Math.min((width - 8) / (right - left || 1), (height - 8) / (top - bottom || 1));
@@ -158,10 +158,10 @@ function thumbnail(design, width = 66, height = 44) {
     height / 2 - unit * (y - (bottom + top) / 2),
   ];
   add(svg, "path", { d: through(path.map(at)), class: "trace" });
-  for (const name of Object.keys(LINKS)) {
-    add(svg, "path", { d: linkPath(name, (point) => at(state[point])), class: name });
+  for (const [, style, d] of partsOf(design, state, at, BLOCK / 2 / unit)) {
+    add(svg, "path", { d, class: style });
   }
-  for (const name of GROUND) {
+  for (const name of kindOf(linkage).ground) {
     const [cx, cy] = at(state[name]);
     add(svg, "circle", { cx: px(cx), cy: px(cy), r: 2, class: "pivot" });
   }

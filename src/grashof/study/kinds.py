@@ -1,0 +1,59 @@
+"""What of an analysis differs between kinds of linkages: joints with forces, links that turn, their words."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from grashof.problems import Linkage
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
+
+# The two shares of `rotatability`, in words; empty where one of them says nothing.
+SHARES = {
+    FOUR_BAR: ("(r3 + r4 - r1 - r2) / sum", "(|r1 - r2| - |r3 - r4|) / sum"),
+    SLIDER_CRANK: ("(r3 - r2 - offset) / sum", "(r3 - r2 + offset) / sum"),
+    INVERTED: ("", "(|r1 - r2| - |offset|) / sum"),
+}
+# In which two positions link 4 turns back, by keys.
+LIMIT_POSITIONS = {
+    FOUR_BAR: {"stretched": "2 and 3 stretched", "folded": "2 and 3 folded"},
+    SLIDER_CRANK: {"stretched": "2 and 3 stretched", "folded": "2 and 3 folded"},
+    INVERTED: {"left": "2 square to the rod, to its left", "right": "2 square to the rod, to its right"},
+}
+
+
+def joints_with_forces(kind: type[Linkage]) -> dict[str, tuple[int, ...]]:
+    """The joints in which links press on each other, slides among them, with the numbers of the links."""
+    pins = {name.upper(): links for name, links in kind.JOINTS.items()}
+    return pins | ({"slide": kind.SLIDES[0]} if kind.SLIDES else {})
+
+
+def forces_of(kind: type[Linkage]) -> dict[str, str]:
+    """Keys of the joint forces (f32: on link 2 by link 3), and the joints that they act in.
+
+    Examples
+    --------
+    >>> from grashof.problems import FourBar, SliderCrank
+    >>> forces_of(FourBar)
+    {'f12': 'O2', 'f32': 'A', 'f43': 'B', 'f14': 'O4'}
+    >>> forces_of(SliderCrank)
+    {'f12': 'O2', 'f32': 'A', 'f43': 'B', 'f14': 'slide'}
+    """
+    return {
+        f"f1{other}" if one == 1 else f"f{other}{one}": joint
+        for joint, (one, other) in joints_with_forces(kind).items()
+    }
+
+
+def turning(kind: type[Linkage]) -> dict[int, str]:
+    """The links after the driver that turn, by their numbers, with their names."""
+    still = {number for pair in kind.SLIDES if 1 in pair for number in pair}
+    return {link.number: link.name for link in kind.LINKS[2:] if link.number not in still}
+
+
+def halfway(linkage: Linkage, link: int) -> FloatArray:
+    """The point (u, v) halfway between the joints of a link, of a rod halfway to P; of a block its joint."""
+    length = getattr(linkage, f"r{link}", None)
+    if length is None:
+        length = linkage.coupler_point[0] if link == 3 else 0.0
+    return np.array([float(length) / 2, 0.0])

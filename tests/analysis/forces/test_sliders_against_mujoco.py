@@ -1,0 +1,172 @@
+"""Slider kinds in a rigid-body engine that others wrote: a slide joint, the loop closed by an equality."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from grashof.analysis import (
+    Body,
+    Kinematics,
+    Masses,
+    free_response,
+    inverse_dynamics,
+    solve_kinematics,
+    stated_loads,
+    stated_masses,
+)
+from grashof.problems import DynamicsSpec, InvertedSliderCrank, SliderCrank
+from grashof.problems.values.acting import CounterweightSpec, Place, SpringSpec, TorsionSpringSpec
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.linkage import Linkage
+from grashof.problems.values.section import SectionSpec
+
+mujoco: Any = pytest.importorskip("mujoco")
+
+ENGINE = SliderCrank((0.2, -0.1), 0.35, 1.1, 0.15, 0.4, (0.5, 0.3))
+BACKWARDS = SliderCrank((0.2, -0.1), 0.35, 1.1, -0.15, 2.0, (0.5, 0.3), assembly=-1)
+SHAPER = InvertedSliderCrank((0.2, -0.1), (1.2, 0.3), 0.35, 0.2, (0.5, 0.3))
+WHITWORTH = InvertedSliderCrank((0, 0), (0.4, 0.1), 1.1, -0.2, (-0.4, 0.3), assembly=-1)
+LINKAGES = (ENGINE, BACKWARDS, SHAPER, WHITWORTH)
+SPEC = DynamicsSpec(
+    density=700.0,
+    section=SectionSpec(0.04, 0.03),
+    payload=0.5,
+    gravity=(0.3, -9.81),
+    springs=(SpringSpec((Place(1, (0.1, 0.9)), Place(4, (0.5, 0.1))), 40.0, 0.4),),
+    torsion_springs=(TorsionSpringSpec((1, 2), 1.5, 20.0),),
+    counterweights=(CounterweightSpec(2, 0.6, (-0.2, 0.05)),),
+)
+SLIDER = Body(0.9, 0.01, (0.1, 0.05))  # of slider or block: bars leave them without mass
+STEP = 2e-5  # s
+
+
+def masses_of(linkage: Linkage) -> Masses:
+    """The bars, and a slider or block."""
+    bars = stated_masses(linkage, SPEC)
+    return Masses(bars.crank, bars.coupler, bars.output + SLIDER)
+
+
+def body(masses: Masses, link: int) -> str:
+    given = masses.of(link)
+    u, v = given.centre.tolist()
+    inertia = float(given.inertia)
+    return (
+        f'<inertial pos="{u!r} {v!r} 0" mass="{float(given.mass)!r}" '
+        f'diaginertia="{inertia!r} {inertia!r} {inertia!r}"/>'
+    )
+
+
+def links(linkage: Linkage, masses: Masses) -> str:
+    """Link 2 with its joint, and what carries the other end; sites s2 and s3 are to be held together."""
+    (o2x, o2y), r2 = linkage.o2.tolist(), float(linkage.r2)
+    free = float(np.radians(SPEC.torsion_springs[0].free_angle_deg))
+    hinge = f'<joint name="q2" axis="0 0 1" stiffness="1.5" springref="{free!r}"/>'
+    if isinstance(linkage, SliderCrank):
+        angle, offset = float(linkage.slide_angle), float(linkage.offset)
+        x, y = o2x - offset * float(np.sin(angle)), o2y + offset * float(np.cos(angle))
+        return f"""
+        <body pos="{o2x} {o2y} 0">{body(masses, 2)}{hinge}
+          <body pos="{r2} 0 0">{body(masses, 3)}<joint name="q3" axis="0 0 1"/>
+            <site name="s2" pos="{float(linkage.r3)} 0 0"/>
+          </body>
+        </body>
+        <body pos="{x!r} {y!r} 0" euler="0 0 {angle!r}">{body(masses, 4)}
+          <joint name="q4" type="slide" axis="1 0 0"/>
+          <site name="s3" pos="0 0 0"/><site name="eye" pos="0.5 0.1 0"/>
+        </body>"""
+    assert isinstance(linkage, InvertedSliderCrank)
+    (o4x, o4y), offset = linkage.o4.tolist(), float(linkage.offset)
+    # The rod on the block: its frame, a right angle behind the block's, begins in A, -travel from B.
+    return f"""
+    <body pos="{o2x} {o2y} 0">{body(masses, 2)}{hinge}<site name="s2" pos="{r2} 0 0"/></body>
+    <body pos="{o4x} {o4y} 0">{body(masses, 4)}<joint name="q4" axis="0 0 1"/>
+      <site name="eye" pos="0.5 0.1 0"/>
+      <body pos="{offset} 0 0" euler="0 0 {-np.pi / 2!r}">{body(masses, 3)}
+        <joint name="q3" type="slide" axis="-1 0 0"/><site name="s3" pos="0 0 0"/>
+      </body>
+    </body>"""
+
+
+def engine(linkage: Linkage, masses: Masses) -> Any:
+    (gx, gy), spring = SPEC.gravity, SPEC.springs[0]
+    hook = spring.between[0].at
+    return mujoco.MjModel.from_xml_string(f"""
+    <mujoco>
+      <compiler angle="radian"/>
+      <option gravity="{gx} {gy} 0" timestep="{STEP}" integrator="RK4" tolerance="1e-15" iterations="200">
+        <flag contact="disable"/>
+      </option>
+      <worldbody><site name="hook" pos="{hook[0]} {hook[1]} 0"/>{links(linkage, masses)}</worldbody>
+      <tendon>
+        <spatial stiffness="{spring.stiffness}" springlength="{spring.free_length}">
+          <site site="hook"/><site site="eye"/>
+        </spatial>
+      </tendon>
+      <equality>
+        <connect site1="s2" site2="s3" solref="{2 * STEP} 1" solimp="0.9999 0.9999 0.001"/>
+      </equality>
+    </mujoco>""")
+
+
+def joints(state: Kinematics) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Places, velocities and accelerations of the engine's joints, in their order, a row each."""
+    assert state.slide is not None
+    travel = state.slide.travel, state.slide.velocity, state.slide.acceleration
+    if isinstance(state.linkage, SliderCrank):
+        turning = zip(state.angular(2), state.angular(3), strict=True)
+        columns = [(two, three - two, slid) for (two, three), slid in zip(turning, travel, strict=False)]
+    else:
+        turning = zip(state.angular(2), state.angular(4), strict=True)
+        columns = [(two, four, slid) for (two, four), slid in zip(turning, travel, strict=False)]
+    place, rate, bend = (np.stack(each, axis=-1) for each in columns)
+    return place, rate, bend
+
+
+@pytest.mark.parametrize("linkage", LINKAGES)
+def test_the_torque_is_what_the_engine_takes(linkage: Linkage) -> None:
+    """Its mass matrix, its bias, its springs, its Jacobian of the loop; our accelerations."""
+    masses, loads = masses_of(linkage), stated_loads(SPEC, 1.0)
+    theta2 = np.linspace(0.1, 3.0, 40)
+    state = solve_kinematics(linkage, theta2, 7.0, 11.0)
+    found = inverse_dynamics(state, masses, loads)
+    model = engine(linkage, masses)
+    data, matrix = mujoco.MjData(model), np.zeros((3, 3))
+    held = found.f43 if isinstance(linkage, SliderCrank) else found.f32
+    scale, force_scale = np.abs(found.torque).max(), np.abs(held).max()
+    places, rates, accelerations = joints(state)
+    for k in range(len(theta2)):
+        data.qpos[:], data.qvel[:] = places[k], rates[k]
+        mujoco.mj_forward(model, data)
+        loop = data.efc_J.reshape(-1, 3)[: data.ne]
+        assert np.abs(data.efc_pos[: data.ne]).max() < 1e-12  # the loop is closed
+        assert np.abs(loop @ data.qvel).max() < 1e-10
+        mujoco.mj_fullM(model, data, matrix)
+        demand = matrix @ accelerations[k] + data.qfrc_bias - data.qfrc_passive
+        columns = np.column_stack([[1.0, 0.0, 0.0], loop[:2].T])
+        torque, fx, fy = np.linalg.solve(columns, demand)
+        assert torque == pytest.approx(found.torque[k], abs=1e-9 * scale)
+        assert np.hypot(fx, fy) == pytest.approx(np.hypot(*held[k]), abs=1e-9 * force_scale)
+
+
+@pytest.mark.parametrize("linkage", [ENGINE, SHAPER])
+def test_a_released_linkage_moves_as_in_the_engine(linkage: Linkage) -> None:
+    masses, loads = masses_of(linkage), stated_loads(SPEC, 1.0)
+    time = np.linspace(0, 0.4, 21)
+    ours = free_response(linkage, masses, time, 2.0, -8.0, loads=loads).state
+    model = engine(linkage, masses)
+    data = mujoco.MjData(model)
+    places, rates, _ = joints(solve_kinematics(linkage, np.array([2.0]), -8.0))
+    data.qpos[:], data.qvel[:] = places[0], rates[0]
+    stride, worst = round((time[1] - time[0]) / STEP), 0.0
+    expected = joints(ours)[0]
+    for k in range(1, len(time)):
+        mujoco.mj_step(model, data, stride)
+        off = data.qpos - expected[k]
+        off = np.where([model.jnt_type[j] == mujoco.mjtJoint.mjJNT_HINGE for j in range(3)],
+                       (off + np.pi) % (2 * np.pi) - np.pi, off)  # fmt: skip
+        worst = max(worst, float(np.abs(off).max()))
+    assert np.ptp(ours.theta2) > 1.3
+    assert worst < 1e-8
