@@ -82,7 +82,7 @@ def random_inverted(rng: np.random.Generator) -> Linkage:
         r2, share = np.exp(rng.uniform(-2.3, 2.3)), rng.uniform(-1, 1)
         if abs(share) < np.cos(LEAST_MU) and abs(1 - r2) > 0.1:
             turn, o2 = rng.uniform(-np.pi, np.pi), rng.normal(size=2)
-            o4 = o2 + [np.cos(turn), np.sin(turn)]
+            o4 = o2 + np.array([np.cos(turn), np.sin(turn)])
             return InvertedSliderCrank(o2, o4, r2, share * abs(1 - r2), rng.normal(size=2))
 
 
@@ -122,6 +122,7 @@ def run(
 
 
 def main(argv: Sequence[str] | None = None) -> int:
+    """Measure and print; see the module."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--count", type=int, default=100, help="number of tasks of each sort")
     parser.add_argument("--seed", type=int, default=0)
@@ -138,8 +139,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         )
         median, late = np.median(seconds), np.quantile(seconds, 0.95)
         print(
-            f"{name:34} {sum(solved):4} of {given.count}, median {median:.3f} s (twice a prototype's: {case.most:.3f}), "
-            f"p95 {late:.3f} s",
+            f"{name:34} {sum(solved):4} of {given.count}, median {median:.3f} s, p95 {late:.3f} s "
+            f"(twice the median of a prototype: {case.most:.3f} s)",
             flush=True,
         )
     return 0
