@@ -156,7 +156,8 @@ class Start:
     def track(self) -> ComplexArray:
         """A, B and P at every target in the order of visit, shape (3, N), sizes."""
         _, r2, *_ = self.lengths
-        a: ComplexArray = self.o2 + r2 * np.exp(1j * np.array(self.theta2))
+        e2: ComplexArray = np.exp(1j * np.array(self.theta2))
+        a = np.asarray(self.o2 + r2 * e2, dtype=np.complex128)
         turned: ComplexArray = np.exp(1j * np.array(self.theta3))
         b = self.kind.b_of(self.lengths, self.o4, a, turned)
         return np.stack([a, b, a + self.arm * turned])
