@@ -8,9 +8,9 @@ in between, or where a limit ends the family.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from scipy.optimize import minimize_scalar
@@ -24,6 +24,7 @@ _GRID = np.unique(
     ])
 )  # fmt: skip
 _HALVINGS = 60
+_GOLDEN, _SECTIONS, _KINK = (np.sqrt(5) - 1) / 2, 45, 1e-7
 _ROUNDING = 1e-12  # margins down to that are zero
 _FINEST = 1e-14  # of shares
 
@@ -42,12 +43,27 @@ class Members:
         Worst min(mu, pi - mu) over the turn.
     margin : ndarray, shape (n,)
         Positive where the driver turns fully and both limit positions lie on one assembly.
+    first, last : ndarray, shape (n,), rad
+        Driver angles from O2O4, or from the slide's direction, at which the slow stroke begins and ends when
+        the driver turns counter-clockwise; the other way round when it turns clockwise.
+    assembly : ndarray, shape (n,)
     """
 
     share: FloatArray
     lengths: FloatArray
     transmission: FloatArray
     margin: FloatArray
+    first: FloatArray
+    last: FloatArray
+    assembly: FloatArray
+
+    def __getitem__(self, index: Any) -> Members:
+        return Members(*(getattr(self, name)[index] for name in self.__slots__))
+
+    @property
+    def mirrored(self) -> Members:
+        """Their mirror images, in which the driver turns the other way."""
+        return replace(self, first=-self.last, last=-self.first, assembly=-self.assembly)
 
     @property
     def usable(self) -> BoolArray:
@@ -56,8 +72,8 @@ class Members:
 
 
 Family: TypeAlias = Callable[[FloatArray], Members]
-# How far lengths (n, k) are inside limits, (n,): negative outside.
-Allowed: TypeAlias = Callable[[FloatArray], FloatArray]
+# How far members are inside limits, (n,): negative outside.
+Allowed: TypeAlias = Callable[[Members], FloatArray]
 
 
 def lag_of(time_ratio: float) -> float:
@@ -106,13 +122,18 @@ def crank_rockers(swing: float, lag: float, share: FloatArray) -> Members:
     r1 = np.hypot(r2 * np.cos((swing - lag) / 2), r3 * np.sin((swing - lag) / 2)) / sine
     b1, b2, turned = r3 + r2, (r3 - r2) * np.exp(1j * lag), np.exp(1j * swing)
     o4 = (b2 - b1 * turned) / (1 - turned)
-    sides = (b1 - o4).imag * ((b2 - o4) * np.exp(-1j * lag)).imag / r4**2
+    side = (b1 - o4).imag
+    sides = side * ((b2 - o4) * np.exp(-1j * lag)).imag / r4**2
+    stretched = -np.angle(o4)
     turns = np.min([r3 + r4 - r1 - r2, np.abs(r1 - r2) - np.abs(r3 - r4), r1 - r2], axis=0)
     return Members(
         share=share,
         lengths=np.stack([r1, r2, r3, r4], axis=-1) / r1[:, None],
         transmission=_worst(r1, r2, r3, r4),
         margin=np.minimum(sides, turns / (r1 + r2 + r3 + r4)),
+        first=stretched if lag >= 0 else stretched + lag + np.pi,
+        last=stretched + lag + np.pi if lag >= 0 else stretched + 2 * np.pi,
+        assembly=np.where(side > 0, 1.0, -1.0),
     )
 
 
@@ -158,6 +179,9 @@ def slider_cranks(lag: float, share: FloatArray) -> Members:
         lengths=np.stack([r2, r3, offset], axis=-1),
         transmission=np.arccos(np.clip((r2 + offset) / r3, 0.0, 1.0)),
         margin=np.minimum(4 * r2 * r3 - 1, turns),
+        first=(first := -np.arcsin(np.clip(offset / (r3 + r2), 0.0, 1.0))),
+        last=first + lag + np.pi,
+        assembly=np.ones_like(share),
     )
 
 
@@ -183,9 +207,25 @@ def families_of(swing: float | None, time_ratio: float) -> list[Family]:
     return [partial(crank_rockers, swing, sign) for sign in ([lag, -lag] if lag else [0.0])]
 
 
-def everywhere(lengths: FloatArray) -> FloatArray:
+def everywhere(members: Members) -> FloatArray:
     """No limit: every member is far inside."""
-    return np.ones(len(lengths))
+    return np.ones(len(members.share))
+
+
+def _margin(family: Family, allowed: Allowed) -> Callable[[FloatArray], FloatArray]:
+    def margin(share: FloatArray) -> FloatArray:
+        found = family(share)
+        return np.minimum(found.margin, allowed(found))
+
+    return margin
+
+
+def nearest(family: Family, allowed: Allowed) -> float:
+    """The member, by its share, that is farthest inside all limits or least outside."""
+    margin = _margin(family, allowed)
+    k = int(np.argmax(margin(_GRID)))
+    tried = np.array([_GRID[k], highest(margin, *_beside(k))])
+    return float(tried[np.argmax(margin(tried))])
 
 
 def stretches(family: Family, allowed: Allowed = everywhere) -> list[tuple[float, float]]:
@@ -196,11 +236,7 @@ def stretches(family: Family, allowed: Allowed = everywhere) -> list[tuple[float
     Between neighbours of a grid the ends are found by halving; stretches too narrow for the grid
     where the margin is greatest between its points.
     """
-
-    def margin(share: FloatArray) -> FloatArray:
-        found = family(share)
-        return np.minimum(found.margin, allowed(found.lengths))
-
+    margin = _margin(family, allowed)
     at_grid = margin(_GRID)
     peaks = _peaks(margin, at_grid)
     share = np.concatenate([_GRID, peaks])
@@ -217,8 +253,8 @@ def stretches(family: Family, allowed: Allowed = everywhere) -> list[tuple[float
 def _peaks(margin: Callable[[FloatArray], FloatArray], at_grid: FloatArray) -> FloatArray:
     """Where a margin that is negative on the grid is greatest between its points."""
     padded = np.pad(at_grid, 1, constant_values=-np.inf)
-    highest = (at_grid >= padded[:-2]) & (at_grid >= padded[2:]) & (at_grid < 0) & np.isfinite(at_grid)
-    found = [_highest(margin, *_beside(k)) for k in np.flatnonzero(highest)]
+    peak = (at_grid >= padded[:-2]) & (at_grid >= padded[2:]) & (at_grid < 0) & np.isfinite(at_grid)
+    found = [highest(margin, *_beside(k)) for k in np.flatnonzero(peak)]
     return np.array(found, dtype=np.float64)
 
 
@@ -226,13 +262,21 @@ def _beside(k: int) -> tuple[float, float]:
     return float(_GRID[max(k - 1, 0)]), float(_GRID[min(k + 1, len(_GRID) - 1)])
 
 
-def _highest(value: Callable[[FloatArray], FloatArray], low: float, high: float) -> float:
-    """Where a function is greatest between two places, by Brent's method."""
+def highest(value: Callable[[FloatArray], FloatArray], low: float, high: float) -> float:
+    """Where a function of shares (n,) is greatest between two of them.
+
+    Brent's method, then a golden section: limits meet in kinks, which the former rounds to 1e-8.
+    """
     found = minimize_scalar(
         lambda at: -float(value(np.array([at]))[0]), bounds=(low, high), method="bounded",
         options={"xatol": _FINEST},
     )  # fmt: skip
-    return float(found.x)
+    low, high = max(low, float(found.x) - _KINK), min(high, float(found.x) + _KINK)
+    for _ in range(_SECTIONS):
+        inner = np.array([high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)])
+        left, right = value(inner)
+        low, high = (low, float(inner[1])) if left >= right else (float(inner[0]), high)
+    return (low + high) / 2
 
 
 def _edge(margin: Callable[[FloatArray], FloatArray], outside: FloatArray, inside: FloatArray) -> FloatArray:
@@ -255,7 +299,7 @@ def best_of(family: Family, within: list[tuple[float, float]]) -> list[float]:
         looked_at = np.concatenate([[low], _GRID[(low < _GRID) & (high > _GRID)], [high]])
         k = int(np.argmax(transmission(looked_at)))
         near = looked_at[max(k - 1, 0)], looked_at[min(k + 1, len(looked_at) - 1)]
-        tried = np.array([looked_at[k], _highest(transmission, *near) if near[0] < near[1] else low])
+        tried = np.array([looked_at[k], highest(transmission, *near) if near[0] < near[1] else low])
         best.append(float(tried[np.argmax(transmission(tried))]))
     return best
 

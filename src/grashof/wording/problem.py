@@ -40,7 +40,8 @@ def goals(problem: Problem) -> str:
 
 def summary(problem: Problem) -> list[str]:
     """A problem in a few lines, with the requirements as they will be applied."""
-    task, wanted = problem.task, problem.requirements.resolved(problem.task.size)
+    task = problem.task
+    wanted = problem.requirements.resolved(task.size, scale_free=task.scale_free)
     unit = f" {problem.length_unit}" if problem.length_unit else ""
     lines = [
         f"{problem.name}: {problem.title}" if problem.title else problem.name,

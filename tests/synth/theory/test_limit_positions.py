@@ -4,11 +4,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brentq, minimize_scalar
 
-from grashof.analysis import solve_position
+from grashof.analysis import solve_position, verify
 from grashof.analysis.four_bar.mobility import grashof_class
 from grashof.analysis.four_bar.stroke import output_stroke
 from grashof.analysis.four_bar.transmission import worst_transmission_cycle
-from grashof.problems import FourBar
+from grashof.problems import FourBar, Requirements, StrokeTask
 from grashof.synth.theory.limit_positions import (
     best_of,
     best_transmission,
@@ -41,7 +41,7 @@ def linkage_of(lengths, assembly=1):
 
 
 def ratio_of_links(most):
-    return lambda lengths: np.log(most) - np.log(lengths.max(axis=1) / lengths.min(axis=1))
+    return lambda found: np.log(most) - np.log(found.lengths.max(axis=1) / found.lengths.min(axis=1))
 
 
 def test_the_published_optimum():
@@ -242,7 +242,7 @@ def test_a_window_narrower_than_the_grid_is_found():
     family = families_of(np.radians(80), 10 / 9)[1]
     at = 0.4317773
     middle = family(np.array([at])).lengths[0]
-    ((low, high),) = stretches(family, lambda lengths: 1e-7 - np.abs(lengths[:, 1] - middle[1]))
+    ((low, high),) = stretches(family, lambda found: 1e-7 - np.abs(found.lengths[:, 1] - middle[1]))
     assert low <= at <= high
     assert high - low < 1e-6
 
@@ -255,3 +255,26 @@ def test_shapes():
     members = crank_rockers(1.0, 0.2, np.linspace(0.1, 0.9, 5))
     assert members.lengths.shape == (5, 4)
     assert members.margin.shape == members.transmission.shape == (5,)
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize(("swing", "ratio"), [(80, 10 / 9), (40, 1.0), (30, 1.5)])
+def test_the_slow_stroke_begins_and_ends_where_the_judge_finds_it(swing, ratio, mirrored, sense):
+    task = StrokeTask.from_degrees(swing_deg=swing, time_ratio=ratio)
+    wanted = Requirements(driver_sense="ccw" if sense > 0 else "cw")
+    for family in families_of(np.radians(swing), ratio):
+        members = family(np.array([np.mean(stretches(family)[0]), 0.6]))
+        members = members.mirrored if mirrored else members
+        for each in range(2):
+            if not members.usable[each]:
+                continue
+            linkage = linkage_of(members.lengths[each], members.assembly[each])
+            verdict = verify(linkage, task, wanted)
+            assert [defect for defect in verdict.defects if defect.requirement != "rotatability"] == []
+            ends = [members.first[each], members.last[each]][::sense]
+            if ratio > 1:  # else either stroke is the slow one
+                apart = np.abs(np.exp(1j * verdict.theta2) - np.exp(1j * np.array(ends)))
+                assert apart.max() < 1e-9
+            assert sense * np.ptp(verdict.theta2) == pytest.approx(verdict.theta2[1] - verdict.theta2[0])
+            assert np.ptp(verdict.theta2) == pytest.approx(task.driver_rotation, abs=1e-9)
