@@ -76,6 +76,8 @@ def _candidates(scaled: ScaledProblem, key: str, rng: np.random.Generator, run: 
     loose = _loose(scaled, key)
     finder = finder_for(loose)
     if isinstance(finder, LimitPositions):
+        if key in UNSMOOTH:
+            return []  # limit positions are always in order and on one branch
         return _judged(scaled, loose, finder.closest_to(LimitPositions(scaled), rng), run)
     linkages = rejudged(scaled, finder.near(rng))
     starts = closest_starts(scaled, linkages, key, SOLVES)

@@ -34,7 +34,7 @@ _POSITIONS = 73  # of a turn, for the size
 _FIRST = 12  # as they stand by themselves, where more than lengths and pivots decides
 _ROUNDS = 6  # of members put anywhere, where more than lengths and pivots decides
 _DRAWS = 4000  # of them in each round
-_MANY = 40  # members to choose the closest from, where the families do not tell
+_MANY = 20  # members to choose the closest from, where the families do not tell
 _MISSING = 4  # of these are kept though they miss something, to tell what it is
 # Fields that the families themselves keep.
 _KEPT = (
@@ -292,13 +292,13 @@ class LimitPositions:
     def _screened(
         self, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray, theta2: FloatArray
     ) -> Screened:
-        """Linkages in the frame screened under all requirements, from the slow stroke alone; P is B."""
+        """Linkages in the frame screened under all requirements, from the slow stroke alone; P is A."""
         count, sense = len(o2), -1.0 if self._clockwise else 1.0
         visit = np.tile(np.arange(2), (count, 1))
         found = Configurations(o2, o4, a, b, visit, theta2, np.full(count, sense))
         wanted = self.scaled.wanted
-        violations = violations_apart(found, b[:, 0], b, wanted)
-        return fully_screened(self.scaled, judge(found, b[:, 0], np.zeros(count), violations, wanted))
+        violations = violations_apart(found, a[:, 0], a, wanted)
+        return fully_screened(self.scaled, judge(found, a[:, 0], np.zeros(count), violations, wanted))
 
     @property
     def _room(self) -> Box:
@@ -334,16 +334,15 @@ class LimitPositions:
         return True
 
     def _start(self, member: Members, o2: complex, o4: complex) -> Start:
-        """One member, its mirror image already taken, with given pivots; P is B."""
+        """One member, or its mirror image, with given pivots; P is A, as nothing is asked of it."""
         pivots = (np.array([[o2, o4]]) - self.scaled.frame.origin) / self.scaled.frame.scale
         a, b, theta2 = (each[0] for each in self._moving(member[None], pivots))
-        at_b = complex(b[0])
         return Start(
             o2=complex(pivots[0, 0]),
             o4=complex(pivots[0, 1]),
             a=complex(a[0]),
-            b=at_b,
-            p=at_b,
+            b=complex(b[0]),
+            p=complex(a[0]),
             visit=(0, 1),
             theta2=(float(theta2[0]), float(theta2[1])),
             theta3=tuple(np.unwrap(np.angle(b - a)).tolist()),
