@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import astuple, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
-from grashof.problems.values.arrays import FloatArray, Limits
+from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import (
-    GREATEST,
-    LEAST,
     counted,
     noted,
     number_within,
@@ -30,7 +28,8 @@ from grashof.problems.values.objective import GOALS, Objective
 from grashof.problems.values.path_task import PathTask
 from grashof.problems.values.quantities import Needs, Quantity, Unit
 from grashof.problems.values.read_only import ReadOnly
-from grashof.problems.values.requirements import QUANTITIES, Requirements, Rotatability
+from grashof.problems.values.requirements import QUANTITIES, Requirements
+from grashof.problems.values.stroke_limits import stated_size, strokes_wrong
 from grashof.problems.values.stroke_task import StrokeTask
 from grashof.problems.values.task import Task
 
@@ -142,8 +141,8 @@ class Problem(ReadOnly):
         wrong += self._without_value()
         wrong += self._undecided()
         if isinstance(self.task, StrokeTask):
-            wrong += _strokes_wrong(self.task, self.requirements)
-            object.__setattr__(self, "task", self.task.sized(_stated_size(self.requirements)))
+            wrong += strokes_wrong(self.task, self.requirements)
+            object.__setattr__(self, "task", self.task.sized(stated_size(self.requirements)))
         refuse(wrong)
         checked = tuple(
             outline(corners, f"scene.outlines[{index}]") for index, corners in enumerate(self.outlines)
@@ -284,32 +283,3 @@ class Problem(ReadOnly):
         if spec.friction is not None:
             torque += max(spec.friction.moment) + max(spec.friction.viscous) * spec.omega2
         return torque or 1.0
-
-
-def _strokes_wrong(task: StrokeTask, wanted: Requirements) -> list[str]:
-    """What a stroke and the requirements do not agree on, a line each."""
-    wrong = [line] if (line := task.impossible("four-bar")) else []
-    if wanted.exact is False:
-        wrong.append("requirements.exact is false; with stroke it must be true: the time ratio is always met")
-    if wanted.rotatability is Rotatability.DOUBLE_CRANK:
-        wrong.append(
-            'requirements.rotatability is "double-crank", whose output does not swing; '
-            "with stroke it must be full-crank or crank-rocker"
-        )
-    return wrong
-
-
-def _stated_size(wanted: Requirements) -> float:
-    """A length that limits state, for a task without a size of its own; 1 where there is none."""
-    for name in ("r1", "r4", "r3", "link_length", "r2"):
-        lengths: Limits | None = getattr(wanted, name)
-        if lengths is not None and 0 < lengths[1] < GREATEST:
-            return lengths[1]
-    if wanted.o2 is not None and wanted.o4 is not None:
-        apart = [
-            np.mean(four) - np.mean(two)
-            for two, four in zip(*map(astuple, (wanted.o2, wanted.o4)), strict=True)
-        ]
-        if LEAST < (distance := float(np.hypot(*apart))) < GREATEST:
-            return distance
-    return 1.0

@@ -44,21 +44,21 @@ def ratio_of_links(most):
     return lambda found: np.log(most) - np.log(found.lengths.max(axis=1) / found.lengths.min(axis=1))
 
 
-def test_the_published_optimum():
+def test_the_published_optimum() -> None:
     # goessner/crocker: swing 80 deg, time ratio 10/9, published 120, 46.7, 116, 73.9 and 37.7 deg.
     lengths, angle = optimum(80, 10 / 9)
     np.testing.assert_allclose(120 * lengths, [120, 46.67, 116.16, 73.88], atol=0.005)
     assert angle == pytest.approx(37.733, abs=5e-4)
 
 
-def test_the_ratio_of_links_decides_where_both_strokes_take_as_long():
+def test_the_ratio_of_links_decides_where_both_strokes_take_as_long() -> None:
     lengths, angle = optimum(30, 1.0, ratio_of_links(10))
     np.testing.assert_allclose(lengths, [1, 0.1, 0.92775, 0.38637], atol=5e-6)
     assert angle == pytest.approx(73.801, abs=5e-4)
 
 
 @pytest.mark.parametrize("swing", [20, 75, 130])
-def test_without_a_limit_it_comes_as_near_as_you_like_to_its_supremum(swing):
+def test_without_a_limit_it_comes_as_near_as_you_like_to_its_supremum(swing) -> None:
     above = 90 - swing / 2
     angles = [optimum(swing, 1.0, ratio_of_links(most))[1] for most in (10, 100, 10_000)]
     assert angles == sorted(angles)
@@ -67,14 +67,14 @@ def test_without_a_limit_it_comes_as_near_as_you_like_to_its_supremum(swing):
 
 @pytest.mark.parametrize("lag", [12, 36, 60])
 @pytest.mark.parametrize("beside", [3, 11])
-def test_the_optimum_is_symmetric_about_a_swing_that_equals_the_lag(lag, beside):
+def test_the_optimum_is_symmetric_about_a_swing_that_equals_the_lag(lag, beside) -> None:
     ratio = (180 + lag) / (180 - lag)
     less, equal, more = (optimum(swing, ratio)[1] for swing in (lag - beside, lag, lag + beside))
     assert less == pytest.approx(more, abs=1e-8)
     assert equal > more
 
 
-def test_a_time_ratio_of_one_and_a_half_leaves_32_deg():
+def test_a_time_ratio_of_one_and_a_half_leaves_32_deg() -> None:
     assert max(optimum(swing, 1.5)[1] for swing in range(2, 178, 2)) == pytest.approx(31.861, abs=1e-3)
 
 
@@ -90,18 +90,18 @@ SLIDES = [  # time ratio, best worst mu in deg, r2, r3, offset
 
 
 @pytest.mark.parametrize(("ratio", "angle", "r2", "r3", "offset"), SLIDES)
-def test_the_table_of_slides(ratio, angle, r2, r3, offset):
+def test_the_table_of_slides(ratio, angle, r2, r3, offset) -> None:
     lengths, found = optimum(None, ratio)
     assert found == pytest.approx(angle, abs=6e-4)
     np.testing.assert_allclose(lengths, [r2, r3, offset], atol=3e-5)
 
 
-def test_slides_need_a_ratio_below_three():
+def test_slides_need_a_ratio_below_three() -> None:
     assert best_transmission(None, 2.999) > 0
     assert np.isnan(best_transmission(None, 3.001))
 
 
-def test_without_an_offset_both_strokes_of_a_slide_take_as_long():
+def test_without_an_offset_both_strokes_of_a_slide_take_as_long() -> None:
     members = slider_cranks(0.0, np.linspace(0.05, 0.95, 7))
     np.testing.assert_allclose(members.lengths[:, 0], 0.5)
     np.testing.assert_array_equal(members.lengths[:, 2], 0.0)
@@ -109,7 +109,7 @@ def test_without_an_offset_both_strokes_of_a_slide_take_as_long():
 
 
 @pytest.mark.parametrize("swing", [2, 30, 80, 150, 178])
-def test_the_greatest_time_ratio_is_just_out_of_reach(swing):
+def test_the_greatest_time_ratio_is_just_out_of_reach(swing) -> None:
     most = greatest_time_ratio(np.radians(swing))
     assert best_transmission(np.radians(swing), 0.9999 * most) > 0
     assert np.isnan(best_transmission(np.radians(swing), 1.0001 * most))
@@ -141,7 +141,7 @@ def strokes(position):
 
 @pytest.mark.parametrize("swing", [15, 80, 140])
 @pytest.mark.parametrize("ratio", [1.0, 10 / 9, 1.6])
-def test_sampled_motion_has_the_swing_and_the_ratio(swing, ratio):
+def test_sampled_motion_has_the_swing_and_the_ratio(swing, ratio) -> None:
     sampled = []
     for family in families_of(np.radians(swing), ratio):
         for low, high in stretches(family):
@@ -166,7 +166,7 @@ def test_sampled_motion_has_the_swing_and_the_ratio(swing, ratio):
 
 
 @pytest.mark.parametrize("ratio", [1.0, 1.2, 1.75, 2.5])
-def test_a_sampled_slide_has_the_stroke_and_the_ratio(ratio):
+def test_a_sampled_slide_has_the_stroke_and_the_ratio(ratio) -> None:
     (family,) = families_of(None, ratio)
     (low, high), *_ = stretches(family)
     for r2, r3, offset in family(np.linspace(low, high, 6)[1:-1]).lengths:
@@ -189,7 +189,7 @@ def random_crank_rockers(count, seed):
     return np.stack([np.ones(count), r2, r3, r4], axis=-1)[usable]
 
 
-def test_no_random_crank_rocker_beats_the_optimum_for_its_own_swing_and_ratio():
+def test_no_random_crank_rocker_beats_the_optimum_for_its_own_swing_and_ratio() -> None:
     for lengths in random_crank_rockers(6000, seed=1)[:150]:
         linkage = linkage_of(lengths)
         stroke = output_stroke(linkage)
@@ -197,7 +197,7 @@ def test_no_random_crank_rocker_beats_the_optimum_for_its_own_swing_and_ratio():
         assert float(worst_transmission_cycle(linkage)) <= best + 1e-9
 
 
-def test_every_crank_rocker_is_a_member_of_its_family():
+def test_every_crank_rocker_is_a_member_of_its_family() -> None:
     for lengths in random_crank_rockers(6000, seed=2)[:300]:
         stroke = output_stroke(linkage_of(lengths))
         share = np.array([lengths[1] / lengths[2]])
@@ -208,7 +208,7 @@ def test_every_crank_rocker_is_a_member_of_its_family():
 
 
 @given(st.floats(1.0, 2.6), st.integers(0, 2**32 - 1))
-def test_no_random_slide_beats_the_optimum(ratio, seed):
+def test_no_random_slide_beats_the_optimum(ratio, seed) -> None:
     """Twelve thousand members, ten times the search."""
     best = best_transmission(None, ratio)
     members = slider_cranks(lag_of(ratio), np.random.default_rng(seed).uniform(0, 1, 12_000))
@@ -217,7 +217,7 @@ def test_no_random_slide_beats_the_optimum(ratio, seed):
 
 
 @given(st.floats(5, 170), st.floats(1.0, 3.0), st.integers(0, 2**32 - 1))
-def test_no_random_member_beats_the_optimum(swing_deg, ratio, seed):
+def test_no_random_member_beats_the_optimum(swing_deg, ratio, seed) -> None:
     swing = np.radians(swing_deg)
     if ratio > greatest_time_ratio(swing):
         return
@@ -228,7 +228,7 @@ def test_no_random_member_beats_the_optimum(swing_deg, ratio, seed):
         assert members.transmission[members.usable].max(initial=0.0) <= np.nan_to_num(best) + 1e-10
 
 
-def test_both_positions_on_one_assembly_or_it_is_nonsense():
+def test_both_positions_on_one_assembly_or_it_is_nonsense() -> None:
     # Without that test a slide of ratio 1.75 would be better with a crank of next to nothing.
     lag = lag_of(1.75)
     bare = minimize_scalar(
@@ -238,7 +238,7 @@ def test_both_positions_on_one_assembly_or_it_is_nonsense():
     assert not slider_cranks(lag, np.exp([bare.x])).usable.any()
 
 
-def test_a_window_narrower_than_the_grid_is_found():
+def test_a_window_narrower_than_the_grid_is_found() -> None:
     family = families_of(np.radians(80), 10 / 9)[1]
     at = 0.4317773
     middle = family(np.array([at])).lengths[0]
@@ -247,11 +247,11 @@ def test_a_window_narrower_than_the_grid_is_found():
     assert high - low < 1e-6
 
 
-def test_without_a_ratio_of_links_that_fits_there_is_none():
+def test_without_a_ratio_of_links_that_fits_there_is_none() -> None:
     assert np.isnan(best_transmission(np.radians(80), 10 / 9, ratio_of_links(1.5)))
 
 
-def test_shapes():
+def test_shapes() -> None:
     members = crank_rockers(1.0, 0.2, np.linspace(0.1, 0.9, 5))
     assert members.lengths.shape == (5, 4)
     assert members.margin.shape == members.transmission.shape == (5,)
@@ -260,7 +260,7 @@ def test_shapes():
 @pytest.mark.parametrize("sense", [1, -1])
 @pytest.mark.parametrize("mirrored", [False, True])
 @pytest.mark.parametrize(("swing", "ratio"), [(80, 10 / 9), (40, 1.0), (30, 1.5)])
-def test_the_slow_stroke_begins_and_ends_where_the_judge_finds_it(swing, ratio, mirrored, sense):
+def test_the_slow_stroke_begins_and_ends_where_the_judge_finds_it(swing, ratio, mirrored, sense) -> None:
     task = StrokeTask.from_degrees(swing_deg=swing, time_ratio=ratio)
     wanted = Requirements(driver_sense="ccw" if sense > 0 else "cw")
     for family in families_of(np.radians(swing), ratio):
