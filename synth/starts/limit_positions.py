@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import ClassVar
+from functools import cached_property, partial
+from typing import ClassVar, TypeAlias
 
 import numpy as np
 
 from grashof.problems import Box, Requirements, Rotatability, StrokeTask
-from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Configurations, Screened, judge, violations_apart
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.programme.whole_screening import fully_screened
+from grashof.synth.starts.member_choice import apart, diagonals, unbeaten
 from grashof.synth.starts.placing import Ground, scales
 from grashof.synth.theory.closure import coupler_of
-from grashof.synth.theory.distinct import DISTINCT, pick_apart
 from grashof.synth.theory.limit_positions import (
     Family,
     Members,
@@ -30,7 +30,6 @@ from grashof.synth.theory.limit_positions import (
 
 _SPARE = 1.3  # times as many as are enough: the judge may find some alike
 _SAMPLES = 400  # members of a stretch that are looked at
-_POSITIONS = 73  # of a turn, for the size
 _FIRST = 12  # as they stand by themselves, where more than lengths and pivots decides
 _ROUNDS = 6  # of members put anywhere, where more than lengths and pivots decides
 _DRAWS = 4000  # of them in each round
@@ -41,6 +40,9 @@ _KEPT = (
     "transmission_min_deg", "link_length", "r1", "r2", "r3", "r4", "link_ratio_max", "o2", "o4",
     "ground_angle_deg", "theta2_start_deg", "driver_sense", "output_swing_deg", "time_ratio", "coupler_arms",
 )  # fmt: skip
+
+# O2, O4 (n,), and A, B and theta2 in the limit positions (n, 2), in the frame.
+_Places: TypeAlias = tuple[ComplexArray, ComplexArray, ComplexArray, ComplexArray, FloatArray]
 
 
 @dataclass(frozen=True)
@@ -118,7 +120,7 @@ class LimitPositions:
         """The members that miss the limits by least."""
         starts = []
         for family, mirrored in self.kinds:
-            share = nearest(family, lambda found, mirrored=mirrored: self._inside(found, mirrored))  # type: ignore[misc]
+            share = nearest(family, partial(self._inside, mirrored=mirrored))
             starts += self._starts(family(np.array([share])), mirrored)
         return starts
 
@@ -176,8 +178,10 @@ class LimitPositions:
         """Direction of O2O4 that the limits fix, rad; NaN where they do not; shape (n,)."""
         start, fixed = self.wanted.theta2_start_deg, self.wanted.ground_angle_deg
         if start is not None:
-            return np.radians(start) - (members.last if self._clockwise else members.first)
-        return np.full(len(members.share), np.nan if fixed is None else np.radians(fixed))
+            turned: FloatArray = np.radians(start) - (members.last if self._clockwise else members.first)
+            return turned
+        angle = np.nan if fixed is None else float(np.radians(fixed))
+        return np.full(len(members.share), angle)
 
     @property
     def _clockwise(self) -> bool:
@@ -190,8 +194,8 @@ class LimitPositions:
             (
                 family,
                 mirrored,
-                stretches(family, lambda found, mirrored=mirrored: self._inside(found, mirrored)),
-            )  # type: ignore[misc]
+                stretches(family, partial(self._inside, mirrored=mirrored)),
+            )
             for family, mirrored in self.kinds
         ]
 
@@ -214,12 +218,12 @@ class LimitPositions:
         if not groups or not most:
             return []
         factor = [self._factor(*group) for group in groups]
-        size = np.concatenate([f * _size(found) for f, (found, _) in zip(factor, groups, strict=True)])
+        size = np.concatenate([f * diagonals(found) for f, (found, _) in zip(factor, groups, strict=True)])
         angle = np.concatenate([found.transmission for found, _ in groups])
         lengths = [f[:, None] * found.lengths for f, (found, _) in zip(factor, groups, strict=True)]
-        front = _unbeaten(angle, size)
+        front = unbeaten(angle, size)
         merit = np.where(front, np.pi + angle, np.where(angle > angle.max() / 2, angle, -np.inf))
-        picked = _apart(np.concatenate(lengths), merit, most)
+        picked = apart(np.concatenate(lengths), merit, most)
         number = np.concatenate([np.full(len(found.share), k) for k, (found, _) in enumerate(groups)])
         begin = np.concatenate([[0], np.cumsum([len(found.share) for found, _ in groups])])
         starts = []
@@ -232,7 +236,8 @@ class LimitPositions:
     def _factor(self, members: Members, mirrored: bool) -> FloatArray:
         """By which members are scaled: 1 where that is allowed, or else what is nearest to it."""
         low, high = self._scales(members.mirrored if mirrored else members)
-        return np.minimum(np.maximum(1.0, low), high)
+        factor: FloatArray = np.minimum(np.maximum(1.0, low), high)
+        return factor
 
     def _starts(self, members: Members, mirrored: bool) -> list[Start]:
         """Members as the limits of lengths and pivots put them into the plane."""
@@ -261,7 +266,7 @@ class LimitPositions:
         starts = [Start.of_screened(screened, int(k), self.scaled.objective) for k in chosen]
         return [replace(start, settled=True) for start in starts]
 
-    def _placed(self, members: Members, rng: np.random.Generator) -> tuple[ComplexArray, ...]:
+    def _placed(self, members: Members, rng: np.random.Generator) -> _Places:
         """O2, O4, A and B in the limit positions (n, 2) and theta2 there, anywhere, in the frame."""
         ground, size, room = Ground.of(self.wanted), self.task.size, self._room
         low, high = self._scales(members)
@@ -358,36 +363,3 @@ def _worst(start: Start) -> float:
     r1, r2, r3, r4 = start.lengths
     cosines = [(r3**2 + r4**2 - end**2) / (2 * r3 * r4) for end in (r1 - r2, r1 + r2)]
     return float(np.arccos(max(map(abs, cosines))))
-
-
-def _size(members: Members) -> FloatArray:
-    """Diagonals of the boxes around O2, O4 and all that A and B reach, O2O4 = 1; shape (n,)."""
-    _, r2, r3, r4 = members.lengths.T[..., None]
-    a = r2 * np.exp(1j * np.linspace(0, 2 * np.pi, _POSITIONS))
-    b = a + np.nan_to_num(coupler_of(1 - a, r3, r4, members.assembly[:, None]))
-    places = np.concatenate([a, b, np.ones_like(a[:, :1])], axis=1)
-    sides = [np.ptp(part, axis=1) for part in (places.real, places.imag)]
-    return np.hypot(*sides)
-
-
-def _unbeaten(angle: FloatArray, size: FloatArray) -> BoolArray:
-    """Which of some (n,) no other one beats in transmission and size, shape (n,)."""
-    order = np.lexsort((size, -angle))
-    least = np.minimum.accumulate(size[order])
-    unbeaten = np.zeros(len(angle), dtype=bool)
-    unbeaten[order] = size[order] <= least
-    return unbeaten
-
-
-def _apart(lengths: FloatArray, merit: FloatArray, most: int) -> IntArray:
-    """Indices of at most so many of some lengths (n, 4), as far apart as leaves that many, best first.
-
-    Those of merit -inf are left out.
-    """
-    worth = np.flatnonzero(np.isfinite(merit))
-    signatures = np.concatenate([lengths[worth], np.zeros((len(worth), 5))], axis=1)
-    for least in (0.1, 0.05, 0.025, DISTINCT):
-        picked = pick_apart(signatures, merit[worth], least, most)
-        if len(picked) >= most:
-            break
-    return worth[picked]

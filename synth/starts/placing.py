@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -46,8 +47,8 @@ class Ground:
             inside = least <= _SAME and most >= -_SAME
             low = np.maximum(low, np.where(still, 0.0 if inside else np.inf, ends[0]))
             high = np.minimum(high, np.where(still, np.inf if inside else 0.0, ends[1]))
-        near = np.hypot(*(max(least, -most, 0.0) for least, most in (self.x, self.y)))
-        far = np.hypot(*(max(-least, most) for least, most in (self.x, self.y)))
+        near = math.hypot(*(max(least, -most, 0.0) for least, most in (self.x, self.y)))
+        far = math.hypot(*(max(-least, most) for least, most in (self.x, self.y)))
         free = np.isnan(angle)
         return np.where(free, near, low), np.where(free, far, high)
 
@@ -102,4 +103,5 @@ def scales(lengths: FloatArray, limits: tuple[Limits, ...], r1: tuple[FloatArray
     low = np.max([least / each for (least, _), each in zip(limits, lengths.T, strict=True)], axis=0)
     high = np.min([most / each for (_, most), each in zip(limits, lengths.T, strict=True)], axis=0)
     low, high = np.maximum(low, r1[0] / lengths[:, 0]), np.minimum(high, r1[1] / lengths[:, 0])
-    return np.clip([low, high], _LEAST, _MOST)
+    ends: FloatArray = np.clip([low, high], _LEAST, _MOST)
+    return ends

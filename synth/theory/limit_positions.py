@@ -252,7 +252,7 @@ def _peaks(margin: Callable[[FloatArray], FloatArray], at_grid: FloatArray) -> F
     """Where a margin that is negative on the grid is greatest between its points."""
     padded = np.pad(at_grid, 1, constant_values=-np.inf)
     peak = (at_grid >= padded[:-2]) & (at_grid >= padded[2:]) & (at_grid < 0) & np.isfinite(at_grid)
-    found = [highest(margin, *_beside(k)) for k in np.flatnonzero(peak)]
+    found = [highest(margin, *_beside(k)) for k in np.flatnonzero(peak).tolist()]
     return np.array(found, dtype=np.float64)
 
 
