@@ -24,7 +24,6 @@ from grashof.synth.theory.limit_positions import (
     best_of,
     families_of,
     highest,
-    nearest,
     stretches,
 )
 
@@ -43,6 +42,9 @@ _KEPT = (
 
 # O2, O4 (n,), and A, B and theta2 in the limit positions (n, 2), in the frame.
 _Places: TypeAlias = tuple[ComplexArray, ComplexArray, ComplexArray, ComplexArray, FloatArray]
+
+# Families, whether mirrored, and where their members keep limits.
+_Stretches: TypeAlias = list[tuple[Family, bool, list[tuple[float, float]]]]
 
 
 @dataclass(frozen=True)
@@ -118,30 +120,35 @@ class LimitPositions:
 
     def relaxed(self, _rng: np.random.Generator) -> list[Start]:
         """The members that miss the limits by least."""
-        starts = []
-        for family, mirrored in self.kinds:
-            share = nearest(family, partial(self._inside, mirrored=mirrored))
-            starts += self._starts(family(np.array([share])), mirrored)
-        return starts
+        return self._closest([(family, mirrored, stretches(family)) for family, mirrored in self.kinds])
 
     def closest_to(self, asked: LimitPositions, rng: np.random.Generator) -> list[Start]:
         """Of the members that keep these limits, those that miss by least what else is asked, or many."""
         starts = list[Start]()
         if asked.elsewhere:
             starts += self._chosen(_MANY) + self._anywhere(_MANY, rng)
-        for family, mirrored, within in self._stretches:
+        return starts + asked._closest(self._stretches) + asked._closest(self._stretches, self)
+
+    def _closest(self, within: _Stretches, placed: LimitPositions | None = None) -> list[Start]:
+        """In each of some stretches the member that is farthest inside the limits, or least outside.
+
+        It is put where these limits, or those of another problem, allow it.
+        """
+        starts = list[Start]()
+        for family, mirrored, ranges in within:
 
             def inside(share: FloatArray, family: Family = family, mirrored: bool = mirrored) -> FloatArray:
-                return asked._inside(family(share), mirrored)
+                return self._inside(family(share), mirrored)
 
-            for low, high in within:
+            for low, high in ranges:
                 shares = np.linspace(low, high, _SAMPLES)
                 k = int(np.argmax(inside(shares)))
                 between = highest(
                     inside, float(shares[max(k - 1, 0)]), float(shares[min(k + 1, _SAMPLES - 1)])
                 )
                 tried = np.array([shares[k], between])
-                starts += self._starts(family(tried[[np.argmax(inside(tried))]]), mirrored)
+                member = family(tried[[np.argmax(inside(tried))]])
+                starts += (placed or self)._starts(member, mirrored, self._factor(member, mirrored))
         return starts
 
     def obstacle(self, _rng: np.random.Generator, _counts: Mapping[str, int], /) -> str:
@@ -188,7 +195,7 @@ class LimitPositions:
         return self.wanted.driver_sense == "cw"
 
     @cached_property
-    def _stretches(self) -> list[tuple[Family, bool, list[tuple[float, float]]]]:
+    def _stretches(self) -> _Stretches:
         """Where members of each family keep the limits."""
         return [
             (
@@ -233,15 +240,15 @@ class LimitPositions:
             starts += self._starts(found[at : at + 1], mirrored)
         return starts
 
-    def _factor(self, members: Members, mirrored: bool) -> FloatArray:
-        """By which members are scaled: 1 where that is allowed, or else what is nearest to it."""
+    def _factor(self, members: Members, mirrored: bool, wish: float | FloatArray = 1.0) -> FloatArray:
+        """By which members are scaled: as wished where that is allowed, or else what is nearest to it."""
         low, high = self._scales(members.mirrored if mirrored else members)
-        factor: FloatArray = np.minimum(np.maximum(1.0, low), high)
+        factor: FloatArray = np.minimum(np.maximum(wish, low), high)
         return factor
 
-    def _starts(self, members: Members, mirrored: bool) -> list[Start]:
+    def _starts(self, members: Members, mirrored: bool, wish: float | FloatArray = 1.0) -> list[Start]:
         """Members as the limits of lengths and pivots put them into the plane."""
-        factor = self._factor(members, mirrored)
+        factor = self._factor(members, mirrored, wish)
         members = members.mirrored if mirrored else members
         ground = Ground.of(self.wanted)
         starts = []

@@ -14,6 +14,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from grashof.problems import FourBar, SliderCrank, StrokeTask
 from grashof.problems.values.arrays import BoolArray, FloatArray
 
 # Shares r2 / r3 at which a family is looked at, close where one of the two vanishes beside the other.
@@ -177,10 +178,28 @@ def slider_cranks(lag: float, share: FloatArray) -> Members:
         lengths=np.stack([r2, r3, offset], axis=-1),
         transmission=np.arccos(np.clip((r2 + offset) / r3, 0.0, 1.0)),
         margin=np.minimum(4 * r2 * r3 - 1, turns),
-        first=(first := -np.arcsin(np.clip(offset / (r3 + r2), 0.0, 1.0))),
+        first=(first := np.arcsin(np.clip(offset / (r3 + r2), 0.0, 1.0))),
         last=first + lag + np.pi,
         assembly=np.ones_like(share),
     )
+
+
+def linkages_of(task: StrokeTask, members: Members) -> FourBar | SliderCrank:
+    """Members as a batch of linkages, shape (n,): O2 the origin, O4 (1, 0) or the slide along x, P in A.
+
+    Examples
+    --------
+    >>> task = StrokeTask(stroke=100.0, time_ratio=1.2)
+    >>> slides = linkages_of(task, slider_cranks(lag_of(1.2), np.array([0.36781])))
+    >>> slides.offset.round(2).tolist()
+    [39.86]
+    """
+    if task.stroke is not None:
+        r2, r3, offset = task.stroke * members.lengths.T
+        return SliderCrank((0.0, 0.0), r2, r3, offset, assembly=members.assembly)
+    r1, r2, r3, r4 = members.lengths.T
+    o4 = np.stack([r1, np.zeros_like(r1)], axis=-1)
+    return FourBar((0.0, 0.0), o4, r2, r3, r4, assembly=members.assembly)
 
 
 def greatest_time_ratio(swing: float) -> float:
@@ -216,14 +235,6 @@ def _margin(family: Family, allowed: Allowed) -> Callable[[FloatArray], FloatArr
         return np.minimum(found.margin, allowed(found))
 
     return margin
-
-
-def nearest(family: Family, allowed: Allowed) -> float:
-    """The member, by its share, that is farthest inside all limits or least outside."""
-    margin = _margin(family, allowed)
-    k = int(np.argmax(margin(_GRID)))
-    tried = np.array([_GRID[k], highest(margin, *_beside(k))])
-    return float(tried[np.argmax(margin(tried))])
 
 
 def stretches(family: Family, allowed: Allowed = everywhere) -> list[tuple[float, float]]:

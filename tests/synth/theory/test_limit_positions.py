@@ -8,7 +8,7 @@ from grashof.analysis import solve_position, verify
 from grashof.analysis.four_bar.mobility import grashof_class
 from grashof.analysis.four_bar.stroke import output_stroke
 from grashof.analysis.four_bar.transmission import worst_transmission_cycle
-from grashof.problems import FourBar, Requirements, StrokeTask
+from grashof.problems import FourBar, Requirements, SliderCrank, StrokeTask
 from grashof.synth.theory.limit_positions import (
     best_of,
     best_transmission,
@@ -16,6 +16,7 @@ from grashof.synth.theory.limit_positions import (
     families_of,
     greatest_time_ratio,
     lag_of,
+    linkages_of,
     slider_cranks,
     stretches,
 )
@@ -278,3 +279,29 @@ def test_the_slow_stroke_begins_and_ends_where_the_judge_finds_it(swing, ratio, 
                 assert apart.max() < 1e-9
             assert sense * np.ptp(verdict.theta2) == pytest.approx(verdict.theta2[1] - verdict.theta2[0])
             assert np.ptp(verdict.theta2) == pytest.approx(task.driver_rotation, abs=1e-9)
+
+
+@pytest.mark.parametrize("ratio", [1.0, 1.2, 2.0])
+def test_slides_of_a_stroke_stand_at_its_ends_where_the_slow_stroke_begins_and_ends(ratio: float) -> None:
+    task = StrokeTask(stroke=100, time_ratio=ratio)
+    (family,) = families_of(None, ratio)
+    (low, high), *_ = stretches(family)
+    members = family(np.linspace(low, high, 5)[1:-1])
+    slides = linkages_of(task, members)
+    assert isinstance(slides, SliderCrank)
+    theta2 = np.stack([members.first, members.last])
+    a = slides.r2 * np.exp(1j * theta2)
+    b = a.real + np.sqrt(slides.r3**2 - (slides.offset - a.imag) ** 2) + 1j * slides.offset
+    np.testing.assert_allclose((b[0] - b[1]).real, 100, atol=1e-9)
+    np.testing.assert_allclose((b * a.conj()).imag / np.abs(a), 0, atol=1e-9)  # driver and rod in line
+    np.testing.assert_allclose(np.diff(theta2, axis=0)[0], task.driver_rotation, atol=1e-12)
+
+
+def test_crank_rockers_of_a_swing_as_a_batch() -> None:
+    task = StrokeTask.from_degrees(swing_deg=80, time_ratio=10 / 9)
+    family = families_of(task.swing, task.time_ratio)[0]
+    (low, high), *_ = stretches(family)
+    batch = linkages_of(task, family(np.linspace(low, high, 9)[1:-1]))
+    stroke = output_stroke(batch)
+    np.testing.assert_allclose(np.degrees(stroke.swing), 80, atol=1e-9)
+    np.testing.assert_allclose(stroke.time_ratio, 10 / 9, atol=1e-9)
