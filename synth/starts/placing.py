@@ -42,7 +42,7 @@ class Ground:
         low, high = np.zeros_like(angle), np.full_like(angle, np.inf)
         for (least, most), along in ((self.x, np.cos(angle)), (self.y, np.sin(angle))):
             still = np.abs(along) < _SAME
-            with np.errstate(divide="ignore", invalid="ignore"):
+            with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
                 ends = np.sort(np.stack([least / along, most / along]), axis=0)
             inside = least <= _SAME and most >= -_SAME
             low = np.maximum(low, np.where(still, 0.0 if inside else np.inf, ends[0]))
