@@ -31,6 +31,7 @@ from grashof.problems.values.requirements import Requirements, Rotatability, Tra
 from grashof.problems.values.section import CrossSection, SectionSpec
 from grashof.problems.values.slider_crank import SliderCrank
 from grashof.problems.values.strength import StrengthSpec
+from grashof.problems.values.stroke_task import StrokeTask
 from grashof.problems.values.task import Task
 
 __all__ = [
@@ -59,6 +60,7 @@ __all__ = [
     "SliderCrank",
     "SolverError",
     "StrengthSpec",
+    "StrokeTask",
     "Task",
     "TransmissionOver",
     "catalogue",

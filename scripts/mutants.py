@@ -228,6 +228,7 @@ _PROBLEMS = (
     f'kind = "path"\n{_HEAD}[path]\n{_POINTS}timing_deg = [0, 40, 90, 130, 180, 230, 300]\nwithin = 4\n'
     f"[requirements]\ntheta2_start_deg = 20\n{_MASSES.replace('masses', '# ').replace('inertias', '# ')}"
     f"mass_per_length = 0.01\n{_SEARCH}",
+    f'kind = "stroke"\n{_HEAD}[stroke]\nswing_deg = 60\ntime_ratio = 1.2\n{_SEARCH}',
     f'kind = "path"\n{_HEAD}[path]\npoints = [[0, 0], [30, 10], [60, 0]]\n{_SEARCH}',
     f'kind = "path"\nmechanism = ["slider-crank", "four-bar"]\n{_HEAD}[path]\n{_POINTS}'
     f"[requirements]\noffset = [-90, 90]\nslide_angle_deg = 10\nstroke = [1, 900]\n{_SEARCH}",

@@ -109,7 +109,7 @@ def segment_depth(area: Area, begin: FloatArray, end: FloatArray, rounds: int = 
     deepest[long] = np.where(apart > 0, -apart, np.maximum(deepest[long], 0.0))
     crossing = apart == 0
     part, index = shapely.get_parts(shapely.intersection(segment[crossing], area.solid), return_index=True)
-    lines = shapely.get_type_id(part) == shapely.GeometryType.LINESTRING
+    lines = (shapely.get_type_id(part) == shapely.GeometryType.LINESTRING) & ~shapely.is_empty(part)
     ends = shapely.get_coordinates(part[lines]).reshape(-1, 2, 2) @ np.array([1, 1j])
     np.maximum.at(deepest, long[crossing][index[lines]], _deepest_along(area, ends, rounds))
     return deepest

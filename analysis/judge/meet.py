@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.analysis.four_bar.mobility import branch_index
+from grashof.analysis.judge.limit_positions import at_limits
 from grashof.analysis.judge.nearest_points import met_singly
 from grashof.analysis.judge.nearest_poses import nearest_to_poses
 from grashof.analysis.judge.points_in_order import met_in_order
 from grashof.analysis.judge.poses_in_order import poses_in_order
 from grashof.analysis.judge.task_motion import Targets, TaskMotion, task_motion
 from grashof.analysis.judge.timed_targets import met_in_time
-from grashof.problems import Linkage, Requirements, Task
+from grashof.problems import Linkage, Requirements, StrokeTask, Task
 from grashof.problems.values.arrays import TURN
 
 
@@ -45,7 +46,9 @@ def meet(linkage: Linkage, task: Task, wanted: Requirements) -> tuple[Targets, T
     >>> motion.theta2.round(6).tolist(), motion.direction, bool(targets.position_error.max() < 1e-13)
     ([0.3, 0.2, -0.283185], -1, True)
     """
-    if task.is_timed or task.only_points:
+    if isinstance(task, StrokeTask):
+        targets, motion = at_limits(linkage, task, wanted)
+    elif task.is_timed or task.only_points:
         targets, motion = _points_or_timed(linkage, task, wanted)
     else:
         targets, motion = _poses(linkage, task, wanted)

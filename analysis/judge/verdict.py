@@ -88,15 +88,19 @@ class Verdict:
 
     @property
     def error_max(self) -> float:
-        """Greatest distance from a target position."""
-        return float(np.nanmax(self.position_error))
+        """Greatest distance from a target position; NaN where all are free."""
+        return float(np.nanmax(self.position_error)) if self._has_positions else np.nan
 
     @property
     def error_sse(self) -> float:
         """Sum of squared distances from the target positions."""
-        return float(np.nansum(self.position_error**2))
+        return float(np.nansum(self.position_error**2)) if self._has_positions else np.nan
 
     @property
     def error_rms(self) -> float:
         """Root mean square distance from the target positions."""
-        return float(np.sqrt(np.nanmean(self.position_error**2)))
+        return float(np.sqrt(np.nanmean(self.position_error**2))) if self._has_positions else np.nan
+
+    @property
+    def _has_positions(self) -> bool:
+        return not np.isnan(self.position_error).all()

@@ -18,12 +18,13 @@ from grashof.analysis.four_bar.mobility import (
 from grashof.analysis.four_bar.reach import diagonal, reach_box
 from grashof.analysis.four_bar.transmission import worst_transmission, worst_transmission_cycle
 from grashof.analysis.judge.design import Constraint, Design, greatest, name_of
+from grashof.analysis.judge.limit_positions import stroke_defects
 from grashof.analysis.judge.limits import SLACK, missed
 from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.meet import meet
 from grashof.analysis.judge.task_motion import STEADY, Targets, TaskMotion
 from grashof.analysis.judge.verdict import Defect, Verdict
-from grashof.problems import Linkage, Problem, Requirements, Rotatability, Task
+from grashof.problems import Linkage, Problem, Requirements, Rotatability, StrokeTask, Task
 
 
 def verify(
@@ -67,7 +68,7 @@ def verify(
     >>> verdict.ok, bool(verdict.error_max < 1e-12 * task.size)
     (True, True)
     """
-    wanted = requirements.resolved(task.size)
+    wanted = requirements.resolved(task.size, scale_free=task.scale_free)
     targets, motion = meet(linkage, task, wanted)
     circuits = circuit_index(linkage, targets.theta2, targets.assembly)
     branches = branch_index(linkage, targets.theta2, targets.assembly)
@@ -96,6 +97,7 @@ def verify(
     )
     defects = (
         *(_exactness(targets, task, wanted) if wanted.is_exact(task) else []),
+        *(stroke_defects(linkage, task, wanted) if isinstance(task, StrokeTask) else []),
         *_zones(targets, task),
         *_whole_error(targets, task, most_square),
         *_same_branch(circuit_ok, branch_ok, int(linkage.assembly), targets, wanted),

@@ -40,6 +40,7 @@ from grashof.problems.values.path_task import PathTask
 from grashof.problems.values.problem import NO_OBJECTIVE, Problem, Search
 from grashof.problems.values.quantities import Kind
 from grashof.problems.values.requirements import LIMITS, MAY_KEEP_OUT, Requirements
+from grashof.problems.values.stroke_task import StrokeTask
 from grashof.problems.values.task import Task
 
 
@@ -77,11 +78,14 @@ def problem_from(document: dict[str, Any], name: str, folder: Path | None = None
     raise refused([*wrong, *_ill_matched(document)])
 
 
+_KINDS = ("motion", "path", "stroke")  # each with a table of its name
+
+
 def _ill_matched(document: dict[str, Any]) -> Iterator[str]:
     """Errors between tables, which nothing else reports as long as one of them is wrong by itself."""
     kind, unit = document.get("kind"), document.get("length_unit", "")
-    for other in {"motion": ["path"], "path": ["motion"]}.get(kind, []) if isinstance(kind, str) else []:
-        if other in document:
+    for other in _KINDS if kind in _KINDS else ():
+        if other != kind and other in document:
             yield f'{other} does not belong to kind = "{kind}"'
     wrong: list[str] = []
     if any(table in document for table in MACHINE_TABLES) and isinstance(unit, str):
@@ -153,6 +157,24 @@ class PathTable(TargetsTable):
     timing_deg: Angles | None = None
     closed: bool = False
     within: Zone | None = None
+
+
+class StrokeTable(Table):
+    swing_deg: float | None = None
+    stroke: float | None = None
+    time_ratio: float
+
+    @field_validator("*")
+    @classmethod
+    def _by_itself(cls, given: float | None, key: ValidationInfo) -> float | None:
+        name = str(key.field_name)
+        if given is not None:
+            others = {"swing_deg": 60.0} if name == "time_ratio" else {}
+            StrokeTask.from_degrees(**{**others, name: given})
+        return given
+
+    def value(self) -> StrokeTask:
+        return StrokeTask.from_degrees(**dict(self))
 
 
 Outlines = Annotated[list[Corners], listed("a list of outlines, each a list of corners [x, y]")]
@@ -315,13 +337,14 @@ Mechanism = Annotated[
 class _Task(Table):
     """What is asked; the keys of a file come in this order."""
 
-    kind: Annotated[str, one_of("motion", "path")]
+    kind: Annotated[str, one_of(*_KINDS)]
     mechanism: Mechanism = FOUR_BAR
     title: Text = ""
     source: Text = ""
     length_unit: Text = ""
     motion: MotionTable | None = None
     path: PathTable | None = None
+    stroke: StrokeTable | None = None
     scene: SceneTable = SceneTable()
     requirements: RequirementsTable = RequirementsTable()
     objective: ObjectiveTable = ObjectiveTable()
@@ -332,7 +355,7 @@ class ProblemFile(MachineTables, _Task):
     search: SearchTable = SearchTable()
 
     def value(self) -> Task:
-        tables = {"motion": self.motion, "path": self.path}
+        tables = {kind: getattr(self, kind) for kind in _KINDS}
         mine = tables.pop(self.kind)
         for other, table in tables.items():
             if table is not None:
@@ -341,7 +364,8 @@ class ProblemFile(MachineTables, _Task):
             raise ProblemError(f"{self.kind} is missing")
         if self.dynamics_spec() is not None:
             metres(self.length_unit)  # refuses one that is not known
-        return mine.value()
+        task: Task = mine.value()
+        return task
 
     def problem(self, name: str) -> Problem:
         problem = Problem(
@@ -367,6 +391,7 @@ _TABLES: dict[str, type[Table]] = {
     "": ProblemFile,
     "motion": MotionTable,
     "path": PathTable,
+    "stroke": StrokeTable,
     "scene": SceneTable,
     "requirements": RequirementsTable,
     **{f"requirements.{name}": BoxTable for name in sorted(_PLACES)},

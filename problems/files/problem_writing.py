@@ -72,11 +72,11 @@ def _given(table: Mapping[str, Any]) -> dict[str, Any]:
 
 def _task(task: Task) -> dict[str, Any]:
     """A task's table: its fields, angles in degrees, and poses in rows."""
-    given = {field.name: getattr(task, field.name) for field in fields(task)}  # type: ignore[arg-type]
+    given = {field.name: getattr(task, field.name) for field in fields(task) if field.init}  # type: ignore[arg-type]
     if given.pop("angles", None) is not None:
         given = {"poses": _poses(task), **given}
         del given["positions"]
-    for name in ("angle_within", "timing"):
+    for name in ("angle_within", "timing", "swing"):
         if given.get(name) is not None:
             given[f"{name}_deg"] = _degrees(given.pop(name))
     return given

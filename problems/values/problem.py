@@ -31,6 +31,8 @@ from grashof.problems.values.path_task import PathTask
 from grashof.problems.values.quantities import Needs, Quantity, Unit
 from grashof.problems.values.read_only import ReadOnly
 from grashof.problems.values.requirements import LIMITS, QUANTITIES, Requirements, Rotatability
+from grashof.problems.values.stroke_limits import stated_size, strokes_wrong
+from grashof.problems.values.stroke_task import StrokeTask
 from grashof.problems.values.task import Task
 
 LEAST_TOLERANCE = 1e-4  # sizes: from here on a tolerance is a zone about each target
@@ -71,7 +73,7 @@ class Search:
 
 
 _KINDS: dict[str, Any] = {
-    "task": MotionTask | PathTask,
+    "task": MotionTask | PathTask | StrokeTask,
     "requirements": Requirements,
     "objective": Objective,
     "search": Search,
@@ -93,7 +95,7 @@ class Problem(ReadOnly):
 
     Parameters
     ----------
-    task : MotionTask or PathTask
+    task : MotionTask, PathTask or StrokeTask
     requirements : Requirements
     objective : Objective
     search : Search
@@ -150,6 +152,9 @@ class Problem(ReadOnly):
         wrong += self._not_driven_yet()
         wrong += self._without_value()
         wrong += self._undecided()
+        if isinstance(self.task, StrokeTask):
+            wrong += strokes_wrong(self.task, self.requirements, self.mechanism)
+            object.__setattr__(self, "task", self.task.sized(stated_size(self.requirements)))
         refuse(wrong)
         checked = tuple(
             outline(corners, f"scene.outlines[{index}]") for index, corners in enumerate(self.outlines)
@@ -276,7 +281,7 @@ class Problem(ReadOnly):
         task, wanted = self.task, self.requirements
         if task.zones is not None:
             return task.zones
-        if wanted.tolerance < LEAST_TOLERANCE or not wanted.is_exact(task):
+        if isinstance(task, StrokeTask) or wanted.tolerance < LEAST_TOLERANCE or not wanted.is_exact(task):
             return None
         radii = np.full((2, len(task)), wanted.tolerance * task.size)
         radii[1] /= task.angle_length

@@ -303,8 +303,10 @@ class Requirements(ReadOnly):
             return False
         return task.exact_by_default if self.exact is None else self.exact
 
-    def resolved(self, size: float) -> Requirements:
+    def resolved(self, size: float, *, scale_free: bool = False) -> Requirements:
         """These requirements with every default that depends on the size of the task filled in.
+
+        Where the scale is free, no length has a default.
 
         Examples
         --------
@@ -314,7 +316,7 @@ class Requirements(ReadOnly):
         usual: dict[str, Any] = {
             name: (limited.usual[0] * size, min(limited.usual[1] * size, GREATEST))
             for name, limited in LIMITS.items()
-            if limited.usual is not None and getattr(self, name) is None
+            if limited.usual is not None and getattr(self, name) is None and not scale_free
         }
         anywhere: dict[str, Any] = {
             name: ANYWHERE

@@ -16,7 +16,7 @@ _SAME = 1e-12  # sizes, rad
 
 
 class Task(ReadOnly, ABC):
-    """N targets that a linkage has to meet in order; base of `MotionTask` and `PathTask`.
+    """N targets that a linkage has to meet in order; base of `MotionTask`, `PathTask` and others.
 
     Each target is a row. Its columns are the position of the coupler point, the angle of the body, the
     driver rotation from the first target, and the weight; NaN where a target leaves that part free.
@@ -70,6 +70,16 @@ class Task(ReadOnly, ABC):
     def size(self) -> float:
         """Greatest distance between two target positions; `angle_length` for a pure rotation."""
         return span(self.positions[self.has_position]) or self.angle_length
+
+    @property
+    def scale_free(self) -> bool:
+        """Whether linkages of any size do it, so that the size is no measure of theirs."""
+        return False
+
+    @property
+    def middle(self) -> FloatArray:
+        """Mean of the target positions, shape (2,), length; the origin where all are free."""
+        return np.nanmean(self.positions, axis=0) if self.has_position.any() else np.zeros(2)
 
     @property
     def has_position(self) -> BoolArray:

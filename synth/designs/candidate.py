@@ -91,7 +91,7 @@ class Candidate(Displayed):
         what least squares makes small.
         """
         if problem.requirements.is_exact(problem.task):
-            return self.verdict.error_max / problem.task.size
+            return float(np.nan_to_num(self.verdict.error_max)) / problem.task.size
         return float(np.sqrt(self.verdict.square / len(problem.task))) / problem.task.size
 
     def objective(self, problem: Problem) -> float:

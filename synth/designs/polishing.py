@@ -47,6 +47,8 @@ def polished_solve(scaled: ScaledProblem, start: Start, solve: Solve) -> Solve:
 
 def _on_targets(scaled: ScaledProblem, start: Start, linkage: Start | Solve) -> Polished | None:
     """A linkage polished, with its angles in the order of the targets; None where that leads astray."""
+    if not scaled.has_targets:
+        return None
     order = np.argsort(start.visit)
     theta2, theta3 = np.array(linkage.theta2)[order], np.array(linkage.theta3)[order]
     points = np.array(linkage.points)

@@ -84,7 +84,7 @@ def distinct(
     """At most so many of some candidates that are at least so far apart, in their order."""
     if not candidates:
         return ()
-    origin = np.nanmean(problem.task.positions, axis=0)
+    origin = problem.task.middle
     signatures = np.array([signature(candidate.linkage, origin) for candidate in candidates])
     picked = pick_apart(signatures, -np.arange(len(candidates), dtype=np.float64), least, most)
     return tuple(candidates[i] for i in picked)

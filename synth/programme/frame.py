@@ -18,11 +18,12 @@ class Frame:
 
     origin: complex
     scale: float
+    scale_free: bool = False
 
     @classmethod
     def of(cls, task: Task) -> Frame:
         """The frame of a task."""
-        return cls(complex(*np.nanmean(task.positions, axis=0)), task.size)
+        return cls(complex(*task.middle), task.size, task.scale_free)
 
     def inward(self, points: FloatArray) -> ComplexArray:
         """Points (..., 2) of the problem as complex numbers in this frame."""
@@ -35,7 +36,7 @@ class Frame:
 
     def requirements(self, requirements: Requirements) -> Requirements:
         """Resolved `requirements` with lengths in sizes and boxes in this frame."""
-        whole = requirements.resolved(self.scale)
+        whole = requirements.resolved(self.scale, scale_free=self.scale_free)
         limits = {name: self._limit(getattr(whole, name), limit) for name, limit in whole.limited.items()}
         areas = tuple(self._area(corners) for corners in whole.keep_out)
         return replace(whole, **limits, keep_out=areas)

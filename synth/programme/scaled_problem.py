@@ -128,6 +128,11 @@ class ScaledProblem:
         return bool(self.turn_weights.any())
 
     @property
+    def has_targets(self) -> bool:
+        """Whether there is anything in the plane for a programme to meet: a position or an angle."""
+        return bool(self.weights.any() or self.turn_weights.any())
+
+    @property
     def timed(self) -> bool:
         """Whether the driver rotations are prescribed."""
         return bool(self.timing.any())

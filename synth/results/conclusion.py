@@ -6,6 +6,7 @@ import logging
 
 from grashof.synth.designs.families import listed
 from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.results.advice import advice
 from grashof.synth.results.choice import choose, least_error, why_ended
 from grashof.synth.results.explain import explain
 from grashof.synth.results.result import Result
@@ -47,7 +48,7 @@ def conclude(scaled: ScaledProblem, ledgers: list[Ledger], run: Run, asked: Aski
         nearest=explanation.nearest,
         tally=ledger.tally,
         seconds=seconds,
-        note=explanation.note,
+        note=explanation.note or (advice(problem) if designs else ""),
         complete=ledger.complete,
         ended=ended,
         least_error=least_error(scaled, ledger),

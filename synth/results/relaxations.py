@@ -29,6 +29,7 @@ from grashof.synth.results.relaxed_limits import (
 )
 from grashof.synth.search.run import Run
 from grashof.synth.starts.finder import finder_for
+from grashof.synth.starts.limit_positions import LimitPositions
 from grashof.synth.starts.selection import closest_starts
 
 SOLVES = 6  # starts for each requirement
@@ -74,6 +75,10 @@ def _candidates(scaled: ScaledProblem, key: str, rng: np.random.Generator, run: 
     """Designs that miss a requirement by little, and others by nothing if that can be."""
     loose = _loose(scaled, key)
     finder = finder_for(loose)
+    if isinstance(finder, LimitPositions):
+        if key in UNSMOOTH:
+            return []  # limit positions are always in order and on one branch
+        return _judged(scaled, loose, finder.closest_to(LimitPositions(scaled), rng), run)
     linkages = rejudged(scaled, finder.near(rng))
     starts = closest_starts(scaled, linkages, key, SOLVES)
     as_they_are = [replace(start, settled=True) for start in starts]

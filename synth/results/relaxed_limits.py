@@ -73,7 +73,9 @@ def limiting(problem: Problem, constraints: Sequence[Constraint]) -> list[str]:
     wanted, usual = problem.requirements, Requirements()
     keys = [key for key in (*LIMITS, "keep_out") if getattr(wanted, key) != getattr(usual, key)]
     keys += ["constraints"] * bool(constraints)
-    if wanted.rotatability is not Rotatability.ANY and not problem.task.closed:
+    if wanted.rotatability is not Rotatability.ANY and not (
+        problem.task.closed and problem.task.has_position.any()
+    ):
         keys.append("rotatability")
     return keys + [key for key in UNSMOOTH if getattr(wanted, key)]
 
@@ -152,7 +154,7 @@ def _eased(
     problem: Problem, own: tuple[Constraint, ...], key: str, missed: list[Defect]
 ) -> Iterator[tuple[dict[str, Any], str]]:
     """What asks for less, by key, the least change first, in the order to be tried; with words."""
-    wanted = problem.requirements.resolved(problem.task.size)
+    wanted = problem.requirements.resolved(problem.task.size, scale_free=problem.task.scale_free)
     found, asked = [defect.found for defect in missed], cast(Any, getattr(wanted, key, None))
     kind = LIMITS[key].kind if key in LIMITS else None
     if key == "rotatability":

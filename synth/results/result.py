@@ -37,7 +37,7 @@ class Result(Displayed):
     seconds : mapping of str to float
         Time by stage.
     note : str
-        Why the list is empty or was cut short; empty otherwise.
+        Why the list is empty or was cut short, or that no linkage does such a task well; else empty.
     complete : bool
         False when the search was interrupted.
     ended : str

@@ -85,11 +85,12 @@ def attempt(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
         return Attempt(LEFT_ALONE, None)
     finder, start = finder_for(scaled), polished_start(scaled, start)
     done = None
-    if start.settled or not set(UNSMOOTH).isdisjoint(start.relaxed):
+    if start.settled or not scaled.has_targets or not set(UNSMOOTH).isdisjoint(start.relaxed):
         points = (start.o2, start.o4, start.a, start.b, start.p)
         as_it_is = Solve(points, start.theta2, start.theta3, start.body_angle, "Not_Solved", 0)
         done = polished_and_judged(scaled, start, as_it_is, number)
-    if done is None or (start.settled and finder.freedom and not done.verified):
+    may_move = scaled.has_targets and start.settled and finder.freedom
+    if done is None or (may_move and not done.verified):
         done = _solved(scaled, start, number)
     if done.verified and finder.cognates:
         done = replace(done, cognates=verified_cognates(scaled, done.verified[0]))

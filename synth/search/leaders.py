@@ -35,7 +35,7 @@ class Leaders:
 
     def add(self, candidates: Iterable[Candidate]) -> None:
         """Take designs in."""
-        origin = np.nanmean(self.problem.task.positions, axis=0)
+        origin = self.problem.task.middle
         for candidate in candidates:
             number, numbers = len(self._every), signature(candidate.linkage, origin)
             if number == len(self._signatures):

@@ -77,6 +77,8 @@ def symmetries(task: Task) -> tuple[Symmetry, ...]:
 
 def middle_of(task: Task) -> FloatArray:
     """Mean of the target positions, shape (2,), length: it stays in its place under all symmetries."""
+    if not task.has_position.any():
+        return task.middle
     middle: FloatArray = np.nanmean(_once(task), axis=0)
     return middle
 

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from io import StringIO
 from textwrap import TextWrapper
 
+import numpy as np
 from rich import box
 from rich.console import Console, JustifyMethod
 from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
@@ -179,10 +180,11 @@ def heading(result: Result, verified: int) -> str:
     """How many designs there are, how exact, and what the columns of `best_rows` mean."""
     exact = result.problem.requirements.is_exact(result.problem.task)
     verdicts = [candidate.verdict for candidate in result.candidates]
-    error = f"largest position error {max(each.error_max for each in verdicts):.1e}"
+    worst = max(each.error_max for each in verdicts)
+    error = "" if np.isnan(worst) else f", largest position error {worst:.1e}"
     if not exact:  # as the column shows it
         least = min(each.error(result.problem) for each in result.candidates)
-        error = f"smallest error rms {least * result.problem.task.size:.2g}"
+        error = f", smallest error rms {least * result.problem.task.size:.2g}"
     classes = _classes(result)
     kind = f"{classes.pop()} " if len(classes) == 1 else ""
     families = len(result.families)
@@ -200,7 +202,7 @@ def heading(result: Result, verified: int) -> str:
         shown = f" The best of {f'the first {_ROWS} families' if families > _ROWS else 'each family'}:"
     counted_so = error_meaning(result.problem)
     return (
-        f"{found}, {error}.{lengths}\n"
+        f"{found}{error}.{lengths}\n"
         f"{f'error rms: {counted_so}.' + chr(10) if counted_so else ''}"
         f"mu: worst transmission angle; *: Pareto-optimal in {goals(result.problem)}.{shown}"
     )

@@ -39,6 +39,10 @@ def scene_of(problem: Problem) -> dict[str, Any]:
 
 
 def _targets(task: Task) -> dict[str, Any]:
+    if not (
+        task.has_position.any() or task.has_angle.any()
+    ):  # limit positions are where the linkage has them
+        return {"points": [], "closed": task.closed}
     if task.only_points:
         return {"points": task.positions.tolist(), "closed": task.closed}
     poses = np.column_stack([task.positions, task.angles])

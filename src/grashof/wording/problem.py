@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from grashof.problems import DynamicsSpec, Problem, Requirements, Task
+from grashof.problems import DynamicsSpec, Problem, Requirements, StrokeTask, Task
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.problems.values.mechanisms import FOUR_BAR
@@ -41,7 +41,8 @@ def goals(problem: Problem) -> str:
 
 def summary(problem: Problem) -> list[str]:
     """A problem in a few lines, with the requirements as they will be applied."""
-    task, wanted = problem.task, problem.requirements.resolved(problem.task.size)
+    task = problem.task
+    wanted = problem.requirements.resolved(task.size, scale_free=task.scale_free)
     unit = f" {problem.length_unit}" if problem.length_unit else ""
     lines = [
         f"{problem.name}: {problem.title}" if problem.title else problem.name,
@@ -156,6 +157,10 @@ def _motor(spec: DynamicsSpec) -> str:
 
 
 def _task(task: Task, unit: str) -> str:
+    if isinstance(task, StrokeTask):
+        way = f"stroke {task.stroke}{unit}" if task.swing is None else f"swing {np.degrees(task.swing):g} deg"
+        free = "place" if task.swing is None else "place and scale"
+        return f"{way}, time ratio {task.time_ratio:g}, {free} free"
     kind = f"closed {task.kind}" if task.closed else task.kind
     timing = f" timed over {np.degrees(task.driver_turns[-1]):g} deg" if task.is_timed else ""
     length = f", angle_length {task.angle_length:g}{unit}" if task.kind == "motion" else ""
@@ -167,7 +172,10 @@ def _exactness(problem: Problem) -> str:
         return "zones about the targets"
     if not problem.requirements.is_exact(problem.task):
         return "least squares"
-    return f"every target met within {problem.requirements.tolerance:g} sizes"
+    within = f"met within {problem.requirements.tolerance:g}"
+    if isinstance(problem.task, StrokeTask):
+        return f"{within} (rad, and as a share)"
+    return f"every target {within} sizes"
 
 
 def _yes(value: bool) -> str:

@@ -205,3 +205,11 @@ def test_areas_that_share_a_side_leave_no_gap() -> None:
     ]
     assert depths(judged(halves, "o2")) == {"O2": pytest.approx(1.0)}
     assert judged(halves[:1], "o2").ok
+
+
+def test_a_segment_as_short_as_rounding_is_a_point() -> None:
+    """What is cut out of it may be an empty line."""
+    square = Area.of([np.array([[2.0, 0.0], [3.0, 0.0], [3.0, 1.0], [2.0, 1.0]])])
+    begin = 2.0 + np.random.default_rng(0).uniform(0, 1, (400, 2)) - [0, 2]
+    end = begin + np.random.default_rng(1).choice([0.0, 4e-16, -4e-16], (400, 2))
+    assert segment_depth(square, begin, end) == pytest.approx(depth(square, begin), abs=1e-14)

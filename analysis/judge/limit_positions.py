@@ -1,0 +1,70 @@
+"""Strokes: where a linkage has its limit positions, and what its swing and time ratio miss."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from grashof.analysis.four_bar.stroke import output_stroke
+from grashof.analysis.judge.task_motion import Targets, TaskMotion
+from grashof.analysis.judge.verdict import Defect
+from grashof.problems import FourBar, Requirements
+from grashof.problems.values.arrays import TURN
+from grashof.problems.values.stroke_task import StrokeTask
+
+_EVEN = 1e-12  # rad: strokes that differ by less take as long
+
+
+def at_limits(linkage: FourBar, task: StrokeTask, wanted: Requirements) -> tuple[Targets, TaskMotion]:
+    """The limit positions of a linkage on its own assembly, and the slow stroke from one to the other.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        A single linkage.
+    task : StrokeTask
+    wanted : Requirements
+        The driver turns clockwise where its sense has to be; otherwise counter-clockwise, as
+        either sense has the same swing and time ratio.
+
+    Returns
+    -------
+    Targets, TaskMotion
+        A whole turn apart where there are no limit positions.
+
+    Examples
+    --------
+    >>> norton = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
+    >>> task = StrokeTask.from_degrees(swing_deg=73.7818, time_ratio=1.355573)
+    >>> np.degrees(at_limits(norton, task, Requirements())[1].theta2).round(2).tolist()
+    [24.15, 231.32]
+    """
+    sense = -1 if wanted.driver_sense == "cw" else 1
+    stretched, folded = np.nan_to_num(output_stroke(linkage).theta2, nan=0.0).tolist()
+    there = sense * (folded - stretched) % TURN
+    first, way = (stretched, there) if there > np.pi - _EVEN else (folded, TURN - there)
+    first -= TURN * np.ceil((first - np.pi) / TURN)
+    theta2 = np.array([first, first + sense * way])
+    assembly = np.full(2, int(linkage.assembly))
+    return Targets.of(linkage, task, theta2, assembly), TaskMotion.ordered(theta2, sense)
+
+
+def stroke_defects(linkage: FourBar, task: StrokeTask, wanted: Requirements) -> Iterator[Defect]:
+    """What swing and time ratio miss, by the linkage's own motion.
+
+    The swing may differ by `tolerance` in rad, the time ratio by that share of it.
+    """
+    found = output_stroke(linkage)
+    swing, ratio = float(found.swing), float(found.time_ratio)
+    if np.isnan(swing):  # link 4 does not turn back
+        swing, ratio = TURN, task.time_ratio
+    asked = (
+        ("the swing in deg", swing, task.swing or 0.0, float(np.degrees(1.0)), 1.0),
+        ("the time ratio", ratio, task.time_ratio, 1.0, task.time_ratio),
+    )
+    for what, value, wish, unit, scale in asked:
+        miss = abs(value - wish) / scale if np.isfinite(value) else np.inf
+        if not miss <= wanted.tolerance:
+            within = f"{wish * unit:.6g} within {wanted.tolerance * scale * unit:.2g}"
+            yield Defect("exact", what, value * unit, within, miss - wanted.tolerance)

@@ -1,0 +1,326 @@
+"""Linkages by the limit positions of their output, where driver and coupler are in line.
+
+All crank-rockers with one swing and time ratio, and all slider-cranks with one stroke and time ratio, are
+families of one number, the share of the driver's length in the coupler's. Transmission is best somewhere
+in between, or where a limit ends the family.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from grashof.problems import FourBar, SliderCrank, StrokeTask
+from grashof.problems.values.arrays import BoolArray, FloatArray
+
+# Shares r2 / r3 at which a family is looked at, close where one of the two vanishes beside the other.
+_GRID = np.unique(
+    np.concatenate([
+        np.geomspace(1e-6, 0.02, 160), np.linspace(0.02, 0.98, 1200), 1 - np.geomspace(0.02, 1e-6, 80),
+    ])
+)  # fmt: skip
+_HALVINGS = 60
+_GOLDEN, _SECTIONS = (np.sqrt(5) - 1) / 2, 72  # to rounding, from neighbours of the grid
+_ROUNDING = 1e-12  # margins down to that are zero
+
+
+@dataclass(frozen=True, slots=True)
+class Members:
+    """Members of a family.
+
+    Parameters
+    ----------
+    share : ndarray, shape (n,)
+        r2 / r3.
+    lengths : ndarray, shape (n, k)
+        r1 (1), r2, r3, r4 of crank-rockers; r2, r3 and offset, in strokes, of slider-cranks.
+    transmission : ndarray, shape (n,), rad
+        Worst min(mu, pi - mu) over the turn.
+    margin : ndarray, shape (n,)
+        Positive where the driver turns fully and both limit positions lie on one assembly.
+    first, last : ndarray, shape (n,), rad
+        Driver angles from O2O4, or from the slide's direction, at which the slow stroke begins and ends when
+        the driver turns counter-clockwise; the other way round when it turns clockwise.
+    assembly : ndarray, shape (n,)
+    """
+
+    share: FloatArray
+    lengths: FloatArray
+    transmission: FloatArray
+    margin: FloatArray
+    first: FloatArray
+    last: FloatArray
+    assembly: FloatArray
+
+    def __getitem__(self, index: Any) -> Members:
+        return Members(*(getattr(self, name)[index] for name in self.__slots__))
+
+    @property
+    def mirrored(self) -> Members:
+        """Their mirror images, in which the driver turns the other way."""
+        return replace(self, first=-self.last, last=-self.first, assembly=-self.assembly)
+
+    @property
+    def usable(self) -> BoolArray:
+        """Which of them turn fully on one assembly, shape (n,)."""
+        return self.margin > 0
+
+
+Family: TypeAlias = Callable[[FloatArray], Members]
+# How far members are inside limits, (n,): negative outside.
+Allowed: TypeAlias = Callable[[Members], FloatArray]
+
+
+def lag_of(time_ratio: float) -> float:
+    """By how much the driver turns more than half a turn in the slow stroke, rad.
+
+    Examples
+    --------
+    >>> round(float(np.degrees(lag_of(1.5))), 12)
+    36.0
+    """
+    return float(np.pi * (time_ratio - 1) / (time_ratio + 1))
+
+
+def crank_rockers(swing: float, lag: float, share: FloatArray) -> Members:
+    """The crank-rockers with a swing and a time ratio, O2O4 = 1.
+
+    Parameters
+    ----------
+    swing : float, rad
+        Of link 4, below pi.
+    lag : float, rad
+        See `lag_of`; negative where link 4 swings the other way while driver and coupler go from stretched
+        to folded.
+    share : ndarray, shape (n,)
+        r2 / r3, between 0 and 1.
+
+    Notes
+    -----
+    In the triangles O2-B1-B2 and O4-B1-B2 of the two limit positions, O2B1 = r3 + r2, O2B2 = r3 - r2, the
+    angles at O2 and O4 are lag and swing (Alt's problem):
+
+        r4² sin²(swing/2) = r2² cos²(lag/2) + r3² sin²(lag/2)
+        r1² sin²(swing/2) = r2² cos²((swing − lag)/2) + r3² sin²((swing − lag)/2)
+
+    These hold for any two points B; both are on one assembly where they lie on the same side of their
+    coupler's line, O2B, as seen from O4.
+
+    Examples
+    --------
+    >>> found = crank_rockers(np.radians(80), lag_of(10 / 9), np.array([0.401785]))
+    >>> (120 * found.lengths).round(2).tolist(), np.degrees(found.transmission).round(3).tolist()
+    ([[120.0, 46.67, 116.16, 73.88]], [37.733])
+    """
+    r2, r3, sine = share, np.ones_like(share), np.sin(swing / 2)
+    r4 = np.hypot(r2 * np.cos(lag / 2), r3 * np.sin(lag / 2)) / sine
+    r1 = np.hypot(r2 * np.cos((swing - lag) / 2), r3 * np.sin((swing - lag) / 2)) / sine
+    b1, b2, turned = r3 + r2, (r3 - r2) * np.exp(1j * lag), np.exp(1j * swing)
+    o4 = (b2 - b1 * turned) / (1 - turned)
+    side = (b1 - o4).imag
+    sides = side * ((b2 - o4) * np.exp(-1j * lag)).imag / r4**2
+    stretched = -np.angle(o4)
+    turns = np.min([r3 + r4 - r1 - r2, np.abs(r1 - r2) - np.abs(r3 - r4), r1 - r2], axis=0)
+    return Members(
+        share=share,
+        lengths=np.stack([r1, r2, r3, r4], axis=-1) / r1[:, None],
+        transmission=_worst(r1, r2, r3, r4),
+        margin=np.minimum(sides, turns / (r1 + r2 + r3 + r4)),
+        first=stretched if lag >= 0 else stretched + lag + np.pi,
+        last=stretched + lag + np.pi if lag >= 0 else stretched + 2 * np.pi,
+        assembly=np.where(side > 0, 1.0, -1.0),
+    )
+
+
+def _worst(r1: FloatArray, r2: FloatArray, r3: FloatArray, r4: FloatArray) -> FloatArray:
+    """Worst transmission angle over the turn; zero where the links do not close."""
+    ends = np.stack([r1 - r2, r1 + r2])
+    cosine = np.clip((r3**2 + r4**2 - ends**2) / (2 * r3 * r4), -1.0, 1.0)
+    angle: FloatArray = np.arccos(np.abs(cosine)).min(axis=0)
+    return angle
+
+
+def slider_cranks(lag: float, share: FloatArray) -> Members:
+    """The slider-cranks with a time ratio, of stroke 1.
+
+    Parameters
+    ----------
+    lag : float, rad
+        See `lag_of`.
+    share : ndarray, shape (n,)
+        r2 / r3, between 0 and 1.
+
+    Notes
+    -----
+    In the triangle O2-B1-B2 of the two limit positions with the sides r3 + r2, r3 - r2 and the stroke S:
+
+        S² = (r3 + r2)² + (r3 − r2)² − 2 (r3² − r2²) cos lag        offset = (r3² − r2²) sin(lag) / S
+
+    Both are on one assembly where B1 and B2 lie on one side of the foot of O2 on the slide, that is where the
+    angle at B2 is obtuse. The worst transmission angle has cos mu = (r2 + offset) / r3.
+
+    Examples
+    --------
+    >>> found = slider_cranks(lag_of(1.2), np.array([0.36781]))
+    >>> found.lengths.round(4).tolist(), np.degrees(found.transmission).round(3).tolist()
+    ([[0.4705, 1.2791, 0.3986]], [47.201])
+    """
+    r3 = 0.5 / np.hypot(np.sin(lag / 2), share * np.cos(lag / 2))
+    r2 = share * r3
+    offset = (r3**2 - r2**2) * np.sin(lag)
+    turns = (r3 - r2 - offset) / (r3 + r2 + offset)
+    return Members(
+        share=share,
+        lengths=np.stack([r2, r3, offset], axis=-1),
+        transmission=np.arccos(np.clip((r2 + offset) / r3, 0.0, 1.0)),
+        margin=np.minimum(4 * r2 * r3 - 1, turns),
+        first=(first := np.arcsin(np.clip(offset / (r3 + r2), 0.0, 1.0))),
+        last=first + lag + np.pi,
+        assembly=np.ones_like(share),
+    )
+
+
+def linkages_of(task: StrokeTask, members: Members) -> FourBar | SliderCrank:
+    """Members as a batch of linkages, shape (n,): O2 the origin, O4 (1, 0) or the slide along x, P in A.
+
+    Examples
+    --------
+    >>> task = StrokeTask(stroke=100.0, time_ratio=1.2)
+    >>> slides = linkages_of(task, slider_cranks(lag_of(1.2), np.array([0.36781])))
+    >>> slides.offset.round(2).tolist()
+    [39.86]
+    """
+    if task.stroke is not None:
+        r2, r3, offset = task.stroke * members.lengths.T
+        return SliderCrank((0.0, 0.0), r2, r3, offset, assembly=members.assembly)
+    r1, r2, r3, r4 = members.lengths.T
+    o4 = np.stack([r1, np.zeros_like(r1)], axis=-1)
+    return FourBar((0.0, 0.0), o4, r2, r3, r4, assembly=members.assembly)
+
+
+def greatest_time_ratio(swing: float) -> float:
+    """Below which crank-rockers with a swing (rad) have their time ratios.
+
+    Their limit positions are on one assembly and the driver turns fully only where the driver's angle
+    between them lies between 90 deg + swing/2 and 270 deg + swing/2.
+
+    Examples
+    --------
+    >>> round(greatest_time_ratio(np.radians(80)), 3)
+    6.2
+    """
+    return float((3 * np.pi + swing) / (np.pi - swing))
+
+
+def families_of(swing: float | None, time_ratio: float) -> list[Family]:
+    """All crank-rockers with a swing (rad) and a time ratio; of None, all slider-cranks of stroke 1."""
+    lag = lag_of(time_ratio)
+    if swing is None:
+        return [partial(slider_cranks, lag)]
+    return [partial(crank_rockers, swing, sign) for sign in ([lag, -lag] if lag else [0.0])]
+
+
+def everywhere(members: Members) -> FloatArray:
+    """No limit: every member is far inside."""
+    return np.ones(len(members.share))
+
+
+def _margin(family: Family, allowed: Allowed) -> Callable[[FloatArray], FloatArray]:
+    def margin(share: FloatArray) -> FloatArray:
+        found = family(share)
+        return np.minimum(found.margin, allowed(found))
+
+    return margin
+
+
+def stretches(family: Family, allowed: Allowed = everywhere) -> list[tuple[float, float]]:
+    """Where members of a family are usable and allowed: stretches of r2 / r3, ends included.
+
+    Notes
+    -----
+    Between neighbours of a grid the ends are found by halving; stretches too narrow for the grid
+    where the margin is greatest between its points.
+    """
+    margin = _margin(family, allowed)
+    at_grid = margin(_GRID)
+    peaks = _peaks(margin, at_grid)
+    share = np.concatenate([_GRID, peaks])
+    order = np.argsort(share)
+    share, inside = share[order], (np.concatenate([at_grid, margin(peaks)]) >= -_ROUNDING)[order]
+    first = np.flatnonzero(inside & ~np.concatenate([[False], inside[:-1]]))
+    last = np.flatnonzero(inside & ~np.concatenate([inside[1:], [False]]))
+    low, high = np.maximum(first - 1, 0), np.minimum(last + 1, len(share) - 1)
+    begin = _edge(margin, share[low], share[first])
+    end = _edge(margin, share[high], share[last])
+    return list(zip(begin.tolist(), end.tolist(), strict=True))
+
+
+def _peaks(margin: Callable[[FloatArray], FloatArray], at_grid: FloatArray) -> FloatArray:
+    """Where a margin that is negative on the grid is greatest between its points."""
+    padded = np.pad(at_grid, 1, constant_values=-np.inf)
+    peak = (at_grid >= padded[:-2]) & (at_grid >= padded[2:]) & (at_grid < 0) & np.isfinite(at_grid)
+    found = [highest(margin, *_beside(k)) for k in np.flatnonzero(peak).tolist()]
+    return np.array(found, dtype=np.float64)
+
+
+def _beside(k: int) -> tuple[float, float]:
+    return float(_GRID[max(k - 1, 0)]), float(_GRID[min(k + 1, len(_GRID) - 1)])
+
+
+def highest(value: Callable[[FloatArray], FloatArray], low: float, high: float) -> float:
+    """Where a function of shares (n,) is greatest between two of them, if it has one maximum there.
+
+    Golden section: limits meet in kinks, at which methods that fit parabolas lose half of the digits.
+    """
+    for _ in range(_SECTIONS):
+        inner = np.array([high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)])
+        left, right = value(inner)
+        low, high = (low, float(inner[1])) if left >= right else (float(inner[0]), high)
+    return (low + high) / 2
+
+
+def _edge(margin: Callable[[FloatArray], FloatArray], outside: FloatArray, inside: FloatArray) -> FloatArray:
+    """The last places inside on the way to places outside; shape (m,)."""
+    for _ in range(_HALVINGS):
+        middle = (outside + inside) / 2
+        is_in = margin(middle) >= -_ROUNDING
+        outside, inside = np.where(is_in, outside, middle), np.where(is_in, middle, inside)
+    return inside
+
+
+def best_of(family: Family, within: list[tuple[float, float]]) -> list[float]:
+    """Where the transmission is best in each stretch of a family; no better one lies beside it."""
+
+    def transmission(share: FloatArray) -> FloatArray:
+        return family(share).transmission
+
+    best = []
+    for low, high in within:
+        looked_at = np.concatenate([[low], _GRID[(low < _GRID) & (high > _GRID)], [high]])
+        k = int(np.argmax(transmission(looked_at)))
+        near = looked_at[max(k - 1, 0)], looked_at[min(k + 1, len(looked_at) - 1)]
+        tried = np.array([looked_at[k], highest(transmission, *near) if near[0] < near[1] else low])
+        best.append(float(tried[np.argmax(transmission(tried))]))
+    return best
+
+
+def best_transmission(swing: float | None, time_ratio: float, allowed: Allowed = everywhere) -> float:
+    """The best worst transmission angle over the turn for a swing (None: a slide), rad; NaN without any.
+
+    Examples
+    --------
+    >>> round(float(np.degrees(best_transmission(np.radians(80), 10 / 9))), 3)
+    37.733
+    >>> round(float(np.degrees(best_transmission(None, 2.0))), 3)
+    11.211
+    """
+    found = [
+        family(np.array(best_of(family, within))).transmission.max()
+        for family in families_of(swing, time_ratio)
+        if (within := stretches(family, allowed))
+    ]
+    return float(max(found, default=np.nan))

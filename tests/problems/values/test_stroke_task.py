@@ -1,0 +1,141 @@
+"""Stroke tasks: what can be asked for, and what is refused in a line."""
+
+import copy
+import pickle
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grashof.problems import Box, Problem, ProblemError, Requirements, StrokeTask
+
+
+def test_two_limit_positions_without_a_place() -> None:
+    task = StrokeTask.from_degrees(swing_deg=80, time_ratio=1.25)
+    assert len(task) == 2
+    assert np.isnan(task.positions).all()
+    assert not task.has_angle.any()
+    assert task.swing == np.radians(80)
+    assert (task.closed, task.returns, task.exact_by_default, task.scale_free) == (True, False, True, True)
+    assert task.middle.tolist() == [0, 0]
+
+
+def test_a_stroke_is_the_size() -> None:
+    task = StrokeTask(stroke=100, time_ratio=1.2)
+    assert (task.size, task.scale_free, task.swing) == (100.0, False, None)
+
+
+@pytest.mark.parametrize(
+    ("wanted", "size"),
+    [
+        ({}, 1.0),
+        ({"r1": (120, 120)}, 120.0),
+        ({"link_length": (10, 200)}, 200.0),
+        ({"o2": Box((0, 0), (0, 0)), "o4": Box((3, 3), (4, 4))}, 5.0),
+        ({"o2": Box((0, 0), (0, 0)), "o4": Box((3, 3))}, 1.0),
+        ({"o2": Box((0, 0), (0, 0))}, 1.0),
+    ],
+)
+def test_a_free_scale_is_taken_from_limits(wanted: dict[str, Any], size: float) -> None:
+    task = StrokeTask.from_degrees(swing_deg=80, time_ratio=1.1)
+    assert Problem(task=task, requirements=Requirements(**wanted)).task.size == size
+    assert task.size == 1.0
+
+
+def test_no_length_has_a_default_where_the_scale_is_free() -> None:
+    assert Requirements().resolved(1.0, scale_free=True).link_length is None
+    assert Requirements().resolved(1.0).link_length == (0.01, 20.0)
+
+
+def test_copies_are_the_same() -> None:
+    task = StrokeTask(swing=1.0, time_ratio=1.5).sized(7.0)
+    for twin in (pickle.loads(pickle.dumps(task)), copy.deepcopy(task)):
+        assert (twin.swing, twin.stroke, twin.time_ratio, twin.size, twin.closed) == (
+            1.0,
+            None,
+            1.5,
+            7.0,
+            True,
+        )
+    assert replace(task).swing == 1.0
+    assert task.without_zones().time_ratio == 1.5
+
+
+@pytest.mark.parametrize(
+    ("stated", "message"),
+    [
+        ({}, "stroke has neither swing_deg nor stroke; it must be one of the two: .*"),
+        (
+            {"swing_deg": 80, "stroke": 1},
+            "stroke has both swing_deg and stroke; it must be one of the two: .*",
+        ),
+        ({"swing_deg": 200}, "stroke.swing_deg is 200; it must be from 0.0573 to less than 180, .*"),
+        ({"swing_deg": 180}, "stroke.swing_deg is 180; it must be .*"),
+        ({"swing_deg": 0}, "stroke.swing_deg is 0; it must be .*"),
+        ({"swing_deg": float("nan")}, "stroke.swing_deg is nan; it must be a finite number"),
+        ({"swing_deg": "80"}, "stroke.swing_deg is '80'; it must be a finite number"),
+        ({"stroke": -1}, "stroke.stroke is -1; it must be a number greater than zero"),
+        ({"swing_deg": 80, "time_ratio": 0.9}, "stroke.time_ratio is 0.9; it must be at least 1, .*"),
+        ({"swing_deg": 80, "time_ratio": np.inf}, "stroke.time_ratio is inf; it must be a finite number"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_a_line(stated: dict[str, Any], message: str) -> None:
+    with pytest.raises(ProblemError, match=f"^{message}$"):
+        StrokeTask.from_degrees(**stated)
+
+
+@pytest.mark.parametrize(
+    ("stated", "mechanism", "message"),
+    [
+        (
+            {"swing_deg": 80, "time_ratio": 6.2},
+            "four-bar",
+            r"stroke.time_ratio is 6.2; it must be less than 6.2 for .*",
+        ),
+        ({"swing_deg": 80, "time_ratio": 6.19}, "four-bar", ""),
+        (
+            {"stroke": 1, "time_ratio": 3.0},
+            "slider-crank",
+            r"stroke.time_ratio is 3; it must be less than 3 for .*",
+        ),
+        ({"stroke": 1, "time_ratio": 2.99}, "slider-crank", ""),
+        ({"stroke": 1}, "four-bar", "stroke.stroke is of a slide; .*"),
+        ({"swing_deg": 80}, "slider-crank", "stroke.swing_deg is of a rocker; .*"),
+    ],
+)
+def test_what_a_kind_of_linkage_cannot_do(stated: dict[str, Any], mechanism: str, message: str) -> None:
+    import re
+
+    assert re.fullmatch(message, StrokeTask.from_degrees(**stated).impossible(mechanism))
+
+
+@pytest.mark.parametrize(
+    ("wanted", "message"),
+    [
+        ({"exact": False}, "requirements.exact is false; .*"),
+        ({"rotatability": "double-crank"}, 'requirements.rotatability is "double-crank", .*'),
+        ({"error_factor": 1.2}, "requirements.error_factor needs least squares.*"),
+        ({"a_on_body": Box((0, 1))}, "stroke has no angles; requirements.a_on_body needs it"),
+    ],
+)
+def test_requirements_that_mean_nothing(wanted: dict[str, Any], message: str) -> None:
+    task = StrokeTask.from_degrees(swing_deg=80, time_ratio=1.1)
+    with pytest.raises(ProblemError, match=f"^{message}$"):
+        Problem(task=task, requirements=Requirements(**wanted))
+
+
+def test_a_great_tolerance_is_no_zone() -> None:
+    task = StrokeTask.from_degrees(swing_deg=80, time_ratio=1.1)
+    problem = Problem(task=task, requirements=Requirements(tolerance=0.01))
+    assert problem.zones is None
+    assert problem.by_objective
+
+
+@given(st.floats(1.0, 1e6))
+def test_the_slow_stroke_takes_the_ratio_of_the_quick_one(ratio: float) -> None:
+    slow = StrokeTask(swing=1.0, time_ratio=ratio).driver_rotation
+    assert slow >= np.pi - 1e-12
+    assert slow / (2 * np.pi - slow) == pytest.approx(ratio, rel=1e-8)

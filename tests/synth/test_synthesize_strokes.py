@@ -1,0 +1,151 @@
+"""Crank-rockers by swing and time ratio, from the problem to the list."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from grashof.analysis import verify
+from grashof.problems import Problem, StrokeTask, load
+from grashof.problems.files.problem_schema import problem_from
+from grashof.synth import Result, synthesize
+from grashof.synth.theory.limit_positions import best_transmission
+
+
+def found(swing_deg: float = 80, time_ratio: float = 10 / 9, tables: Any = None, **wanted: Any) -> Result:
+    stroke = {"swing_deg": swing_deg, "time_ratio": time_ratio}
+    document = {"kind": "stroke", "stroke": stroke, "requirements": wanted, **(tables or {})}
+    return synthesize(problem_from(document, "stroke"), enough=8)
+
+
+def worst(result: Result) -> np.ndarray:
+    return np.degrees([each.verdict.transmission_min_cycle for each in result.candidates])
+
+
+def test_the_published_quick_return_is_first_then_a_family_to_choose_from() -> None:
+    result = synthesize(load("quick-return"))
+    np.testing.assert_allclose(result.best.linkage.lengths, [120, 46.67, 116.16, 73.88], atol=0.005)
+    assert worst(result)[0] == pytest.approx(37.733, abs=5e-4)
+    assert len(result) >= 50
+    frame = result.to_frame()
+    assert frame["output_swing_deg"].to_numpy() == pytest.approx(80, abs=1e-9)
+    assert frame["time_ratio"].to_numpy() == pytest.approx(10 / 9, abs=1e-9)
+    assert (frame["theta2_end_deg"] - frame["theta2_start_deg"]).to_numpy() == pytest.approx(3600 / 19)
+    assert frame["error_max"].isna().all()
+    front = frame[frame["pareto"]]
+    assert front["size"].max() > 1.5 * front["size"].min()
+    assert (frame["grashof_class"] == "crank-rocker").all()
+
+
+@pytest.mark.parametrize(
+    ("swing", "ratio", "wanted"),
+    [
+        (30, 1.0, {"link_ratio_max": 10}),
+        (80, 10 / 9, {"link_ratio_max": 2}),
+        (60, 1.3, {"r2": [1, 2], "r4": [2.5, 3]}),
+        (20, 1.2, {"transmission_min_deg": 40, "transmission_over": "cycle", "driver_sense": "cw"}),
+        (80, 1.1, {"o2": [3, 4], "o4": {"x": [100, 120], "y": [50, 60]}}),
+        (80, 1.1, {"theta2_start_deg": 30, "link_length": [50, 200]}),
+        (80, 1.1, {"ground_angle_deg": -90, "o4": {"y": [-7, -5]}, "driver_sense": "cw"}),
+        (80, 1.1, {"ground_angle_deg": 10, "theta2_start_deg": 32}),
+        (80, 1.1, {"r1": [120, 120], "r2": [46, 46]}),
+        (100, 1.0, {"rotatability": "any", "rotatability_margin": 0}),
+    ],
+)
+def test_limits_are_kept(swing: float, ratio: float, wanted: dict[str, Any]) -> None:
+    result = found(swing, ratio, **wanted)
+    task, asked = result.problem.task, result.problem.requirements
+    assert len(result) > 0
+    for each in result.candidates:
+        assert verify(each.linkage, task, asked).ok
+    assert worst(result)[0] == worst(result).max()
+    assert worst(result)[0] <= np.degrees(best_transmission(np.radians(swing), ratio)) + 1e-6
+
+
+@pytest.mark.parametrize(
+    ("wanted", "words"),
+    [
+        ({"transmission_min_deg": 40}, "transmission_min_deg 37.73 instead of 40"),
+        ({"link_ratio_max": 1.5}, "link_ratio_max 1.562 instead of 1.5"),
+        ({"r1": [120, 120], "link_length": [0, 30]}, "r1"),
+        ({"output_swing_deg": [82, 90]}, "output_swing_deg from 80 instead of 82"),
+        ({"ground_angle_deg": 10, "theta2_start_deg": 60}, "theta2_start_deg 59.7"),
+    ],
+)
+def test_an_empty_list_names_what_would_do(wanted: dict[str, Any], words: str) -> None:
+    result = found(**wanted)
+    assert len(result) == 0
+    assert result.complete
+    assert words in result.note
+    assert len(result.nearest) > 0
+
+
+def test_near_the_greatest_ratio_the_margin_of_rotatability_is_in_the_way() -> None:
+    result = found(80, 6.0)
+    assert "rotatability_margin" in result.note
+
+
+@pytest.mark.parametrize(
+    "tables",
+    [
+        {"requirements": {"a": {"x": [1, 2], "y": [3, 4]}}},
+        {"requirements": {"size": [0.2, 0.5]}},
+        pytest.param(
+            {
+                "requirements": {
+                    "o2": [0, 0],
+                    "o4": [5, 5],
+                    "b": {"x": [0, 10]},
+                    "keep_out": [[[2, 0], [3, 0], [3, 1], [2, 1]]],
+                    "keep_out_for": ["links"],
+                }
+            },
+            marks=pytest.mark.slow,
+        ),
+    ],
+    ids=["a", "size", "keep out"],
+)
+def test_places_and_areas_are_kept(tables: dict[str, Any]) -> None:
+    result = found(tables=tables)
+    assert len(result) > 3
+    asked = result.problem
+    assert all(verify(each.linkage, asked.task, asked.requirements).ok for each in result.candidates)
+
+
+def test_another_objective_decides() -> None:
+    dynamics = {"speed_rpm": 60, "mass_per_length": 2.0}
+    tables = {"length_unit": "m", "dynamics": dynamics, "objective": {"maximise": "torque"}}
+    torque = found(tables=tables).to_frame()["torque_peak"].to_numpy()
+    assert (np.diff(torque) >= 0)[:3].all()
+    assert torque[0] == torque.min()
+
+
+def test_a_users_own_constraint() -> None:
+    def short(design: Any) -> Any:
+        return design.r3 - 0.9
+
+    problem = Problem(task=StrokeTask.from_degrees(swing_deg=80, time_ratio=10 / 9))
+    result = synthesize(problem, constraints=[short])
+    assert len(result) > 0
+    assert all(each.linkage.r3 <= 0.9 + 1e-9 for each in result.candidates)
+
+
+def test_a_stroke_that_no_crank_rocker_does_well_is_listed_and_advised() -> None:
+    result = found(40, 1.5)
+    assert len(result) >= 8
+    assert "31.8 deg at best" in result.note
+    assert "six-bar" in result.note
+    assert found(40, 1.1).note == ""
+
+
+def test_the_list_does_not_depend_on_workers() -> None:
+    problem = load("quick-return")
+    alone, together = synthesize(problem), synthesize(problem, workers=2)
+    assert [each.id for each in alone.candidates] == [each.id for each in together.candidates]
+
+
+@pytest.mark.parametrize("effort", [0.2, 3])
+def test_effort_and_enough(effort: float) -> None:
+    result = synthesize(load("quick-return"), effort=effort, enough=7)
+    assert 7 <= len(result) < 30
+    assert worst(result)[0] == pytest.approx(37.733, abs=5e-4)
