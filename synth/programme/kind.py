@@ -171,9 +171,8 @@ class Kind(ABC):
 
     def drawn(self, rng: np.random.Generator, count: int, *, anything: bool) -> FloatArray:
         """Random free numbers of `lengths`, shape (count, 3)."""
-        if anything:
-            return rng.normal(0.0, 0.7, (count, 3))
-        return rng.normal(size=(count, 3)) * (1.2, 1.5, 1.0) - (0.0, 1.0, 0.0)
+        of_cranks = rng.normal(size=(count, 3)) * (1.2, 1.5, 1.0) - (0.0, 1.0, 0.0)
+        return rng.normal(0.0, 0.7, (count, 3)) if anything else of_cranks
 
     def turns_fully(self, d: View) -> Any:
         """Whether the loop closes with O2A folded over the ground line and stretched along it."""
