@@ -60,7 +60,6 @@ SECTIONS: tuple[Callable[[LinkageStudy], Section | None], ...] = (
 _ONLY: dict[Callable[[LinkageStudy], Section | None], tuple[tuple[str, ...], str]] = {
     newton_raphson: ((FOUR_BAR,), "newton-raphson"),
     coupler_plane: ((FOUR_BAR,), ""),
-    balancing: ((FOUR_BAR,), "balance"),
     tolerance: ((FOUR_BAR,), "tolerance"),
     pumping_unit: ((FOUR_BAR,), ""),
     mechanical_advantage: (TURNING, ""),

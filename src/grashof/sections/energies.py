@@ -82,4 +82,6 @@ def _losses(study: LinkageStudy, masses: Masses, loads: Loads) -> Iterator[Fact]
         work = lost * law.duration * study.metre**2
         yield Fact("friction_work", "work of friction in the joints, a turn", work, "J")
         left = 1 - lost / put_in
-        yield Fact("efficiency", "efficiency: work put in that friction leaves", left if left > _CERTAIN else 0.0)
+        yield Fact(
+            "efficiency", "efficiency: work put in that friction leaves", left if left > _CERTAIN else 0.0
+        )
