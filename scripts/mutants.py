@@ -191,6 +191,20 @@ moment = 2
 [motor]
 values = [[0, 0], [1, 20], [2, 40]]
 """
+_SLIDING = """
+[dynamics]
+mass_per_length = 2
+speed_rpm = -30
+[[loads]]
+link = 4
+over = "travel"
+values = [[-9, 1, 2], [0, 3, 4], [9, 1, 2]]
+[friction]
+slide_mu = 0.1
+slide_length = 0.4
+slide_viscous = 2
+slide_force = 3
+"""
 _PROBLEMS = (
     f'kind = "motion"\nlength_unit = "m"\n[motion]\nposes = [[5, 4, 0], [2, 3, -5]]\n{_OTHERWISE}',
     f'kind = "motion"\nlength_unit = "m"\n[motion]\nposes = [[5, 4, 0], [3.5, 4, -5], [2, 3, -5]]\n'
@@ -217,22 +231,10 @@ _PROBLEMS = (
     f'kind = "path"\n{_HEAD}[path]\npoints = [[0, 0], [30, 10], [60, 0]]\n{_SEARCH}',
     f'kind = "path"\nmechanism = ["slider-crank", "four-bar"]\n{_HEAD}[path]\n{_POINTS}'
     f"[requirements]\noffset = [-90, 90]\nslide_angle_deg = 10\nstroke = [1, 900]\n{_SEARCH}",
+    f'kind = "path"\nmechanism = "inverted-slider-crank"\n{_HEAD}[path]\npoints = [[0, 0], [3, 1], [6, 0]]\n'
+    f"{_SEARCH}{_SLIDING.replace('-30', '30')}",
     f'kind = "motion"\n{_HEAD}[motion]\nposes = [[0, 0, 10], [30, 10, 10], [60, 5, 10]]\n{_SEARCH}',
 )
-_SLIDING = """
-[dynamics]
-mass_per_length = 2
-speed_rpm = -30
-[[loads]]
-link = 4
-over = "travel"
-values = [[-9, 1, 2], [0, 3, 4], [9, 1, 2]]
-[friction]
-slide_mu = 0.1
-slide_length = 0.4
-slide_viscous = 2
-slide_force = 3
-"""
 _LINKAGES = (
     f'mechanism = "slider-crank"\n{_HEAD}o2 = [1, 2]\nr2 = 1\nr3 = 3\noffset = -0.5\nslide_angle_deg = 30\n'
     f"coupler_point = [1, 1]\nassembly = -1\nbody_angle_deg = 30\n{_SLIDING}",

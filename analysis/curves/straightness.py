@@ -61,8 +61,7 @@ def straightness(linkage: Linkage, theta2_start: float, theta2_end: float) -> Be
 
     Examples
     --------
-    >>> from grashof.analysis.loops.kinds import kind_of
-    from grashof.problems import FourBar
+    >>> from grashof.problems import FourBar
     >>> hoeken = FourBar(o2=(0, 0), o4=(2.2, 0), r2=1, r3=2.8, r4=2.8, coupler_point=(5.6, 0))
     >>> line = straightness(hoeken, np.pi / 2, 3 * np.pi / 2)
     >>> round(line.length, 3), round(100 * line.width / line.length, 3)
@@ -95,8 +94,7 @@ def straightest_half_turn(linkage: Linkage) -> tuple[float, BestLine]:
 
     Examples
     --------
-    >>> from grashof.analysis.loops.kinds import kind_of
-    from grashof.problems import FourBar
+    >>> from grashof.problems import FourBar
     >>> hoeken = FourBar(o2=(0, 0), o4=(2.2, 0), r2=1, r3=2.8, r4=2.8, coupler_point=(5.6, 0))
     >>> start, line = straightest_half_turn(hoeken)
     >>> round(float(np.degrees(start)), 6), round(100 * line.width / line.length, 3)

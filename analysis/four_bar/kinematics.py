@@ -237,7 +237,7 @@ def solve_kinematics(
     if not shape and np.isnan(rates[0]):
         raise AssemblyError(_cannot_close(linkage, float(theta2)))
     if dead.any():
-        _warn_of(theta2, dead > 0)
+        _warn_of(theta2, dead > 0, kind_of(linkage).dead)
     theta3, theta4, omega3, omega4, alpha3, alpha4, jerk3, jerk4, *slide = (rate[()] for rate in rates)
     return Kinematics(
         linkage, theta2, theta3, theta4, omega2, omega3, omega4, alpha2, alpha3, alpha4, jerk2, jerk3, jerk4,
@@ -298,12 +298,11 @@ def _check_link(link: int) -> None:
         raise wrong_value("link", link, "2 (driver), 3 (coupler) or 4 (output)")
 
 
-def _warn_of(theta2: FloatArray, dead: BoolArray) -> None:
+def _warn_of(theta2: FloatArray, dead: BoolArray, why: str) -> None:
     angles = np.degrees(np.broadcast_to(theta2, dead.shape)[dead])
     named = ", ".join(f"{angle:.6g}" for angle in angles[:3]) + (", ..." if len(angles) > 3 else "")
     warnings.warn(
-        f"dead position at driver angle {named} deg: coupler and output lie in one line, "
-        "their rates are infinite",
+        f"dead position at driver angle {named} deg: {why}, their rates are infinite",
         DeadPositionWarning,
         stacklevel=3,
     )

@@ -101,6 +101,7 @@ class FourBarKind(Kind[FourBar]):
     """The four-bar; its `apart` is the diagonal A-O4."""
 
     slides = False
+    dead = "coupler and output lie in one line"
 
     def sides_of(self, linkage: FourBar, sign: FloatArray) -> FourBarSides:
         ground = linkage.o4 - linkage.o2

@@ -90,6 +90,7 @@ class InvertedSliderCrankKind(Kind[InvertedSliderCrank]):
     """The inverted slider-crank; its `apart` is the diagonal A-O4."""
 
     slides = True
+    dead = "the block is at A"
 
     def sides_of(self, linkage: InvertedSliderCrank, sign: FloatArray) -> InvertedSides:
         ground = linkage.o4 - linkage.o2

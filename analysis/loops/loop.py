@@ -107,6 +107,7 @@ class Kind(ABC, Generic[L_contra]):
     """A kind of linkage, as its loop closes. Without state; one of each is in `kind_of`'s table."""
 
     slides: bool  # whether a link slides on another
+    dead: str  # what is so in a dead position
 
     @abstractmethod
     def sides_of(self, linkage: L_contra, sign: FloatArray) -> Sides:

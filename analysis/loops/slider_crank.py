@@ -89,6 +89,7 @@ class SliderCrankKind(Kind[SliderCrank]):
     """The slider-crank; its `apart` is h, from A to the slide's line, positive to the left."""
 
     slides = True
+    dead = "the rod stands square to the slide"
 
     def sides_of(self, linkage: SliderCrank, sign: FloatArray) -> SliderCrankSides:
         ex, ey = np.cos(linkage.slide_angle), np.sin(linkage.slide_angle)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -20,13 +19,12 @@ from pydantic import (
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from grashof.problems.values.checks import near_miss, plain_text
-from grashof.problems.values.errors import ProblemError, shown
+from grashof.problems.values.errors import ProblemError, shown, shown_key
 
 # Type of a validator's error; its message is what the value must be.
 WRONG = "wrong"
 # Tags distinguish the shapes of a value. They enter the location of an error and are left out of its path.
 TABLE, LIST, WORD, NUMBER = "<table>", "<list>", "<word>", "<number>"
-_LONGEST_KEY = 60  # characters that messages show
 _WANTED = {
     "float_type": "a number",
     "int_type": "a whole number",
@@ -170,8 +168,7 @@ def _path(location: tuple[int | str, ...]) -> str:
         if isinstance(part, int):
             path += f"[{part}]"
         elif part not in (TABLE, LIST, WORD, NUMBER):
-            part = part if len(part) <= _LONGEST_KEY else f"{part[:_LONGEST_KEY]}..."
-            key = part if re.fullmatch(r"[A-Za-z0-9_-]+", part) else json.dumps(part)
+            key = shown_key(part)
             path += f".{key}" if path else key
     return path
 

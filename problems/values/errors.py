@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 import reprlib
 
 
@@ -30,6 +32,19 @@ def shown(value: object) -> str:
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 43]}...{text[-40:]}"
 
 
+def shown_key(key: object) -> str:
+    """A key as TOML has it, in quotes where it is not plain, and not at any length.
+
+    Examples
+    --------
+    >>> shown_key("r2"), shown_key("r 2")
+    ('r2', '"r 2"')
+    """
+    text = str(key)
+    text = text if len(text) <= _LONGEST_KEY else f"{text[:_LONGEST_KEY]}..."
+    return text if re.fullmatch(r"[A-Za-z0-9_-]+", text) else json.dumps(text)
+
+
 class _Short(reprlib.Repr):
     """Python's own, of values that a file may state."""
 
@@ -45,6 +60,7 @@ class _Short(reprlib.Repr):
         return super().repr_int(x, level)
 
 
+_LONGEST_KEY = 60  # characters that messages show
 _SHORT, _LONGEST, _LONGEST_INT = _Short(), 240, 10_000  # characters, bits
 
 

@@ -23,7 +23,7 @@ from grashof.problems.values.checks import (
     refuse,
     task_size,
 )
-from grashof.problems.values.errors import ProblemError, shown, wrong_value
+from grashof.problems.values.errors import ProblemError, shown, shown_key, wrong_value
 from grashof.problems.values.task import Task, some_columns
 from grashof.problems.values.timing import driver_timing, finite_angles, whole_turn
 from grashof.problems.values.zones import LEAST_ZONE, turn_sizes, zone_sizes
@@ -190,7 +190,7 @@ def _row(pose: object, where: str) -> tuple[float, float, float]:
             if key not in ("x", "y", "angle"):
                 meant = near_miss(str(key), ("x", "y", "angle"))
                 hint = f"did you mean {meant}?" if meant else "the keys are x, y, angle"
-                raise ProblemError(f"{where}.{key} is unknown; {hint}")
+                raise ProblemError(f"{where}.{shown_key(key)} is unknown; {hint}")
         x, y, angle = (
             finite_number(pose[key], f"{where}.{key}") if key in pose else np.nan
             for key in ("x", "y", "angle")

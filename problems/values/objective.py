@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from grashof.problems.values.checks import near_miss, number_within
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.errors import ProblemError, shown_key
 from grashof.problems.values.quantities import Quantity
 from grashof.problems.values.requirements import QUANTITIES
 
@@ -58,7 +58,7 @@ class Objective:
         given = {"transmission": transmission, "compactness": compactness, "torque": torque, **others}
         weights = []
         for name, weight in given.items():
-            where = f"objective.maximise.{name}"
+            where = f"objective.maximise.{shown_key(name)}"
             if name not in GOALS:
                 meant = near_miss(name, list(GOALS))
                 hint = f"did you mean {meant}?" if meant else f"the keys are {', '.join(GOALS)}"

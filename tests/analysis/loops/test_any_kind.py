@@ -357,17 +357,28 @@ def test_dimensions_turn_the_links_as_linkages_made_so_show(linkages, kind) -> N
 
 
 def test_nortons_offset_slider_crank() -> None:
-    """Norton, *Design of Machinery*, example 4-2: r2 = 40, r3 = 120, offset -20 mm, theta2 = 60 deg.
+    """Norton, *Design of Machinery*, ch. 4: r2 = 40, r3 = 120, offset -20 mm, theta2 = 60 deg.
 
-    His theta3 is at the slider, 152.91 deg, and d = 114 mm: the open circuit, whose rod points from B to A.
+    His theta3 = 152.91 deg is the rod's direction from the slider; d = r2 cos(theta2) - r3 cos(theta3).
     """
-    # d = a cos theta2 - b cos theta3 with sin theta3 = (a sin theta2 - c) / b, his offset c = -20.
     linkage = SliderCrank(o2=(0, 0), r2=40, r3=120, offset=-20)
     state = solve_kinematics(linkage, np.radians(60))
     assert np.degrees(state.theta3) + 180 == pytest.approx(152.91, abs=5e-3)
     assert state.slide.travel == pytest.approx(126.84, abs=5e-3)
     crossed = solve_kinematics(linkage, np.radians(60), assembly=-1)
     assert crossed.slide.travel == pytest.approx(-86.84, abs=5e-3)
+
+
+def test_the_acceleration_of_a_piston_has_the_textbook_harmonics() -> None:
+    """Over r2 omega^2 it is cos(t) + A2 cos(2 t) - A4 cos(4 t) ..., by Taylor's series in r2 / r3."""
+    ratio, omega2 = 0.1, 7.0
+    theta2 = 2 * np.pi * np.arange(64) / 64
+    state = solve_kinematics(SliderCrank(o2=(0, 0), r2=2, r3=20), theta2, omega2)
+    terms = np.fft.rfft(-state.slide.acceleration / (2 * omega2**2)).real / 32
+    a2, a4 = ratio + ratio**3 / 4 + 15 * ratio**5 / 128, ratio**3 / 4 + 3 * ratio**5 / 16
+    assert terms[1:6] == pytest.approx([1, a2, 0, -a4, 0], abs=1e-7)
+    across = np.abs(state.point(4, (0.5, -0.3)).acceleration[:, 1])  # no part of the slider leaves its way
+    assert across.max() < 1e-10
 
 
 @pytest.mark.parametrize("swing", [20.0, 60.0, 120.0])
