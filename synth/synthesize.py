@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
+from dataclasses import replace
 from pathlib import Path
 
 from grashof.analysis.judge.design import Constraint, OwnObjective
@@ -14,11 +15,13 @@ from grashof.problems.values.errors import wrong_value
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.user_functions import refuse_unusable
 from grashof.synth.results.conclusion import conclude, needless
+from grashof.synth.results.mixed import one_list
 from grashof.synth.results.result import Result
 from grashof.synth.search.asked import asking, search_of
 from grashof.synth.search.journal import journal_of
 from grashof.synth.search.run import Progress, Run
 from grashof.synth.search.searches import searches
+from grashof.synth.search.story import Ending
 from grashof.synth.search.workers import working
 from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.stopping import stopping
@@ -104,14 +107,19 @@ def synthesize(
         raise ProblemError("record does not go with constraints or an objective of your own")
     how = problem.task.kind, search.seed, search.effort, search.starts, workers
     _LOG.info("%s: %s; seed %d, effort %g, at most %d starts, %d at a time", readable(problem.name), *how)
-    scaled = ScaledProblem.of(problem, constraints, objective)
-    refuse_unusable(scaled, in_processes=workers > 1 or executor is not None)
-    if finder_for(scaled).degenerate():
-        return needless(scaled, asked)
-    with (
-        stopping(asked),
-        journal_of(record, problem, search) as journal,
-        working(workers, executor) as work,
-    ):
+    kinds = [ScaledProblem.of(problem.for_kind(kind), constraints, objective) for kind in problem.mechanism]
+    for scaled in kinds:
+        refuse_unusable(scaled, in_processes=workers > 1 or executor is not None)
+    if finder_for(kinds[0]).degenerate():
+        return needless(kinds[0], asked)
+    found: list[Result] = []
+    with journal_of(record, problem, search) as journal, working(workers, executor) as work:
         run = Run(search, work, asked, journal, progress)
-        return conclude(scaled, searches(scaled, run), run, asked)
+        for number, scaled in enumerate(kinds, start=1):
+            part = asked.part(number, len(kinds))
+            with stopping(part):
+                run = replace(run, asked_to_stop=part)
+                found.append(conclude(scaled, searches(scaled, run), run, part))
+            if part.ending not in (Ending.COMPLETE, Ending.TIME_LIMIT):
+                break
+    return one_list(problem, found)

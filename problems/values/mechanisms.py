@@ -49,6 +49,18 @@ def having(column: str) -> tuple[str, ...]:
     )
 
 
+def freedoms(kind: str) -> int:
+    """How many numbers describe a linkage of a kind, how the guided body sits on it apart.
+
+    Examples
+    --------
+    >>> [freedoms(kind) for kind in KINDS]
+    [9, 8, 8]
+    """
+    rows = [row for row in KINDS[kind].PARAMETERS if row.kind != "sign" and row.name != "body_angle"]
+    return sum(1 + row.paired for row in rows)
+
+
 def lengths_text(linkage: Linkage, digits: int = 4) -> str:
     """The lengths of a single linkage, and the offset of its slide.
 

@@ -24,7 +24,7 @@ from grashof.problems.values.dynamics_of_kind import misplaced
 from grashof.problems.values.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.manufacturing import Manufacturing
-from grashof.problems.values.mechanisms import FOUR_BAR, KINDS, mechanisms, not_had
+from grashof.problems.values.mechanisms import FOUR_BAR, KINDS, freedoms, mechanisms, not_had
 from grashof.problems.values.motion_task import MotionTask
 from grashof.problems.values.objective import GOALS, Objective
 from grashof.problems.values.path_task import PathTask
@@ -129,6 +129,7 @@ class Problem(ReadOnly):
         for name in ("name", "title", "source", "length_unit"):
             plain_text(getattr(self, name), name)
         object.__setattr__(self, "mechanism", mechanisms(self.mechanism))
+        object.__setattr__(self, "requirements", self._met_by_all_kinds())
         if isinstance(self.outlines, str) or not isinstance(self.outlines, Iterable):
             raise wrong_value("scene.outlines", self.outlines, "a list of outlines")
         wrong: list[str] = []
@@ -154,6 +155,14 @@ class Problem(ReadOnly):
             outline(corners, f"scene.outlines[{index}]") for index, corners in enumerate(self.outlines)
         )
         object.__setattr__(self, "outlines", checked)
+
+    def _met_by_all_kinds(self) -> Requirements:
+        """Where files leave it open, targets are to be met if all kinds asked for can be expected to."""
+        fewest = min(freedoms(kind) for kind in self.mechanism)
+        exact = self.task.exact_for(fewest)
+        if self.requirements.exact is not None or exact == self.task.exact_by_default:
+            return self.requirements
+        return replace(self.requirements, exact=exact)
 
     def _without_value(self) -> list[str]:
         """What is weighed or limited though the problem does not state what it takes."""

@@ -138,15 +138,19 @@ class Task(ReadOnly, ABC):
 
     @property
     def exact_by_default(self) -> bool:
-        """Whether linkages that meet every target can be expected.
+        """Whether four-bars that meet every target can be expected; see `exact_for`."""
+        return self.exact_for(9)
+
+    def exact_for(self, freedoms: int) -> bool:
+        """Whether linkages with so many free dimensions that meet every target can be expected.
 
         As long as the equations, two for a position and one for an angle, are not more than the
-        unknowns: nine of the linkage, how the body sits on its coupler, and a driver angle for every
-        target, or one where they are timed. So up to nine points, five timed ones, five whole poses
-        (Burmester), three timed ones.
+        unknowns: nine of a four-bar, eight of slider kinds, how the body sits on its coupler, and a
+        driver angle for every target, or one where they are timed. So for four-bars up to nine points,
+        five timed ones, five whole poses (Burmester), three timed ones.
         """
         equations = 2 * np.count_nonzero(self.has_position) + np.count_nonzero(self.has_angle)
-        unknowns = 9 + self.has_angle.any() + (1 if self.is_timed else len(self))
+        unknowns = freedoms + self.has_angle.any() + (1 if self.is_timed else len(self))
         return bool(equations <= unknowns)
 
     def __len__(self) -> int:

@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from grashof.problems import Problem, Task
+from grashof.problems import FourBar, Linkage, Problem, Task
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.ranking import ranked
 from grashof.synth.theory.cognates import same_curve
-from grashof.synth.theory.distinct import apart, signature
+from grashof.synth.theory.distinct import MIRRORED, apart, signature
 from grashof.synth.theory.symmetry import middle_of, symmetries
 
 ALIKE = 0.05  # share of the largest number of two designs by which they differ at most
@@ -23,9 +23,11 @@ def listed(problem: Problem, candidates: Sequence[Candidate]) -> tuple[Candidate
     best_first = ranked(problem, candidates)
     if not best_first:
         return ()
-    middle = middle_of(problem.task)
-    signatures = np.array([signature(candidate.linkage, middle) for candidate in best_first])
-    first = best_alike(problem.task, signatures)
+    middle, first = middle_of(problem.task), np.arange(len(best_first))
+    for kind in dict.fromkeys(type(candidate.linkage) for candidate in best_first):
+        mine = [k for k, candidate in enumerate(best_first) if type(candidate.linkage) is kind]
+        signatures = np.array([signature(best_first[k].linkage, middle) for k in mine])
+        first[mine] = np.array(mine)[best_alike(problem.task, signatures, kind)]
     named = [
         replace(candidate, family=best_first[best].id)
         for candidate, best in zip(best_first, first.tolist(), strict=True)
@@ -34,8 +36,8 @@ def listed(problem: Problem, candidates: Sequence[Candidate]) -> tuple[Candidate
     return tuple(named[i] for i in np.argsort(~heads, kind="stable"))
 
 
-def best_alike(task: Task, signatures: FloatArray) -> IntArray:
-    """Which design is the best of those like each one.
+def best_alike(task: Task, signatures: FloatArray, kind: type[Linkage] = FourBar) -> IntArray:
+    """Which design is the best of those like each one, all of one kind.
 
     Alike are designs less than 5 % apart in all dimensions, and on paths those that trace the same
     coupler curve (cognates); also when the one has first to be mirrored or turned as the task allows
@@ -51,9 +53,10 @@ def best_alike(task: Task, signatures: FloatArray) -> IntArray:
     while left.size:
         first, left = left[0], left[1:]
         one = signatures[first]
-        curves = one[None] if task.has_angle.any() else same_curve(one, task.is_timed)
+        cognates = kind is FourBar and not task.has_angle.any()
+        curves = same_curve(one, task.is_timed) if cognates else one[None]
         near = left[_alike_in_shape(curves, signatures[left])]
-        images = np.concatenate([each.of(curves) for each in maps])
+        images = np.concatenate([each.of(curves, MIRRORED[kind]) for each in maps])
         best[near[(apart(images, signatures[near]) < ALIKE).any(axis=0)]] = first
         left = left[best[left] != first]
     return best
@@ -71,8 +74,8 @@ def _alike_in_shape(curves: FloatArray, others: FloatArray) -> BoolArray:
 
 
 def _shape(signatures: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """r2, r3, r4, u, abs(v), and the most that any number can be after a rotation; (n, 5) and (n,)."""
-    shape = np.concatenate([signatures[:, 4:8], np.abs(signatures[:, 8:])], axis=1)
+    """r2, r3, abs(r4), u, abs(v), and the most that any number can be after a rotation; (n, 5) and (n,)."""
+    shape = np.concatenate([signatures[:, [4, 5, 7]], np.abs(signatures[:, [6, 8]])], axis=1)
     pivots = np.hypot(signatures[:, [0, 2]], signatures[:, [1, 3]])
     reach: FloatArray = np.abs(np.concatenate([shape, pivots], axis=1)).max(axis=1)
     return shape, reach

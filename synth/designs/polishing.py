@@ -52,16 +52,20 @@ def _on_targets(scaled: ScaledProblem, start: Start, linkage: Start | Solve) -> 
     points = np.array(linkage.points)
     o2, o4, a, b, p = points
     at_a, turned = o2 + abs(a - o2) * np.exp(1j * theta2), np.exp(1j * theta3)
-    at_b, at_p = at_a + abs(b - a) * turned, at_a + (p - a) * turned / turned[0]
+    at_p = at_a + (p - a) * turned / turned[0]
     if not scaled.exact and scaled.missed(at_p, theta3 + linkage.body_angle) > CLOSE:
         return None
-    assembly = np.where((turned.conj() * (at_b - o4)).imag >= 0, 1.0, -1.0)
+    if scaled.kind.one_assembly:
+        assembly = np.ones(len(theta2))
+    else:
+        assembly = np.where((turned.conj() * (at_a + abs(b - a) * turned - o4)).imag >= 0, 1.0, -1.0)
     wish = Wish(
         points=scaled.targets,
         has_point=scaled.weights > 0,
         turns=scaled.turns,
         has_turn=scaled.turn_weights > 0,
         timed=scaled.timed,
+        closure=scaled.kind.closure,
     )
     polished = polish_path(points, theta2, linkage.body_angle, assembly, wish)
     return polished if polished.error < CLOSE and np.isfinite(polished.points).all() else None

@@ -1,8 +1,8 @@
-"""The constraints of the four-bar programme: each requirement as the field writes it."""
+"""The constraints of the programme: each requirement as the field writes it."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import casadi as ca
@@ -11,7 +11,8 @@ import numpy as np
 from grashof.analysis.judge.design import Constraint, Design, OwnObjective
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
 from grashof.synth.programme.builder import FREE, NONNEGATIVE, Builder, Fill, always
-from grashof.synth.programme.formulas import View, cos_mu, folded, stretched
+from grashof.synth.programme.formulas import View
+from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.on_symbols import on_symbols
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
@@ -30,28 +31,38 @@ LEAST_SQUARE = 1e-8  # sizes squared: scales the squared distances to about 1
 
 @dataclass(frozen=True, slots=True)
 class Places:
-    """A, B and P at every target, in the order of visit, and the vectors from A and B to P in one frame."""
+    """A, B and P at every target, in the order of visit, and the vectors from A and B to P in one frame.
+
+    `across` gives a vector along e4 at a target: from O4 to B, or across what slides. It is made anew each
+    time: what rows share changes the last digits of their derivatives.
+    """
 
     a: list[ca.SX]
     b: list[ca.SX]
     p: list[ca.SX]
     ap: ca.SX
     bp: ca.SX
+    across: Callable[[int], ca.SX]
 
 
 class Symbols(View):
     """The design as formulas see it."""
 
     def __init__(self, form: Form, x: Unknowns, places: Places) -> None:
-        self.o2, self.o4 = vector(x.o2), vector(x.o4)
+        self.o2 = vector(x.o2)
+        if "o4" in form.kind.linkage.GROUND:
+            self.o4 = vector(x.o4)
         self.r1, self.r2, self.r3, self.r4 = ca.vertsplit(x.r)
+        self.offset = self.r4
         self.theta1, self.theta2_start = x.theta1, x.theta2_start
         self.ap, self.bp = vector(places.ap), vector(places.bp)
         self.a, self.b = (_track(points) for points in (places.a, places.b))
         self.body_turn, self.direction = x.body_turn, x.direction
         self.driver_turn = x.direction * (x.theta2[form.targets - 1] - x.theta2[0])
-        first, last = (vector(b - x.o4) for b in (places.b[0], places.b[-1]))
-        self.output_turn, self.turns, self.double_crank = first.angle_to(last), x.turns, x.double_crank
+        self.turns, self.double_crank = x.turns, x.double_crank
+        first, last = (vector(places.across(k)) for k in (0, form.targets - 1))
+        self.output_turn = first.angle_to(last)
+        self.output_travel = ca.dot(places.b[-1] - places.b[0], -quarter_turn(unit(x.theta1)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,18 +123,18 @@ def close_at_poses(build: Builder, form: Form, x: Unknowns) -> Places:
         build.zero(a[k] - x.o2 - x.r[1] * unit(x.theta2[k]))
         build.zero((ca.sumsqr(b[k] - x.o4) - x.r[3] ** 2) / 2)
     build.zero((ca.sumsqr(x.b - x.a) - x.r[2] ** 2) / 2)
-    return Places(a, b, p, body - x.a, body - x.b)
+    return Places(a, b, p, body - x.a, body - x.b, lambda k: b[k] - x.o4)
 
 
 def close_at_points(build: Builder, form: Form, x: Unknowns, targets: Targets) -> Places:
     """The loop O2-A-B-O4 closes at every driver angle; P is fixed to the coupler."""
     n = form.targets
     a = [x.o2 + x.r[1] * unit(x.theta2[k]) for k in range(n)]
-    b = [a[k] + x.r[2] * unit(x.theta3[k]) for k in range(n)]
     p = [a[k] + rotated(x.arm, x.theta3[k]) for k in range(n)]
+    b, across, closing = _closed(form, x, a)
     timing = build.parameter(lambda scaled, start: scaled.timing[list(start.visit)], n)
     for k in range(n):
-        build.zero((ca.sumsqr(b[k] - x.o4) - x.r[3] ** 2) / 2)
+        build.zero(closing[k])
         if form.exact and form.positions[k]:
             build.zero(p[k] - targets.points[k])
         if form.exact and form.angles[k]:
@@ -131,8 +142,26 @@ def close_at_points(build: Builder, form: Form, x: Unknowns, targets: Targets) -
         if form.timed and k:
             build.zero(x.theta2[k] - x.theta2[0] - x.direction * (timing[k] - timing[0]))
     for point, at in ((x.a, a), (x.b, b)):
-        build.zero(point - sum((x.at_first[k] * at[k] for k in range(n)), ca.SX.zeros(2)))
-    return Places(a, b, p, x.arm, x.arm - ca.vertcat(x.r[2], 0))
+        if not point.is_empty():
+            build.zero(point - sum((x.at_first[k] * at[k] for k in range(n)), ca.SX.zeros(2)))
+    return Places(a, b, p, x.arm, x.arm - ca.vertcat(x.r[2], 0), across)
+
+
+def _closed(
+    form: Form, x: Unknowns, a: list[ca.SX]
+) -> tuple[list[ca.SX], Callable[[int], ca.SX], list[ca.SX]]:
+    """B at every target, `Places.across`, and what is zero where the loop closes."""
+    turned = [unit(x.theta3[k]) for k in range(form.targets)]
+    if form.kind.turns_with_coupler:
+        across = [quarter_turn(along) for along in turned]
+        b = [x.o4 + x.r[3] * side for side in across]
+        closing = [ca.dot(at - x.o4, side) - x.r[3] for at, side in zip(a, across, strict=True)]
+        return b, across.__getitem__, closing
+    b = [at + x.r[2] * along for at, along in zip(a, turned, strict=True)]
+    if "o4" in form.kind.linkage.GROUND:
+        return b, lambda k: b[k] - x.o4, [(ca.sumsqr(point - x.o4) - x.r[3] ** 2) / 2 for point in b]
+    normal = unit(x.theta1)
+    return b, lambda _: normal, [ca.dot(point - x.o2, normal) - x.r[3] for point in b]
 
 
 def square(form: Form, x: Unknowns, places: Places, targets: Targets) -> ca.SX:
@@ -148,36 +177,40 @@ def square(form: Form, x: Unknowns, places: Places, targets: Targets) -> ca.SX:
 
 def require_modes(build: Builder, form: Form, x: Unknowns, places: Places) -> None:
     """The ground line, the order of the targets, one branch, and a driver that turns fully."""
-    build.zero(x.o4 - x.o2 - x.r[0] * unit(x.theta1))
+    if "o4" in form.kind.linkage.GROUND:
+        build.zero(x.o4 - x.o2 - x.r[0] * unit(x.theta1))
     for k in range(form.targets - 1):
         least = LEAST_STEP if form.exact else 0.0
         build.row(x.direction * (x.theta2[k + 1] - x.theta2[k]), limits=always(least, np.inf))
     build.row(x.direction * (x.theta2[form.targets - 1] - x.theta2[0]), limits=always(0.0, TURN))
     if form.same_branch:
-        for a, b in zip(places.a, places.b, strict=True):
-            sine = cross(b - a, b - x.o4) / (x.r[2] * x.r[3])
+        for k, (a, b) in enumerate(zip(places.a, places.b, strict=True)):
+            sine = cross(b - a, places.across(k)) / _area(form, x)
             build.require(("same_branch",), x.assembly * sine - 1e-6)
     if form.crank:
         margin = build.parameter(lambda scaled, _: scaled.wanted.rotatability_margin + INSET)
-        longer, total = (1 - 2 * x.double_crank) * (x.r[0] - x.r[1]), ca.sum1(x.r)
-        build.require(
-            ("rotatability",),
-            (x.r[2] + x.r[3] - x.r[0] - x.r[1]) / total - margin,
-            (longer - (x.r[2] - x.r[3])) / total - margin,
-            (longer + (x.r[2] - x.r[3])) / total - margin,
-        )
+        margins = form.kind.margins(Symbols(form, x, places))
+        build.require(("rotatability",), *(share - margin for share in margins))
+
+
+def _area(form: Form, x: Unknowns) -> ca.SX:
+    """What the product of coupler and `across` comes to at its greatest, or of its order."""
+    if form.kind.turns_with_coupler:
+        return x.r[0]
+    return x.r[2] * x.r[3] if "o4" in form.kind.linkage.GROUND else x.r[2]
 
 
 def stand_nearest(build: Builder, form: Form, x: Unknowns, places: Places, targets: Targets) -> None:
     """The derivative of a target's square by its driver angle is zero, as the judge will have it.
 
-    With d theta3 / d theta2 = N / D from the loop projected on O4B, multiplied by D. Timed targets
+    With d theta3 / d theta2 = N / D from the loop projected on e4, multiplied by D. Timed targets
     have one driver angle: the sum of their derivatives is zero.
     """
     total = ca.SX(0)
     for k in np.flatnonzero(form.nearest).tolist():
         a, b, p = places.a[k], places.b[k], places.p[k]
-        d, n = ca.dot(b - x.o4, quarter_turn(b - a)), -ca.dot(b - x.o4, quarter_turn(a - x.o2))
+        d = ca.dot(places.across(k), quarter_turn(b - a))
+        n = -ca.dot(places.across(k), quarter_turn(a - x.o2))
         row = ca.SX(0)
         if form.positions[k]:
             missed = targets.weights[k] * (p - targets.points[k])
@@ -209,20 +242,27 @@ def bound_error(build: Builder, form: Form, x: Unknowns, places: Places, targets
 
 def bound_transmission(build: Builder, form: Form, x: Unknowns, places: Places) -> None:
     """cos(tau) bounds |cos(mu)|, monotone between the ends of the task motion and the ground line."""
-    design = Symbols(form, x, places)
+    design, kind = Symbols(form, x, places), form.kind
 
-    def bound(diagonal2: ca.SX) -> tuple[ca.SX, ca.SX]:
-        cosine = cos_mu(design, diagonal2)
+    def bound(reach: ca.SX) -> tuple[ca.SX, ca.SX]:
+        cosine = kind.cos_mu(design, reach)
         return ca.cos(x.tau) - cosine, ca.cos(x.tau) + cosine
 
-    for number, diagonal2 in enumerate((folded, stretched)):
-        build.row(*bound(diagonal2(design)), limits=_passing(form, number))
+    for number, reach in enumerate((kind.folded, kind.stretched)):
+        build.row(*bound(reach(design)), limits=_passing(form, number))
     if form.over_task:
-        for a in (places.a[0], places.a[-1]):
-            build.row(*bound(ca.sumsqr(a - x.o4)))
+        for k in (0, form.targets - 1):
+            build.row(*bound(_reach(form, x, places, k)))
         for end in (0, 1):
             at = x.theta2[(0, form.targets - 1)[end]]
             build.row(at - x.theta1, limits=_half_turn(form, end))
+
+
+def _reach(form: Form, x: Unknowns, places: Places, k: int) -> ca.SX:
+    """What decides the transmission angle (`Kind.at_angle`), at a target."""
+    if "o4" in form.kind.linkage.GROUND:
+        return ca.sumsqr(places.a[k] - x.o4)
+    return x.r[3] - ca.dot(places.a[k] - x.o2, places.across(k))
 
 
 def _passing(form: Form, number: int) -> Fill:
@@ -260,30 +300,34 @@ def keep_out(build: Builder, form: Form, x: Unknowns, places: Places) -> None:
         build.require(("keep_out",), ca.dot(plane[:2], held[k // PLANES]) - plane[2])
 
 
-def require_own(build: Builder, x: Unknowns, places: Places, constraints: Sequence[Constraint]) -> None:
+def require_own(
+    build: Builder, form: Form, x: Unknowns, places: Places, constraints: Sequence[Constraint]
+) -> None:
     """The user's own constraints, on the symbols of the design in the problem's unit."""
     for constraint in constraints:
-        value = on_symbols(constraint, symbolic_design(build, x, places))
+        value = on_symbols(constraint, symbolic_design(build, form, x, places))
         for one in value if isinstance(value, (list, tuple)) else [value]:
             build.require(("constraints",), -ca.vec(ca.SX(one)) - OWN_INSET)
 
 
-def own_goal(build: Builder, x: Unknowns, places: Places, objective: OwnObjective) -> ca.SX:
+def own_goal(build: Builder, form: Form, x: Unknowns, places: Places, objective: OwnObjective) -> ca.SX:
     """The user's own objective, in units of what it is at the start."""
     unit = build.parameter(lambda scaled, start: magnitude_at(scaled, start, objective))
-    return ca.SX(on_symbols(objective, symbolic_design(build, x, places))) / unit
+    return ca.SX(on_symbols(objective, symbolic_design(build, form, x, places))) / unit
 
 
-def symbolic_design(build: Builder, x: Unknowns, places: Places) -> Design:
+def symbolic_design(build: Builder, form: Form, x: Unknowns, places: Places) -> Design:
     """What a user's function sees of the unknowns."""
     scale = build.parameter(lambda scaled, _: scaled.frame.scale)
     origin = build.parameter(lambda scaled, _: interleaved(scaled.frame.origin), 2)
-    coupler, arm = places.b[0] - places.a[0], places.p[0] - places.a[0]
-    along, beside = ca.dot(coupler, arm) / x.r[2], cross(coupler, arm) / x.r[2]
-    r1, r2, r3, r4 = (scale * length for length in ca.vertsplit(x.r))
-    o2, o4 = scale * x.o2 + origin, scale * x.o4 + origin
+    arm = x.arm
+    if form.kind is FOUR_BAR:
+        coupler, to_p = places.b[0] - places.a[0], places.p[0] - places.a[0]
+        arm = ca.vertcat(ca.dot(coupler, to_p) / x.r[2], cross(coupler, to_p) / x.r[2])
+    named = form.kind.named([scale * length for length in ca.vertsplit(x.r)], x.theta1)
+    o2, o4 = scale * x.o2 + origin, None if x.o4.is_empty() else scale * x.o4 + origin
     a, b, p = ([scale * point + origin for point in track] for track in (places.a, places.b, places.p))
-    return Design(o2, o4, r1, r2, r3, r4, x.theta1, scale * ca.vertcat(along, beside), x.theta2, a, b, p)
+    return Design(o2=o2, o4=o4, coupler_point=scale * arm, theta2=x.theta2, a=a, b=b, p=p, **named)
 
 
 def _off(x: Unknowns, targets: Targets, k: int) -> ca.SX:

@@ -7,7 +7,7 @@ same key, which shares nothing with it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from itertools import permutations
@@ -48,6 +48,8 @@ class View:
         1 where the driver turns fully, else 0.
     double_crank : scalar
         1 where r2 exceeds r1, so that the output of a full crank turns fully, too; else 0.
+    offset, output_travel : scalar
+        Of slider kinds; the travel of the slide from the first target to the last.
     """
 
     o2: Vector
@@ -68,6 +70,8 @@ class View:
     output_turn: Any
     turns: Any
     double_crank: Any
+    offset: Any
+    output_travel: Any
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,23 +193,25 @@ FORMULAS: dict[str, tuple[Part, ...]] = {
     "time_ratio": (Part("time ratio", _time_ratio),),
     "driver_rotation": (Part("driver rotation", lambda d: d.driver_turn),),
 }
-_SMOOTH = {"link_ratio": _PAIRS}
+SMOOTH = {"link_ratio": _PAIRS}
 LOGARITHMIC = {"link_length", "r1", "r2", "r3", "r4", "link_ratio"}  # ratios count, not differences
 
 
-def parts_of(limited: Collection[str], *, smooth: bool = False) -> Iterator[tuple[str, Part]]:
+def parts_of(
+    limited: Collection[str], *formulas: Mapping[str, tuple[Part, ...]]
+) -> Iterator[tuple[str, Part]]:
     """Parts of all that is limited, each with its field of `Requirements`.
 
     Parameters
     ----------
     limited : collection of str
         Fields.
-    smooth : bool
-        Formulas without a kink are asked for.
+    formulas : mapping of str to tuple of Part
+        Of a kind of linkage, by the key of the quantity; the first that has one is taken.
     """
     for name in limited:
         key = LIMITS[name].quantity.key
-        for part in (_SMOOTH if smooth else {}).get(key, FORMULAS.get(key, ())):
+        for part in next((each[key] for each in formulas if key in each), ()):
             if key != "link_length" or part.name not in limited:  # a limit of its own overrides it
                 yield name, part
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from grashof.problems import FourBar
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.programme.keep_out_depth import inside, points_kept_out
+from grashof.synth.programme.kind import Kind
+from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import Screened
+from grashof.synth.programme.screening import Screened, coupler_along
 from grashof.synth.theory.closure import coupler_of
 
 _SAMPLES = 13  # driver angles, the targets' ends among them
@@ -30,15 +31,16 @@ def depth_on_the_way(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
         Zero where no sample lies inside: the judge looks closer.
     """
     wanted = scaled.wanted
-    names = [name for name in points_kept_out(wanted) if name in FourBar.MOVING]
+    kind = scaled.kind.linkage
+    names = [name for name in points_kept_out(wanted) if name in kind.MOVING]
     links, body = "links" in wanted.keep_out_for, _body(scaled)
     deepest = np.zeros(len(linkages))
     for begin in range(0, len(linkages) if names or len(body) else 0, _ROWS):
         rows = slice(begin, begin + _ROWS)
-        places = _places(linkages[rows])
+        places = _places(scaled.kind, linkages[rows])
         tracks = [places[name] for name in names]
         if links:
-            for one, other in (line for link in FourBar.LINKS[1:] for line in link.lines):
+            for one, other in (line for link in kind.LINKS[1:] for line in link.lines):
                 tracks += [places[one] + share * (places[other] - places[one]) for share in _ALONG]
         if len(body):
             turned = (places["b"] - places["a"]) * np.exp(1j * _from_coupler(scaled, linkages[rows]))[:, None]
@@ -70,14 +72,17 @@ def _from_coupler(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
     return turn
 
 
-def _places(linkages: Screened) -> dict[str, ComplexArray]:
+def _places(kind: Kind, linkages: Screened) -> dict[str, ComplexArray]:
     """Pivots and coupler point at sampled driver angles, each shape (n, samples)."""
     o2, o4, a, b, p = (column[:, None] for column in linkages.points.T)
     theta2, assembly = linkages.theta2, linkages.assembly
     angle = theta2[:, :1] + (theta2[:, -1:] - theta2[:, :1]) * np.linspace(0, 1, _SAMPLES)
     at_a = o2 + np.abs(a - o2) * np.exp(1j * angle)
     with np.errstate(all="ignore"):
-        coupler = coupler_of(o4 - at_a, np.abs(b - a), np.abs(b - o4), assembly[:, None])
-        arm = coupler * ((p - a) / (b - a))
+        if kind is FOUR_BAR:
+            coupler = coupler_of(o4 - at_a, np.abs(b - a), np.abs(b - o4), assembly[:, None])
+        else:
+            coupler = coupler_along(kind, linkages.points, angle)
+        arm = coupler / np.abs(coupler) * ((p - a) * np.abs(b - a) / (b - a))
     fixed = np.ones_like(at_a)
     return {"o2": o2 * fixed, "o4": o4 * fixed, "a": at_a, "b": at_a + coupler, "p": at_a + arm}

@@ -21,7 +21,7 @@ from grashof.synth.programme.along_motion import (
 from grashof.synth.programme.builder import Builder, Fill, always
 from grashof.synth.programme.constraints import Places, Symbols, cross, vector
 from grashof.synth.programme.driver_way import drive_of, driver_at
-from grashof.synth.programme.formulas import FORMULAS, Part, parts_of, range_of
+from grashof.synth.programme.formulas import Part, parts_of, range_of
 from grashof.synth.programme.instant import Instant
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
@@ -38,7 +38,7 @@ def require_limits(build: Builder, form: Form, x: Unknowns, places: Places) -> N
     Where a start gives a bound up, rows with slack stand for it.
     """
     design = Symbols(form, x, places)
-    for name, part in parts_of(form.limited, smooth=True):
+    for name, part in parts_of(form.limited, form.kind.smooth, form.kind.formulas):
         if part.fixed:
             continue
         value, angle = ca.SX(part.of(design)), LIMITS[name].kind is Kind.EQUAL
@@ -96,8 +96,8 @@ def cost_of_goals(build: Builder, form: Form, x: Unknowns, places: Places) -> ca
             cost -= weight * x.tau / (np.pi / 2)
         elif key == "size":
             cost += weight * size
-        elif key in FORMULAS:
-            (part,) = FORMULAS[key]
+        elif key in form.kind.formulas:
+            (part,) = form.kind.formulas[key]
             cost -= weight * QUANTITIES[key].better * ca.SX(part.of(design))
     if "size" in form.limited:
         most = build.parameter(lambda scaled, start: scaled.wanted.ranges("size")[""][1] - start.asks("size"))
@@ -119,7 +119,8 @@ def diagonal(build: Builder, x: Unknowns, places: Places) -> ca.SX:
         return guess
 
     low, high = (build.unknown(name, 2, corner(pick), always(-FAR, FAR)) for name, pick in _CORNERS.items())
-    for point in (x.o2, x.o4, *places.a, *places.b, *places.p):
+    ground = [x.o2, x.o4] if not x.o4.is_empty() else [x.o2]
+    for point in (*ground, *places.a, *places.b, *places.p):
         build.row(point - low, high - point)
     return ca.sqrt(ca.sumsqr(high - low) + 1e-12)
 
@@ -181,7 +182,7 @@ def _share(form: Form, key: str) -> Fill:
 
     def counted(scaled: ScaledProblem, start: Start, key: str) -> float:
         unit = value_of(key, peak_unit(form, scaled, start, key)) if key in ALONG else 1.0
-        return start.goals[key] * unit / (scaled.scale(QUANTITIES[key]) if key in FORMULAS else 1.0)
+        return start.goals[key] * unit / (scaled.scale(QUANTITIES[key]) if key in form.kind.formulas else 1.0)
 
     def share(scaled: ScaledProblem, start: Start) -> float:
         return counted(scaled, start, key) / sum(counted(scaled, start, each) for each in form.goals)

@@ -1,4 +1,4 @@
-"""The nonlinear programme of a four-bar: built once for each form, solved by Ipopt from a start."""
+"""The nonlinear programme of a kind of linkage: built once for each form, solved by Ipopt from a start."""
 
 from __future__ import annotations
 
@@ -107,13 +107,15 @@ def solve(scaled: ScaledProblem, start: Start, max_iter: int | None = None) -> S
     if programme.asking is not None and programme.asking.ended_by_another(status):
         raise KeyboardInterrupt
     found = {name: answer[place] for name, place in programme.places.items()}
-    o2, o4, a, b = (complex(*found[name]) for name in ("o2", "o4", "a", "b"))
+    pivots = {name: complex(*found[name]) for name in form.kind.linkage.PIVOTS}
     p, theta3 = complex(scaled.targets[0]), start.theta3
     if not form.poses:
         theta3 = tuple(found["theta3"].tolist())
-        p = a + complex(*found["arm"]) * np.exp(1j * theta3[start.visit.index(0)])
+        turned = complex(np.exp(1j * theta3[start.visit.index(0)]))
+        p = pivots["a"] + complex(*found["arm"]) * turned
+        pivots |= form.kind.completed(pivots, turned, {name: float(one[0]) for name, one in found.items()})
     return Solve(
-        points=(o2, o4, a, b, p),
+        points=(*(pivots[name] for name in ("o2", "o4", "a", "b")), p),
         theta2=tuple(found["theta2"].tolist()),
         theta3=theta3,
         body_angle=float(found["body_angle"][0]) if "body_angle" in found else start.body_angle,
@@ -176,15 +178,18 @@ def _stated(
     bound_transmission(build, form, x, places)
     require_limits(build, form, x, places)
     keep_out(build, form, x, places)
-    require_own(build, x, places, constraints)
+    require_own(build, form, x, places, constraints)
     cost = cost_of_goals(build, form, x, places)
     if form.own_goal and own_objective is not None:
-        cost += own_goal(build, x, places, own_objective)
+        cost += own_goal(build, form, x, places, own_objective)
     if form.fits:  # the error comes first; the rest only settles what the error leaves open
         cost = targets.error_scale * square(form, x, places, targets) - 1e-8 * x.tau
     if form.stay:
-        begun = build.parameter(lambda _, start: interleaved(start.points[:4]), 8)
-        cost = ca.sumsqr(ca.vertcat(x.o2, x.o4, x.a, x.b) - begun)
+        names = form.kind.linkage.PIVOTS
+        begun = build.parameter(
+            lambda _, start: interleaved(np.array([getattr(start, name) for name in names])), 2 * len(names)
+        )
+        cost = ca.sumsqr(ca.vertcat(*(getattr(x, name) for name in names)) - begun)
     if build.slack is not None:
         cost = build.slack
         if not form.exact:  # of equal slack the smaller error

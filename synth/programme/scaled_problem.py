@@ -8,10 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.analysis.judge.design import Constraint, OwnObjective
-from grashof.problems import FourBar, Objective, Problem, Requirements, Rotatability, Task
+from grashof.problems import Linkage, Objective, Problem, Requirements, Rotatability, Task
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.quantities import Quantity
 from grashof.synth.programme.frame import Frame
+from grashof.synth.programme.kind import Kind
+from grashof.synth.programme.kinds import FOUR_BAR, KINDS
 from grashof.synth.theory.burmester import Displacements
 
 
@@ -48,6 +50,8 @@ class ScaledProblem:
         The user's own in place of the problem's.
     of_use : float, sizes
         Least squares: designs up to this error are of use, be they far from the best.
+    kind : Kind
+        Of linkage: the first that the problem asks for.
     """
 
     problem: Problem
@@ -64,6 +68,7 @@ class ScaledProblem:
     zones: FloatArray | None = None
     own_objective: OwnObjective | None = None
     of_use: float = 0.0
+    kind: Kind = FOUR_BAR
 
     @classmethod
     def of(
@@ -78,7 +83,14 @@ class ScaledProblem:
         exact = problem.requirements.is_exact(task) and zones is None
         targets = np.where(task.has_position, frame.inward(task.positions), 0.0)
         turns = np.nan_to_num(task.angles)
-        by_dyads = exact and task.is_whole and not task.is_timed and not (task.closed and task.returns)
+        kind = KINDS[problem.mechanism[0]]
+        by_dyads = (
+            kind is FOUR_BAR
+            and exact
+            and task.is_whole
+            and not task.is_timed
+            and not (task.closed and task.returns)
+        )
         return cls(
             problem=problem,
             frame=frame,
@@ -93,6 +105,7 @@ class ScaledProblem:
             constraints=tuple(constraints),
             zones=None if zones is None else zones / [[frame.scale], [1.0]],
             own_objective=own_objective,
+            kind=kind,
         )
 
     def of_problem(self, problem: Problem) -> ScaledProblem:
@@ -145,20 +158,20 @@ class ScaledProblem:
 
     def linkages(
         self, points: ComplexArray, assembly: FloatArray, body_angle: FloatArray | None = None
-    ) -> FourBar:
+    ) -> Linkage:
         """The linkages with given pivots.
 
         Parameters
         ----------
         points : ndarray of complex, shape (..., 5), sizes
-            O2, O4, and A, B, P at the first target.
+            O2, O4, and A, B, P at the first target; see `Kind.placed`.
         assembly : ndarray, shape (...)
         body_angle : ndarray, shape (...), rad, optional
             From the coupler to the body. By default as the first of whole poses asks for it.
 
         Returns
         -------
-        FourBar
+        Linkage
             Batch of shape (...), in the problem's unit.
 
         Raises
@@ -166,18 +179,19 @@ class ScaledProblem:
         ProblemError
             Two pivots coincide.
         """
-        o2, o4, a, b, p = np.moveaxis(points, -1, 0)
-        with np.errstate(invalid="ignore"):  # FourBar refuses a coupler of no length
-            coupler = (b - a) / np.abs(b - a)
-        arm = (p - a) * coupler.conj() * self.frame.scale
+        with np.errstate(invalid="ignore", divide="ignore"):  # a value refuses a link of no length
+            coupler, given = self.kind.coupler(points), self.kind.arguments(points)
+        arm = (points[..., 4] - points[..., 2]) * coupler.conj() * self.frame.scale
         if body_angle is None:
             body_angle = np.angle(np.exp(1j * self.turns[0]) * coupler.conj())
-        return FourBar(
-            o2=self.frame.outward(o2),
-            o4=self.frame.outward(o4),
-            r2=np.abs(a - o2) * self.frame.scale,
-            r3=np.abs(b - a) * self.frame.scale,
-            r4=np.abs(b - o4) * self.frame.scale,
+        rows = {row.name: row for row in self.kind.linkage.PARAMETERS}
+        for name, value in given.items():
+            if rows[name].kind == "place":
+                given[name] = self.frame.outward(value)
+            elif rows[name].in_length:
+                given[name] = value * self.frame.scale
+        return self.kind.linkage(
+            **given,
             coupler_point=np.stack([arm.real, arm.imag], axis=-1),
             assembly=assembly,
             body_angle=body_angle,

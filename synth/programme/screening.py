@@ -10,17 +10,9 @@ import numpy as np
 from grashof.problems import Requirements, Rotatability, TransmissionOver
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.problems.values.requirements import LIMITS
-from grashof.synth.programme.formulas import (
-    Part,
-    View,
-    at_angle,
-    cos_mu,
-    folded,
-    parts_of,
-    range_of,
-    stretched,
-    turns_fully,
-)
+from grashof.synth.programme.formulas import Part, View, parts_of, range_of
+from grashof.synth.programme.kind import Kind, as_vector
+from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.vector import Vector
 
 # The requirements that can stand in the way, named by their fields.
@@ -51,6 +43,7 @@ class Screened:
         Root mean square distance from the targets.
     body_angle : ndarray, shape (n,), rad
         From the coupler to the body, where the first pose does not fix it; else zero.
+    kind : Kind
     """
 
     points: ComplexArray
@@ -63,12 +56,14 @@ class Screened:
     coupler: ComplexArray
     error: FloatArray
     body_angle: FloatArray
+    kind: Kind = FOUR_BAR
 
     def __len__(self) -> int:
         return len(self.points)
 
     def __getitem__(self, index: IntArray | BoolArray | slice) -> Screened:
-        return Screened(*(getattr(self, name)[index] for name in self.__slots__))
+        arrays = (getattr(self, name)[index] for name in self.__slots__ if name != "kind")
+        return Screened(*arrays, self.kind)
 
     @property
     def feasible(self) -> BoolArray:
@@ -81,7 +76,8 @@ class Screened:
         o2, _, a, b, p = self.points.T[..., None]
         coupler = np.take_along_axis(self.coupler, self.visit, axis=1)
         at_a = o2 + np.abs(a - o2) * np.exp(1j * self.theta2)
-        return np.stack([at_a, at_a + coupler, at_a + (p - a) / (b - a) * coupler])
+        turned = coupler if self.kind is FOUR_BAR else coupler * np.abs(b - a) / np.abs(coupler)
+        return np.stack([at_a, at_a + coupler, at_a + (p - a) / (b - a) * turned])
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +93,8 @@ class Configurations:
     theta2 : ndarray, shape (n, N), rad
         In the order of visit, unwrapped along the motion.
     direction : ndarray, shape (n,)
+    kind : Kind
+        Of a slider-crank `o4` is the point of its slide's line that lies r3 ahead of B at the first target.
     """
 
     o2: ComplexArray
@@ -106,10 +104,7 @@ class Configurations:
     visit: IntArray
     theta2: FloatArray
     direction: FloatArray
-
-
-def _vector(points: ComplexArray) -> Vector:
-    return Vector(points.real, points.imag)
+    kind: Kind = FOUR_BAR
 
 
 class Many(View):
@@ -125,6 +120,12 @@ class Many(View):
         Driver angles in the order of visit.
     body_turn : ndarray, shape (n,), rad, optional
         Angle of the body at the first target.
+    kind : Kind
+
+    Attributes
+    ----------
+    sine : ndarray, shape (n, N)
+        Signed sin mu at the targets; of whole linkages.
     """
 
     def __init__(
@@ -136,34 +137,57 @@ class Many(View):
         b: ComplexArray | None = None,
         theta2: FloatArray | None = None,
         body_turn: FloatArray | None = None,
+        kind: Kind = FOUR_BAR,
     ) -> None:
+        self._p, self.kind = p, kind
         if o2 is not None and a is not None:
             crank = a - o2[:, None]
-            self.o2, self.a, self.ap = _vector(o2[:, None]), _vector(a), _vector((p - a[:, 0])[:, None])
+            self.o2, self.a, self.ap = as_vector(o2[:, None]), as_vector(a), self.p_from(a)
             self.r2, self.theta2_start = np.abs(crank[:, :1]), np.angle(crank[:, :1])
         if o4 is not None and b is not None:
-            self.o4, self.b, self.bp = _vector(o4[:, None]), _vector(b), _vector((p - b[:, 0])[:, None])
-            self.r4 = np.abs(b[:, :1] - o4[:, None])
+            self.b = as_vector(b)
+            if kind is FOUR_BAR:
+                self.o4, self.bp, self.r4 = (
+                    as_vector(o4[:, None]),
+                    self.p_from(b),
+                    np.abs(b[:, :1] - o4[:, None]),
+                )
         if o2 is not None and o4 is not None and a is not None and b is not None:
-            ground = (o4 - o2)[:, None]
-            self.r1, self.r3, self.theta1 = np.abs(ground), np.abs(b[:, :1] - a[:, :1]), np.angle(ground)
-            first, last = (_vector((b - o4[:, None])[:, [k]]) for k in (0, -1))
-            self.output_turn, self.double_crank = first.angle_to(last), self.r2 > self.r1
-            self.turns = turns_fully(self.r1, self.r2, self.r3, self.r4)
+            self.sine = kind.many(self, o2, o4, a, b)
+            self.double_crank = self.r2 > getattr(self, "r1", np.inf)
+            self.turns = kind.turns_fully(self)
         if theta2 is not None:
             gone = theta2[:, -1:] - theta2[:, :1]
             self.driver_turn, self.direction = np.abs(gone), np.sign(gone)
         if body_turn is not None:
             self.body_turn = body_turn[:, None]
 
+    def p_from(self, pivot: ComplexArray) -> Vector:
+        """From a pivot (n, N) to the coupler point, at the first target."""
+        return as_vector((self._p - pivot[:, 0])[:, None])
 
-def _oversteps(view: View, wanted: Requirements, dyad: int | None) -> Iterator[tuple[str, FloatArray]]:
+
+def coupler_along(kind: Kind, points: ComplexArray, theta2: FloatArray) -> ComplexArray:
+    """From A to B of linkages of slider kinds (n, 5) at driver angles (n, k); NaN where the loop is open."""
+    o2, o4, a, b, p = points.T
+    view = Many(p, o2, a[:, None], o4, b[:, None], kind=kind)
+    unit = view.r1 if kind.turns_with_coupler else view.r3
+    lengths = (view.r2 / unit, np.ones_like(view.r2), view.offset / unit)
+    relative = theta2 - view.theta1
+    r2, r3, offset = (each[:, 0] for each in lengths)
+    e3, _, rod, _ = kind.closed((r2, r3, offset), np.exp(1j * relative), np.ones_like(relative))
+    closed = np.abs(kind.cos_mu(view, kind.at_angle(view, relative))) <= 1
+    coupler: ComplexArray = np.where(closed, unit * rod * e3 * np.exp(1j * view.theta1), np.nan)
+    return coupler
+
+
+def _oversteps(view: Many, wanted: Requirements, dyad: int | None) -> Iterator[tuple[str, FloatArray]]:
     """How far each limit is overstepped, shape (n,), by what one dyad decides, or two together (None).
 
     The parts of a quantity add up at every target; the worst target counts.
     """
     missed: dict[str, FloatArray] = {}
-    for name, part in parts_of(wanted.limited):
+    for name, part in parts_of(wanted.limited, view.kind.formulas):
         if part.dyad == dyad:
             missed[name] = missed.get(name, 0.0) + _overstep(view, part, *range_of(wanted, name, part))
     yield from ((name, amount.max(axis=1)) for name, amount in missed.items())
@@ -211,12 +235,12 @@ def judge(
     -------
     Screened
     """
-    coupler, output = found.b - found.a, found.b - found.o4[:, None]
+    coupler = found.b - found.a
     if first_turn is None:
         first_turn = np.angle(coupler[:, 0]) + (0.0 if body_angle is None else body_angle)
-    view = Many(p, found.o2, found.a, found.o4, found.b, found.theta2, first_turn)
+    view = Many(p, found.o2, found.a, found.o4, found.b, found.theta2, first_turn, found.kind)
+    sine = view.sine
     with np.errstate(divide="ignore", invalid="ignore"):
-        sine = (coupler.conj() * output).imag / (view.r3 * view.r4)
         assembly = np.where(np.sum(np.sign(sine), axis=1) >= 0, 1.0, -1.0)
         found, violations, span, cycle = _ways(found, view, violations, wanted.order)
 
@@ -237,7 +261,8 @@ def judge(
     violate("rotatability", _rotatability_violation(view, wanted))
     for name, amount in _oversteps(view, wanted, None):
         violate(name, amount)
-    violate("link_length", 1e-9 - np.minimum(view.r1, view.r3)[:, 0])
+    shortest = np.minimum.reduce([getattr(view, name) for name in found.kind.linkage.LENGTHS])
+    violate("link_length", 1e-9 - shortest[:, 0])
     points = np.stack([found.o2, found.o4, found.a[:, 0], found.b[:, 0], p], axis=1)
     return Screened(
         points=points,
@@ -250,11 +275,17 @@ def judge(
         coupler=coupler,
         error=error,
         body_angle=np.zeros(len(points)) if body_angle is None else body_angle,
+        kind=found.kind,
     )
 
 
 def dyad_violations(
-    pivot: str, ground: ComplexArray, places: ComplexArray, p: ComplexArray, wanted: Requirements
+    pivot: str,
+    ground: ComplexArray,
+    places: ComplexArray,
+    p: ComplexArray,
+    wanted: Requirements,
+    kind: Kind = FOUR_BAR,
 ) -> FloatArray:
     """What dyads violate by themselves, such as length, coupler arm, places of ground pivot and joint.
 
@@ -268,6 +299,7 @@ def dyad_violations(
     p : ndarray of complex, shape (n,), sizes
         The coupler point at the first target.
     wanted : Requirements
+    kind : Kind
 
     Returns
     -------
@@ -275,11 +307,12 @@ def dyad_violations(
     """
     joint, dyad = ("a", 2) if pivot == "o2" else ("b", 4)
     violations = np.zeros((len(ground), len(GROUPS)))
-    view = Many(p, ground, places) if dyad == 2 else Many(p, o4=ground, b=places)
+    view = Many(p, ground, places, kind=kind) if dyad == 2 else Many(p, o4=ground, b=places, kind=kind)
     for name, amount in _oversteps(view, wanted, dyad):
         violations[:, GROUPS.index(name)] = amount
     for name, points in ((pivot, ground[:, None]), (joint, places)):
-        violations[:, GROUPS.index("keep_out")] += keep_out_violation(name, points, wanted)
+        if name in kind.linkage.POINTS:
+            violations[:, GROUPS.index("keep_out")] += keep_out_violation(name, points, wanted)
     return violations
 
 
@@ -287,8 +320,8 @@ def violations_apart(
     found: Configurations, p: ComplexArray, track: ComplexArray, wanted: Requirements
 ) -> FloatArray:
     """What both dyads, and P on its `track` (n, k), violate by themselves; see `dyad_violations`."""
-    violations = dyad_violations("o2", found.o2, found.a, p, wanted)
-    violations += dyad_violations("o4", found.o4, found.b, p, wanted)
+    violations = dyad_violations("o2", found.o2, found.a, p, wanted, found.kind)
+    violations += dyad_violations("o4", found.o4, found.b, p, wanted, found.kind)
     violations[:, GROUPS.index("keep_out")] += keep_out_violation("p", track, wanted)
     return violations
 
@@ -311,14 +344,15 @@ def met(violations: FloatArray) -> BoolArray:
 
 
 def _ways(
-    found: Configurations, view: View, violations: FloatArray, ordered: bool
+    found: Configurations, view: Many, violations: FloatArray, ordered: bool
 ) -> tuple[Configurations, FloatArray, FloatArray, FloatArray]:
     """The motion that each linkage allows its driver, violations, greatest |cos mu| over it and over a turn.
 
     Above 1 the linkage does not close. A driver that cannot turn, with all targets in one of its
     ranges, has no way around.
     """
-    fold, stretch = (np.abs(cos_mu(view, diagonal2(view)))[:, 0] for diagonal2 in (folded, stretched))
+    kind = found.kind
+    fold, stretch = (np.abs(kind.cos_mu(view, reach(view)))[:, 0] for reach in (kind.folded, kind.stretched))
     ends = found.theta2[:, [0, -1]] - view.theta1
     inside = found.theta2 - view.theta1
     inside = np.where((stretch > 1)[:, None], (inside + np.pi) % TURN - np.pi, inside % TURN)
@@ -331,7 +365,7 @@ def _ways(
     even = (count >= 2) | ((count == 1) & (crossed[:, 1] % 2 == 0))
     odd = (count >= 2) | ((count == 1) & (crossed[:, 1] % 2 == 1))
     span = np.maximum(np.where(even, fold, 0.0), np.where(odd, stretch, 0.0))
-    at_ends = cos_mu(view, at_angle(view, ends))
+    at_ends = kind.cos_mu(view, kind.at_angle(view, ends))
     span = np.maximum(span, np.abs(at_ends).max(axis=1))
     return found, violations, span, np.maximum(fold, stretch)
 
@@ -353,15 +387,12 @@ def _kept_inside(
     return replace(found, visit=visit, theta2=theta2), violations
 
 
-def _rotatability_violation(view: View, wanted: Requirements) -> FloatArray:
-    r1, r2, r3, r4 = (length[:, 0] for length in (view.r1, view.r2, view.r3, view.r4))
+def _rotatability_violation(view: Many, wanted: Requirements) -> FloatArray:
     if wanted.rotatability is Rotatability.ANY:
-        return np.zeros(len(r1))
-    difference = {
-        Rotatability.FULL_CRANK: np.abs(r1 - r2),
-        Rotatability.CRANK_ROCKER: r1 - r2,
-        Rotatability.DOUBLE_CRANK: r2 - r1,
-    }[wanted.rotatability]
-    least = np.minimum(r3 + r4 - r1 - r2, difference - np.abs(r3 - r4)) / (r1 + r2 + r3 + r4)
+        return np.zeros(len(view.r2))
+    asked = {Rotatability.CRANK_ROCKER: False, Rotatability.DOUBLE_CRANK: True}.get(wanted.rotatability)
+    if asked is not None:
+        view.double_crank = np.full_like(view.double_crank, asked)
+    least: FloatArray = np.minimum.reduce([margin[:, 0] for margin in view.kind.margins(view)])
     violation: FloatArray = wanted.rotatability_margin - least
     return violation

@@ -10,6 +10,8 @@ import numpy as np
 from grashof.analysis import Verdict, solve_position
 from grashof.problems import FourBar, Objective
 from grashof.problems.values.arrays import ComplexArray
+from grashof.synth.programme.kind import Kind, Lengths
+from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 
@@ -60,6 +62,8 @@ class Start:
         Root mean square error up to which the objective decides.
     zoned : bool
         The objective decides as long as each target is missed by no more than it may.
+    kind : Kind
+        Of a slider-crank `o4` is the point of its slide's line that lies r3 ahead of B at the first target.
     """
 
     o2: complex
@@ -84,14 +88,17 @@ class Start:
     loose: bool = False
     most_error: float = np.inf
     zoned: bool = False
+    kind: Kind = FOUR_BAR
 
     @classmethod
     def of_linkage(cls, scaled: ScaledProblem, linkage: FourBar, verdict: Verdict) -> Start:
         """The start that a linkage makes where the judge found it nearest to the targets, in order."""
         state = solve_position(linkage, verdict.theta2, verdict.assembly)
         visit = np.argsort(verdict.direction * verdict.theta2, kind="stable")
-        at_first = (linkage.o2, linkage.o4, state.a[0], state.b[0], state.p[0])
-        o2, o4, a, b, p = (complex(scaled.frame.inward(point)) for point in at_first)
+        o2, a, b, p = (
+            complex(scaled.frame.inward(x)) for x in (linkage.o2, state.a[0], state.b[0], state.p[0])
+        )
+        o4 = scaled.kind.o4_of(linkage, b, scaled.frame)
         return cls(
             o2=o2,
             o4=o4,
@@ -105,6 +112,7 @@ class Start:
             assembly=int(linkage.assembly),
             objective=scaled.objective,
             body_angle=float(linkage.body_angle),
+            kind=scaled.kind,
         )
 
     def at(
@@ -136,8 +144,8 @@ class Start:
 
     @property
     def theta1(self) -> float:
-        """Direction O2->O4, rad."""
-        return float(np.angle(self.o4 - self.o2))
+        """Direction of the ground line, rad."""
+        return self.kind.theta1_of(self.points)
 
     @property
     def arm(self) -> complex:
@@ -147,15 +155,21 @@ class Start:
     @property
     def track(self) -> ComplexArray:
         """A, B and P at every target in the order of visit, shape (3, N), sizes."""
-        _, r2, r3, _ = self.lengths
+        _, r2, *_ = self.lengths
         a = self.o2 + r2 * np.exp(1j * np.array(self.theta2))
         turned = np.exp(1j * np.array(self.theta3))
-        return np.stack([a, a + r3 * turned, a + self.arm * turned])
+        b = self.kind.b_of(self.lengths, self.o4, a, turned)
+        return np.stack([a, b, a + self.arm * turned])
 
     @property
     def lengths(self) -> tuple[float, float, float, float]:
-        """r1, r2, r3, r4 in sizes."""
-        return abs(self.o4 - self.o2), abs(self.a - self.o2), abs(self.b - self.a), abs(self.b - self.o4)
+        """r1, r2, r3, r4 in sizes; of slider kinds the offset in place of r4, and 0 for what they lack."""
+        return self.kind.lengths_of(self.points)
+
+    @property
+    def turns_fully(self) -> bool:
+        """Whether the loop closes all round the turn."""
+        return bool(self.kind.turns_fully(Lengths(*self.lengths)))
 
     def gives(self, *parts: str) -> bool:
         """Whether a requirement, or a part of it, may be missed."""
@@ -186,6 +200,7 @@ class Start:
             assembly=int(linkages.assembly[index]),
             objective=objective,
             body_angle=float(linkages.body_angle[index]),
+            kind=linkages.kind,
         )
 
 

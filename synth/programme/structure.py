@@ -6,13 +6,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from grashof.problems import FourBar, Rotatability, TransmissionOver
+from grashof.problems import Rotatability, TransmissionOver
 from grashof.problems.values.motor import MotorSpec
 from grashof.problems.values.quantities import Needs, Over
 from grashof.problems.values.requirements import LIMITS, QUANTITIES
 from grashof.synth.programme.along_motion import ALONG
 from grashof.synth.programme.burden import Burden
 from grashof.synth.programme.driver_way import drive_of
+from grashof.synth.programme.kind import Kind
+from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 
@@ -26,6 +28,7 @@ class Form:
 
     Parameters
     ----------
+    kind : Kind
     targets : int
     poses : bool
         Targets are whole poses, met exactly: A, B and P move with the body.
@@ -67,6 +70,7 @@ class Form:
         The error as a whole, or that at every target, is bounded, and the problem's objective decides.
     """
 
+    kind: Kind
     targets: int
     poses: bool
     positions: tuple[bool, ...]
@@ -97,7 +101,9 @@ class Form:
 
     @property
     def along(self) -> tuple[str, ...]:
-        """Keys of the quantities bounded along the motion."""
+        """Keys of the quantities bounded along the motion; of slider kinds the judge alone looks at them."""
+        if self.kind is not FOUR_BAR:
+            return ()
         limited = [LIMITS[name].quantity.key for name in self.limited]
         return tuple(key for key in ALONG if key in limited or key in self.goals)
 
@@ -107,6 +113,7 @@ class Form:
         wanted, closed = scaled.wanted, scaled.closed
         plain = start.stay or bool(start.relaxed) or not (scaled.exact or start.bounded)
         made = cls(
+            kind=scaled.kind,
             targets=len(start.visit),
             poses=scaled.motion is not None,
             positions=tuple((scaled.weights > 0)[list(start.visit)].tolist()),
@@ -138,7 +145,7 @@ class Form:
 
     def places_of(self, name: str) -> int:
         """At how many places a point is held in free regions."""
-        return 1 if name in FourBar.GROUND else self.targets
+        return 1 if name in self.kind.linkage.GROUND else self.targets
 
 
 def _limited(scaled: ScaledProblem, start: Start) -> tuple[str, ...]:
@@ -162,7 +169,7 @@ def _nearest(scaled: ScaledProblem, start: Start) -> tuple[bool, ...]:
     wanted, count = scaled.wanted, len(start.visit)
     if scaled.exact or start.relaxed or start.loose:
         return (False,) * count
-    moving = set(wanted.keep_out_for) - set(FourBar.GROUND) if wanted.keep_out else set()
+    moving = set(wanted.keep_out_for) - set(scaled.kind.linkage.GROUND) if wanted.keep_out else set()
     placed = any(
         limit.quantity.over is Over.TARGETS and name != "theta2_start_deg"
         for name, limit in wanted.limited.items()
@@ -187,4 +194,5 @@ def points_held(scaled: ScaledProblem) -> tuple[str, ...]:
         return ()
     from grashof.synth.programme.keep_out_depth import points_kept_out
 
-    return tuple(name for name in points_kept_out(scaled.wanted) if name != "p" or not scaled.exact)
+    held = (name for name in points_kept_out(scaled.wanted) if name in scaled.kind.linkage.POINTS)
+    return tuple(name for name in held if name != "p" or not scaled.exact)

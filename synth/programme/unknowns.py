@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from grashof.problems import FourBar, Rotatability
+from grashof.problems import Rotatability
 from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
 from grashof.synth.programme.builder import Builder, Fill, always
-from grashof.synth.programme.formulas import turns_fully
+from grashof.synth.programme.kind import Kind
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import Form
@@ -32,8 +32,9 @@ class Unknowns:
     Parameters
     ----------
     o2, o4, a, b : SX, shape (2,), sizes
-        The moving pivots at the first target.
+        The moving pivots at the first target; an inverted slider-crank has no B here, a slider-crank no O4.
     r : SX, shape (4,), sizes
+        Of slider kinds the offset in place of r4, and 0 for what they lack.
     theta1, tau : SX, rad
         Direction of the ground line; the worst transmission angle.
     theta2, theta3 : SX, shape (N,), rad
@@ -75,8 +76,9 @@ class Unknowns:
         """The unknowns of a form, in their order."""
         n, none = form.targets, ca.SX(0, 1)
         wide, turns = always(-FAR, FAR), always(-100.0, 100.0)
-        found = {name: build.unknown(name, 2, *_pivot(name)) for name in FourBar.PIVOTS}
-        found["r"] = build.unknown("r", 4, lambda _, start: start.lengths, always(SHORTEST, FAR))
+        found = dict.fromkeys(("o4", "b"), none)
+        found |= {name: build.unknown(name, 2, *_pivot(form.kind, name)) for name in form.kind.linkage.PIVOTS}
+        found["r"] = _lengths(build, form.kind)
         found["theta1"] = build.unknown("theta1", 1, lambda _, start: start.theta1, always(-LIFTED, LIFTED))
         found["theta2"] = build.unknown("theta2", n, lambda _, start: start.theta2, _first_fixed)
         found["tau"] = build.unknown("tau", 1, lambda *_: 0.0, _least_transmission)
@@ -103,9 +105,21 @@ class Unknowns:
         return ca.dot(self.at_first, self.theta2)
 
 
-def _pivot(name: str) -> tuple[Fill, Fill]:
+def _lengths(build: Builder, kind: Kind) -> ca.SX:
+    """r1, r2, r3, r4 as far as the kind has them, and its offset."""
+    has = [k for k, name in enumerate(("r1", "r2", "r3", "r4")) if name in kind.linkage.LENGTHS]
+    found = build.unknown("r", len(has), lambda _, start: np.array(start.lengths)[has], always(SHORTEST, FAR))
+    if len(has) == 4:
+        return found
+    r = ca.SX(4, 1)
+    r[has] = found
+    r[3] = build.unknown("offset", 1, lambda _, start: start.lengths[3], always(-FAR, FAR))
+    return r
+
+
+def _pivot(kind: Kind, name: str) -> tuple[Fill, Fill]:
     """Guess and limits of a pivot, which may move by the radius of a start."""
-    far = (-FAR, FAR) if name in FourBar.GROUND else inset((-FAR, FAR))
+    far = (-FAR, FAR) if name in kind.linkage.GROUND else inset((-FAR, FAR))
 
     def guess(_: ScaledProblem, start: Start) -> FloatArray:
         return interleaved(getattr(start, name))
@@ -135,13 +149,13 @@ def _least_transmission(scaled: ScaledProblem, start: Start) -> Limits:
 
 def _turns(scaled: ScaledProblem, start: Start) -> float:
     required = scaled.wanted.rotatability is not Rotatability.ANY
-    return float(required or turns_fully(*np.array(start.lengths)))
+    return float(required or start.turns_fully)
 
 
 def _double_crank(scaled: ScaledProblem, start: Start) -> float:
     r1, r2, _, _ = start.lengths
     asked = {Rotatability.CRANK_ROCKER: 0.0, Rotatability.DOUBLE_CRANK: 1.0}
-    return asked.get(scaled.wanted.rotatability, float(r1 <= r2))
+    return asked.get(scaled.wanted.rotatability, float(0 < r1 <= r2))
 
 
 def inset(limits: Limits) -> Limits:

@@ -17,9 +17,11 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.problem import NO_OBJECTIVE
+from grashof.synth.programme.kind import Kind
+from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.on_symbols import on_symbols
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import Screened
+from grashof.synth.programme.screening import Many, Screened
 from grashof.synth.programme.start import Start
 
 FAR = 1e3  # stands for an amount without bound
@@ -61,7 +63,7 @@ def refuse_unusable(scaled: ScaledProblem, *, in_processes: bool) -> None:
 
 
 def _refuse(scaled: ScaledProblem, function: Constraint, kind: _Kind, in_processes: bool) -> None:
-    _try_on_symbols(function, kind, len(scaled.targets))
+    _try_on_symbols(function, kind, scaled)
     if not in_processes:
         return
     try:
@@ -89,7 +91,7 @@ def own_merit(scaled: ScaledProblem, linkages: Screened, objective: OwnObjective
 @one_at_a_time
 def _values(scaled: ScaledProblem, linkages: Screened, functions: tuple[Constraint, ...]) -> FloatArray:
     """What functions make of linkages, all evaluated at once, a row for each value."""
-    design, symbols = _symbols(len(scaled.targets))
+    design, symbols = _symbols(scaled.kind, len(scaled.targets))
     values = ca.vertcat(
         *(ca.vec(ca.SX(one)) for own in functions for one in _several(on_symbols(own, design)))
     )
@@ -99,12 +101,14 @@ def _values(scaled: ScaledProblem, linkages: Screened, functions: tuple[Constrai
 def _numbers(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
     """The numbers of linkages in the order of `_symbols`, shape (n, M)."""
     o2, o4, a, b, p = linkages.points.T
-    r3 = np.abs(b - a)
-    arm = (p - a) * r3 / (b - a)
+    view = Many(p, o2, a[:, None], o4, b[:, None], kind=linkages.kind)
+    fourth = view.r4 if linkages.kind is FOUR_BAR else view.offset
+    lengths = [getattr(view, "r1", 0 * view.r2), view.r2, getattr(view, "r3", 0 * view.r2), fourth]
+    arm = (p - a) * np.abs(b - a) / (b - a)
     columns = [
         *scaled.frame.outward(np.stack([o2, o4])).transpose(0, 2, 1).reshape(4, -1),
-        *(scaled.frame.scale * np.abs([o4 - o2, a - o2, b - a, b - o4])),
-        np.angle(o4 - o2),
+        *(scaled.frame.scale * each[:, 0] for each in lengths),
+        view.theta1[:, 0],
         *(scaled.frame.scale * np.stack([arm.real, arm.imag])),
         *linkages.theta2.T,
         *scaled.frame.outward(linkages.track).transpose(0, 2, 3, 1).reshape(-1, len(linkages)),
@@ -145,16 +149,11 @@ def magnitude_at(scaled: ScaledProblem, start: Start, objective: OwnObjective) -
 
 def _design(scaled: ScaledProblem, start: Start) -> Design:
     a, b, p = (list(scaled.frame.outward(track)) for track in start.track)
-    r1, r2, r3, r4 = np.array(start.lengths) * scaled.frame.scale
     arm = start.arm * scaled.frame.scale
     return Design(
         o2=scaled.frame.outward(np.array(start.o2)),
-        o4=scaled.frame.outward(np.array(start.o4)),
-        r1=r1,
-        r2=r2,
-        r3=r3,
-        r4=r4,
-        theta1=np.float64(start.theta1),
+        o4=scaled.frame.outward(np.array(start.o4)) if "o4" in scaled.kind.linkage.GROUND else None,
+        **scaled.kind.named(np.array(start.lengths) * scaled.frame.scale, np.float64(start.theta1)),
         coupler_point=np.array([arm.real, arm.imag]),
         theta2=np.array(start.theta2),
         a=a,
@@ -163,14 +162,18 @@ def _design(scaled: ScaledProblem, start: Start) -> Design:
     )
 
 
-def _symbols(targets: int) -> tuple[Design, ca.SX]:
+def _symbols(kind: Kind, targets: int) -> tuple[Design, ca.SX]:
     """A design of symbols, and all of these in one column."""
     o2, o4, arm = (ca.SX.sym(name, 2) for name in ("o2", "o4", "coupler_point"))
-    r1, r2, r3, r4, theta1 = (ca.SX.sym(name) for name in ("r1", "r2", "r3", "r4", "theta1"))
+    lengths, theta1 = [ca.SX.sym(name) for name in ("r1", "r2", "r3", "r4")], ca.SX.sym("theta1")
     theta2 = ca.SX.sym("theta2", targets)
     a, b, p = ([ca.SX.sym(name, 2) for _ in range(targets)] for name in "abp")
-    design = Design(o2, o4, r1, r2, r3, r4, theta1, arm, theta2, a, b, p)
-    return design, ca.vertcat(o2, o4, r1, r2, r3, r4, theta1, arm, theta2, *a, *b, *p)
+    has_o4 = "o4" in kind.linkage.GROUND
+    named = kind.named(lengths, theta1)
+    design = Design(
+        o2=o2, o4=o4 if has_o4 else None, coupler_point=arm, theta2=theta2, a=a, b=b, p=p, **named
+    )
+    return design, ca.vertcat(o2, o4, *lengths, theta1, arm, theta2, *a, *b, *p)
 
 
 def _several(value: Any) -> list[Any]:
@@ -178,8 +181,8 @@ def _several(value: Any) -> list[Any]:
 
 
 @one_at_a_time
-def _try_on_symbols(function: Constraint, kind: _Kind, targets: int) -> None:
-    design, _ = _symbols(targets)
+def _try_on_symbols(function: Constraint, kind: _Kind, scaled: ScaledProblem) -> None:
+    design, _ = _symbols(scaled.kind, len(scaled.targets))
     try:
         value = on_symbols(function, design)
     except WRONG as error:

@@ -9,6 +9,7 @@ import numpy as np
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.requirements import LIMITS
 from grashof.synth.programme.along_motion import ALONG, SCREENED, magnitudes, value_of
+from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS, Screened
 from grashof.synth.programme.user_functions import own_violations
@@ -18,6 +19,7 @@ def fully_screened(scaled: ScaledProblem, linkages: Screened) -> Screened:
     """The same with these violations, too."""
     wanted = scaled.wanted
     along = [name for name in wanted.limited if LIMITS[name].quantity.key in ALONG]
+    along = along if scaled.kind is FOUR_BAR else []
     if not len(linkages) or not (along or wanted.size or scaled.constraints or wanted.keep_out):
         return linkages
     violations = linkages.violations.copy()
@@ -28,7 +30,7 @@ def fully_screened(scaled: ScaledProblem, linkages: Screened) -> Screened:
         sound = linkages.feasible  # the others need not be looked at so closely
         violations[sound, GROUPS.index("keep_out")] = depth_on_the_way(scaled, linkages[sound])
     if wanted.size is not None:
-        size = _sizes(linkages)
+        size = _sizes(linkages, len(scaled.kind.linkage.GROUND))
         low, high = wanted.size
         violations[:, GROUPS.index("size")] = np.maximum(np.maximum(low - size, size - high), 0.0)
     for name in along:
@@ -38,9 +40,9 @@ def fully_screened(scaled: ScaledProblem, linkages: Screened) -> Screened:
     return replace(linkages, violations=violations)
 
 
-def _sizes(linkages: Screened) -> FloatArray:
+def _sizes(linkages: Screened, ground: int) -> FloatArray:
     """Diagonals of boxes around the pivots and the coupler point at all targets, shape (n,), sizes."""
-    places = np.concatenate([linkages.points[:, :2], *linkages.track], axis=1)
+    places = np.concatenate([linkages.points[:, :ground], *linkages.track], axis=1)
     diagonal: FloatArray = np.hypot(np.ptp(places.real, axis=1), np.ptp(places.imag, axis=1))
     return diagonal
 

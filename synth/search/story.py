@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from enum import StrEnum
 from time import perf_counter
@@ -88,6 +88,11 @@ class Asking:
             if self.ending is not Ending.COMPLETE:
                 _LOG.info("asked to end after %.1f s: %s", perf_counter() - self._since, self.ending)
         return self.ending is not Ending.COMPLETE
+
+    def part(self, number: int, of: int) -> Asking:
+        """The same for the first `number` of so many parts of a search, with their share of the time."""
+        limit = None if self.time_limit is None else self.time_limit * number / of
+        return replace(self, time_limit=limit)
 
     def _asked(self) -> Ending:
         if self.time_limit is not None and perf_counter() - self._since > self.time_limit:

@@ -1,7 +1,7 @@
 """Linkages of a search as unknowns: the closed loop at every target, and its derivatives.
 
 The driver angles and proportions are such that a linkage is feasible by construction; the loop is
-taken with r1 = 1 along the real axis.
+taken in the frame that `grashof.synth.programme.kinds` gives to its kind.
 """
 
 from __future__ import annotations
@@ -10,10 +10,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from grashof.problems import Requirements, Rotatability
+from grashof.problems import Requirements
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, Limits
 from grashof.synth.programme.formulas import Part, parts_of, range_of
+from grashof.synth.programme.kind import Kind
+from grashof.synth.programme.kinds import FOUR_BAR
 
+PROPORTIONS = 3  # unknowns of every kind; of slider kinds the last one does nothing
 SHORTEST = 1e-3  # of the longest step between targets: no step counts as less
 
 
@@ -37,6 +40,7 @@ class SearchTargets:
         In the frame of the points. Its limits draw the search inwards.
     closed : bool
         The task motion is a whole turn.
+    kind : Kind
     limited : tuple
         Field, part and range of all that is limited and has a formula.
     """
@@ -48,10 +52,11 @@ class SearchTargets:
     timing: FloatArray
     wanted: Requirements
     closed: bool = False
+    kind: Kind = FOUR_BAR
     limited: tuple[tuple[str, Part, Limits], ...] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        limited = parts_of(self.wanted.limited)
+        limited = parts_of(self.wanted.limited, self.kind.formulas)
         rows = tuple((name, part, range_of(self.wanted, name, part)) for name, part in limited)
         object.__setattr__(self, "limited", rows)
 
@@ -83,10 +88,10 @@ class SearchTargets:
 
     @property
     def unknowns(self) -> int:
-        """Proportions (3), and driver angles or what they are made of."""
+        """Proportions, and driver angles or what they are made of."""
         if self.timed:
-            return 4
-        return 3 + len(self.points) + self.wanted.order
+            return self.kind.proportions + 1
+        return self.kind.proportions + len(self.points) + self.wanted.order
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +131,7 @@ def joined(first: Batch, second: Batch) -> Batch:
 
 @dataclass(frozen=True, slots=True)
 class Loop:
-    """The closed loop with r1 = 1 along the real axis, at every point; derivatives by the unknowns."""
+    """The closed loop in the frame of its kind, at every point; derivatives by the unknowns."""
 
     r2: FloatArray
     r3: FloatArray
@@ -136,62 +141,18 @@ class Loop:
     e2: ComplexArray
     e3: ComplexArray
     e4: ComplexArray
+    rod: FloatArray  # r3, (n, N) or (n, 1)
     closes: BoolArray
 
     @classmethod
     def of(cls, target: SearchTargets, batch: Batch) -> Loop:
         """Close the loop of every linkage at every target."""
-        if target.wanted.rotatability is Rotatability.ANY:
-            lengths, by_lengths = _any_lengths(batch)
-        else:
-            lengths, by_lengths = _full_crank_lengths(batch, target.wanted.rotatability_margin)
-        r2, r3, r4 = lengths
+        proportions = batch.unknowns[:, :PROPORTIONS]
+        lengths, by_lengths = target.kind.lengths(proportions, batch.longer_driver, target.wanted)
         theta2 = _driver_angles(target, batch)
         e2 = np.exp(1j * theta2)
-        diagonal = 1 - r2[:, None] * e2
-        s = np.abs(diagonal)
-        along = (s**2 + (r3**2 - r4**2)[:, None]) / (2 * s)
-        beside2 = r3[:, None] ** 2 - along**2
-        closes = (beside2 > 1e-12 * r3[:, None] ** 2).all(axis=1)
-        # Not `coupler_of`: what is open, too, has numbers here, and last digits decide a list.
-        beside = batch.assembly * np.sqrt(np.where(beside2 > 0, beside2, 1.0))
-        coupler = (along + 1j * beside) * diagonal / s
-        output = r2[:, None] * e2 + coupler - 1
-        return cls(r2, r3, r4, by_lengths, theta2, e2, coupler / r3[:, None], output / r4[:, None], closes)
-
-
-def _full_crank_lengths(
-    batch: Batch, margin: float
-) -> tuple[tuple[FloatArray, FloatArray, FloatArray], FloatArray]:
-    """r2, r3, r4 with r1 = 1: all full cranks with the margin, from three free numbers each.
-
-    r2 = sigmoid(a) or its inverse; with k = (1 + margin) / (1 - margin) and S the sum of the lengths
-    r3 + r4 = k (1 + r2) + exp(b) and r3 - r4 = (|1 - r2| - margin S) tanh(c). Where r2 is so near to 1
-    that the margin cannot be had, r3 = r4.
-    """
-    a, b, c = batch.unknowns[:, :3].T
-    sigmoid = 1 / (1 + np.exp(-a))
-    r2 = np.where(batch.longer_driver, 1 / sigmoid, sigmoid)
-    dr2 = np.where(batch.longer_driver, -(1 - sigmoid) / sigmoid, sigmoid * (1 - sigmoid))
-    k, excess, tanh = (1 + margin) / (1 - margin), np.exp(b), np.tanh(c)
-    total = k * (1 + r2) + excess
-    room = np.abs(1 - r2) - margin * (1 + r2 + total)
-    has_room = room > 0
-    room = np.where(has_room, room, 0.0)
-    total_by = np.stack([k * dr2, excess, np.zeros_like(a)], axis=-1)
-    room_by = np.stack([-np.sign(1 - r2) * dr2, *np.zeros((2, len(a)))], axis=-1)
-    room_by -= margin * (total_by + np.stack([dr2, *np.zeros((2, len(a)))], axis=-1))
-    difference, difference_by = room * tanh, room_by * (has_room * tanh)[:, None]
-    difference_by[:, 2] = room * (1 - tanh**2)
-    r2_by = np.stack([dr2, *np.zeros((2, len(a)))], axis=-1)
-    derivative = np.stack([r2_by, (total_by + difference_by) / 2, (total_by - difference_by) / 2], axis=1)
-    return (r2, (total + difference) / 2, (total - difference) / 2), derivative
-
-
-def _any_lengths(batch: Batch) -> tuple[tuple[FloatArray, FloatArray, FloatArray], FloatArray]:
-    lengths = np.exp(batch.unknowns[:, :3])
-    r2, r3, r4 = lengths.T
-    return (r2, r3, r4), lengths[:, :, None] * np.eye(3)
+        e3, e4, rod, closes = target.kind.closed(lengths, e2, batch.assembly)
+        return cls(*lengths, by_lengths, theta2, e2, e3, e4, rod, closes)
 
 
 def _driver_angles(target: SearchTargets, batch: Batch) -> FloatArray:
@@ -256,7 +217,7 @@ def by_body_turns(target: SearchTargets, by_theta3: FloatArray) -> FloatArray:
 def by_theta3_of(loop: Loop, by_theta2: FloatArray) -> FloatArray:
     """Derivative of theta3 by the unknowns, (n, N, M), from the loop equation projected on O4B."""
     driver, coupler = loop.e2 * loop.e4.conj(), loop.e3 * loop.e4.conj()
-    below = loop.r3[:, None] * coupler.imag
+    below = loop.rod * coupler.imag
     slope = (-(loop.r2[:, None] * driver.imag) / below)[..., None] * by_theta2
     by_r2, by_r3, by_r4 = (loop.by_lengths[:, None, i] for i in range(3))
     lengths = driver.real[..., None] * by_r2 + coupler.real[..., None] * by_r3 - by_r4

@@ -10,6 +10,7 @@ import numpy as np
 
 from grashof.problems import ProblemError, Requirements
 from grashof.problems.values.checks import counted
+from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Start
@@ -47,7 +48,7 @@ class CouplerSearch:
         """They trace the same path; not where angles of the body, or a pivot or start angle, are given."""
         wanted = self.scaled.wanted
         given = self.scaled.has_angles or wanted.theta2_start_deg is not None
-        return not given and not fixed_pivots(wanted)
+        return self.scaled.kind is FOUR_BAR and not given and not fixed_pivots(wanted)
 
     def refuse(self) -> None:
         """Raise `ProblemError` for fewer than three distinct targets."""

@@ -12,15 +12,8 @@ from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, 
 from grashof.problems.values.quantities import Kind
 from grashof.problems.values.requirements import LIMITS
 from grashof.synth.programme.dual import Dual
-from grashof.synth.programme.formulas import (
-    LOGARITHMIC,
-    View,
-    at_angle,
-    cos_mu,
-    folded,
-    stretched,
-    turns_fully,
-)
+from grashof.synth.programme.formulas import LOGARITHMIC, View
+from grashof.synth.programme.kind import Lengths
 from grashof.synth.programme.vector import Vector
 from grashof.synth.starts.closed_loop import Loop, SearchTargets, body_turns
 
@@ -29,22 +22,24 @@ LEAST_LENGTH = 1e-9  # sizes
 
 
 class Relative(View):
-    """Linkages of a batch with r1 = 1, their lengths and driver angles with derivatives."""
+    """Linkages of a batch in the frame of their kind, their lengths and driver angles with derivatives."""
 
     def __init__(self, loop: Loop, by_theta2: FloatArray) -> None:
-        self.r1, self.theta2 = 1.0, Dual(loop.theta2, by_theta2)
+        self.r1, self.theta2, self.double_crank = 1.0, Dual(loop.theta2, by_theta2), loop.r2[:, None] > 1
         lengths = []
         for number, length in enumerate((loop.r2, loop.r3, loop.r4)):
             slope = np.zeros((len(length), 1, by_theta2.shape[2]))
             slope[:, 0, :3] = loop.by_lengths[:, number]
             lengths.append(Dual(length[:, None], slope))
         self.r2, self.r3, self.r4 = lengths
+        self.offset = self.r4  # as slider kinds have it
 
 
 class Placement(View):
     """Linkages of a batch where they stand, with derivatives by the M unknowns.
 
-    A = z0 + z1 e2, B = z0 + g (r2 e2 + r3 e3), O4 = z0 + g, P = A + z2 e3 with the ground g = z1 / r2.
+    A = z0 + z1 e2, B = z0 + g (r2 e2 + r3 e3), O4 = z0 + g, P = A + z2 e3 with the frame of the loop turned
+    and scaled by g = z1 / r2.
 
     Parameters
     ----------
@@ -74,14 +69,15 @@ class Placement(View):
         self.o4, self.bp = self.o2 + ground, self.ap - self.relative.r3 * ground
         self.r1 = np.hypot(ground.x, ground.y)
         self.r2, self.r3, self.r4 = (self.r1 * getattr(self.relative, name) for name in ("r2", "r3", "r4"))
+        self.offset = self.r4
         self.theta1 = np.arctan2(ground.y, ground.x)
         theta2 = self.relative.theta2
         first, last = theta2.column(0), theta2.column(-1)
         self.theta2_start, self.direction = self.theta1 + first, np.sign(last.value - first.value)
-        self.driver_turn, self.double_crank = np.abs(last - first), loop.r2[:, None] > 1
+        self.driver_turn, self.double_crank = np.abs(last - first), self.relative.double_crank
         required = target.wanted.rotatability is not Rotatability.ANY
         lengths = (each[:, None] for each in (np.ones_like(loop.r2), loop.r2, loop.r3, loop.r4))
-        self.turns = required | turns_fully(*lengths)
+        self.turns = required | target.kind.turns_fully(Lengths(*lengths))
 
     @cached_property
     def a(self) -> Vector:  # type: ignore[override]
@@ -90,17 +86,37 @@ class Placement(View):
 
     @cached_property
     def b(self) -> Vector:  # type: ignore[override]
-        """B at every target."""
-        theta3 = Dual(np.angle(self.loop.e3), self.by_theta3)
-        at_b: Vector = self.a + self.relative.r3 * self._ground.turned(theta3)
+        """B at every target; not of an inverted slider-crank."""
+        at_b: Vector = self.a + self.relative.r3 * self._coupler
         return at_b
+
+    @cached_property
+    def _coupler(self) -> Vector:
+        """Of length r1, along the coupler."""
+        turned: Vector = self._ground.turned(Dual(np.angle(self.loop.e3), self.by_theta3))
+        return turned
 
     @cached_property
     def output_turn(self) -> Dual:
         """Rotation of the output link from the first target to the last."""
-        first, last = (Vector(self.b.x.column(k), self.b.y.column(k)) - self.o4 for k in (0, -1))
+        if self._target.kind.turns_with_coupler:
+            first, last = (self.column("_coupler", k) for k in (0, -1))
+        else:
+            first, last = (self.column("b", k) - self.o4 for k in (0, -1))
         turned: Dual = first.angle_to(last)
         return turned
+
+    @cached_property
+    def output_travel(self) -> Dual:
+        """Travel of a slide from the first target to the last."""
+        first, last = (self.column("b", k) for k in (0, -1))
+        travel: Dual = (last - first).dot(-self._ground.left) / self.r1
+        return travel
+
+    def column(self, name: str, k: int) -> Vector:
+        """A point, or the coupler, at one target."""
+        each = getattr(self, name)
+        return Vector(each.x.column(k), each.y.column(k))
 
     @cached_property
     def body_turn(self) -> Dual:
@@ -175,12 +191,13 @@ def _transmission_rows(target: SearchTargets, loop: Relative) -> Iterator[Dual]:
     if least <= 0 and wanted.rotatability is not Rotatability.ANY:
         return  # a full crank has no dead position
     most = np.cos(max(least, LEAST_TRANSMISSION))
-    for diagonal2, passes in zip((folded, stretched), passed(target, theta2.value), strict=True):
-        yield _where(passes[:, None], _outside(cos_mu(loop, diagonal2(loop)), (-most, most)))
+    kind = target.kind
+    for reach, passes in zip((kind.folded, kind.stretched), passed(target, theta2.value), strict=True):
+        yield _where(passes[:, None], _outside(kind.cos_mu(loop, reach(loop)), (-most, most)))
     if wanted.transmission_over is TransmissionOver.TASK and not target.closed:
         ends = slice(None) if target.jumbled else [0, -1]
         angle = Dual(theta2.value[:, ends], lambda: theta2.slope[:, ends])
-        yield _outside(cos_mu(loop, at_angle(loop, angle)), (-most, most))
+        yield _outside(kind.cos_mu(loop, kind.at_angle(loop, angle)), (-most, most))
 
 
 def passed(target: SearchTargets, theta2: FloatArray) -> tuple[BoolArray, BoolArray]:

@@ -73,10 +73,8 @@ def draw(target: SearchTargets, count: int, rng: np.random.Generator, astray: fl
     On a share of them, `astray`, P makes a detour between two targets.
     """
     n = len(target.points)
-    proportions = rng.normal(size=(count, 3)) * (1.2, 1.5, 1.0) - (0.0, 1.0, 0.0)
     rotatability = target.wanted.rotatability
-    if rotatability is Rotatability.ANY:
-        proportions = rng.normal(0.0, 0.7, (count, 3))
+    proportions = target.kind.drawn(rng, count, anything=rotatability is Rotatability.ANY)
     columns = [proportions, rng.uniform(-np.pi, np.pi, (count, 1))]
     if not target.timed and target.wanted.order:
         steps = target.steps
@@ -93,6 +91,8 @@ def draw(target: SearchTargets, count: int, rng: np.random.Generator, astray: fl
         columns.append(rng.uniform(-np.pi, np.pi, (count, n - 1)))
     longer = {Rotatability.CRANK_ROCKER: 0.0, Rotatability.DOUBLE_CRANK: 1.0}.get(rotatability, 0.4)
     signs = rng.choice([-1.0, 1.0], (count, 1 if target.wanted.same_branch else n))
+    if target.kind.one_assembly:
+        signs = np.ones_like(signs)
     return Batch(
         unknowns=np.concatenate(columns, axis=1),
         longer_driver=rng.random(count) < longer,
@@ -112,14 +112,15 @@ def _standing(target: SearchTargets, loop: Loop, z: ComplexArray, error: FloatAr
     """Where linkages stand with given z0, z1, z2 (n, 3); `error` is that of the points alone."""
     z0, z1, z2 = z.T
     ground = z1 / loop.r2
-    o4 = z0 + ground
+    a = z0[:, None] + z1[:, None] * loop.e2
+    o4, b = target.kind.placed(loop, z0, ground, a)
     turned, in_loop = body_turns(target, loop)
     return Placed(
         error=error + (turned**2).sum(axis=1),
         o2=z0,
         o4=o4,
-        a=z0[:, None] + z1[:, None] * loop.e2,
-        b=o4[:, None] + (ground * loop.r4)[:, None] * loop.e4,
+        a=a,
+        b=b,
         p=z0[:, None] + z1[:, None] * loop.e2 + z2[:, None] * loop.e3,
         theta2=loop.theta2 + np.angle(z1)[:, None],
         body_angle=in_loop - np.angle(z1) if target.has_angles else in_loop,

@@ -13,6 +13,7 @@ import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.programme.driver_angles import shorter_way
+from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Round
 from grashof.synth.starts.closed_loop import SearchTargets
@@ -68,7 +69,9 @@ class NinePoints(PrecisionPoints):
     @staticmethod
     def suits(scaled: ScaledProblem) -> bool:
         """So many points, to be met exactly."""
-        if not scaled.exact or scaled.timed or not scaled.problem.task.only_points:
+        if scaled.kind is not FOUR_BAR or not scaled.exact or scaled.timed:
+            return False
+        if not scaled.problem.task.only_points:
             return False
         points = search_targets(scaled).points
         if len(points) != 9:

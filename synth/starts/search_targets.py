@@ -33,6 +33,7 @@ def search_targets(scaled: ScaledProblem) -> SearchTargets:
         timing=scaled.timing[:last],
         wanted=scaled.wanted,
         closed=scaled.closed,
+        kind=scaled.kind,
     )
 
 
@@ -46,7 +47,7 @@ def judged(scaled: ScaledProblem, target: SearchTargets, placed: Placed, directi
     if not target.wanted.order:
         visit, theta2, direction = as_they_come(theta2)
     p = placed.p[:, 0]
-    found = Configurations(placed.o2, placed.o4, a, b, visit, theta2, direction)
+    found = Configurations(placed.o2, placed.o4, a, b, visit, theta2, direction, scaled.kind)
     violations = violations_apart(found, p, placed.p, scaled.wanted)
     error = np.sqrt(placed.error / len(scaled.targets))
     return fully_screened(scaled, judge(found, p, error, violations, scaled.wanted, placed.body_angle))

@@ -10,7 +10,7 @@ import scipy
 from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth.programme.along_motion import ALONG, SCREENED, magnitudes, value_of
-from grashof.synth.programme.formulas import FORMULAS
+from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS, Many, Screened
 from grashof.synth.programme.start import Start
@@ -159,15 +159,17 @@ def _worth(scaled: ScaledProblem, linkages: Screened, key: str) -> FloatArray:
     if key == "transmission":
         worth = linkages.transmission / (np.pi / 2)
     elif key == "size":
-        worth = -np.hypot(np.ptp(linkages.points.real, axis=1), np.ptp(linkages.points.imag, axis=1))
-    elif key in ALONG:
+        known = [0, 1, 2, 3, 4] if "o4" in scaled.kind.linkage.GROUND else [0, 2, 3, 4]
+        points = linkages.points[:, known]
+        worth = -np.hypot(np.ptp(points.real, axis=1), np.ptp(points.imag, axis=1))
+    elif key in ALONG and scaled.kind is FOUR_BAR:
         ways = linkages.theta2, linkages.direction, linkages.assembly
         peak = magnitudes(scaled.problem, key, linkages.points, *ways, SCREENED).max(axis=1)
         worth = QUANTITIES[key].better * value_of(key, peak)
-    elif key in FORMULAS:
-        (part,) = FORMULAS[key]
+    elif key in scaled.kind.formulas:
+        (part,) = scaled.kind.formulas[key]
         o2, o4, a, b, p = linkages.points.T
-        pairs = Many(p, o2, a[:, None], o4, b[:, None], linkages.theta2)
+        pairs = Many(p, o2, a[:, None], o4, b[:, None], linkages.theta2, kind=scaled.kind)
         value = part.of(pairs)[:, 0]
         worth = QUANTITIES[key].better * value / scaled.scale(QUANTITIES[key])
     return worth

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from grashof.problems import FourBar
+from grashof.problems import FourBar, InvertedSliderCrank, Linkage, SliderCrank
 from grashof.problems.values.arrays import FloatArray, IntArray
 
 # Share of the largest number of two designs by which they differ at least: 1 %, and a quarter more
@@ -12,19 +12,33 @@ from grashof.problems.values.arrays import FloatArray, IntArray
 DISTINCT = 0.0125
 
 
-def signature(linkage: FourBar, origin: FloatArray | None = None) -> FloatArray:
+def signature(linkage: Linkage, origin: FloatArray | None = None) -> FloatArray:
     """The numbers that distinguish designs, all in length: O2, O4, r2, r3, r4, u, v; shape (..., 9).
 
-    Pivots are measured from `origin`, shape (2,), where one is given: with the middle of the task
-    there, what is distinct does not depend on where the user's own origin lies.
+    Of slider kinds the offset in place of r4; of a slider-crank the slide's direction, of length r2 + r3, in
+    place of O4, of an inverted one nothing in place of r3. Pivots are measured from `origin`, shape (2,),
+    where one is given: with the middle of the task there, what is distinct does not depend on where the
+    user's own origin lies.
     """
     middle = np.zeros(2) if origin is None else origin
-    numbers = [
-        (value - middle if row.kind == "place" else value) if row.paired else value[..., None]
-        for row, value in zip(linkage.PARAMETERS, linkage.parameters, strict=True)
-        if row.in_length
-    ]
-    return np.concatenate(numbers, axis=-1)
+    match linkage:
+        case FourBar():
+            second, lengths = linkage.o4 - middle, (linkage.r2, linkage.r3, linkage.r4)
+        case SliderCrank():
+            direction = np.stack([np.cos(linkage.slide_angle), np.sin(linkage.slide_angle)], axis=-1)
+            second = (linkage.r2 + linkage.r3)[..., None] * direction
+            lengths = linkage.r2, linkage.r3, linkage.offset
+        case InvertedSliderCrank():
+            second, lengths = linkage.o4 - middle, (linkage.r2, np.zeros_like(linkage.r2), linkage.offset)
+        case _:
+            raise TypeError(type(linkage).__name__)
+    return np.concatenate(
+        [linkage.o2 - middle, second, np.stack(lengths, axis=-1), linkage.coupler_point], axis=-1
+    )
+
+
+# Columns of it that change their sign where a linkage is mirrored, besides y of pivots and directions.
+MIRRORED = {FourBar: (8,), SliderCrank: (6, 8), InvertedSliderCrank: (6, 8)}
 
 
 def apart(one: FloatArray, others: FloatArray) -> FloatArray:

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from grashof.synth.theory.closure import coupler_of
+from grashof.synth.theory.closure import FOUR_BAR_CLOSURE, Closure
 
 STEPS = 4
+MORE_STEPS, DONE = 12, 1e-10  # at most so many where, as on short arcs, much is left after those
 MANY = 64  # targets: of more, each driver angle is eliminated by itself
 
 
@@ -26,6 +27,8 @@ class Wish:
     has_turn : ndarray of bool, shape (N,)
     timed : bool
         The driver angles move together.
+    closure : Closure
+        Of the kind of linkage.
     """
 
     points: ComplexArray
@@ -33,6 +36,7 @@ class Wish:
     turns: FloatArray
     has_turn: BoolArray
     timed: bool
+    closure: Closure = FOUR_BAR_CLOSURE
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,16 +81,18 @@ def polish_path(
     -------
     Polished
     """
-    o2, o4, a, b, p = points
+    _, _, a, b, p = points
     arm = (p - a) * abs(b - a) / (b - a)
     unknowns = np.concatenate([
-        [o2.real, o2.imag, o4.real, o4.imag, abs(a - o2), abs(b - a), abs(b - o4), arm.real, arm.imag],
-        [body_angle], theta2[:1] if wish.timed else theta2,
+        wish.closure.dimensions(points), [arm.real, arm.imag, body_angle],
+        theta2[:1] if wish.timed else theta2,
     ])  # fmt: skip
     gaps = theta2 - theta2[0]
-    for _ in range(STEPS):
+    for step in range(MORE_STEPS):
         _, residual, jacobian = _linearised(unknowns, gaps, assembly, wish)
         if not (np.isfinite(residual).all() and np.isfinite(jacobian).all()):
+            break
+        if step >= STEPS and np.abs(residual).max(initial=0.0) < DONE:
             break
         if wish.timed or len(theta2) <= MANY:
             jacobian = jacobian if wish.timed else _spread(jacobian, wish)
@@ -105,27 +111,20 @@ def _linearised(
 
     By what all targets share (10), and by the driver angle of each row's own target, or of all where timed.
     """
-    o2, o4 = complex(*unknowns[:2]), complex(*unknowns[2:4])
-    r2, r3, r4 = unknowns[4:7]
+    o2, r2 = complex(*unknowns[:2]), unknowns[4]
     arm, body_angle = complex(*unknowns[7:9]), unknowns[9]
     theta2 = unknowns[10] + gaps if wish.timed else unknowns[10:]
     e2 = np.exp(1j * theta2)
     a = o2 + r2 * e2
     with np.errstate(invalid="ignore", divide="ignore"):
-        coupler = coupler_of(o4 - a, r3, r4, assembly)
-        e3, e4 = coupler / r3, (a + coupler - o4) / r4
+        loop = wish.closure.closed(unknowns[:7], e2, assembly)
+        e3, e4 = loop.e3, loop.e4
         p = a + arm * e3
-        below = r3 * (e3 * e4.conj()).imag
-
-        def turn(move: ComplexArray | complex) -> FloatArray:
-            # The loop O2-A-B-O4, projected on O4B, gives the turn of the coupler (move: of A - O4).
-            turned: FloatArray = (move * e4.conj()).real / below
-            return turned
-
-        by_r4 = -1 / below
-        turns = [turn(1), turn(1j), turn(-1), turn(-1j), turn(e2), turn(e3), by_r4, 0.0, 0.0, 0.0]
+        # The loop, projected on e4, gives the turn of the coupler.
+        below = loop.rod * (e3 * e4.conj()).imag
+        turns = [*(moved / below for moved in loop.moved), 0.0, 0.0, 0.0]
         moves = [1, 1j, 0, 0, e2, 0, 0, e3, 1j * e3, 0]
-        turns.append(turn(1j * r2 * e2))
+        turns.append((1j * r2 * e2 * e4.conj()).real / below)
         moves.append(1j * r2 * e2)
         by_turn = np.stack([np.broadcast_to(column, a.shape) for column in turns], axis=1)
         by_move = np.stack([np.broadcast_to(column, a.shape) for column in moves], axis=1)
@@ -135,7 +134,7 @@ def _linearised(
     turned = np.angle(e3 * np.exp(1j * (body_angle - wish.turns)))[wish.has_turn]
     slope = by_point[wish.has_point]
     return (
-        (np.array([o2, o4, a[0], a[0] + coupler[0], p[0]]), coupler),
+        (np.array([o2, loop.o4, a[0], a[0] + loop.coupler[0], p[0]]), loop.coupler),
         np.concatenate([off.real, off.imag, turned]),
         np.concatenate([slope.real, slope.imag, by_turn[wish.has_turn]]),
     )

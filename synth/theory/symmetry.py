@@ -27,13 +27,15 @@ class Symmetry:
     turn: complex
     mirrored: bool
 
-    def of(self, signatures: FloatArray) -> FloatArray:
+    def of(self, signatures: FloatArray, signed: tuple[int, ...] = (8,)) -> FloatArray:
         """What it makes of designs.
 
         Parameters
         ----------
         signatures : ndarray, shape (k, 9), length
             With pivots measured from the middle of the task, see `grashof.synth.theory.distinct.signature`.
+        signed : tuple of int
+            Columns that change their sign in a mirror.
 
         Returns
         -------
@@ -44,7 +46,7 @@ class Symmetry:
         pivots = self.turn * (pivots.conj() if self.mirrored else pivots)
         made[:, [0, 2]], made[:, [1, 3]] = pivots.real, pivots.imag
         if self.mirrored:
-            made[:, 8] *= -1
+            made[:, signed] *= -1
         return made
 
 

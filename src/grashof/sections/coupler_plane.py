@@ -11,7 +11,7 @@ from grashof.study.columns import Columns, curves, over_driver, table, track
 from grashof.study.section import Plot, Section
 from grashof.study.study import LinkageStudy
 
-_SHOWN = 2.0  # times r1 + r2 + r3 + r4: so far from A the pole is drawn
+_SHOWN = 2.0  # times the lengths of the links together: so far from A the pole is drawn
 _NOTES = (
     "points of the coupler on the inflection circle pass a straight piece of their paths",
     "those on Bresse's circle have no tangential acceleration while the driver turns steadily",
@@ -27,7 +27,10 @@ def coupler_plane(study: LinkageStudy) -> Section:
     far = np.hypot(columns["moving_u"], columns["moving_v"]) > reach
     fixed, moving = track(columns, "fixed"), track(columns, "moving", "uv")
     pivots = {name.upper(): np.array([getattr(linkage, name)]) for name in linkage.GROUND}
-    frame = {"A": (0.0, 0.0), "B": (float(linkage.r3), 0.0), "P": tuple(linkage.coupler_point)}
+    frame = {"A": (0.0, 0.0)}
+    if "b" in linkage.LINKS[2].points:  # the B of an inverted slider-crank moves along its rod
+        frame["B"] = (float(linkage.lengths[linkage.LENGTHS.index("r3")]), 0.0)
+    frame["P"] = tuple(linkage.coupler_point.tolist())
     shown = [np.where(far[:, None], np.nan, points) for points in (fixed, moving)]
     circles, diameter = _circles(study, _angles(study)), {"diameter": "inflection_diameter"}
     named = {name: np.array([place]) for name, place in frame.items()}

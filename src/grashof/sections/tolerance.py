@@ -7,11 +7,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from grashof.analysis import Kinematics, made_moves
-from grashof.problems import FourBar
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import GREATEST, number_within, positive_number
 from grashof.study.columns import Columns, curves, over_driver, table
-from grashof.study.section import Fact, Section
+from grashof.study.kinds import turning
+from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
 from grashof.study.turn import degrees, turn_peaks
 
@@ -25,16 +26,19 @@ def tolerance(study: LinkageStudy) -> Section | None:
     off = number_within(positive_number(study.asked.tolerance, "tolerance"), 0.0, GREATEST, "tolerance")
     unit = study.spec.unit
     columns = over_driver(study, lambda state: _columns(state, off))
-    each = {dimension: f"p_{dimension}" for dimension in FourBar.DIMENSIONS}
-    turns = {dimension: f"theta4_{dimension}_deg" for dimension in FourBar.DIMENSIONS[:4]}
+    each = {dimension: f"p_{dimension}" for dimension in study.linkage.DIMENSIONS}
+    turns = {dimension: f"theta4_{dimension}_deg" for dimension in _of_loop(study.linkage)}
     whole = {"worst": "p_worst", "root of squares": "p_rms"}
     turned = {"worst": "theta4_worst_deg", "root of squares": "theta4_rms_deg"}
-    plots = (
+    plots: tuple[Plot, ...] = (
         curves(columns, "tolerance-of-p", "move of P, one dimension off", unit, each),
         curves(columns, "tolerance-of-p-all", "move of P, all dimensions off", unit, whole),
-        curves(columns, "tolerance-of-theta4", "turn of link 4, one dimension off", "deg", turns),
-        curves(columns, "tolerance-of-theta4-all", "turn of link 4, all dimensions off", "deg", turned),
     )
+    if _turns(study.linkage):
+        plots += (
+            curves(columns, "tolerance-of-theta4", "turn of link 4, one dimension off", "deg", turns),
+            curves(columns, "tolerance-of-theta4-all", "turn of link 4, all dimensions off", "deg", turned),
+        )
     facts = (Fact("tolerance", "each dimension is off by", off, unit), *_facts(study, off))
     notes = ("the driver angle is held; moves are linear in the tolerance, without limit in dead positions",)
     return Section("tolerance", "Inexact dimensions", facts, {"tolerance": table(columns)}, plots, notes)
@@ -43,17 +47,28 @@ def tolerance(study: LinkageStudy) -> Section | None:
 def _columns(state: Kinematics, off: float) -> Columns:
     found = made_moves(state.linkage, state.theta2, off)
     columns: dict[str, FloatArray] = {
-        f"p_{dimension}": found.point[:, k] for k, dimension in enumerate(FourBar.DIMENSIONS)
+        f"p_{dimension}": found.point[:, k] for k, dimension in enumerate(state.linkage.DIMENSIONS)
     }
     columns |= {"p_worst": found.point_worst, "p_rms": found.point_rms}
+    if not _turns(state.linkage):
+        return columns
     columns |= {
         f"theta4_{dimension}_deg": np.degrees(found.theta4[:, k])
-        for k, dimension in enumerate(FourBar.DIMENSIONS[:4])
+        for k, dimension in enumerate(_of_loop(state.linkage))
     }
     return columns | {
         "theta4_worst_deg": np.degrees(found.theta4_worst),
         "theta4_rms_deg": np.degrees(found.theta4_rms),
     }
+
+
+def _of_loop(linkage: Linkage) -> tuple[str, ...]:
+    """The dimensions that turn link 4: all but the place of P; they come first."""
+    return tuple(name for name in linkage.DIMENSIONS if name not in ("u", "v"))
+
+
+def _turns(linkage: Linkage) -> bool:
+    return 4 in turning(type(linkage))
 
 
 def _facts(study: LinkageStudy, off: float) -> Iterator[Fact]:
@@ -66,7 +81,9 @@ def _facts(study: LinkageStudy, off: float) -> Iterator[Fact]:
         return np.stack([*moves, *found.point.T])
 
     values, places = turn_peaks(study, rows)
-    what = (("p", "P", study.spec.unit, 1.0), ("theta4", "link 4", "deg", 180 / np.pi))
+    what = [("p", "P", study.spec.unit, 1.0)]
+    if _turns(study.linkage):
+        what.append(("theta4", "link 4", "deg", 180 / np.pi))
     for k, (key, part, unit, scale) in enumerate(what):
         for j, (name, how) in enumerate(_ALL.items()):
             label = f"largest {'move' if key == 'p' else 'turn'} of {part}, all off: {how}"
@@ -77,5 +94,5 @@ def _facts(study: LinkageStudy, off: float) -> Iterator[Fact]:
                 yield Fact(f"tolerance_{key}_worst_theta2_deg", f"{label}, at theta2", at, "deg")
     most = int(np.argmax(values[4:]))
     label = "dimension that moves P most"
-    yield Fact("tolerance_dimension", label, FourBar.DIMENSIONS[most])
+    yield Fact("tolerance_dimension", label, study.linkage.DIMENSIONS[most])
     yield Fact("tolerance_dimension_move", f"{label}: by", float(values[4 + most]), study.spec.unit)

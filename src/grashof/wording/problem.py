@@ -9,6 +9,7 @@ import numpy as np
 from grashof.problems import DynamicsSpec, Problem, Requirements, Task
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
+from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.problems.values.quantities import Unit
 from grashof.synth.designs.ranking import pareto_goals
 from grashof.synth.programme.merit import same_error
@@ -45,6 +46,7 @@ def summary(problem: Problem) -> list[str]:
     lines = [
         f"{problem.name}: {problem.title}" if problem.title else problem.name,
         f"  {_task(task, unit)}; {_exactness(problem)}",
+        *([] if problem.mechanism == (FOUR_BAR,) else [f"  mechanism {' or '.join(problem.mechanism)}"]),
         f"  rotatability {wanted.rotatability}, margin {wanted.rotatability_margin:g}; "
         f"order {_yes(wanted.order)}, same branch {_yes(wanted.same_branch)}",
         *(f"  {_limit(problem, wanted, name)}" for name in wanted.limited),

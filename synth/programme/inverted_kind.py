@@ -1,0 +1,108 @@
+"""The inverted slider-crank as the search sees it; see `grashof.synth.programme.kind`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from grashof.problems import InvertedSliderCrank, Requirements, Rotatability
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
+from grashof.synth.programme import slider_formulas
+from grashof.synth.programme.formulas import View
+from grashof.synth.programme.kind import Closed, Kind, LoopOf, Shapes, as_vector, by_two
+from grashof.synth.theory.closure import InvertedSliderCrankClosure
+
+
+@dataclass(frozen=True, slots=True)
+class InvertedKind(Kind):
+    """r1 = 1; (l - i offset) e3 = 1 - r2 e2, with r4 = offset."""
+
+    linkage = InvertedSliderCrank
+    proportions = 2
+    formulas, smooth = slider_formulas.INVERTED, slider_formulas.SMOOTH_INVERTED
+    one_assembly, turns_with_coupler = True, True
+    closure = InvertedSliderCrankClosure()
+
+    def folded(self, d: View) -> Any:
+        return (d.r1 - d.r2) ** 2
+
+    def at_angle(self, d: View, angle: Any) -> Any:
+        return self.folded(d) + 4 * d.r1 * d.r2 * np.sin(angle / 2) ** 2
+
+    def stretched(self, d: View) -> Any:
+        return (d.r1 + d.r2) ** 2
+
+    def cos_mu(self, d: View, reach: Any) -> Any:
+        return d.offset / np.sqrt(reach + 1e-300)
+
+    def margins(self, d: View) -> tuple[Any, ...]:
+        longer, total = (1 - 2 * d.double_crank) * (d.r1 - d.r2), d.r1 + d.r2
+        return (longer - d.offset) / total, (longer + d.offset) / total
+
+    def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
+        a, b, _ = proportions.T
+        if wanted.rotatability is Rotatability.ANY:
+            r2, zero = np.exp(a), np.zeros_like(a)
+            return (r2, np.ones_like(r2), b), by_two([r2, zero], [zero, zero], [zero, np.ones_like(b)])
+        margin, sigmoid, tanh = wanted.rotatability_margin, 1 / (1 + np.exp(-a)), np.tanh(b)
+        r2 = np.where(longer_driver, 1 / sigmoid, sigmoid)
+        by_a = np.where(longer_driver, -(1 - sigmoid) / sigmoid, sigmoid * (1 - sigmoid))
+        room = np.abs(1 - r2) - margin * (1 + r2)
+        by_room = -(np.sign(1 - r2) + margin) * by_a
+        has_room = room > 0
+        room, by_room = np.where(has_room, room, 0.0), np.where(has_room, by_room, 0.0)
+        by_lengths = by_two([by_a, 0 * a], [0 * a, 0 * a], [by_room * tanh, room * (1 - tanh**2)])
+        return (r2, np.ones_like(r2), room * tanh), by_lengths
+
+    def closed(
+        self, lengths: tuple[FloatArray, FloatArray, FloatArray], e2: ComplexArray, assembly: FloatArray
+    ) -> Closed:
+        r2, _, offset = lengths
+        diagonal = 1 - r2[:, None] * e2
+        beside2 = np.abs(diagonal) ** 2 - offset[:, None] ** 2
+        closes = (beside2 > 1e-12).all(axis=1)
+        rod = np.sqrt(np.where(beside2 > 0, beside2, 1.0))
+        e3 = diagonal / (rod - 1j * offset[:, None])
+        e3 = e3 / np.abs(e3)
+        return e3, 1j * e3, rod, closes
+
+    def placed(
+        self, loop: LoopOf, o2: ComplexArray, ground: ComplexArray, a: ComplexArray
+    ) -> tuple[ComplexArray, ComplexArray]:
+        o4 = o2 + ground
+        return o4, o4[:, None] + (ground * loop.r4)[:, None] * loop.e4
+
+    def many(
+        self, d: Any, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray
+    ) -> FloatArray:
+        ground, rod = (o4 - o2)[:, None], b - a
+        d.o4, d.r1, d.theta1 = as_vector(o4[:, None]), np.abs(ground), np.angle(ground)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            e3 = rod[:, :1] / np.abs(rod[:, :1])
+            d.offset = (e3.conj() * (b[:, :1] - o4[:, None])).imag
+            d.output_turn = as_vector(rod[:, :1]).angle_to(as_vector(rod[:, -1:]))
+            sine: FloatArray = np.abs(rod) / np.abs(o4[:, None] - a)
+        return sine
+
+    def lengths_of(self, points: ComplexArray) -> tuple[float, float, float, float]:
+        o2, o4, a, b, _ = points.tolist()
+        along = (b - a) / abs(b - a)
+        return abs(o4 - o2), abs(a - o2), 0.0, (along.conjugate() * (b - o4)).imag
+
+    def arguments(self, points: ComplexArray) -> dict[str, Any]:
+        o2, o4, a, b, _ = np.moveaxis(points, -1, 0)
+        offset = (self.coupler(points).conj() * (b - o4)).imag
+        return {"o2": o2, "o4": o4, "r2": np.abs(a - o2), "offset": offset}
+
+    def b_of(
+        self, lengths: tuple[float, ...], o4: complex, a: ComplexArray, turned: ComplexArray
+    ) -> ComplexArray:
+        return o4 + 1j * lengths[3] * turned
+
+    def completed(
+        self, pivots: Mapping[str, complex], turned: complex, found: Mapping[str, float]
+    ) -> dict[str, complex]:
+        return {"b": pivots["o4"] + 1j * found["offset"] * turned}

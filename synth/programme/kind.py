@@ -1,0 +1,186 @@
+"""What a kind of linkage is to the search: what its loop closure decides, and nothing else.
+
+The loop is taken in a frame in which the ground line lies along the real axis: with r1 = 1, or of a
+slider-crank, whose O4 lies there at infinity, with r3 = 1. With e4 = e^(i theta4), across what slides,
+all kinds have one equation, Re(e4* (r2 e2 + r3 e3)) = const, so that all share its derivatives. For an
+inverted slider-crank r3 is there the variable length from A along the rod to B.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, Protocol, TypeAlias
+
+import numpy as np
+
+from grashof.problems import Linkage, Requirements
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
+from grashof.synth.programme.formulas import Part, View
+from grashof.synth.programme.frame import Frame
+from grashof.synth.programme.vector import Vector
+from grashof.synth.theory.closure import Closure
+
+# r2, r3, r4 (n,) of loops, and their derivatives (n, 3 lengths, 3 proportions).
+Shapes: TypeAlias = tuple[tuple[FloatArray, FloatArray, FloatArray], FloatArray]
+# e3, e4 (n, N), r3 (n, N) or (n, 1), and whether the loop closes everywhere (n,).
+Closed: TypeAlias = tuple[ComplexArray, ComplexArray, FloatArray, BoolArray]
+
+
+_LENGTHS = ("r1", "r2", "r3", "r4")
+
+
+class Lengths(View):
+    """Lengths alone; the offset of slider kinds in place of r4."""
+
+    def __init__(self, r1: Any, r2: Any, r3: Any, r4: Any) -> None:
+        self.r1, self.r2, self.r3, self.r4, self.offset = r1, r2, r3, r4, r4
+        self.double_crank = (r1 > 0) & (r2 > r1)
+
+
+class LoopOf(Protocol):
+    """What of a `Loop` says where it stands; its frame is that of the module."""
+
+    r2: FloatArray
+    r4: FloatArray
+    e3: ComplexArray
+    e4: ComplexArray
+
+
+@dataclass(frozen=True, slots=True)
+class Kind(ABC):
+    """A kind of linkage; a value without fields, so that it travels to workers.
+
+    Slider kinds have a single assembly here: the other one is the same linkage with its slide, or its
+    rod, taken the other way round.
+    """
+
+    linkage: ClassVar[type[Linkage]]
+    proportions: ClassVar[int]  # numbers that are neither place nor size
+    formulas: ClassVar[Mapping[str, tuple[Part, ...]]]
+    smooth: ClassVar[Mapping[str, tuple[Part, ...]]]  # in place of those with a kink
+    one_assembly: ClassVar[bool]
+    closure: ClassVar[Closure]
+    turns_with_coupler: ClassVar[bool] = False  # the output link
+
+    @property
+    def mechanism(self) -> str:
+        """As files name it."""
+        return self.linkage.MECHANISM
+
+    @abstractmethod
+    def folded(self, d: View) -> Any:
+        """What decides the transmission angle, with O2A folded over the ground line."""
+
+    @abstractmethod
+    def at_angle(self, d: View, angle: Any) -> Any:
+        """The same with O2A turned by an angle from the ground line."""
+
+    @abstractmethod
+    def stretched(self, d: View) -> Any:
+        """The same with O2A stretched along the ground line."""
+
+    @abstractmethod
+    def cos_mu(self, d: View, reach: Any) -> Any:
+        """Cosine of the transmission angle from there; beyond 1 the loop does not close."""
+
+    @abstractmethod
+    def margins(self, d: View) -> tuple[Any, ...]:
+        """Shares of the lengths that are not negative where the driver turns fully."""
+
+    @abstractmethod
+    def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
+        """Lengths of loops from free numbers (n, 3): full cranks with their margin, unless any will do."""
+
+    @abstractmethod
+    def closed(
+        self, lengths: tuple[FloatArray, FloatArray, FloatArray], e2: ComplexArray, assembly: FloatArray
+    ) -> Closed:
+        """The loop closed at driver directions e2 (n, N), with numbers also where it is open."""
+
+    @abstractmethod
+    def placed(
+        self, loop: LoopOf, o2: ComplexArray, ground: ComplexArray, a: ComplexArray
+    ) -> tuple[ComplexArray, ComplexArray]:
+        """O4 (n,), and B at every target (n, N), of loops whose frame is turned and scaled by `ground`.
+
+        Of a slider-crank, in place of O4, the point of the slide's line that lies r3 ahead of B at the first
+        target.
+        """
+
+    @abstractmethod
+    def many(
+        self, d: Any, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray
+    ) -> FloatArray:
+        """Give a `Many` its lengths and directions beside those of the dyads; signed sin mu (n, N)."""
+
+    @abstractmethod
+    def lengths_of(self, points: ComplexArray) -> tuple[float, float, float, float]:
+        """r1, r2, r3, r4 from O2, O4, A, B, P; the offset in place of r4, 0 for what the kind lacks."""
+
+    @abstractmethod
+    def arguments(self, points: ComplexArray) -> dict[str, Any]:
+        """What its value takes besides coupler point, assembly and body angle, from points (..., 5).
+
+        Places as complex numbers, all lengths in the unit of the points.
+        """
+
+    @abstractmethod
+    def completed(
+        self, pivots: Mapping[str, complex], turned: complex, found: Mapping[str, float]
+    ) -> dict[str, complex]:
+        """O4 and B where its programme has no unknowns for them, from those `found` and e3."""
+
+    def named(self, lengths: Sequence[Any], theta1: Any) -> dict[str, Any]:
+        """What a `Design` has of r1, r2, r3, r4, or the offset there, and of the ground's direction."""
+        names = self.linkage.LENGTHS
+        found = {
+            name: length if name in names else None for name, length in zip(_LENGTHS, lengths, strict=True)
+        }
+        offset = None if "r4" in names else lengths[3]
+        slide = theta1 - np.pi / 2 if "slide_angle" in self.formulas else None
+        return {
+            **found, "theta1": theta1, "offset": offset, "slide_angle": slide, "mechanism": self.mechanism
+        }  # fmt: skip
+
+    def coupler(self, points: ComplexArray) -> ComplexArray:
+        """Direction of the coupler, from points (..., 5)."""
+        coupler = points[..., 3] - points[..., 2]
+        direction: ComplexArray = coupler / np.abs(coupler)
+        return direction
+
+    def o4_of(self, linkage: Linkage, b: complex, frame: Frame) -> complex:
+        """O4 in a frame, of a linkage whose B is there at the first target."""
+        return complex(frame.inward(linkage.o4))  # type: ignore[attr-defined]
+
+    def theta1_of(self, points: ComplexArray) -> float:
+        """Direction of the ground line from O2, O4, A, B, P, rad."""
+        return float(np.angle(points[1] - points[0]))
+
+    def b_of(
+        self, lengths: tuple[float, ...], o4: complex, a: ComplexArray, turned: ComplexArray
+    ) -> ComplexArray:
+        """B where A and the direction of the coupler are known, shape (...)."""
+        return a + lengths[2] * turned
+
+    def drawn(self, rng: np.random.Generator, count: int, *, anything: bool) -> FloatArray:
+        """Random free numbers of `lengths`, shape (count, 3)."""
+        if anything:
+            return rng.normal(0.0, 0.7, (count, 3))
+        return rng.normal(size=(count, 3)) * (1.2, 1.5, 1.0) - (0.0, 1.0, 0.0)
+
+    def turns_fully(self, d: View) -> Any:
+        """Whether the loop closes with O2A folded over the ground line and stretched along it."""
+        return np.logical_and.reduce([margin >= 0 for margin in self.margins(d)])
+
+
+def as_vector(points: ComplexArray) -> Vector:
+    """Complex numbers as plane vectors."""
+    return Vector(points.real, points.imag)
+
+
+def by_two(*rows: list[FloatArray]) -> FloatArray:
+    """Derivatives (n, 3 lengths, 3 proportions) from rows by the first two proportions."""
+    zero = np.zeros_like(rows[0][0])
+    return np.stack([np.stack([*row, zero], axis=-1) for row in rows], axis=1)

@@ -1,0 +1,14 @@
+"""The kinds of linkage that the search knows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from grashof.synth.programme.four_bar_kind import FourBarKind
+from grashof.synth.programme.inverted_kind import InvertedKind
+from grashof.synth.programme.kind import Kind
+from grashof.synth.programme.slider_crank_kind import SliderCrankKind
+
+FOUR_BAR: Kind = FourBarKind()
+# By the word for it in files.
+KINDS: Mapping[str, Kind] = {kind.mechanism: kind for kind in (FOUR_BAR, SliderCrankKind(), InvertedKind())}

@@ -1,0 +1,79 @@
+"""The lists of several kinds of linkage as one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from grashof.problems import Problem
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.families import listed
+from grashof.synth.programme.merit import same_error
+from grashof.synth.results.result import Result
+from grashof.synth.search.story import Ending, Story
+from grashof.synth.search.tally import DISTINCT, Tally
+
+
+def one_list(problem: Problem, found: Sequence[Result]) -> Result:
+    """One ranked list of what was found for each kind of linkage that a problem asks for.
+
+    Parameters
+    ----------
+    problem : Problem
+    found : sequence of Result
+        For the problem `Problem.for_kind` of each, in their order; perhaps not for the last ones.
+
+    Notes
+    -----
+    With ``error_factor`` the least error of all kinds counts.
+    """
+    if len(problem.mechanism) == 1 and found:
+        return found[0]
+    least = float(np.min([one.least_error for one in found], initial=np.inf, where=_known(found)))
+    designs = [each for one in found for each in _kept(problem, one, least)]
+    chosen = listed(problem, [replace(each, problem=problem) for each in designs])
+    tally = Tally()
+    for one in found:
+        tally.update(one.tally)
+    tally.totals[DISTINCT] = len(chosen)
+    return Result(
+        problem=problem,
+        candidates=chosen,
+        nearest=() if chosen else tuple(each for one in found for each in one.nearest),
+        tally=tally,
+        seconds=found[-1].seconds if found else {},
+        note="" if chosen else _by_kind(found, "note"),
+        complete=len(found) == len(problem.mechanism) and all(one.complete for one in found),
+        ended=_by_kind(found, "ended"),
+        least_error=least if np.isfinite(least) else np.nan,
+        story=_story([one.story for one in found if one.story is not None]),
+    )
+
+
+def _known(found: Sequence[Result]) -> list[bool]:
+    return [not np.isnan(one.least_error) for one in found]
+
+
+def _kept(problem: Problem, one: Result, least: float) -> Iterator[Candidate]:
+    """Designs whose error is allowed, as that of the least one of all kinds has it."""
+    factor, size = problem.requirements.error_factor, problem.task.size
+    most = np.inf if factor is None else factor * max(least, same_error(problem) * size) / size
+    for candidate in one.candidates:
+        if candidate.error(one.problem) <= most * (1 + 1e-9):
+            yield candidate
+
+
+def _by_kind(found: Sequence[Result], name: str) -> str:
+    """What several lists say of themselves, each with its kind."""
+    said = [(one.problem.mechanism[0], getattr(one, name)) for one in found]
+    return "; ".join(f"{kind}: {text}" for kind, text in said if text)
+
+
+def _story(parts: Sequence[Story]) -> Story | None:
+    if not parts:
+        return None
+    endings = [part.ending for part in parts if part.ending is not Ending.COMPLETE]
+    ending = endings[0] if endings else Ending.COMPLETE
+    return replace(parts[-1], begun=parts[0].begun, ending=ending)

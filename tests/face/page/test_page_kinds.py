@@ -1,0 +1,134 @@
+"""How the page moves each kind of linkage: its own JavaScript against the positions of the analysis."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from playwright.sync_api import Page
+
+from grashof.analysis import driver_ranges, solve_position, transmission_angle
+from grashof.analysis.four_bar.slide import slide_travel
+from grashof.analysis.four_bar.transmission import quality
+from grashof.page import analysis_page, designs
+from grashof.page.designs import linkage_data
+from grashof.problems import FourBar, InvertedSliderCrank, Linkage, LinkageSpec, SliderCrank
+from grashof.problems.values.arrays import FloatArray
+from grashof.survey import report_on
+
+TEMPLATES = Path(designs.__file__).parent / "templates"
+LINKAGES: dict[str, Linkage] = {
+    "four-bar": FourBar((0, 0.5), (4, 0), 1, 4, 3, (2, 1.5), -1),
+    "engine": SliderCrank((1, 2), 1, 3, -0.5, 0.6, (1, 0.7)),
+    "behind": SliderCrank((1, 2), 1, 3, 0.5, 3.6, (1, -0.7), -1),
+    "slider, swinging driver": SliderCrank((0, 0), 3, 2, 0.5, 0.6, (1, 1.5), -1),
+    "crank-shaper": InvertedSliderCrank((0, 0), (2, 1), 1, -0.3, (3, 0.5)),
+    "whitworth": InvertedSliderCrank((0, 0), (1, 0), 2, 0.4, (3, 1), -1),
+    "inverted, swinging driver": InvertedSliderCrank((0, 0), (2, 0.5), 1.5, 1.0, (-1, -0.8)),
+    "change point": InvertedSliderCrank((0, 0), (1, 0), 1, 0, (2, 1)),
+}
+
+
+def positions(window: Page, linkage: Linkage, theta2: FloatArray) -> list[dict[str, Any]]:
+    """Where the scripts of the pages have a linkage."""
+    scripts = "".join((TEMPLATES / name).read_text(encoding="utf-8") for name in ("kinds.js", "linkage.js"))
+    every = (
+        f"([linkage, angles]) => {{ {scripts} return angles.map((angle) => positionOf(linkage, angle)); }}"
+    )
+    window.goto("about:blank")
+    found: list[dict[str, Any]] = window.evaluate(every, [linkage_data(linkage), theta2.tolist()])
+    return found
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("kinds")
+    for number, (name, linkage) in enumerate(LINKAGES.items()):
+        report = report_on(LinkageSpec(linkage, name, length_unit="mm"))
+        page = analysis_page(replace(report, sections=()), {"versions": {"grashof": "0"}, "settings": {}})
+        (folder / f"{number}.html").write_text(page, encoding="utf-8")
+    return folder
+
+
+@pytest.fixture
+def shown(window: Page, pages: Path) -> Callable[[str], Page]:
+    def show(name: str) -> Page:
+        window.goto((pages / f"{list(LINKAGES).index(name)}.html").as_uri())
+        return window
+
+    return show
+
+
+@pytest.mark.parametrize("name", LINKAGES)
+def test_positions_are_those_of_the_analysis(window: Page, name: str) -> None:
+    linkage = LINKAGES[name]
+    ranges = [(low, high) for low, high in driver_ranges(linkage).tolist() if np.isfinite(low)]
+    # All of the travel, and close to dead positions.
+    near = np.array([1e-6, 1e-3])
+    theta2 = np.concatenate(
+        [
+            np.concatenate([low + near * (high - low), np.linspace(low, high, 90)[1:-1], high - near])
+            for low, high in ranges
+        ]
+    )
+    found = positions(window, linkage, theta2)
+    state = solve_position(linkage, theta2)
+    for key in ("a", "b", "p"):
+        np.testing.assert_allclose([each[key] for each in found], getattr(state, key), atol=1e-9)
+    for key in ("theta3", "theta4"):
+        gap = np.array([each[key] for each in found]) - getattr(state, key)
+        np.testing.assert_allclose(np.angle(np.exp(1j * gap)), 0, atol=1e-9)
+    mu = quality(transmission_angle(linkage, theta2))
+    np.testing.assert_allclose([each["mu"] for each in found], mu, atol=1e-6)
+    if linkage.SLIDES:
+        travel = slide_travel(linkage, state)
+        np.testing.assert_allclose([each["slide"] for each in found], travel, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", LINKAGES)
+def test_the_loop_stays_closed_in_dead_positions_and_past_them(window: Page, name: str) -> None:
+    linkage = LINKAGES[name]
+    ends = driver_ranges(linkage)[np.isfinite(driver_ranges(linkage)).all(axis=1)].ravel()
+    theta2 = np.concatenate([ends - 1e-15, ends, ends + 1e-15])
+    found = positions(window, linkage, theta2)
+    for each in found:
+        numbers = [*each["a"], *each["b"], *each["p"], each["theta3"], each["theta4"], each["mu"]]
+        assert np.isfinite(np.array(numbers, dtype=float)).all()
+        arm = complex(*linkage.coupler_point)
+        reach = complex(*each["p"]) - complex(*each["a"])
+        assert abs(reach) == pytest.approx(abs(arm), rel=1e-9)
+
+
+@pytest.mark.parametrize("name", [name for name, linkage in LINKAGES.items() if linkage.SLIDES])
+def test_the_drawing_follows_the_driver(shown: Callable[[str], Page], name: str) -> None:
+    linkage, page = LINKAGES[name], shown(name)
+    drawn = "document.querySelector('#stage .linkage .block').getAttribute('d')"
+    before = page.evaluate(drawn)
+    assert before.count("L") == 3
+    assert before.endswith("Z")
+    for _ in range(5):
+        page.keyboard.press("Shift+ArrowRight")
+    after = page.evaluate(drawn)
+    assert "NaN" not in after
+    assert after != before
+    at = "document.querySelector('#stage .joint.b')"
+    place = [float(page.evaluate(f"{at}.getAttribute('c{axis}')")) for axis in "xy"]
+    corners = np.array([pair.split() for pair in after.strip("MZ").split("L")], dtype=float)
+    np.testing.assert_allclose(corners.mean(axis=0), place, atol=0.02)
+    guides = page.locator("#stage .ground .guide").count()
+    assert guides == (1 if isinstance(linkage, SliderCrank) else 0)
+    words = page.locator(".legend").inner_text()
+    assert ("slider B" if guides else "block O4-B") in words
+    assert "slide" in page.locator("#angles").inner_text()
+
+
+def test_the_page_says_what_kind_it_is(pages: Path) -> None:
+    text = (pages / f"{list(LINKAGES).index('engine')}.html").read_text(encoding="utf-8")
+    assert "slider-crank, r2 1, r3 3, offset -0.5 mm" in text
+    data = json.loads(text.split('id="data">')[1].split("</script>")[0])
+    assert data["designs"][0]["linkage"]["mechanism"] == "slider-crank"

@@ -1,0 +1,125 @@
+"""Kinds of linkage in the search against the analysis, which shares no formula with them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from grashof.analysis import output_stroke, solve_position, transmission_angle, verify
+from grashof.analysis.four_bar.mobility import full_rotation
+from grashof.analysis.judge.planted import RANDOM
+from grashof.problems import FourBar, InvertedSliderCrank, Linkage, PathTask, Problem, SliderCrank
+from grashof.problems.values.arrays import ComplexArray
+from grashof.synth.programme.kinds import KINDS
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.screening import Many, coupler_along
+from grashof.synth.programme.start import Start
+
+EVERY = tuple(KINDS)
+SLIDERS = EVERY[1:]
+
+
+def as_found(linkage: Linkage) -> Linkage:
+    """The same linkage as a search has it: a slide, or a rod, taken the way on which B lies ahead of A."""
+    if linkage.assembly > 0 or isinstance(linkage, FourBar):
+        return linkage
+    if isinstance(linkage, SliderCrank):
+        return replace(linkage, slide_angle=linkage.slide_angle + np.pi, offset=-linkage.offset, assembly=1)
+    assert isinstance(linkage, InvertedSliderCrank)
+    turned = {"coupler_point": -linkage.coupler_point, "body_angle": linkage.body_angle + np.pi}
+    return replace(linkage, offset=-linkage.offset, assembly=1, **turned)
+
+
+def scaled_of(mechanism: str) -> ScaledProblem:
+    points = [[0, 0], [1, 0.2], [1.6, 0.9], [1.5, 1.8]]
+    return ScaledProblem.of(Problem(task=PathTask(points), mechanism=mechanism))
+
+
+def points_of(scaled: ScaledProblem, linkage: Linkage, theta2: float) -> ComplexArray:
+    """O2, O4, A, B, P of a linkage in the frame, as the search has them."""
+    state = solve_position(linkage, theta2)
+    inward = scaled.frame.inward
+    b = complex(inward(state.b))
+    o4 = scaled.kind.o4_of(linkage, b, scaled.frame)
+    return np.array([complex(inward(linkage.o2)), o4, complex(inward(state.a)), b, complex(inward(state.p))])
+
+
+@pytest.mark.parametrize("mechanism", EVERY)
+def test_a_linkage_comes_back_from_its_points(mechanism: str) -> None:
+    scaled, rng = scaled_of(mechanism), np.random.default_rng(4)
+    for _ in range(30):
+        linkage = as_found(RANDOM[mechanism](rng))
+        points = points_of(scaled, linkage, float(rng.uniform(-3, 3)))
+        back = scaled.linkages(points, linkage.assembly, linkage.body_angle)
+        for row, one, other in zip(linkage.PARAMETERS, linkage.parameters, back.parameters, strict=True):
+            turned = np.angle(np.exp(1j * (one - other))) if row.kind == "angle" else one - other
+            np.testing.assert_allclose(turned, 0, atol=1e-9, err_msg=row.name)
+        dimensions = scaled.kind.closure.dimensions(points)
+        loop = scaled.kind.closure.closed(
+            dimensions, np.array([np.exp(1j * np.angle(points[2] - points[0]))]), np.array([linkage.assembly])
+        )
+        assert abs(loop.coupler[0] - (points[3] - points[2])) < 1e-9
+        assert abs(loop.o4 - points[1]) < 1e-9
+
+
+@pytest.mark.parametrize("mechanism", EVERY)
+def test_transmission_and_rotatability(mechanism: str) -> None:
+    scaled, kind, rng = scaled_of(mechanism), KINDS[mechanism], np.random.default_rng(8)
+    for _ in range(40):
+        linkage, theta2 = as_found(RANDOM[mechanism](rng)), float(rng.uniform(-3, 3))
+        o2, o4, a, b, p = points_of(scaled, linkage, theta2)[:, None]
+        view = Many(p, o2, a[:, None], o4, b[:, None], np.array([[theta2]]), kind=kind)
+        cosine = kind.cos_mu(view, kind.at_angle(view, theta2 - view.theta1))
+        mu = float(transmission_angle(linkage, theta2))
+        assert abs(float(cosine[0, 0])) == pytest.approx(abs(np.cos(mu)), abs=1e-9)
+        assert abs(float(view.sine[0, 0])) == pytest.approx(np.sin(mu), abs=1e-9)
+        for reach, turned in ((kind.folded, 0.0), (kind.stretched, np.pi)):
+            there = float(kind.at_angle(view, np.array([[turned]]))[0, 0])
+            assert float(reach(view)[0, 0]) == pytest.approx(there, abs=1e-9)
+        assert bool(kind.turns_fully(view)[0, 0]) == bool(full_rotation(linkage))
+
+
+@pytest.mark.parametrize("mechanism", SLIDERS)
+def test_strokes_swings_and_time_ratios(mechanism: str) -> None:
+    scaled, kind, rng = scaled_of(mechanism), KINDS[mechanism], np.random.default_rng(5)
+    for _ in range(60):
+        linkage, theta2 = as_found(RANDOM[mechanism](rng)), float(rng.uniform(-3, 3))
+        o2, o4, a, b, p = points_of(scaled, linkage, theta2)[:, None]
+        view = Many(p, o2, a[:, None], o4, b[:, None], np.array([[theta2]]), kind=kind)
+        if not view.turns[0, 0] or view.double_crank[0, 0]:
+            continue
+        stroke = output_stroke(linkage)
+        (ratio,) = kind.formulas["time_ratio"]
+        assert float(ratio.of(view)[0, 0]) == pytest.approx(float(stroke.time_ratio), rel=1e-9)
+        if mechanism == "slider-crank":
+            (part,) = kind.formulas["stroke"]
+            travel = float(np.hypot(*(stroke.b[1] - stroke.b[0]))) / scaled.frame.scale
+            assert float(part.of(view)[0, 0]) == pytest.approx(travel, rel=1e-9)
+        else:
+            (part,) = kind.formulas["output_swing"]
+            assert float(part.of(view)[0, 0]) == pytest.approx(float(stroke.swing), rel=1e-9)
+
+
+@pytest.mark.parametrize("mechanism", SLIDERS)
+def test_couplers_along_the_motion(mechanism: str) -> None:
+    scaled, rng = scaled_of(mechanism), np.random.default_rng(6)
+    linkages = [as_found(RANDOM[mechanism](rng)) for _ in range(12)]
+    points = np.array([points_of(scaled, linkage, 0.4) for linkage in linkages])
+    theta2 = np.broadcast_to(np.linspace(-3, 3, 50), (12, 50))
+    coupler = coupler_along(scaled.kind, points, theta2)
+    for row, linkage in enumerate(linkages):
+        state = solve_position(linkage, theta2[row])
+        exact = (state.b - state.a) @ np.array([1, 1j]) / scaled.frame.scale
+        np.testing.assert_allclose(coupler[row], exact, atol=1e-9)
+
+
+@pytest.mark.parametrize("mechanism", EVERY)
+def test_a_start_is_its_linkage(mechanism: str) -> None:
+    scaled, rng = scaled_of(mechanism), np.random.default_rng(9)
+    linkage = as_found(RANDOM[mechanism](rng))
+    verdict = verify(linkage, scaled.problem.task, scaled.problem.requirements)
+    start = Start.of_linkage(scaled, linkage, verdict)
+    state = solve_position(linkage, np.array(start.theta2), verdict.assembly[list(start.visit)])
+    track = np.stack([scaled.frame.inward(each) for each in (state.a, state.b, state.p)])
+    np.testing.assert_allclose(start.track, track, atol=1e-9)
+    assert np.exp(1j * start.theta1) == pytest.approx(complex(np.exp(1j * float(linkage.theta1))), abs=1e-9)
