@@ -51,7 +51,7 @@ def linkage_from(document: dict[str, Any], name: str, folder: Path | None = None
     rest = {key: value for key, value in document.items() if key not in wrong}
     lines = list(wrong.values())
     with noted(lines):
-        found = stated(TABLES[kind][""], rest, TABLES[kind], folder)
+        found: LinkageTable = stated(TABLES[kind][""], rest, TABLES[kind], folder)
         if not lines:
             return found.spec(name)
     raise refused(lines)
@@ -59,7 +59,7 @@ def linkage_from(document: dict[str, Any], name: str, folder: Path | None = None
 
 def _of_other_kinds(document: dict[str, Any], kind: str) -> Iterator[tuple[str, str]]:
     """Keys that only linkages of other kinds have, with what is wrong."""
-    for key in document.keys() - TABLES[kind][""].model_fields:
+    for key in (key for key in document if key not in TABLES[kind][""].model_fields):
         if having := [word for word, tables in TABLES.items() if key in tables[""].model_fields]:
             yield key, not_had(key, (kind,), having)
 
@@ -177,9 +177,8 @@ def _tables(kind: type[Linkage]) -> dict[str, Any]:
     also: dict[str, Any] = {"output_arm": (float | None, None)} if "o4" in keys else {}
     unit: dict[str, Any] = {"pumping_unit": PumpingUnitTable} if kind.MECHANISM == FOUR_BAR else {}
     begin = create_model(f"_{kind.__name__}", __base__=_Heading, **keys, **also)
-    optional = {name: (table | None, None) for name, table in unit.items()}
-    named: Any = f"{kind.__name__}Table"
-    whole = create_model(named, __base__=(LinkageTable, MachineTables, begin), **optional)
+    optional: dict[str, Any] = {name: (table | None, None) for name, table in unit.items()}
+    whole = create_model(f"{kind.__name__}Table", __base__=(LinkageTable, MachineTables, begin), **optional)
     return {"": whole, **MACHINE_TABLES, **unit}
 
 
