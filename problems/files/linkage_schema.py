@@ -51,7 +51,7 @@ def linkage_from(document: dict[str, Any], name: str, folder: Path | None = None
     rest = {key: value for key, value in document.items() if key not in wrong}
     lines = list(wrong.values())
     with noted(lines):
-        found = stated(TABLES[kind][""], rest, TABLES[kind], folder)
+        found: LinkageTable = stated(TABLES[kind][""], rest, TABLES[kind], folder)
         if not lines:
             return found.spec(name)
     raise refused(lines)
@@ -59,7 +59,7 @@ def linkage_from(document: dict[str, Any], name: str, folder: Path | None = None
 
 def _of_other_kinds(document: dict[str, Any], kind: str) -> Iterator[tuple[str, str]]:
     """Keys that only linkages of other kinds have, with what is wrong."""
-    for key in document.keys() - TABLES[kind][""].model_fields:
+    for key in (key for key in document if key not in TABLES[kind][""].model_fields):
         if having := [word for word, tables in TABLES.items() if key in tables[""].model_fields]:
             yield key, not_had(key, (kind,), having)
 
@@ -82,8 +82,8 @@ class _Heading(Table):
     mechanism: Mechanism = FOUR_BAR
 
 
-class LinkageTable(Table):
-    """The whole linkage file, whatever the kind."""
+class LinkageTable(MachineTables, _Heading):
+    """The whole linkage file, whatever the kind; the tables of each kind have its parameters besides."""
 
     @field_validator(*(key for key, row in _PARAMETERS.items() if row.kind != "angle"), check_fields=False)
     @classmethod
@@ -118,26 +118,28 @@ class LinkageTable(Table):
             metres(self.length_unit)  # refuses one that is not known
         if self._given("pumping_unit") is not None:
             metres(self.length_unit, "pumping_unit")
-            if self.output_arm is None:
+            if self._given("output_arm") is None:
                 raise ProblemError("output_arm is missing; pumping_unit needs that of the horsehead")
         kind = KINDS[self.mechanism]
         given = {row.name: getattr(self, row.key) for row in kind.PARAMETERS}
         given |= {row.name: np.radians(given[row.name]) for row in kind.PARAMETERS if row.kind == "angle"}
         linkage = kind(**given | ({"o4": self._o4()} if "o4" in given else {}))
-        if "r1" in kind.LENGTHS and not linkage.r1 > 0:
+        if "r1" in kind.LENGTHS and not linkage.lengths[0] > 0:
             raise ProblemError("o4 is where o2 is; the ground pivots must be distinct")
         return linkage
 
     def _o4(self) -> list[float]:
-        if self.o4 is not None:
+        given: list[float] | None = self._given("o4")
+        if given is not None:
             for key in ("r1", "ground_angle_deg"):
                 if getattr(self, key) is not None:
                     raise ProblemError(f"{key} is given besides o4; give one of them")
-            return self.o4
-        if self.r1 is None:
+            return given
+        r1: float | None = self._given("r1")
+        if r1 is None:
             raise ProblemError("o4 is missing; give it, or r1 with ground_angle_deg")
-        angle = np.radians(self.ground_angle_deg or 0.0)
-        return [float(self.o2[0] + self.r1 * np.cos(angle)), float(self.o2[1] + self.r1 * np.sin(angle))]
+        (x, y), angle = self._given("o2"), np.radians(self._given("ground_angle_deg") or 0.0)
+        return [float(x + r1 * np.cos(angle)), float(y + r1 * np.sin(angle))]
 
     def _given(self, key: str) -> Any:
         """What a key states; None where the kind has no such key."""
@@ -175,7 +177,7 @@ def _tables(kind: type[Linkage]) -> dict[str, Any]:
     also: dict[str, Any] = {"output_arm": (float | None, None)} if "o4" in keys else {}
     unit: dict[str, Any] = {"pumping_unit": PumpingUnitTable} if kind.MECHANISM == FOUR_BAR else {}
     begin = create_model(f"_{kind.__name__}", __base__=_Heading, **keys, **also)
-    optional = {name: (table | None, None) for name, table in unit.items()}
+    optional: dict[str, Any] = {name: (table | None, None) for name, table in unit.items()}
     whole = create_model(f"{kind.__name__}Table", __base__=(LinkageTable, MachineTables, begin), **optional)
     return {"": whole, **MACHINE_TABLES, **unit}
 

@@ -155,8 +155,14 @@ def _torques(
         return found
     for kind in dict.fromkeys(map(type, linkages)):
         rows = [row for row, linkage in enumerate(linkages) if type(linkage) is kind]
-        chosen = ([every[row] for row in rows] for every in (designs, linkages, travels))
-        for row, torque in zip(rows, _of_one_kind(problem, problem.dynamics, *chosen), strict=True):
+        torques = _of_one_kind(
+            problem,
+            problem.dynamics,
+            [designs[row] for row in rows],
+            [linkages[row] for row in rows],
+            [travels[row] for row in rows],
+        )
+        for row, torque in zip(rows, torques, strict=True):
             found[row] = torque
     return found
 

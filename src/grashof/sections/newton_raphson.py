@@ -21,7 +21,7 @@ def newton_raphson(study: LinkageStudy) -> Section | None:
     theta2 = study.joined([state.theta2 for state in samples.states])
     exact = np.degrees([study.joined([getattr(s, f"theta{n}") for s in samples.states]) for n in (3, 4)])
     known = np.isfinite(theta2)
-    found = newton_position(study.linkage, theta2[known])
+    found = newton_position(study.four_bar, theta2[known])
     solved, steps = np.full(exact.shape, np.nan), np.full(theta2.shape, np.nan)
     solved[:, known], steps[known] = np.degrees([found.theta3, found.theta4]), found.steps
     off = (solved - exact + 180) % 360 - 180

@@ -42,7 +42,7 @@ def pumping_unit(study: LinkageStudy) -> Section | None:
     if given is None or arm is None:
         return None
     rods = _Rods(
-        study, given, arm, rod_load(given) or _load_of_file(study, given, arm), beam_limits(study.linkage)
+        study, given, arm, rod_load(given) or _load_of_file(study, given, arm), beam_limits(study.four_bar)
     )
     columns = rods.columns(np.radians(_FINE))
     notes = ["crank angles are clockwise from 12 o'clock, seen with the well to the right"]
@@ -89,7 +89,7 @@ class _Rods:
         return metres(self.study.spec.length_unit, "pumping_unit")
 
     def motion(self, crank: FloatArray) -> RodMotion:
-        return rod_motion(self.study.linkage, crank, self.arm, self.unit, self.limits)
+        return rod_motion(self.study.four_bar, crank, self.arm, self.unit, self.limits)
 
     def reducer(self, crank: FloatArray, unit: PumpingUnitSpec | None = None) -> ReducerTorque:
         motion = self.motion(crank)
@@ -117,7 +117,7 @@ class _Rods:
         return columns
 
     def motion_facts(self) -> Iterator[Fact]:
-        linkage, unit = self.study.linkage, self.study.spec.unit
+        linkage, unit = self.study.four_bar, self.study.spec.unit
         yield Fact("api_k", "K: from the crankshaft to the saddle bearing", float(linkage.r1), unit)
         angle = float(np.degrees(linkage.theta1)) % 360
         yield Fact("api_k_angle_deg", "direction of K, counter-clockwise from the right", angle, "deg")

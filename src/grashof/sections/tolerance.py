@@ -12,7 +12,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import GREATEST, number_within, positive_number
 from grashof.study.columns import Columns, curves, over_driver, table
 from grashof.study.kinds import turning
-from grashof.study.section import Fact, Section
+from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
 from grashof.study.turn import degrees, turn_peaks
 
@@ -30,7 +30,7 @@ def tolerance(study: LinkageStudy) -> Section | None:
     turns = {dimension: f"theta4_{dimension}_deg" for dimension in _of_loop(study.linkage)}
     whole = {"worst": "p_worst", "root of squares": "p_rms"}
     turned = {"worst": "theta4_worst_deg", "root of squares": "theta4_rms_deg"}
-    plots = (
+    plots: tuple[Plot, ...] = (
         curves(columns, "tolerance-of-p", "move of P, one dimension off", unit, each),
         curves(columns, "tolerance-of-p-all", "move of P, all dimensions off", unit, whole),
     )

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.analysis import DriverLaw, DriverMotion, Kinematics, Loads, Masses, stated_loads, stated_masses
-from grashof.problems import Linkage, LinkageSpec, ProblemError
+from grashof.problems import FourBar, Linkage, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.checks import refuse
 from grashof.problems.values.dynamics_spec import metres
@@ -50,6 +50,13 @@ class LinkageStudy:
     def linkage(self) -> Linkage:
         """The linkage itself."""
         return self.spec.linkage
+
+    @property
+    def four_bar(self) -> FourBar:
+        """The linkage as a four-bar; `ProblemError` where it is none."""
+        if not isinstance(self.linkage, FourBar):
+            raise ProblemError(f"{self.spec.name} is a {self.linkage.MECHANISM}; it must be a four-bar")
+        return self.linkage
 
     @property
     def masses(self) -> Masses | None:

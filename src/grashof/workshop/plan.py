@@ -8,7 +8,7 @@ import numpy as np
 
 from grashof.analysis import full_rotation, solve_position
 from grashof.analysis.four_bar.position import places
-from grashof.problems import Linkage, ProblemError, SliderCrank
+from grashof.problems import FourBar, InvertedSliderCrank, Linkage, ProblemError, SliderCrank
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import positive_number
 from grashof.workshop.plates import Plate, PlateSizes, base, link_plates, spacer
@@ -117,14 +117,13 @@ def plan_parts(
 
     Examples
     --------
-    >>> from grashof.problems import FourBar
     >>> crank_rocker = FourBar(o2=(0, 0), o4=(100, 0), r2=30, r3=90, r4=80)
     >>> [(part.plate.name, part.layers) for part in plan_parts(crank_rocker).parts]
     [('base', (0,)), ('driver', (1,)), ('coupler', (2,)), ('output', (1,))]
     """
     sizes = sizes or PlateSizes()
     scaled = _in_millimetres(linkage, mm_per_unit)
-    if not scaled.SLIDES:
+    if isinstance(scaled, FourBar):
         link_plates(scaled, sizes)  # what is too short is refused before what cannot be assembled
     ranges = ranges_of_use(scaled, within, theta2)
     slot = slot_ends(scaled, ranges, sizes) if scaled.SLIDES else np.zeros(2)
@@ -168,9 +167,8 @@ def _parts(
     where = {name: place[0] for name, place in poses(linkage, np.array([theta2])).items()}
     on_base = np.array([0.0, 0.0, base_angle(linkage)])
     holes = {"O2": 0.0}
-    if not isinstance(linkage, SliderCrank):
-        ground = linkage.o4 - linkage.o2
-        holes["O4"] = float(np.hypot(*ground))
+    if isinstance(linkage, FourBar | InvertedSliderCrank):
+        holes["O4"] = float(linkage.r1)
     if order.posts:
         holes = {"post 1": order.posts[0], **holes, "post 2": order.posts[1]}
     for name, along in holes.items():

@@ -10,8 +10,10 @@ import shapely
 
 from grashof.analysis import output_stroke, solve_position
 from grashof.analysis.four_bar.slide import slide_travel
-from grashof.problems import InvertedSliderCrank, Linkage, ProblemError, SliderCrank
+from grashof.problems import FourBar, InvertedSliderCrank, Linkage, ProblemError, SliderCrank
 from grashof.problems.values.arrays import FloatArray, frozen_array
+from grashof.problems.values.errors import wrong_value
+from grashof.problems.values.mechanisms import KINDS
 from grashof.workshop.plates import Plate, PlateSizes, bar, link_plates, refuse_length, with_point
 
 _SAMPLES = 361
@@ -47,7 +49,9 @@ def moving_plates(linkage: Linkage, sizes: PlateSizes, slot: FloatArray) -> tupl
         return _of_slider_crank(linkage, sizes)
     if isinstance(linkage, InvertedSliderCrank):
         return _of_inverted(linkage, sizes, slot)
-    return link_plates(linkage, sizes)
+    if isinstance(linkage, FourBar):
+        return link_plates(linkage, sizes)
+    raise wrong_value("linkage", linkage, f"one of {', '.join(KINDS)}")
 
 
 def _of_slider_crank(linkage: SliderCrank, sizes: PlateSizes) -> tuple[dict[str, Plate], str]:
@@ -110,10 +114,8 @@ def slotted(
 def _hull(points: FloatArray) -> FloatArray:
     """Corners of what surrounds points, counter-clockwise, shape (1, 2 or more, 2)."""
     hull = shapely.convex_hull(shapely.multipoints(points))
-    if hull.geom_type == "Polygon":
-        corners: FloatArray = shapely.get_coordinates(shapely.orient_polygons(hull))[:-1]
-        return corners
-    return shapely.get_coordinates(hull)
+    corners: FloatArray = shapely.get_coordinates(shapely.orient_polygons(hull))
+    return corners[:-1] if shapely.get_dimensions(hull) == 2 else corners
 
 
 def _refuse_near(name: str, hole: FloatArray, what: str, ends: FloatArray, sizes: PlateSizes) -> None:
