@@ -1,1 +1,1 @@
-"""How a four-bar linkage moves: position, velocity, acceleration, jerk, mobility."""
+"""How a linkage moves: position, velocity, acceleration, jerk, mobility."""

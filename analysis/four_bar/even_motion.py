@@ -167,6 +167,9 @@ def even_motion(linkage: Linkage, start: float, end: float) -> EvenMotion:
     c / X, c / sqrt(c^2 + X^2) and |c| / X. At a change point (a or b = 0) nothing is narrow that need be
     met: that part is then left out of the integral.
 
+    Slider-cranks have the same form with a and b of their own (`Kind.even`). Of an inverted one b is
+    infinite, and sin mu has the diagonal A-O4 below it besides.
+
     Examples
     --------
     >>> from grashof.problems import FourBar
