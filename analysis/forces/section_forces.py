@@ -9,10 +9,11 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from grashof.analysis.forces.bar_frame import BarFrame, bar_frame
 from grashof.analysis.forces.bars import bars_of
 from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics
-from grashof.analysis.forces.joints import Joint, joint_motion, slide_of
-from grashof.analysis.forces.loads import Loads, cross, placed_loads, turned
+from grashof.analysis.forces.joints import Joint, slide_of
+from grashof.analysis.forces.loads import Loads, cross, placed_loads
 from grashof.analysis.forces.mass import Body, Masses
 from grashof.analysis.four_bar.kinematics import Kinematics
 from grashof.problems import ProblemError
@@ -218,35 +219,6 @@ class _Spread(NamedTuple):
     point: _Point  # the same where it has no length
 
 
-class _Frame(NamedTuple):
-    """The bar of a link: how its own frame, u towards the other joint, lies in the link's, and its ends."""
-
-    theta: FloatArray
-    sign: FloatArray  # -1 where the other joint lies against the link's u-axis
-    length: FloatArray
-    low: FloatArray
-    high: FloatArray
-
-    def own(self, at: npt.ArrayLike) -> FloatArray:
-        """A place of the link's frame in that of the bar."""
-        place: FloatArray = np.asarray(at, dtype=np.float64) * self.sign[..., None]
-        return place
-
-    def turned(self, force: FloatArray) -> FloatArray:
-        """A vector of global axes in the frame of the bar."""
-        return turned(np.asarray(force), -self.theta) * self.sign[..., None]
-
-
-def _frame(state: Kinematics, link: int) -> _Frame:
-    bar, theta, ahead = bars_of(state.linkage)[link], state.angular(link)[0], np.ones(())
-    if link == 3 and slide_of(state.linkage) is Joint.B:
-        travel, _ = joint_motion(state, Joint.B)
-        sign = np.where(travel < 0, -1.0, 1.0)
-        ends = bar.low * sign, bar.high * sign
-        return _Frame(theta, sign, np.abs(travel), np.minimum(*ends), np.maximum(*ends))
-    return _Frame(theta, ahead, np.asarray(bar.high), np.asarray(bar.low), np.asarray(bar.high))
-
-
 def _checked(state: Kinematics, links: Sequence[int] | None) -> Sequence[int]:
     bars = tuple(bars_of(state.linkage))
     for link in links or ():
@@ -257,7 +229,7 @@ def _checked(state: Kinematics, links: Sequence[int] | None) -> Sequence[int]:
     return bars if links is None else links
 
 
-def _foot(at: FloatArray, bar: _Frame) -> FloatArray:
+def _foot(at: FloatArray, bar: BarFrame) -> FloatArray:
     """Where a point (u, v) of a bar's frame hangs on the bar, shape (...)."""
     (u, v), same = (at[..., 0], at[..., 1]), _SAME * (bar.high - bar.low)
     nearest = np.clip(u, bar.low, bar.high)
@@ -272,7 +244,7 @@ def _hung(
     state: Kinematics, link: int, at: npt.ArrayLike, force: FloatArray, couple: npt.ArrayLike
 ) -> _Point:
     """A force in global axes at a point (u, v) as the bar feels it."""
-    bar = _frame(state, link)
+    bar = bar_frame(state, link)
     place = bar.own(at)
     foot = _foot(place, bar)
     arm = place - np.stack([foot, np.zeros_like(foot)], axis=-1)
@@ -288,7 +260,7 @@ def _joint_loads(state: Kinematics, found: Dynamics, link: int) -> Iterator[_Poi
         3: ((-found.f32, moments[1]), (found.f43, -_in_b(state, found))),
         4: ((found.f14, moments[3]), (-found.f43, moments[2])),
     }[link]
-    bar = _frame(state, link)
+    bar = bar_frame(state, link)
     yield _Point(origin, bar.turned(first[0]), first[1])
     yield _Point(bar.length, bar.turned(second[0]), second[1])
 
@@ -300,7 +272,7 @@ def _in_b(state: Kinematics, found: Dynamics) -> FloatArray:
 
 def _spread(state: Kinematics, link: int, body: Body, gravity: FloatArray) -> _Spread:
     """Weight and inertia of a body, spread along the bar."""
-    bar, mass, inertia = _frame(state, link), np.asarray(body.mass), np.asarray(body.inertia)
+    bar, mass, inertia = bar_frame(state, link), np.asarray(body.mass), np.asarray(body.inertia)
     centre = bar.own(body.centre)
     foot = _foot(centre, bar)
     arm_u, arm_v = centre[..., 0] - foot, centre[..., 1]
@@ -375,7 +347,7 @@ def _cut(link: int, state: Kinematics, points: list[_Point], spreads: list[_Spre
         normal = normal - along[..., span + 1]
         shear = shear + across[..., span + 1]
         moment = moment - couples[..., span + 1]
-    length = np.broadcast_to(_frame(state, link).length, shape)
+    length = np.broadcast_to(bar_frame(state, link).length, shape)
     rest = SectionForce(normal[()], shear[()], moment[()])
     along_bar, across_bar, bending = (np.stack(piece, axis=-2) for piece in pieces)
     return BarForces(link, length, stations, along_bar, across_bar, bending, rest)

@@ -59,7 +59,6 @@ SECTIONS: tuple[Callable[[LinkageStudy], Section | None], ...] = (
 # Those that only some kinds of linkages have, with the kinds and what asks for them.
 _ONLY: dict[Callable[[LinkageStudy], Section | None], tuple[tuple[str, ...], str]] = {
     newton_raphson: ((FOUR_BAR,), "newton-raphson"),
-    balancing: (TURNING, "balance"),
     pumping_unit: ((FOUR_BAR,), ""),
     mechanical_advantage: (TURNING, ""),
     dwell_section: (TURNING, "dwell_deg"),

@@ -14,10 +14,11 @@ from grashof.analysis import (
     Loads,
     Masses,
     balance_force,
+    balance_reciprocating,
     balance_turn,
     inverse_dynamics,
 )
-from grashof.problems import ProblemError
+from grashof.problems import FourBar, Linkage, ProblemError, SliderCrank
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.study.columns import Columns, curves, over_driver, table
 from grashof.study.section import Fact, Section
@@ -66,11 +67,10 @@ def balancing(study: LinkageStudy) -> Section | None:
 def _ways(study: LinkageStudy, masses: Masses, loads: Loads) -> tuple[dict[str, _Way], tuple[str, ...]]:
     """What is compared, and why less of it where that is so."""
     linkage, steady = study.linkage, all(law.motor.steady for law in study.sweep.laws)
-    force = balance_force(linkage, masses)
-    weights = {2: force.crank_weight, 4: force.output_weight}
-    ways = {_BARE: _Way(masses, {}), _FORCE: _Way(force.masses, weights)}
+    way, note = _against_force(linkage, masses)
+    ways = {_BARE: _Way(masses, {}), _FORCE: way}
     notes = [
-        "counterweights are points at r2 from O2 and r4 from O4; others of the same mass times radius do",
+        note,
         "shaking force and moment are those of inertia; weights and loads are left out",
     ]
     why = (
@@ -92,6 +92,19 @@ def _ways(study: LinkageStudy, masses: Masses, loads: Loads) -> tuple[dict[str, 
             raise ProblemError(f"balance: the torque is not evened out: {error}") from None
         ways[name] = _Way(found.masses, {2: found.crank_weight})
     return ways, tuple(notes)
+
+
+def _against_force(linkage: Linkage, masses: Masses) -> tuple[_Way, str]:
+    """Masses with counterweights against the shaking force, and what to know of them."""
+    same = "others of the same mass times radius do"
+    if isinstance(linkage, SliderCrank):
+        half = balance_reciprocating(linkage, masses, 0.5)
+        what = "what turns with the crank and half of what goes to and fro"
+        return _Way(half.masses, {2: half.crank_weight}), f"the counterweight at r2 is against {what}; {same}"
+    whole = balance_force(linkage, masses)
+    place = "r4" if isinstance(linkage, FourBar) else "r2"
+    weights = {2: whole.crank_weight, 4: whole.output_weight}
+    return _Way(whole.masses, weights), f"counterweights are points at r2 from O2 and {place} from O4; {same}"
 
 
 def _columns(state: Kinematics, ways: Mapping[str, _Way], loads: Loads, metre: float) -> Columns:

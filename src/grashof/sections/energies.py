@@ -81,4 +81,7 @@ def _losses(study: LinkageStudy, masses: Masses, loads: Loads) -> Iterator[Fact]
     if np.isfinite(lost) and 0 < lost <= put_in * (1 + _CERTAIN) and error.max() < _CERTAIN * put_in:
         work = lost * law.duration * study.metre**2
         yield Fact("friction_work", "work of friction in the joints, a turn", work, "J")
-        yield Fact("efficiency", "efficiency: work put in that friction leaves", max(1 - lost / put_in, 0.0))
+        left = 1 - lost / put_in
+        yield Fact(
+            "efficiency", "efficiency: work put in that friction leaves", left if left > _CERTAIN else 0.0
+        )

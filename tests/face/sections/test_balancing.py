@@ -10,7 +10,15 @@ import numpy as np
 import pytest
 
 from grashof.analysis import inverse_dynamics, size_flywheel
-from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, ProblemError, load_linkage_spec
+from grashof.problems import (
+    DynamicsSpec,
+    FourBar,
+    InvertedSliderCrank,
+    LinkageSpec,
+    ProblemError,
+    SliderCrank,
+    load_linkage_spec,
+)
 from grashof.problems.values.acting import CounterweightSpec
 from grashof.problems.values.motor import MotorSpec
 from grashof.study.study import LinkageStudy
@@ -56,6 +64,24 @@ def test_before_is_the_linkage_as_it_is_and_after_with_its_weights_in_the_file(s
     assert rows.loc["shaking force", "shaking_force_peak"] == 0
     assert rows["torque_rms"].idxmin() == "torque, rms"
     assert rows["torque_peak"].idxmin() == "torque, peak"
+
+
+def test_counterweights_of_slider_kinds(sections: Sections) -> None:
+    """Half of what goes to and fro, with the crank of an engine; all of an inverted slider-crank."""
+    given = DynamicsSpec(
+        masses=(0.5, 0.8, 0.6), inertias=(200, 900, 100), centres=((10, 0), (30, 0), (0, 0)), speed_rpm=600
+    )
+    for linkage in (SliderCrank((0, 0), 40, 120), InvertedSliderCrank((0, 0), (0, -90), 40, 10)):
+        spec = LinkageSpec(linkage, "mine", length_unit="mm", dynamics=given)
+        rows = sections(spec, balance=True)["balancing"].tables["balancing"].set_index("aim")
+        before, after = rows["shaking_force_peak"]
+        if isinstance(linkage, SliderCrank):
+            product = 0.5 * 10 + 40 * (0.6 + (0.2 + 0.6) / 2)
+            assert rows.loc["shaking force", "mass_times_radius_2"] == pytest.approx(product, rel=1e-12)
+            assert rows.loc["shaking force", "mass_4"] == 0
+            assert after < 0.5 * before
+        else:
+            assert after == 0 < before
 
 
 def test_weights_are_the_same_in_every_unit(sections: Sections) -> None:

@@ -104,7 +104,6 @@ def test_a_driver_that_swings(tmp_path: object) -> None:
 SECTIONS = {
     "newton-raphson": {"sections": ("newton-raphson",)},
     "dwell_deg": {"dwell_deg": 5.0},
-    "balance": {"balance": True},
 }
 
 
