@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from grashof.analysis import Verdict, verify
-from grashof.problems import FourBar, ProblemError
+from grashof.problems import FourBar, Linkage, ProblemError
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.scaled_problem import ScaledProblem
@@ -62,7 +62,7 @@ def judged(
     return candidate
 
 
-def verdict_on(scaled: ScaledProblem, linkage: FourBar, most_error: float = np.inf) -> Verdict:
+def verdict_on(scaled: ScaledProblem, linkage: Linkage, most_error: float = np.inf) -> Verdict:
     """The judge's verdict; `most_error` is the root mean square error that is allowed, sizes."""
     problem, task = scaled.problem, scaled.problem.task
     square = len(task) * (most_error * task.size) ** 2
@@ -123,6 +123,8 @@ def _valued(scaled: ScaledProblem, candidate: Candidate) -> Candidate:
 
 def verified_cognates(scaled: ScaledProblem, candidate: Candidate) -> tuple[Candidate, ...]:
     """The cognates of a design without defects."""
+    if not isinstance(candidate.linkage, FourBar):
+        return ()
     position = position_of(candidate.linkage, float(candidate.verdict.theta2[0]))
     came_from = {"start": candidate.start, "iterations": candidate.iterations}
     found = []

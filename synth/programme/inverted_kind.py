@@ -63,7 +63,7 @@ class InvertedKind(Kind):
         r2, _, offset = lengths
         diagonal = 1 - r2[:, None] * e2
         beside2 = np.abs(diagonal) ** 2 - offset[:, None] ** 2
-        closes = (beside2 > 1e-12).all(axis=1)
+        closes: BoolArray = np.all(beside2 > 1e-12, axis=1)
         rod = np.sqrt(np.where(beside2 > 0, beside2, 1.0))
         e3 = diagonal / (rod - 1j * offset[:, None])
         e3 = e3 / np.abs(e3)

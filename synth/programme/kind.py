@@ -9,7 +9,7 @@ inverted slider-crank r3 is there the variable length from A along the rod to B.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol, TypeAlias
 
@@ -42,10 +42,17 @@ class Lengths(View):
 class LoopOf(Protocol):
     """What of a `Loop` says where it stands; its frame is that of the module."""
 
-    r2: FloatArray
-    r4: FloatArray
-    e3: ComplexArray
-    e4: ComplexArray
+    @property
+    def r4(self) -> FloatArray:
+        """Or the offset, shape (n,)."""
+
+    @property
+    def e3(self) -> ComplexArray:
+        """Directions of the coupler, shape (n, N)."""
+
+    @property
+    def e4(self) -> ComplexArray:
+        """Directions of O4B, or across what slides, shape (n, N)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,13 +139,11 @@ class Kind(ABC):
     ) -> dict[str, complex]:
         """O4 and B where its programme has no unknowns for them, from those `found` and e3."""
 
-    def named(self, lengths: Sequence[Any], theta1: Any) -> dict[str, Any]:
+    def named(self, lengths: Iterable[Any], theta1: Any) -> dict[str, Any]:
         """What a `Design` has of r1, r2, r3, r4, or the offset there, and of the ground's direction."""
-        names = self.linkage.LENGTHS
-        found = {
-            name: length if name in names else None for name, length in zip(_LENGTHS, lengths, strict=True)
-        }
-        offset = None if "r4" in names else lengths[3]
+        names, every = self.linkage.LENGTHS, dict(zip(_LENGTHS, lengths, strict=True))
+        found = {name: length if name in names else None for name, length in every.items()}
+        offset = None if "r4" in names else every["r4"]
         slide = theta1 - np.pi / 2 if "slide_angle" in self.formulas else None
         return {
             **found, "theta1": theta1, "offset": offset, "slide_angle": slide, "mechanism": self.mechanism

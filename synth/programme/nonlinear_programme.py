@@ -115,7 +115,7 @@ def solve(scaled: ScaledProblem, start: Start, max_iter: int | None = None) -> S
         p = pivots["a"] + complex(*found["arm"]) * turned
         pivots |= form.kind.completed(pivots, turned, {name: float(one[0]) for name, one in found.items()})
     return Solve(
-        points=(*(pivots[name] for name in ("o2", "o4", "a", "b")), p),
+        points=(pivots["o2"], pivots["o4"], pivots["a"], pivots["b"], p),
         theta2=tuple(found["theta2"].tolist()),
         theta3=theta3,
         body_angle=float(found["body_angle"][0]) if "body_angle" in found else start.body_angle,

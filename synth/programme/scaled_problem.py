@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -190,7 +190,8 @@ class ScaledProblem:
                 given[name] = self.frame.outward(value)
             elif rows[name].in_length:
                 given[name] = value * self.frame.scale
-        return self.kind.linkage(
+        made: Callable[..., Linkage] = self.kind.linkage
+        return made(
             **given,
             coupler_point=np.stack([arm.real, arm.imag], axis=-1),
             assembly=assembly,

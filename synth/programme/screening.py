@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -62,8 +63,21 @@ class Screened:
         return len(self.points)
 
     def __getitem__(self, index: IntArray | BoolArray | slice) -> Screened:
-        arrays = (getattr(self, name)[index] for name in self.__slots__ if name != "kind")
-        return Screened(*arrays, self.kind)
+        arrays: dict[str, Any] = {name: getattr(self, name)[index] for name in self.arrays()}
+        return replace(self, **arrays)
+
+    @classmethod
+    def arrays(cls) -> tuple[str, ...]:
+        """Names of the fields that have a row for each linkage."""
+        return tuple(each.name for each in fields(cls) if each.name != "kind")
+
+    @classmethod
+    def joined(cls, parts: Sequence[Screened]) -> Screened:
+        """Several of one kind as one."""
+        arrays: dict[str, Any] = {
+            name: np.concatenate([getattr(part, name) for part in parts]) for name in cls.arrays()
+        }
+        return replace(parts[0], **arrays)
 
     @property
     def feasible(self) -> BoolArray:

@@ -64,7 +64,7 @@ class SliderCrankKind(Kind):
         r2, r3, offset = lengths
         reach = offset[:, None] - r2[:, None] * e2.real
         beside2 = (1 - reach) * (1 + reach)
-        closes = (beside2 > 1e-12).all(axis=1)
+        closes: BoolArray = np.all(beside2 > 1e-12, axis=1)
         e3 = reach - 1j * np.sqrt(np.where(beside2 > 0, beside2, 1.0))
         return e3 / np.abs(e3), np.ones_like(e2), r3[:, None], closes
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from grashof.analysis import Verdict, solve_position
-from grashof.problems import FourBar, Objective
+from grashof.problems import Linkage, Objective
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.programme.kind import Kind, Lengths
 from grashof.synth.programme.kinds import FOUR_BAR
@@ -91,7 +91,7 @@ class Start:
     kind: Kind = FOUR_BAR
 
     @classmethod
-    def of_linkage(cls, scaled: ScaledProblem, linkage: FourBar, verdict: Verdict) -> Start:
+    def of_linkage(cls, scaled: ScaledProblem, linkage: Linkage, verdict: Verdict) -> Start:
         """The start that a linkage makes where the judge found it nearest to the targets, in order."""
         state = solve_position(linkage, verdict.theta2, verdict.assembly)
         visit = np.argsort(verdict.direction * verdict.theta2, kind="stable")
@@ -156,8 +156,9 @@ class Start:
     def track(self) -> ComplexArray:
         """A, B and P at every target in the order of visit, shape (3, N), sizes."""
         _, r2, *_ = self.lengths
-        a = self.o2 + r2 * np.exp(1j * np.array(self.theta2))
-        turned = np.exp(1j * np.array(self.theta3))
+        e2: ComplexArray = np.exp(1j * np.array(self.theta2))
+        a = np.asarray(self.o2 + r2 * e2, dtype=np.complex128)
+        turned: ComplexArray = np.exp(1j * np.array(self.theta3))
         b = self.kind.b_of(self.lengths, self.o4, a, turned)
         return np.stack([a, b, a + self.arm * turned])
 

@@ -13,8 +13,9 @@ import numpy as np
 from grashof.analysis import Verdict
 from grashof.analysis.judge.verdict import Defect
 from grashof.analysis.loops.loop import GrashofClass
-from grashof.problems import FourBar, Objective, Problem
+from grashof.problems import FourBar, InvertedSliderCrank, Linkage, Objective, Problem, SliderCrank
 from grashof.synth.designs.candidate import Candidate
+from grashof.synth.programme import kinds
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.search.attempt import Attempt, Outcome
 from grashof.synth.search.field_types import refuse_misfits
@@ -24,10 +25,14 @@ from grashof.synth.search.tally import Tally
 # What may be written and read: values alone, so that a file is data.
 KINDS: dict[str, Any] = {
     kind.__name__: kind
-    for kind in (Attempt, Candidate, Chunk, Defect, FourBar, Objective, Round, Start, Tally, Verdict)
-}
+    for kind in (
+        Attempt, Candidate, Chunk, Defect, FourBar, InvertedSliderCrank, Objective, Round, SliderCrank, Start,
+        Tally, Verdict,
+    )
+}  # fmt: skip
 WORDS: dict[str, Any] = {"GrashofClass": GrashofClass, "Outcome": Outcome}
-_LEFT_OUT = {"Candidate": {"problem", "values"}}  # known, or measured again
+# Known, or measured again.
+_LEFT_OUT = {"Candidate": {"problem", "values"}, "Start": {"kind"}}
 
 
 def plain(value: Any) -> Any:
@@ -109,8 +114,10 @@ def _restored(value: Any, problem: Problem) -> Any:
         return WORDS[kind](word)
     kind = KINDS[name]
     named = {key: _restored(each, problem) for key, each in content.items()}
+    if kind is Start:
+        named["kind"] = kinds.KINDS[problem.mechanism[0]]
     refuse_misfits(kind, named)
-    if kind is FourBar and FourBar(**named).shape:  # refuses what is no linkage
+    if issubclass(kind, Linkage) and kind(**named).shape:  # refuses what is no linkage
         raise ValueError("a batch of linkages")
     return Candidate(problem=problem, **named) if kind is Candidate else _made(kind, named)
 

@@ -133,7 +133,7 @@ def parallelograms(scaled: ScaledProblem, rng: np.random.Generator) -> Screened:
         better = each[winner, columns] > worth
         worth = np.maximum(worth, each[winner, columns])
         best = best.where(better, children[winner * len(best) + columns])
-    return Screened(*(np.concatenate([getattr(part, name) for part in found]) for name in Screened.__slots__))
+    return Screened.joined(found)
 
 
 @dataclass(frozen=True, slots=True)

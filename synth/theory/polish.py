@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -122,7 +123,7 @@ def _linearised(
         p = a + arm * e3
         # The loop, projected on e4, gives the turn of the coupler.
         below = loop.rod * (e3 * e4.conj()).imag
-        turns = [*(moved / below for moved in loop.moved), 0.0, 0.0, 0.0]
+        turns: list[Any] = [*(moved / below for moved in loop.moved), 0.0, 0.0, 0.0]
         moves = [1, 1j, 0, 0, e2, 0, 0, e3, 1j * e3, 0]
         turns.append((1j * r2 * e2 * e4.conj()).real / below)
         moves.append(1j * r2 * e2)

@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 from grashof import load
+from grashof.analysis.judge.planted import planted_path
+from grashof.problems import Problem
 from grashof.synth import Candidate, Result
 from grashof.synth.designs.table import to_frame
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.search.attempt import Attempt
+from grashof.synth.search.attempt import Attempt, attempt
 from grashof.synth.search.plain import plain, restored
 from grashof.synth.starts.finder import finder_for
 
@@ -77,3 +79,17 @@ def test_rounds_come_back(name: str) -> None:
 def test_what_is_no_value_is_refused(text: str) -> None:
     with pytest.raises(ValueError, match="no plain form"):
         restored(json.loads(text), load("luggage"))
+
+
+@pytest.mark.parametrize("mechanism", ["slider-crank", "inverted-slider-crank"])
+def test_searches_of_slider_kinds_come_back(mechanism: str) -> None:
+    task, _ = planted_path(np.random.default_rng([1, 1]), 4, timed=True, mechanism=mechanism)
+    problem = Problem(task=task, mechanism=mechanism)
+    scaled = ScaledProblem.of(problem)
+    made = finder_for(scaled).round(0, 2, np.random.default_rng(0), 1)
+    assert made is not None
+    assert restored(json.loads(json.dumps(plain(made.starts))), problem) == made.starts
+    one = attempt(scaled, made.starts[0], 0)
+    again = restored(json.loads(json.dumps(plain(one))), problem)
+    assert plain(again) == plain(one)
+    assert again.candidate.linkage == one.candidate.linkage
