@@ -33,7 +33,7 @@ from grashof import load, synthesize
 from grashof.analysis import verify
 from grashof.output.analysis_files import write_report
 from grashof.output.run_files import write_run
-from grashof.problems import FourBar, LinkageSpec, Problem, ProblemError, load_linkage_spec
+from grashof.problems import LinkageSpec, Problem, ProblemError, load_linkage_spec
 from grashof.problems.files.linkage_file import load_design
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.problem_writing import problem_toml
@@ -171,7 +171,7 @@ def _judge_again(result: Result, figures: Counter[str]) -> None:
     most = len(problem.task) * result.most_error**2 * (1 + 1e-9)  # NaN is no limit
     for design in result.candidates:
         figures["designs judged"] += 1
-        linkage = FourBar(**json.loads(json.dumps(design.linkage.stated)))
+        linkage = type(design.linkage)(**json.loads(json.dumps(design.linkage.stated)))
         verdict = verify(linkage, problem.task, problem.requirements, problem=problem)
         if not verdict.ok or verdict.square > most:
             raise BrokenError(WRONG, f"{linkage!r}: {verdict.defects}, {verdict.square} against {most}")

@@ -123,10 +123,10 @@ def _length(key: str, label: str = "", **others: Any) -> Quantity:
     return Quantity(key, label or key, Unit.LENGTH, **others)
 
 
-def _stated(*kinds: str) -> list[Quantity]:
+def _stated(kind: str, digits: int = 0) -> list[Quantity]:
     """The columns of such parameters."""
-    rows = [row for row in PARAMETERS if row.kind in kinds]
-    return [_length(name, kinds=having(name)) for row in rows for name in row.columns]
+    rows = [row for row in PARAMETERS if row.kind == kind]
+    return [_length(name, kinds=having(name), digits=digits) for row in rows for name in row.columns]
 
 
 def _move(name: str) -> Quantity:
@@ -189,7 +189,7 @@ MEASURED: dict[str, Quantity] = {
         Quantity(
             "share_within_made", "made within", Unit.SHARE, Over.TARGETS, +1, Needs.MANUFACTURING, digits=3
         ),
-        *_stated("distance"),
+        *_stated("distance", digits=4),
         Quantity("slide_angle", "direction of the slide", Unit.ANGLE, kinds=having("slide_angle")),
         *(_move(name) for name in DIMENSIONS if name not in FourBar.DIMENSIONS),
     )

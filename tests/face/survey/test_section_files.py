@@ -133,7 +133,7 @@ def test_a_report_without_facts_of_sections_ends_with_the_extremes(
 def test_pictures_of_sections_are_written_when_they_are_asked_for(
     grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("grashof.survey.report.SECTIONS", (mass_centres,))
+    monkeypatch.setattr("grashof.survey.report.sections_of", lambda study: (mass_centres(study),))
     monkeypatch.setattr("grashof.figures.files.save", lambda _, paths: [path.touch() for path in paths])
     folder = tmp_path / "lufkin-c912d-analysis"
     done = grashof("analyse", "lufkin-c912d", "--pictures")
