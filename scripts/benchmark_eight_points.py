@@ -15,6 +15,7 @@ from grashof.analysis.judge.planted import uneven_driver_angles
 from grashof.problems import InvertedSliderCrank, SliderCrank
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.theory.eight_point_linkages import (
+    STEPS,
     Through,
     inverted_slider_cranks_through,
     slider_cranks_through,
@@ -86,7 +87,11 @@ def arrived(kind: str, points: ComplexArray, rng: np.random.Generator) -> int:
     steps = (points[1:] - points[0]) / np.abs(points[1:] - points[0]).max()
     target = np.concatenate([steps, steps.conj()])
     ends, reached = follow(
-        family.system, family.turned(solutions, factors), displacements * np.repeat(factors, 7), target
+        family.system,
+        family.turned(solutions, factors),
+        displacements * np.repeat(factors, 7),
+        target,
+        steps=STEPS,
     )
     ends = family.refined(ends[reached], target)
     _, determined = family.turns(ends, target)

@@ -19,6 +19,7 @@ from grashof.synth.theory.eight_points import (
 )
 from grashof.synth.theory.homotopy import corrected, follow
 
+STEPS = 8000  # of a path: a few are long, and seldom lost for that
 RUNS = 3  # with paths of their own, until all solutions are found
 REAL = (
     1e-4  # so far from its mirror image, relative to itself, a real solution may come before it is made real
@@ -140,7 +141,11 @@ def solutions_at(
     for _ in range(runs):
         factors = np.exp(rng.normal(0, 0.2, 2) + 1j * rng.uniform(0, 2 * np.pi, 2))
         ends, reached = follow(
-            family.system, family.turned(known, factors), start * np.repeat(factors, 7), displacements
+            family.system,
+            family.turned(known, factors),
+            start * np.repeat(factors, 7),
+            displacements,
+            steps=STEPS,
         )
         ends = np.concatenate([ends[reached], family.mirrored(ends[reached])])
         ends = family.refined(ends, displacements)
@@ -250,7 +255,7 @@ def _inverted_slider_cranks(
 
 def _cranks(o2: ComplexArray, a: ComplexArray, turns: ComplexArray, points: ComplexArray) -> ComplexArray:
     """From O2 to A at every point, shape (n, 8), in sizes."""
-    return (points - points[0]) / _size(points) + a[:, None] * turns - o2[:, None]
+    return np.asarray((points - points[0]) / _size(points) + a[:, None] * turns - o2[:, None])
 
 
 def _closes(p: ComplexArray, points: ComplexArray) -> BoolArray:

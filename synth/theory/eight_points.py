@@ -17,7 +17,7 @@ import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, ComplexArray, IntArray
 from grashof.synth.theory.homotopy import corrected
-from grashof.synth.theory.turns import Dyad, crank, crank_slopes, turn, with_turn, without_turn
+from grashof.synth.theory.turns import Columns, Dyad, crank, crank_slopes, turn, with_turn, without_turn
 
 SAME = 1e-6  # relative difference of two solutions
 
@@ -35,7 +35,7 @@ class Family:
     cognates : int
         So many solutions are one coupler curve.
     dyad : callable
-        Unknowns 4 to 6, each of shape (n, 1), d and ds, shape (n, N): the second dyad.
+        Of unknowns 4 to 6, d and ds: the second dyad.
     slopes : callable
         The same, and slopes by the dyad's coefficients: slopes by unknowns 4 to 6, d and ds.
     weights : tuple
@@ -47,10 +47,10 @@ class Family:
     name: str
     count: int
     cognates: int
-    dyad: Callable[..., Dyad]
-    slopes: Callable[..., tuple[ComplexArray, ...]]
+    dyad: Callable[[Columns, ComplexArray, ComplexArray], Dyad]
+    slopes: Callable[[Columns, ComplexArray, ComplexArray, Dyad], tuple[ComplexArray, ...]]
     weights: tuple[tuple[int, int], ...]
-    mirror: Callable[[ComplexArray, ComplexArray, ComplexArray], tuple[ComplexArray, ...]]
+    mirror: Callable[[Columns], tuple[ComplexArray, ...]]
 
     def system(
         self, unknowns: ComplexArray, displacements: ComplexArray, change: ComplexArray
@@ -72,9 +72,9 @@ class Family:
         change : ndarray of complex, shape (n, 7)
         """
         first, second, d, ds = _parts(unknowns, displacements)
-        residual, by_one, by_two = without_turn(crank(*first, d, ds), self.dyad(*second, d, ds))
-        *by_first, d1, ds1 = crank_slopes(*first, d, ds, by_one)
-        *by_second, d2, ds2 = self.slopes(*second, d, ds, by_two)
+        residual, by_one, by_two = without_turn(crank(first, d, ds), self.dyad(second, d, ds))
+        *by_first, d1, ds1 = crank_slopes(first, d, ds, by_one)
+        *by_second, d2, ds2 = self.slopes(second, d, ds, by_two)
         moved = (d1 + d2) * change[:, :7] + (ds1 + ds2) * change[:, 7:]
         return residual, np.stack([*by_first, *by_second], axis=-1), moved
 
@@ -100,11 +100,11 @@ class Family:
         turns, one_each = unknowns[:, 7:], np.eye(7)
         residuals, slopes = [], []
         for dyad, slopes_of, before, own, after in (
-            (crank(*first, d, ds), crank_slopes, 0, first, 3),
-            (self.dyad(*second, d, ds), self.slopes, 4, second, 0),
+            (crank(first, d, ds), crank_slopes, 0, first, 3),
+            (self.dyad(second, d, ds), self.slopes, 4, second, 0),
         ):
             residual, by, by_turn = with_turn(dyad, turns)
-            *by_own, _, _ = slopes_of(*own, d, ds, by)
+            *by_own, _, _ = slopes_of(own, d, ds, by)
             columns = [np.zeros_like(d)] * before + by_own + [np.zeros_like(d)] * after
             by_turns = by_turn[..., None] * one_each
             slopes.append(np.concatenate([np.stack(columns, axis=-1), by_turns], axis=-1))
@@ -127,7 +127,7 @@ class Family:
             Not so in solutions that are no linkages, but where both dyads hold one joint.
         """
         first, second, d, ds = _parts(unknowns, displacements[None])
-        forth, back = turn(crank(*first, d, ds), self.dyad(*second, d, ds))
+        forth, back = turn(crank(first, d, ds), self.dyad(second, d, ds))
         with np.errstate(invalid="ignore", over="ignore"):
             determined: BoolArray = np.abs(forth * back - 1).max(axis=1) < 0.5
         return forth, determined
@@ -161,12 +161,13 @@ class Family:
         ndarray of complex, shape (n, 7)
         """
         powers = np.array([(1, 0), (0, 1), (1, 0), (0, 1), *self.weights])
-        return unknowns * (factors**powers).prod(axis=1)
+        turned: ComplexArray = unknowns * (factors**powers).prod(axis=1)
+        return turned
 
     def mirrored(self, unknowns: ComplexArray) -> ComplexArray:
         """Vectors and conjugates exchanged, shape (n, 7): real linkages are what they were."""
         r, rs, a, as_, *others = unknowns.T
-        return np.stack([rs, r, as_, a, *self.mirror(*others)], axis=1).conj()
+        return np.stack([rs, r, as_, a, *self.mirror(others)], axis=1).conj()
 
     def made_real(self, unknowns: ComplexArray) -> ComplexArray:
         """The real linkages nearby, shape (n, 7)."""
@@ -204,11 +205,10 @@ class Family:
     def _precise(
         self, unknowns: ComplexArray, displacements: ComplexArray, change: ComplexArray
     ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-        residual, jacobian, by_change = self.system(
-            *(value.astype(np.clongdouble) for value in (unknowns, displacements, change))
-        )
+        exact = (np.asarray(value, np.clongdouble) for value in (unknowns, displacements, change))
+        residual, jacobian, moved = self.system(*exact)  # type: ignore[arg-type]
         double = np.complex128
-        return residual.astype(double), jacobian.astype(double), by_change.astype(double)
+        return residual.astype(double), jacobian.astype(double), moved.astype(double)
 
 
 def _parts(
@@ -226,33 +226,35 @@ def near(invariants: ComplexArray, invariant: ComplexArray) -> BoolArray:
 
 
 # The slide: n its normal, conj(n) B + n B* stays. Unknowns conj(n) B / n, B*, conj(n) / n.
-def _slide(c: ComplexArray, cs: ComplexArray, s: ComplexArray, d: ComplexArray, ds: ComplexArray) -> Dyad:
+def _slide(own: Columns, d: ComplexArray, ds: ComplexArray) -> Dyad:
+    c, cs, s = own
     return Dyad(c, cs, s * d + ds)
 
 
-def _slide_slopes(
-    _c: ComplexArray, _cs: ComplexArray, s: ComplexArray, d: ComplexArray, _ds: ComplexArray, by: Dyad
-) -> tuple[ComplexArray, ...]:
+def _slide_slopes(own: Columns, d: ComplexArray, _ds: ComplexArray, by: Dyad) -> tuple[ComplexArray, ...]:
+    *_, s = own
     return by.e, by.f, by.h * d, by.h * s, by.h
 
 
-def _slide_mirror(c: ComplexArray, cs: ComplexArray, s: ComplexArray) -> tuple[ComplexArray, ...]:
+def _slide_mirror(own: Columns) -> tuple[ComplexArray, ...]:
+    c, cs, s = own
     return cs / s, c / s, 1 / s
 
 
 # The block: the rod's normal n turns with it, O4 keeps its distance from the rod's line. Unknowns O4,
 # O4*, conj(n) / n at the first point.
-def _block(b: ComplexArray, bs: ComplexArray, s: ComplexArray, d: ComplexArray, ds: ComplexArray) -> Dyad:
+def _block(own: Columns, d: ComplexArray, ds: ComplexArray) -> Dyad:
+    b, bs, s = own
     return Dyad(bs - ds, s * (b - d), -s * d - ds)
 
 
-def _block_slopes(
-    b: ComplexArray, _bs: ComplexArray, s: ComplexArray, d: ComplexArray, _ds: ComplexArray, by: Dyad
-) -> tuple[ComplexArray, ...]:
+def _block_slopes(own: Columns, d: ComplexArray, _ds: ComplexArray, by: Dyad) -> tuple[ComplexArray, ...]:
+    b, _, s = own
     return s * by.f, by.e, by.f * (b - d) - by.h * d, -s * (by.f + by.h), -by.e - by.h
 
 
-def _block_mirror(b: ComplexArray, bs: ComplexArray, s: ComplexArray) -> tuple[ComplexArray, ...]:
+def _block_mirror(own: Columns) -> tuple[ComplexArray, ...]:
+    b, bs, s = own
     return bs, b, 1 / s
 
 
@@ -291,7 +293,7 @@ def general_problem(family: Family, rng: np.random.Generator) -> tuple[ComplexAr
     turns = np.exp(rng.normal(0, 0.3, 7) + 1j * rng.uniform(0, 2 * np.pi, 7))
 
     def guided(d: complex, ds: complex) -> ComplexArray:
-        e, f, h = family.dyad(*others, np.full(7, d), np.full(7, ds))
+        e, f, h = family.dyad(others, np.full(7, d), np.full(7, ds))
         return np.asarray(e * (turns - 1) + f * (1 / turns - 1) + h)
 
     # The second dyad is linear in d and ds, the crank d ds + p d + q ds + c = 0.

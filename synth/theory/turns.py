@@ -8,11 +8,14 @@ dyads' joints are far away and turns are small.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray
+
+Columns: TypeAlias = Sequence[ComplexArray]  # unknowns of a dyad, each of shape (n, 1)
 
 
 class Dyad(NamedTuple):
@@ -31,15 +34,13 @@ class Eliminated(NamedTuple):
     by_two: Dyad
 
 
-def crank(
-    r: ComplexArray, rs: ComplexArray, a: ComplexArray, as_: ComplexArray, d: ComplexArray, ds: ComplexArray
-) -> Dyad:
+def crank(own: Columns, d: ComplexArray, ds: ComplexArray) -> Dyad:
     """The link r from a ground pivot a to the joint a + r keeps its length.
 
     Parameters
     ----------
-    r, rs, a, as_ : ndarray of complex, shape (n, 1)
-        At the first point and from it, with their conjugates.
+    own : sequence of ndarray of complex, shape (n, 1)
+        r, r*, a, a* at the first point and from it.
     d, ds : ndarray of complex, shape (n, N)
 
     Returns
@@ -50,19 +51,13 @@ def crank(
     -----
     From Wampler, Morgan & Sommese 1992, eqs. 4-8.
     """
+    r, rs, a, as_ = own
     return Dyad((a + r) * (ds - as_), (as_ + rs) * (d - a), r * ds + rs * d + d * ds)
 
 
-def crank_slopes(
-    r: ComplexArray,
-    rs: ComplexArray,
-    a: ComplexArray,
-    as_: ComplexArray,
-    d: ComplexArray,
-    ds: ComplexArray,
-    by: Dyad,
-) -> tuple[ComplexArray, ...]:
+def crank_slopes(own: Columns, d: ComplexArray, ds: ComplexArray, by: Dyad) -> tuple[ComplexArray, ...]:
     """Slopes by r, r*, a, a*, d, d* of what has the slopes `by` by a crank's coefficients, each (n, N)."""
+    r, rs, a, as_ = own
     x, xs, from_a, from_as = a + r, as_ + rs, d - a, ds - as_
     return (
         by.e * from_as + by.h * ds,
