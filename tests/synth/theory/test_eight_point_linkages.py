@@ -144,8 +144,11 @@ def test_inverted_slider_cranks_pass_all_points(benchmark):
 
 @pytest.mark.parametrize(
     "points",
-    [np.exp(1j * np.arange(8)), np.arange(8) ** 1.5 * (1 + 1j), [0, 0, 1, 2j, 3, 1 + 1j, 2 + 3j, 4]],
-    ids=["on a circle", "on a line", "one twice"],
+    [
+        pytest.param(np.exp(1j * np.arange(8)), id="on a circle"),
+        pytest.param(np.arange(8) ** 1.5 * (1 + 1j), id="on a line"),
+        pytest.param([0, 0, 1, 2j, 3, 1 + 1j, 2 + 3j, 4], id="one twice", marks=pytest.mark.slow),
+    ],
 )
 def test_points_of_infinitely_many_or_no_linkages_give_a_list_that_is_right(points):
     points = np.array(points, dtype=complex)
