@@ -26,6 +26,7 @@ def follow(
     start: ComplexArray,
     target: ComplexArray,
     tolerance: float = 1e-6,
+    steps: int = STEPS,
 ) -> tuple[ComplexArray, BoolArray]:
     """Follow solutions from one set of parameters along a straight line to another.
 
@@ -39,6 +40,8 @@ def follow(
     tolerance : float
         Largest last Newton correction of a step, relative to the largest unknown; larger ones halve
         the step. Too large a one lets paths jump to their neighbours.
+    steps : int
+        Of a path at most.
 
     Returns
     -------
@@ -66,7 +69,7 @@ def follow(
     done, step = np.zeros(len(solutions)), np.full(len(solutions), FIRST)
     good_steps = np.zeros(len(solutions), dtype=np.int64)
     active = np.arange(len(solutions))
-    for _ in range(STEPS):
+    for _ in range(steps):
         if not len(active):
             break
         give_way()

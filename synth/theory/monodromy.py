@@ -1,7 +1,8 @@
-"""The solutions of the nine-point problem for general points, from a single one.
+"""The solutions of the nine-point problem, or one like it, for general points, from a single one.
 
 Followed around closed loops in the space of the points, a solution comes back as another one; loops
-are added until no new one has come for some time. It is done once, by a script, for `nine_points`.
+are added until no new one has come for some time. It is done once, by a script, for `nine_points`
+and `eight_points`.
 """
 
 from __future__ import annotations
@@ -12,8 +13,10 @@ from itertools import pairwise
 import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray
-from grashof.synth.theory.homotopy import follow
-from grashof.synth.theory.nine_points import TRIPLETS, distinct, system
+from grashof.synth.theory.homotopy import System, follow
+from grashof.synth.theory.nine_points import TRIPLETS
+from grashof.synth.theory.nine_points import distinct as distinct_triplets
+from grashof.synth.theory.nine_points import system as nine_point_system
 
 CAREFUL = 1e-8
 
@@ -33,7 +36,7 @@ def general_problem(rng: np.random.Generator) -> tuple[ComplexArray, ComplexArra
     Examples
     --------
     >>> displacements, solutions = general_problem(np.random.default_rng(0))
-    >>> residual, _, _ = system(solutions, displacements[None], np.zeros((1, 16), dtype=complex))
+    >>> residual, _, _ = nine_point_system(solutions, displacements[None], np.zeros((1, 16), dtype=complex))
     >>> bool(np.abs(residual).max() < 1e-10)
     True
     """
@@ -56,13 +59,15 @@ def collect(
     most: int = TRIPLETS,
     patience: int = 8,
     progress: Callable[[int], object] | None = None,
+    system: System = nine_point_system,
+    distinct: Callable[[ComplexArray], ComplexArray] = distinct_triplets,
 ) -> ComplexArray:
     """Solutions that loops through random problems lead to, one of every triplet.
 
     Parameters
     ----------
-    displacements : ndarray of complex, shape (16,)
-    solutions : ndarray of complex, shape (n, 8)
+    displacements : ndarray of complex, shape (M,)
+    solutions : ndarray of complex, shape (n, K)
         Known ones.
     rng : numpy.random.Generator
     most : int
@@ -71,14 +76,19 @@ def collect(
         Stop after so many loops on end without a new one.
     progress : callable, optional
         Called with the number of known solutions after every loop.
+    system : System
+        The nine-point problem, if no other.
+    distinct : callable
+        Solutions without those that came earlier, or are cognates of such.
 
     Returns
     -------
-    ndarray of complex, shape (m, 8)
+    ndarray of complex, shape (m, K)
     """
     idle = 0
     while len(solutions) < most and idle < patience:
-        corners = [displacements, _general(rng, 16), _general(rng, 16), displacements]
+        count = len(displacements)
+        corners = [displacements, _general(rng, count), _general(rng, count), displacements]
         moved = solutions
         for start, target in pairwise(corners):
             moved, reached = follow(system, moved, start, target, CAREFUL)
