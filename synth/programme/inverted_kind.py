@@ -12,7 +12,7 @@ from grashof.problems import InvertedSliderCrank, Requirements, Rotatability
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 from grashof.synth.programme import slider_formulas
 from grashof.synth.programme.formulas import View
-from grashof.synth.programme.kind import Closed, Kind, LoopOf, Shapes, as_vector, by_two
+from grashof.synth.programme.kind import Closed, Kind, LoopOf, Shapes, as_vector, both_ways, by_two
 from grashof.synth.theory.closure import InvertedSliderCrankClosure
 
 
@@ -39,8 +39,7 @@ class InvertedKind(Kind):
         return d.offset / np.sqrt(reach + 1e-300)
 
     def margins(self, d: View) -> tuple[Any, ...]:
-        longer, total = (1 - 2 * d.double_crank) * (d.r1 - d.r2), d.r1 + d.r2
-        return (longer - d.offset) / total, (longer + d.offset) / total
+        return both_ways((1 - 2 * d.double_crank) * (d.r1 - d.r2), d.r1 + d.r2, d.offset)
 
     def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
         a, b, _ = proportions.T
@@ -50,8 +49,8 @@ class InvertedKind(Kind):
         margin, sigmoid, tanh = wanted.rotatability_margin, 1 / (1 + np.exp(-a)), np.tanh(b)
         r2 = np.where(longer_driver, 1 / sigmoid, sigmoid)
         by_a = np.where(longer_driver, -(1 - sigmoid) / sigmoid, sigmoid * (1 - sigmoid))
-        room = np.abs(1 - r2) - margin * (1 + r2)
-        by_room = -(np.sign(1 - r2) + margin) * by_a
+        room = (np.abs(1 - r2) - margin * (1 + r2)) / (1 + margin)
+        by_room = -(np.sign(1 - r2) + margin) * by_a / (1 + margin)
         has_room = room > 0
         room, by_room = np.where(has_room, room, 0.0), np.where(has_room, by_room, 0.0)
         by_lengths = by_two([by_a, 0 * a], [0 * a, 0 * a], [by_room * tanh, room * (1 - tanh**2)])

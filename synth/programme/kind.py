@@ -184,6 +184,15 @@ def as_vector(points: ComplexArray) -> Vector:
     return Vector(points.real, points.imag)
 
 
+def both_ways(longer: Any, total: Any, offset: Any) -> tuple[Any, Any]:
+    """Shares (longer -+ offset) / (total +- offset), the smaller (longer - |offset|) / (total + |offset|)."""
+    least = 1e-6 * total  # far from a full crank nothing turns round
+    return (
+        (longer - offset) / np.maximum(total + offset, least),
+        (longer + offset) / np.maximum(total - offset, least),
+    )
+
+
 def by_two(*rows: list[FloatArray]) -> FloatArray:
     """Derivatives (n, 3 lengths, 3 proportions) from rows by the first two proportions."""
     zero = np.zeros_like(rows[0][0])

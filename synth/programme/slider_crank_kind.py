@@ -13,7 +13,7 @@ from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 from grashof.synth.programme import slider_formulas
 from grashof.synth.programme.formulas import View
 from grashof.synth.programme.frame import Frame
-from grashof.synth.programme.kind import Closed, Kind, LoopOf, Shapes, by_two
+from grashof.synth.programme.kind import Closed, Kind, LoopOf, Shapes, both_ways, by_two
 from grashof.synth.theory.closure import SliderCrankClosure
 
 
@@ -40,22 +40,20 @@ class SliderCrankKind(Kind):
         return reach / d.r3
 
     def margins(self, d: View) -> tuple[Any, ...]:
-        total = d.r2 + d.r3
-        return (d.r3 - d.r2 - d.offset) / total, (d.r3 - d.r2 + d.offset) / total
+        return both_ways(d.r3 - d.r2, d.r2 + d.r3, d.offset)
 
     def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
         a, b, _ = proportions.T
         if wanted.rotatability is Rotatability.ANY:
             r2, zero = np.exp(a), np.zeros_like(a)
             return (r2, np.ones_like(r2), b), by_two([r2, zero], [zero, zero], [zero, np.ones_like(b)])
-        # Of the room for r2 + |offset| <= 1 - margin (1 + r2) r2 takes a share, the offset one of the rest.
+        # Of the room for 1 - r2 - |offset| >= margin (1 + r2 + |offset|) r2 takes a share, the offset one of
+        # the rest.
         margin, sigmoid, tanh = wanted.rotatability_margin, 1 / (1 + np.exp(-a)), np.tanh(b)
         most = (1 - margin) / (1 + margin)
         r2, by_a = most * sigmoid, most * sigmoid * (1 - sigmoid)
-        room = 1 - r2 - margin * (1 + r2)
-        by_lengths = by_two(
-            [by_a, 0 * a], [0 * a, 0 * a], [-(1 + margin) * by_a * tanh, room * (1 - tanh**2)]
-        )
+        room = most - r2
+        by_lengths = by_two([by_a, 0 * a], [0 * a, 0 * a], [-by_a * tanh, room * (1 - tanh**2)])
         return (r2, np.ones_like(r2), room * tanh), by_lengths
 
     def closed(

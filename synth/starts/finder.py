@@ -15,7 +15,10 @@ from grashof.synth.programme.start import Round, Start
 from grashof.synth.starts.exact_poses import FewPoses, ManyPoses, Parallelograms
 from grashof.synth.starts.least_squares import LeastSquares
 from grashof.synth.starts.limit_positions import LimitPositions
-from grashof.synth.starts.precision_points import NinePoints, PrecisionPoints
+from grashof.synth.starts.precision_points import EightPoints, NinePoints, PrecisionPoints
+
+# The first that suits a problem is taken.
+KINDS = LimitPositions, Parallelograms, FewPoses, ManyPoses, NinePoints, EightPoints, PrecisionPoints
 
 
 class Finder(Protocol):
@@ -82,7 +85,15 @@ def rounds(finder: Finder, made: Callable[[int], Round | None]) -> Iterator[Roun
 
 def finder_for(scaled: ScaledProblem) -> Finder:
     """The first kind of search that suits a problem."""
-    for kind in (LimitPositions, Parallelograms, FewPoses, ManyPoses, NinePoints, PrecisionPoints):
+    for kind in (
+        LimitPositions,
+        Parallelograms,
+        FewPoses,
+        ManyPoses,
+        NinePoints,
+        EightPoints,
+        PrecisionPoints,
+    ):
         if kind.suits(scaled):
             return kind(scaled)
     return LeastSquares(scaled)

@@ -5,16 +5,19 @@ Exact paths through nine points have it followed by all linkages that there are.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
-from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.analysis import solve_position
+from grashof.problems import FourBar, SliderCrank
+from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
 from grashof.synth.programme.driver_angles import shorter_way
-from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Round
 from grashof.synth.starts.closed_loop import SearchTargets
 from grashof.synth.starts.coupler_search import CouplerSearch, has_family, search
@@ -22,6 +25,7 @@ from grashof.synth.starts.loop_search import Placed
 from grashof.synth.starts.search_targets import judged, search_targets
 from grashof.synth.starts.selection import feasible_starts, mended_starts, starts_of
 from grashof.synth.theory.cognates import cognate_points
+from grashof.synth.theory.eight_point_linkages import Through, slider_cranks_through
 from grashof.synth.theory.nine_points import coupler_turns, linkages_through
 
 BARREN = 12  # so many rounds on end without a start end the search
@@ -56,25 +60,30 @@ class PrecisionPoints(CouplerSearch):
 
 
 @dataclass(frozen=True, slots=True)
-class NinePoints(PrecisionPoints):
-    """Nine distinct points of a path without timing: finitely many linkages, all of which can be computed."""
+class EveryLinkage(PrecisionPoints, ABC):
+    """As many distinct points of a path without timing as leave no freedom.
+
+    Finitely many linkages pass them, all of which can be computed.
+    """
 
     patience: ClassVar[float] = np.inf
+    points: ClassVar[int]
+    mechanism: ClassVar[str]
 
     @property
     def rounds_a_pass(self) -> int:  # type: ignore[override]
         """Some searches, then all linkages."""
         return 1 + (SEARCHES if self.scaled.wanted.order else 0)
 
-    @staticmethod
-    def suits(scaled: ScaledProblem) -> bool:
+    @classmethod
+    def suits(cls, scaled: ScaledProblem) -> bool:  # type: ignore[override]
         """So many points, to be met exactly."""
-        if scaled.kind is not FOUR_BAR or not scaled.exact or scaled.timed:
+        if scaled.kind.mechanism != cls.mechanism or not scaled.exact or scaled.timed:
             return False
         if not scaled.problem.task.only_points:
             return False
         points = search_targets(scaled).points
-        if len(points) != 9:
+        if len(points) != cls.points:
             return False
         apart = np.abs(points[:, None] - points) + np.eye(len(points))
         return bool(apart.min() > 1e-9)
@@ -88,6 +97,27 @@ class NinePoints(PrecisionPoints):
             return self._searched(enough, rng)
         return self._all_linkages(rng) if number < self.rounds_a_pass and size == 1 else None
 
+    @abstractmethod
+    def _all_linkages(self, rng: np.random.Generator) -> Round:
+        """The feasible ones of all linkages through the points."""
+
+    def _settled(self, linkages: Screened, chosen: IntArray, every: int) -> Round:
+        starts = [replace(start, settled=True) for start in starts_of(self.scaled, linkages, chosen)]
+        return Round(starts, {"feasible finds": int(linkages.feasible.sum()), THROUGH: every})
+
+    def obstacle(self, _rng: np.random.Generator, counts: Mapping[str, int], /) -> str:
+        """That none of all linkages does it; empty where they were not computed."""
+        every = counts.get(THROUGH, 0)
+        return f"none of the {every} linkages through the points meets all requirements" if every else ""
+
+
+@dataclass(frozen=True, slots=True)
+class NinePoints(EveryLinkage):
+    """Nine points, four-bars."""
+
+    points: ClassVar[int] = 9
+    mechanism: ClassVar[str] = FourBar.MECHANISM
+
     def _all_linkages(self, rng: np.random.Generator) -> Round:
         """Of every triplet of cognates through the points the first feasible one; the others follow."""
         target = search_targets(self.scaled)
@@ -96,14 +126,24 @@ class NinePoints(PrecisionPoints):
         feasible = linkages.feasible.reshape(-1, 3, 2)
         usable = feasible.any(axis=2)
         first = usable & (np.cumsum(usable, axis=1) == 1)
-        chosen = np.flatnonzero(feasible & first[..., None])
-        starts = [replace(start, settled=True) for start in starts_of(self.scaled, linkages, chosen)]
-        return Round(starts, {"feasible finds": int(feasible.sum()), THROUGH: 3 * len(through)})
+        return self._settled(linkages, np.flatnonzero(feasible & first[..., None]), 3 * len(through))
 
-    def obstacle(self, _rng: np.random.Generator, counts: Mapping[str, int], /) -> str:
-        """That none of all linkages does it; empty where they were not computed."""
-        every = counts.get(THROUGH, 0)
-        return f"none of the {every} linkages through the points meets all requirements" if every else ""
+
+@dataclass(frozen=True, slots=True)
+class EightPoints(EveryLinkage):
+    """Eight points, slider-cranks."""
+
+    points: ClassVar[int] = 8
+    mechanism: ClassVar[str] = SliderCrank.MECHANISM
+
+    def _all_linkages(self, rng: np.random.Generator) -> Round:
+        """All that are feasible; cognates among them are linkages of their own."""
+        target = search_targets(self.scaled)
+        through = slider_cranks_through(target.points, rng)
+        linkages = judged(self.scaled, target, *_sliders_at_points(through, target))
+        within_a_turn = np.ptp(linkages.theta2, axis=1) <= TURN
+        chosen = np.flatnonzero(linkages.feasible & within_a_turn)
+        return self._settled(linkages, chosen, len(through.theta2))
 
 
 def _driven_from_both_sides(linkages: ComplexArray) -> ComplexArray:
@@ -123,3 +163,17 @@ def _at_points(points: ComplexArray, target: SearchTargets) -> tuple[Placed, Flo
     theta2, direction = shorter_way(np.angle(a - o2))
     none, p = np.zeros(len(points)), np.broadcast_to(target.points, a.shape)
     return Placed(none, points[:, 0], points[:, 1], a, b, p, theta2, body_angle=none), direction
+
+
+def _sliders_at_points(through: Through, target: SearchTargets) -> tuple[Placed, FloatArray]:
+    """Slider-cranks that pass all points: where they stand there, and the shorter sense of the driver."""
+    found = through.linkages
+    if not isinstance(found, SliderCrank):
+        raise TypeError(type(found).__name__)
+    o2 = found.o2 @ np.array([1, 1j])
+    theta2, direction = shorter_way(through.theta2)
+    a = o2[:, None] + found.r2[:, None] * np.exp(1j * theta2)
+    b = solve_position(found[:, None], theta2, through.assembly).b @ np.array([1, 1j])
+    o4, none = b[:, 0] + found.r3 * np.exp(1j * found.slide_angle), np.zeros(len(o2))
+    p = np.broadcast_to(target.points, a.shape)
+    return Placed(none, o2, o4, a, b, p, theta2, body_angle=none), direction

@@ -21,6 +21,10 @@ from grashof.problems import (
 )
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.designs.ranking import ranking_key
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.search.attempt import attempt
+from grashof.synth.starts.finder import finder_for
+from grashof.synth.starts.precision_points import EightPoints
 
 SLIDERS = ("slider-crank", "inverted-slider-crank")
 
@@ -176,3 +180,19 @@ def test_what_a_kind_has_not_is_refused_in_own_functions() -> None:
     task, _ = planted_motion(np.random.default_rng([2, 3]), 3, mechanism="slider-crank")
     with pytest.raises(ProblemError, match="constraint has_r4 fails on symbols"):
         synthesize(Problem(task=task, mechanism="slider-crank"), constraints=[has_r4])
+
+
+def test_all_slider_cranks_through_eight_points() -> None:
+    """The planted one is among the feasible ones; every start is a design already."""
+    task, planted = planted_path(np.random.default_rng([1, 1]), 8, mechanism="slider-crank")
+    scaled = ScaledProblem.of(Problem(task=task, mechanism="slider-crank"))
+    finder = finder_for(scaled)
+    assert isinstance(finder, EightPoints)
+    last = finder.round(finder.rounds_a_pass - 1, 10, np.random.default_rng(0), 1)
+    assert last is not None
+    assert last.counts["linkages through the points"] >= 2
+    assert finder.round(finder.rounds_a_pass, 10, np.random.default_rng(0), 1) is None
+    found = [attempt(scaled, start, 0).candidate for start in last.starts]
+    assert all(each is not None and each.verdict.ok for each in found)
+    gaps = [np.abs(each.linkage.lengths - planted.lengths).max() for each in found if each is not None]
+    assert min(gaps) < 1e-6 * task.size

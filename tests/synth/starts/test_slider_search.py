@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from grashof.analysis import solve_position
+from grashof.analysis.four_bar.mobility import rotatability
 from grashof.problems import Box, MotionTask, PathTask, Problem, Requirements
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
@@ -115,11 +116,11 @@ def test_full_cranks_keep_their_margin_by_construction(mechanism: str) -> None:
     linkages = judged(scaled, target, placed[sound], batch.direction[sound])
     values = scaled.linkages(linkages.points, np.ones(len(linkages)))
     first, second = values.lengths.T
-    longer, total = np.abs(second - first), first + second
-    share = (longer - np.abs(values.offset)) / total  # type: ignore[attr-defined]
-    assert (
-        share > np.minimum(0.02, longer / total) - 1e-9
-    ).all()  # two nearly equal links have no such margin
+    longer, offset = np.abs(second - first), np.abs(values.offset)  # type: ignore[attr-defined]
+    share = (longer - offset) / (first + second + offset)
+    # Two nearly equal links have no such margin.
+    assert (share > np.minimum(0.02, longer / (first + second)) - 1e-9).all()
+    np.testing.assert_allclose(share, rotatability(values).min(axis=-1), atol=1e-12)
     assert sound.mean() > 0.9
 
 
