@@ -11,7 +11,7 @@ from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, 
 from grashof.synth.theory.closure import FOUR_BAR_CLOSURE, Closure
 
 STEPS = 4
-MORE_STEPS, DONE = 12, 1e-10  # at most so many where, as on short arcs, much is left after those
+MORE, DONE = 8, 1e-10  # steps at most beyond these where, as on short arcs, much is left
 MANY = 64  # targets: of more, each driver angle is eliminated by itself
 
 
@@ -89,7 +89,7 @@ def polish_path(
         theta2[:1] if wish.timed else theta2,
     ])  # fmt: skip
     gaps = theta2 - theta2[0]
-    for step in range(MORE_STEPS):
+    for step in range(STEPS + MORE):
         _, residual, jacobian = _linearised(unknowns, gaps, assembly, wish)
         if not (np.isfinite(residual).all() and np.isfinite(jacobian).all()):
             break

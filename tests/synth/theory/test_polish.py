@@ -101,6 +101,7 @@ def test_errors_fall_quadratically(timed: bool, monkeypatch: pytest.MonkeyPatch)
         planted, errors = Planted(seed, count_of(timed, seed)), []
         for steps in range(5):
             monkeypatch.setattr(path_polish, "STEPS", steps)
+            monkeypatch.setattr(path_polish, "MORE", 0)
             errors.append(planted.polished(timed).error)
         assert errors[0] > 1e-4
         assert errors[1] < 1e-2 * errors[0]
@@ -115,6 +116,7 @@ def test_a_step_is_the_least_one(
 ) -> None:
     """The pseudo-inverse of differences of a curve of our own gives the same step."""
     monkeypatch.setattr(path_polish, "STEPS", 1)
+    monkeypatch.setattr(path_polish, "MORE", 0)
     planted = Planted(seed, count_of(timed, seed), mixed)
     angles = planted.theta2 + 1e-4 if timed else planted.near_angles
     gaps = angles - angles[0]
