@@ -30,6 +30,7 @@ from grashof.problems import (
 
 LIMIT = 3.0  # s
 SOLVED = 1e-12  # sizes squared
+ENOUGH = 3  # designs: any with an error up to the tolerance, 1e-6 sizes at a point, counts as one
 LEAST_MU, LEAST_STEP = np.radians(15), 0.05
 
 
@@ -115,7 +116,7 @@ def run(
         task = planted(case, np.random.default_rng([seed, number]))
         problem = Problem(task=task, mechanism=case.mechanism, requirements=Requirements(exact=exact))
         since = perf_counter()
-        found = synthesize(problem, enough=1, effort=effort, time_limit=LIMIT)
+        found = synthesize(problem, enough=ENOUGH, effort=effort, time_limit=LIMIT)
         seconds = perf_counter() - since
         best = min((one.verdict.square for one in found.candidates), default=np.inf)
         yield best <= SOLVED * task.size**2, seconds

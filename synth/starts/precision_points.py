@@ -76,7 +76,7 @@ class EveryLinkage(PrecisionPoints, ABC):
         return 1 + (SEARCHES if self.scaled.wanted.order else 0)
 
     @classmethod
-    def suits(cls, scaled: ScaledProblem) -> bool:  # type: ignore[override]
+    def suits(cls, scaled: ScaledProblem) -> bool:
         """So many points, to be met exactly."""
         if scaled.kind.mechanism != cls.mechanism or not scaled.exact or scaled.timed:
             return False
