@@ -114,7 +114,7 @@ def run(
     """Whether each planted task is solved, and the time it takes in s."""
     for number in range(count):
         task = planted(case, np.random.default_rng([seed, number]))
-        problem = Problem(task=task, mechanism=case.mechanism, requirements=Requirements(exact=exact))
+        problem = Problem(task=task, mechanism=(case.mechanism,), requirements=Requirements(exact=exact))
         since = perf_counter()
         found = synthesize(problem, enough=ENOUGH, effort=effort, time_limit=LIMIT)
         seconds = perf_counter() - since

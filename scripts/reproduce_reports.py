@@ -44,7 +44,7 @@ SAME = "same"
 def pumpjack() -> list[Row]:
     """Rows about the pumpjack, at 20 rpm."""
     spec = load_linkage_spec("pumpjack")
-    linkage, omega2 = spec.linkage, 20 * 2 * np.pi / 60
+    linkage, omega2 = spec.four_bar, 20 * 2 * np.pi / 60
     omega3 = extremes(linkage, lambda state: state.omega3, omega2)
     alpha3 = extremes(linkage, lambda state: state.alpha3, omega2)
     speed = extremes(linkage, lambda state: state.b.speed, omega2).high

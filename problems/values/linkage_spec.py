@@ -57,6 +57,13 @@ class LinkageSpec(Displayed):
             refuse(misplaced(self.dynamics, type(self.linkage)))
 
     @property
+    def four_bar(self) -> FourBar:
+        """The linkage, which has to be a four-bar."""
+        if not isinstance(self.linkage, FourBar):
+            raise ProblemError(f"{self.name} is a {self.linkage.MECHANISM}; it must be a four-bar")
+        return self.linkage
+
+    @property
     def unit(self) -> str:
         """The length unit, or the word length where the file names none."""
         return self.length_unit or "length"

@@ -42,7 +42,7 @@ class Luggage:
     @property
     def linkage(self) -> FourBar:
         """The linkage itself."""
-        return self.spec.linkage
+        return self.spec.four_bar
 
     @cached_property
     def verdict(self) -> Verdict:

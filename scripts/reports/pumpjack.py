@@ -48,7 +48,7 @@ _CROSS: dict[str, Any] = {
 
 def bodies(spec: LinkageSpec) -> tuple[Masses, Masses]:
     """The links as bars of 0.2 x 0.2 m, link 4 from O4 to B; and with the whole beam, A + C long."""
-    linkage = spec.linkage
+    linkage = spec.four_bar
     bars = uniform_bars(linkage, np.array(published.DENSITIES) * published.SIDE**2)
     length = float(linkage.r4) + (spec.output_arm or 0.0)
     mass = length * published.DENSITIES[2] * published.SIDE**2
@@ -67,9 +67,9 @@ class AsPublished:
     acceleration: FloatArray
 
     @classmethod
-    def of(cls, state: Kinematics) -> "AsPublished":
+    def of(cls, linkage: FourBar, state: Kinematics) -> "AsPublished":
         """At the driver angles of a state, shape (N,)."""
-        linkage, way = state.linkage, state.linkage.o4 - state.a.position
+        way = linkage.o4 - state.a.position
         theta4 = state.theta4 - (state.theta3 - np.arctan2(way[:, 1], way[:, 0]))
         two, three, four = (
             float(length) * np.exp(1j * angle)
@@ -114,7 +114,7 @@ class Pumpjack:
     @property
     def linkage(self) -> FourBar:
         """The linkage itself."""
-        return self.spec.linkage
+        return self.spec.four_bar
 
     @property
     def omega2(self) -> float:
@@ -125,7 +125,7 @@ class Pumpjack:
     def wrong(self) -> AsPublished:
         """What the report's code computes at its samples."""
         theta2 = np.radians(self.history.tables["over-time"]["theta2_total_deg"])
-        return AsPublished.of(solve_kinematics(self.linkage, theta2, self.omega2))
+        return AsPublished.of(self.linkage, solve_kinematics(self.linkage, theta2, self.omega2))
 
     def state(self, theta2_deg: FloatArray | float) -> Kinematics:
         """Kinematics at driver angles."""
@@ -183,11 +183,11 @@ class Pumpjack:
         """Of the real unit, in inches."""
         unit = load_linkage_spec("lufkin-c912d")
         arm = unit.output_arm or 0.0
-        stroke, state = output_stroke(unit.linkage), solve_kinematics(unit.linkage, 0.0)
+        stroke, state = output_stroke(unit.four_bar), solve_kinematics(unit.four_bar, 0.0)
         return {
-            "unit_k": float(unit.linkage.r1), "unit_k_deg": float(np.degrees(unit.linkage.theta1)),
+            "unit_k": float(unit.four_bar.r1), "unit_k_deg": float(np.degrees(unit.four_bar.theta1)),
             "unit_stroke": arm * float(stroke.swing), "unit_factor": arm * float(np.abs(state.omega4)),
-            "unit_k_m": float(unit.linkage.r1) * 0.0254, "r1": float(self.linkage.r1),
+            "unit_k_m": float(unit.four_bar.r1) * 0.0254, "r1": float(self.linkage.r1),
         }  # fmt: skip
 
     # The items.
@@ -201,7 +201,7 @@ class Pumpjack:
             "I": base[0], "H - G": base[1], "K": self.linkage.r1,
         }  # fmt: skip
         inches = {name: given[name] for name in "RPCAI"} | {
-            "H - G": given["H"] - given["G"], "K": float(unit.linkage.r1)
+            "H - G": given["H"] - given["G"], "K": float(unit.four_bar.r1)
         }  # fmt: skip
         rows = [
             {
