@@ -33,7 +33,8 @@ def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
         A quantity is limited that needs more than the problem states.
     """
     limited = wanted.limited
-    joined = values.verdict.branch_ok or not wanted.same_branch  # another defect reports that it is not
+    verdict = values.verdict  # another defect reports that no motion joins the targets
+    joined = verdict.branch_ok or verdict.cylinder is not None or not wanted.same_branch
     for name, limit in limited.items():
         if not values.problem.states(limit.quantity.needs):
             raise ProblemError(f"requirements.{name} needs a problem with {limit.quantity.needs.value}")

@@ -20,6 +20,7 @@ from grashof.problems.values.checks import (
     refuse,
     whole_number,
 )
+from grashof.problems.values.cylinder import CylinderSpec
 from grashof.problems.values.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.manufacturing import Manufacturing
@@ -28,7 +29,7 @@ from grashof.problems.values.objective import GOALS, Objective
 from grashof.problems.values.path_task import PathTask
 from grashof.problems.values.quantities import Needs, Quantity, Unit
 from grashof.problems.values.read_only import ReadOnly
-from grashof.problems.values.requirements import QUANTITIES, Requirements
+from grashof.problems.values.requirements import QUANTITIES, Requirements, Rotatability
 from grashof.problems.values.task import Task
 
 LEAST_TOLERANCE = 1e-4  # sizes: from here on a tolerance is a zone about each target
@@ -77,6 +78,7 @@ _KINDS: dict[str, Any] = {
     "source": str,
     "length_unit": str,
     "manufacturing": Manufacturing | None,
+    "driver": CylinderSpec | None,
 }
 
 
@@ -102,6 +104,8 @@ class Problem(ReadOnly):
         How exactly linkages are made; without it there are no columns of made ones.
     dynamics : DynamicsSpec, optional
         Masses, speed and gravity; without it there are no torques and forces.
+    driver : CylinderSpec, optional
+        The cylinder that drives the linkage, in place of a crank on link 2.
     """
 
     task: Task
@@ -115,6 +119,7 @@ class Problem(ReadOnly):
     outlines: tuple[FloatArray, ...] = ()
     manufacturing: Manufacturing | None = None
     dynamics: DynamicsSpec | None = None
+    driver: CylinderSpec | None = None
 
     def __post_init__(self) -> None:
         for name, kind in _KINDS.items():
@@ -138,6 +143,7 @@ class Problem(ReadOnly):
                 )
         wrong += self._without_value()
         wrong += self._undecided()
+        wrong += self._not_for_cylinders()
         refuse(wrong)
         checked = tuple(
             outline(corners, f"scene.outlines[{index}]") for index, corners in enumerate(self.outlines)
@@ -154,6 +160,8 @@ class Problem(ReadOnly):
             Needs.CLOSED: f"{self.task.kind}.closed is false; it must be true",
             Needs.LEAST_SQUARES: "requirements.exact = false is missing",
             Needs.ANGLES: f"{self.task.kind} has no angles",
+            Needs.CYLINDER: "driver.cylinder is missing",
+            Needs.LOADED_CYLINDER: self._unloaded,
         }
         wrong = [
             f"{missing[quantity.needs]}; {where} needs it"
@@ -164,7 +172,7 @@ class Problem(ReadOnly):
             wrong += [
                 f"requirements.same_branch is false; it must be true when {where} is given"
                 for where, quantity in asked.items()
-                if quantity.needs is Needs.DYNAMICS
+                if quantity.needs in (Needs.DYNAMICS, Needs.LOADED_CYLINDER)
             ]
         return wrong
 
@@ -176,8 +184,35 @@ class Problem(ReadOnly):
             Needs.CLOSED: self.task.closed,
             Needs.LEAST_SQUARES: not self.requirements.is_exact(self.task),
             Needs.ANGLES: bool(self.task.has_angle.any()),
+            Needs.CYLINDER: self.driver is not None,
+            Needs.LOADED_CYLINDER: self.driver is not None and self.dynamics is not None,
         }
         return stated.get(needs, True)
+
+    @property
+    def _unloaded(self) -> str:
+        """What a cylinder's force lacks, in words."""
+        lacks = {"driver.cylinder": self.driver, "dynamics": self.dynamics}
+        missing = [name for name, given in lacks.items() if given is None]
+        return f"{' and '.join(missing)} {'are' if len(missing) > 1 else 'is'} missing"
+
+    def _not_for_cylinders(self) -> list[str]:
+        """What a cylinder cannot do, where one is the driver."""
+        if self.driver is None:
+            return []
+        wrong, wanted = [], self.requirements
+        if self.task.closed:
+            wrong.append(
+                f"{self.task.kind}.closed is true; it must be false with driver.cylinder, which reverses"
+            )
+        if wanted.rotatability is not Rotatability.ANY:
+            wrong.append(
+                f"requirements.rotatability is {wanted.rotatability}; it must be any with driver.cylinder, "
+                "which turns nothing fully"
+            )
+        if not wanted.same_branch:
+            wrong.append("requirements.same_branch is false; it must be true with driver.cylinder")
+        return wrong
 
     def _undecided(self) -> list[str]:
         """What is contradictory about the task and the requirements, and about what decides."""

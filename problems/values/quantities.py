@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.arrays import Limits
+from grashof.problems.values.cylinder import Cylinder
 from grashof.problems.values.four_bar import FourBar
 
 
@@ -65,6 +66,8 @@ class Needs(Enum):
     CLOSED = "a closed path"
     LEAST_SQUARES = "exact = false"
     ANGLES = "targets with angles"
+    CYLINDER = "driver.cylinder"
+    LOADED_CYLINDER = "driver.cylinder and dynamics"
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,6 +126,9 @@ _BOX = "diagonal of the box around O2, O4 and all that A, B and P reach from the
 _FITTED = "what least squares makes small: root mean square of positions and angles together, weighted"
 _WORST = "worst transmission angle over the"
 _MOVED = "how far the worst target moves per unit of change of {}"
+_LEVER = (
+    "between cylinder and arm; on the coupler 90 deg less the angle between cylinder and path of its pivot"
+)
 _MISSED: dict[str, Any] = {"over": Over.TARGETS, "better": -1}
 _OVERALL: dict[str, Any] = {"over": Over.TASK, "about": "from the first target to the last"}
 _DRIVEN: dict[str, Any] = {**_OVERALL, "better": -1, "needs": Needs.DYNAMICS}
@@ -176,6 +182,17 @@ MEASURED: dict[str, Quantity] = {
         Quantity("share_within_linear", "within, linear", Unit.SHARE, Over.TARGETS, +1, Needs.MANUFACTURING),
         Quantity(
             "share_within_made", "made within", Unit.SHARE, Over.TARGETS, +1, Needs.MANUFACTURING, digits=3
+        ),
+        *(_length(name, name.replace("_", " "), needs=Needs.CYLINDER) for name in Cylinder.COLUMNS),
+        _length("cylinder_closed", "closed cylinder", over=Over.TASK, needs=Needs.CYLINDER, digits=4),
+        _length("cylinder_stroke", "cylinder stroke", over=Over.TASK, needs=Needs.CYLINDER, digits=4),
+        Quantity(
+            "cylinder_angle_min", "lever angle", Unit.ANGLE, Over.TASK, +1, Needs.CYLINDER, digits=3,
+            about=_LEVER, words="worst lever angle of the cylinder",
+        ),
+        Quantity(
+            "cylinder_force_max", "cylinder force", Unit.FORCE, Over.TASK, -1, Needs.LOADED_CYLINDER,
+            digits=4, words="peak force of the cylinder",
         ),
     )
 }  # fmt: skip
