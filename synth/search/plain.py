@@ -13,7 +13,7 @@ import numpy as np
 from grashof.analysis import Verdict
 from grashof.analysis.four_bar.mobility import GrashofClass
 from grashof.analysis.judge.verdict import Defect
-from grashof.problems import FourBar, Objective, Problem
+from grashof.problems import Cylinder, FourBar, Objective, Problem
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.search.attempt import Attempt, Outcome
@@ -24,7 +24,19 @@ from grashof.synth.search.tally import Tally
 # What may be written and read: values alone, so that a file is data.
 KINDS: dict[str, Any] = {
     kind.__name__: kind
-    for kind in (Attempt, Candidate, Chunk, Defect, FourBar, Objective, Round, Start, Tally, Verdict)
+    for kind in (
+        Attempt,
+        Candidate,
+        Chunk,
+        Cylinder,
+        Defect,
+        FourBar,
+        Objective,
+        Round,
+        Start,
+        Tally,
+        Verdict,
+    )
 }
 WORDS: dict[str, Any] = {"GrashofClass": GrashofClass, "Outcome": Outcome}
 _LEFT_OUT = {"Candidate": {"problem", "values"}}  # known, or measured again
