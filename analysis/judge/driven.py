@@ -113,12 +113,17 @@ def cylinder_forces(linkage: FourBar, problem: Problem, verdict: Verdict) -> Flo
 
     NaN as in `cylinder_force_peak`.
     """
+    return forces_at(linkage, problem, verdict, verdict.theta2)
+
+
+def forces_at(linkage: FourBar, problem: Problem, verdict: Verdict, theta2: FloatArray) -> FloatArray:
+    """The same at driver angles of the task motion, shape (N,)."""
     if problem.dynamics is None or verdict.cylinder is None or not verdict.branch_ok:
-        return np.full(len(problem.task), np.nan)
+        return np.full(len(theta2), np.nan)
     law = driver_law(problem, *motion_ends(problem.task, verdict))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeadPositionWarning)
-        return _force(problem, verdict, law.state(as_used(linkage, verdict), verdict.theta2))
+        return _force(problem, verdict, law.state(as_used(linkage, verdict), theta2))
 
 
 def _force(problem: Problem, verdict: Verdict, state: Kinematics) -> FloatArray:

@@ -21,8 +21,9 @@ from grashof.problems.values.checks import (
     number_within,
     readable,
 )
+from grashof.problems.values.cylinder import CARRIERS, Cylinder
 from grashof.problems.values.dynamics_spec import DynamicsSpec
-from grashof.problems.values.errors import ProblemError, shown
+from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.four_bar import FourBar
 from grashof.problems.values.linkage_spec import LinkageSpec, ListedDesign
 from grashof.problems.values.problem import Problem
@@ -200,6 +201,7 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
     heading, unit = (readable(word) if isinstance(word, str) else word for word in (heading, unit))
     document = {"title": heading, "length_unit": unit, "dynamics": content.get("dynamics", {}), **stated}
     try:
+        driven = _cylinder(design.get("cylinder"))
         spec = linkage_from(document, readable(f"{path.parent.name or path.stem}-{rank}"))
         linkage = replace(spec.linkage, body_angle=np.asarray(finite_number(turned, "body_angle")))
     except ProblemError as error:
@@ -207,9 +209,24 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
     if direction not in (1, -1):
         raise ProblemError(f"{where}: direction is {shown(direction)}; it must be +1 or -1")
     problem = _listed_problem(content, path)
-    driven = ((spec if problem is None else problem).dynamics or DynamicsSpec()).turning(direction)
+    dynamics = ((spec if problem is None else problem).dynamics or DynamicsSpec()).turning(direction)
     title, source = f"{spec.title}: design {rank}", readable(str(path))
-    return LinkageSpec(linkage, spec.name, title, source, unit, dynamics=driven, problem=problem), design
+    listed = LinkageSpec(
+        linkage, spec.name, title, source, unit, dynamics=dynamics, problem=problem, cylinder=driven
+    )
+    return listed, design
+
+
+def _cylinder(stated: Any) -> Cylinder | None:
+    """The cylinder that a list states of a design."""
+    if stated is None:
+        return None
+    keys = ("on", "base", "point")
+    if not isinstance(stated, dict) or not all(key in stated for key in keys):
+        raise ProblemError(f"cylinder is {shown(stated)}; it must be an object of {', '.join(keys)}")
+    if not isinstance(stated["on"], str):
+        raise wrong_value("cylinder.on", stated["on"], f"one of {', '.join(CARRIERS)}")
+    return Cylinder(*(stated[key] for key in keys))
 
 
 def _listed_problem(content: dict[str, Any], path: Path) -> Problem | None:

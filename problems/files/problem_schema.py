@@ -369,6 +369,8 @@ class ProblemFile(MachineTables, _Task):
     def _requirements(self) -> Requirements:
         """As they are stated; a cylinder turns nothing fully, so that any linkage will do by default."""
         wanted: Requirements = self.requirements.value()
+        if self.driver is not None and not wanted.same_branch:
+            raise ProblemError("requirements.same_branch is false; it must be true with driver.cylinder")
         if self.driver is None or "rotatability" in self.requirements.model_fields_set:
             return wanted
         return replace(wanted, rotatability=Rotatability.ANY)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from grashof.problems.values.checks import plain_text
+from grashof.problems.values.cylinder import Cylinder
 from grashof.problems.values.display import Displayed
 from grashof.problems.values.dynamics_spec import DynamicsSpec
 from grashof.problems.values.errors import ProblemError
@@ -30,6 +31,8 @@ class LinkageSpec(Displayed):
         Where the linkage is one; `output_arm` is then that of its horsehead.
     problem : Problem, optional
         Of a design out of a list: what it was found for.
+    cylinder : Cylinder, optional
+        That drives it.
     """
 
     linkage: FourBar
@@ -41,6 +44,7 @@ class LinkageSpec(Displayed):
     dynamics: DynamicsSpec | None = None
     pumping_unit: PumpingUnitSpec | None = None
     problem: Problem | None = field(default=None, compare=False, repr=False)
+    cylinder: Cylinder | None = None
 
     def __post_init__(self) -> None:
         for name in ("name", "title", "source", "length_unit"):

@@ -210,8 +210,6 @@ class Problem(ReadOnly):
                 f"requirements.rotatability is {wanted.rotatability}; it must be any with driver.cylinder, "
                 "which turns nothing fully"
             )
-        if not wanted.same_branch:
-            wrong.append("requirements.same_branch is false; it must be true with driver.cylinder")
         return wrong
 
     def _undecided(self) -> list[str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import minimize
 
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.cylinder.planes import Driven, Plane, driven
@@ -150,6 +149,8 @@ def _distinct(room: Room, points: ComplexArray, bases: ComplexArray) -> list[int
 
 def _polished(plane: Plane, room: Room, point: complex, base: complex) -> tuple[complex, complex]:
     """The same cylinder made better: the least lever t is made greatest, all levers at least t."""
+    from scipy.optimize import minimize  # only here, and few problems have cylinders
+
     span = np.maximum(room.high - room.low, 1e-12 * room.reach)
     sizes = np.array([room.reach, room.reach, *span])
 

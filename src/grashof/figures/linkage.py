@@ -8,7 +8,8 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from grashof.analysis import solve_position
+from grashof.analysis import Position, solve_position
+from grashof.figures.cylinder import DrawnCylinder, cylinder_places
 from grashof.figures.parts import (
     COUPLER,
     GROUND,
@@ -76,7 +77,8 @@ def plot_linkage(
     'x (m)'
     """
     subject = Subject.of(linkage, problem)
-    positions = _positions(subject, theta2)
+    state = _state(subject, theta2)
+    positions, cylinders = stands(subject.linkage, state), cylinder_places(subject, state)
     ax = new_axes(ax)
     if subject.problem is not None:
         draw_scene(ax, subject.problem)
@@ -84,6 +86,8 @@ def plot_linkage(
     shades = np.linspace(0.3, 1, len(positions)) if len(positions) > 1 else [1.0]
     for points, shade in zip(positions, shades, strict=True):
         Links(ax, points, shade, named=points is positions[-1])
+    for places, shade in zip(cylinders, shades, strict=bool(len(cylinders))):
+        DrawnCylinder(ax, places, shade, named=places is cylinders[-1])
     draw_task(ax, subject)
     draw_ground(ax, subject.linkage)
     draw_sense(ax, subject)
@@ -267,8 +271,8 @@ def figure_of(ax: Axes) -> Figure:
     return figure
 
 
-def _positions(subject: Subject, theta2: npt.ArrayLike | None) -> list[dict[str, FloatArray]]:
-    """The points of the linkage wherever it is drawn, each of shape (2,)."""
+def _state(subject: Subject, theta2: npt.ArrayLike | None) -> Position:
+    """The linkage wherever it is drawn."""
     assembly: npt.ArrayLike = subject.linkage.assembly
     if theta2 is not None:
         angles = np.ravel(np.asarray(theta2, dtype=np.float64))
@@ -284,7 +288,7 @@ def _positions(subject: Subject, theta2: npt.ArrayLike | None) -> list[dict[str,
     if theta2 is not None and np.isnan(state.theta3).any():
         open_at = np.degrees(angles[np.isnan(state.theta3)][0])
         raise AssemblyError(f"{subject.spec.name} cannot close at theta2 = {open_at:.6g} deg")
-    return stands(subject.linkage, state)
+    return state
 
 
 def plane(ax: Axes, length_unit: str) -> None:

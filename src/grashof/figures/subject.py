@@ -58,7 +58,8 @@ class Subject:
         if isinstance(linkage, Candidate):
             verdict = linkage.verdict
         else:
-            verdict = verify(spec.linkage, problem.task, problem.requirements, problem=problem)
+            asked = problem.task, problem.requirements
+            verdict = verify(spec.linkage, *asked, problem=problem, cylinder=spec.cylinder)
         return cls(_posed(spec, problem, verdict), problem, verdict)
 
     @property

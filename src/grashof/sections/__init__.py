@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from grashof.sections.balancing import balancing
 from grashof.sections.coupler_plane import coupler_plane
+from grashof.sections.cylinder import cylinder
 from grashof.sections.differences import differences
 from grashof.sections.dwell import dwell_section
 from grashof.sections.energies import energy_section
@@ -37,6 +38,7 @@ SECTIONS: tuple[Callable[[LinkageStudy], Section | None], ...] = (
     newton_raphson,
     differences,
     mechanical_advantage,
+    cylinder,
     pin_forces,
     equations,
     hodographs,

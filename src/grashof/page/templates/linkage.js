@@ -37,6 +37,21 @@ function positionOf(linkage, theta2, assembly = linkage.assembly) {
   };
 }
 
+// The two pivots of a cylinder and the end of its body, in a position of its linkage.
+function cylinderAt({ on, base, point, closed }, state) {
+  const [origin, angle] = {
+    driver: [state.o2, state.theta2],
+    coupler: [state.a, state.theta3],
+    output: [state.o4, state.theta4],
+  }[on];
+  const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
+  const [u, v] = point;
+  const pivot = [origin[0] + u * cos - v * sin, origin[1] + u * sin + v * cos];
+  const length = Math.hypot(pivot[0] - base[0], pivot[1] - base[1]) || 1;
+  const share = Math.min((0.9 * closed) / length, 1);
+  return { base, end: base.map((place, k) => place + share * (pivot[k] - place)), pivot };
+}
+
 // min(mu, 180 - mu) by the law of cosines in A-B-O4, from the diagonal s.
 function transmissionAt({ r3, r4 }, s) {
   const cosine = (r3 * r3 + r4 * r4 - s * s) / (2 * r3 * r4);
