@@ -181,7 +181,9 @@ class _Moving:
         self._drawn = np.searchsorted(turns, np.arange(frames) / frames, side="right")
         self._links = Links(axes, self._stands[0], named=False)
         self._rams = cylinder_places(subject, state)
-        self._cylinder = [DrawnCylinder(axes, places, named=False) for places in self._rams[:1]]
+        self._cylinder = [
+            DrawnCylinder(axes, subject.cylinder_on, places, named=False) for places in self._rams[:1]
+        ]
         axes.plot(*path.T, color=PATH, linewidth=0.8, linestyle=":", zorder=2)
         (self._trace,) = axes.plot([], [], color=PATH, linewidth=1.8, zorder=3)
         self._corners = _carried(subject, state)
@@ -195,7 +197,7 @@ class _Moving:
         draw_ground(axes, linkage)
         plane(axes, subject.spec.length_unit)
         joints = [place for stand in self._stands for name, place in stand.items() if name in linkage.JOINTS]
-        rams = self._rams.reshape(-1, 2)
+        rams = self._rams[:, :3].reshape(-1, 2)
         axes.update_datalim(np.concatenate([joints, path, rams, *self._corners]))
         name_points(axes, {name.upper(): getattr(linkage, name) for name in linkage.GROUND})
 

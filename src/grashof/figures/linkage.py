@@ -86,8 +86,9 @@ def plot_linkage(
     shades = np.linspace(0.3, 1, len(positions)) if len(positions) > 1 else [1.0]
     for points, shade in zip(positions, shades, strict=True):
         Links(ax, points, shade, named=points is positions[-1])
-    for places, shade in zip(cylinders, shades, strict=bool(len(cylinders))):
-        DrawnCylinder(ax, places, shade, named=places is cylinders[-1])
+    for number, places in enumerate(cylinders, start=1):
+        on, named = subject.cylinder_on, number == len(cylinders)
+        DrawnCylinder(ax, on, places, shades[number - 1], named=named)
     draw_task(ax, subject)
     draw_ground(ax, subject.linkage)
     draw_sense(ax, subject)

@@ -68,6 +68,12 @@ class Subject:
         return self.spec.linkage
 
     @property
+    def cylinder_on(self) -> str:
+        """The link that a cylinder acts on; empty without one."""
+        cylinder = None if self.verdict is None else self.verdict.cylinder
+        return "" if cylinder is None else cylinder.on
+
+    @property
     def sweep(self) -> Sweep:
         """All that its driver can do; `ProblemError` where it closes at no driver angle."""
         return Sweep.of(self.spec)

@@ -35,11 +35,8 @@ def cylinder(study: LinkageStudy) -> Section | None:
     if not verdict.branch_ok:
         return None
     theta2 = np.linspace(*motion_ends(problem.task, verdict), _SAMPLES)
-    over, at_targets = (
-        _columns(study, problem, verdict, theta2),
-        _columns(study, problem, verdict, verdict.theta2),
-    )
-    targets = table(at_targets)
+    over = _columns(study, problem, verdict, theta2)
+    targets = table(_columns(study, problem, verdict, verdict.theta2))
     targets.insert(0, "target", np.arange(1, len(targets) + 1))
     unit = study.spec.unit
     plots = [

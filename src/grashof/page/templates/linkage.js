@@ -37,19 +37,19 @@ function positionOf(linkage, theta2, assembly = linkage.assembly) {
   };
 }
 
-// The two pivots of a cylinder and the end of its body, in a position of its linkage.
+// The two pivots of a cylinder, the end of its body and what holds it on its link, in a position.
 function cylinderAt({ on, base, point, closed }, state) {
-  const [origin, angle] = {
-    driver: [state.o2, state.theta2],
-    coupler: [state.a, state.theta3],
-    output: [state.o4, state.theta4],
+  const [origin, angle, joint] = {
+    driver: [state.o2, state.theta2, state.a],
+    coupler: [state.a, state.theta3, state.b],
+    output: [state.o4, state.theta4, state.b],
   }[on];
   const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
   const [u, v] = point;
   const pivot = [origin[0] + u * cos - v * sin, origin[1] + u * sin + v * cos];
   const length = Math.hypot(pivot[0] - base[0], pivot[1] - base[1]) || 1;
   const share = Math.min((0.9 * closed) / length, 1);
-  return { base, end: base.map((place, k) => place + share * (pivot[k] - place)), pivot };
+  return { base, end: base.map((place, k) => place + share * (pivot[k] - place)), pivot, bracket: [origin, pivot, joint] };
 }
 
 // min(mu, 180 - mu) by the law of cosines in A-B-O4, from the diagonal s.

@@ -242,6 +242,7 @@ class Stage {
     const parts = {};
     if (this.scene.body) parts.body = add(layer, "path", { class: "body live" });
     if (this.design.cylinder) {
+      parts.bracket = add(layer, "path", { class: `bracket ${this.design.cylinder.on}` });
       parts.rod = add(layer, "path", { class: "rod" });
       parts.ram = add(layer, "path", { class: "ram" });
     }
@@ -294,6 +295,7 @@ class Stage {
     if (parts.ram) {
       const found = cylinderAt(this.design.cylinder, state);
       const [base, end, pivot] = [found.base, found.end, found.pivot].map(this.at);
+      set(parts.bracket, { d: through(found.bracket.map(this.at)) });
       set(parts.ram, { d: through([base, end]) });
       set(parts.rod, { d: through([end, pivot]) });
       set(parts.base, { cx: px(base[0]), cy: px(base[1]) });
