@@ -41,7 +41,7 @@ class CylinderState:
     @property
     def angle(self) -> FloatArray:
         """Lever angle, shape (...), rad: min(beta, pi - beta) between the cylinder and the arm of Q."""
-        return np.arcsin(np.clip(np.abs(self.lever), 0.0, 1.0))
+        return np.asarray(np.arcsin(np.clip(np.abs(self.lever), 0.0, 1.0)))
 
 
 @dataclass(frozen=True, slots=True)

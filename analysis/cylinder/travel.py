@@ -131,7 +131,7 @@ def travel(
     middle, half = (low + high) / 2, (high - low) / 2
 
     def phases(angles: FloatArray, sides: IntArray | int) -> FloatArray:
-        return sides * np.arccos(np.clip((middle - angles) / half, -1, 1))
+        return np.asarray(sides * np.arccos(np.clip((middle - angles) / half, -1, 1)), dtype=np.float64)
 
     targets = phases(inside, assembly)
     if ends is not None:

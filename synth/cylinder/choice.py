@@ -53,8 +53,8 @@ def best_cylinder(
     >>> best_cylinder(linkage, (at.theta2, at.theta3, at.theta4), CylinderSpec(on=["driver"])).on
     'driver'
     """
-    angles = tuple(map(np.unwrap, angles))
-    planes = planes_of(linkage, *angles, power if np.isfinite(force) else None)
+    theta2, theta3, theta4 = map(np.unwrap, angles)
+    planes = planes_of(linkage, theta2, theta3, theta4, power if np.isfinite(force) else None)
     corners = [planes["driver"].origin, planes["output"].origin, planes["coupler"].origin]
     corners += [planes["coupler"].origin + c * planes["coupler"].axis for c in _corners(linkage)]
     around = np.concatenate(corners)
@@ -64,7 +64,9 @@ def best_cylinder(
             continue
         room = Room.of(linkage, on, spec, around, force)
         best = (
-            None if on == "coupler" else _in_closed_form(planes[on], room, angles[0 if on == "driver" else 2])
+            None
+            if on == "coupler"
+            else _in_closed_form(planes[on], room, theta2 if on == "driver" else theta4)
         )
         best = best or best_by_search(planes[on], room, number, effort)
         if best is not None:

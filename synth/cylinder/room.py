@@ -89,7 +89,7 @@ class Room:
             over += np.maximum(np.log(found.ratio) - np.log(self.ratio), 0.0)
             if np.isfinite(self.force):
                 over += np.maximum(np.log(np.maximum(found.force, tiny)) - np.log(self.force), 0.0)
-        return over
+        return np.asarray(over)
 
     def kept(self, points: ComplexArray, bases: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """Pivots put back to where they may be."""

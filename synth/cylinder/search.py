@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray, FloatArray
@@ -12,6 +14,7 @@ _SAMPLES, _PARENTS, _CHILDREN, _ROUNDS = 6000, 32, 24, 24
 _FIRST, _NARROWER = 0.25, 0.78  # share of the room that a step spans, and by how much it shrinks each round
 _PENALTY = 10.0
 _BLOCK = 500
+_HOPELESS = -0.5  # merit so far below zero is not mended
 _POLISHED, _AGAIN = 6, 3
 COARSE, FINE = 4, 2  # every so many samples are enough to compare, and to polish
 _SEEDS = 16  # times that each joint is tried
@@ -44,6 +47,8 @@ def best_by_search(
     ])  # fmt: skip
     best = np.argsort(-merit)[: round(_PARENTS * effort)]
     points, bases, merit = _closed_in(coarse, room, points[best], bases[best], merit[best], rng)
+    if merit[0] < _HOPELESS:
+        return None
     tried = [(points[k], bases[k]) for k in _distinct(room, points, bases)[:_POLISHED]]
     tried += [_polished(coarse, room, *pair) for pair in tried]
     for _ in range(_AGAIN):  # it may go on from where it stopped
@@ -152,10 +157,10 @@ def _polished(plane: Plane, room: Room, point: complex, base: complex) -> tuple[
     from scipy.optimize import minimize  # only here, and few problems have cylinders
 
     span = np.maximum(room.high - room.low, 1e-12 * room.reach)
-    sizes = np.array([room.reach, room.reach, *span])
+    sizes, first = np.array([room.reach, room.reach, *span]), np.array([0.0, 0.0, *room.low])
 
     def pivots(x: FloatArray) -> tuple[ComplexArray, ComplexArray]:
-        scaled = np.atleast_2d(x)[:, :4] * sizes
+        scaled = first + np.atleast_2d(x)[:, :4] * sizes
         return scaled[:, 0] + 1j * scaled[:, 1], scaled[:, 2] + 1j * scaled[:, 3]
 
     def margins(x: FloatArray) -> FloatArray:
@@ -169,9 +174,8 @@ def _polished(plane: Plane, room: Room, point: complex, base: complex) -> tuple[
             rows += [np.log(room.force) - np.log(found.force + 1e-300)] if np.isfinite(room.force) else []
         rows.append(1 - (np.abs(points - room.middle) / room.reach) ** 2)
         levers = found.levers - np.atleast_2d(x)[:, 4:]
-        return np.nan_to_num(
-            np.concatenate([levers, np.stack(rows, axis=1)], axis=1), posinf=50.0, neginf=-50.0
-        )
+        every = np.concatenate([levers, np.stack(rows, axis=1)], axis=1)
+        return np.asarray(np.nan_to_num(every, posinf=50.0, neginf=-50.0))
 
     def slopes(x: FloatArray) -> FloatArray:
         step = 1e-7
@@ -179,17 +183,19 @@ def _polished(plane: Plane, room: Room, point: complex, base: complex) -> tuple[
         slope: FloatArray = ((every[:5] - every[5:]) / (2 * step)).T
         return slope
 
-    start = np.array([point.real, point.imag, base.real, base.imag]) / sizes
+    start = (np.array([point.real, point.imag, base.real, base.imag]) - first) / sizes
     least = driven(plane, np.array([point]), np.array([base])).least
-    low, high = room.low / span, room.high / span
-    found = minimize(
-        lambda x: -x[4],
+    sides = ((0.0, side) for side in (room.high - room.low) / span)
+    bounds: Any = [(None, None), (None, None), *sides, (-1.0, 1.0)]
+    kept: Any = {"type": "ineq", "fun": lambda x: margins(x)[0], "jac": slopes}
+    given: dict[str, Any] = {"jac": lambda _: np.array([0.0, 0.0, 0.0, 0.0, -1.0]), "bounds": bounds}
+    found: Any = minimize(
+        lambda x: float(-x[4]),
         np.concatenate([start, least]),
-        jac=lambda _: np.array([0.0, 0.0, 0.0, 0.0, -1.0]),
-        bounds=[(None, None), (None, None), *zip(low, high, strict=True), (-1.0, 1.0)],
-        constraints={"type": "ineq", "fun": lambda x: margins(x)[0], "jac": slopes},
+        constraints=kept,
         method="SLSQP",
         options={"maxiter": 60, "ftol": 1e-9},
+        **given,
     )
     points, bases = pivots(found.x) if np.isfinite(found.x).all() else (np.array([point]), np.array([base]))
     return complex(points[0]), complex(bases[0])

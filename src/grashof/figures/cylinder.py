@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -58,13 +60,13 @@ class DrawnCylinder:
     def __init__(
         self, axes: Axes, on: str, corners: FloatArray, shade: float = 1.0, *, named: bool = True
     ) -> None:
-        bracket = {"color": COLOURS[on], "linewidth": 1.0, "alpha": shade, "zorder": 3.1}
+        bracket: dict[str, Any] = {"color": COLOURS[on], "linewidth": 1.0, "alpha": shade, "zorder": 3.1}
         (self._bracket,) = axes.plot(*corners[_BRACKET].T, **bracket)
-        look = {"alpha": shade, "solid_capstyle": "butt", "zorder": 3.2}
+        look: dict[str, Any] = {"alpha": shade, "solid_capstyle": "butt", "zorder": 3.2}
         (self._rod,) = axes.plot(*corners[1:3].T, color=ROD, linewidth=2.6, **look)
         label = "cylinder" if named else None
         (self._body,) = axes.plot(*corners[:2].T, color=BODY, linewidth=6.5, label=label, **look)
-        pins = {"linestyle": "none", "marker": "o", "color": "white", "markeredgecolor": BASE}
+        pins: dict[str, Any] = {"linestyle": "none", "marker": "o", "color": "white", "markeredgecolor": BASE}
         (self._pins,) = axes.plot(*corners[_PINS].T, markersize=5, zorder=5.5, alpha=shade, **pins)
 
     @property

@@ -390,11 +390,13 @@ def test_a_cylinder_is_read_with_all_its_keys() -> None:
         ("closed = [nan, 1]", "driver.cylinder.closed[0] is nan; it must be a finite number"),
         (
             "ratio_max = 2.5",
-            "driver.cylinder.ratio_max is 2.5; it must be above 1 and below 2: a rod is no longer than its cylinder",
+            "driver.cylinder.ratio_max is 2.5; it must be above 1 and below 2: "
+            "a rod is no longer than its cylinder",
         ),
         (
             "ratio_max = 1",
-            "driver.cylinder.ratio_max is 1; it must be above 1 and below 2: a rod is no longer than its cylinder",
+            "driver.cylinder.ratio_max is 1; it must be above 1 and below 2: "
+            "a rod is no longer than its cylinder",
         ),
         ("on = []", "driver.cylinder.on is []; it must be a list of some of driver, coupler, output"),
         ('on = ["ground"]', "driver.cylinder.on[0] is 'ground'; it must be one of driver, coupler, output"),
@@ -409,7 +411,8 @@ def test_cylinders_that_cannot_be_are_refused_in_a_line(text: str, line: str) ->
 def test_what_a_cylinder_cannot_do_is_refused_in_a_line() -> None:
     driven = "[driver]\ncylinder = {}\n"
     assert message(f'{HEAD}{driven}[requirements]\nrotatability = "full-crank"\n') == (
-        "requirements.rotatability is full-crank; it must be any with driver.cylinder, which turns nothing fully"
+        "requirements.rotatability is full-crank; it must be any with driver.cylinder, "
+        "which turns nothing fully"
     )
     assert message(f"{HEAD}closed = true\n{driven}") == (
         "motion.closed is true; it must be false with driver.cylinder, which reverses"
