@@ -154,7 +154,7 @@ def _distinct(room: Room, points: ComplexArray, bases: ComplexArray) -> list[int
 
 def _polished(plane: Plane, room: Room, point: complex, base: complex) -> tuple[complex, complex]:
     """The same cylinder made better: the least lever t is made greatest, all levers at least t."""
-    from scipy.optimize import minimize  # only here, and few problems have cylinders
+    from scipy import optimize  # only here, and few problems have cylinders
 
     span = np.maximum(room.high - room.low, 1e-12 * room.reach)
     sizes, first = np.array([room.reach, room.reach, *span]), np.array([0.0, 0.0, *room.low])
@@ -189,7 +189,8 @@ def _polished(plane: Plane, room: Room, point: complex, base: complex) -> tuple[
     bounds: Any = [(None, None), (None, None), *sides, (-1.0, 1.0)]
     kept: Any = {"type": "ineq", "fun": lambda x: margins(x)[0], "jac": slopes}
     given: dict[str, Any] = {"jac": lambda _: np.array([0.0, 0.0, 0.0, 0.0, -1.0]), "bounds": bounds}
-    found: Any = minimize(
+    minimize: Any = optimize.minimize
+    found = minimize(
         lambda x: float(-x[4]),
         np.concatenate([start, least]),
         constraints=kept,
