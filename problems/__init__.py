@@ -8,6 +8,7 @@ from grashof.problems.files.linkage_file import (
 )
 from grashof.problems.files.problem_file import catalogue, load, load_with_text, problem_text
 from grashof.problems.values.box import Box
+from grashof.problems.values.cylinder import Cylinder, CylinderSpec
 from grashof.problems.values.dynamics_spec import DynamicsSpec
 from grashof.problems.values.errors import (
     AssemblyError,
@@ -38,6 +39,8 @@ __all__ = [
     "AssemblyError",
     "Box",
     "CrossSection",
+    "Cylinder",
+    "CylinderSpec",
     "DeadPositionWarning",
     "DynamicsSpec",
     "FourBar",

@@ -9,19 +9,19 @@ import numpy as np
 from grashof.analysis.four_bar.stroke import output_stroke
 from grashof.analysis.judge.task_motion import Targets, TaskMotion
 from grashof.analysis.judge.verdict import Defect
-from grashof.problems import FourBar, Requirements
+from grashof.problems import Linkage, Requirements
 from grashof.problems.values.arrays import TURN
 from grashof.problems.values.stroke_task import StrokeTask
 
 _EVEN = 1e-12  # rad: strokes that differ by less take as long
 
 
-def at_limits(linkage: FourBar, task: StrokeTask, wanted: Requirements) -> tuple[Targets, TaskMotion]:
+def at_limits(linkage: Linkage, task: StrokeTask, wanted: Requirements) -> tuple[Targets, TaskMotion]:
     """The limit positions of a linkage on its own assembly, and the slow stroke from one to the other.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     task : StrokeTask
     wanted : Requirements
@@ -35,6 +35,7 @@ def at_limits(linkage: FourBar, task: StrokeTask, wanted: Requirements) -> tuple
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> norton = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
     >>> task = StrokeTask.from_degrees(swing_deg=73.7818, time_ratio=1.355573)
     >>> np.degrees(at_limits(norton, task, Requirements())[1].theta2).round(2).tolist()
@@ -50,7 +51,7 @@ def at_limits(linkage: FourBar, task: StrokeTask, wanted: Requirements) -> tuple
     return Targets.of(linkage, task, theta2, assembly), TaskMotion.ordered(theta2, sense)
 
 
-def stroke_defects(linkage: FourBar, task: StrokeTask, wanted: Requirements) -> Iterator[Defect]:
+def stroke_defects(linkage: Linkage, task: StrokeTask, wanted: Requirements) -> Iterator[Defect]:
     """What swing and time ratio miss, by the linkage's own motion.
 
     The swing may differ by `tolerance` in rad, the time ratio by that share of it.

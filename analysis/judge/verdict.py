@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.analysis.loops.loop import GrashofClass
+from grashof.problems import Cylinder
 from grashof.problems.values.arrays import FloatArray, IntArray
 
 
@@ -63,6 +64,8 @@ class Verdict:
         Diagonal of the box around O2, O4 and all that A, B and P reach in it.
     defects : tuple of Defect
         Empty for a design that does what is required.
+    cylinder : Cylinder, optional
+        That drives it, where one does.
     """
 
     theta2: FloatArray
@@ -80,6 +83,7 @@ class Verdict:
     transmission_min_cycle: float
     size: float
     defects: tuple[Defect, ...]
+    cylinder: Cylinder | None = None
 
     @property
     def ok(self) -> bool:

@@ -18,13 +18,14 @@ from grashof.analysis.four_bar.mobility import (
 from grashof.analysis.four_bar.reach import diagonal, reach_box
 from grashof.analysis.four_bar.transmission import worst_transmission, worst_transmission_cycle
 from grashof.analysis.judge.design import Constraint, Design, greatest, name_of
+from grashof.analysis.judge.driven import cylinder_defects, driven_travel
 from grashof.analysis.judge.limit_positions import stroke_defects
 from grashof.analysis.judge.limits import SLACK, missed
 from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.meet import meet
 from grashof.analysis.judge.task_motion import STEADY, Targets, TaskMotion
 from grashof.analysis.judge.verdict import Defect, Verdict
-from grashof.problems import Linkage, Problem, Requirements, Rotatability, StrokeTask, Task
+from grashof.problems import Cylinder, Linkage, Problem, Requirements, Rotatability, StrokeTask, Task
 
 
 def verify(
@@ -35,6 +36,7 @@ def verify(
     *,
     most_square: float = np.inf,
     problem: Problem | None = None,
+    cylinder: Cylinder | None = None,
 ) -> Verdict:
     """Judge a single linkage.
 
@@ -50,6 +52,8 @@ def verify(
         Up to which `Verdict.square` is allowed: what ``error_factor`` makes of the least one found.
     problem : Problem, optional
         That the task is of: what limits of torques, forces or made linkages need.
+    cylinder : Cylinder, optional
+        That drives the linkage, where the problem asks for one.
 
     Returns
     -------
@@ -94,14 +98,15 @@ def verify(
         transmission_min_cycle=cycle_worst,
         size=diagonal(reach_box(linkage, motion.start, motion.end)),
         defects=(),
+        cylinder=cylinder,
     )
+    drive = _drive(linkage, task, wanted, verdict, targets, motion, problem)
     defects = (
         *(_exactness(targets, task, wanted) if wanted.is_exact(task) else []),
         *(stroke_defects(linkage, task, wanted) if isinstance(task, StrokeTask) else []),
         *_zones(targets, task),
         *_whole_error(targets, task, most_square),
-        *_same_branch(circuit_ok, branch_ok, int(linkage.assembly), targets, wanted),
-        *_order(motion, wanted),
+        *drive,
         *_rotatability(linkage, task, wanted),
         *_covered(targets),
         *missed(Values(linkage, verdict, problem or Problem(task=task)), wanted),
@@ -157,6 +162,28 @@ def _whole_error(targets: Targets, task: Task, most_square: float) -> list[Defec
     if not miss > SLACK:
         return []
     return [Defect("error_factor", "the error (root mean square)", found, f"up to {most:.6g}", miss)]
+
+
+def _drive(
+    linkage: Linkage,
+    task: Task,
+    wanted: Requirements,
+    verdict: Verdict,
+    targets: Targets,
+    motion: TaskMotion,
+    problem: Problem | None,
+) -> list[Defect]:
+    """Branch and order, of the driver that there is; and what a cylinder misses."""
+    spec = None if problem is None else problem.driver
+    moved = driven_travel(linkage, task, verdict) if spec is not None else None
+    through = moved is not None and not verdict.branch_ok  # a cylinder, through dead positions of link 2
+    by_link2 = [] if through else [
+        *_same_branch(verdict.circuit_ok, verdict.branch_ok, int(linkage.assembly), targets, wanted),
+        *_order(motion, wanted),
+    ]  # fmt: skip
+    if spec is None:
+        return by_link2
+    return [*by_link2, *cylinder_defects(spec, verdict.cylinder, moved, task.size)]
 
 
 def _same_branch(

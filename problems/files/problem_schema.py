@@ -6,7 +6,7 @@ The value types check what the values mean; both kinds of error leave as one `Pr
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
@@ -30,6 +30,7 @@ from grashof.problems.files.tables import (
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.box import Box
 from grashof.problems.values.checks import near_miss, noted, outline, refuse, refused
+from grashof.problems.values.cylinder import CARRIERS, CylinderSpec
 from grashof.problems.values.dynamics_spec import metres
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.manufacturing import Manufacturing
@@ -39,7 +40,7 @@ from grashof.problems.values.objective import GOALS, Objective
 from grashof.problems.values.path_task import PathTask
 from grashof.problems.values.problem import NO_OBJECTIVE, Problem, Search
 from grashof.problems.values.quantities import Kind
-from grashof.problems.values.requirements import LIMITS, MAY_KEEP_OUT, Requirements
+from grashof.problems.values.requirements import LIMITS, MAY_KEEP_OUT, Requirements, Rotatability
 from grashof.problems.values.stroke_task import StrokeTask
 from grashof.problems.values.task import Task
 
@@ -296,6 +297,36 @@ class ObjectiveTable(Table):
         return Objective(**{"transmission": 0.0, self.maximise: 1.0})
 
 
+Carriers = Annotated[list[str], listed(f"a list of some of {', '.join(CARRIERS)}")]
+
+
+class CylinderTable(Table):
+    closed: Pair | None = None
+    ratio_max: float | None = None
+    on: Carriers | None = None
+    base: Place | None = None
+
+    @field_validator("closed", "ratio_max", "on")
+    @classmethod
+    def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
+        if given is not None:
+            CylinderSpec(**{str(key.field_name): given})
+        return given
+
+    def value(self) -> CylinderSpec:
+        given: dict[str, Any] = {key: getattr(self, key) for key in self.model_fields_set}
+        if "base" in given:
+            given["base"] = _box(given["base"])
+        return CylinderSpec(**given)
+
+
+class DriverTable(Table):
+    cylinder: CylinderTable
+
+    def value(self) -> CylinderSpec:
+        return self.cylinder.value()
+
+
 class ManufacturingTable(Table):
     length_tolerance: float
     band: float | None = None
@@ -347,6 +378,7 @@ class _Task(Table):
     stroke: StrokeTable | None = None
     scene: SceneTable = SceneTable()
     requirements: RequirementsTable = RequirementsTable()
+    driver: DriverTable | None = None
     objective: ObjectiveTable = ObjectiveTable()
 
 
@@ -367,6 +399,15 @@ class ProblemFile(MachineTables, _Task):
         task: Task = mine.value()
         return task
 
+    def _requirements(self) -> Requirements:
+        """As they are stated; a cylinder turns nothing fully, so that any linkage will do by default."""
+        wanted: Requirements = self.requirements.value()
+        if self.driver is not None and not wanted.same_branch:
+            raise ProblemError("requirements.same_branch is false; it must be true with driver.cylinder")
+        if self.driver is None or "rotatability" in self.requirements.model_fields_set:
+            return wanted
+        return replace(wanted, rotatability=Rotatability.ANY)
+
     def problem(self, name: str) -> Problem:
         problem = Problem(
             name=name,
@@ -375,9 +416,10 @@ class ProblemFile(MachineTables, _Task):
             length_unit=self.length_unit,
             task=self.value(),
             outlines=self.scene.value(),
-            requirements=self.requirements.value(),
+            requirements=self._requirements(),
             objective=self.objective.value(),
             dynamics=self.dynamics_spec(),
+            driver=None if self.driver is None else self.driver.value(),
             manufacturing=None if self.manufacturing is None else self.manufacturing.value(),
             search=self.search.value(),
             mechanism=mechanisms(self.mechanism),
@@ -395,6 +437,8 @@ _TABLES: dict[str, type[Table]] = {
     "scene": SceneTable,
     "requirements": RequirementsTable,
     **{f"requirements.{name}": BoxTable for name in sorted(_PLACES)},
+    "driver": DriverTable,
+    "driver.cylinder": CylinderTable,
     "objective": ObjectiveTable,
     "objective.maximise": WeightsTable,
     **MACHINE_TABLES,

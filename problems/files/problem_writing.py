@@ -57,6 +57,8 @@ def _tables(problem: Problem) -> Iterator[tuple[str, Mapping[str, Any] | list[Ma
         yield "scene", {"outlines": problem.outlines}
     wanted = problem.requirements
     yield "requirements", _given({field.name: getattr(wanted, field.name) for field in fields(Requirements)})
+    if problem.driver is not None:
+        yield "driver", {"cylinder": problem.driver.stated}
     if problem.by_objective:
         yield "objective", {"maximise": problem.objective.stated}
     if problem.dynamics is not None:

@@ -20,6 +20,7 @@ from grashof.problems.values.checks import (
     refuse,
     whole_number,
 )
+from grashof.problems.values.cylinder import CylinderSpec
 from grashof.problems.values.dynamics_of_kind import misplaced
 from grashof.problems.values.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
@@ -82,6 +83,7 @@ _KINDS: dict[str, Any] = {
     "source": str,
     "length_unit": str,
     "manufacturing": Manufacturing | None,
+    "driver": CylinderSpec | None,
 }
 
 
@@ -109,6 +111,8 @@ class Problem(ReadOnly):
         Masses, speed and gravity; without it there are no torques and forces.
     mechanism : str or sequence of str
         The kinds of linkages that may do it, such as ("four-bar", "slider-crank"); one list of all.
+    driver : CylinderSpec, optional
+        The cylinder that drives the linkage, in place of a crank on link 2.
     """
 
     task: Task
@@ -123,6 +127,7 @@ class Problem(ReadOnly):
     manufacturing: Manufacturing | None = None
     dynamics: DynamicsSpec | None = None
     mechanism: tuple[str, ...] = (FOUR_BAR,)
+    driver: CylinderSpec | None = None
 
     def __post_init__(self) -> None:
         for name, kind in _KINDS.items():
@@ -152,6 +157,7 @@ class Problem(ReadOnly):
         wrong += self._not_driven_yet()
         wrong += self._without_value()
         wrong += self._undecided()
+        wrong += self._not_for_cylinders()
         if isinstance(self.task, StrokeTask):
             wrong += strokes_wrong(self.task, self.requirements, self.mechanism)
             object.__setattr__(self, "task", self.task.sized(stated_size(self.requirements)))
@@ -178,6 +184,8 @@ class Problem(ReadOnly):
             Needs.CLOSED: f"{self.task.kind}.closed is false; it must be true",
             Needs.LEAST_SQUARES: "requirements.exact = false is missing",
             Needs.ANGLES: f"{self.task.kind} has no angles",
+            Needs.CYLINDER: "driver.cylinder is missing",
+            Needs.LOADED_CYLINDER: self._unloaded,
         }
         wrong = [
             f"{missing[quantity.needs]}; {where} needs it"
@@ -188,7 +196,7 @@ class Problem(ReadOnly):
             wrong += [
                 f"requirements.same_branch is false; it must be true when {where} is given"
                 for where, quantity in asked.items()
-                if quantity.needs is Needs.DYNAMICS
+                if quantity.needs in (Needs.DYNAMICS, Needs.LOADED_CYLINDER)
             ]
         return wrong
 
@@ -248,8 +256,39 @@ class Problem(ReadOnly):
             Needs.CLOSED: self.task.closed,
             Needs.LEAST_SQUARES: not self.requirements.is_exact(self.task),
             Needs.ANGLES: bool(self.task.has_angle.any()),
+            Needs.CYLINDER: self.driver is not None,
+            Needs.LOADED_CYLINDER: self.driver is not None and self.dynamics is not None,
         }
         return stated.get(needs, True)
+
+    @property
+    def _unloaded(self) -> str:
+        """What a cylinder's force lacks, in words."""
+        lacks = {"driver.cylinder": self.driver, "dynamics": self.dynamics}
+        missing = [name for name, given in lacks.items() if given is None]
+        return f"{' and '.join(missing)} {'are' if len(missing) > 1 else 'is'} missing"
+
+    def _not_for_cylinders(self) -> list[str]:
+        """What a cylinder cannot do, where one is the driver."""
+        if self.driver is None:
+            return []
+        wrong, wanted = [], self.requirements
+        if others := [word for word in self.mechanism if word != FOUR_BAR]:
+            wrong.append(
+                f"driver.cylinder does not go with mechanism {' and '.join(others)}; it must be {FOUR_BAR}"
+            )
+        if isinstance(self.task, StrokeTask):
+            wrong.append("driver.cylinder does not go with stroke, whose driver turns all round")
+        elif self.task.closed:
+            wrong.append(
+                f"{self.task.kind}.closed is true; it must be false with driver.cylinder, which reverses"
+            )
+        if wanted.rotatability is not Rotatability.ANY:
+            wrong.append(
+                f"requirements.rotatability is {wanted.rotatability}; it must be any with driver.cylinder, "
+                "which turns nothing fully"
+            )
+        return wrong
 
     def _undecided(self) -> list[str]:
         """What is contradictory about the task and the requirements, and about what decides."""

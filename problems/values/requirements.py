@@ -126,6 +126,10 @@ class Requirements(ReadOnly):
         steadily; of a driver that does not turn fully there is none.
     mechanical_advantage_min : float, optional
         Least ``|omega2 / omega4|`` over the task motion.
+    cylinder_angle_min_deg : float, deg, optional
+        Least angle between the cylinder that drives and its arm, over the task motion.
+    cylinder_force_max : tuple of float, N, optional
+        (lo, hi) for its greatest force.
     a_on_body, b_on_body : Box, optional
         Where A and B may sit on the body that is guided, in its frame: origin at P, turned with it.
     keep_out : sequence of array_like, shape (M, 2), length
@@ -233,6 +237,8 @@ class Requirements(ReadOnly):
         Kind.AT_LEAST,
         allowed=(0.0, 1e6),
     )
+    cylinder_angle_min_deg: float | None = limit("cylinder_angle_min", Kind.AT_LEAST, allowed=(0.0, 90.0))
+    cylinder_force_max: Limits | None = limit("cylinder_force_max", Kind.BETWEEN, allowed=_FROM_ZERO)
     a_on_body: Box | None = limit(_bracket("a"), Kind.ON_BODY)
     b_on_body: Box | None = limit(_bracket("b"), Kind.ON_BODY)
     keep_out: tuple[FloatArray, ...] = ()

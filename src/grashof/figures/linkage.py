@@ -8,7 +8,8 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from grashof.analysis import solve_position
+from grashof.analysis import Position, solve_position
+from grashof.figures.cylinder import DrawnCylinder, cylinder_places
 from grashof.figures.parts import (
     COUPLER,
     GROUND,
@@ -76,7 +77,9 @@ def plot_linkage(
     'x (m)'
     """
     subject = Subject.of(linkage, problem)
-    positions = _positions(subject, theta2)
+    state = _state(subject, theta2)
+    positions = stands(subject.linkage, state, subject.travel)
+    cylinders = cylinder_places(subject, state)
     ax = new_axes(ax)
     if subject.problem is not None:
         draw_scene(ax, subject.problem)
@@ -84,6 +87,9 @@ def plot_linkage(
     shades = np.linspace(0.3, 1, len(positions)) if len(positions) > 1 else [1.0]
     for points, shade in zip(positions, shades, strict=True):
         Links(ax, type(subject.linkage), points, shade, named=points is positions[-1])
+    for number, places in enumerate(cylinders, start=1):
+        on, named = subject.cylinder_on, number == len(cylinders)
+        DrawnCylinder(ax, on, places, shades[number - 1], named=named)
     draw_task(ax, subject)
     draw_ground(ax, subject.linkage, subject.travel)
     draw_sense(ax, subject)
@@ -268,8 +274,8 @@ def figure_of(ax: Axes) -> Figure:
     return figure
 
 
-def _positions(subject: Subject, theta2: npt.ArrayLike | None) -> list[dict[str, FloatArray]]:
-    """The points of the linkage wherever it is drawn, each of shape (2,)."""
+def _state(subject: Subject, theta2: npt.ArrayLike | None) -> Position:
+    """The linkage wherever it is drawn."""
     assembly: npt.ArrayLike = subject.linkage.assembly
     if theta2 is not None:
         angles = np.ravel(np.asarray(theta2, dtype=np.float64))
@@ -285,7 +291,7 @@ def _positions(subject: Subject, theta2: npt.ArrayLike | None) -> list[dict[str,
     if theta2 is not None and np.isnan(state.theta3).any():
         open_at = np.degrees(angles[np.isnan(state.theta3)][0])
         raise AssemblyError(f"{subject.spec.name} cannot close at theta2 = {open_at:.6g} deg")
-    return stands(subject.linkage, state, subject.travel)
+    return state
 
 
 def plane(ax: Axes, length_unit: str) -> None:

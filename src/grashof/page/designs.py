@@ -132,12 +132,22 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], frame: pd.DataFra
             "assemblies": design.verdict.assembly.tolist(),
             "task": list(motion_ends(problem.task, design.verdict)) if design.verdict.branch_ok else None,
             "torque": torque,
+            **_cylinder(design),
             "figures": {str(key): _plain(value) for key, value in figures.items()},
         }
         for design, linkage, travel, torque, figures in zip(
             designs, linkages, travels, torques, rows, strict=True
         )
     ]
+
+
+def _cylinder(design: Candidate) -> dict[str, Any]:
+    """The cylinder as the scripts draw it."""
+    driven = design.verdict.cylinder
+    if driven is None:
+        return {}
+    closed = design.values["cylinder_closed"]
+    return {"cylinder": {**driven.stated, "closed": closed if np.isfinite(closed) else 0.0}}
 
 
 def _torques(

@@ -9,6 +9,7 @@ from grashof.problems.values.mechanisms import FOUR_BAR, not_had
 from grashof.problems.values.quantities import TURNING
 from grashof.sections.balancing import balancing
 from grashof.sections.coupler_plane import coupler_plane
+from grashof.sections.cylinder import cylinder
 from grashof.sections.differences import differences
 from grashof.sections.dwell import dwell_section
 from grashof.sections.energies import energy_section
@@ -41,6 +42,7 @@ SECTIONS: tuple[Callable[[LinkageStudy], Section | None], ...] = (
     newton_raphson,
     differences,
     mechanical_advantage,
+    cylinder,
     pin_forces,
     equations,
     hodographs,

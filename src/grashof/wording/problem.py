@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from grashof.problems import DynamicsSpec, Problem, Requirements, StrokeTask, Task
+from grashof.problems import CylinderSpec, DynamicsSpec, Problem, Requirements, StrokeTask, Task
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.problems.values.mechanisms import FOUR_BAR
@@ -60,6 +60,8 @@ def summary(problem: Problem) -> list[str]:
         lines.append(f"  made to within {made.length_tolerance:g}{unit}, band {made.band:g}{unit}")
     if problem.dynamics is not None:
         lines.append(f"  {_driven(problem.dynamics)}")
+    if problem.driver is not None:
+        lines.append(f"  {_cylinder(problem.driver, unit)}")
     return [
         *lines,
         f"  best: {_best(problem)}",
@@ -127,6 +129,20 @@ def _driven(spec: DynamicsSpec) -> str:
     every = [_links(spec), *_acting(spec)]
     every += [f"payload {spec.payload:g} kg"] if spec.payload else []
     return f"dynamics: {', '.join(every)}; driver {_motor(spec)}; gravity {x:g}, {y:g} m/s2"
+
+
+def _cylinder(spec: CylinderSpec, unit: str) -> str:
+    """The limits of the cylinder that drives."""
+    words = [f"driven by a cylinder on {' or '.join(spec.on)}"]
+    if spec.closed is not None:
+        words.append(f"closed {spec.closed[0]:g} to {spec.closed[1]:g}{unit}")
+    words.append(f"open up to {spec.ratio_max:g} times that")
+    if spec.base is not None:
+        sides = (
+            f"{axis} {low:g} to {high:g}" for axis, (low, high) in (("x", spec.base.x), ("y", spec.base.y))
+        )
+        words.append(f"base {', '.join(sides)}{unit}")
+    return "; ".join(words)
 
 
 def _links(spec: DynamicsSpec) -> str:
