@@ -32,6 +32,7 @@ from grashof.problems.values.box import Box
 from grashof.problems.values.checks import near_miss, noted, outline, refuse, refused
 from grashof.problems.values.dynamics_spec import metres
 from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.function_task import FunctionTask
 from grashof.problems.values.manufacturing import Manufacturing
 from grashof.problems.values.motion_task import MotionTask
 from grashof.problems.values.objective import GOALS, Objective
@@ -79,8 +80,8 @@ def problem_from(document: dict[str, Any], name: str, folder: Path | None = None
 def _ill_matched(document: dict[str, Any]) -> Iterator[str]:
     """Errors between tables, which nothing else reports as long as one of them is wrong by itself."""
     kind, unit = document.get("kind"), document.get("length_unit", "")
-    for other in {"motion": ["path"], "path": ["motion"]}.get(kind, []) if isinstance(kind, str) else []:
-        if other in document:
+    for other in KINDS if kind in KINDS else ():
+        if other != kind and other in document:
             yield f'{other} does not belong to kind = "{kind}"'
     wrong: list[str] = []
     if any(table in document for table in MACHINE_TABLES) and isinstance(unit, str):
@@ -154,6 +155,30 @@ class PathTable(TargetsTable):
     within: Zone | None = None
 
 
+class FunctionTable(Table):
+    input_deg: Angles | None = None
+    output_deg: Angles | None = None
+    law: str | None = None
+    x: Pair | None = None
+    exponent: float | None = None
+    input_range_deg: float | None = None
+    output_range_deg: float | None = None
+    pairs: int | None = None
+    samples: Annotated[list[float], listed("a list of numbers")] | None = None
+    sense: str = "given"
+    norm: str = "rms"
+
+    @field_validator("sense", "norm")
+    @classmethod
+    def _by_itself(cls, word: str, key: ValidationInfo) -> str:
+        FunctionTask([0, 1, 2], [0, 1, 2], **{str(key.field_name): word})
+        return word
+
+    def value(self) -> FunctionTask:
+        return FunctionTask.from_degrees(**dict(self))
+
+
+KINDS = ("motion", "path", "function")
 Outlines = Annotated[list[Corners], listed("a list of outlines, each a list of corners [x, y]")]
 
 
@@ -307,12 +332,13 @@ class SearchTable(Table):
 class _Task(Table):
     """What is asked; the keys of a file come in this order."""
 
-    kind: Annotated[str, one_of("motion", "path")]
+    kind: Annotated[str, one_of(*KINDS)]
     title: Text = ""
     source: Text = ""
     length_unit: Text = ""
     motion: MotionTable | None = None
     path: PathTable | None = None
+    function: FunctionTable | None = None
     scene: SceneTable = SceneTable()
     requirements: RequirementsTable = RequirementsTable()
     objective: ObjectiveTable = ObjectiveTable()
@@ -323,7 +349,9 @@ class ProblemFile(MachineTables, _Task):
     search: SearchTable = SearchTable()
 
     def value(self) -> Task:
-        tables = {"motion": self.motion, "path": self.path}
+        tables: dict[str, MotionTable | PathTable | FunctionTable | None] = {
+            kind: getattr(self, kind) for kind in KINDS
+        }
         mine = tables.pop(self.kind)
         for other, table in tables.items():
             if table is not None:
@@ -357,6 +385,7 @@ _TABLES: dict[str, type[Table]] = {
     "": ProblemFile,
     "motion": MotionTable,
     "path": PathTable,
+    "function": FunctionTable,
     "scene": SceneTable,
     "requirements": RequirementsTable,
     **{f"requirements.{name}": BoxTable for name in sorted(_PLACES)},

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -22,6 +22,7 @@ from grashof.problems.values.checks import (
 )
 from grashof.problems.values.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
+from grashof.problems.values.function_task import FunctionTask
 from grashof.problems.values.manufacturing import Manufacturing
 from grashof.problems.values.motion_task import MotionTask
 from grashof.problems.values.objective import GOALS, Objective
@@ -68,7 +69,7 @@ class Search:
 
 
 _KINDS: dict[str, Any] = {
-    "task": MotionTask | PathTask,
+    "task": MotionTask | PathTask | FunctionTask,
     "requirements": Requirements,
     "objective": Objective,
     "search": Search,
@@ -90,7 +91,7 @@ class Problem(ReadOnly):
 
     Parameters
     ----------
-    task : MotionTask or PathTask
+    task : MotionTask, PathTask or FunctionTask
     requirements : Requirements
     objective : Objective
     search : Search
@@ -120,6 +121,7 @@ class Problem(ReadOnly):
         for name, kind in _KINDS.items():
             if not isinstance(value := getattr(self, name), kind):
                 raise ProblemError(f"problem.{name} is {shown(value)}; it must be {_named(kind)}")
+        object.__setattr__(self, "requirements", self.requirements.for_task(self.task))
         for name in ("name", "title", "source", "length_unit"):
             plain_text(getattr(self, name), name)
         if isinstance(self.outlines, str) or not isinstance(self.outlines, Iterable):
@@ -154,17 +156,41 @@ class Problem(ReadOnly):
             Needs.CLOSED: f"{self.task.kind}.closed is false; it must be true",
             Needs.LEAST_SQUARES: "requirements.exact = false is missing",
             Needs.ANGLES: f"{self.task.kind} has no angles",
+            Needs.OUTPUTS: f'{self.task.kind} asks for no output; kind = "function" does',
         }
         wrong = [
             f"{missing[quantity.needs]}; {where} needs it"
             for where, quantity in asked.items()
             if not self.states(quantity.needs)
         ]
+        wrong += self._without_meaning(asked)
         if not self.requirements.same_branch:
             wrong += [
                 f"requirements.same_branch is false; it must be true when {where} is given"
                 for where, quantity in asked.items()
                 if quantity.needs is Needs.DYNAMICS
+            ]
+        return wrong
+
+    def _without_meaning(self, asked: Mapping[str, Quantity]) -> list[str]:
+        """What is asked though it means nothing for the task."""
+        wanted, kind = self.requirements, self.task.kind
+        wrong = [
+            f"{where} means nothing for a {kind}; leave it out"
+            for where, quantity in asked.items()
+            if quantity.key in self.task.without
+        ]
+        if wanted.keep_out:
+            wrong += [
+                f"requirements.keep_out_for has {part}, which means nothing for a {kind}; leave it out"
+                for part in wanted.keep_out_for
+                if part in self.task.without
+            ]
+        if self.task.has_output.any():
+            wrong += [
+                f"requirements.{name} is false; it must be true for a {kind}"
+                for name in ("order", "same_branch")
+                if not getattr(wanted, name)
             ]
         return wrong
 
@@ -176,6 +202,7 @@ class Problem(ReadOnly):
             Needs.CLOSED: self.task.closed,
             Needs.LEAST_SQUARES: not self.requirements.is_exact(self.task),
             Needs.ANGLES: bool(self.task.has_angle.any()),
+            Needs.OUTPUTS: bool(self.task.has_output.any()),
         }
         return stated.get(needs, True)
 
@@ -207,7 +234,7 @@ class Problem(ReadOnly):
         to be met.
         """
         task, wanted = self.task, self.requirements
-        if task.zones is not None:
+        if task.zones is not None or task.has_output.any():
             return task.zones
         if wanted.tolerance < LEAST_TOLERANCE or not wanted.is_exact(task):
             return None

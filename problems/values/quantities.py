@@ -65,6 +65,7 @@ class Needs(Enum):
     CLOSED = "a closed path"
     LEAST_SQUARES = "exact = false"
     ANGLES = "targets with angles"
+    OUTPUTS = "a function"
 
 
 @dataclass(frozen=True, slots=True)

@@ -45,6 +45,14 @@ def _place(name: str, over: Over) -> Quantity:
     return Quantity(name, f"place of {name.upper()}", Unit.LENGTH, over, listed=False)
 
 
+def _structural(key: str, label: str) -> Quantity:
+    about, words = "output less what is wanted, over the whole range", {"max": "greatest structural error"}
+    return Quantity(
+        f"structural_error_{key}", label, Unit.ANGLE, Over.TASK, -1, Needs.OUTPUTS, 3, about,
+        words=words.get(key, "structural error (root mean square)"),
+    )  # fmt: skip
+
+
 def _bracket(name: str) -> Quantity:
     words = f"place of {name.upper()} on the body"
     return Quantity(f"{name}_on_body", words, Unit.LENGTH, needs=Needs.ANGLES, listed=False)
@@ -66,9 +74,9 @@ class Requirements(ReadOnly):
         A design is exact when its largest error is at most ``tolerance * size``.
     error_factor : float, optional
         Least squares: the objective decides among designs of up to so many times the least error found.
-    rotatability : Rotatability
+    rotatability : Rotatability, optional
         full-crank (the driver turns fully), crank-rocker, double-crank, or any (the driver
-        covers the task).
+        covers the task). By default full-crank, of functions any.
     rotatability_margin : float
         r3+r4-r1-r2 and |r1-r2|-|r3-r4| are at least this share of r1+r2+r3+r4.
     order : bool
@@ -100,6 +108,8 @@ class Requirements(ReadOnly):
     output_swing_deg : tuple of float, deg, optional
         (lo, hi) for the swing of link 4 between its limit positions, O2, A, B in line; over the task motion
         where the driver does not turn fully, and 360 where link 4 does.
+    structural_error_max_deg, structural_error_rms_deg : tuple of float, deg, optional
+        (lo, hi) for the structural error of a function over its range, greatest and root mean square.
     time_ratio : tuple of float, optional
         (lo, hi) for the time of the slow stroke of link 4 over that of the quick one, the driver turning
         steadily; of a driver that does not turn fully there is none.
@@ -117,7 +127,7 @@ class Requirements(ReadOnly):
     exact: bool | None = None
     tolerance: float = 1e-6
     error_factor: float | None = None
-    rotatability: Rotatability = Rotatability.FULL_CRANK
+    rotatability: Rotatability | None = None
     rotatability_margin: float = 1e-3
     order: bool = True
     same_branch: bool = True
@@ -196,6 +206,12 @@ class Requirements(ReadOnly):
         Kind.AT_LEAST,
         allowed=(0.0, 1e6),
     )
+    structural_error_max_deg: Limits | None = limit(
+        _structural("max", "max error"), Kind.BETWEEN, allowed=(0.0, 360.0)
+    )
+    structural_error_rms_deg: Limits | None = limit(
+        _structural("rms", "rms error"), Kind.BETWEEN, allowed=(0.0, 360.0)
+    )
     a_on_body: Box | None = limit(_bracket("a"), Kind.ON_BODY)
     b_on_body: Box | None = limit(_bracket("b"), Kind.ON_BODY)
     keep_out: tuple[FloatArray, ...] = ()
@@ -208,6 +224,8 @@ class Requirements(ReadOnly):
             if not isinstance(getattr(self, name), bool):
                 raise wrong_value(f"requirements.{name}", getattr(self, name), "true or false")
         for name, kind in (("rotatability", Rotatability), ("transmission_over", TransmissionOver)):
+            if name == "rotatability" and self.rotatability is None:  # the task's own
+                continue
             object.__setattr__(self, name, _member(kind, getattr(self, name), f"requirements.{name}"))
         for name, (low, high) in _RANGES.items():
             value = getattr(self, name)
@@ -266,6 +284,12 @@ class Requirements(ReadOnly):
             return False
         return task.exact_by_default if self.exact is None else self.exact
 
+    def for_task(self, task: Task) -> Requirements:
+        """These requirements with the rotatability that is usual for a task, where they state none."""
+        if self.rotatability is not None:
+            return self
+        return replace(self, rotatability=Rotatability(task.usual_rotatability))
+
     def resolved(self, size: float) -> Requirements:
         """These requirements with every default that depends on the size of the task filled in.
 
@@ -321,6 +345,15 @@ _ADVANTAGE = Quantity(
 # All quantities of a design, by key; those that are listed in the order of the columns.
 QUANTITIES = MEASURED | {limited.quantity.key: limited.quantity for limited in LIMITS.values()}
 QUANTITIES[_ADVANTAGE.key] = _ADVANTAGE
+_ERROR_AT = Quantity(
+    "structural_error_at",
+    "worst at",
+    Unit.ANGLE,
+    Over.TASK,
+    needs=Needs.OUTPUTS,
+    about="driver rotation from the first pair to the greatest structural error",
+)
+QUANTITIES[_ERROR_AT.key] = _ERROR_AT
 
 
 def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float | str:

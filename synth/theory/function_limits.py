@@ -83,7 +83,9 @@ class ShapeLimits:
             by_square * 2 * r2 * np.sin(places) * moving,
         ], axis=-1)  # fmt: skip
         most = np.cos(max(self.transmission, LEAST_ANGLE))
-        values = np.concatenate([np.where(met, most - cosine, 1.0), np.where(met, most + cosine, 1.0)], axis=1)
+        values = np.concatenate(
+            [np.where(met, most - cosine, 1.0), np.where(met, most + cosine, 1.0)], axis=1
+        )
         slope = np.where(met[..., None], slope, 0.0)
         return values, np.concatenate([-slope, slope], axis=1)
 

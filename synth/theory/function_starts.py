@@ -31,12 +31,14 @@ def function_starts(
     half = np.pi * (np.arange(GRID) + rng.random()) / GRID
     if first_driver is not None:
         fine = np.pi * (np.arange(GRID**2) + rng.random()) / GRID**2
-        grid = Generators.joined([
-            on_grid(wanted, np.full(GRID**2, first), fine) for first in (first_driver, first_driver + np.pi)
-        ])
+        grid = Generators.joined(
+            [on_grid(wanted, np.full(GRID**2, first), fine) for first in (first_driver, first_driver + np.pi)]
+        )
         turned_back = np.abs(np.angle(np.exp(1j * (grid.shape[:, 3] - first_driver)))) < 1e-9
         return grid[turned_back]
-    driver, output = (each.ravel() for each in np.meshgrid(half, np.pi * (np.arange(GRID) + rng.random()) / GRID))
+    driver, output = (
+        each.ravel() for each in np.meshgrid(half, np.pi * (np.arange(GRID) + rng.random()) / GRID)
+    )
     return Generators.joined([_of_subsets(wanted, rng, subsets), on_grid(wanted, driver, output)])
 
 
@@ -84,7 +86,10 @@ def full_cranks(
     crank = 1 / (1 + np.exp(-rng.normal(0, 1.5, count)))
     longer = rng.random(count) < 0.5 if not shortest else np.full(count, shortest < 0)
     r2 = np.where(longer, 1 / crank, crank)
-    total, difference = 1 + r2 + np.exp(rng.normal(-1, 1.5, count)), np.abs(1 - r2) * np.tanh(rng.normal(0, 1, count))
+    total, difference = (
+        1 + r2 + np.exp(rng.normal(-1, 1.5, count)),
+        np.abs(1 - r2) * np.tanh(rng.normal(0, 1, count)),
+    )
     first = rng.uniform(-np.pi, np.pi, count) if first_driver is None else np.full(count, first_driver)
     lengths = np.stack([r2, (total + difference) / 2, (total - difference) / 2], axis=-1)
     return Generators(np.column_stack([np.log(lengths), first]), rng.choice([-1.0, 1.0], count))
