@@ -164,7 +164,7 @@ class FunctionTable(Table):
     input_range_deg: float | None = None
     output_range_deg: float | None = None
     pairs: int | None = None
-    samples: Annotated[list[float], listed("a list of numbers")] | None = None
+    sampled: Annotated[list[float], listed("a list of numbers")] | None = None
     sense: str = "given"
     norm: str = "rms"
 

@@ -95,7 +95,7 @@ def _function(task: FunctionTask) -> dict[str, Any]:
         "input_range_deg": _degrees(np.array(law.input_range)),
         "output_range_deg": _degrees(np.array(law.output_range)),
         "pairs": None if task.fits_range else len(task),
-        "samples": law.samples,
+        "sampled": law.samples,
         **words,
     }
 

@@ -91,7 +91,7 @@ class FunctionLaw(ReadOnly):
         if (self.samples is None) == (self.name == SAMPLED) or (
             self.samples is not None and np.size(self.samples) < 4
         ):
-            raise ProblemError('function.samples goes with law = "sampled", which needs four or more of them')
+            raise ProblemError('function.sampled goes with law = "sampled", which needs four or more of them')
         if self.exponent is not None:
             number_within(self.exponent, -100.0, 100.0, "function.exponent")
         if self.samples is not None:

@@ -154,7 +154,7 @@ class FunctionTask(Task):
         input_range_deg: float | None = None,
         output_range_deg: float | None = None,
         pairs: int | None = None,
-        samples: npt.ArrayLike | None = None,
+        sampled: npt.ArrayLike | None = None,
         sense: str = "given",
         norm: str = "rms",
     ) -> FunctionTask:
@@ -176,7 +176,7 @@ class FunctionTask(Task):
         }
         if law is None:
             _refuse_beside(
-                {**stated, "exponent": exponent, "pairs": pairs, "samples": samples},
+                {**stated, "exponent": exponent, "pairs": pairs, "sampled": sampled},
                 "goes with function.law only",
             )
             _refuse_missing(table)
@@ -189,7 +189,7 @@ class FunctionTask(Task):
         if callable(law):
             made = FunctionLaw.of_callable(law, stated["x"], *ranges)
         else:
-            known = None if samples is None else np.asarray(samples, dtype=np.float64)
+            known = None if sampled is None else np.asarray(sampled, dtype=np.float64)
             made = FunctionLaw(law, stated["x"], *ranges, exponent=exponent, samples=known)
         return cls.of_law(made, pairs=pairs, sense=sense, norm=norm)
 
