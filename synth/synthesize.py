@@ -14,6 +14,7 @@ from grashof.problems.values.errors import wrong_value
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.user_functions import refuse_unusable
 from grashof.synth.results.conclusion import conclude, needless
+from grashof.synth.results.function_list import function_list
 from grashof.synth.results.result import Result
 from grashof.synth.search.asked import asking, search_of
 from grashof.synth.search.journal import journal_of
@@ -104,6 +105,8 @@ def synthesize(
         raise ProblemError("record does not go with constraints or an objective of your own")
     how = problem.task.kind, search.seed, search.effort, search.starts, workers
     _LOG.info("%s: %s; seed %d, effort %g, at most %d starts, %d at a time", readable(problem.name), *how)
+    if problem.task.has_output.any():
+        return function_list(problem, search, asked, constraints, objective, progress)
     scaled = ScaledProblem.of(problem, constraints, objective)
     refuse_unusable(scaled, in_processes=workers > 1 or executor is not None)
     if finder_for(scaled).degenerate():

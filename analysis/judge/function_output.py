@@ -199,10 +199,11 @@ class _Search:
         share = self.task.weights / self.task.weights.sum()
         for _ in range(6):
             state = solve_position(self.linkage, at + direction * self.task.inputs)
-            rate = (
-                self.linkage.r2 * np.sin(state.theta3 - state.theta2)
-                / (self.linkage.r4 * np.sin(state.theta3 - state.theta4))
-            )  # fmt: skip
+            with np.errstate(divide="ignore", invalid="ignore"):
+                rate = self.linkage.r2 * np.sin(state.theta3 - state.theta2)
+                rate = rate / (self.linkage.r4 * np.sin(state.theta3 - state.theta4))
+            if not np.isfinite(rate).all():  # a dead position
+                break
             off = min(
                 (_from_first(direction * state.theta4 - sense * self.task.outputs) for sense in self.senses),
                 key=lambda each: float(np.nan_to_num(share @ (each - share @ each) ** 2, nan=np.inf)),

@@ -69,6 +69,7 @@ def verify(
     >>> verdict.ok, bool(verdict.error_max < 1e-12 * task.size)
     (True, True)
     """
+    task = task.under(requirements)
     wanted = requirements.for_task(task).resolved(task.size)
     error: StructuralError | None = None
     if isinstance(task, FunctionTask):

@@ -10,13 +10,15 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray, frozen_array
-from grashof.problems.values.checks import counted, finite_number, near_miss, number_array, whole_number
+from grashof.problems.values.checks import counted, finite_number, near_miss, number_array, positive_number, whole_number
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
+from grashof.problems.values.function_ground import FunctionGround
 from grashof.problems.values.function_law import (
     FunctionLaw,
     chebyshev_spacing,
     lobatto_with_weights,
 )
+from grashof.problems.values.requirements import Requirements
 from grashof.problems.values.task import Task
 
 SENSES = ("given", "either")
@@ -46,6 +48,8 @@ class FunctionTask(Task):
     norm : {"rms", "max"}
         What is made least where pairs are not met exactly: the root mean square of the errors at the pairs
         (of a law over its range), or the structural error, greatest over the range.
+    length : float, length
+        Usual length of the ground, that others are compared with; a problem takes it from its requirements.
     law : FunctionLaw, optional
         That the pairs are of; between pairs without one the wanted output is the cubic spline through them.
 
@@ -74,6 +78,7 @@ class FunctionTask(Task):
     sense: str
     norm: str
     law: FunctionLaw | None
+    length: float
 
     def __init__(
         self,
@@ -83,6 +88,7 @@ class FunctionTask(Task):
         sense: str = "given",
         norm: str = "rms",
         law: FunctionLaw | None = None,
+        length: float = 1.0,
     ) -> None:
         turned, output = _angles(inputs, "input"), _angles(outputs, "output")
         if len(turned) != len(output):
@@ -118,6 +124,7 @@ class FunctionTask(Task):
         object.__setattr__(self, "sense", _word(sense, SENSES, "function.sense"))
         object.__setattr__(self, "norm", _word(norm, NORMS, "function.norm"))
         object.__setattr__(self, "law", law)
+        object.__setattr__(self, "length", positive_number(length, "function.length"))
 
     @classmethod
     def of_law(
@@ -234,8 +241,13 @@ class FunctionTask(Task):
 
     @property
     def size(self) -> float:
-        """Lengths are free but for a scale: r1, as the ground is placed where no limit says otherwise."""
-        return 1.0
+        """Lengths are free but for a scale: r1, as limits or else (0, 0) and (1, 0) place the ground."""
+        return self.length
+
+    def under(self, requirements: Requirements) -> FunctionTask:
+        """The task with the length that requirements give the ground."""
+        length = FunctionGround.of(requirements).length
+        return self if length == self.length else replace(self, length=length)
 
     @property
     def returns(self) -> bool:

@@ -122,6 +122,7 @@ class Problem(ReadOnly):
             if not isinstance(value := getattr(self, name), kind):
                 raise ProblemError(f"problem.{name} is {shown(value)}; it must be {_named(kind)}")
         object.__setattr__(self, "requirements", self.requirements.for_task(self.task))
+        object.__setattr__(self, "task", self.task.under(self.requirements))
         for name in ("name", "title", "source", "length_unit"):
             plain_text(getattr(self, name), name)
         if isinstance(self.outlines, str) or not isinstance(self.outlines, Iterable):

@@ -99,6 +99,10 @@ class Task(ReadOnly, ABC):
         """Which targets have an output, shape (N,)."""
         return ~np.isnan(self.outputs)
 
+    def under(self, requirements: Any) -> Self:  # noqa: ARG002
+        """The task as `Requirements` leave it: where it has no size of its own, in theirs."""
+        return self
+
     @property
     def is_timed(self) -> bool:
         """Whether the driver rotations are prescribed."""

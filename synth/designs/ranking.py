@@ -32,8 +32,9 @@ WORSE_ERROR, WORSE_OBJECTIVE = 1.02, 0.01
 
 def impractical(problem: Problem, verdict: Verdict) -> bool:
     """Whether nobody would build it: far too large, a driver that hardly turns, or a dead position met."""
+    sized = not problem.task.has_output.any()  # functions have no size that lengths could be compared with
     return bool(
-        verdict.size > MOST_SIZE * problem.task.size
+        (sized and verdict.size > MOST_SIZE * problem.task.size)
         or np.ptp(verdict.theta2) < LEAST_TURN
         or verdict.transmission_min_task < LEAST_TRANSMISSION
     )
@@ -84,7 +85,8 @@ def distinct(
     """At most so many of some candidates that are at least so far apart, in their order."""
     if not candidates:
         return ()
-    origin = np.nanmean(problem.task.positions, axis=0)
+    task = problem.task
+    origin = np.nanmean(task.positions, axis=0) if task.has_position.any() else None
     signatures = np.array([signature(candidate.linkage, origin) for candidate in candidates])
     picked = pick_apart(signatures, -np.arange(len(candidates), dtype=np.float64), least, most)
     return tuple(candidates[i] for i in picked)
