@@ -9,8 +9,8 @@ from scipy.optimize import minimize_scalar
 
 from grashof.analysis.four_bar.mobility import driver_ranges, rotatability
 from grashof.analysis.four_bar.position import solve_position
-from grashof.analysis.numerics.peaks import peaks
 from grashof.analysis.judge.task_motion import Targets, TaskMotion
+from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import FourBar, FunctionTask, Requirements
 from grashof.problems.values.arrays import TURN, FloatArray
 

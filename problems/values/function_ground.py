@@ -65,10 +65,15 @@ class FunctionGround:
         step = r1 * np.array([np.cos(self.theta1), np.sin(self.theta1)])
         step[np.abs(step) < _SMALL * r1] = 0.0
         first = []
-        for move, mine, other in zip(step.tolist(), (self.o2.x, self.o2.y), (self.o4.x, self.o4.y), strict=True):
+        for move, mine, other in zip(
+            step.tolist(), (self.o2.x, self.o2.y), (self.o4.x, self.o4.y), strict=True
+        ):
             least, most = max(mine[0], other[0] - move), min(mine[1], other[1] - move)
             first.append(float(np.clip(0.0, least, max(least, most))))
-        second = [float(np.clip(a + m, *side)) for a, m, side in zip(first, step, (self.o4.x, self.o4.y), strict=True)]
+        second = [
+            float(np.clip(a + m, *side))
+            for a, m, side in zip(first, step, (self.o4.x, self.o4.y), strict=True)
+        ]
         return (first[0], first[1]), (second[0], second[1])
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from grashof.problems.values.arrays import FloatArray, Limits, frozen_array
 from grashof.problems.values.checks import finite_number, limits, near_miss, number_within
-from grashof.problems.values.errors import ProblemError, wrong_value
+from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.read_only import ReadOnly
 
 LAWS: dict[str, Callable[[FloatArray], FloatArray]] = {
@@ -130,7 +130,7 @@ class FunctionLaw(ReadOnly):
             raise ProblemError(f"function.law {self.name} is constant from x = {low:g} to {high:g}")
 
     def value(self, x: FloatArray) -> FloatArray:
-        """y at x; NaN or infinite where the law has none."""
+        """Y at x; NaN or infinite where the law has none."""
         with np.errstate(all="ignore"):
             if self.samples is not None:
                 return _interpolated(self.x, self.samples, x)

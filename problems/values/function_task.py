@@ -10,7 +10,14 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray, frozen_array
-from grashof.problems.values.checks import counted, finite_number, near_miss, number_array, positive_number, whole_number
+from grashof.problems.values.checks import (
+    counted,
+    finite_number,
+    near_miss,
+    number_array,
+    positive_number,
+    whole_number,
+)
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.function_ground import FunctionGround
 from grashof.problems.values.function_law import (

@@ -51,7 +51,9 @@ def best_alike(task: Task, signatures: FloatArray) -> IntArray:
     while left.size:
         first, left = left[0], left[1:]
         one = signatures[first]
-        curves = one[None] if task.has_angle.any() or task.has_output.any() else same_curve(one, task.is_timed)
+        curves = (
+            one[None] if task.has_angle.any() or task.has_output.any() else same_curve(one, task.is_timed)
+        )
         near = left[_alike_in_shape(curves, signatures[left])]
         images = np.concatenate([each.of(curves) for each in maps])
         best[near[(apart(images, signatures[near]) < ALIKE).any(axis=0)]] = first

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from time import perf_counter
 
 import numpy as np
@@ -15,7 +15,7 @@ from grashof.problems import Problem, ProblemError, Search
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.families import listed
 from grashof.synth.results.result import Result
-from grashof.synth.search.attempt import Attempt, Outcome
+from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.run import Progress
 from grashof.synth.search.story import Asking, Story, now
 from grashof.synth.search.tally import DISTINCT, Tally
@@ -117,7 +117,12 @@ def function_list(
         progress(_progress(judged, search, len(judged.good) + len(judged.bad)))
     judged.tally.totals[DISTINCT] = len(designs)
     note, nearest = ("", ()) if designs else _why_none(aims, judged, complete)
-    _LOG.info("functions: %d of %d judged are good, %d listed", len(judged.good), len(judged.good + judged.bad), len(designs))
+    _LOG.info(
+        "functions: %d of %d judged are good, %d listed",
+        len(judged.good),
+        len(judged.good + judged.bad),
+        len(designs),
+    )
     return Result(
         problem=problem,
         candidates=designs,
@@ -173,9 +178,16 @@ def _why_none(aims: FunctionAims, judged: _Judged, complete: bool) -> tuple[str,
     if aims.exact:
         count = len(aims.task)
         why = f"no four-bar goes through the {count} pairs on one branch under these requirements"
-        less = "; fewer pairs, or exact = false, leave more freedom" if count > 3 else "; exact = false asks for less"
+        less = (
+            "; fewer pairs, or exact = false, leave more freedom"
+            if count > 3
+            else "; exact = false asks for less"
+        )
         return f"no design: {why}{less}", nearest
     if not nearest:
         return "no design: no four-bar covers the range under these requirements", nearest
     worst = nearest[0].verdict.defects
-    return f"no design meets all requirements; the closest one misses {' and '.join(map(str, worst))}", nearest
+    return (
+        f"no design meets all requirements; the closest one misses {' and '.join(map(str, worst))}",
+        nearest,
+    )

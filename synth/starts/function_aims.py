@@ -50,7 +50,12 @@ class FunctionAims:
             raise ProblemError(f"problem.task is a {type(task).__name__}; it must be a FunctionTask")
         wanted = problem.requirements.resolved(task.size)
         ground, kind = FunctionGround.of(problem.requirements), wanted.rotatability
-        lengths = [(max(wanted.link_lengths[0][0], ground.lengths[0]), min(wanted.link_lengths[0][1], ground.lengths[1]))]
+        lengths = [
+            (
+                max(wanted.link_lengths[0][0], ground.lengths[0]),
+                min(wanted.link_lengths[0][1], ground.lengths[1]),
+            )
+        ]
         low, high = np.array([*lengths, *wanted.link_lengths[1:]], dtype=np.float64).T
         with np.errstate(divide="ignore"):
             caps = np.minimum(np.log(wanted.link_ratio_max), np.log(high)[:, None] - np.log(low))
@@ -60,7 +65,9 @@ class FunctionAims:
             transmission=float(np.radians(wanted.transmission_min_deg)) + INSIDE,
             over_cycle=wanted.transmission_over is TransmissionOver.CYCLE,
             margin=None if kind is Rotatability.ANY else wanted.rotatability_margin + INSIDE,
-            shortest={Rotatability.CRANK_ROCKER: 1, Rotatability.DOUBLE_CRANK: -1}.get(kind or Rotatability.ANY, 0),
+            shortest={Rotatability.CRANK_ROCKER: 1, Rotatability.DOUBLE_CRANK: -1}.get(
+                kind or Rotatability.ANY, 0
+            ),
         )
         return cls(task, problem, ground, limits, problem.requirements.is_exact(task))
 

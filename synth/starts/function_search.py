@@ -26,7 +26,10 @@ GRID = 220  # start angles of driver and output each, of three pairs
 CURVE = 2000  # output angles at a fifth place, of four pairs
 CRANKS = 8000  # random full cranks, from which least squares begins besides
 PULLS = (0.1, 1.0)  # rad: what a missed limit counts as in least squares
-BASINS, TRIED, SHORT = 14, 36, 6  # optima that are refined; of the greatest error those tried in few steps
+BASINS, TRIED, SHORT = 9, 30, 5  # starts that are refined to the end, and those tried in few steps
+WORSE = 10.0  # times the least error: a sense of output and driver in which no choice is offered
+HOPELESS = 50.0  # times the least error: no further
+LEAST = "least error"
 CELL, NEAR = 0.04, 0.02  # of optima, and of exact designs: closer ones are alike
 LEVELS = (10.0, 20.0, 30.0, 40.0, 50.0, 60.0)  # deg of transmission, that a choice is offered at
 MET = 1e-9  # rad: exact
@@ -66,7 +69,9 @@ class FunctionPairs:
         """Nothing is left to refuse: the task did."""
 
 
-def exact_functions(aims: FunctionAims, rng: np.random.Generator, most: int, effort: float) -> list[FoundFunction]:
+def exact_functions(
+    aims: FunctionAims, rng: np.random.Generator, most: int, effort: float
+) -> list[FoundFunction]:
     """Generators through all pairs that keep the limits, the most promising distinct ones first."""
     found: list[tuple[FloatArray, Generators, int]] = []
     for sense, driver, first in aims.ways():
@@ -155,7 +160,9 @@ def _on_surface(
         best = pool[best_apart(pool, -promise(aims, pool, sense), NEAR)[:ZOOMED]]
         drivers = best.shape[:, 3] + wanted.turned[0]
         outputs = output_angles(best, wanted.turned[:1])[:, 0]
-        tried = [(at[:, None] + step * move).ravel() for at, move in zip((drivers, outputs), about, strict=True)]
+        tried = [
+            (at[:, None] + step * move).ravel() for at, move in zip((drivers, outputs), about, strict=True)
+        ]
         more = _kept(aims, _begun(through_three_pairs(turned, output, *tried), wanted), wanted)
         pool, step = Generators.joined([pool, more]), 2.5 * step / len(across)
     return pool
@@ -210,7 +217,9 @@ def _known(aims: FunctionAims, key: str, made: Generators, sense: int) -> FloatA
         return ratio
     if key in ("structural_error_max", "structural_error_rms"):
         errors = aims.samples(sense, 31).errors(made)
-        size: FloatArray = np.abs(errors).max(axis=1) if key.endswith("max") else np.sqrt((errors**2).mean(axis=1))
+        size: FloatArray = (
+            np.abs(errors).max(axis=1) if key.endswith("max") else np.sqrt((errors**2).mean(axis=1))
+        )
         return size
     if key == "size":
         pivots = made.shape[:, 3:] + np.linspace(0.0, aims.limits.span, 13)
@@ -238,58 +247,88 @@ def optimal_functions(
     """
     asked = float(np.degrees(aims.limits.transmission))
     usual = tuple(level for level in LEVELS if level > asked + 1)
+    better: dict[tuple[int, int], list[Generators]] = {}
+    reached, errors = 0.0, dict[int, float]()
     for number, level in enumerate((0.0, *(usual if levels is None else levels))):
-        if asked_to_stop() and number:
-            return
-        least = max(aims.limits.transmission, float(np.radians(level)))
-        limits = replace(aims.limits, transmission=least)
-        words = f"transmission from {level:g} deg" if number else "least error"
-        for sense, driver, first in aims.ways():
-            starts = _starts(aims, limits, sense, first, rng, effort if not number else min(1.0, effort))
-            for optimum in _optima(aims, limits, sense, starts, first is not None, BASINS if not number else 4):
+        if number and (asked_to_stop() or level <= reached):
+            continue
+        limits = replace(aims.limits, transmission=max(aims.limits.transmission, float(np.radians(level))))
+        words = f"transmission from {level:g} deg" if number else LEAST
+        least = min(errors.values(), default=np.inf)
+        for way, (sense, driver, first) in enumerate(aims.ways()):
+            if number and errors.get(way, np.inf) > WORSE * least:
+                continue
+            search = _Optima(aims, limits, sense, first)
+            starts = search.starts(rng, effort if not number else min(1.0, effort))
+            for optimum in search.optima(starts, few=bool(number)):
+                better.setdefault((way, driver), []).append(optimum.made)
+                if not number and optimum.error < min(errors.values(), default=np.inf):
+                    reached = float(np.degrees(np.arccos(worst_cosine(optimum.made, limits.span)[0])))
+                if not number:
+                    errors[way] = min(errors.get(way, np.inf), optimum.error)
                 yield FoundFunction(optimum.made, driver, optimum.steps, words)
+    for way, (sense, driver, first) in enumerate(aims.ways()):  # what was found on the way may lead further
+        made = better.get((way, driver), [])
+        for optimum in _Optima(aims, aims.limits, sense, first).optima(Generators.joined(made), few=True):
+            yield FoundFunction(optimum.made, driver, optimum.steps, LEAST)
 
 
-def _starts(
-    aims: FunctionAims, limits: ShapeLimits, sense: int, first: float | None, rng: np.random.Generator, effort: float
-) -> Generators:
-    """Least squares from many starts, best first; limits pull."""
-    wanted = aims.pairs(sense) if len(aims.task) >= 6 and aims.task.norm == "rms" else aims.samples(sense)
-    held = first is not None
-    found: list[Generators] = []
-    for _ in range(max(1, round(effort))):
-        kinds = [function_starts(wanted, rng, first)]
-        if limits.margin is not None or limits.shortest:
-            cranks = full_cranks(rng, CRANKS, first, limits.shortest)
-            kinds.append(cranks[limits.of(cranks)[0].min(axis=1) > -0.1])
-        for starts in kinds:
-            for pull in PULLS if limits.margin is not None else PULLS[:1]:
-                made, square = fitted(wanted, starts, limits.of, pull=pull, held=held)
-                found.append(made[best_apart(made, square, CELL)[:TRIED]])
-    made = Generators.joined(found)
-    square = wanted.square(wanted.errors(made))
-    return made[best_apart(made, np.nan_to_num(square, nan=np.inf), CELL)]
+@dataclass(frozen=True, slots=True)
+class _Optima:
+    """Optima in one sense of output and driver, under limits of the shape."""
+
+    aims: FunctionAims
+    limits: ShapeLimits
+    sense: int
+    first: float | None
+
+    def starts(self, rng: np.random.Generator, effort: float) -> Generators:
+        """Least squares from many starts, best first; limits pull."""
+        aims, limits = self.aims, self.limits
+        by_pairs = len(aims.task) >= 6 and aims.task.norm == "rms"
+        wanted = aims.pairs(self.sense) if by_pairs else aims.samples(self.sense)
+        full = limits.margin is not None or bool(limits.shortest)
+        found: list[Generators] = []
+        for _ in range(max(1, round(effort))):
+            kinds = [function_starts(wanted, rng, self.first)]
+            if full:
+                cranks = full_cranks(rng, CRANKS, self.first, limits.shortest)
+                kinds.append(cranks[limits.of(cranks)[0].min(axis=1) > -0.1])
+            for starts in kinds:
+                for pull in PULLS if full else PULLS[:1]:
+                    made, square = fitted(wanted, starts, limits.of, pull=pull, held=self.first is not None)
+                    found.append(made[best_apart(made, square, CELL)[:TRIED]])
+        made = Generators.joined(found)
+        square = wanted.square(wanted.errors(made))
+        return made[best_apart(made, np.nan_to_num(square, nan=np.inf), CELL)]
+
+    def aim(self) -> Aim:
+        """What is made least."""
+        greatest, stated = (
+            self.aims.task.norm == "max",
+            self.aims.problem.requirements.structural_error_max_deg,
+        )
+        wanted = self.aims.samples(self.sense) if greatest else self.aims.pairs(self.sense)
+        band = np.inf if stated is None else float(np.radians(stated[1]))
+        return Aim(wanted, self.limits.of, greatest=greatest, held=self.first is not None, band=band)
+
+    def optima(self, starts: Generators, *, few: bool) -> Iterator[Optimum]:
+        """The best distinct optima from starts that come best first; of `few` only the most promising."""
+        aim, share = self.aim(), 3 if few else 1
+        tried = [refined(aim, starts[k : k + 1], SHORT) for k in range(min(TRIED // share, len(starts)))]
+        worth = np.array([one.error + 10 * one.missed for one in tried])
+        hopeful = [tried[k] for k in _apart(tried, worth) if worth[k] <= HOPELESS * worth.min() + MET]
+        ends = [refined(aim, one.made) for one in hopeful[: BASINS // share]]
+        if aim.greatest:
+            dense = self.aims.dense(self.sense)
+            ends = [refined(with_extremes(aim, one.made, *dense), one.made) for one in ends]
+        good = [one for one in ends if one.missed <= ROUNDING]
+        for k in _apart(good, np.array([one.error for one in good])):
+            yield good[k]
 
 
-def _optima(
-    aims: FunctionAims, limits: ShapeLimits, sense: int, starts: Generators, held: bool, most: int
-) -> Iterator[Optimum]:
-    """The best distinct optima from some starts, best first."""
-    greatest = aims.task.norm == "max"
-    wanted = aims.samples(sense) if greatest else aims.pairs(sense)
-    band = np.inf
-    stated = aims.problem.requirements.structural_error_max_deg
-    if stated is not None:
-        band = float(np.radians(stated[1]))
-    aim = Aim(wanted, limits.of, greatest=greatest, held=held, band=band)
-    tried = [refined(aim, starts[k : k + 1], SHORT) for k in range(min(TRIED, len(starts)))]
-    tried.sort(key=lambda one: one.error + 10 * one.missed)
-    ends = [refined(aim, one.made) for one in tried[:most]]
-    if greatest:
-        ends = [refined(with_extremes(aim, one.made, *aims.dense(sense)), one.made) for one in ends if np.isfinite(one.error)]
-    good = [one for one in ends if one.missed <= ROUNDING]
-    good.sort(key=lambda one: one.error)
-    if good:
-        made = Generators.joined([one.made for one in good])
-        for k in best_apart(made, np.array([one.error for one in good]), CELL):
-            yield good[int(k)]
+def _apart(some: list[Optimum], worth: FloatArray) -> list[int]:
+    """Which of some optima are distinct and finite, the least of `worth` first."""
+    finite = np.flatnonzero(np.isfinite(worth))
+    made = Generators.joined([some[k].made for k in finite])
+    return finite[best_apart(made, worth[finite], CELL)].tolist() if finite.size else []

@@ -12,6 +12,7 @@ from grashof.synth.theory.function_fit import Limits, Wanted
 from grashof.synth.theory.function_output import SHAPE, Generators, output_angles, output_slopes
 
 STEPS = 60
+CORRECTIONS = 2  # of a step
 PRICE = 10.0  # rad: of a limit missed by one, so that missing it never pays
 _FIRST, _LEAST, _MOST = 0.1, 1e-11, 0.5  # of the trust region
 _HEAVY = 1e4  # of the slack in a step of least squares
@@ -118,8 +119,7 @@ def refined(aim: Aim, start: Generators, steps: int = STEPS) -> Optimum:
     flat = 0
     for number in range(1, steps + 1):
         moved, hoped = linear.step(radius)
-        there = Generators(made.shape + moved, made.assembly)
-        fresh = aim.merit(there)
+        there, fresh = linear.best_along(made, moved)
         gain, promise = merit - fresh, merit - hoped
         if gain > 0:
             made, merit = there, fresh
@@ -168,6 +168,30 @@ class _Linear:
         if np.isfinite(self.aim.band):
             short = max(short, float(np.abs(off).max()) - self.aim.band)
         return moved, float(error) + PRICE * short
+
+    def best_along(self, made: Generators, moved: FloatArray) -> tuple[Generators, float]:
+        """Where a step leads, or that step brought back to the errors that it promised, and the merit there.
+
+        The valleys of these errors are narrow and curved: without the correction (of second order, Fletcher)
+        steps along them would have to be tiny.
+        """
+        there = Generators(made.shape + moved, made.assembly)
+        best = there, self.aim.merit(there)
+        centred = (self.slopes - self.slopes.mean(axis=0)) * self.free
+        promised = self.errors + self.slopes @ moved
+        scale = float(np.einsum("nk,nk->", centred, centred))
+        normal = centred.T @ centred + 1e-8 * scale * np.eye(SHAPE)
+        for _ in range(CORRECTIONS):
+            strayed = self.aim.errors(there) - promised
+            if not np.isfinite(strayed).all():
+                break
+            back = np.linalg.solve(normal, centred.T @ (strayed - strayed.mean()))
+            there = Generators(there.shape - back, made.assembly)
+            merit = self.aim.merit(there)
+            if not merit < best[1]:
+                break
+            best = there, merit
+        return best
 
     def _greatest(self, radius: float) -> FloatArray:
         """Linear programme in the step, the zero, the greatest error and the slack."""
