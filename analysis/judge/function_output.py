@@ -10,6 +10,7 @@ from scipy.optimize import minimize_scalar
 from grashof.analysis.four_bar.mobility import driver_ranges, rotatability
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.judge.task_motion import Targets, TaskMotion
+from grashof.analysis.judge.verdict import Verdict
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import FourBar, FunctionTask, Requirements
 from grashof.problems.values.arrays import TURN, FloatArray
@@ -321,3 +322,53 @@ def met_as_function(
     motion = TaskMotion.ordered(theta2, met.direction)
     motion = replace(motion, start=met.theta2 + met.direction * low, end=met.theta2 + met.direction * high)
     return Targets(theta2, own, free, free, at_pairs), motion, error
+
+
+@dataclass(frozen=True, slots=True)
+class FunctionCurves:
+    """Wanted and generated output of a design over the range, each of shape (K,), rad.
+
+    Parameters
+    ----------
+    turned : ndarray
+        Driver rotation from the first pair.
+    wanted, generated, error : ndarray
+        Output rotation, positive as the driver turns, from the wanted zero on.
+    """
+
+    turned: FloatArray
+    wanted: FloatArray
+    generated: FloatArray
+    error: FloatArray
+
+
+def function_curves(
+    linkage: FourBar, task: FunctionTask, verdict: Verdict, count: int = 361, at: FloatArray | None = None
+) -> FunctionCurves | None:
+    """What a judged linkage puts out over the range of its function, or at given driver rotations.
+
+    None where it does not cover the range.
+
+    Examples
+    --------
+    >>> from grashof.analysis.judge.verify import verify
+    >>> linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
+    >>> task = FunctionTask([0, 0.5, 1.0], [0, 0.1, 0.3])
+    >>> curves = function_curves(linkage, task, verify(linkage, task, Requirements(exact=False)))
+    >>> bool(np.abs(curves.generated - curves.wanted - curves.error).max() < 1e-12)
+    True
+    """
+    if not np.isfinite(verdict.structural_error_max):
+        return None
+    dense = np.linspace(*task.span, max(count, _DENSE))
+    turned = np.linspace(*task.span, count) if at is None else at
+    every = np.unique(np.concatenate([dense, turned]))
+    begun = Beginning(float(verdict.theta2[0]), verdict.direction)
+    off = (
+        output_error(linkage, task, begun, every, verdict.output_sense)
+        - verdict.direction * verdict.output_zero
+    )
+    middle = TURN * np.round(np.median(off) / TURN)
+    error = off[np.searchsorted(every, turned)] - middle
+    wanted = verdict.output_sense * task.output(turned)
+    return FunctionCurves(turned, wanted, wanted + error, error)

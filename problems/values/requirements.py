@@ -249,7 +249,9 @@ class Requirements(ReadOnly):
     def _comparable(self) -> tuple[object, ...]:
         """Every field, the arrays among them as tuples."""
         areas = tuple(tuple(map(tuple, corners.tolist())) for corners in self.keep_out)
-        return areas, *(getattr(self, field.name) for field in fields(self) if field.name != "keep_out")
+        turns = self.rotatability or Rotatability.FULL_CRANK  # where no task says otherwise
+        others = (field.name for field in fields(self) if field.name not in ("keep_out", "rotatability"))
+        return areas, turns, *(getattr(self, name) for name in others)
 
     @property
     def link_lengths(self) -> tuple[Limits, Limits, Limits, Limits]:

@@ -19,7 +19,8 @@ class Task(ReadOnly, ABC):
     """N targets that a linkage has to meet in order; base of `MotionTask`, `PathTask` and `FunctionTask`.
 
     Each target is a row. Its columns are the position of the coupler point, the angle of the body, the
-    output, the driver rotation from the first target, and the weight; NaN where a target leaves that part free.
+    output, the driver rotation from the first target, and the weight; NaN where a target leaves that part
+    free.
     """
 
     __slots__ = ()

@@ -1,4 +1,4 @@
-"""What function generators are searched for, in each sense of output and driver, and how they become linkages."""
+"""What function generators are searched for, in each sense, and how they become linkages."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ class FunctionAims:
         return Wanted(turned, sense * self.task.output(turned + self.task.span[0]), weights)
 
     def dense(self, sense: int) -> tuple[FloatArray, FloatArray]:
-        """Rotations from the beginning of the range, and the outputs there, among which extremes are found."""
+        """Rotations from the beginning of the range, and the outputs there: extremes are found among them."""
         turned = np.linspace(0.0, self.limits.span, DENSE)
         return turned, sense * self.task.output(turned + self.task.span[0])
 

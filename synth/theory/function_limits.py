@@ -65,10 +65,10 @@ class ShapeLimits:
         r2, r3, r4 = np.exp(made.shape[:, :3]).T[..., None]
         first = made.shape[:, 3]
         if self.over_cycle:
-            places, met = np.zeros((len(made), 2)) + [0.0, np.pi], np.ones((len(made), 2), dtype=bool)
+            places, met = np.tile([0.0, np.pi], (len(made), 1)), np.ones((len(made), 2), dtype=bool)
             moving = np.zeros(2)
         else:
-            along = np.zeros((len(made), 2)) + [0.0, np.pi]
+            along = np.tile([0.0, np.pi], (len(made), 1))
             places = np.concatenate([first[:, None] + [0.0, self.span], along], axis=1)
             passed = np.stack([passes(first, self.span, angle) for angle in (0.0, np.pi)], axis=1)
             met = np.concatenate([np.ones_like(passed), passed], axis=1)

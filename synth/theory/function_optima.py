@@ -64,7 +64,7 @@ class Aim:
     band: float = np.inf
 
     def errors(self, made: Generators) -> FloatArray:
-        """Output less what is wanted at the samples, about the best zero, shape (N,); NaN where it is open."""
+        """Output less what is wanted at the samples, about the best zero, shape (N,); NaN: open."""
         off = (output_angles(made, self.wanted.turned) - self.wanted.output)[0]
         if self.greatest:
             middle = (off.max() + off.min()) / 2
@@ -109,15 +109,17 @@ def refined(aim: Aim, start: Generators, steps: int = STEPS) -> Optimum:
     Notes
     -----
     Errors and limits are linearised about the best shape so far; within a trust region, what is left is a
-    linear programme for the greatest error (Powell & Yuan) or linear least squares under inequalities for the mean
-    square (Lawson & Hanson, *Solving Least Squares Problems*, ch. 23). A slack lets starts miss limits.
+    linear programme for the greatest error or linear least squares under inequalities for the mean square
+    (Lawson & Hanson, *Solving Least Squares Problems*, ch. 23). A slack lets starts miss limits.
     """
     made, merit, radius = start, aim.merit(start), _FIRST
     if not np.isfinite(merit):
         return Optimum(made, np.inf, np.inf, 0)
     linear = _Linear.of(aim, made)
     flat = 0
-    for number in range(1, steps + 1):
+    taken = 0
+    while taken < steps:
+        taken += 1
         moved, hoped = linear.step(radius)
         there, fresh = linear.best_along(made, moved)
         gain, promise = merit - fresh, merit - hoped
@@ -132,7 +134,7 @@ def refined(aim: Aim, start: Generators, steps: int = STEPS) -> Optimum:
         flat = flat + 1 if abs(promise) <= 1e-7 * merit + 1e-16 else 0
         if radius < _LEAST or flat > 1:
             break
-    return Optimum(made, aim.error(made), max(0.0, aim.missed(made)), number)
+    return Optimum(made, aim.error(made), max(0.0, aim.missed(made)), taken)
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,14 +216,12 @@ class _Linear:
         root = np.sqrt(weights)
         centred = self.slopes - weights @ self.slopes
         damp = 1e-9 * np.linalg.norm(centred * root[:, None]) * np.eye(SHAPE)
-        scale = max(float(root @ np.abs(self.errors)), 1e-14)
         matrix = np.zeros((len(self.errors) + SHAPE + 1, SHAPE + 1))
         matrix[: len(self.errors), :SHAPE] = centred * root[:, None] * self.free
         matrix[len(self.errors) : -1, :SHAPE] = damp
         matrix[-1, -1] = _HEAVY
         side = np.zeros(len(matrix))
         side[: len(self.errors)] = -self.errors * root
-        del scale
         rows = np.hstack([self.by_shape, np.ones((len(self.limits), 1))])
         bounds = -self.limits
         box = np.hstack([np.vstack([np.eye(SHAPE), -np.eye(SHAPE)]), np.zeros((2 * SHAPE, 1))])
@@ -291,7 +291,7 @@ def under_inequalities(
 
 
 def with_extremes(aim: Aim, made: Generators, turned: FloatArray, output: FloatArray) -> Aim:
-    """The same aim with samples where the error of a generator is extreme on a dense grid, shape (K,) each."""
+    """The same aim with samples where a generator errs most on a dense grid, shape (K,) each."""
     off = (output_angles(made, turned) - output)[0]
     inner = np.flatnonzero((off[1:-1] - off[:-2]) * (off[2:] - off[1:-1]) <= 0) + 1
     at = np.concatenate([aim.wanted.turned, turned[inner]])

@@ -125,8 +125,9 @@ def closes(made: Generators, span: float) -> BoolArray:
     span : float, rad
         The rotation from the first driver angle.
     """
-    r2, r3, r4 = np.exp(made.shape[:, :3]).T
-    return (diagonals(made, span)[0] > np.abs(r3 - r4)) & (diagonals(made, span)[1] < r3 + r4)
+    _, r3, r4 = np.exp(made.shape[:, :3]).T
+    least, most = diagonals(made, span)
+    return (least > np.abs(r3 - r4)) & (most < r3 + r4)
 
 
 def diagonals(made: Generators, span: float) -> tuple[FloatArray, FloatArray]:

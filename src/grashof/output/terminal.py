@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -149,6 +150,8 @@ def units(problem: Problem) -> dict[str, str]:
 def _decided_by(problem: Problem) -> list[Quantity]:
     """The error where there is one, the transmission angle, whatever else is weighed, size and lengths."""
     error = [] if problem.requirements.is_exact(problem.task) else ["error"]
+    if problem.task.has_output.any():
+        error = ["structural_error_max", "structural_error_rms"]
     goals = [goal.key for goal, _ in problem.goals if goal.key != "size"]
     keys = *error, "transmission_min_task", "transmission_min_cycle", *goals, "size", *FourBar.LENGTHS
     return [QUANTITIES[key] for key in dict.fromkeys(keys)]
@@ -175,6 +178,9 @@ def heading(result: Result, verified: int) -> str:
     if not exact:  # as the column shows it
         least = min(each.error(result.problem) for each in result.candidates)
         error = f"smallest error rms {least * result.problem.task.size:.2g}"
+    if result.problem.task.has_output.any():
+        worst = math.degrees(min(each.structural_error_max for each in verdicts))
+        error = f"structural error from {worst:.3g} deg"
     classes = _classes(result)
     kind = f"{classes.pop()} " if len(classes) == 1 else ""
     families = len(result.families)

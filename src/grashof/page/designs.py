@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,6 +12,7 @@ import pandas as pd
 from grashof.analysis import (
     driver_ranges,
     full_rotation,
+    function_curves,
     inverse_dynamics,
     solve_kinematics,
     stated_loads,
@@ -20,7 +21,7 @@ from grashof.analysis import (
 from grashof.analysis.four_bar.mobility import range_index
 from grashof.analysis.judge.over_task import driver_law, motion_ends
 from grashof.page.render import compact
-from grashof.problems import FourBar, Problem
+from grashof.problems import FourBar, FunctionTask, Problem
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics_spec import metres
 from grashof.study.sweep import INSET, dead_positions_unwarned, driver_angles
@@ -113,12 +114,24 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], frame: pd.DataFra
             "assemblies": design.verdict.assembly.tolist(),
             "task": list(motion_ends(problem.task, design.verdict)) if design.verdict.branch_ok else None,
             "torque": torque,
+            **_function(problem, linkage, design),
             "figures": {str(key): _plain(value) for key, value in figures.items()},
         }
         for design, linkage, travel, torque, figures in zip(
             designs, linkages, travels, torques, rows, strict=True
         )
     ]
+
+
+def _function(problem: Problem, linkage: FourBar, design: Candidate) -> dict[str, Any]:
+    """Wanted and generated output of a function over the range, deg; nothing for other tasks."""
+    if not isinstance(problem.task, FunctionTask):
+        return {}
+    curves = function_curves(linkage, problem.task, design.verdict, count=181)
+    if curves is None:
+        return {"function": None}
+    columns = asdict(curves)
+    return {"function": {name: compact(np.degrees(values).tolist()) for name, values in columns.items()}}
 
 
 def _torques(
