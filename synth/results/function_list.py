@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from time import perf_counter
 
 import numpy as np
@@ -20,12 +20,19 @@ from grashof.synth.search.run import Progress
 from grashof.synth.search.story import Asking, Story, now
 from grashof.synth.search.tally import DISTINCT, Tally
 from grashof.synth.starts.function_aims import FunctionAims
-from grashof.synth.starts.function_search import FoundFunction, exact_functions, optimal_functions
+from grashof.synth.starts.function_search import (
+    LEAST,
+    LOCAL,
+    FoundFunction,
+    exact_functions,
+    optimal_functions,
+)
 from grashof.synth.theory.stopping import asked_to_stop, overdue, stopping
 
 _LOG = logging.getLogger(__name__)
 FINE = tuple(np.arange(5.0, 86.0, 5.0).tolist())  # deg of transmission, where an error is allowed
 NEAREST = 8
+SAME = 1.001  # times the least error: the least
 
 
 @dataclass(slots=True)
@@ -107,8 +114,8 @@ def function_list(
         seconds["solving"] = perf_counter() - begun - seconds["screening"]
         complete = not asked_to_stop()
     if not aims.exact and judged.good:
-        least = min(one.error(problem) for one in judged.good) * problem.task.size
-        judged.good = _within(judged, least)
+        least = min(one.error(problem) for one in judged.good)
+        judged.good = [_named(one, problem, least) for one in _within(judged, least)]
     designs = listed(problem, judged.good)
     if aims.exact:
         designs = designs[: search.enough]
@@ -152,8 +159,14 @@ def _within(judged: _Judged, least: float) -> list[Candidate]:
     if factor is None:
         return judged.good
     most = factor * max(least, 1e-6) * (1 + 1e-9)
-    size = judged.problem.task.size
-    return [one for one in judged.good if one.error(judged.problem) * size <= most]
+    return [one for one in judged.good if one.error(judged.problem) <= most]
+
+
+def _named(one: Candidate, problem: Problem, least: float) -> Candidate:
+    """The same, told what it is best at: only the best of all has the least error."""
+    if one.best_at != LEAST or one.error(problem) <= least * SAME:
+        return one
+    return replace(one, best_at=LOCAL)
 
 
 def _progress(judged: _Judged, search: Search, total: int) -> Progress:

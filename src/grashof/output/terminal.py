@@ -18,7 +18,7 @@ from rich.table import Table
 from grashof.output.streams import say
 from grashof.problems import FourBar, Problem
 from grashof.problems.values.checks import counted
-from grashof.problems.values.quantities import Over, Quantity, Unit
+from grashof.problems.values.quantities import Needs, Over, Quantity, Unit
 from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth import Candidate, Progress, Result
 from grashof.synth.designs.ranking import pareto_optimal
@@ -221,6 +221,6 @@ def _cell(quantity: Quantity, candidate: Candidate, digits: int) -> str:
     if quantity.over is Over.CYCLE and not candidate.verdict.full_rotation:
         return "-"
     value = candidate.values[quantity.key] * quantity.unit.shown
-    if quantity.unit is Unit.ANGLE:
+    if quantity.unit is Unit.ANGLE and quantity.needs is not Needs.OUTPUTS:
         return f"{value:.1f}"
     return f"{value:.{2 if quantity.key == 'error' else digits}g}"
