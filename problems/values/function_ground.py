@@ -12,6 +12,7 @@ from grashof.problems.values.requirements import Requirements
 
 _FREE: Limits = (-np.inf, np.inf)
 _SMALL = 1e-12  # sizes
+_ROUNDING = 1e-9  # share: where pivots are given, both axes have the same length but for that
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +59,8 @@ class FunctionGround:
         for cosine, side in zip((np.cos(theta1), np.sin(theta1)), sides, strict=True):
             least, most = _along(float(cosine), side)
             low, high = max(low, least), min(high, most)
+        if high < low <= high * (1 + _ROUNDING):
+            low = high
         return cls(theta1, (low, high), float(np.clip(1.0, low, max(low, high))) or 1.0, o2, o4)
 
     def placed(self, r1: float) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -83,4 +86,4 @@ def _along(cosine: float, side: Limits) -> Limits:
         inside = side[0] <= _SMALL and side[1] >= -_SMALL
         return _FREE if inside else (np.inf, -np.inf)
     ends = sorted((side[0] / cosine, side[1] / cosine))
-    return ends[0] * (1 - 1e-12 * np.sign(ends[0])), ends[1] * (1 + 1e-12 * np.sign(ends[1]))
+    return ends[0], ends[1]

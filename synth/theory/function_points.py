@@ -8,7 +8,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.synth.theory.five_poses import five_pose_dyads_of_sets
 from grashof.synth.theory.function_output import Generators
 
-_TRIVIAL = 1e-9  # of the ground: a pivot so near to O2 or O4 is the ground link itself
+_TRIVIAL = 1e-6  # of the ground: a pivot so near to O2 or O4 is the ground link itself
 
 
 def through_five_pairs(turned: FloatArray, output: FloatArray) -> tuple[Generators, FloatArray]:

@@ -6,10 +6,12 @@ import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.theory.function_fit import Wanted
-from grashof.synth.theory.function_output import Generators
+from grashof.synth.theory.function_output import Generators, closes
 from grashof.synth.theory.function_points import through_five_pairs, through_three_pairs
 
 GRID = 40  # start angles of driver and output each, over half a turn
+ANYTHING = 20_000  # random four-bars with a given driver angle, of which few close over the range
+_SAME = 1e-9  # rad
 SUBSETS = 30  # of five pairs, through which exact four-bars begin
 
 
@@ -34,8 +36,8 @@ def function_starts(
         grid = Generators.joined(
             [on_grid(wanted, np.full(GRID**2, first), fine) for first in (first_driver, first_driver + np.pi)]
         )
-        turned_back = np.abs(np.angle(np.exp(1j * (grid.shape[:, 3] - first_driver)))) < 1e-9
-        return grid[turned_back]
+        held = grid[np.abs(np.angle(np.exp(1j * (grid.shape[:, 3] - first_driver)))) < _SAME]
+        return Generators.joined([held, anything(rng, ANYTHING, first_driver, float(wanted.turned[-1]))])
     driver, output = (
         each.ravel() for each in np.meshgrid(half, np.pi * (np.arange(GRID) + rng.random()) / GRID)
     )
@@ -93,3 +95,17 @@ def full_cranks(
     first = rng.uniform(-np.pi, np.pi, count) if first_driver is None else np.full(count, first_driver)
     lengths = np.stack([r2, (total + difference) / 2, (total - difference) / 2], axis=-1)
     return Generators(np.column_stack([np.log(lengths), first]), rng.choice([-1.0, 1.0], count))
+
+
+def anything(rng: np.random.Generator, count: int, first_driver: float, span: float) -> Generators:
+    """Random four-bars that close over a rotation from a given driver angle, lengths from 0.05 to 20.
+
+    Examples
+    --------
+    >>> made = anything(np.random.default_rng(0), 1000, 0.5, 1.0)
+    >>> bool(closes(made, 1.0).all() and (made.shape[:, 3] == 0.5).all())
+    True
+    """
+    shape = np.column_stack([np.log(20) * rng.uniform(-1, 1, (count, 3)), np.full(count, first_driver)])
+    made = Generators(shape, rng.choice([-1.0, 1.0], count))
+    return made[closes(made, span)]

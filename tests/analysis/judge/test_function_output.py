@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from scipy.optimize import fsolve
 
 from grashof.analysis import function_curves, solve_position, verify
 from grashof.analysis.judge.planted import planted_function
@@ -20,11 +19,10 @@ def continued(linkage: FourBar, start: float, sense: int, turned: FloatArray) ->
     for turn in turned:
         driver = r2 * np.exp(1j * (start + sense * turn)) - r1 * np.exp(1j * theta1)
 
-        def loop(each: FloatArray, driver: complex = driver) -> list[float]:
-            rest = driver + r3 * np.exp(1j * each[0]) - r4 * np.exp(1j * each[1])
-            return [rest.real, rest.imag]
-
-        at = fsolve(loop, at, xtol=1e-13)
+        for _ in range(20):
+            rest = driver + r3 * np.exp(1j * at[0]) - r4 * np.exp(1j * at[1])
+            slope = 1j * np.array([r3 * np.exp(1j * at[0]), -r4 * np.exp(1j * at[1])])
+            at = at - np.linalg.solve([slope.real, slope.imag], [rest.real, rest.imag])
         found.append(at[1])
     return sense * (np.array(found) - found[0])
 

@@ -11,7 +11,8 @@ def test_least_squares_under_inequalities_meets_the_conditions_of_kuhn_and_tucke
     rng = np.random.default_rng(0)
     for _ in range(50):
         matrix, side = rng.normal(size=(12, 4)), rng.normal(size=12)
-        rows, least = rng.normal(size=(6, 4)), rng.normal(size=6) - 1
+        rows = rng.normal(size=(6, 4))
+        least = rows @ rng.normal(size=4) - rng.uniform(0, 1, 6)  # there is a place that meets them
         found = under_inequalities(matrix, side, rows, least)
         slack = rows @ found - least
         assert slack.min() > -1e-9
