@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from grashof.analysis.four_bar.mobility import driver_ranges, rotatability
 from grashof.analysis.four_bar.position import solve_position
@@ -184,6 +183,8 @@ class _Search:
 
     def refined(self, direction: int, start: float, step: float) -> tuple[float, int, float]:
         """The bottom of the valley about a start."""
+        from scipy.optimize import minimize_scalar  # here: few problems need it
+
         found = minimize_scalar(
             lambda at: min(self.value(at, direction), 1e3),
             bounds=(start - step, start + step),

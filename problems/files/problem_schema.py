@@ -171,7 +171,8 @@ class FunctionTable(Table):
     @field_validator("sense", "norm")
     @classmethod
     def _by_itself(cls, word: str, key: ValidationInfo) -> str:
-        FunctionTask([0, 1, 2], [0, 1, 2], **{str(key.field_name): word})
+        words: dict[str, Any] = {str(key.field_name): word}
+        FunctionTask([0, 1, 2], [0, 1, 2], **words)
         return word
 
     def value(self) -> FunctionTask:

@@ -106,7 +106,7 @@ class FunctionLaw(ReadOnly):
         low, high = limits(x, "function.x")
         places = low + (high - low) * _lobatto(SAMPLES)
         with np.errstate(all="ignore"):
-            values = np.array([float(function(np.float64(place))) for place in places])
+            values = np.array([float(function(place)) for place in places])
         return cls(SAMPLED, (low, high), input_range, output_range, samples=values)
 
     def _refuse_undefined(self) -> None:

@@ -200,12 +200,14 @@ class FunctionTask(Task):
         _refuse_beside(table, "does not go with function.law; give pairs or a law")
         _refuse_missing(stated)
         names = ("input_range_deg", "output_range_deg")
-        ranges = [float(np.radians(finite_number(stated[name], f"function.{name}"))) for name in names]
+        turned, output = (
+            float(np.radians(finite_number(stated[name], f"function.{name}"))) for name in names
+        )
         if callable(law):
-            made = FunctionLaw.of_callable(law, stated["x"], *ranges)
+            made = FunctionLaw.of_callable(law, stated["x"], turned, output)
         else:
             known = None if sampled is None else np.asarray(sampled, dtype=np.float64)
-            made = FunctionLaw(law, stated["x"], *ranges, exponent=exponent, samples=known)
+            made = FunctionLaw(law, stated["x"], turned, output, exponent=exponent, samples=known)
         return cls.of_law(made, pairs=pairs, sense=sense, norm=norm)
 
     def __len__(self) -> int:

@@ -127,7 +127,7 @@ class Requirements(ReadOnly):
     exact: bool | None = None
     tolerance: float = 1e-6
     error_factor: float | None = None
-    rotatability: Rotatability | None = None
+    rotatability: Rotatability = None  # type: ignore[assignment]  # the task's own, in a problem
     rotatability_margin: float = 1e-3
     order: bool = True
     same_branch: bool = True
@@ -224,7 +224,7 @@ class Requirements(ReadOnly):
             if not isinstance(getattr(self, name), bool):
                 raise wrong_value(f"requirements.{name}", getattr(self, name), "true or false")
         for name, kind in (("rotatability", Rotatability), ("transmission_over", TransmissionOver)):
-            if name == "rotatability" and self.rotatability is None:  # the task's own
+            if getattr(self, name) is None and name == "rotatability":  # the task's own
                 continue
             object.__setattr__(self, name, _member(kind, getattr(self, name), f"requirements.{name}"))
         for name, (low, high) in _RANGES.items():
@@ -288,7 +288,7 @@ class Requirements(ReadOnly):
 
     def for_task(self, task: Task) -> Requirements:
         """These requirements with the rotatability that is usual for a task, where they state none."""
-        if self.rotatability is not None:
+        if self.rotatability in tuple(Rotatability):
             return self
         return replace(self, rotatability=Rotatability(task.usual_rotatability))
 

@@ -184,7 +184,7 @@ def _begun(made: Generators, wanted: Wanted) -> Generators:
 
 def _kept(aims: FunctionAims, made: Generators, wanted: Wanted) -> Generators:
     """Those within the limits that meet every pair on one branch."""
-    made = made[np.isfinite(made.shape).all(axis=1)]
+    made = made.finite
     made = made[worst_cosine(made, aims.limits.span) < 1]
     made = made[aims.limits.of(made)[0].min(axis=1) >= -ROUNDING]
     if not len(made):
@@ -227,7 +227,8 @@ def _known(aims: FunctionAims, key: str, made: Generators, sense: int) -> FloatA
         b = 1 + made.lengths[:, 3:] * np.exp(1j * output_angles(made, pivots[0] - pivots[0, 0]))
         every = np.concatenate([a, b, np.zeros((len(made), 1)), np.ones((len(made), 1))], axis=1)
         wide = np.hypot(np.ptp(every.real, axis=1), np.ptp(every.imag, axis=1))
-        return aims.ground.length * wide
+        extent: FloatArray = aims.ground.length * wide
+        return extent
     return None
 
 

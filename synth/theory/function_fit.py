@@ -39,12 +39,14 @@ class Wanted:
 
     def errors(self, made: Generators) -> FloatArray:
         """Output less what is wanted, with the best zero of least squares, shape (M, N); NaN: open."""
-        return self.centred(output_angles(made, self.turned) - self.output)
+        errors: FloatArray = output_angles(made, self.turned) - self.output
+        return self.centred(errors)
 
     def centred(self, values: FloatArray) -> FloatArray:
         """Values (M, N, ...) less their weighted mean over the second axis."""
         mean = np.einsum("n,mn...->m...", self.weights / self.weights.sum(), values)
-        return values - mean[:, None]
+        centred: FloatArray = values - mean[:, None]
+        return centred
 
     def square(self, errors: FloatArray) -> FloatArray:
         """Weighted sum of squares, shape (M,)."""
@@ -81,7 +83,7 @@ def fitted(
     projection, Golub & Pereyra 1973).
     """
     model = _Model(wanted, limits, pull, held)
-    made = starts[np.isfinite(starts.shape).all(axis=1)]
+    made = starts.finite
     square = model.square(made)
     made, square = made[np.isfinite(square)], square[np.isfinite(square)]
     damping = np.full(len(made), 1e-3)

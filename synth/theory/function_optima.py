@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.optimize import linprog, nnls
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.theory.function_fit import Limits, Wanted
@@ -197,6 +196,8 @@ class _Linear:
 
     def _greatest(self, radius: float) -> FloatArray:
         """Linear programme in the step, the zero, the greatest error and the slack."""
+        from scipy.optimize import linprog  # here: few problems need it
+
         count, kept = len(self.errors), len(self.limits)
         scale = max(float(np.ptp(self.errors)) / 2, 1e-12)
         one, none = np.ones((count, 1)), np.zeros((count, 1))
@@ -268,6 +269,8 @@ def under_inequalities(
     >>> under_inequalities(np.eye(2), np.array([0.0, 0.0]), np.array([[1.0, 1.0]]), np.array([2.0]))
     array([1., 1.])
     """
+    from scipy.optimize import nnls  # here: few problems need it
+
     q, r = np.linalg.qr(matrix)
     inner = q.T @ side
     turned = np.linalg.solve(r.T, rows.T).T

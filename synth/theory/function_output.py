@@ -41,6 +41,11 @@ class Generators:
         return Generators(self.shape[index], self.assembly[index])
 
     @property
+    def finite(self) -> Generators:
+        """Those whose numbers are finite."""
+        return self[np.isfinite(self.shape.sum(axis=1))]
+
+    @property
     def lengths(self) -> FloatArray:
         """r1, r2, r3, r4 over r1, shape (M, 4)."""
         return np.concatenate([np.ones((len(self), 1)), np.exp(self.shape[:, :3])], axis=1)
@@ -94,7 +99,8 @@ def output_angles(made: Generators, turned: FloatArray) -> FloatArray:
         apart = np.abs(seen)
         cosine = (apart**2 + r4**2 - r3**2) / (2 * apart * r4)
         angle = np.angle(seen) - made.assembly[:, None] * np.arccos(cosine)
-    return np.unwrap(angle, axis=1)
+    unwrapped: FloatArray = np.unwrap(angle, axis=1)
+    return unwrapped
 
 
 def output_slopes(made: Generators, turned: FloatArray, theta4: FloatArray) -> FloatArray:
@@ -113,7 +119,8 @@ def output_slopes(made: Generators, turned: FloatArray, theta4: FloatArray) -> F
         driver, output = along * np.exp(1j * theta2), along * np.exp(1j * theta4)
         lever = -r4 * output.imag  # r4 sin(theta3 - theta4)
         slopes = [r2 * driver.real, np.broadcast_to(r3, theta2.shape), -r4 * output.real, -r2 * driver.imag]
-        return np.stack(slopes, axis=-1) / lever[..., None]
+        by_shape: FloatArray = np.stack(slopes, axis=-1) / lever[..., None]
+    return by_shape
 
 
 def closes(made: Generators, span: float) -> BoolArray:
@@ -127,7 +134,8 @@ def closes(made: Generators, span: float) -> BoolArray:
     """
     _, r3, r4 = np.exp(made.shape[:, :3]).T
     least, most = diagonals(made, span)
-    return (least > np.abs(r3 - r4)) & (most < r3 + r4)
+    closed: BoolArray = (least > np.abs(r3 - r4)) & (most < r3 + r4)
+    return closed
 
 
 def diagonals(made: Generators, span: float) -> tuple[FloatArray, FloatArray]:

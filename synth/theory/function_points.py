@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 from grashof.synth.theory.five_poses import five_pose_dyads_of_sets
 from grashof.synth.theory.function_output import Generators
 
 _TRIVIAL = 1e-6  # of the ground: a pivot so near to O2 or O4 is the ground link itself
 
 
-def through_five_pairs(turned: FloatArray, output: FloatArray) -> tuple[Generators, FloatArray]:
+def through_five_pairs(turned: FloatArray, output: FloatArray) -> tuple[Generators, IntArray]:
     """All four-bars through five pairs, both start angles free.
 
     Parameters
@@ -134,7 +134,7 @@ def _solved(rows: FloatArray, right: FloatArray) -> FloatArray:
     """Least squares of many small systems, (M, N, 3) and (M, N) to (M, 3); NaN where they are singular."""
     normal = rows.swapaxes(1, 2) @ rows if rows.shape[1] > 3 else rows
     side = (rows.swapaxes(1, 2) @ right[..., None])[..., 0] if rows.shape[1] > 3 else right
-    bad = ~np.isfinite(normal).all(axis=(1, 2))
+    bad: BoolArray = ~np.isfinite(normal.sum(axis=(1, 2)))
     normal = np.where(bad[:, None, None], np.nan, normal)
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         # Cramer's rule: a singular system of many must not spoil the others.

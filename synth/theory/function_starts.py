@@ -47,7 +47,7 @@ def function_starts(
 def on_grid(wanted: Wanted, driver: FloatArray, output: FloatArray) -> Generators:
     """Least squares of Freudenstein's equation at start angles, each of shape (M,), that close."""
     made = through_three_pairs(wanted.turned, wanted.output - wanted.output[0], driver, output)
-    return made[np.isfinite(made.shape).all(axis=1)]
+    return made.finite
 
 
 def _of_subsets(wanted: Wanted, rng: np.random.Generator, count: int) -> Generators:
