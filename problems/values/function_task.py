@@ -181,7 +181,7 @@ class FunctionTask(Task):
         >>> ranges = {"input_range_deg": 60, "output_range_deg": 90}
         >>> task = FunctionTask.from_degrees(law="log10", x=(1, 2), **ranges, pairs=5)
         >>> np.degrees(task.inputs).round(3).tolist()
-        [0.0, 10.897, 28.532, 46.166, 57.063]
+        [0.0, 10.898, 28.532, 46.165, 57.063]
         """
         table: dict[str, Any] = {"input_deg": input_deg, "output_deg": output_deg}
         stated: dict[str, Any] = {
