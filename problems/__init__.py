@@ -20,6 +20,8 @@ from grashof.problems.values.errors import (
     SolverError,
 )
 from grashof.problems.values.four_bar import FourBar
+from grashof.problems.values.function_law import FunctionLaw
+from grashof.problems.values.function_task import FunctionTask
 from grashof.problems.values.inverted_slider_crank import InvertedSliderCrank
 from grashof.problems.values.linkage import Linkage
 from grashof.problems.values.linkage_spec import LinkageSpec
@@ -44,6 +46,8 @@ __all__ = [
     "DeadPositionWarning",
     "DynamicsSpec",
     "FourBar",
+    "FunctionLaw",
+    "FunctionTask",
     "GrashofError",
     "GrashofWarning",
     "InvertedSliderCrank",

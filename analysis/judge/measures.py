@@ -190,7 +190,12 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     "link_ratio": _link_ratio,
     "theta2_start": lambda values: values.theta2_ends[0],
     "theta2_end": lambda values: values.theta2_ends[1],
-    "error": lambda values: float(np.sqrt(values.verdict.square / len(values.problem.task))),
+    "error": lambda values: (
+        np.nan
+        if values.problem.task.has_output.any()
+        else float(np.sqrt(values.verdict.square / len(values.problem.task)))
+    ),
+    **{(key := f"structural_error_{name}"): attrgetter(f"verdict.{key}") for name in ("max", "rms", "at")},
     **{name: attrgetter(f"verdict.{name}") for name in ("error_max", "error_rms", "error_sse")},
     "angle_error_max": partial(_angle_error, np.nanmax),
     "angle_error_rms": partial(_angle_error, lambda errors: np.sqrt(np.nanmean(errors**2))),

@@ -144,7 +144,9 @@ def _joined(linkage: Linkage, verdict: Verdict, theta2: FloatArray) -> bool:
 def motion_ends(task: Task, verdict: Verdict) -> tuple[float, float]:
     """Driver angles at which the motion from the first target to the last begins and ends, rad."""
     low, high = float(verdict.theta2.min()), float(verdict.theta2.max())
+    before, after = task.beyond
     start, end = (low, high) if verdict.direction > 0 else (high, low)
+    start, end = start - verdict.direction * before, end + verdict.direction * after
     if task.closed:
         end = start + verdict.direction * TURN
     return start, end

@@ -33,6 +33,7 @@ from grashof.problems.values.checks import near_miss, noted, outline, refuse, re
 from grashof.problems.values.cylinder import CARRIERS, CylinderSpec
 from grashof.problems.values.dynamics_spec import metres
 from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.function_task import FunctionTask
 from grashof.problems.values.manufacturing import Manufacturing
 from grashof.problems.values.mechanisms import ANY_KINDS, FOUR_BAR, mechanisms
 from grashof.problems.values.motion_task import MotionTask
@@ -79,7 +80,7 @@ def problem_from(document: dict[str, Any], name: str, folder: Path | None = None
     raise refused([*wrong, *_ill_matched(document)])
 
 
-_KINDS = ("motion", "path", "stroke")  # each with a table of its name
+_KINDS = ("motion", "path", "stroke", "function")  # each with a table of its name
 
 
 def _ill_matched(document: dict[str, Any]) -> Iterator[str]:
@@ -176,6 +177,30 @@ class StrokeTable(Table):
 
     def value(self) -> StrokeTask:
         return StrokeTask.from_degrees(**dict(self))
+
+
+class FunctionTable(Table):
+    input_deg: Angles | None = None
+    output_deg: Angles | None = None
+    law: str | None = None
+    x: Pair | None = None
+    exponent: float | None = None
+    input_range_deg: float | None = None
+    output_range_deg: float | None = None
+    pairs: int | None = None
+    sampled: Annotated[list[float], listed("a list of numbers")] | None = None
+    sense: str = "given"
+    norm: str = "rms"
+
+    @field_validator("sense", "norm")
+    @classmethod
+    def _by_itself(cls, word: str, key: ValidationInfo) -> str:
+        words: dict[str, Any] = {str(key.field_name): word}
+        FunctionTask([0, 1, 2], [0, 1, 2], **words)
+        return word
+
+    def value(self) -> FunctionTask:
+        return FunctionTask.from_degrees(**dict(self))
 
 
 Outlines = Annotated[list[Corners], listed("a list of outlines, each a list of corners [x, y]")]
@@ -376,6 +401,7 @@ class _Task(Table):
     motion: MotionTable | None = None
     path: PathTable | None = None
     stroke: StrokeTable | None = None
+    function: FunctionTable | None = None
     scene: SceneTable = SceneTable()
     requirements: RequirementsTable = RequirementsTable()
     driver: DriverTable | None = None
@@ -387,7 +413,7 @@ class ProblemFile(MachineTables, _Task):
     search: SearchTable = SearchTable()
 
     def value(self) -> Task:
-        tables = {kind: getattr(self, kind) for kind in _KINDS}
+        tables: dict[str, Any] = {kind: getattr(self, kind) for kind in _KINDS}
         mine = tables.pop(self.kind)
         for other, table in tables.items():
             if table is not None:
@@ -434,6 +460,7 @@ _TABLES: dict[str, type[Table]] = {
     "motion": MotionTable,
     "path": PathTable,
     "stroke": StrokeTable,
+    "function": FunctionTable,
     "scene": SceneTable,
     "requirements": RequirementsTable,
     **{f"requirements.{name}": BoxTable for name in sorted(_PLACES)},

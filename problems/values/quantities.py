@@ -69,6 +69,7 @@ class Needs(Enum):
     ANGLES = "targets with angles"
     CYLINDER = "driver.cylinder"
     LOADED_CYLINDER = "driver.cylinder and dynamics"
+    OUTPUTS = "a function"
 
 
 @dataclass(frozen=True, slots=True)

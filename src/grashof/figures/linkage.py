@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from grashof.analysis import Position, solve_position
 from grashof.figures.cylinder import DrawnCylinder, cylinder_places
+from grashof.figures.function import plot_wanted
 from grashof.figures.parts import (
     COUPLER,
     GROUND,
@@ -29,7 +30,7 @@ from grashof.figures.parts import (
     targets_shown,
 )
 from grashof.figures.subject import Linkage, Subject
-from grashof.problems import AssemblyError, Problem, ProblemError
+from grashof.problems import AssemblyError, FunctionTask, Problem, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import near_miss
 from grashof.problems.values.requirements import QUANTITIES
@@ -116,7 +117,8 @@ def plot_task(problem: Problem, *, ax: Axes | None = None) -> Axes:
     Returns
     -------
     Axes
-        Equal scales, in the problem's unit. A pose without a place is not drawn.
+        Equal scales, in the problem's unit. A pose without a place is not drawn. Of a function
+        what is wanted, over the driver rotation.
 
     Examples
     --------
@@ -126,6 +128,9 @@ def plot_task(problem: Problem, *, ax: Axes | None = None) -> Axes:
     'x (m)'
     """
     ax, task = new_axes(ax), problem.task
+    if isinstance(task, FunctionTask):
+        plot_wanted(ax, task)
+        return ax
     draw_scene(ax, problem)
     draw_targets(ax, task, np.full((len(task), 2), np.nan), np.full(len(task), np.nan))
     plane(ax, problem.length_unit)
@@ -215,7 +220,8 @@ def plot_design_space(
     (x_values, x_label), (y_values, y_label) = _along(result, x), _along(result, y)
     front = pareto_optimal(problem, candidates)
     ax = new_axes(ax)
-    third = "torque_peak" if problem.dynamics is not None else "error_rms"
+    error = "structural_error_max" if problem.task.has_output.any() else "error_rms"
+    third = "torque_peak" if problem.dynamics is not None else error
     if third == "error_rms" and problem.requirements.is_exact(problem.task):
         ax.scatter(x_values, y_values, color=COUPLER, label="design", zorder=3)
     else:

@@ -146,6 +146,7 @@ def _given(errors: FloatArray) -> list[float | None]:
 def _design(candidate: Candidate, keys: Sequence[str]) -> dict[str, Any]:
     verdict = candidate.verdict
     turned = verdict.angle_error
+    output_error = {"output_error": verdict.output_error.tolist()} if verdict.output_error.size else {}
     angle_error = {} if np.isnan(turned).all() else {"angle_error": _given(turned)}
     return {
         **facts(candidate),
@@ -154,6 +155,7 @@ def _design(candidate: Candidate, keys: Sequence[str]) -> dict[str, Any]:
         "assembly": verdict.assembly.tolist(),
         "position_error": _given(verdict.position_error),
         **angle_error,
+        **output_error,
         **_driven(candidate),
         **{key: x if np.isfinite(x := candidate.values[key]) else None for key in keys},
     }

@@ -17,6 +17,7 @@ from grashof.sections.equations import equations
 from grashof.sections.equilibrium import equilibrium
 from grashof.sections.fits import fits
 from grashof.sections.flywheel import flywheel
+from grashof.sections.function import function_section
 from grashof.sections.hodographs import hodographs
 from grashof.sections.mass_centres import mass_centres
 from grashof.sections.mechanical_advantage import mechanical_advantage
@@ -35,6 +36,7 @@ from grashof.study.study import LinkageStudy
 
 # In the order in which they are reported. None where the file has no data for it, or nobody asked for it.
 SECTIONS: tuple[Callable[[LinkageStudy], Section | None], ...] = (
+    function_section,
     mass_centres,
     over_time,
     positions,

@@ -209,7 +209,7 @@ class Stage {
         });
       }
       const [x, y] = this.at(pose.at);
-      if (pose.angle !== null) {
+      if (pose.angle !== null && !scene.bare) {
         const [cos, sin] = [Math.cos(pose.angle), Math.sin(pose.angle)];
         add(layer, "path", { d: `M${px(x)} ${px(y)}l${px(22 * cos)} ${px(-22 * sin)}`, class: "pose" });
       }
