@@ -113,7 +113,8 @@ def travel(
     >>> from grashof.problems import FourBar
     >>> rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3)
     >>> moved = travel(rocker, np.radians([90.0, 100.0, 90.0]), np.array([1, 1, -1]))
-    >>> len(moved.dead), travel(rocker, np.radians([90.0, 100.0, 95.0]), np.array([1, 1, 1])) is None
+    >>> back = np.radians([90.0, 100.0, 95.0, 98.0])  # to and fro: in order neither way around
+    >>> len(moved.dead), travel(rocker, back, np.ones(4, dtype=int)) is None
     (1, True)
     """
     circuits = circuit_index(linkage, theta2, assembly)

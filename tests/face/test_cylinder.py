@@ -68,6 +68,7 @@ def test_drawings_show_body_and_rod_where_they_are(solved: Path) -> None:
     (body,) = (line for line in axes.lines if line.get_label() == "cylinder")
     np.testing.assert_allclose(np.asarray(body.get_xydata())[0], spec.cylinder.base)
     moving = animate(spec, seconds=1, fps=10, ax=Figure().subplots())
+    moving._draw_was_started = True  # else matplotlib warns that it was never seen
     first, later = (
         [np.array(artist.get_xydata()) for artist in moving._func(k) if hasattr(artist, "get_xydata")]  # type: ignore[attr-defined]
         for k in (0, 3)
