@@ -101,6 +101,7 @@ from grashof.analysis.four_bar.transmission import (
     worst_transmission_cycle,
 )
 from grashof.analysis.judge.design import Constraint, Design
+from grashof.analysis.judge.function_output import FunctionCurves, function_curves
 from grashof.analysis.judge.made_moves import MadeMoves, made_moves, output_sensitivity
 from grashof.analysis.judge.over_task import OverTask, over_task
 from grashof.analysis.judge.tolerance import Robustness, robustness, sensitivity
@@ -141,6 +142,7 @@ __all__ = [
     "FourierSeries",
     "FreeResponse",
     "Friction",
+    "FunctionCurves",
     "GrashofClass",
     "Holding",
     "InstantCentres",
@@ -215,6 +217,7 @@ __all__ = [
     "fourier_series",
     "free_response",
     "full_rotation",
+    "function_curves",
     "generalised_inertia",
     "given_masses",
     "grashof_class",

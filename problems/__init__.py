@@ -8,6 +8,7 @@ from grashof.problems.files.linkage_file import (
 )
 from grashof.problems.files.problem_file import catalogue, load, load_with_text, problem_text
 from grashof.problems.values.box import Box
+from grashof.problems.values.cylinder import Cylinder, CylinderSpec
 from grashof.problems.values.dynamics_spec import DynamicsSpec
 from grashof.problems.values.errors import (
     AssemblyError,
@@ -19,6 +20,8 @@ from grashof.problems.values.errors import (
     SolverError,
 )
 from grashof.problems.values.four_bar import FourBar
+from grashof.problems.values.function_law import FunctionLaw
+from grashof.problems.values.function_task import FunctionTask
 from grashof.problems.values.inverted_slider_crank import InvertedSliderCrank
 from grashof.problems.values.linkage import Linkage
 from grashof.problems.values.linkage_spec import LinkageSpec
@@ -38,9 +41,13 @@ __all__ = [
     "AssemblyError",
     "Box",
     "CrossSection",
+    "Cylinder",
+    "CylinderSpec",
     "DeadPositionWarning",
     "DynamicsSpec",
     "FourBar",
+    "FunctionLaw",
+    "FunctionTask",
     "GrashofError",
     "GrashofWarning",
     "InvertedSliderCrank",

@@ -8,7 +8,7 @@ from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from grashof.problems import Problem, Search
+from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.files.on_disk import write_whole
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.errors import wrong_value
@@ -113,6 +113,8 @@ class Plan:
     @classmethod
     def of(cls, problem: Problem, search: Search) -> Plan:
         """The plan of a search."""
+        if problem.task.has_output.any():
+            raise ProblemError(f"{problem.name} is a function, which is searched at once; leave shards out")
         scaled = ScaledProblem.of(problem)
         return cls(scaled, () if finder_for(scaled).degenerate() else asked_in_turn(scaled), search)
 

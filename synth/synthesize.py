@@ -15,6 +15,7 @@ from grashof.problems.values.errors import wrong_value
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.user_functions import refuse_unusable
 from grashof.synth.results.conclusion import conclude, needless
+from grashof.synth.results.function_list import function_list
 from grashof.synth.results.mixed import one_list
 from grashof.synth.results.result import Result
 from grashof.synth.search.asked import asking, search_of
@@ -107,6 +108,8 @@ def synthesize(
         raise ProblemError("record does not go with constraints or an objective of your own")
     how = problem.task.kind, search.seed, search.effort, search.starts, workers
     _LOG.info("%s: %s; seed %d, effort %g, at most %d starts, %d at a time", readable(problem.name), *how)
+    if problem.task.has_output.any():
+        return function_list(problem, search, asked, constraints, objective, progress)
     kinds = [ScaledProblem.of(problem.for_kind(kind), constraints, objective) for kind in problem.mechanism]
     for scaled in kinds:
         refuse_unusable(scaled, in_processes=workers > 1 or executor is not None)

@@ -10,10 +10,11 @@ from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.verdict import Defect
 from grashof.problems import Problem, ProblemError, Requirements
 from grashof.problems.values.arrays import Limits
-from grashof.problems.values.quantities import Kind, Limit, Over, Quantity, Unit
+from grashof.problems.values.quantities import Kind, Limit, Needs, Over, Quantity, Unit
 
 # Limits are inclusive; rounding may carry a design this far past them (sizes, rad or ratio).
 SLACK = 1e-9
+_OF_CYLINDERS = (Needs.CYLINDER, Needs.LOADED_CYLINDER)
 
 
 def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
@@ -33,7 +34,8 @@ def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
         A quantity is limited that needs more than the problem states.
     """
     limited = wanted.limited
-    joined = values.verdict.branch_ok or not wanted.same_branch  # another defect reports that it is not
+    verdict = values.verdict  # another defect reports that no motion joins the targets
+    joined = verdict.branch_ok or verdict.cylinder is not None or not wanted.same_branch
     for name, limit in limited.items():
         if values.linkage.MECHANISM not in limit.quantity.kinds:  # of a list of several kinds
             continue
@@ -41,6 +43,8 @@ def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
             raise ProblemError(f"requirements.{name} needs a problem with {limit.quantity.needs.value}")
         if limit.quantity.over is Over.TASK and not joined:
             continue
+        if verdict.cylinder is None and limit.quantity.needs in _OF_CYLINDERS:
+            continue  # that there is none is a defect by itself
         quantity, ranges = wanted.meant(limit.quantity), wanted.ranges(name)
         for part, numbers in values.parts(quantity.key).items():
             if part in limited:  # r1 and link_length: its own limits take their place

@@ -10,12 +10,14 @@ from operator import attrgetter
 import numpy as np
 
 from grashof.analysis.curves.curve_distance import curve_distances
+from grashof.analysis.cylinder.lengths import CylinderFigures
 from grashof.analysis.four_bar.position import Position, solve_position
 from grashof.analysis.four_bar.stroke import output_stroke
+from grashof.analysis.judge.driven import cylinder_force_peak, figures_of
 from grashof.analysis.judge.over_task import OverTask, motion_ends, over_task, torque_peak
 from grashof.analysis.judge.tolerance import robustness
 from grashof.analysis.judge.verdict import Verdict
-from grashof.problems import FourBar, Linkage, Problem, SliderCrank
+from grashof.problems import Cylinder, FourBar, Linkage, Problem, SliderCrank
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.mechanisms import LENGTHS, PARAMETERS
 from grashof.problems.values.quantities import Needs
@@ -57,7 +59,7 @@ class Values(Mapping[str, float]):
 
     def are_of(self, linkage: Linkage, verdict: Verdict, problem: Problem) -> bool:
         """Whether they are those of this very design, by a problem that states the same."""
-        stated = attrgetter("requirements", "dynamics", "manufacturing", "length_unit")
+        stated = attrgetter("requirements", "dynamics", "driver", "manufacturing", "length_unit")
         alike = self.problem is problem or stated(self.problem) == stated(problem)
         return self.linkage is linkage and self.verdict is verdict and alike
 
@@ -91,6 +93,11 @@ class Values(Mapping[str, float]):
         moves = zip((f"move_{name}" for name in self.linkage.DIMENSIONS), found.moves.tolist(), strict=True)
         shares = {"share_within_linear": found.share_linear, "share_within_made": found.share_made}
         return {**dict(moves), "worst_move": found.worst_move, **shares}
+
+    @cached_property
+    def cylinder(self) -> CylinderFigures | None:
+        """What the cylinder does that drives it; None without one."""
+        return figures_of(self.linkage, self.problem.task, self.verdict)
 
     @cached_property
     def curve_distances(self) -> tuple[float, float]:
@@ -153,6 +160,15 @@ def _with(theta2: FloatArray, values: Values) -> FloatArray:
     return np.sort(np.concatenate([np.linspace(start, end, 181), inside]))
 
 
+def _cylinder(name: str, values: Values) -> float:
+    return np.nan if values.cylinder is None else getattr(values.cylinder, name)
+
+
+def _cylinder_column(name: str, values: Values) -> float:
+    cylinder = values.verdict.cylinder
+    return np.nan if cylinder is None else cylinder.columns[name]
+
+
 def _omega2(values: Values) -> float:
     return 1.0 if values.problem.dynamics is None else values.problem.dynamics.omega2
 
@@ -174,7 +190,12 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     "link_ratio": _link_ratio,
     "theta2_start": lambda values: values.theta2_ends[0],
     "theta2_end": lambda values: values.theta2_ends[1],
-    "error": lambda values: float(np.sqrt(values.verdict.square / len(values.problem.task))),
+    "error": lambda values: (
+        np.nan
+        if values.problem.task.has_output.any()
+        else float(np.sqrt(values.verdict.square / len(values.problem.task)))
+    ),
+    **{(key := f"structural_error_{name}"): attrgetter(f"verdict.{key}") for name in ("max", "rms", "at")},
     **{name: attrgetter(f"verdict.{name}") for name in ("error_max", "error_rms", "error_sse")},
     "angle_error_max": partial(_angle_error, np.nanmax),
     "angle_error_rms": partial(_angle_error, lambda errors: np.sqrt(np.nanmean(errors**2))),
@@ -192,6 +213,9 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     "mechanical_advantage_min": _signed_advantage,
     "hausdorff": lambda values: values.curve_distances[0],
     "frechet": lambda values: values.curve_distances[1],
+    **{name: partial(_cylinder_column, name) for name in Cylinder.COLUMNS},
+    **{f"cylinder_{name}": partial(_cylinder, name) for name in ("closed", "stroke", "angle_min")},
+    "cylinder_force_max": lambda values: cylinder_force_peak(values.linkage, values.problem, values.verdict),
     **{
         quantity.key: partial(_made, quantity.key)
         for quantity in QUANTITIES.values()

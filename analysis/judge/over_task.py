@@ -94,9 +94,9 @@ def over_task(linkage: Linkage, problem: Problem, verdict: Verdict) -> OverTask:
     >>> round(found.omega4_max, 6), round(found.coupler_fit_r2, 6), round(found.torque_peak, 3)
     (1.260659, 0.999996, 2.757)
     """
-    linkage, spec = _as_used(linkage, verdict), problem.dynamics
+    linkage, spec = as_used(linkage, verdict), problem.dynamics
     start, end = motion_ends(problem.task, verdict)
-    theta2 = _sampled(linkage, start, end)
+    theta2 = sampled(linkage, start, end)
     if not _joined(linkage, verdict, theta2):
         return _NONE
     forces: tuple[float, ...] = ()
@@ -119,9 +119,9 @@ def torque_peak(linkage: Linkage, problem: Problem, verdict: Verdict) -> float:
     """The drive torque's greatest magnitude as `over_task` has it, N m; NaN without dynamics."""
     if problem.dynamics is None:
         return np.nan
-    linkage = _as_used(linkage, verdict)
+    linkage = as_used(linkage, verdict)
     ends = motion_ends(problem.task, verdict)
-    theta2, law = _sampled(linkage, *ends), driver_law(problem, *ends)
+    theta2, law = sampled(linkage, *ends), driver_law(problem, *ends)
     if not _joined(linkage, verdict, theta2):
         return np.nan
     loaded = _loaded(linkage, problem.dynamics, metres(problem.length_unit), law)
@@ -130,7 +130,7 @@ def torque_peak(linkage: Linkage, problem: Problem, verdict: Verdict) -> float:
         return float(peaks(lambda place: loaded(place)[:1], law.stretches(theta2))[0][0])
 
 
-def _as_used(linkage: Linkage, verdict: Verdict) -> Linkage:
+def as_used(linkage: Linkage, verdict: Verdict) -> Linkage:
     """The linkage on the assembly on which it meets the first target."""
     used = np.asarray(verdict.assembly[0], dtype=np.float64)
     return linkage if used == linkage.assembly else linkage.changed(assembly=used)
@@ -144,7 +144,9 @@ def _joined(linkage: Linkage, verdict: Verdict, theta2: FloatArray) -> bool:
 def motion_ends(task: Task, verdict: Verdict) -> tuple[float, float]:
     """Driver angles at which the motion from the first target to the last begins and ends, rad."""
     low, high = float(verdict.theta2.min()), float(verdict.theta2.max())
+    before, after = task.beyond
     start, end = (low, high) if verdict.direction > 0 else (high, low)
+    start, end = start - verdict.direction * before, end + verdict.direction * after
     if task.closed:
         end = start + verdict.direction * TURN
     return start, end
@@ -181,7 +183,7 @@ def _loaded(linkage: Linkage, spec: DynamicsSpec, metre: float, law: DriverLaw) 
     return curves
 
 
-def _sampled(linkage: Linkage, start: float, end: float) -> FloatArray:
+def sampled(linkage: Linkage, start: float, end: float) -> FloatArray:
     """Driver angles from the lower end to the upper, close where a dead position is near."""
     low, high = min(start, end), max(start, end)
     spread = low + (high - low) * (1 - np.cos(np.linspace(0, np.pi, _SAMPLES))) / 2

@@ -7,9 +7,21 @@ from typing import Any
 
 import numpy as np
 
+from grashof.analysis.four_bar.mobility import rotatability
 from grashof.analysis.four_bar.position import solve_position
-from grashof.problems import FourBar, InvertedSliderCrank, Linkage, MotionTask, PathTask, SliderCrank
-from grashof.problems.values.arrays import FloatArray
+from grashof.analysis.four_bar.transmission import worst_transmission
+from grashof.problems import (
+    FourBar,
+    FunctionTask,
+    InvertedSliderCrank,
+    Linkage,
+    MotionTask,
+    PathTask,
+    SliderCrank,
+)
+from grashof.problems.values.arrays import TURN, FloatArray
+
+_LEAST_MARGIN = 0.002  # of full rotation, of planted functions
 
 
 def random_full_crank(rng: np.random.Generator) -> FourBar:
@@ -156,3 +168,47 @@ def planted_path(
     theta2 = uneven_driver_angles(rng, points)
     timing = np.abs(theta2 - theta2[0]) if timed else None
     return PathTask(solve_position(linkage, theta2).p, timing=timing), linkage
+
+
+def planted_function(
+    rng: np.random.Generator, pairs: int, *, full: bool = False
+) -> tuple[FunctionTask, FourBar, float]:
+    """Pairs that some four-bar on O2 = (0, 0), O4 = (1, 0) generates, its driver counter-clockwise.
+
+    Parameters
+    ----------
+    rng : Generator
+    pairs : int
+    full : bool
+        Its driver turns fully.
+
+    Returns
+    -------
+    FunctionTask, FourBar, float
+        The last is the driver angle at the first pair, rad. Lengths are 0.2 to 5, the range is 30 to 300
+        deg, the transmission angle at least 10 deg over it.
+
+    Examples
+    --------
+    >>> task, linkage, start = planted_function(np.random.default_rng(0), pairs=6)
+    >>> theta4 = solve_position(linkage, start + task.inputs).theta4
+    >>> bool(np.abs(np.exp(1j * (theta4 - theta4[0])) - np.exp(1j * task.outputs)).max() < 1e-12)
+    True
+    """
+    while True:
+        r2, r3, r4 = np.exp(np.log(5) * rng.uniform(-1, 1, 3))
+        start, span = rng.uniform(-np.pi, np.pi), np.radians(rng.uniform(30, 300))
+        linkage = FourBar((0, 0), (1, 0), r2, r3, r4, assembly=rng.choice([-1, 1]))
+        if full and rotatability(linkage).min() < _LEAST_MARGIN:
+            continue
+        if not (worst_transmission(linkage, start, start + span) >= np.radians(10)):
+            continue
+        inputs = np.concatenate([[0.0], np.sort(rng.uniform(0, span, pairs - 2)), [span]])
+        dense = np.unique(np.concatenate([inputs, np.linspace(0, span, 201)]))
+        theta4 = solve_position(linkage, start + dense).theta4
+        if np.isnan(theta4).any() or np.diff(inputs).min() < span / pairs / 10:
+            continue
+        outputs = np.unwrap(theta4)[np.searchsorted(dense, inputs)]
+        if np.ptp(outputs) > TURN:
+            continue
+        return FunctionTask(inputs, outputs - outputs[0]), linkage, float(start)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -29,12 +29,15 @@ class Targets:
         Distance from the target position, NaN where none is given; inf where it cannot be assembled.
     angle_error : ndarray, shape (N,), rad
         Turn from the target angle, NaN where none is given.
+    output_error : ndarray, shape (N,), rad
+        Of the output of a function; empty where none is asked for.
     """
 
     theta2: FloatArray
     assembly: IntArray
     position_error: FloatArray
     angle_error: FloatArray
+    output_error: FloatArray = field(default_factory=lambda: np.empty(0))
 
     @classmethod
     def of(cls, linkage: Linkage, task: Task, theta2: FloatArray, assembly: IntArray) -> Targets:

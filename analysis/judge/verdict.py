@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from grashof.analysis.loops.loop import GrashofClass
+from grashof.problems import Cylinder
 from grashof.problems.values.arrays import FloatArray, IntArray
 
 
@@ -63,6 +64,17 @@ class Verdict:
         Diagonal of the box around O2, O4 and all that A, B and P reach in it.
     defects : tuple of Defect
         Empty for a design that does what is required.
+    cylinder : Cylinder, optional
+        That drives it, where one does.
+    output_error : ndarray, shape (N,), rad
+        Of the output of a function at its pairs; empty where none is asked for.
+    structural_error_max, structural_error_rms, structural_error_at : float, rad
+        Over the range of a function: greatest, root mean square, and the driver rotation from the first
+        pair to the greatest; NaN where none is asked for, or the motion does not cover the range.
+    output_zero : float, rad
+        Direction theta4 that the wanted output zero stands for.
+    output_sense : int
+        -1 where the output is the opposite of what is wanted.
     """
 
     theta2: FloatArray
@@ -80,6 +92,13 @@ class Verdict:
     transmission_min_cycle: float
     size: float
     defects: tuple[Defect, ...]
+    cylinder: Cylinder | None = None
+    output_error: FloatArray = field(default_factory=lambda: np.empty(0))
+    structural_error_max: float = np.nan
+    structural_error_rms: float = np.nan
+    structural_error_at: float = np.nan
+    output_zero: float = np.nan
+    output_sense: int = 1
 
     @property
     def ok(self) -> bool:
@@ -88,19 +107,20 @@ class Verdict:
 
     @property
     def error_max(self) -> float:
-        """Greatest distance from a target position; NaN where all are free."""
-        return float(np.nanmax(self.position_error)) if self._has_positions else np.nan
+        """Greatest distance from a target position; NaN where no position is asked for."""
+        return np.nan if self._unplaced else float(np.nanmax(self.position_error))
 
     @property
     def error_sse(self) -> float:
         """Sum of squared distances from the target positions."""
-        return float(np.nansum(self.position_error**2)) if self._has_positions else np.nan
+        return np.nan if self._unplaced else float(np.nansum(self.position_error**2))
 
     @property
     def error_rms(self) -> float:
         """Root mean square distance from the target positions."""
-        return float(np.sqrt(np.nanmean(self.position_error**2))) if self._has_positions else np.nan
+        return np.nan if self._unplaced else float(np.sqrt(np.nanmean(self.position_error**2)))
 
     @property
-    def _has_positions(self) -> bool:
-        return not np.isnan(self.position_error).all()
+    def _unplaced(self) -> bool:
+        """Whether no position is asked for."""
+        return bool(np.isnan(self.position_error).all())

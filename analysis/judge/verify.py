@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -18,13 +19,24 @@ from grashof.analysis.four_bar.mobility import (
 from grashof.analysis.four_bar.reach import diagonal, reach_box
 from grashof.analysis.four_bar.transmission import worst_transmission, worst_transmission_cycle
 from grashof.analysis.judge.design import Constraint, Design, greatest, name_of
+from grashof.analysis.judge.driven import cylinder_defects, driven_travel
+from grashof.analysis.judge.function_output import StructuralError, met_as_function
 from grashof.analysis.judge.limit_positions import stroke_defects
 from grashof.analysis.judge.limits import SLACK, missed
 from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.meet import meet
 from grashof.analysis.judge.task_motion import STEADY, Targets, TaskMotion
 from grashof.analysis.judge.verdict import Defect, Verdict
-from grashof.problems import Linkage, Problem, Requirements, Rotatability, StrokeTask, Task
+from grashof.problems import (
+    Cylinder,
+    FunctionTask,
+    Linkage,
+    Problem,
+    Requirements,
+    Rotatability,
+    StrokeTask,
+    Task,
+)
 
 
 def verify(
@@ -35,6 +47,7 @@ def verify(
     *,
     most_square: float = np.inf,
     problem: Problem | None = None,
+    cylinder: Cylinder | None = None,
 ) -> Verdict:
     """Judge a single linkage.
 
@@ -50,6 +63,8 @@ def verify(
         Up to which `Verdict.square` is allowed: what ``error_factor`` makes of the least one found.
     problem : Problem, optional
         That the task is of: what limits of torques, forces or made linkages need.
+    cylinder : Cylinder, optional
+        That drives the linkage, where the problem asks for one.
 
     Returns
     -------
@@ -68,11 +83,20 @@ def verify(
     >>> verdict.ok, bool(verdict.error_max < 1e-12 * task.size)
     (True, True)
     """
-    wanted = requirements.resolved(task.size, scale_free=task.scale_free)
-    targets, motion = meet(linkage, task, wanted)
-    circuits = circuit_index(linkage, targets.theta2, targets.assembly)
-    branches = branch_index(linkage, targets.theta2, targets.assembly)
+    task = task.under(requirements)
+    wanted = requirements.for_task(task).resolved(task.size, scale_free=task.scale_free)
+    error: StructuralError | None = None
+    if isinstance(task, FunctionTask):
+        targets, motion, error = met_as_function(linkage, task, wanted)
+        places = np.array([motion.start, *targets.theta2, motion.end])
+        sides = np.full(len(places), int(linkage.assembly))
+    else:
+        targets, motion = meet(linkage, task, wanted)
+        places, sides = targets.theta2, targets.assembly
+    circuits = circuit_index(linkage, places, sides)
+    branches = branch_index(linkage, places, sides)
     circuit_ok = bool((circuits == circuits[0]).all() and circuits[0] >= 0)
+    circuit_ok = circuit_ok and (error is not None or not isinstance(task, FunctionTask))
     branch_ok = circuit_ok and bool((branches == branches[0]).all())
     branch_ok = branch_ok and not passes_change_point(linkage, motion.start, motion.end)
     # Without a motion that joins the targets nothing is transmitted.
@@ -94,14 +118,16 @@ def verify(
         transmission_min_cycle=cycle_worst,
         size=diagonal(reach_box(linkage, motion.start, motion.end)),
         defects=(),
+        cylinder=cylinder,
+        **_of_function(targets, error),
     )
+    drive = _drive(linkage, task, wanted, verdict, targets, motion, problem)
     defects = (
         *(_exactness(targets, task, wanted) if wanted.is_exact(task) else []),
         *(stroke_defects(linkage, task, wanted) if isinstance(task, StrokeTask) else []),
         *_zones(targets, task),
         *_whole_error(targets, task, most_square),
-        *_same_branch(circuit_ok, branch_ok, int(linkage.assembly), targets, wanted),
-        *_order(motion, wanted),
+        *drive,
         *_rotatability(linkage, task, wanted),
         *_covered(targets),
         *missed(Values(linkage, verdict, problem or Problem(task=task)), wanted),
@@ -111,7 +137,23 @@ def verify(
     return replace(verdict, defects=defects)
 
 
+def _of_function(targets: Targets, error: StructuralError | None) -> dict[str, Any]:
+    """What a verdict has of a function."""
+    if error is None:
+        return {"output_error": targets.output_error}
+    return {
+        "output_error": targets.output_error,
+        "structural_error_max": error.max,
+        "structural_error_rms": error.rms,
+        "structural_error_at": error.at,
+        "output_zero": error.zero,
+        "output_sense": error.sense,
+    }
+
+
 def _square(targets: Targets, task: Task) -> float:
+    if task.has_output.any():
+        return float(task.weights @ targets.output_error**2)
     turned = task.angle_length * targets.angle_error
     return float(np.nansum(task.weights * targets.position_error**2) + np.nansum(task.weights * turned**2))
 
@@ -121,6 +163,7 @@ def _exactness(targets: Targets, task: Task, wanted: Requirements) -> list[Defec
     errors = (
         ("position error", targets.position_error, allowed, task.size, 1.0),
         ("angle error in deg", targets.angle_error, allowed / task.angle_length, 1.0, deg),
+        ("output error in deg at the pairs", targets.output_error, wanted.tolerance, 1.0, deg),
     )
     return [
         Defect(
@@ -157,6 +200,28 @@ def _whole_error(targets: Targets, task: Task, most_square: float) -> list[Defec
     if not miss > SLACK:
         return []
     return [Defect("error_factor", "the error (root mean square)", found, f"up to {most:.6g}", miss)]
+
+
+def _drive(
+    linkage: Linkage,
+    task: Task,
+    wanted: Requirements,
+    verdict: Verdict,
+    targets: Targets,
+    motion: TaskMotion,
+    problem: Problem | None,
+) -> list[Defect]:
+    """Branch and order, of the driver that there is; and what a cylinder misses."""
+    spec = None if problem is None else problem.driver
+    moved = driven_travel(linkage, task, verdict) if spec is not None else None
+    through = moved is not None and not verdict.branch_ok  # a cylinder, through dead positions of link 2
+    by_link2 = [] if through else [
+        *_same_branch(verdict.circuit_ok, verdict.branch_ok, int(linkage.assembly), targets, wanted),
+        *_order(motion, wanted),
+    ]  # fmt: skip
+    if spec is None:
+        return by_link2
+    return [*by_link2, *cylinder_defects(spec, verdict.cylinder, moved, task.size)]
 
 
 def _same_branch(
@@ -211,6 +276,7 @@ def _rotatability(linkage: Linkage, task: Task, wanted: Requirements) -> list[De
 
 def _covered(targets: Targets) -> list[Defect]:
     missed = int(np.count_nonzero(np.isinf(targets.position_error)))
+    missed += int(np.count_nonzero(np.isinf(targets.output_error)))
     if not missed:
         return []
     what = "the number of targets at which the linkage cannot be assembled"

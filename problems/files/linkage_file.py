@@ -21,8 +21,9 @@ from grashof.problems.values.checks import (
     number_within,
     readable,
 )
+from grashof.problems.values.cylinder import CARRIERS, Cylinder
 from grashof.problems.values.dynamics_spec import DynamicsSpec
-from grashof.problems.values.errors import ProblemError, shown
+from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkage import Linkage
 from grashof.problems.values.linkage_spec import LinkageSpec, ListedDesign
 from grashof.problems.values.mechanisms import FOUR_BAR, KINDS, mechanism
@@ -205,15 +206,32 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
     document = {"title": heading, "length_unit": unit, "mechanism": kind, **stated}
     document["dynamics"] = content.get("dynamics", {})
     with located_in(where):
+        driven = _cylinder(design.get("cylinder"))
         spec = linkage_from(document, readable(f"{path.parent.name or path.stem}-{rank}"))
         angles = {key: np.asarray(finite_number(angle, key)) for key, angle in turned.items()}
         linkage = KINDS[kind](**{key: getattr(spec.linkage, key) for key in keys} | angles)
     if direction not in (1, -1):
         raise ProblemError(f"{where}: direction is {shown(direction)}; it must be +1 or -1")
     problem = _listed_problem(content, path)
-    driven = ((spec if problem is None else problem).dynamics or DynamicsSpec()).turning(direction)
+    dynamics = ((spec if problem is None else problem).dynamics or DynamicsSpec()).turning(direction)
     title, source = f"{spec.title}: design {rank}", readable(str(path))
-    return LinkageSpec(linkage, spec.name, title, source, unit, dynamics=driven, problem=problem), design
+    with located_in(where):
+        listed = LinkageSpec(
+            linkage, spec.name, title, source, unit, dynamics=dynamics, problem=problem, cylinder=driven
+        )
+    return listed, design
+
+
+def _cylinder(stated: Any) -> Cylinder | None:
+    """The cylinder that a list states of a design."""
+    if stated is None:
+        return None
+    keys = ("on", "base", "point")
+    if not isinstance(stated, dict) or not all(key in stated for key in keys):
+        raise ProblemError(f"cylinder is {shown(stated)}; it must be an object of {', '.join(keys)}")
+    if not isinstance(stated["on"], str):
+        raise wrong_value("cylinder.on", stated["on"], f"one of {', '.join(CARRIERS)}")
+    return Cylinder(*(stated[key] for key in keys))
 
 
 def _listed_problem(content: dict[str, Any], path: Path) -> Problem | None:

@@ -6,7 +6,7 @@ The value types check what the values mean; both kinds of error leave as one `Pr
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
@@ -30,8 +30,10 @@ from grashof.problems.files.tables import (
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.box import Box
 from grashof.problems.values.checks import near_miss, noted, outline, refuse, refused
+from grashof.problems.values.cylinder import CARRIERS, CylinderSpec
 from grashof.problems.values.dynamics_spec import metres
 from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.function_task import FunctionTask
 from grashof.problems.values.manufacturing import Manufacturing
 from grashof.problems.values.mechanisms import ANY_KINDS, FOUR_BAR, mechanisms
 from grashof.problems.values.motion_task import MotionTask
@@ -39,7 +41,7 @@ from grashof.problems.values.objective import GOALS, Objective
 from grashof.problems.values.path_task import PathTask
 from grashof.problems.values.problem import NO_OBJECTIVE, Problem, Search
 from grashof.problems.values.quantities import Kind
-from grashof.problems.values.requirements import LIMITS, MAY_KEEP_OUT, Requirements
+from grashof.problems.values.requirements import LIMITS, MAY_KEEP_OUT, Requirements, Rotatability
 from grashof.problems.values.stroke_task import StrokeTask
 from grashof.problems.values.task import Task
 
@@ -78,7 +80,7 @@ def problem_from(document: dict[str, Any], name: str, folder: Path | None = None
     raise refused([*wrong, *_ill_matched(document)])
 
 
-_KINDS = ("motion", "path", "stroke")  # each with a table of its name
+_KINDS = ("motion", "path", "stroke", "function")  # each with a table of its name
 
 
 def _ill_matched(document: dict[str, Any]) -> Iterator[str]:
@@ -175,6 +177,30 @@ class StrokeTable(Table):
 
     def value(self) -> StrokeTask:
         return StrokeTask.from_degrees(**dict(self))
+
+
+class FunctionTable(Table):
+    input_deg: Angles | None = None
+    output_deg: Angles | None = None
+    law: str | None = None
+    x: Pair | None = None
+    exponent: float | None = None
+    input_range_deg: float | None = None
+    output_range_deg: float | None = None
+    pairs: int | None = None
+    sampled: Annotated[list[float], listed("a list of numbers")] | None = None
+    sense: str = "given"
+    norm: str = "rms"
+
+    @field_validator("sense", "norm")
+    @classmethod
+    def _by_itself(cls, word: str, key: ValidationInfo) -> str:
+        words: dict[str, Any] = {str(key.field_name): word}
+        FunctionTask([0, 1, 2], [0, 1, 2], **words)
+        return word
+
+    def value(self) -> FunctionTask:
+        return FunctionTask.from_degrees(**dict(self))
 
 
 Outlines = Annotated[list[Corners], listed("a list of outlines, each a list of corners [x, y]")]
@@ -296,6 +322,36 @@ class ObjectiveTable(Table):
         return Objective(**{"transmission": 0.0, self.maximise: 1.0})
 
 
+Carriers = Annotated[list[str], listed(f"a list of some of {', '.join(CARRIERS)}")]
+
+
+class CylinderTable(Table):
+    closed: Pair | None = None
+    ratio_max: float | None = None
+    on: Carriers | None = None
+    base: Place | None = None
+
+    @field_validator("closed", "ratio_max", "on")
+    @classmethod
+    def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
+        if given is not None:
+            CylinderSpec(**{str(key.field_name): given})
+        return given
+
+    def value(self) -> CylinderSpec:
+        given: dict[str, Any] = {key: getattr(self, key) for key in self.model_fields_set}
+        if "base" in given:
+            given["base"] = _box(given["base"])
+        return CylinderSpec(**given)
+
+
+class DriverTable(Table):
+    cylinder: CylinderTable
+
+    def value(self) -> CylinderSpec:
+        return self.cylinder.value()
+
+
 class ManufacturingTable(Table):
     length_tolerance: float
     band: float | None = None
@@ -345,8 +401,10 @@ class _Task(Table):
     motion: MotionTable | None = None
     path: PathTable | None = None
     stroke: StrokeTable | None = None
+    function: FunctionTable | None = None
     scene: SceneTable = SceneTable()
     requirements: RequirementsTable = RequirementsTable()
+    driver: DriverTable | None = None
     objective: ObjectiveTable = ObjectiveTable()
 
 
@@ -355,7 +413,7 @@ class ProblemFile(MachineTables, _Task):
     search: SearchTable = SearchTable()
 
     def value(self) -> Task:
-        tables = {kind: getattr(self, kind) for kind in _KINDS}
+        tables: dict[str, Any] = {kind: getattr(self, kind) for kind in _KINDS}
         mine = tables.pop(self.kind)
         for other, table in tables.items():
             if table is not None:
@@ -367,6 +425,15 @@ class ProblemFile(MachineTables, _Task):
         task: Task = mine.value()
         return task
 
+    def _requirements(self) -> Requirements:
+        """As they are stated; a cylinder turns nothing fully, so that any linkage will do by default."""
+        wanted: Requirements = self.requirements.value()
+        if self.driver is not None and not wanted.same_branch:
+            raise ProblemError("requirements.same_branch is false; it must be true with driver.cylinder")
+        if self.driver is None or "rotatability" in self.requirements.model_fields_set:
+            return wanted
+        return replace(wanted, rotatability=Rotatability.ANY)
+
     def problem(self, name: str) -> Problem:
         problem = Problem(
             name=name,
@@ -375,9 +442,10 @@ class ProblemFile(MachineTables, _Task):
             length_unit=self.length_unit,
             task=self.value(),
             outlines=self.scene.value(),
-            requirements=self.requirements.value(),
+            requirements=self._requirements(),
             objective=self.objective.value(),
             dynamics=self.dynamics_spec(),
+            driver=None if self.driver is None else self.driver.value(),
             manufacturing=None if self.manufacturing is None else self.manufacturing.value(),
             search=self.search.value(),
             mechanism=mechanisms(self.mechanism),
@@ -392,9 +460,12 @@ _TABLES: dict[str, type[Table]] = {
     "motion": MotionTable,
     "path": PathTable,
     "stroke": StrokeTable,
+    "function": FunctionTable,
     "scene": SceneTable,
     "requirements": RequirementsTable,
     **{f"requirements.{name}": BoxTable for name in sorted(_PLACES)},
+    "driver": DriverTable,
+    "driver.cylinder": CylinderTable,
     "objective": ObjectiveTable,
     "objective.maximise": WeightsTable,
     **MACHINE_TABLES,

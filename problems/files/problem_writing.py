@@ -11,6 +11,7 @@ import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.box import Box
+from grashof.problems.values.function_task import FunctionTask
 from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.problems.values.problem import Problem
 from grashof.problems.values.requirements import Requirements
@@ -57,6 +58,8 @@ def _tables(problem: Problem) -> Iterator[tuple[str, Mapping[str, Any] | list[Ma
         yield "scene", {"outlines": problem.outlines}
     wanted = problem.requirements
     yield "requirements", _given({field.name: getattr(wanted, field.name) for field in fields(Requirements)})
+    if problem.driver is not None:
+        yield "driver", {"cylinder": problem.driver.stated}
     if problem.by_objective:
         yield "objective", {"maximise": problem.objective.stated}
     if problem.dynamics is not None:
@@ -72,6 +75,8 @@ def _given(table: Mapping[str, Any]) -> dict[str, Any]:
 
 def _task(task: Task) -> dict[str, Any]:
     """A task's table: its fields, angles in degrees, and poses in rows."""
+    if isinstance(task, FunctionTask):
+        return _function(task)
     given = {field.name: getattr(task, field.name) for field in fields(task) if field.init}  # type: ignore[arg-type]
     if given.pop("angles", None) is not None:
         given = {"poses": _poses(task), **given}
@@ -80,6 +85,24 @@ def _task(task: Task) -> dict[str, Any]:
         if given.get(name) is not None:
             given[f"{name}_deg"] = _degrees(given.pop(name))
     return given
+
+
+def _function(task: FunctionTask) -> dict[str, Any]:
+    """A function's table: its pairs, or the law with its ranges."""
+    words = {"sense": task.sense, "norm": task.norm}
+    law = task.law
+    if law is None:
+        return {"input_deg": _degrees(task.inputs), "output_deg": _degrees(task.outputs), **words}
+    return {
+        "law": law.name,
+        "x": law.x,
+        "exponent": law.exponent,
+        "input_range_deg": _degrees(np.array(law.input_range)),
+        "output_range_deg": _degrees(np.array(law.output_range)),
+        "pairs": None if task.fits_range else len(task),
+        "sampled": law.samples,
+        **words,
+    }
 
 
 def _poses(task: Task) -> list[Any]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from grashof.problems.values.checks import plain_text, refuse
+from grashof.problems.values.cylinder import Cylinder
 from grashof.problems.values.display import Displayed
 from grashof.problems.values.dynamics_of_kind import misplaced
 from grashof.problems.values.dynamics_spec import DynamicsSpec
@@ -32,6 +33,8 @@ class LinkageSpec(Displayed):
         Where the linkage is one; `output_arm` is then that of its horsehead.
     problem : Problem, optional
         Of a design out of a list: what it was found for.
+    cylinder : Cylinder, optional
+        That drives it.
     """
 
     linkage: Linkage
@@ -43,6 +46,7 @@ class LinkageSpec(Displayed):
     dynamics: DynamicsSpec | None = None
     pumping_unit: PumpingUnitSpec | None = None
     problem: Problem | None = field(default=None, compare=False, repr=False)
+    cylinder: Cylinder | None = None
 
     def __post_init__(self) -> None:
         for name in ("name", "title", "source", "length_unit"):
@@ -52,6 +56,10 @@ class LinkageSpec(Displayed):
         if self.pumping_unit is not None and not isinstance(self.linkage, FourBar):
             raise ProblemError(
                 f"pumping_unit does not go with mechanism {self.linkage.MECHANISM}; only four-bar has it"
+            )
+        if self.cylinder is not None and not isinstance(self.linkage, FourBar):
+            raise ProblemError(
+                f"cylinder does not go with mechanism {self.linkage.MECHANISM}; only four-bar has it"
             )
         if self.dynamics is not None:
             refuse(misplaced(self.dynamics, type(self.linkage)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -20,9 +20,11 @@ from grashof.problems.values.checks import (
     refuse,
     whole_number,
 )
+from grashof.problems.values.cylinder import CylinderSpec
 from grashof.problems.values.dynamics_of_kind import misplaced
 from grashof.problems.values.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
+from grashof.problems.values.function_task import FunctionTask
 from grashof.problems.values.manufacturing import Manufacturing
 from grashof.problems.values.mechanisms import FOUR_BAR, KINDS, freedoms, mechanisms, not_had
 from grashof.problems.values.motion_task import MotionTask
@@ -73,7 +75,7 @@ class Search:
 
 
 _KINDS: dict[str, Any] = {
-    "task": MotionTask | PathTask | StrokeTask,
+    "task": MotionTask | PathTask | StrokeTask | FunctionTask,
     "requirements": Requirements,
     "objective": Objective,
     "search": Search,
@@ -82,6 +84,7 @@ _KINDS: dict[str, Any] = {
     "source": str,
     "length_unit": str,
     "manufacturing": Manufacturing | None,
+    "driver": CylinderSpec | None,
 }
 
 
@@ -95,7 +98,7 @@ class Problem(ReadOnly):
 
     Parameters
     ----------
-    task : MotionTask, PathTask or StrokeTask
+    task : MotionTask, PathTask, StrokeTask or FunctionTask
     requirements : Requirements
     objective : Objective
     search : Search
@@ -109,6 +112,8 @@ class Problem(ReadOnly):
         Masses, speed and gravity; without it there are no torques and forces.
     mechanism : str or sequence of str
         The kinds of linkages that may do it, such as ("four-bar", "slider-crank"); one list of all.
+    driver : CylinderSpec, optional
+        The cylinder that drives the linkage, in place of a crank on link 2.
     """
 
     task: Task
@@ -123,11 +128,14 @@ class Problem(ReadOnly):
     manufacturing: Manufacturing | None = None
     dynamics: DynamicsSpec | None = None
     mechanism: tuple[str, ...] = (FOUR_BAR,)
+    driver: CylinderSpec | None = None
 
     def __post_init__(self) -> None:
         for name, kind in _KINDS.items():
             if not isinstance(value := getattr(self, name), kind):
                 raise ProblemError(f"problem.{name} is {shown(value)}; it must be {_named(kind)}")
+        object.__setattr__(self, "requirements", self.requirements.for_task(self.task))
+        object.__setattr__(self, "task", self.task.under(self.requirements))
         for name in ("name", "title", "source", "length_unit"):
             plain_text(getattr(self, name), name)
         object.__setattr__(self, "mechanism", mechanisms(self.mechanism))
@@ -152,6 +160,8 @@ class Problem(ReadOnly):
         wrong += self._not_driven_yet()
         wrong += self._without_value()
         wrong += self._undecided()
+        wrong += self._not_for_cylinders()
+        wrong += self._not_for_functions()
         if isinstance(self.task, StrokeTask):
             wrong += strokes_wrong(self.task, self.requirements, self.mechanism)
             object.__setattr__(self, "task", self.task.sized(stated_size(self.requirements)))
@@ -178,17 +188,21 @@ class Problem(ReadOnly):
             Needs.CLOSED: f"{self.task.kind}.closed is false; it must be true",
             Needs.LEAST_SQUARES: "requirements.exact = false is missing",
             Needs.ANGLES: f"{self.task.kind} has no angles",
+            Needs.CYLINDER: "driver.cylinder is missing",
+            Needs.LOADED_CYLINDER: self._unloaded,
+            Needs.OUTPUTS: f'{self.task.kind} asks for no output; kind = "function" does',
         }
         wrong = [
             f"{missing[quantity.needs]}; {where} needs it"
             for where, quantity in asked.items()
             if not self.states(quantity.needs)
         ]
+        wrong += self._without_meaning(asked)
         if not self.requirements.same_branch:
             wrong += [
                 f"requirements.same_branch is false; it must be true when {where} is given"
                 for where, quantity in asked.items()
-                if quantity.needs is Needs.DYNAMICS
+                if quantity.needs in (Needs.DYNAMICS, Needs.LOADED_CYLINDER)
             ]
         return wrong
 
@@ -240,6 +254,28 @@ class Problem(ReadOnly):
         objective = Objective(**{"transmission": 0.0} | weights) if any(weights.values()) else Objective()
         return replace(self, mechanism=(kind,), requirements=wanted, objective=objective)
 
+    def _without_meaning(self, asked: Mapping[str, Quantity]) -> list[str]:
+        """What is asked though it means nothing for the task."""
+        wanted, kind = self.requirements, self.task.kind
+        wrong = [
+            f"{where} means nothing for a {kind}; leave it out"
+            for where, quantity in asked.items()
+            if quantity.key in self.task.without
+        ]
+        if wanted.keep_out:
+            wrong += [
+                f"requirements.keep_out_for has {part}, which means nothing for a {kind}; leave it out"
+                for part in wanted.keep_out_for
+                if part in self.task.without
+            ]
+        if self.task.has_output.any():
+            wrong += [
+                f"requirements.{name} is false; it must be true for a {kind}"
+                for name in ("order", "same_branch")
+                if not getattr(wanted, name)
+            ]
+        return wrong
+
     def states(self, needs: Needs) -> bool:
         """Whether it states what a quantity needs to have a value."""
         stated = {
@@ -248,8 +284,49 @@ class Problem(ReadOnly):
             Needs.CLOSED: self.task.closed,
             Needs.LEAST_SQUARES: not self.requirements.is_exact(self.task),
             Needs.ANGLES: bool(self.task.has_angle.any()),
+            Needs.CYLINDER: self.driver is not None,
+            Needs.LOADED_CYLINDER: self.driver is not None and self.dynamics is not None,
+            Needs.OUTPUTS: bool(self.task.has_output.any()),
         }
         return stated.get(needs, True)
+
+    @property
+    def _unloaded(self) -> str:
+        """What a cylinder's force lacks, in words."""
+        lacks = {"driver.cylinder": self.driver, "dynamics": self.dynamics}
+        missing = [name for name, given in lacks.items() if given is None]
+        return f"{' and '.join(missing)} {'are' if len(missing) > 1 else 'is'} missing"
+
+    def _not_for_functions(self) -> list[str]:
+        """Kinds of linkages that are not built for functions, where one is asked for."""
+        others = [word for word in self.mechanism if word != FOUR_BAR]
+        if not (others and isinstance(self.task, FunctionTask)):
+            return []
+        return [f"mechanism {' and '.join(others)} is not built for functions; it must be {FOUR_BAR}"]
+
+    def _not_for_cylinders(self) -> list[str]:
+        """What a cylinder cannot do, where one is the driver."""
+        if self.driver is None:
+            return []
+        wrong, wanted = [], self.requirements
+        if others := [word for word in self.mechanism if word != FOUR_BAR]:
+            wrong.append(
+                f"driver.cylinder does not go with mechanism {' and '.join(others)}; it must be {FOUR_BAR}"
+            )
+        if isinstance(self.task, FunctionTask):
+            wrong.append("driver.cylinder does not go with function, whose driver is link 2")
+        elif isinstance(self.task, StrokeTask):
+            wrong.append("driver.cylinder does not go with stroke, whose driver turns all round")
+        elif self.task.closed:
+            wrong.append(
+                f"{self.task.kind}.closed is true; it must be false with driver.cylinder, which reverses"
+            )
+        if wanted.rotatability is not Rotatability.ANY:
+            wrong.append(
+                f"requirements.rotatability is {wanted.rotatability}; it must be any with driver.cylinder, "
+                "which turns nothing fully"
+            )
+        return wrong
 
     def _undecided(self) -> list[str]:
         """What is contradictory about the task and the requirements, and about what decides."""
@@ -279,7 +356,7 @@ class Problem(ReadOnly):
         to be met.
         """
         task, wanted = self.task, self.requirements
-        if task.zones is not None:
+        if task.zones is not None or task.has_output.any():
             return task.zones
         if isinstance(task, StrokeTask) or wanted.tolerance < LEAST_TOLERANCE or not wanted.is_exact(task):
             return None

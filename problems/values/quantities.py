@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.arrays import Limits
+from grashof.problems.values.cylinder import Cylinder
 from grashof.problems.values.four_bar import FourBar
 from grashof.problems.values.mechanisms import DIMENSIONS, KINDS, LENGTHS, PARAMETERS, having
 
@@ -66,6 +67,9 @@ class Needs(Enum):
     CLOSED = "a closed path"
     LEAST_SQUARES = "exact = false"
     ANGLES = "targets with angles"
+    CYLINDER = "driver.cylinder"
+    LOADED_CYLINDER = "driver.cylinder and dynamics"
+    OUTPUTS = "a function"
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,6 +144,9 @@ def _move(name: str) -> Quantity:
 _BOX = "diagonal of the box around O2, O4 and all that A, B and P reach from the first target to the last"
 _FITTED = "what least squares makes small: root mean square of positions and angles together, weighted"
 _WORST = "worst transmission angle over the"
+_LEVER = (
+    "between cylinder and arm; on the coupler 90 deg less the angle between cylinder and path of its pivot"
+)
 _MISSED: dict[str, Any] = {"over": Over.TARGETS, "better": -1}
 _OVERALL: dict[str, Any] = {"over": Over.TASK, "about": "from the first target to the last"}
 TURNING = having("o4")  # kinds whose link 4 turns
@@ -192,6 +199,17 @@ MEASURED: dict[str, Quantity] = {
         *_stated("distance", digits=4),
         Quantity("slide_angle", "direction of the slide", Unit.ANGLE, kinds=having("slide_angle")),
         *(_move(name) for name in DIMENSIONS if name not in FourBar.DIMENSIONS),
+        *(_length(name, name.replace("_", " "), needs=Needs.CYLINDER) for name in Cylinder.COLUMNS),
+        _length("cylinder_closed", "closed cylinder", over=Over.TASK, needs=Needs.CYLINDER, digits=4),
+        _length("cylinder_stroke", "cylinder stroke", over=Over.TASK, needs=Needs.CYLINDER, digits=4),
+        Quantity(
+            "cylinder_angle_min", "lever angle", Unit.ANGLE, Over.TASK, +1, Needs.CYLINDER, digits=3,
+            about=_LEVER, words="worst lever angle of the cylinder",
+        ),
+        Quantity(
+            "cylinder_force_max", "cylinder force", Unit.FORCE, Over.TASK, -1, Needs.LOADED_CYLINDER,
+            digits=4, words="peak force of the cylinder",
+        ),
     )
 }  # fmt: skip
 

@@ -58,6 +58,14 @@ def _place(name: str, over: Over) -> Quantity:
     return Quantity(name, f"place of {name.upper()}", Unit.LENGTH, over, listed=False, kinds=kinds)
 
 
+def _structural(key: str, label: str) -> Quantity:
+    about, words = "output less what is wanted, over the whole range", {"max": "greatest structural error"}
+    return Quantity(
+        f"structural_error_{key}", label, Unit.ANGLE, Over.TASK, -1, Needs.OUTPUTS, 3, about,
+        words=words.get(key, "structural error (root mean square)"),
+    )  # fmt: skip
+
+
 def _bracket(name: str) -> Quantity:
     words = f"place of {name.upper()} on the body"
     kinds = tuple(word for word, kind in KINDS.items() if name in kind.LINKS[2].points)
@@ -80,9 +88,9 @@ class Requirements(ReadOnly):
         A design is exact when its largest error is at most ``tolerance * size``.
     error_factor : float, optional
         Least squares: the objective decides among designs of up to so many times the least error found.
-    rotatability : Rotatability
+    rotatability : Rotatability, optional
         full-crank (the driver turns fully), crank-rocker, double-crank, or any (the driver
-        covers the task).
+        covers the task). By default full-crank, of functions any.
     rotatability_margin : float
         r3+r4-r1-r2 and |r1-r2|-|r3-r4| are at least this share of r1+r2+r3+r4.
     order : bool
@@ -121,11 +129,17 @@ class Requirements(ReadOnly):
     stroke : tuple of float, optional
         (lo, hi) for the travel of a slider-crank's slide between its limit positions; over the task motion
         where the driver does not turn fully.
+    structural_error_max_deg, structural_error_rms_deg : tuple of float, deg, optional
+        (lo, hi) for the structural error of a function over its range, greatest and root mean square.
     time_ratio : tuple of float, optional
         (lo, hi) for the time of the slow stroke of link 4 over that of the quick one, the driver turning
         steadily; of a driver that does not turn fully there is none.
     mechanical_advantage_min : float, optional
         Least ``|omega2 / omega4|`` over the task motion.
+    cylinder_angle_min_deg : float, deg, optional
+        Least angle between the cylinder that drives and its arm, over the task motion.
+    cylinder_force_max : tuple of float, N, optional
+        (lo, hi) for its greatest force.
     a_on_body, b_on_body : Box, optional
         Where A and B may sit on the body that is guided, in its frame: origin at P, turned with it.
     keep_out : sequence of array_like, shape (M, 2), length
@@ -138,7 +152,7 @@ class Requirements(ReadOnly):
     exact: bool | None = None
     tolerance: float = 1e-6
     error_factor: float | None = None
-    rotatability: Rotatability = Rotatability.FULL_CRANK
+    rotatability: Rotatability = None  # type: ignore[assignment]  # the task's own, in a problem
     rotatability_margin: float = 1e-3
     order: bool = True
     same_branch: bool = True
@@ -233,6 +247,14 @@ class Requirements(ReadOnly):
         Kind.AT_LEAST,
         allowed=(0.0, 1e6),
     )
+    cylinder_angle_min_deg: float | None = limit("cylinder_angle_min", Kind.AT_LEAST, allowed=(0.0, 90.0))
+    cylinder_force_max: Limits | None = limit("cylinder_force_max", Kind.BETWEEN, allowed=_FROM_ZERO)
+    structural_error_max_deg: Limits | None = limit(
+        _structural("max", "max error"), Kind.BETWEEN, allowed=(0.0, 360.0)
+    )
+    structural_error_rms_deg: Limits | None = limit(
+        _structural("rms", "rms error"), Kind.BETWEEN, allowed=(0.0, 360.0)
+    )
     a_on_body: Box | None = limit(_bracket("a"), Kind.ON_BODY)
     b_on_body: Box | None = limit(_bracket("b"), Kind.ON_BODY)
     keep_out: tuple[FloatArray, ...] = ()
@@ -245,6 +267,8 @@ class Requirements(ReadOnly):
             if not isinstance(getattr(self, name), bool):
                 raise wrong_value(f"requirements.{name}", getattr(self, name), "true or false")
         for name, kind in (("rotatability", Rotatability), ("transmission_over", TransmissionOver)):
+            if getattr(self, name) is None and name == "rotatability":  # the task's own
+                continue
             object.__setattr__(self, name, _member(kind, getattr(self, name), f"requirements.{name}"))
         for name, (low, high) in _RANGES.items():
             value = getattr(self, name)
@@ -268,7 +292,9 @@ class Requirements(ReadOnly):
     def _comparable(self) -> tuple[object, ...]:
         """Every field, the arrays among them as tuples."""
         areas = tuple(tuple(map(tuple, corners.tolist())) for corners in self.keep_out)
-        return areas, *(getattr(self, field.name) for field in fields(self) if field.name != "keep_out")
+        turns = self.rotatability or Rotatability.FULL_CRANK  # where no task says otherwise
+        others = (field.name for field in fields(self) if field.name not in ("keep_out", "rotatability"))
+        return areas, turns, *(getattr(self, name) for name in others)
 
     @property
     def link_lengths(self) -> tuple[Limits, Limits, Limits, Limits]:
@@ -302,6 +328,12 @@ class Requirements(ReadOnly):
         if task.zones is not None:
             return False
         return task.exact_by_default if self.exact is None else self.exact
+
+    def for_task(self, task: Task) -> Requirements:
+        """These requirements with the rotatability that is usual for a task, where they state none."""
+        if self.rotatability in tuple(Rotatability):
+            return self
+        return replace(self, rotatability=Rotatability(task.usual_rotatability))
 
     def resolved(self, size: float, *, scale_free: bool = False) -> Requirements:
         """These requirements with every default that depends on the size of the task filled in.
@@ -361,6 +393,15 @@ _ADVANTAGE = Quantity(
 # All quantities of a design, by key; those that are listed in the order of the columns.
 QUANTITIES = MEASURED | {limited.quantity.key: limited.quantity for limited in LIMITS.values()}
 QUANTITIES[_ADVANTAGE.key] = _ADVANTAGE
+_ERROR_AT = Quantity(
+    "structural_error_at",
+    "worst at",
+    Unit.ANGLE,
+    Over.TASK,
+    needs=Needs.OUTPUTS,
+    about="driver rotation from the first pair to the greatest structural error",
+)
+QUANTITIES[_ERROR_AT.key] = _ERROR_AT
 
 
 def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float | str:

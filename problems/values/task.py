@@ -19,13 +19,16 @@ class Task(ReadOnly, ABC):
     """N targets that a linkage has to meet in order; base of `MotionTask`, `PathTask` and others.
 
     Each target is a row. Its columns are the position of the coupler point, the angle of the body, the
-    driver rotation from the first target, and the weight; NaN where a target leaves that part free.
+    output, the driver rotation from the first target, and the weight; NaN where a target leaves that part
+    free.
     """
 
     __slots__ = ()
 
     kind: ClassVar[str]  # its table in problem files
     target: ClassVar[str]  # what a target is called in messages
+    usual_rotatability: ClassVar[str] = "full-crank"  # where requirements do not state one
+    without: ClassVar[tuple[str, ...]] = ()  # quantities and parts that mean nothing for it
 
     timing: FloatArray | None
     closed: bool
@@ -40,6 +43,16 @@ class Task(ReadOnly, ABC):
     def angles(self) -> FloatArray:
         """Angles of the body, shape (N,), rad."""
         return np.full(len(self), np.nan)
+
+    @property
+    def outputs(self) -> FloatArray:
+        """Rotation of the output from the first target, positive as the driver turns, shape (N,), rad."""
+        return np.full(len(self), np.nan)
+
+    @property
+    def beyond(self) -> tuple[float, float]:
+        """Driver rotation of what is asked before the first target and after the last, rad."""
+        return 0.0, 0.0
 
     @property
     def driver_turns(self) -> FloatArray:
@@ -91,6 +104,15 @@ class Task(ReadOnly, ABC):
     def has_angle(self) -> BoolArray:
         """Which targets have an angle, shape (N,)."""
         return ~np.isnan(self.angles)
+
+    @property
+    def has_output(self) -> BoolArray:
+        """Which targets have an output, shape (N,)."""
+        return ~np.isnan(self.outputs)
+
+    def under(self, requirements: Any) -> Self:  # noqa: ARG002
+        """The task as `Requirements` leave it: where it has no size of its own, in theirs."""
+        return self
 
     @property
     def is_timed(self) -> bool:

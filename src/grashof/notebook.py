@@ -84,11 +84,18 @@ def _judged(candidate: Candidate) -> dict[str, str]:
     return {
         "design": candidate.id,
         **_linkage(candidate.linkage),
-        "largest position error": f"{verdict.error_max:.2g}",
+        **_error(candidate),
         "worst transmission angle": f"{task:.1f} deg over the task{over_turn}",
         "size": f"{verdict.size:.4g}",
         "defects": "; ".join(str(defect) for defect in verdict.defects) or "none",
     }
+
+
+def _error(candidate: Candidate) -> dict[str, str]:
+    verdict = candidate.verdict
+    if candidate.problem.task.has_output.any():
+        return {"greatest structural error": f"{np.degrees(verdict.structural_error_max):.3g} deg"}
+    return {"largest position error": f"{verdict.error_max:.2g}"}
 
 
 def _batch(linkages: AnyKind) -> str:

@@ -53,7 +53,7 @@ def best_alike(task: Task, signatures: FloatArray, kind: type[Linkage] = FourBar
     while left.size:
         first, left = left[0], left[1:]
         one = signatures[first]
-        cognates = kind is FourBar and not task.has_angle.any()
+        cognates = kind is FourBar and not (task.has_angle.any() or task.has_output.any())
         curves = same_curve(one, task.is_timed) if cognates else one[None]
         near = left[_alike_in_shape(curves, signatures[left])]
         images = np.concatenate([each.of(curves, MIRRORED[kind]) for each in maps])

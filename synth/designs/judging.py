@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from grashof.analysis import Verdict, verify
-from grashof.problems import FourBar, Linkage, ProblemError
+from grashof.problems import Cylinder, FourBar, Linkage, ProblemError
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.driving import cylinder_for
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Configurations, dyad_violations, judge, met
 from grashof.synth.theory.cognates import assembly_of, cognate_points, position_of
@@ -55,24 +56,37 @@ def judged(
         linkage = scaled.linkages(points, np.array(assembly), given)
     except ProblemError:
         return None
-    verdict = verdict_on(scaled, linkage, most_error)
+    verdict = driven_verdict(scaled, linkage, most_error)
     candidate = _valued(scaled, Candidate(linkage, verdict, scaled.problem, start, iterations))
     if verdict.ok:
         candidate.objective(scaled.problem)  # here, where many are judged at once; the values stay known
     return candidate
 
 
-def verdict_on(scaled: ScaledProblem, linkage: Linkage, most_error: float = np.inf) -> Verdict:
+def driven_verdict(
+    scaled: ScaledProblem, linkage: Linkage, most_error: float = np.inf, known: Cylinder | None = None
+) -> Verdict:
+    """The judge's verdict on a linkage with the cylinder known, or else the best, where one is asked for."""
+    verdict = verdict_on(scaled, linkage, most_error, known)
+    if known is not None or scaled.problem.driver is None:
+        return verdict
+    found = cylinder_for(scaled.problem, linkage, verdict)
+    return verdict if found is None else verdict_on(scaled, linkage, most_error, found)
+
+
+def verdict_on(
+    scaled: ScaledProblem, linkage: Linkage, most_error: float = np.inf, cylinder: Cylinder | None = None
+) -> Verdict:
     """The judge's verdict; `most_error` is the root mean square error that is allowed, sizes."""
     problem, task = scaled.problem, scaled.problem.task
     square = len(task) * (most_error * task.size) ** 2
     asked = task, problem.requirements, scaled.constraints
-    return verify(linkage, *asked, most_square=square, problem=problem)
+    return verify(linkage, *asked, most_square=square, problem=problem, cylinder=cylinder)
 
 
 def judged_again(scaled: ScaledProblem, candidate: Candidate, most_error: float = np.inf) -> Candidate:
     """A design judged by the requirements of another problem with the same targets."""
-    verdict = verdict_on(scaled, candidate.linkage, most_error)
+    verdict = driven_verdict(scaled, candidate.linkage, most_error, candidate.verdict.cylinder)
     return _valued(scaled, replace(candidate, verdict=verdict, problem=scaled.problem))
 
 
@@ -110,7 +124,10 @@ def alike(one: Verdict, other: Verdict, size: float) -> bool:
     defects = zip(one.defects, other.defects, strict=True)
     if not all(near(d.found, e.found, size) and near(d.miss, e.miss, 1.0) for d, e in defects):
         return False
-    names = (each.name for each in fields(Verdict) if each.name not in ("defects", "grashof_class"))
+    if getattr(one.cylinder, "on", None) != getattr(other.cylinder, "on", None):
+        return False
+    apart = ("defects", "grashof_class", "cylinder")
+    names = (each.name for each in fields(Verdict) if each.name not in apart)
     return one.grashof_class is other.grashof_class and all(
         near(getattr(one, name), getattr(other, name), scales.get(name, 1.0)) for name in names
     )

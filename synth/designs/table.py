@@ -16,6 +16,7 @@ LISTED = tuple(quantity for quantity in QUANTITIES.values() if quantity.listed)
 # Columns that are not quantities, by the quantity that follows them.
 _BEFORE = {
     "o2_x": ("rank", "id", "mechanism", "family", "grashof_class", "direction", "assembly"),
+    "cylinder_base_x": ("cylinder_on",),
     "omega4_max": ("circuit_ok", "branch_ok", "order_ok", "full_rotation"),
     "hausdorff": ("pareto", "cognate_of", "start", "iterations", "best_at"),
 }
@@ -46,6 +47,7 @@ def to_frame(problem: Problem, candidates: tuple[Candidate, ...]) -> pd.DataFram
 def facts(candidate: Candidate) -> dict[str, Any]:
     """What a design is called and what it is like, by column; None where it is unknown."""
     verdict = candidate.verdict
+    driven = {} if verdict.cylinder is None else {"cylinder_on": verdict.cylinder.on}
     return {
         "id": candidate.id,
         "mechanism": candidate.linkage.MECHANISM,
@@ -61,4 +63,5 @@ def facts(candidate: Candidate) -> dict[str, Any]:
         "full_rotation": verdict.full_rotation,
         "start": candidate.start,
         "iterations": candidate.iterations,
+        **driven,
     }

@@ -29,7 +29,14 @@ def wider(
     near = [one for one in known if {defect.requirement for defect in one.verdict.defects} <= MISSED]
     for one in sorted(near, key=lambda one: (max(shares(problem, one.verdict)), one.id)):
         asked, words = _enlarged(problem, shares(problem, one.verdict))
-        if verify(one.linkage, asked.task, asked.requirements, constraints, problem=asked).ok:
+        if verify(
+            one.linkage,
+            asked.task,
+            asked.requirements,
+            constraints,
+            problem=asked,
+            cylinder=one.verdict.cylinder,
+        ).ok:
             miss = max(defect.miss for defect in one.verdict.defects)
             own = tuple(constraints)
             return [Relaxation("within", words, asked.requirements, own, one, miss, words.count(" and ") + 1)]

@@ -135,7 +135,14 @@ def relaxation(
     for change, words in _eased(problem, own, key, missed):
         eased = change.pop("constraints", own)
         wanted = replace(problem.requirements, **change)
-        if verify(candidate.linkage, problem.task, wanted, eased, problem=problem).ok:
+        if verify(
+            candidate.linkage,
+            problem.task,
+            wanted,
+            eased,
+            problem=problem,
+            cylinder=candidate.verdict.cylinder,
+        ).ok:
             return Relaxation(key, words, wanted, eased, candidate, miss, words.count(" instead of "))
     return None
 

@@ -43,7 +43,8 @@ class Result(Displayed):
     ended : str
         Why the search ended: of exact designs, before it had as many as were asked for; else empty.
     least_error : float, length
-        Least squares: the least error that was found, as `Candidate.error` has it; NaN otherwise.
+        Least squares: the least error that was found, as `Candidate.error` has it (of functions rad); NaN
+        otherwise.
     story : Story, optional
         What happened to the search that it is of.
     """

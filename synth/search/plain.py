@@ -13,7 +13,7 @@ import numpy as np
 from grashof.analysis import Verdict
 from grashof.analysis.judge.verdict import Defect
 from grashof.analysis.loops.loop import GrashofClass
-from grashof.problems import FourBar, InvertedSliderCrank, Linkage, Objective, Problem, SliderCrank
+from grashof.problems import Cylinder, FourBar, InvertedSliderCrank, Linkage, Objective, Problem, SliderCrank
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme import kinds
 from grashof.synth.programme.start import Round, Start
@@ -26,8 +26,8 @@ from grashof.synth.search.tally import Tally
 KINDS: dict[str, Any] = {
     kind.__name__: kind
     for kind in (
-        Attempt, Candidate, Chunk, Defect, FourBar, InvertedSliderCrank, Objective, Round, SliderCrank, Start,
-        Tally, Verdict,
+        Attempt, Candidate, Chunk, Cylinder, Defect, FourBar, InvertedSliderCrank, Objective, Round,
+        SliderCrank, Start, Tally, Verdict,
     )
 }  # fmt: skip
 WORDS: dict[str, Any] = {"GrashofClass": GrashofClass, "Outcome": Outcome}

@@ -13,6 +13,7 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.starts.exact_poses import FewPoses, ManyPoses, Parallelograms
+from grashof.synth.starts.function_search import FunctionPairs
 from grashof.synth.starts.least_squares import LeastSquares
 from grashof.synth.starts.limit_positions import LimitPositions
 from grashof.synth.starts.precision_points import EightPoints, NinePoints, PrecisionPoints
@@ -99,8 +100,21 @@ def finder_for(scaled: ScaledProblem) -> Finder:
     return LeastSquares(scaled)
 
 
-def finder_of(problem: Problem) -> Finder:
+class Begins(Protocol):
+    """What is known of a search before it begins."""
+
+    @property
+    def beginning(self) -> str:
+        """What the search begins with, for those who wait."""
+
+    def refuse(self) -> None:
+        """Raise `ProblemError` for targets that cannot be searched for."""
+
+
+def finder_of(problem: Problem) -> Begins:
     """The kind of search that a problem begins with."""
+    if problem.task.has_output.any():
+        return FunctionPairs()
     return finder_for(ScaledProblem.of(asked_first(problem)))
 
 

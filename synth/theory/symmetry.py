@@ -63,6 +63,8 @@ def symmetries(task: Task) -> tuple[Symmetry, ...]:
     >>> [(each.turn.real, each.mirrored) for each in symmetries(line)]
     [(1.0, False), (1.0, True), (-1.0, False), (-1.0, True)]
     """
+    if not task.has_position.any():
+        return (Symmetry(1 + 0j, False),)
     places = (_once(task) - middle_of(task)) @ np.array([1, 1j])
     found = [Symmetry(1 + 0j, False)]
     for order, able in _orders(task, places):
@@ -76,7 +78,10 @@ def symmetries(task: Task) -> tuple[Symmetry, ...]:
 
 
 def middle_of(task: Task) -> FloatArray:
-    """Mean of the target positions, shape (2,), length: it stays in its place under all symmetries."""
+    """Mean of the target positions, shape (2,), length: it stays in its place under all symmetries.
+
+    The origin where no position is asked for.
+    """
     if not task.has_position.any():
         return task.middle
     middle: FloatArray = np.nanmean(_once(task), axis=0)

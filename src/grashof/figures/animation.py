@@ -16,6 +16,7 @@ from matplotlib.text import Annotation, Text
 
 from grashof.analysis import Position, solve_position
 from grashof.analysis.numerics.smooth_polygon import smooth_polygon
+from grashof.figures.cylinder import DrawnCylinder, cylinder_places
 from grashof.figures.linkage import figure_of, new_axes, plane
 from grashof.figures.parts import (
     BODY,
@@ -181,6 +182,10 @@ class _Moving:
         frames = len(state.p)
         self._drawn = np.searchsorted(turns, np.arange(frames) / frames, side="right")
         self._links = Links(axes, type(linkage), self._stands[0], named=False)
+        self._rams = cylinder_places(subject, state)
+        self._cylinder = [
+            DrawnCylinder(axes, subject.cylinder_on, places, named=False) for places in self._rams[:1]
+        ]
         axes.plot(*path.T, color=PATH, linewidth=0.8, linestyle=":", zorder=2)
         (self._trace,) = axes.plot([], [], color=PATH, linewidth=1.8, zorder=3)
         self._corners = _carried(subject, state)
@@ -195,7 +200,8 @@ class _Moving:
         plane(axes, subject.spec.length_unit)
         seen = {*linkage.JOINTS, *CORNERS, *ROD}
         joints = [place for stand in self._stands for name, place in stand.items() if name in seen]
-        axes.update_datalim(np.concatenate([joints, path, *self._corners]))
+        rams = self._rams[:, :3].reshape(-1, 2)
+        axes.update_datalim(np.concatenate([joints, path, rams, *self._corners]))
         name_points(axes, {name.upper(): getattr(linkage, name) for name in linkage.GROUND})
 
     def annotate(self, axes: Axes, subject: Subject, state: Position) -> None:
@@ -217,11 +223,14 @@ class _Moving:
         if self._clock is not None:
             self._clock.set_text(self._told[frame])
         self._links.move(self._stands[frame])
+        for drawn in self._cylinder:
+            drawn.move(self._rams[frame])
         self._trace.set_data(*self._path[: self._drawn[frame]].T)
         for body in self._bodies:
             body.set_xy(self._corners[frame])
         told = [] if self._clock is None else [*self._names.values(), self._clock]
-        return [*self._links.artists, self._trace, *self._bodies, *told]
+        rams = [artist for drawn in self._cylinder for artist in drawn.artists]
+        return [*self._links.artists, *rams, self._trace, *self._bodies, *told]
 
 
 def _clock(subject: Subject, theta2: FloatArray) -> Iterator[str]:

@@ -14,10 +14,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from grashof.figures.animation import animate
+from grashof.figures.function import plot_function
 from grashof.figures.linkage import figure_of, plot_linkage
 from grashof.figures.parts import missing_glyphs_unwarned
 from grashof.figures.subject import Linkage, Subject
-from grashof.problems import Problem
+from grashof.problems import FunctionTask, Problem
 from grashof.synth import Candidate
 
 # Settings of matplotlib. Fixed names inside the SVG and no date: the same design gives the same bytes.
@@ -58,9 +59,21 @@ def draw_design(problem: Problem, candidate: Candidate, rank: int) -> Figure:
         Equal axes, in the problem's unit; the linkage darkens from the first target to the last.
     """
     with rc_context(STYLE):
+        if isinstance(problem.task, FunctionTask):
+            return _draw_generator(problem, problem.task, candidate, rank)
         figure = Figure(figsize=(8.5, 7.0))
         axes = plot_linkage(candidate, problem, ax=figure.add_axes((0.08, 0.08, 0.89, 0.83)))
         fit_title(axes, _heading(problem, candidate, rank))
+    return figure
+
+
+def _draw_generator(problem: Problem, task: FunctionTask, candidate: Candidate, rank: int) -> Figure:
+    """A function generator, beside it wanted and generated output and the structural error."""
+    figure = Figure(figsize=(11.0, 8.5))
+    axes = plot_linkage(candidate, problem, ax=figure.add_axes((0.07, 0.4, 0.9, 0.5)))
+    fit_title(axes, _heading(problem, candidate, rank))
+    beside = figure.add_axes((0.07, 0.07, 0.41, 0.25)), figure.add_axes((0.56, 0.07, 0.41, 0.25))
+    plot_function(task, candidate, ax=beside)
     return figure
 
 
@@ -125,6 +138,8 @@ def _heading(problem: Problem, candidate: Candidate, rank: int) -> str:
     over = [f"{task:.1f} deg over the task"] if not problem.task.closed else []
     over += [f"{cycle:.1f} deg over the turn"] if verdict.full_rotation else []
     fit = "" if problem.requirements.is_exact(problem.task) else f", rms error {verdict.error_rms:.3g}"
+    if problem.task.has_output.any():
+        fit = f", structural error {np.degrees(verdict.structural_error_max):.3g} deg"
     return (
         f"{shortened(problem.title or problem.name)}: design {rank} ({candidate.id}), "
         f"{verdict.grashof_class}{fit}{_defect(candidate)}\n"

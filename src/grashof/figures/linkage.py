@@ -8,7 +8,9 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from grashof.analysis import solve_position
+from grashof.analysis import Position, solve_position
+from grashof.figures.cylinder import DrawnCylinder, cylinder_places
+from grashof.figures.function import plot_wanted
 from grashof.figures.parts import (
     COUPLER,
     GROUND,
@@ -28,7 +30,7 @@ from grashof.figures.parts import (
     targets_shown,
 )
 from grashof.figures.subject import Linkage, Subject
-from grashof.problems import AssemblyError, Problem, ProblemError
+from grashof.problems import AssemblyError, FunctionTask, Problem, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import near_miss
 from grashof.problems.values.requirements import QUANTITIES
@@ -76,7 +78,9 @@ def plot_linkage(
     'x (m)'
     """
     subject = Subject.of(linkage, problem)
-    positions = _positions(subject, theta2)
+    state = _state(subject, theta2)
+    positions = stands(subject.linkage, state, subject.travel)
+    cylinders = cylinder_places(subject, state)
     ax = new_axes(ax)
     if subject.problem is not None:
         draw_scene(ax, subject.problem)
@@ -84,6 +88,9 @@ def plot_linkage(
     shades = np.linspace(0.3, 1, len(positions)) if len(positions) > 1 else [1.0]
     for points, shade in zip(positions, shades, strict=True):
         Links(ax, type(subject.linkage), points, shade, named=points is positions[-1])
+    for number, places in enumerate(cylinders, start=1):
+        on, named = subject.cylinder_on, number == len(cylinders)
+        DrawnCylinder(ax, on, places, shades[number - 1], named=named)
     draw_task(ax, subject)
     draw_ground(ax, subject.linkage, subject.travel)
     draw_sense(ax, subject)
@@ -110,7 +117,8 @@ def plot_task(problem: Problem, *, ax: Axes | None = None) -> Axes:
     Returns
     -------
     Axes
-        Equal scales, in the problem's unit. A pose without a place is not drawn.
+        Equal scales, in the problem's unit. A pose without a place is not drawn. Of a function
+        what is wanted, over the driver rotation.
 
     Examples
     --------
@@ -120,6 +128,9 @@ def plot_task(problem: Problem, *, ax: Axes | None = None) -> Axes:
     'x (m)'
     """
     ax, task = new_axes(ax), problem.task
+    if isinstance(task, FunctionTask):
+        plot_wanted(ax, task)
+        return ax
     draw_scene(ax, problem)
     draw_targets(ax, task, np.full((len(task), 2), np.nan), np.full(len(task), np.nan))
     plane(ax, problem.length_unit)
@@ -209,7 +220,8 @@ def plot_design_space(
     (x_values, x_label), (y_values, y_label) = _along(result, x), _along(result, y)
     front = pareto_optimal(problem, candidates)
     ax = new_axes(ax)
-    third = "torque_peak" if problem.dynamics is not None else "error_rms"
+    error = "structural_error_max" if problem.task.has_output.any() else "error_rms"
+    third = "torque_peak" if problem.dynamics is not None else error
     if third == "error_rms" and problem.requirements.is_exact(problem.task):
         ax.scatter(x_values, y_values, color=COUPLER, label="design", zorder=3)
     else:
@@ -268,8 +280,8 @@ def figure_of(ax: Axes) -> Figure:
     return figure
 
 
-def _positions(subject: Subject, theta2: npt.ArrayLike | None) -> list[dict[str, FloatArray]]:
-    """The points of the linkage wherever it is drawn, each of shape (2,)."""
+def _state(subject: Subject, theta2: npt.ArrayLike | None) -> Position:
+    """The linkage wherever it is drawn."""
     assembly: npt.ArrayLike = subject.linkage.assembly
     if theta2 is not None:
         angles = np.ravel(np.asarray(theta2, dtype=np.float64))
@@ -285,7 +297,7 @@ def _positions(subject: Subject, theta2: npt.ArrayLike | None) -> list[dict[str,
     if theta2 is not None and np.isnan(state.theta3).any():
         open_at = np.degrees(angles[np.isnan(state.theta3)][0])
         raise AssemblyError(f"{subject.spec.name} cannot close at theta2 = {open_at:.6g} deg")
-    return stands(subject.linkage, state, subject.travel)
+    return state
 
 
 def plane(ax: Axes, length_unit: str) -> None:

@@ -19,7 +19,7 @@ from grashof.analysis.four_bar.position import places
 from grashof.analysis.numerics.smooth_polygon import smooth_polygon
 from grashof.figures.slides import ARM, CORNERS, ROD, Travel, draw_guide, slide_points
 from grashof.figures.subject import Subject
-from grashof.problems import Linkage, Problem, Task
+from grashof.problems import FunctionTask, Linkage, Problem, Task
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkage_parts import Link
 
@@ -272,6 +272,8 @@ def draw_targets(axes: Axes, task: Task, places: FloatArray, angles: FloatArray)
     """The same, with places, shape (N, 2), and angles, shape (N,), for what a pose leaves free, or NaN."""
     if task.only_points:
         _draw_points(axes, task)
+        return
+    if isinstance(task, FunctionTask) and task.fits_range:
         return
     for pose in _dozen(len(task)):
         _draw_pose(axes, task, pose, places[pose], float(angles[pose]))

@@ -61,7 +61,8 @@ class Subject:
         if isinstance(linkage, Candidate):
             verdict = linkage.verdict
         else:
-            verdict = verify(spec.linkage, problem.task, problem.requirements, problem=problem)
+            asked = problem.task, problem.requirements
+            verdict = verify(spec.linkage, *asked, problem=problem, cylinder=spec.cylinder)
         return cls(_posed(spec, problem, verdict), problem, verdict)
 
     @property
@@ -77,6 +78,12 @@ class Subject:
         far = [slide_travel(self.linkage, solve_position(self.linkage, each)) for each in self.sweep.angles()]
         every = np.concatenate(far)
         return Travel(float(np.nanmin(every)), float(np.nanmax(every)))
+
+    @property
+    def cylinder_on(self) -> str:
+        """The link that a cylinder acts on; empty without one."""
+        cylinder = None if self.verdict is None else self.verdict.cylinder
+        return "" if cylinder is None else cylinder.on
 
     @property
     def sweep(self) -> Sweep:

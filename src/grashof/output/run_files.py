@@ -13,6 +13,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from grashof.analysis import solve_position
+from grashof.analysis.cylinder.lengths import cylinder_state
+from grashof.analysis.judge.driven import cylinder_forces
 from grashof.output.ending import Exit, Interruption
 from grashof.output.folder import PAGE, RECORD, replacing_own_files
 from grashof.problems import Problem
@@ -143,6 +146,7 @@ def _given(errors: FloatArray) -> list[float | None]:
 def _design(candidate: Candidate, keys: Sequence[str]) -> dict[str, Any]:
     verdict = candidate.verdict
     turned = verdict.angle_error
+    output_error = {"output_error": verdict.output_error.tolist()} if verdict.output_error.size else {}
     angle_error = {} if np.isnan(turned).all() else {"angle_error": _given(turned)}
     return {
         **facts(candidate),
@@ -151,19 +155,35 @@ def _design(candidate: Candidate, keys: Sequence[str]) -> dict[str, Any]:
         "assembly": verdict.assembly.tolist(),
         "position_error": _given(verdict.position_error),
         **angle_error,
+        **output_error,
+        **_driven(candidate),
         **{key: x if np.isfinite(x := candidate.values[key]) else None for key in keys},
     }
 
 
+def _driven(candidate: Candidate) -> dict[str, Any]:
+    """The cylinder that drives it, with its length and, with dynamics, its force at every target."""
+    linkage, verdict = candidate.linkage, candidate.verdict
+    if verdict.cylinder is None:
+        return {}
+    at = solve_position(linkage, verdict.theta2, verdict.assembly)
+    stated = {
+        **verdict.cylinder.stated,
+        "length": cylinder_state(verdict.cylinder, linkage, at).length.tolist(),
+    }
+    forces = cylinder_forces(linkage, candidate.problem, verdict)
+    return {"cylinder": stated if np.isnan(forces).all() else {**stated, "force": _given(forces)}}
+
+
 def _written(problem: Problem) -> list[str]:
     """Keys of the quantities of each design besides its errors, where the problem states what they need."""
-    over = Over.TASK, Over.CYCLE
+    over, besides = (Over.TASK, Over.CYCLE), (Needs.MANUFACTURING, Needs.CYLINDER)
     return [
         each.key
         for each in LISTED
         if problem.states(each.needs)
         and set(each.kinds) & set(problem.mechanism)
-        and (each.over in over or each.needs is Needs.MANUFACTURING)
+        and (each.over in over or each.needs in besides)
     ]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -20,7 +21,7 @@ from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.problems.values.mechanisms import LENGTHS, having
-from grashof.problems.values.quantities import Over, Quantity, Unit
+from grashof.problems.values.quantities import Needs, Over, Quantity, Unit
 from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth import Candidate, Progress, Result
 from grashof.synth.designs.ranking import pareto_optimal
@@ -157,6 +158,8 @@ def units(problem: Problem) -> dict[str, str]:
 def _decided_by(problem: Problem) -> list[Quantity]:
     """The error where there is one, the transmission angle, whatever else is weighed, size and lengths."""
     error = [] if problem.requirements.is_exact(problem.task) else ["error"]
+    if problem.task.has_output.any():
+        error = ["structural_error_max", "structural_error_rms"]
     goals = [goal.key for goal, _ in problem.goals if goal.key != "size"]
     made = [name for name in (*LENGTHS, "offset") if set(having(name)) & set(problem.mechanism)]
     keys = *error, "transmission_min_task", "transmission_min_cycle", *goals, "size", *made
@@ -185,6 +188,9 @@ def heading(result: Result, verified: int) -> str:
     if not exact:  # as the column shows it
         least = min(each.error(result.problem) for each in result.candidates)
         error = f", smallest error rms {least * result.problem.task.size:.2g}"
+    if result.problem.task.has_output.any():
+        worst = math.degrees(min(each.structural_error_max for each in verdicts))
+        error = f", structural error from {worst:.3g} deg"
     classes = _classes(result)
     kind = f"{classes.pop()} " if len(classes) == 1 else ""
     families = len(result.families)
@@ -232,6 +238,6 @@ def _cell(quantity: Quantity, candidate: Candidate, digits: int) -> str:
     if candidate.linkage.MECHANISM not in quantity.kinds:
         return "-"
     value = candidate.values[quantity.key] * quantity.unit.shown
-    if quantity.unit is Unit.ANGLE:
+    if quantity.unit is Unit.ANGLE and quantity.needs is not Needs.OUTPUTS:
         return f"{value:.1f}"
     return f"{value:.{2 if quantity.key == 'error' else digits}g}"

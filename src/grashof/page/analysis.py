@@ -59,6 +59,7 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
                 "high": high,
                 "turns": sweep.turns,
                 "direction": 1 if sweep.speed_rpm >= 0 else -1,
+                **_cylinder(report),
             }
             for low, high in sweep.ranges
         ],
@@ -83,6 +84,15 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         many="range" in report.tables["extremes"],
         record=record,
         speed_rpm=abs(sweep.speed_rpm),
+    )
+
+
+def _cylinder(report: LinkageReport) -> dict[str, Any]:
+    """The cylinder as the scripts draw it."""
+    driven = report.sweep.spec.cylinder
+    facts = {fact.key: fact.value for section in report.sections for fact in section.facts}
+    return (
+        {} if driven is None else {"cylinder": {**driven.stated, "closed": facts.get("cylinder_closed", 0.0)}}
     )
 
 

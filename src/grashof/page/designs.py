@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import asdict
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,6 +12,7 @@ import pandas as pd
 from grashof.analysis import (
     driver_ranges,
     full_rotation,
+    function_curves,
     inverse_dynamics,
     solve_kinematics,
     stated_loads,
@@ -19,7 +21,7 @@ from grashof.analysis import (
 from grashof.analysis.four_bar.mobility import range_index
 from grashof.analysis.judge.over_task import driver_law, motion_ends
 from grashof.page.render import compact
-from grashof.problems import DynamicsSpec, Linkage, Problem
+from grashof.problems import DynamicsSpec, FunctionTask, Linkage, Problem
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics_spec import metres
 from grashof.problems.values.mechanisms import KINDS
@@ -132,12 +134,34 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], frame: pd.DataFra
             "assemblies": design.verdict.assembly.tolist(),
             "task": list(motion_ends(problem.task, design.verdict)) if design.verdict.branch_ok else None,
             "torque": torque,
+            **_cylinder(design),
+            **_function(problem, linkage, design),
             "figures": {str(key): _plain(value) for key, value in figures.items()},
         }
         for design, linkage, travel, torque, figures in zip(
             designs, linkages, travels, torques, rows, strict=True
         )
     ]
+
+
+def _cylinder(design: Candidate) -> dict[str, Any]:
+    """The cylinder as the scripts draw it."""
+    driven = design.verdict.cylinder
+    if driven is None:
+        return {}
+    closed = design.values["cylinder_closed"]
+    return {"cylinder": {**driven.stated, "closed": closed if np.isfinite(closed) else 0.0}}
+
+
+def _function(problem: Problem, linkage: Linkage, design: Candidate) -> dict[str, Any]:
+    """Wanted and generated output of a function over the range, deg; nothing for other tasks."""
+    if not isinstance(problem.task, FunctionTask):
+        return {}
+    curves = function_curves(linkage, problem.task, design.verdict, count=181)
+    if curves is None:
+        return {"function": None}
+    columns = asdict(curves)
+    return {"function": {name: compact(np.degrees(values).tolist()) for name, values in columns.items()}}
 
 
 def _torques(

@@ -47,7 +47,8 @@ def _targets(task: Task) -> dict[str, Any]:
         return {"points": task.positions.tolist(), "closed": task.closed}
     poses = np.column_stack([task.positions, task.angles])
     body = None if task.body is None or not task.has_angle.any() else task.body.tolist()
-    return {"poses": [_given(pose) for pose in poses], "body": body, "closed": task.closed}
+    targets = {"poses": [_given(pose) for pose in poses], "body": body, "closed": task.closed}
+    return targets | {"bare": True} if task.has_output.any() else targets
 
 
 def _given(numbers: FloatArray) -> list[float | None]:

@@ -9,6 +9,7 @@ from grashof.problems.values.mechanisms import FOUR_BAR, not_had
 from grashof.problems.values.quantities import TURNING
 from grashof.sections.balancing import balancing
 from grashof.sections.coupler_plane import coupler_plane
+from grashof.sections.cylinder import cylinder
 from grashof.sections.differences import differences
 from grashof.sections.dwell import dwell_section
 from grashof.sections.energies import energy_section
@@ -16,6 +17,7 @@ from grashof.sections.equations import equations
 from grashof.sections.equilibrium import equilibrium
 from grashof.sections.fits import fits
 from grashof.sections.flywheel import flywheel
+from grashof.sections.function import function_section
 from grashof.sections.hodographs import hodographs
 from grashof.sections.mass_centres import mass_centres
 from grashof.sections.mechanical_advantage import mechanical_advantage
@@ -34,6 +36,7 @@ from grashof.study.study import LinkageStudy
 
 # In the order in which they are reported. None where the file has no data for it, or nobody asked for it.
 SECTIONS: tuple[Callable[[LinkageStudy], Section | None], ...] = (
+    function_section,
     mass_centres,
     over_time,
     positions,
@@ -41,6 +44,7 @@ SECTIONS: tuple[Callable[[LinkageStudy], Section | None], ...] = (
     newton_raphson,
     differences,
     mechanical_advantage,
+    cylinder,
     pin_forces,
     equations,
     hodographs,

@@ -51,7 +51,8 @@ def fit_motion(study: LinkageStudy) -> tuple[float, float, str]:
         start, end = _asked_for(study, asked.fit_from_deg, asked.fit_to_deg)
         return start, end, "over the part asked for"
     if problem is not None and not problem.task.closed:
-        verdict = verify(study.linkage, problem.task, problem.requirements, problem=problem)
+        done = problem.task, problem.requirements
+        verdict = verify(study.linkage, *done, problem=problem, cylinder=study.spec.cylinder)
         if verdict.branch_ok and (verdict.assembly == study.linkage.assembly).all():
             ends = float(verdict.theta2.min()), float(verdict.theta2.max())
             start, end = ends if verdict.direction > 0 else ends[::-1]

@@ -6,7 +6,15 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from grashof.problems import DynamicsSpec, Problem, Requirements, StrokeTask, Task
+from grashof.problems import (
+    CylinderSpec,
+    DynamicsSpec,
+    FunctionTask,
+    Problem,
+    Requirements,
+    StrokeTask,
+    Task,
+)
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.problems.values.mechanisms import FOUR_BAR
@@ -50,7 +58,11 @@ def summary(problem: Problem) -> list[str]:
         *([] if problem.mechanism == (FOUR_BAR,) else [f"  mechanism {' or '.join(problem.mechanism)}"]),
         f"  rotatability {wanted.rotatability}, margin {wanted.rotatability_margin:g}; "
         f"order {_yes(wanted.order)}, same branch {_yes(wanted.same_branch)}",
-        *(f"  {_limit(problem, wanted, name)}" for name in wanted.limited),
+        *(
+            f"  {_limit(problem, wanted, name)}"
+            for name, limit in wanted.limited.items()
+            if limit.quantity.key not in task.without
+        ),
     ]
     if wanted.keep_out:
         names = ", ".join(wanted.keep_out_for)
@@ -60,6 +72,8 @@ def summary(problem: Problem) -> list[str]:
         lines.append(f"  made to within {made.length_tolerance:g}{unit}, band {made.band:g}{unit}")
     if problem.dynamics is not None:
         lines.append(f"  {_driven(problem.dynamics)}")
+    if problem.driver is not None:
+        lines.append(f"  {_cylinder(problem.driver, unit)}")
     return [
         *lines,
         f"  best: {_best(problem)}",
@@ -85,6 +99,11 @@ def _best(problem: Problem) -> str:
     if len(weights) > 1:
         best = f"a weighted sum: {', '.join(f'{word} {weight:g}' for word, weight in weights.items())}"
     missed = _missed(problem)
+    if problem.task.has_output.any() and not problem.by_objective:
+        error = (
+            "greatest structural error" if "greatest" in _exactness(problem) else "error at the pairs (rms)"
+        )
+        return f"least {error}; the list offers more transmission besides"
     if problem.by_objective:
         return f"{best}{missed and f', {missed}'}"
     return (
@@ -117,6 +136,9 @@ def _span(sizes: FloatArray, unit: str) -> str:
 def _search(problem: Problem) -> str:
     """How long is searched."""
     search = problem.search
+    if problem.task.has_output.any():
+        enough = f"up to {search.enough} designs, " if ends_with_enough(problem) else ""
+        return f"{enough}seed {search.seed}, effort {search.effort:g}"
     enough = f", {search.enough} designs" if ends_with_enough(problem) else ""
     effort = f", effort {search.effort:g}" if search.effort != 1 else ""
     return f"up to {search.starts} starts{enough}, seed {search.seed}{effort}"
@@ -127,6 +149,20 @@ def _driven(spec: DynamicsSpec) -> str:
     every = [_links(spec), *_acting(spec)]
     every += [f"payload {spec.payload:g} kg"] if spec.payload else []
     return f"dynamics: {', '.join(every)}; driver {_motor(spec)}; gravity {x:g}, {y:g} m/s2"
+
+
+def _cylinder(spec: CylinderSpec, unit: str) -> str:
+    """The limits of the cylinder that drives."""
+    words = [f"driven by a cylinder on {' or '.join(spec.on)}"]
+    if spec.closed is not None:
+        words.append(f"closed {spec.closed[0]:g} to {spec.closed[1]:g}{unit}")
+    words.append(f"open up to {spec.ratio_max:g} times that")
+    if spec.base is not None:
+        sides = (
+            f"{axis} {low:g} to {high:g}" for axis, (low, high) in (("x", spec.base.x), ("y", spec.base.y))
+        )
+        words.append(f"base {', '.join(sides)}{unit}")
+    return "; ".join(words)
 
 
 def _links(spec: DynamicsSpec) -> str:
@@ -161,16 +197,41 @@ def _task(task: Task, unit: str) -> str:
         way = f"stroke {task.stroke}{unit}" if task.swing is None else f"swing {np.degrees(task.swing):g} deg"
         free = "place" if task.swing is None else "place and scale"
         return f"{way}, time ratio {task.time_ratio:g}, {free} free"
+    if isinstance(task, FunctionTask):
+        return _function(task)
     kind = f"closed {task.kind}" if task.closed else task.kind
     timing = f" timed over {np.degrees(task.driver_turns[-1]):g} deg" if task.is_timed else ""
     length = f", angle_length {task.angle_length:g}{unit}" if task.kind == "motion" else ""
     return f"{kind} through {len(task)} {task.target}s{timing}, size {task.size:g}{unit}{length}"
 
 
+def _function(task: FunctionTask) -> str:
+    """A function by its pairs or its law, with its ranges and senses."""
+    first, last = np.degrees(task.span)
+    swept = f"driver over {last - first:g} deg"
+    law = task.law
+    if law is None:
+        said = f"function through {counted(len(task), 'pair')}, {swept}"
+    else:
+        power = "" if law.exponent is None else f" {law.exponent:g}"
+        ranges = (
+            f"x from {law.x[0]:g} to {law.x[1]:g}, {swept}, output over {np.degrees(law.output_range):g} deg"
+        )
+        chosen = "" if task.fits_range else f", at {counted(len(task), 'pair')} by Chebyshev spacing"
+        said = f"function {law.name}{power}, {ranges}{chosen}"
+    sense = "in the sense of the driver" if task.sense == "given" else "in either sense"
+    return f"{said}; output {sense}"
+
+
 def _exactness(problem: Problem) -> str:
     if problem.task.zones is not None:
         return "zones about the targets"
-    if not problem.requirements.is_exact(problem.task):
+    exact = problem.requirements.is_exact(problem.task)
+    if isinstance(problem.task, FunctionTask) and (exact or problem.task.norm == "max"):
+        if not exact:
+            return "least greatest structural error"
+        return f"every pair met within {problem.requirements.tolerance:g} rad"
+    if not exact:
         return "least squares"
     within = f"met within {problem.requirements.tolerance:g}"
     if isinstance(problem.task, StrokeTask):

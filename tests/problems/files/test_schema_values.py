@@ -27,7 +27,7 @@ STRUCTURE = [
     ('kind = "motion"', "motion is missing"),
     ('kind = "motion"\n[motion]', "motion.poses is missing"),
     ('kind = "motion"\nmotion = 5', "motion is 5; it must be a table"),
-    (f'kind = "dance"\n[motion]\n{POSES}', "kind is 'dance'; it must be motion, path or stroke"),
+    (f'kind = "dance"\n[motion]\n{POSES}', "kind is 'dance'; it must be motion, path, stroke or function"),
     (f"kind = 3\n[motion]\n{POSES}", "kind is 3; it must be a string"),
     ("title = 3\n" + HEAD, "title is 3; it must be a string"),
     (HEAD + "angle_length = '1'", "motion.angle_length is '1'; it must be a number"),

@@ -95,7 +95,7 @@ def test_a_problem_pickles() -> None:
 @pytest.mark.parametrize(
     ("parts", "message"),
     [
-        ({"task": 5}, r"problem.task is 5; it must be MotionTask or PathTask or StrokeTask"),
+        ({"task": 5}, r"problem.task is 5; it must be MotionTask or PathTask or StrokeTask or FunctionTask"),
         ({"requirements": None}, r"problem.requirements is None; it must be Requirements"),
         ({"manufacturing": 0.1}, r"problem.manufacturing is 0.1; it must be Manufacturing or None"),
         ({"name": 3}, r"problem.name is 3; it must be str"),

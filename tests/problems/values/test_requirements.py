@@ -12,7 +12,7 @@ from grashof.problems import Box, ProblemError, Requirements, Rotatability, Tran
 
 def test_defaults_demand_only_what_is_not_absurd() -> None:
     requirements = Requirements()
-    assert requirements.rotatability is Rotatability.FULL_CRANK
+    assert requirements.rotatability is None  # the task's own: full-crank but for functions
     assert requirements.transmission_over is TransmissionOver.TASK
     assert (requirements.tolerance, requirements.rotatability_margin) == (1e-6, 1e-3)
     assert (requirements.transmission_min_deg, requirements.link_ratio_max) == (0.0, 20.0)

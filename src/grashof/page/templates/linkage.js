@@ -16,6 +16,21 @@ function positionOf(linkage, theta2, assembly = linkage.assembly) {
   return { theta2, theta3: Math.atan2(sin, cos), o2, o4, a, p, ...closed };
 }
 
+// The two pivots of a cylinder, the end of its body and what holds it on its link, in a position.
+function cylinderAt({ on, base, point, closed }, state) {
+  const [origin, angle, joint] = {
+    driver: [state.o2, state.theta2, state.a],
+    coupler: [state.a, state.theta3, state.b],
+    output: [state.o4, state.theta4, state.b],
+  }[on];
+  const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
+  const [u, v] = point;
+  const pivot = [origin[0] + u * cos - v * sin, origin[1] + u * sin + v * cos];
+  const length = Math.hypot(pivot[0] - base[0], pivot[1] - base[1]) || 1;
+  const share = Math.min((0.9 * closed) / length, 1);
+  return { base, end: base.map((place, k) => place + share * (pivot[k] - place)), pivot, bracket: [origin, pivot, joint] };
+}
+
 // The driver angle, moved by whole turns into the travel or held at its ends.
 function within(design, theta2) {
   if (design.turns) return design.low + ((((theta2 - design.low) % TURN) + TURN) % TURN);

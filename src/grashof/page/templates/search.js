@@ -10,6 +10,8 @@ class SearchPage {
     });
     this.player = new Player($("#player"), { onMove: (theta2) => this.stage.move(theta2) });
     this.transmission = new Curves($("#transmission"), { onPick: turnTo });
+    this.output = designs[0].function !== undefined && new Curves($("#output"));
+    this.error = this.output && new Curves($("#error"));
     this.torque = designs[0].torque && new Curves($("#torque"), { onPick: turnTo });
     this.scatter = $("#scatter") && new Scatter($("#scatter"), { columns: axes, designs, onPick: choose });
     this.comparison = new Comparison($("#compare"), {
@@ -75,11 +77,25 @@ class SearchPage {
     const panel = { title: "Transmission angle", unit: "deg", limits: [0, 90] };
     const series = [{ label: "μ", values: mu }];
     this.transmission.show({ ...panel, places, angles: places, series }, { bold, marks });
+    if (this.output) this.outputs(design);
     if (!this.torque) return;
     const sampled = travelAngles(design).map((angle) => angle * DEG);
     const torque = { title: "Drive torque", unit: this.torqueUnit, places: sampled, angles: sampled };
     const options = { bold, marks, bounded: !design.turns };
     this.torque.show({ ...torque, series: [{ label: "T", values: design.torque }] }, options);
+  }
+
+  // Wanted and generated output of a function, and what lies between them.
+  outputs(design) {
+    const none = { turned: [0, 1], wanted: [null, null], generated: [null, null], error: [null, null] };
+    const { turned, wanted, generated, error } = design.function || none;
+    const panel = { unit: "deg", places: turned, over: "driver rotation from the first pair (deg)" };
+    const first = design.theta2[0];
+    const marks = design.theta2.map((angle) => Math.abs(angle - first) * DEG);
+    const series = [{ label: "wanted", values: wanted }, { label: "generated", values: generated }];
+    this.output.show({ ...panel, title: "Output rotation", series }, { marks, bounded: true });
+    const errors = [{ label: "error", values: error }];
+    this.error.show({ ...panel, title: "Structural error", series: errors }, { marks, bounded: true });
   }
 
   moved(state) {

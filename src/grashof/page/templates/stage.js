@@ -38,6 +38,7 @@ function pointsToSee(scene, designs, close) {
     for (const angle of travelPath(design).angles) {
       const state = positionOf(design.linkage, angle);
       points.push(...drawnPoints(design, state));
+      if (design.cylinder) points.push(design.cylinder.base);
     }
   }
   return points;
@@ -208,7 +209,7 @@ class Stage {
         });
       }
       const [x, y] = this.at(pose.at);
-      if (pose.angle !== null) {
+      if (pose.angle !== null && !scene.bare) {
         const [cos, sin] = [Math.cos(pose.angle), Math.sin(pose.angle)];
         add(layer, "path", { d: `M${px(x)} ${px(y)}l${px(22 * cos)} ${px(-22 * sin)}`, class: "pose" });
       }
@@ -261,10 +262,18 @@ class Stage {
     const layer = add(this.svg, "g", { class: "linkage" });
     const parts = {};
     if (this.scene.body) parts.body = add(layer, "path", { class: "body live" });
+    if (this.design.cylinder) {
+      parts.bracket = add(layer, "path", { class: `bracket ${this.design.cylinder.on}` });
+      parts.rod = add(layer, "path", { class: "piston" });
+      parts.ram = add(layer, "path", { class: "ram" });
+    }
     for (const [name, style] of links) parts[name] = add(layer, "path", { class: style });
     parts.sense = add(layer, "path", { class: "sense" });
     for (const name of [...pivots, ...moving]) {
       parts[name] = add(layer, "circle", { r: name === "p" ? 3.5 : 4, class: `joint ${name}` });
+    }
+    if (parts.ram) {
+      for (const name of ["base", "pivot"]) parts[name] = add(layer, "circle", { r: 4, class: "joint" });
     }
     for (const name of ["A", "B", "P"]) parts[name] = add(layer, "text", {}, name);
     if (this.onDrive) {
@@ -303,6 +312,15 @@ class Stage {
     if (parts.body) {
       const corners = bodyAt(this.scene.body, state.p, state.theta3 + linkage.body_angle);
       set(parts.body, { d: through(corners.map(this.at), true) });
+    }
+    if (parts.ram) {
+      const found = cylinderAt(this.design.cylinder, state);
+      const [base, end, pivot] = [found.base, found.end, found.pivot].map(this.at);
+      set(parts.bracket, { d: through(found.bracket.map(this.at)) });
+      set(parts.ram, { d: through([base, end]) });
+      set(parts.rod, { d: through([end, pivot]) });
+      set(parts.base, { cx: px(base[0]), cy: px(base[1]) });
+      set(parts.pivot, { cx: px(pivot[0]), cy: px(pivot[1]) });
     }
     set(parts.sense, { d: this.senseArrow(o2, direction) });
     if (parts.hold) set(parts.hold, { d: through([o2, a]) });

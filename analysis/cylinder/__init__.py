@@ -1,0 +1,1 @@
+"""A cylinder as driver: its lengths, its lever angle and its force."""

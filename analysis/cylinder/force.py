@@ -1,0 +1,57 @@
+"""The force of a cylinder that moves a linkage."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from grashof.analysis.cylinder.lengths import cylinder_state
+from grashof.analysis.forces.dynamics import inverse_dynamics
+from grashof.analysis.forces.loads import AppliedForce, Loads
+from grashof.analysis.forces.mass import Masses
+from grashof.analysis.four_bar.kinematics import Kinematics
+from grashof.problems import Cylinder
+from grashof.problems.values.arrays import FloatArray
+
+_ROUNDS, _SETTLED = 60, 1e-13
+
+
+def cylinder_force(state: Kinematics, cylinder: Cylinder, masses: Masses, loads: Loads) -> FloatArray:
+    """Force of the cylinder, in kg, s and the length unit: newtons over the metre.
+
+    Parameters
+    ----------
+    state : Kinematics
+        Of a single linkage, shape (...).
+    cylinder : Cylinder
+        Its own mass and friction are left out.
+    masses : Masses
+    loads : Loads
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Positive where it pushes; infinite where its length stands, or friction locks it.
+
+    Notes
+    -----
+    Virtual work (Norton, *Design of Machinery*, sec. 11.10): the cylinder gives the power that a torque T on
+    link 2 would give, F dL/dtheta2 = T. Friction in pins follows from the forces in them, which a cylinder
+    loads otherwise than a torque does: there F is put on the link and corrected until no torque is left.
+    """
+    found = cylinder_state(cylinder, state.linkage, state)
+    out = found.pivot - np.asarray(cylinder.base)
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        force: FloatArray = inverse_dynamics(state, masses, loads).torque / found.rate
+        if not loads.friction.each("radius").any():
+            return force
+        push = out / found.length[..., None]
+        for _ in range(_ROUNDS):
+            pushed = AppliedForce(cylinder.link, cylinder.point, force[..., None] * push)
+            left = inverse_dynamics(state, masses, replace(loads, forces=(*loads.forces, pushed))).torque
+            force = force + left / found.rate
+            settled = np.abs(left / found.rate) <= _SETTLED * np.abs(force)
+            if settled.all():
+                break
+        return np.where(settled | np.isnan(force), force, np.inf)

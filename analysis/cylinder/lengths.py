@@ -1,0 +1,163 @@
+"""Length, rate and lever of a cylinder, and their extremes over a motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from grashof.analysis.cylinder.travel import Travel
+from grashof.analysis.four_bar.kinematics import Kinematics
+from grashof.analysis.four_bar.position import Position
+from grashof.analysis.numerics.peaks import peaks
+from grashof.problems import Cylinder, FourBar, Linkage, ProblemError
+from grashof.problems.values.arrays import ComplexArray, FloatArray
+
+_NOTHING = 1e-13  # share of the lengths about it: a shorter way is rounding
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CylinderState:
+    """A cylinder in some positions of its linkage.
+
+    Parameters
+    ----------
+    pivot : ndarray, shape (..., 2), length
+        Q, its pivot of the moving link.
+    length : ndarray, shape (...), length
+        From C, its pivot of the ground, to Q.
+    rate : ndarray, shape (...), length
+        dL/dtheta2; infinite in dead positions of link 2.
+    lever : ndarray, shape (...)
+        |dL| / |dQ|: the sine of the angle between cylinder and arm, signed as dL in the motion of the linkage
+        around its circuit; 0 where Q stands or lies in C.
+    """
+
+    pivot: FloatArray
+    length: FloatArray
+    rate: FloatArray
+    lever: FloatArray
+
+    @property
+    def angle(self) -> FloatArray:
+        """Lever angle, shape (...), rad: min(beta, pi - beta) between the cylinder and the arm of Q."""
+        return np.asarray(np.arcsin(np.clip(np.abs(self.lever), 0.0, 1.0)))
+
+
+@dataclass(frozen=True, slots=True)
+class CylinderFigures:
+    """What a cylinder does over a motion.
+
+    Parameters
+    ----------
+    closed, open : float, length
+        Least and greatest length.
+    angle_min : float, rad
+        Least lever angle; 0 where the length does not go one way.
+    monotone : bool
+        The length goes one way, and nowhere does it stand: the cylinder drives.
+    """
+
+    closed: float
+    open: float
+    angle_min: float
+    monotone: bool
+
+    @property
+    def stroke(self) -> float:
+        """Greatest length less the least."""
+        return self.open - self.closed
+
+    @property
+    def ratio(self) -> float:
+        """Greatest length over the least."""
+        return self.open / self.closed if self.closed > 0 else np.inf
+
+
+def cylinder_state(cylinder: Cylinder, linkage: Linkage, at: Position | Kinematics) -> CylinderState:
+    """A cylinder in some positions of a linkage.
+
+    Parameters
+    ----------
+    cylinder : Cylinder
+    linkage : Linkage
+        A four-bar.
+    at : Position or Kinematics
+        Of the linkage, shape (...).
+
+    Returns
+    -------
+    CylinderState
+
+    Notes
+    -----
+    The rates of the links are in the ratio r3 r4 sin(theta3 - theta4) : r2 r4 sin(theta4 - theta2) :
+    r2 r3 sin(theta3 - theta2), from the loop's derivative (Norton, *Design of Machinery*, sec. 6.7). All
+    three stay finite in dead positions; dL = dQ . (Q - C) / L.
+
+    Examples
+    --------
+    >>> from grashof.analysis.four_bar.position import solve_position
+    >>> linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
+    >>> jack = Cylinder("driver", base=(0, -2), point=(1, 0))
+    >>> found = cylinder_state(jack, linkage, solve_position(linkage, [0.0, np.pi / 4]))
+    >>> found.length.round(6).tolist(), np.degrees(found.angle).round(3).tolist()
+    ([2.236068, 2.797933], [63.435, 30.361])
+    """
+    theta2, theta3, theta4 = at.theta2, at.theta3, at.theta4
+    if not isinstance(linkage, FourBar):
+        raise ProblemError(f"cylinder does not go with mechanism {linkage.MECHANISM}; only four-bar has it")
+    r2, r3, r4 = linkage.r2, linkage.r3, linkage.r4
+    omega2 = r3 * r4 * np.sin(theta3 - theta4)
+    omega3, omega4 = r2 * r4 * np.sin(theta4 - theta2), r2 * r3 * np.sin(theta3 - theta2)
+    foot = _complex(linkage.o4 if cylinder.link == 4 else linkage.o2)
+    theta, turn = ((theta2, omega2), (theta3, omega3), (theta4, omega4))[cylinder.link - 2]
+    arm = complex(*cylinder.point) * np.exp(1j * theta)
+    crank = r2 * np.exp(1j * theta2) if cylinder.link == 3 else 0.0
+    pivot = foot + crank + arm
+    way = 1j * (omega2 * crank + turn * arm)
+    out = pivot - complex(*cylinder.base)
+    length, speed = np.abs(out), np.abs(way)
+    scale = np.maximum(np.maximum(r2, r3), r4) ** 2 * (r2 + r3 + r4 + np.abs(arm))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        change = np.real(np.conj(out) * way) / length
+        lever = np.where((length > 0) & (speed > _NOTHING * scale), change / speed, 0.0)
+        rate = np.where(length > 0, change / omega2, 0.0)
+    lever = np.where(np.isnan(speed), np.nan, lever)
+    return CylinderState(np.stack([pivot.real, pivot.imag], axis=-1), length, rate, lever)
+
+
+def cylinder_figures(cylinder: Cylinder, travel: Travel) -> CylinderFigures:
+    """Extremes of a cylinder over a motion, right to rounding.
+
+    Parameters
+    ----------
+    cylinder : Cylinder
+    travel : Travel
+
+    Returns
+    -------
+    CylinderFigures
+
+    Notes
+    -----
+    Samples, ever closer about the extremes of lever and length. The lever changes its sign where the
+    length turns back, so that the least of it, signed, decides whether the length goes one way.
+    """
+
+    def curves(places: FloatArray) -> FloatArray:
+        state = cylinder_state(cylinder, travel.linkage, travel.at(places))
+        return np.stack([state.lever, -state.lever, state.length, -state.length])
+
+    if travel.start == travel.end:
+        high, low, longest, shortest = curves(np.array([travel.start]))[:, 0]
+    else:
+        (high, low, longest, shortest), _ = peaks(curves, [travel.places])
+    least = max(-low, -high)
+    driven = bool(np.isfinite([high, low, longest, shortest]).all() and least > 0)
+    angle = float(np.arcsin(min(least, 1.0))) if driven else 0.0
+    return CylinderFigures(float(-shortest), float(longest), angle, driven)
+
+
+def _complex(place: FloatArray) -> ComplexArray:
+    return np.asarray(place[..., 0] + 1j * place[..., 1])

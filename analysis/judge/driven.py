@@ -1,0 +1,137 @@
+"""The judge of a cylinder as driver: whether it drives the linkage through its task, within its limits."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+
+import numpy as np
+
+from grashof.analysis.cylinder.force import cylinder_force
+from grashof.analysis.cylinder.lengths import CylinderFigures, cylinder_figures
+from grashof.analysis.cylinder.travel import Travel, travel
+from grashof.analysis.forces.stated import stated_loads, stated_masses
+from grashof.analysis.four_bar.kinematics import Kinematics, solve_kinematics
+from grashof.analysis.judge.over_task import as_used, driver_law, motion_ends, sampled
+from grashof.analysis.judge.verdict import Defect, Verdict
+from grashof.analysis.numerics.peaks import peaks
+from grashof.problems import Cylinder, CylinderSpec, DeadPositionWarning, Linkage, Problem, Task
+from grashof.problems.values.arrays import FloatArray, Limits
+from grashof.problems.values.box import Box
+from grashof.problems.values.dynamics_spec import metres
+
+SLACK = 1e-9  # share of a limit, or of the size of the task
+_KEY = "driver.cylinder"
+
+
+def driven_travel(linkage: Linkage, task: Task, verdict: Verdict) -> Travel | None:
+    """The task motion as the cylinder of a verdict drives it; None where it cannot.
+
+    On links 3 and 4 it goes through dead positions of link 2.
+    """
+    if verdict.branch_ok:
+        return travel(linkage, verdict.theta2, verdict.assembly, motion_ends(task, verdict))
+    if verdict.cylinder is None or verdict.cylinder.link == 2:
+        return None
+    return travel(linkage, verdict.theta2, verdict.assembly)
+
+
+def cylinder_defects(
+    spec: CylinderSpec, cylinder: Cylinder | None, moved: Travel | None, size: float
+) -> Iterator[Defect]:
+    """What a cylinder misses of its limits.
+
+    Parameters
+    ----------
+    spec : CylinderSpec
+    cylinder : Cylinder, optional
+        None where none was found.
+    moved : Travel, optional
+        None where no motion joins the targets, which another defect reports.
+    size : float, length
+        Of the task.
+    """
+    if cylinder is None:
+        yield Defect(_KEY, "the number of cylinders that drive the linkage within these limits", 0, "1", 1.0)
+        return
+    if cylinder.on not in spec.on:
+        yield Defect(f"{_KEY}.on", "the link driven", cylinder.link, ", ".join(spec.on), 1.0)
+    for axis, place in zip("xy", cylinder.base, strict=True):
+        allowed = getattr(spec.base or Box(), axis)
+        yield from _beyond(f"{_KEY}.base", f"the base's {axis}", place, allowed, size)
+    if moved is None:
+        return
+    found = cylinder_figures(cylinder, moved)
+    if not found.monotone:
+        what = "the number of ways in which the length goes, or 2 where it stands,"
+        yield Defect(_KEY, what, 2, "1 (longer all the way, or shorter)", 1.0)
+    yield from _beyond(
+        f"{_KEY}.closed", "the closed length", found.closed, spec.closed or (0.0, np.inf), size
+    )
+    ratio = (1.0, spec.ratio_max)
+    yield from _beyond(f"{_KEY}.ratio_max", "the greatest length over the least", found.ratio, ratio, 1.0)
+
+
+def _beyond(key: str, what: str, value: float, allowed: Limits, scale: float) -> Iterator[Defect]:
+    low, high = allowed
+    miss = max(low - value, value - high) / scale
+    if miss > SLACK:
+        words = f"up to {high:.6g}" if value > high else f"from {low:.6g}"
+        yield Defect(key, what, value, words, miss)
+
+
+def figures_of(linkage: Linkage, task: Task, verdict: Verdict) -> CylinderFigures | None:
+    """What the cylinder of a verdict does in the task motion; None where there is none, or no motion."""
+    if verdict.cylinder is None:
+        return None
+    moved = driven_travel(linkage, task, verdict)
+    return None if moved is None else cylinder_figures(verdict.cylinder, moved)
+
+
+def cylinder_force_peak(linkage: Linkage, problem: Problem, verdict: Verdict) -> float:
+    """Greatest magnitude of the cylinder's force over the task motion, N.
+
+    NaN without dynamics, or where the motion leads through a dead position of link 2, whose speed the problem
+    states; infinite where the length stands.
+    """
+    if problem.dynamics is None or verdict.cylinder is None or not verdict.branch_ok:
+        return np.nan
+    ends = motion_ends(problem.task, verdict)
+    theta2, law = sampled(linkage, *ends), driver_law(problem, *ends)
+
+    def force(place: FloatArray) -> FloatArray:
+        state = solve_kinematics(as_used(linkage, verdict), *law.at_place(place))
+        return np.abs(_force(problem, verdict, state))[None]
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeadPositionWarning)
+        return float(peaks(force, law.stretches(theta2))[0][0])
+
+
+def cylinder_forces(linkage: Linkage, problem: Problem, verdict: Verdict) -> FloatArray:
+    """Force of the cylinder at every target, N, shape (N,), positive where it pushes.
+
+    NaN as in `cylinder_force_peak`.
+    """
+    return forces_at(linkage, problem, verdict, verdict.theta2)
+
+
+def forces_at(linkage: Linkage, problem: Problem, verdict: Verdict, theta2: FloatArray) -> FloatArray:
+    """The same at driver angles of the task motion, shape (N,)."""
+    if problem.dynamics is None or verdict.cylinder is None or not verdict.branch_ok:
+        return np.full(len(theta2), np.nan)
+    law = driver_law(problem, *motion_ends(problem.task, verdict))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeadPositionWarning)
+        return _force(problem, verdict, law.state(as_used(linkage, verdict), theta2))
+
+
+def _force(problem: Problem, verdict: Verdict, state: Kinematics) -> FloatArray:
+    spec, cylinder = problem.dynamics, verdict.cylinder
+    if spec is None or cylinder is None:
+        return np.full(state.shape, np.nan)
+    metre = metres(problem.length_unit)
+    law = driver_law(problem, *motion_ends(problem.task, verdict))
+    masses = stated_masses(state.linkage, spec, metre)
+    loads = stated_loads(spec, metre, lambda moved: law.time_at(moved.theta2))
+    return metre * cylinder_force(state, cylinder, masses, loads)

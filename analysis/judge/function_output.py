@@ -1,0 +1,382 @@
+"""How a linkage generates a function: where its driver begins, and the structural error over the range."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from grashof.analysis.four_bar.mobility import driver_ranges, rotatability
+from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.judge.task_motion import Targets, TaskMotion
+from grashof.analysis.judge.verdict import Verdict
+from grashof.analysis.numerics.peaks import peaks
+from grashof.problems import FourBar, FunctionTask, Linkage, ProblemError, Requirements
+from grashof.problems.values.arrays import TURN, FloatArray
+
+_STARTS = 720  # driver angles at the first pair that are tried, over what the driver can reach
+_VALLEYS = 5
+_SAMPLES = 97  # of the range, where the greatest error decides
+_DENSE = 721
+_GAUSS = 12  # points between two samples of the quadrature
+_SAME = 1 + 1e-9
+_NOTHING = 1e-12  # rad: starts whose errors differ by less are as good
+
+
+@dataclass(frozen=True, slots=True)
+class Beginning:
+    """Where the driver of a function generator begins.
+
+    Parameters
+    ----------
+    theta2 : float, rad
+        Driver angle at the first pair.
+    direction : int
+        Sense of the driver.
+    """
+
+    theta2: float
+    direction: int
+
+
+@dataclass(frozen=True, slots=True)
+class StructuralError:
+    """Output less what is wanted, over the whole range.
+
+    Parameters
+    ----------
+    at_pairs : ndarray, shape (N,), rad
+        With its sign.
+    max, rms : float, rad
+        Greatest magnitude, and root mean square over the driver angle.
+    at : float, rad
+        Driver rotation from the first pair to the greatest.
+    zero : float, rad
+        Direction theta4 that the wanted output zero stands for.
+    sense : int
+        +1 where the output turns as wanted, -1 where it is the opposite.
+    """
+
+    at_pairs: FloatArray
+    max: float
+    rms: float
+    at: float
+    zero: float
+    sense: int
+
+
+def output_error(
+    linkage: Linkage, task: FunctionTask, begun: Beginning, turned: FloatArray, sense: int
+) -> FloatArray:
+    """Output rotation less what is wanted but for a constant, at growing driver rotations (K,), rad.
+
+    NaN where the linkage cannot be assembled. Positive where the output is ahead in the sense of the driver.
+    """
+    theta4 = solve_position(linkage, begun.theta2 + begun.direction * turned).theta4
+    found: FloatArray = begun.direction * np.unwrap(theta4) - sense * task.output(turned)
+    return found
+
+
+def begins(linkage: Linkage, task: FunctionTask, exact: bool, theta2_start: float | None) -> Beginning | None:
+    """Where the driver of a single linkage begins so that it errs least.
+
+    Parameters
+    ----------
+    linkage : Linkage
+    task : FunctionTask
+    exact : bool
+        Every pair is to be met: the errors at the pairs decide, whatever the norm.
+    theta2_start : float, rad, optional
+        Driver angle at the first pair, where it is given.
+
+    Returns
+    -------
+    Beginning, or None where the linkage covers the range from no angle.
+
+    Raises
+    ------
+    ProblemError
+        Another linkage than a four-bar.
+
+    Examples
+    --------
+    >>> linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
+    >>> theta4 = solve_position(linkage, 0.7 + np.array([0, 0.4, 0.9, 1.5, 2.0])).theta4
+    >>> task = FunctionTask([0, 0.4, 0.9, 1.5, 2.0], theta4 - theta4[0])
+    >>> begun = begins(linkage, task, True, None)
+    >>> round(begun.theta2, 9), begun.direction
+    (0.7, 1)
+    """
+    if not isinstance(linkage, FourBar):
+        raise ProblemError(f"mechanism {linkage.MECHANISM} is not built for functions; it must be four-bar")
+    search = _Search(linkage, task, exact or task.norm == "rms")
+    found: list[tuple[float, int, float]] = []
+    for direction in (1, -1):
+        if theta2_start is not None:
+            found.append((search.value(theta2_start, direction), direction, theta2_start))
+            continue
+        found += search.valleys(direction)
+    found = sorted(one for one in found if np.isfinite(one[0]))[: 1 if theta2_start is not None else _VALLEYS]
+    if theta2_start is None:
+        step = TURN / _STARTS
+        found = [search.refined(direction, start, step) for _, direction, start in found]
+    if not found:
+        return None
+    least = min(value for value, _, _ in found)
+    _, direction, start = next(one for one in found if one[0] <= least * _SAME + _NOTHING)
+    return Beginning(start, direction)
+
+
+@dataclass(frozen=True, slots=True)
+class _Search:
+    """Least error over the driver angle at the first pair."""
+
+    linkage: FourBar
+    task: FunctionTask
+    squares: bool
+
+    @property
+    def senses(self) -> tuple[int, ...]:
+        return (1, -1) if self.task.sense == "either" else (1,)
+
+    def turned(self) -> FloatArray:
+        if self.squares:
+            return self.task.inputs
+        return np.unique(np.concatenate([self.task.inputs, np.linspace(*self.task.span, _SAMPLES)]))
+
+    def values(self, starts: FloatArray, direction: int) -> FloatArray:
+        """Root mean square, or greatest error, for driver angles at the first pair, shape (S,)."""
+        turned, task = self.turned(), self.task
+        theta4 = solve_position(self.linkage, starts[:, None] + direction * turned).theta4
+        rotated = direction * (theta4 if self.squares else np.unwrap(theta4, axis=1))
+        wanted = task.outputs if self.squares else task.output(turned)
+        best = np.full(len(starts), np.inf)
+        for sense in self.senses:
+            off = rotated - sense * wanted
+            if self.squares:
+                share = task.weights / task.weights.sum()
+                off = _from_first(off)
+                off = off - (off @ share)[:, None]
+                value = np.sqrt(off**2 @ share)
+            else:
+                value = np.ptp(off, axis=1) / 2
+            best = np.fmin(best, np.nan_to_num(value, nan=np.inf))
+        return best
+
+    def value(self, start: float, direction: int) -> float:
+        return float(self.values(np.array([start]), direction)[0])
+
+    def valleys(self, direction: int) -> list[tuple[float, int, float]]:
+        """The lowest of their neighbours, over all that the driver can reach."""
+        found = []
+        for low, high in self._ranges(direction):
+            starts = np.linspace(low, high, max(8, int(np.ceil(_STARTS * (high - low) / TURN))) + 1)
+            value = self.values(starts, direction)
+            padded = np.pad(value, 1, constant_values=np.inf)
+            lowest = np.flatnonzero((value <= padded[:-2]) & (value <= padded[2:]) & np.isfinite(value))
+            found += [(float(value[k]), direction, float(starts[k])) for k in lowest]
+        return found
+
+    def _ranges(self, direction: int) -> list[tuple[float, float]]:
+        """Where the driver may stand at the first pair."""
+        low, high = self.task.span
+        if (rotatability(self.linkage) >= 0).all():
+            first = float(self.linkage.theta1)
+            return [(first, first + TURN)]
+        back, on = (-low, high) if direction > 0 else (high, -low)
+        ends = [(float(a) + back, float(b) - on) for a, b in driver_ranges(self.linkage)]
+        # A range that is as long as the linkage's own leaves one place; rounding must not lose it.
+        return [(min(a, b), max(a, b)) for a, b in ends if b - a >= -1e-9]
+
+    def refined(self, direction: int, start: float, step: float) -> tuple[float, int, float]:
+        """The bottom of the valley about a start."""
+        from scipy.optimize import minimize_scalar  # here: few problems need it
+
+        found = minimize_scalar(
+            lambda at: min(self.value(at, direction), 1e3),
+            bounds=(start - step, start + step),
+            method="bounded",
+            options={"xatol": 1e-10},
+        )
+        at = float(found.x) if found.fun <= self.value(start, direction) else start
+        if self.squares:
+            at = self._newton(at, direction)
+        return self.value(at, direction), direction, at
+
+    def _newton(self, at: float, direction: int) -> float:
+        """Gauss-Newton: squares alone give half of the digits."""
+        share = self.task.weights / self.task.weights.sum()
+        for _ in range(6):
+            state = solve_position(self.linkage, at + direction * self.task.inputs)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                rate = self.linkage.r2 * np.sin(state.theta3 - state.theta2)
+                rate = rate / (self.linkage.r4 * np.sin(state.theta3 - state.theta4))
+            if not np.isfinite(rate).all():  # a dead position
+                break
+            off = min(
+                (_from_first(direction * state.theta4 - sense * self.task.outputs) for sense in self.senses),
+                key=lambda each: float(np.nan_to_num(share @ (each - share @ each) ** 2, nan=np.inf)),
+            )
+            off, rate = off - share @ off, direction * (rate - share @ rate)
+            curvature = float(share @ rate**2)
+            if not curvature > 0:
+                break
+            moved = at - float(share @ (off * rate)) / curvature
+            if not self.value(moved, direction) < self.value(at, direction):
+                break
+            at = moved
+        return at
+
+
+def _from_first(angles: FloatArray) -> FloatArray:
+    """Differences from the first (last axis), by whole turns moved into [-pi, pi)."""
+    found: FloatArray = (angles - angles[..., :1] + np.pi) % TURN - np.pi
+    return found
+
+
+def structural_error(
+    linkage: Linkage, task: FunctionTask, begun: Beginning, exact: bool
+) -> StructuralError | None:
+    """The structural error of a linkage over the whole range, its extremes refined.
+
+    Parameters
+    ----------
+    linkage : Linkage
+    task : FunctionTask
+    begun : Beginning
+        Of `begins`.
+    exact : bool
+        Pairs are to be met: the output's zero is that of the pairs, whatever the norm.
+
+    Returns
+    -------
+    StructuralError, or None where the linkage cannot be assembled all over the range.
+
+    Notes
+    -----
+    The output's zero is the mean of the errors at the pairs, or, where the greatest error is what
+    counts, the middle of the extreme errors. The mean square is a Gauss-Legendre sum between the
+    samples and pairs.
+
+    Examples
+    --------
+    Half of the output of a parallelogram, wanted as a rotation by 1 rad with 1 rad:
+
+    >>> parallelogram = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=1, assembly=1)
+    >>> task = FunctionTask([0, 0.5, 1], [0, 0.25, 0.5])
+    >>> found = structural_error(parallelogram, task, Beginning(0.5, 1), exact=False)
+    >>> round(found.max, 9), round(found.rms * 12**0.5 * 2, 9)
+    (0.25, 1.0)
+    """
+    senses = (1, -1) if task.sense == "either" else (1,)
+    share = task.weights / task.weights.sum()
+    dense = np.unique(np.concatenate([task.inputs, np.linspace(*task.span, _DENSE)]))
+    found = []
+    for sense in senses:
+        off = output_error(linkage, task, begun, dense, sense)
+        if np.isnan(off).any():
+            return None
+        at_pairs = off[np.searchsorted(dense, task.inputs)]
+        found.append((float(np.ptp(off)), sense, off, at_pairs))
+    _, sense, off, at_pairs = min(found, key=lambda each: each[:2])
+    zero = float(share @ at_pairs)
+
+    def curves(turned: FloatArray) -> FloatArray:
+        order = np.argsort(turned, kind="stable")
+        errors = np.empty(len(turned))
+        errors[order] = _near(
+            output_error(linkage, task, begun, turned[order], sense), turned[order], dense, off
+        )
+        return np.stack([errors, -errors])
+
+    (high, low), (high_at, low_at) = (each.tolist() for each in peaks(curves, [dense]))
+    if task.norm == "max" and not exact:
+        zero = (high - low) / 2
+    nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
+    coarse = np.unique(np.concatenate([task.inputs, np.linspace(*task.span, 25)]))
+    middle, half = (coarse[1:] + coarse[:-1]) / 2, np.diff(coarse) / 2
+    inner = (middle[:, None] + half[:, None] * nodes).ravel()
+    square = float((half[:, None] * weights).ravel() @ (curves(inner)[0] - zero) ** 2) / float(np.ptp(coarse))
+    above, below = high - zero, low + zero
+    worst, at = (above, high_at) if above >= below else (below, low_at)
+    return StructuralError(at_pairs - zero, worst, float(np.sqrt(square)), at, begun.direction * zero, sense)
+
+
+def _near(errors: FloatArray, turned: FloatArray, dense: FloatArray, off: FloatArray) -> FloatArray:
+    """Errors without the whole turns by which they may differ from those of the dense samples."""
+    whole = np.round((errors - np.interp(turned, dense, off)) / TURN)
+    near: FloatArray = errors - TURN * whole
+    return near
+
+
+def met_as_function(
+    linkage: Linkage, task: FunctionTask, wanted: Requirements
+) -> tuple[Targets, TaskMotion, StructuralError | None]:
+    """Driver angle and error at each pair, the motion over the range, and the structural error.
+
+    None where the linkage cannot be assembled all over the range.
+    """
+    exact = wanted.is_exact(task)
+    start = None if wanted.theta2_start_deg is None else float(np.radians(wanted.theta2_start_deg))
+    begun = begins(linkage, task, exact, start)
+    met = begun or Beginning(start or 0.0, 1)
+    first = met.theta2 if start is not None else met.theta2 - TURN * np.round(met.theta2 / TURN)
+    met = Beginning(float(first), met.direction)
+    theta2 = met.theta2 + met.direction * task.inputs
+    error = structural_error(linkage, task, met, exact) if begun else None
+    free, own = np.full(len(task), np.nan), np.full(len(task), int(linkage.assembly))
+    at_pairs = np.full(len(task), np.inf) if error is None else np.abs(error.at_pairs)
+    low, high = task.span
+    motion = TaskMotion.ordered(theta2, met.direction)
+    motion = replace(motion, start=met.theta2 + met.direction * low, end=met.theta2 + met.direction * high)
+    return Targets(theta2, own, free, free, at_pairs), motion, error
+
+
+@dataclass(frozen=True, slots=True)
+class FunctionCurves:
+    """Wanted and generated output of a design over the range, each of shape (K,), rad.
+
+    Parameters
+    ----------
+    turned : ndarray
+        Driver rotation from the first pair.
+    wanted, generated, error : ndarray
+        Output rotation, positive as the driver turns, from the wanted zero on.
+    """
+
+    turned: FloatArray
+    wanted: FloatArray
+    generated: FloatArray
+    error: FloatArray
+
+
+def function_curves(
+    linkage: Linkage, task: FunctionTask, verdict: Verdict, count: int = 361, at: FloatArray | None = None
+) -> FunctionCurves | None:
+    """What a judged linkage puts out over the range of its function, or at given driver rotations.
+
+    None where it does not cover the range.
+
+    Examples
+    --------
+    >>> from grashof.analysis.judge.verify import verify
+    >>> linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
+    >>> task = FunctionTask([0, 0.5, 1.0], [0, 0.1, 0.3])
+    >>> curves = function_curves(linkage, task, verify(linkage, task, Requirements(exact=False)))
+    >>> bool(np.abs(curves.generated - curves.wanted - curves.error).max() < 1e-12)
+    True
+    """
+    if not np.isfinite(verdict.structural_error_max):
+        return None
+    dense = np.linspace(*task.span, max(count, _DENSE))
+    turned = np.linspace(*task.span, count) if at is None else at
+    every = np.unique(np.concatenate([dense, turned]))
+    begun = Beginning(float(verdict.theta2[0]), verdict.direction)
+    off = (
+        output_error(linkage, task, begun, every, verdict.output_sense)
+        - verdict.direction * verdict.output_zero
+    )
+    middle = TURN * np.round(np.median(off) / TURN)
+    error = off[np.searchsorted(every, turned)] - middle
+    wanted = verdict.output_sense * task.output(turned)
+    return FunctionCurves(turned, wanted, wanted + error, error)

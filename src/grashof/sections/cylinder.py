@@ -1,0 +1,90 @@
+"""The cylinder that drives a design: its length, lever angle and force over the task motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pandas as pd
+
+from grashof.analysis import Verdict, solve_position, verify
+from grashof.analysis.cylinder.lengths import cylinder_state
+from grashof.analysis.judge.driven import cylinder_force_peak, figures_of, forces_at
+from grashof.analysis.judge.over_task import motion_ends
+from grashof.problems import Problem
+from grashof.problems.values.arrays import FloatArray
+from grashof.study.columns import Columns, curves, table
+from grashof.study.section import Fact, Section
+from grashof.study.study import LinkageStudy
+
+KEY, _TITLE = "cylinder", "Cylinder"
+_SAMPLES = 181
+_NOTES = (
+    "over the task motion; the lever angle is that between the cylinder and the arm of its pivot, on the "
+    "coupler 90 deg less the angle between the cylinder and the way of its pivot",
+)
+_FORCES = "positive forces push; mass and friction of the cylinder itself are left out"
+
+
+def cylinder(study: LinkageStudy) -> Section | None:
+    """Length, rate, lever angle and, with dynamics, force; None where no cylinder drives the linkage."""
+    driven, problem = study.spec.cylinder, study.spec.problem
+    if driven is None or problem is None:
+        return None
+    verdict = verify(study.linkage, problem.task, problem.requirements, problem=problem, cylinder=driven)
+    if not verdict.branch_ok:
+        return None
+    theta2 = np.linspace(*motion_ends(problem.task, verdict), _SAMPLES)
+    over = _columns(study, problem, verdict, theta2)
+    targets = table(_columns(study, problem, verdict, verdict.theta2))
+    targets.insert(0, "target", np.arange(1, len(targets) + 1))
+    unit = study.spec.unit
+    plots = [
+        curves(over, "cylinder-length", "length of the cylinder", unit, {"length": "length"}),
+        curves(over, "cylinder-rate", "rate of the cylinder dL/dθ2", f"{unit}/rad", {"rate": "rate"}),
+        curves(over, "cylinder-angle", "lever angle of the cylinder", "deg", {"angle": "angle_deg"}),
+    ]
+    loaded = "force" in over
+    if loaded:
+        plots.append(curves(over, "cylinder-force", "force of the cylinder", "N", {"force": "force"}))
+    tables = {KEY: table(over), f"{KEY}-at-targets": pd.DataFrame(targets)}
+    notes = (*_NOTES, _FORCES) if loaded else _NOTES
+    return Section(KEY, _TITLE, tuple(_facts(study, problem, verdict)), tables, tuple(plots), notes)
+
+
+def _columns(study: LinkageStudy, problem: Problem, verdict: Verdict, theta2: FloatArray) -> Columns:
+    if verdict.cylinder is None:
+        return {}
+    found = cylinder_state(verdict.cylinder, study.linkage, solve_position(study.linkage, theta2))
+    columns: dict[str, FloatArray] = {
+        "theta2_deg": np.degrees(theta2),
+        "length": found.length,
+        "rate": found.rate,
+        "angle_deg": np.degrees(found.angle),
+        "pivot_x": found.pivot[:, 0],
+        "pivot_y": found.pivot[:, 1],
+    }
+    if problem.dynamics is not None:
+        columns["force"] = forces_at(study.linkage, problem, verdict, theta2)
+    return columns
+
+
+def _facts(study: LinkageStudy, problem: Problem, verdict: Verdict) -> Iterator[Fact]:
+    driven, found, unit = verdict.cylinder, figures_of(study.linkage, problem.task, verdict), study.spec.unit
+    if driven is None or found is None:
+        return
+    yield Fact("cylinder_on", "link that the cylinder acts on", driven.on)
+    for (name, value), label in zip(
+        driven.columns.items(), ("base, x", "base, y", "pivot, u", "pivot, v"), strict=True
+    ):
+        yield Fact(name, f"cylinder: {label}", value, unit)
+    yield Fact("cylinder_closed", "cylinder: closed length", found.closed, unit)
+    yield Fact("cylinder_open", "cylinder: open length", found.open, unit)
+    yield Fact("cylinder_stroke", "cylinder: stroke", found.stroke, unit)
+    yield Fact("cylinder_ratio", "cylinder: open over closed length", found.ratio)
+    yield Fact(
+        "cylinder_angle_min_deg", "cylinder: worst lever angle", float(np.degrees(found.angle_min)), "deg"
+    )
+    if problem.dynamics is not None:
+        peak = cylinder_force_peak(study.linkage, problem, verdict)
+        yield Fact("cylinder_force_max", "cylinder: peak force", peak, "N")

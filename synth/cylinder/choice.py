@@ -1,0 +1,101 @@
+"""The best cylinder of a linkage: that of the greatest worst lever angle on any link that it may act on."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from grashof.problems import Cylinder, CylinderSpec, FourBar
+from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.synth.cylinder.closed_form import best_on_arm
+from grashof.synth.cylinder.planes import Plane, driven, planes_of
+from grashof.synth.cylinder.room import Room
+from grashof.synth.cylinder.search import best_by_search
+
+
+def best_cylinder(
+    linkage: FourBar,
+    angles: tuple[FloatArray, FloatArray, FloatArray],
+    spec: CylinderSpec,
+    *,
+    power: FloatArray | None = None,
+    force: float = np.inf,
+    one_branch: bool = True,
+    effort: float = 1.0,
+) -> Cylinder | None:
+    """The cylinder of the greatest worst lever angle within limits.
+
+    Parameters
+    ----------
+    linkage : FourBar
+        A single linkage.
+    angles : tuple of ndarray, shape (M,), rad
+        theta2, theta3 and theta4 at samples of the task motion, in its order.
+    spec : CylinderSpec
+    power : ndarray, shape (M,), optional
+        Of a driver of link 2 at 1 rad/s, N times the length; what a limit of the force needs.
+    force : float, N
+        Greatest force that is allowed.
+    one_branch : bool
+        Link 2 does not pass a dead position; otherwise it cannot be the driven one.
+    effort : float
+        Of so many samples on links 3 and 4.
+
+    Returns
+    -------
+    Cylinder or None
+        None where none was found.
+
+    Examples
+    --------
+    >>> linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2.5, r4=3)
+    >>> from grashof.analysis import solve_position
+    >>> at = solve_position(linkage, np.linspace(0.7, 1.4, 33))
+    >>> best_cylinder(linkage, (at.theta2, at.theta3, at.theta4), CylinderSpec(on=["driver"])).on
+    'driver'
+    """
+    theta2, theta3, theta4 = map(np.unwrap, angles)
+    planes = planes_of(linkage, theta2, theta3, theta4, power if np.isfinite(force) else None)
+    corners = [planes["driver"].origin, planes["output"].origin, planes["coupler"].origin]
+    corners += [planes["coupler"].origin + c * planes["coupler"].axis for c in _corners(linkage)]
+    around = np.concatenate(corners)
+    found: list[tuple[float, Cylinder]] = []
+    for number, on in enumerate(spec.on):
+        if on == "driver" and not one_branch:
+            continue
+        room = Room.of(linkage, on, spec, around, force)
+        best = (
+            None
+            if on == "coupler"
+            else _in_closed_form(planes[on], room, theta2 if on == "driver" else theta4)
+        )
+        best = best or best_by_search(planes[on], room, number, effort)
+        if best is not None:
+            point, base, least = best
+            found.append((least, Cylinder(on, (base.real, base.imag), (point.real, point.imag))))
+    return max(found, key=lambda each: each[0])[1] if found else None
+
+
+def _corners(linkage: FourBar) -> tuple[complex, complex]:
+    return complex(linkage.r3), complex(*linkage.coupler_point)
+
+
+def _in_closed_form(plane: Plane, room: Room, theta: FloatArray) -> tuple[complex, complex, float] | None:
+    """On link 2 or 4: the longest arm of the best angle, and of those the least force."""
+    step = np.diff(theta)
+    if not ((step > 0).all() or (step < 0).all()):
+        return None
+    pivots = best_on_arm(complex(plane.origin[0]), float(theta[0]), float(theta[-1]), room)
+    if pivots is None:
+        return None
+    points, bases = _sound(room, *pivots)
+    found = driven(plane, points, bases)
+    fine = np.flatnonzero((room.beyond(found) <= 0) & (found.least > 0))
+    if not len(fine):
+        return None
+    first = fine[0]
+    return complex(points[first]), complex(bases[first]), float(found.least[first])
+
+
+def _sound(room: Room, points: ComplexArray, bases: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+    """Pivots that rounding puts nowhere beyond their limits."""
+    return room.kept(points * (1 - 1e-9), bases)

@@ -1,0 +1,79 @@
+"""The best cylinder on link 2, in closed form."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.synth.cylinder.room import Room
+
+_GRID = 65
+
+
+def best_on_arm(
+    pivot: complex, start: float, end: float, room: Room
+) -> tuple[ComplexArray, ComplexArray] | None:
+    """Pivots Q and C of cylinders on an arm about a pivot of the ground, of the best lever angle there is.
+
+    Parameters
+    ----------
+    pivot : complex, length
+        O2.
+    start, end : float, rad
+        Directions of the arm's link at the ends of the motion.
+    room : Room
+
+    Returns
+    -------
+    ndarray of complex, shape (K,), ndarray of complex, shape (K,)
+        Points in the link's frame and bases on the ground, those of the longest arm first; None where the
+        limits allow none.
+
+    Notes
+    -----
+    Over a range R of the arm the worst angle between cylinder and arm is at most 90 deg - R / 2, reached by
+    every C on the line through the ends Q0 and Q1 of the way of Q, outside them: the angle in between is
+    greater. With d = |O2 C|, the arm q and s = sin(R / 2) the closed length L follows from
+    d^2 = L^2 + 2 L q s + q^2, and the stroke is 2 q s.
+
+    Examples
+    --------
+    >>> at = np.array([3.0, 0.0])
+    >>> room = Room(0j, np.array([1 + 0j]), 1.0, at, at, (0.0, np.inf), 1.6, np.inf)
+    >>> points, bases = best_on_arm(0j, 0.0, np.pi / 3, room)
+    >>> float(abs(points[0]).round(6)), complex(bases[0])
+    (1.0, (3+0j))
+    """
+    half = abs(end - start) / 2
+    sine, cosine = np.sin(half), np.cos(half)
+    if not 0 < half < np.pi / 2:
+        return None
+    sides = zip(room.low, room.high, strict=True)
+    axes = [np.linspace(low, high, _GRID if high > low else 1) for low, high in sides]
+    base = np.add.outer(axes[0], 1j * axes[1]).ravel()
+    far = np.abs(base - pivot)
+    per_stroke = 2 * sine / (room.ratio - 1)
+    most = np.minimum(far / np.sqrt(1 + per_stroke**2 + 2 * per_stroke * sine), room.reach)
+    most = np.minimum(most, _arm(far, room.closed[0], sine, cosine))
+    longest = min(room.closed[1], float(far.max()))
+    least = np.where(far > longest, _arm(far, longest, sine, cosine), 0.0)
+    fine = (most >= least) & (most > 1e-6 * room.reach)
+    if not fine.any():
+        return None
+    arm, base, far = most[fine], base[fine], far[fine]
+    order = np.lexsort((far, -np.round(arm / room.reach, 9)))[:8]
+    arm, base, far = arm[order], base[order], far[order]
+    sense = np.sign(end - start)
+    along = np.sqrt(np.maximum(far**2 - (arm * cosine) ** 2, 0.0))
+    points, bases = [], []
+    for side in (1, -1):  # lengthens, shortens from start to end
+        middle = np.angle(base - pivot) + side * sense * np.arctan2(along, arm * cosine)
+        points.append(arm * np.exp(1j * (middle - (start + end) / 2)))
+        bases.append(base)
+    return np.concatenate(points), np.concatenate(bases)
+
+
+def _arm(far: FloatArray, length: float, sine: float, cosine: float) -> FloatArray:
+    """The arm with which a cylinder is so long when closed; negative where there is none."""
+    square = (far - length * cosine) * (far + length * cosine)
+    return np.where(square >= 0, np.sqrt(np.maximum(square, 0.0)) - length * sine, -1.0)

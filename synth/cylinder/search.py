@@ -1,0 +1,202 @@
+"""The best cylinder on any link by search: samples, a closing-in search from the best, and a programme."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.synth.cylinder.planes import Driven, Plane, driven
+from grashof.synth.cylinder.room import Room
+
+_SAMPLES, _PARENTS, _CHILDREN, _ROUNDS = 6000, 32, 24, 24
+_FIRST, _NARROWER = 0.25, 0.78  # share of the room that a step spans, and by how much it shrinks each round
+_PENALTY = 10.0
+_BLOCK = 500
+_HOPELESS = -0.5  # merit so far below zero is not mended
+_POLISHED, _AGAIN = 6, 3
+COARSE, FINE = 4, 2  # every so many samples are enough to compare, and to polish
+_SEEDS = 16  # times that each joint is tried
+
+
+def best_by_search(
+    plane: Plane, room: Room, seed: int, effort: float = 1.0
+) -> tuple[complex, complex, float] | None:
+    """Pivot of the link, base, and the sine of the worst lever angle, of the best cylinder found.
+
+    Parameters
+    ----------
+    plane : Plane
+    room : Room
+    seed : int
+    effort : float
+        Of so many samples.
+
+    Returns
+    -------
+    complex, complex, float; or None
+        None where no sample and nothing near one drives the linkage within the limits.
+    """
+    rng = np.random.default_rng(seed)
+    points, bases = _drawn(plane, room, round(_SAMPLES * effort), rng)
+    coarse, fine = _thinned(plane, COARSE), _thinned(plane, FINE)
+    merit = np.concatenate([
+        _merit(room, driven(coarse, points[k : k + _BLOCK], bases[k : k + _BLOCK]))
+        for k in range(0, len(points), _BLOCK)
+    ])  # fmt: skip
+    best = np.argsort(-merit)[: round(_PARENTS * effort)]
+    points, bases, merit = _closed_in(coarse, room, points[best], bases[best], merit[best], rng)
+    if merit[0] < _HOPELESS:
+        return None
+    tried = [(points[k], bases[k]) for k in _distinct(room, points, bases)[:_POLISHED]]
+    tried += [_polished(coarse, room, *pair) for pair in tried]
+    for _ in range(_AGAIN):  # it may go on from where it stopped
+        tried += [_polished(fine, room, *pair) for pair in _best_of(fine, room, tried, 2)]
+    points, bases, least = _judged(plane, room, tried)
+    if least.max() <= 0:  # what hides between the samples
+        points, bases, least = _judged(plane, room, [_polished(plane, room, *tried[0])])
+    first = int(least.argmax())
+    return None if least[first] <= 0 else (complex(points[first]), complex(bases[first]), float(least[first]))
+
+
+def _judged(
+    plane: Plane, room: Room, tried: list[tuple[complex, complex]]
+) -> tuple[ComplexArray, ComplexArray, FloatArray]:
+    """Cylinders put where they may be, and their least levers, negative beyond the limits."""
+    points, bases = room.kept(*(np.array(each) for each in zip(*tried, strict=True)))
+    found = driven(plane, points, bases)
+    return points, bases, np.where(room.beyond(found) <= 0, found.least, -1.0)
+
+
+def _best_of(
+    plane: Plane, room: Room, tried: list[tuple[complex, complex]], count: int
+) -> list[tuple[complex, complex]]:
+    least = _judged(plane, room, tried)[2]
+    return [tried[k] for k in np.argsort(-least, kind="stable")[:count]]
+
+
+def _merit(room: Room, found: Driven) -> FloatArray:
+    return found.least - _PENALTY * room.beyond(found)
+
+
+def _thinned(plane: Plane, step: int) -> Plane:
+    """The plane at every so many samples, and at the last."""
+    kept = np.unique(np.append(np.arange(0, len(plane.axis), step), len(plane.axis) - 1))
+    power = None if plane.power is None else plane.power[kept]
+    return Plane(plane.origin[kept], plane.axis[kept], plane.slide[kept], plane.turn[kept], power)
+
+
+def _drawn(
+    plane: Plane, room: Room, count: int, rng: np.random.Generator
+) -> tuple[ComplexArray, ComplexArray]:
+    """Random pivots: half of the bases anywhere in their box, and half about the chord of a point's way."""
+    share, turn = rng.random((2, count))
+    points = room.middle + room.reach * np.sqrt(share) * np.exp(2j * np.pi * turn)
+    x, y = room.low[:, None] + (room.high - room.low)[:, None] * rng.random((2, count))
+    own = np.repeat(room.joints, _SEEDS)[: count // 2]
+    points[: len(own)] = own
+    half, ends = count // 2, plane.origin[[0, -1]] + points[:, None] * plane.axis[[0, -1]]
+    widest = float(np.hypot(*(room.high - room.low))) + room.reach
+    shortest, longest = max(room.closed[0], 1e-3 * room.reach), min(room.closed[1], widest) * room.ratio
+    length = shortest + max(longest - shortest, 0.0) * rng.random(half)
+    base = x + 1j * y
+    away = ends[:half, 0] - ends[:half, 1]
+    aside = np.exp(0.5j * rng.standard_normal(half))
+    aside[: len(own)] = 1.0
+    base[:half] = ends[:half, 0] + length * aside * away / np.maximum(np.abs(away), 1e-300)
+    mirrored = rng.random(half) < 0.5
+    base[:half] = np.where(mirrored, ends[:half].sum(axis=1) - base[:half], base[:half])
+    return room.kept(points, base)
+
+
+def _closed_in(
+    plane: Plane,
+    room: Room,
+    points: ComplexArray,
+    bases: ComplexArray,
+    merit: FloatArray,
+    rng: np.random.Generator,
+) -> tuple[ComplexArray, ComplexArray, FloatArray]:
+    """Ever smaller random steps from each of some cylinders; the best of each family, best first."""
+    span = room.high - room.low
+    step, parents = _FIRST, np.arange(len(points))
+    for _ in range(_ROUNDS):
+        shape = (len(points), _CHILDREN)
+        u, v, x, y = step * rng.standard_normal((4, *shape))
+        tried_points = points[:, None] + room.reach * (u + 1j * v)
+        tried_bases = bases[:, None] + span[0] * x + 1j * span[1] * y
+        alone = rng.random(shape)  # one pivot alone, or both
+        tried_points = np.where(alone < 0.25, points[:, None], tried_points)
+        tried_bases = np.where(alone > 0.75, bases[:, None], tried_bases)
+        kept = room.kept(tried_points.ravel(), tried_bases.ravel())
+        found = _merit(room, driven(plane, *kept)).reshape(shape)
+        child = found.argmax(axis=1)
+        better = found[parents, child] > merit
+        one, other = (each.reshape(shape)[parents, child] for each in kept)
+        points, bases = np.where(better, one, points), np.where(better, other, bases)
+        merit = np.where(better, found[parents, child], merit)
+        step *= _NARROWER
+    order = np.argsort(-merit)
+    return points[order], bases[order], merit[order]
+
+
+def _distinct(room: Room, points: ComplexArray, bases: ComplexArray) -> list[int]:
+    """Cylinders that are not like a better one, in their order."""
+    size = float(np.hypot(*(room.high - room.low))) + room.reach
+    kept: list[int] = []
+    for k in range(len(points)):
+        apart = [abs(points[k] - points[j]) + abs(bases[k] - bases[j]) for j in kept]
+        if min(apart, default=np.inf) > 0.02 * size:
+            kept.append(k)
+    return kept
+
+
+def _polished(plane: Plane, room: Room, point: complex, base: complex) -> tuple[complex, complex]:
+    """The same cylinder made better: the least lever t is made greatest, all levers at least t."""
+    from scipy import optimize  # only here, and few problems have cylinders
+
+    span = np.maximum(room.high - room.low, 1e-12 * room.reach)
+    sizes, first = np.array([room.reach, room.reach, *span]), np.array([0.0, 0.0, *room.low])
+
+    def pivots(x: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+        scaled = first + np.atleast_2d(x)[:, :4] * sizes
+        return scaled[:, 0] + 1j * scaled[:, 1], scaled[:, 2] + 1j * scaled[:, 3]
+
+    def margins(x: FloatArray) -> FloatArray:
+        points, bases = pivots(x)
+        found = driven(plane, points, bases)
+        with np.errstate(divide="ignore"):
+            closed = np.log(np.maximum(found.closed, 1e-300))
+            rows = [np.log(room.ratio) - np.log(found.ratio)]
+            rows += [closed - np.log(room.closed[0])] if room.closed[0] > 0 else []
+            rows += [np.log(room.closed[1]) - closed] if np.isfinite(room.closed[1]) else []
+            rows += [np.log(room.force) - np.log(found.force + 1e-300)] if np.isfinite(room.force) else []
+        rows.append(1 - (np.abs(points - room.middle) / room.reach) ** 2)
+        levers = found.levers - np.atleast_2d(x)[:, 4:]
+        every = np.concatenate([levers, np.stack(rows, axis=1)], axis=1)
+        return np.asarray(np.nan_to_num(every, posinf=50.0, neginf=-50.0))
+
+    def slopes(x: FloatArray) -> FloatArray:
+        step = 1e-7
+        every = margins(np.concatenate([x[None] + step * np.eye(5), x[None] - step * np.eye(5)]))
+        slope: FloatArray = ((every[:5] - every[5:]) / (2 * step)).T
+        return slope
+
+    start = (np.array([point.real, point.imag, base.real, base.imag]) - first) / sizes
+    least = driven(plane, np.array([point]), np.array([base])).least
+    sides = ((0.0, side) for side in (room.high - room.low) / span)
+    bounds: Any = [(None, None), (None, None), *sides, (-1.0, 1.0)]
+    kept: Any = {"type": "ineq", "fun": lambda x: margins(x)[0], "jac": slopes}
+    given: dict[str, Any] = {"jac": lambda _: np.array([0.0, 0.0, 0.0, 0.0, -1.0]), "bounds": bounds}
+    minimize: Any = optimize.minimize
+    found = minimize(
+        lambda x: float(-x[4]),
+        np.concatenate([start, least]),
+        constraints=kept,
+        method="SLSQP",
+        options={"maxiter": 60, "ftol": 1e-9},
+        **given,
+    )
+    points, bases = pivots(found.x) if np.isfinite(found.x).all() else (np.array([point]), np.array([base]))
+    return complex(points[0]), complex(bases[0])

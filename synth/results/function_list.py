@@ -1,0 +1,206 @@
+"""The ranked list of function generators: found, judged, chosen."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from time import perf_counter
+
+import numpy as np
+
+from grashof.analysis import verify
+from grashof.analysis.judge.design import Constraint, OwnObjective
+from grashof.problems import Problem, ProblemError, Search
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.families import listed
+from grashof.synth.results.result import Result
+from grashof.synth.search.attempt import Attempt
+from grashof.synth.search.run import Progress
+from grashof.synth.search.story import Asking, Story, now
+from grashof.synth.search.tally import DISTINCT, Tally
+from grashof.synth.starts.function_aims import FunctionAims
+from grashof.synth.starts.function_search import (
+    LEAST,
+    LOCAL,
+    FoundFunction,
+    exact_functions,
+    optimal_functions,
+)
+from grashof.synth.theory.stopping import asked_to_stop, overdue, stopping
+
+_LOG = logging.getLogger(__name__)
+FINE = tuple(np.arange(5.0, 86.0, 5.0).tolist())  # deg of transmission, where an error is allowed
+NEAREST = 8
+SAME = 1.001  # times the least error: the least
+
+
+@dataclass(slots=True)
+class _Judged:
+    """Designs as the judge sees them."""
+
+    problem: Problem
+    constraints: tuple[Constraint, ...]
+    objective: OwnObjective | None
+    good: list[Candidate] = field(default_factory=list)
+    bad: list[Candidate] = field(default_factory=list)
+    tally: Tally = field(default_factory=Tally)
+
+    def take(self, aims: FunctionAims, one: FoundFunction, most_square: float = np.inf) -> None:
+        """Judge one more."""
+        try:
+            linkage = aims.linkage(one.made, one.driver)
+        except ProblemError:  # pivots that coincide, lengths beyond the floats
+            self.tally.add([Attempt("", None)])
+            return
+        verdict = verify(
+            linkage, self.problem.task, self.problem.requirements, self.constraints,
+            most_square=most_square, problem=self.problem,
+        )  # fmt: skip
+        number = sum(self.tally.outcomes.values())
+        candidate = Candidate(linkage, verdict, self.problem, number, one.steps, best_at=one.best_at)
+        if self.objective is not None:
+            candidate = candidate.valued(self.objective)
+        self.tally.add([Attempt("judged", candidate)])
+        (self.good if verdict.ok else self.bad).append(candidate)
+
+
+def function_list(
+    problem: Problem,
+    search: Search,
+    asked: Asking,
+    constraints: Sequence[Constraint] = (),
+    objective: OwnObjective | None = None,
+    progress: Callable[[Progress], object] | None = None,
+) -> Result:
+    """Find, verify and rank four-bars that generate a function.
+
+    Parameters
+    ----------
+    problem : Problem
+        Whose task is a function.
+    search : Search
+        `starts` has no part in it: its designs are not solved for one by one.
+    asked : Asking
+        Whether to end early.
+    constraints, objective
+        The user's own: what is found is judged and ranked by them.
+    progress : callable, optional
+        Called as designs are judged.
+
+    Returns
+    -------
+    Result
+        Perhaps empty; then `Result.note` states why.
+    """
+    begun, aims = perf_counter(), FunctionAims.of(problem)
+    judged = _Judged(problem, tuple(constraints), objective)
+    rng = np.random.default_rng(np.random.SeedSequence(search.seed))
+    seconds = {"screening": 0.0, "solving": 0.0}
+    least, ended = np.nan, ""
+    with stopping(asked):
+        if not aims.obstacle:
+            if aims.exact:
+                found = exact_functions(aims, rng, max(search.enough, 8) + 10, search.effort)
+            else:
+                found = list(optimal_functions(aims, rng, search.effort, _levels(problem)))
+            seconds["screening"] = perf_counter() - begun
+            for number, one in enumerate(found):
+                judged.take(aims, one)
+                if progress is not None and number % 8 == 0:
+                    progress(_progress(judged, search, len(found)))
+                if overdue():
+                    break
+        seconds["solving"] = perf_counter() - begun - seconds["screening"]
+        complete = not asked_to_stop()
+    if not aims.exact and judged.good:
+        least = min(one.error(problem) for one in judged.good)
+        judged.good = [_named(one, problem, least) for one in _within(judged, least)]
+    designs = listed(problem, judged.good)
+    if aims.exact:
+        designs = designs[: search.enough]
+        ended = "" if len(designs) >= search.enough else _exhausted(aims)
+    if progress is not None:
+        progress(_progress(judged, search, len(judged.good) + len(judged.bad)))
+    judged.tally.totals[DISTINCT] = len(designs)
+    note, nearest = ("", ()) if designs else _why_none(aims, judged, complete)
+    _LOG.info(
+        "functions: %d of %d judged are good, %d listed",
+        len(judged.good),
+        len(judged.good + judged.bad),
+        len(designs),
+    )
+    return Result(
+        problem=problem,
+        candidates=designs,
+        nearest=nearest,
+        tally=judged.tally,
+        seconds={**seconds, "total": perf_counter() - begun},
+        note=note,
+        complete=complete,
+        ended=ended if complete else "the search ended before it was done: it was stopped",
+        least_error=least,
+        story=Story(begun=asked.begun, ended=now(), ending=asked.ending),
+    )
+
+
+def _levels(problem: Problem) -> tuple[float, ...] | None:
+    """Transmission angles that designs are made for, closer where the objective decides."""
+    factor = problem.requirements.error_factor
+    if factor is None:
+        return None
+    asked = problem.requirements.transmission_min_deg
+    return tuple(level for level in FINE if level > asked)
+
+
+def _within(judged: _Judged, least: float) -> list[Candidate]:
+    """Designs up to the error that is allowed."""
+    factor = judged.problem.requirements.error_factor
+    if factor is None:
+        return judged.good
+    most = factor * max(least, 1e-6) * (1 + 1e-9)
+    return [one for one in judged.good if one.error(judged.problem) <= most]
+
+
+def _named(one: Candidate, problem: Problem, least: float) -> Candidate:
+    """The same, told what it is best at: only the best of all has the least error."""
+    if one.best_at != LEAST or one.error(problem) <= least * SAME:
+        return one
+    return replace(one, best_at=LOCAL)
+
+
+def _progress(judged: _Judged, search: Search, total: int) -> Progress:
+    count = len(judged.good) + len(judged.bad)
+    return Progress(count, max(total, count), search.enough, tuple(judged.good))
+
+
+def _exhausted(aims: FunctionAims) -> str:
+    count = len(aims.task)
+    if count >= 5:
+        return f"all four-bars through the {count} pairs were looked at; most sets of five have one, or three"
+    return "no more distinct four-bars go through the pairs under these requirements"
+
+
+def _why_none(aims: FunctionAims, judged: _Judged, complete: bool) -> tuple[str, tuple[Candidate, ...]]:
+    """Why the list is empty, and what comes nearest."""
+    nearest = tuple(sorted(judged.bad, key=lambda one: sum(d.miss for d in one.verdict.defects))[:NEAREST])
+    if aims.obstacle:
+        return f"no design: {aims.obstacle}", ()
+    if not complete:
+        return "no design: the search was stopped before it found one", nearest
+    if aims.exact:
+        count = len(aims.task)
+        why = f"no four-bar goes through the {count} pairs on one branch under these requirements"
+        less = (
+            "; fewer pairs, or exact = false, leave more freedom"
+            if count > 3
+            else "; exact = false asks for less"
+        )
+        return f"no design: {why}{less}", nearest
+    if not nearest:
+        return "no design: no four-bar covers the range under these requirements", nearest
+    worst = nearest[0].verdict.defects
+    return (
+        f"no design meets all requirements; the closest one misses {' and '.join(map(str, worst))}",
+        nearest,
+    )

@@ -1,0 +1,197 @@
+"""Least squares of the output of many function generators at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
+from grashof.synth.theory.function_output import SHAPE, Generators, output_angles, output_slopes
+
+Limits = Callable[[Generators], tuple[FloatArray, FloatArray]]
+
+HALVES = ((6, 400), (12, 120), (20, 48))  # after so many steps so many of the best go on
+STEPS = 60
+CELL = 0.1  # of those in one such cell, in logarithms of lengths and rad, only the best goes on
+FLAT = 1e-15  # share of the square below which a step gains nothing
+_TINY = 1e-30
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What a generator has to put out.
+
+    Parameters
+    ----------
+    turned : ndarray, shape (N,), rad
+        Driver rotations from the first, growing from zero.
+    output : ndarray, shape (N,), rad
+        Output angles there, but for a constant.
+    weights : ndarray, shape (N,)
+        Of the squared errors.
+    """
+
+    turned: FloatArray
+    output: FloatArray
+    weights: FloatArray
+
+    def errors(self, made: Generators) -> FloatArray:
+        """Output less what is wanted, with the best zero of least squares, shape (M, N); NaN: open."""
+        errors: FloatArray = output_angles(made, self.turned) - self.output
+        return self.centred(errors)
+
+    def centred(self, values: FloatArray) -> FloatArray:
+        """Values (M, N, ...) less their weighted mean over the second axis."""
+        mean = np.einsum("n,mn...->m...", self.weights / self.weights.sum(), values)
+        centred: FloatArray = values - mean[:, None]
+        return centred
+
+    def square(self, errors: FloatArray) -> FloatArray:
+        """Weighted sum of squares, shape (M,)."""
+        total: FloatArray = np.einsum("n,mn->m", self.weights, errors**2)
+        return total
+
+
+def fitted(
+    wanted: Wanted, starts: Generators, limits: Limits | None = None, *, pull: float = 1.0, held: bool = False
+) -> tuple[Generators, FloatArray]:
+    """The best of many starts moved to least squares, best first.
+
+    Parameters
+    ----------
+    wanted : Wanted
+    starts : Generators
+        Those that are open somewhere are left out.
+    limits : callable, optional
+        As `ShapeLimits.of`; what is below zero counts as an error of `pull` times as much.
+    pull : float, rad
+    held : bool
+        The first driver angle stays.
+
+    Returns
+    -------
+    Generators
+        Fewer than there were: of very many only the most promising go on.
+    square : ndarray
+        Weighted sums of squares, pulls included.
+
+    Notes
+    -----
+    Levenberg-Marquardt over the batch; the zero of the output is linear and eliminated (variable
+    projection, Golub & Pereyra 1973).
+    """
+    model = _Model(wanted, limits, pull, held)
+    made = starts.finite
+    square = model.square(made)
+    made, square = made[np.isfinite(square)], square[np.isfinite(square)]
+    damping = np.full(len(made), 1e-3)
+    done: BoolArray = np.zeros(len(made), dtype=bool)
+    for step in range(STEPS):
+        made, square, damping, done = _fewer(step, made, square, damping, done)
+        active = np.flatnonzero(~done)
+        if not active.size:
+            break
+        moved, fresh, gain = model.step(made[active], square[active], damping[active])
+        better = gain > 0
+        shape = made.shape.copy()
+        shape[active[better]] = moved.shape[better]
+        done[active] = better & (gain <= FLAT * square[active] + _TINY)
+        square[active[better]] = fresh[better]
+        damping[active] *= np.where(better, 0.2, 6.0)
+        done[active] |= (damping[active] > 1e8) | (square[active] < _TINY)
+        damping = np.clip(damping, 1e-14, 1e9)
+        made = Generators(shape, made.assembly)
+    order = np.argsort(square, kind="stable")
+    return made[order], square[order]
+
+
+def _fewer(
+    step: int, made: Generators, square: FloatArray, damping: FloatArray, done: BoolArray
+) -> tuple[Generators, FloatArray, FloatArray, BoolArray]:
+    most = dict(HALVES).get(step, len(made))
+    if most >= len(made):
+        return made, square, damping, done
+    best = np.sort(best_apart(made, square, CELL)[:most])
+    return made[best], square[best], damping[best], done[best]
+
+
+def best_apart(made: Generators, square: FloatArray, cell: float) -> IntArray:
+    """Of generators that are alike the best, best first.
+
+    Parameters
+    ----------
+    made : Generators
+    square : ndarray, shape (M,)
+        Less is better.
+    cell : float
+        Those that share a cell of this size, in logarithms of lengths and in rad, are alike.
+
+    Returns
+    -------
+    ndarray of int, shape (K,)
+
+    Examples
+    --------
+    >>> shape = np.array([[0.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.01]])
+    >>> best_apart(Generators(shape, np.ones(3)), np.array([2.0, 3.0, 1.0]), 0.1).tolist()
+    [2, 1]
+    """
+    order = np.argsort(square, kind="stable")
+    shape = made.shape.copy()
+    shape[:, 3] %= 2 * np.pi
+    keys = np.column_stack([np.round(shape / cell), made.assembly])[order]
+    first = np.unique(keys, axis=0, return_index=True)[1]
+    best: IntArray = order[np.sort(first)]
+    return best
+
+
+@dataclass(frozen=True, slots=True)
+class _Model:
+    wanted: Wanted
+    limits: Limits | None
+    pull: float
+    held: bool
+
+    def square(self, made: Generators) -> FloatArray:
+        """Sums of squares with pulls; infinite where the loop is open."""
+        total = self.wanted.square(self.wanted.errors(made))
+        if self.limits is not None:
+            short = np.minimum(self.limits(made)[0], 0.0)
+            total = total + self.pull**2 * (short**2).sum(axis=1)
+        return np.where(np.isfinite(total), total, np.inf)
+
+    def step(
+        self, made: Generators, square: FloatArray, damping: FloatArray
+    ) -> tuple[Generators, FloatArray, FloatArray]:
+        """One damped step each: where it leads, its square, and what it gains."""
+        normal, side = self._normal(made)
+        scale = np.einsum("mii->mi", normal)
+        floor = 1e-12 * scale.max(axis=1, keepdims=True) + 1e-300
+        normal = normal + np.eye(SHAPE) * (damping[:, None] * np.maximum(scale, floor))[:, None]
+        moved = -np.linalg.solve(normal, side[..., None])[..., 0]
+        moved /= np.maximum(1.0, np.abs(moved).max(axis=1, keepdims=True))
+        there = Generators(made.shape + moved, made.assembly)
+        fresh = self.square(there)
+        return there, fresh, square - fresh
+
+    def _normal(self, made: Generators) -> tuple[FloatArray, FloatArray]:
+        wanted = self.wanted
+        theta4 = output_angles(made, wanted.turned)
+        errors = wanted.centred(theta4 - wanted.output)
+        slopes = wanted.centred(output_slopes(made, wanted.turned, theta4))
+        weighed = slopes * wanted.weights[:, None]
+        normal = weighed.swapaxes(1, 2) @ slopes
+        side = (weighed.swapaxes(1, 2) @ errors[..., None])[..., 0]
+        if self.limits is not None:
+            values, by_shape = self.limits(made)
+            short = self.pull * np.minimum(values, 0.0)
+            pulled = self.pull * by_shape * (values < 0)[..., None]
+            normal = normal + pulled.swapaxes(1, 2) @ pulled
+            side = side + (pulled.swapaxes(1, 2) @ short[..., None])[..., 0]
+        if self.held:
+            normal[:, 3], normal[:, :, 3], side[:, 3] = 0.0, 0.0, 0.0
+            normal[:, 3, 3] = 1.0
+        normal = np.nan_to_num(normal, nan=0.0, posinf=0.0, neginf=0.0)
+        return normal, np.nan_to_num(side, nan=0.0, posinf=0.0, neginf=0.0)

@@ -1,0 +1,304 @@
+"""Least or smallest greatest error of one function generator under limits, from a start nearby."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from grashof.problems.values.arrays import FloatArray
+from grashof.synth.theory.function_fit import Limits, Wanted
+from grashof.synth.theory.function_output import SHAPE, Generators, output_angles, output_slopes
+
+STEPS = 60
+CORRECTIONS = 2  # of a step
+PRICE = 10.0  # rad: of a limit missed by one, so that missing it never pays
+_FIRST, _LEAST, _MOST = 0.1, 1e-11, 0.5  # of the trust region
+_HEAVY = 1e4  # of the slack in a step of least squares
+
+
+@dataclass(frozen=True, slots=True)
+class Optimum:
+    """Where a refinement ended.
+
+    Parameters
+    ----------
+    made : Generators
+        One.
+    error : float, rad
+        What was made small: root mean square or greatest error at the samples.
+    missed : float
+        By how much the worst limit is missed; zero where all are kept.
+    steps : int
+    """
+
+    made: Generators
+    error: float
+    missed: float
+    steps: int
+
+
+@dataclass(frozen=True, slots=True)
+class Aim:
+    """What is made small, and under which limits.
+
+    Parameters
+    ----------
+    wanted : Wanted
+        What the generator has to put out; of the greatest error the samples.
+    limits : callable
+        As `ShapeLimits.of`.
+    greatest : bool
+        The greatest error is made small, or else the (weighted) mean square.
+    held : bool
+        The first driver angle stays.
+    band : float, rad
+        Greatest error that is allowed at any sample.
+    """
+
+    wanted: Wanted
+    limits: Limits
+    greatest: bool = False
+    held: bool = False
+    band: float = np.inf
+
+    def errors(self, made: Generators) -> FloatArray:
+        """Output less what is wanted at the samples, about the best zero, shape (N,); NaN: open."""
+        off = (output_angles(made, self.wanted.turned) - self.wanted.output)[0]
+        if self.greatest:
+            middle = (off.max() + off.min()) / 2
+        else:
+            middle = self.wanted.weights @ off / self.wanted.weights.sum()
+        centred: FloatArray = off - middle
+        return centred
+
+    def error(self, made: Generators) -> float:
+        """Greatest, or root mean square."""
+        errors = self.errors(made)
+        if self.greatest:
+            return float(np.abs(errors).max())
+        return float(np.sqrt(self.wanted.weights @ errors**2 / self.wanted.weights.sum()))
+
+    def missed(self, made: Generators) -> float:
+        """By how much the worst limit is missed."""
+        short = float(-self.limits(made)[0].min(initial=0.0))
+        if np.isfinite(self.band):
+            short = max(short, float(np.abs(self.errors(made)).max()) - self.band)
+        return short
+
+    def merit(self, made: Generators) -> float:
+        """What falls from step to step; infinite where the loop is open."""
+        value = self.error(made) + PRICE * self.missed(made)
+        return value if np.isfinite(value) else np.inf
+
+
+def refined(aim: Aim, start: Generators, steps: int = STEPS) -> Optimum:
+    """The optimum near one start.
+
+    Parameters
+    ----------
+    aim : Aim
+    start : Generators
+        One, closed at all samples; it may miss limits.
+
+    Returns
+    -------
+    Optimum
+
+    Notes
+    -----
+    Errors and limits are linearised about the best shape so far; within a trust region, what is left is a
+    linear programme for the greatest error or linear least squares under inequalities for the mean square
+    (Lawson & Hanson, *Solving Least Squares Problems*, ch. 23). A slack lets starts miss limits.
+    """
+    made, merit, radius = start, aim.merit(start), _FIRST
+    if not np.isfinite(merit):
+        return Optimum(made, np.inf, np.inf, 0)
+    linear = _Linear.of(aim, made)
+    flat = 0
+    taken = 0
+    while taken < steps:
+        taken += 1
+        moved, hoped = linear.step(radius)
+        there, fresh = linear.best_along(made, moved)
+        gain, promise = merit - fresh, merit - hoped
+        if gain > 0:
+            made, merit = there, fresh
+            linear = _Linear.of(aim, made)
+        share = gain / promise if promise > 0 else 0.0
+        if share > 0.7:
+            radius = min(_MOST, max(radius, 2.5 * float(np.abs(moved).max())))
+        elif share < 0.2:
+            radius = 0.3 * min(radius, float(np.abs(moved).max()) or radius)
+        flat = flat + 1 if abs(promise) <= 1e-7 * merit + 1e-16 else 0
+        if radius < _LEAST or flat > 1:
+            break
+    return Optimum(made, aim.error(made), max(0.0, aim.missed(made)), taken)
+
+
+@dataclass(frozen=True, slots=True)
+class _Linear:
+    """An aim, linearised about a shape."""
+
+    aim: Aim
+    errors: FloatArray  # (N,)
+    slopes: FloatArray  # (N, 4)
+    limits: FloatArray  # (K,)
+    by_shape: FloatArray  # (K, 4)
+    free: FloatArray = field(default_factory=lambda: np.ones(SHAPE))
+
+    @classmethod
+    def of(cls, aim: Aim, made: Generators) -> _Linear:
+        theta4 = output_angles(made, aim.wanted.turned)
+        slopes = output_slopes(made, aim.wanted.turned, theta4)[0]
+        limits, by_shape = aim.limits(made)
+        free = np.array([1.0, 1.0, 1.0, 0.0 if aim.held else 1.0])
+        return cls(aim, aim.errors(made), slopes, limits[0], by_shape[0], free)
+
+    def step(self, radius: float) -> tuple[FloatArray, float]:
+        """The best step, shape (4,), and the merit that it promises."""
+        moved = self._greatest(radius) if self.aim.greatest else self._square(radius)
+        off = self.errors + self.slopes @ moved
+        short = max(0.0, float(-(self.limits + self.by_shape @ moved).min(initial=0.0)))
+        if self.aim.greatest:
+            error = (off.max() - off.min()) / 2
+        else:
+            weights = self.aim.wanted.weights
+            off = off - weights @ off / weights.sum()
+            error = np.sqrt(weights @ off**2 / weights.sum())
+        if np.isfinite(self.aim.band):
+            short = max(short, float(np.abs(off).max()) - self.aim.band)
+        return moved, float(error) + PRICE * short
+
+    def best_along(self, made: Generators, moved: FloatArray) -> tuple[Generators, float]:
+        """Where a step leads, or that step brought back to the errors that it promised, and the merit there.
+
+        The valleys of these errors are narrow and curved: without the correction (of second order, Fletcher)
+        steps along them would have to be tiny.
+        """
+        there = Generators(made.shape + moved, made.assembly)
+        best = there, self.aim.merit(there)
+        centred = (self.slopes - self.slopes.mean(axis=0)) * self.free
+        promised = self.errors + self.slopes @ moved
+        scale = float(np.einsum("nk,nk->", centred, centred))
+        normal = centred.T @ centred + 1e-8 * scale * np.eye(SHAPE)
+        for _ in range(CORRECTIONS):
+            strayed = self.aim.errors(there) - promised
+            if not np.isfinite(strayed).all():
+                break
+            back = np.linalg.solve(normal, centred.T @ (strayed - strayed.mean()))
+            there = Generators(there.shape - back, made.assembly)
+            merit = self.aim.merit(there)
+            if not merit < best[1]:
+                break
+            best = there, merit
+        return best
+
+    def _greatest(self, radius: float) -> FloatArray:
+        """Linear programme in the step, the zero, the greatest error and the slack."""
+        from scipy.optimize import linprog  # here: few problems need it
+
+        count, kept = len(self.errors), len(self.limits)
+        scale = max(float(np.ptp(self.errors)) / 2, 1e-12)
+        one, none = np.ones((count, 1)), np.zeros((count, 1))
+        over = np.hstack([self.slopes / scale, -one, -one, none])
+        under = np.hstack([-self.slopes / scale, one, -one, none])
+        rows = np.hstack([-self.by_shape, np.zeros((kept, 2)), -np.ones((kept, 1))])
+        right = np.concatenate([-self.errors / scale, self.errors / scale, self.limits])
+        most = radius * self.free
+        bounds = [*zip(-most, most, strict=True), (None, None), (0, None), (0, None)]
+        cost = np.array([0.0] * SHAPE + [0.0, 1.0, PRICE / scale])
+        found = linprog(cost, np.vstack([over, under, rows]), right, bounds=bounds, method="highs")
+        return np.zeros(SHAPE) if found.x is None else np.asarray(found.x[:SHAPE])
+
+    def _square(self, radius: float) -> FloatArray:
+        """Least squares in the step and the slack, the zero eliminated, under inequalities."""
+        weights = self.aim.wanted.weights / self.aim.wanted.weights.sum()
+        root = np.sqrt(weights)
+        centred = self.slopes - weights @ self.slopes
+        damp = 1e-9 * np.linalg.norm(centred * root[:, None]) * np.eye(SHAPE)
+        matrix = np.zeros((len(self.errors) + SHAPE + 1, SHAPE + 1))
+        matrix[: len(self.errors), :SHAPE] = centred * root[:, None] * self.free
+        matrix[len(self.errors) : -1, :SHAPE] = damp
+        matrix[-1, -1] = _HEAVY
+        side = np.zeros(len(matrix))
+        side[: len(self.errors)] = -self.errors * root
+        rows = np.hstack([self.by_shape, np.ones((len(self.limits), 1))])
+        bounds = -self.limits
+        box = np.hstack([np.vstack([np.eye(SHAPE), -np.eye(SHAPE)]), np.zeros((2 * SHAPE, 1))])
+        slack = np.append(np.zeros(SHAPE), 1.0)[None]
+        inequality = np.vstack([rows, box, slack])
+        least = np.concatenate([bounds, np.full(2 * SHAPE, -radius), [0.0]])
+        if np.isfinite(self.aim.band):
+            band = self.aim.band
+            inequality = np.vstack([
+                inequality,
+                np.hstack([-centred, np.ones((len(centred), 1))]),
+                np.hstack([centred, np.ones((len(centred), 1))]),
+            ])  # fmt: skip
+            least = np.concatenate([least, self.errors - band, -self.errors - band])
+        found = under_inequalities(matrix, side, inequality, least)
+        return np.clip(found[:SHAPE], -radius, radius) * self.free
+
+
+def under_inequalities(
+    matrix: FloatArray, side: FloatArray, rows: FloatArray, least: FloatArray
+) -> FloatArray:
+    """Least squares of ``matrix @ z - side`` under ``rows @ z >= least``.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (m, n)
+        Of full column rank.
+    side : ndarray, shape (m,)
+    rows : ndarray, shape (k, n)
+    least : ndarray, shape (k,)
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Zeros where the inequalities contradict each other.
+
+    Notes
+    -----
+    Lawson & Hanson, *Solving Least Squares Problems*, 1974, ch. 23: LSI as least distance, and that as
+    non-negative least squares.
+
+    Examples
+    --------
+    >>> under_inequalities(np.eye(2), np.array([0.0, 0.0]), np.array([[1.0, 1.0]]), np.array([2.0]))
+    array([1., 1.])
+    """
+    from scipy.optimize import nnls  # here: few problems need it
+
+    q, r = np.linalg.qr(matrix)
+    inner = q.T @ side
+    turned = np.linalg.solve(r.T, rows.T).T
+    right = least - turned @ inner
+    size = np.maximum(np.linalg.norm(turned, axis=1), 1e-300)
+    turned, right = turned / size[:, None], right / size
+    scale = max(float(np.abs(right).max(initial=0.0)), 1e-300)
+    system = np.vstack([turned.T, right / scale])
+    target = np.zeros(len(system))
+    target[-1] = 1.0
+    try:
+        dual, _ = nnls(system, target, maxiter=30 * len(right))
+    except RuntimeError:  # it goes round in circles
+        return np.zeros(matrix.shape[1])
+    rest = system @ dual - target
+    if np.linalg.norm(rest) < 1e-12:
+        return np.zeros(matrix.shape[1])
+    distance = -rest[:-1] / rest[-1] * scale
+    found: FloatArray = np.linalg.solve(r, distance + inner)
+    return found
+
+
+def with_extremes(aim: Aim, made: Generators, turned: FloatArray, output: FloatArray) -> Aim:
+    """The same aim with samples where a generator errs most on a dense grid, shape (K,) each."""
+    off = (output_angles(made, turned) - output)[0]
+    inner = np.flatnonzero((off[1:-1] - off[:-2]) * (off[2:] - off[1:-1]) <= 0) + 1
+    at = np.concatenate([aim.wanted.turned, turned[inner]])
+    wished = np.concatenate([aim.wanted.output, output[inner]])
+    order = np.unique(at, return_index=True)[1]
+    weights = np.concatenate([aim.wanted.weights, np.ones(len(inner))])
+    return replace(aim, wanted=Wanted(at[order], wished[order], weights[order]))
