@@ -12,7 +12,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from grashof.analysis import solve_position
 from grashof.problems import FourBar, SliderCrank
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
 from grashof.synth.programme.driver_angles import shorter_way
@@ -173,7 +172,9 @@ def _sliders_at_points(through: Through, target: SearchTargets) -> tuple[Placed,
     o2 = found.o2 @ np.array([1, 1j])
     theta2, direction = shorter_way(through.theta2)
     a = o2[:, None] + found.r2[:, None] * np.exp(1j * theta2)
-    b = solve_position(found[:, None], theta2, through.assembly).b @ np.array([1, 1j])
-    o4, none = b[:, 0] + found.r3 * np.exp(1j * found.slide_angle), np.zeros(len(o2))
+    along, r3 = np.exp(1j * found.slide_angle)[:, None], found.r3[:, None]
+    across = found.offset[:, None] - ((a - o2[:, None]) * along.conj()).imag
+    b = a + along * (through.assembly * np.sqrt((r3 - across) * (r3 + across)) + 1j * across)
+    o4, none = b[:, 0] + (r3 * along)[:, 0], np.zeros(len(o2))
     p = np.broadcast_to(target.points, a.shape)
     return Placed(none, o2, o4, a, b, p, theta2, body_angle=none), direction
