@@ -229,6 +229,11 @@ _PROBLEMS = (
     f"[requirements]\ntheta2_start_deg = 20\n{_MASSES.replace('masses', '# ').replace('inertias', '# ')}"
     f"mass_per_length = 0.01\n{_SEARCH}",
     f'kind = "stroke"\n{_HEAD}[stroke]\nswing_deg = 60\ntime_ratio = 1.2\n{_SEARCH}',
+    'kind = "function"\n[function]\nlaw = "power"\nexponent = 1.5\nx = [1, 4]\ninput_range_deg = 90\n'
+    "output_range_deg = 90\npairs = 4\n[requirements]\nstructural_error_max_deg = [0, 5]\n"
+    f"structural_error_rms_deg = [0, 4]\n{_SEARCH}",
+    'kind = "function"\n[function]\nlaw = "sampled"\nsampled = [0, 1, 3, 4, 4.5]\nx = [0, 1]\n'
+    f'input_range_deg = 60\noutput_range_deg = 40\nnorm = "max"\nsense = "either"\n{_SEARCH}',
     f'kind = "path"\n{_HEAD}[path]\npoints = [[0, 0], [30, 10], [60, 0]]\n{_SEARCH}',
     f'kind = "path"\nmechanism = ["slider-crank", "four-bar"]\n{_HEAD}[path]\n{_POINTS}'
     f"[requirements]\noffset = [-90, 90]\nslide_angle_deg = 10\nstroke = [1, 900]\n{_SEARCH}",
