@@ -10,12 +10,13 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.cylinder.planes import Driven, Plane, driven
 from grashof.synth.cylinder.room import Room
 
-_SAMPLES, _PARENTS, _CHILDREN, _ROUNDS = 6000, 32, 24, 24
+_SAMPLES, _PARENTS, _CHILDREN, _ROUNDS = 6000, 48, 24, 24
 _FIRST, _NARROWER = 0.25, 0.78  # share of the room that a step spans, and by how much it shrinks each round
 _PENALTY = 10.0
 _BLOCK = 500
+_BEST, _APART = 2000, 0.12  # parents are so far apart, as a share of the room, and among the best
 _HOPELESS = -0.5  # merit so far below zero is not mended
-_POLISHED, _AGAIN = 6, 3
+_POLISHED, _AGAIN = 8, 3
 COARSE, FINE = 4, 2  # every so many samples are enough to compare, and to polish
 _SEEDS = 16  # times that each joint is tried
 
@@ -45,11 +46,13 @@ def best_by_search(
         _merit(room, driven(coarse, points[k : k + _BLOCK], bases[k : k + _BLOCK]))
         for k in range(0, len(points), _BLOCK)
     ])  # fmt: skip
-    best = np.argsort(-merit)[: round(_PARENTS * effort)]
+    best = np.argsort(-merit)[: round(_BEST * effort)]
+    apart = _distinct(room, points[best], bases[best], round(_PARENTS * effort), _APART)
+    best = best[apart]
     points, bases, merit = _closed_in(coarse, room, points[best], bases[best], merit[best], rng)
     if merit[0] < _HOPELESS:
         return None
-    tried = [(points[k], bases[k]) for k in _distinct(room, points, bases)[:_POLISHED]]
+    tried = [(points[k], bases[k]) for k in _distinct(room, points, bases, _POLISHED)]
     tried += [_polished(coarse, room, *pair) for pair in tried]
     for _ in range(_AGAIN):  # it may go on from where it stopped
         tried += [_polished(fine, room, *pair) for pair in _best_of(fine, room, tried, 2)]
@@ -141,14 +144,18 @@ def _closed_in(
     return points[order], bases[order], merit[order]
 
 
-def _distinct(room: Room, points: ComplexArray, bases: ComplexArray) -> list[int]:
-    """Cylinders that are not like a better one, in their order."""
+def _distinct(
+    room: Room, points: ComplexArray, bases: ComplexArray, most: int, least: float = 0.02
+) -> list[int]:
+    """At most so many cylinders that are not like a better one, in their order."""
     size = float(np.hypot(*(room.high - room.low))) + room.reach
     kept: list[int] = []
     for k in range(len(points)):
         apart = [abs(points[k] - points[j]) + abs(bases[k] - bases[j]) for j in kept]
-        if min(apart, default=np.inf) > 0.02 * size:
+        if min(apart, default=np.inf) > least * size:
             kept.append(k)
+        if len(kept) == most:
+            break
     return kept
 
 
