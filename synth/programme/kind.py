@@ -71,6 +71,11 @@ class Kind(ABC):
     closure: ClassVar[Closure]
     turns_with_coupler: ClassVar[bool] = False  # the output link
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        from grashof.synth.programme.kinds import kind_named  # which knows all kinds, this one among them
+
+        return kind_named, (self.mechanism,)
+
     @property
     def mechanism(self) -> str:
         """As files name it."""

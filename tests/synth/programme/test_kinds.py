@@ -1,5 +1,6 @@
 """Kinds of linkage in the search against the analysis, which shares no formula with them."""
 
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -123,3 +124,9 @@ def test_a_start_is_its_linkage(mechanism: str) -> None:
     track = np.stack([scaled.frame.inward(each) for each in (state.a, state.b, state.p)])
     np.testing.assert_allclose(start.track, track, atol=1e-9)
     assert np.exp(1j * start.theta1) == pytest.approx(complex(np.exp(1j * float(linkage.theta1))), abs=1e-9)
+
+
+@pytest.mark.parametrize("mechanism", EVERY)
+def test_a_kind_is_the_same_object_wherever_it_is_sent(mechanism: str) -> None:
+    scaled = scaled_of(mechanism)
+    assert pickle.loads(pickle.dumps(scaled)).kind is scaled.kind
