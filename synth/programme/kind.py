@@ -11,7 +11,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol, TypeAlias
+from typing import Any, ClassVar, Protocol, Self, TypeAlias, cast
 
 import numpy as np
 
@@ -29,6 +29,7 @@ Closed: TypeAlias = tuple[ComplexArray, ComplexArray, FloatArray, BoolArray]
 
 
 _LENGTHS = ("r1", "r2", "r3", "r4")
+_ONLY: dict[type, Any] = {}  # the one value of each kind
 
 
 class Lengths(View):
@@ -71,10 +72,14 @@ class Kind(ABC):
     closure: ClassVar[Closure]
     turns_with_coupler: ClassVar[bool] = False  # the output link
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        from grashof.synth.programme.kinds import kind_named  # which knows all kinds, this one among them
+    def __new__(cls) -> Self:
+        """The only one, so that kinds are compared by identity, in every process."""
+        if cls not in _ONLY:
+            _ONLY[cls] = object.__new__(cls)
+        return cast("Self", _ONLY[cls])
 
-        return kind_named, (self.mechanism,)
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), ()
 
     @property
     def mechanism(self) -> str:

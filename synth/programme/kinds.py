@@ -12,8 +12,3 @@ from grashof.synth.programme.slider_crank_kind import SliderCrankKind
 FOUR_BAR: Kind = FourBarKind()
 # By the word for it in files.
 KINDS: Mapping[str, Kind] = {kind.mechanism: kind for kind in (FOUR_BAR, SliderCrankKind(), InvertedKind())}
-
-
-def kind_named(mechanism: str) -> Kind:
-    """The kind of a word; the same object in every process, so that kinds are compared by identity."""
-    return KINDS[mechanism]
