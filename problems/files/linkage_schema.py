@@ -11,7 +11,7 @@ from pydantic import AfterValidator, Field, ValidationInfo, create_model, field_
 
 from grashof.problems.files.dynamics_schema import MACHINE_TABLES, MachineTables, PumpingUnitTable
 from grashof.problems.files.tables import Table, Text, listed, of_length, stated
-from grashof.problems.values.checks import GREATEST, finite_number, noted, number_within, refused
+from grashof.problems.values.checks import GREATEST, MOST_TURNS, finite_number, noted, number_within, refused
 from grashof.problems.values.dynamics_spec import metres
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkage import Linkage
@@ -110,7 +110,8 @@ class LinkageTable(MachineTables, _Heading):
     )
     @classmethod
     def _angle(cls, angle: float | None, key: ValidationInfo) -> float | None:
-        return None if angle is None else finite_number(angle, str(key.field_name))
+        most = MOST_TURNS * 360
+        return None if angle is None else number_within(angle, -most, most, str(key.field_name))
 
     def value(self) -> Linkage:
         """The linkage itself, checked with what belongs to it."""

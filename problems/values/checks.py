@@ -19,6 +19,7 @@ from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.extent import span
 
 GREATEST = 1e20  # of lengths, masses and speeds: squares of torques stay within the floats
+MOST_TURNS = 100  # of a stated angle: more of them take its last digits
 DIGITS = 300  # of whole numbers: they become floats, times an effort
 LEAST = 1e-20  # size of a task, for the same reason
 # What a spreadsheet calculates, in the wide forms of Japanese and Chinese, too, and what it may skip before.

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkage import Linkage
-from grashof.problems.values.linkage_parts import Link, Parameter, joints_of, points_of
+from grashof.problems.values.linkage_parts import Link, Parameter
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
@@ -64,11 +64,6 @@ class FourBar(Linkage):
         Link(3, "coupler", ("a", "b", "p")),
         Link(4, "output", ("o4", "b")),
     )
-    GROUND: ClassVar[tuple[str, ...]] = LINKS[0].points
-    POINTS: ClassVar[tuple[str, ...]] = points_of(LINKS)
-    MOVING: ClassVar[tuple[str, ...]] = POINTS[len(GROUND) :]
-    JOINTS: ClassVar[dict[str, tuple[int, ...]]] = joints_of(LINKS)
-    PIVOTS: ClassVar[tuple[str, ...]] = tuple(filter(JOINTS.__contains__, POINTS))
     LENGTHS: ClassVar[tuple[str, ...]] = tuple(f"r{link.number}" for link in LINKS)
     DIMENSIONS: ClassVar[tuple[str, ...]] = (*LENGTHS, "u", "v")
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkage import Linkage
-from grashof.problems.values.linkage_parts import Link, Parameter, joints_of, points_of
+from grashof.problems.values.linkage_parts import Link, Parameter
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
@@ -72,11 +72,6 @@ class InvertedSliderCrank(Linkage):
         Link(4, "block", ("o4", "b")),
     )
     SLIDES: ClassVar[tuple[tuple[int, int], ...]] = ((3, 4),)
-    GROUND: ClassVar[tuple[str, ...]] = LINKS[0].points
-    POINTS: ClassVar[tuple[str, ...]] = points_of(LINKS)
-    MOVING: ClassVar[tuple[str, ...]] = POINTS[len(GROUND) :]
-    JOINTS: ClassVar[dict[str, tuple[int, ...]]] = joints_of(LINKS)
-    PIVOTS: ClassVar[tuple[str, ...]] = tuple(filter(JOINTS.__contains__, POINTS))
     LENGTHS: ClassVar[tuple[str, ...]] = ("r1", "r2")
     DIMENSIONS: ClassVar[tuple[str, ...]] = (*LENGTHS, "offset", "u", "v")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -10,10 +11,10 @@ import numpy.typing as npt
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.display import Displayed
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.linkage_parts import Link, Parameter
+from grashof.problems.values.linkage_parts import Link, Parameter, joints_of, points_of
 
 
-class Linkage(Displayed):
+class Linkage(Displayed, ABC):
     """A planar linkage, or a batch of them: base of `FourBar`, `SliderCrank` and `InvertedSliderCrank`.
 
     Link 2 (O2-A) is the driver, link 3 carries the coupler point P, link 4 closes the loop, link 1 is
@@ -23,24 +24,32 @@ class Linkage(Displayed):
 
     __slots__ = ()
 
-    MECHANISM: ClassVar[str]  # in files and tables
     # What the kind is; files, tables, drawings and plates go through these rows.
+    MECHANISM: ClassVar[str]  # in files and tables
     PARAMETERS: ClassVar[tuple[Parameter, ...]]
-    LINKS: ClassVar[tuple[Link, ...]]
+    LINKS: ClassVar[tuple[Link, ...]]  # the ground first
     SLIDES: ClassVar[tuple[tuple[int, int], ...]] = ()  # links that slide on each other
-    GROUND: ClassVar[tuple[str, ...]]
+    LENGTHS: ClassVar[tuple[str, ...]]  # of links, all positive
+    DIMENSIONS: ClassVar[tuple[str, ...]]  # what is made, and may come out inexactly
+    # What follows from its links.
+    GROUND: ClassVar[tuple[str, ...]]  # points that stand still
     POINTS: ClassVar[tuple[str, ...]]
     MOVING: ClassVar[tuple[str, ...]]
     JOINTS: ClassVar[dict[str, tuple[int, ...]]]
-    PIVOTS: ClassVar[tuple[str, ...]]
-    LENGTHS: ClassVar[tuple[str, ...]]  # of links, all positive
-    DIMENSIONS: ClassVar[tuple[str, ...]]  # what is made, and may come out inexactly
+    PIVOTS: ClassVar[tuple[str, ...]]  # joints with a pin
 
     o2: FloatArray
     r2: FloatArray
     coupler_point: FloatArray
     assembly: FloatArray
     body_angle: FloatArray
+
+    def __init_subclass__(cls) -> None:
+        cls.GROUND = cls.LINKS[0].points
+        cls.POINTS = points_of(cls.LINKS)
+        cls.MOVING = cls.POINTS[len(cls.GROUND) :]
+        cls.JOINTS = joints_of(cls.LINKS)
+        cls.PIVOTS = tuple(filter(cls.JOINTS.__contains__, cls.POINTS))
 
     def _keep(self, *given: npt.ArrayLike) -> None:
         """Set the fields to values in the order of `PARAMETERS`, checked, with the same batch axes."""
@@ -62,9 +71,9 @@ class Linkage(Displayed):
         return np.shape(self.r2)
 
     @property
+    @abstractmethod
     def theta1(self) -> FloatArray:
         """Direction of the ground link in rad, shape (...)."""
-        raise NotImplementedError
 
     @property
     def lengths(self) -> FloatArray:

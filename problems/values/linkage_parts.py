@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.checks import MOST_TURNS
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 
 _ENDINGS = {"place": ("_x", "_y"), "arm": ("_u", "_v"), "angle": ("_deg",)}
@@ -61,7 +62,7 @@ class Parameter:
         Raises
         ------
         ProblemError
-            It is not a number, not finite, not a pair, not a length or not a sign.
+            It is not a number, not finite, not a pair, not a length, not a sign, or over 100 turns.
         """
         try:
             array = np.asarray(value, dtype=np.float64)
@@ -75,6 +76,8 @@ class Parameter:
             raise wrong_value(self.name, value, "greater than zero")
         if self.kind == "sign" and np.any(np.abs(array) != 1):
             raise wrong_value(self.name, value, "+1 or -1")
+        if self.kind == "angle" and np.any(np.abs(array) > MOST_TURNS * 2 * np.pi):
+            raise wrong_value(self.name, value, f"at most {MOST_TURNS} turns")
         return array
 
 

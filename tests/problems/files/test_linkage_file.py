@@ -100,6 +100,7 @@ def test_a_plain_file_and_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         (PLAIN + "assembly = 2", "assembly is 2; it must be +1 or -1"),
         (PLAIN + "output_arm = 0", "output_arm is 0"),
         (PLAIN + "body_angle_deg = nan", "body_angle_deg is nan"),
+        (PLAIN + "body_angle_deg = 36001", "body_angle_deg is 36001; it must be from -36000 to 36000"),
         (PLAIN.replace("r2 = 1", "r2 = -1"), "r2 is -1.0; it must be greater than zero"),
         (PLAIN.replace("r2 = 1", "r2 = 'x'"), "r2 is 'x'; it must be a number"),
         (PLAIN.replace("r2 = 1\n", ""), "r2 is missing"),

@@ -144,6 +144,7 @@ def test_a_linkage_does_not_share_memory_with_what_it_was_made_of() -> None:
     [
         ({"r2": 0}, "r2 is 0; it must be greater than zero"),
         ({"r4": [1, -2]}, r"r4 is \[1, -2\]; it must be greater than zero"),
+        ({"body_angle": -629}, "body_angle is -629; it must be at most 100 turns"),
         ({"r3": np.nan}, "r3 is nan; all numbers must be finite"),
         ({"o2": (0, np.inf)}, r"o2 is \(0, inf\); all numbers must be finite"),
         ({"o4": (1, 2, 3)}, r"o4 has shape \(3,\); it must be \(..., 2\)"),
