@@ -172,7 +172,9 @@ def _judge_again(result: Result, figures: Counter[str]) -> None:
     for design in result.candidates:
         figures["designs judged"] += 1
         linkage = type(design.linkage)(**json.loads(json.dumps(design.linkage.stated)))
-        verdict = verify(linkage, problem.task, problem.requirements, problem=problem)
+        verdict = verify(
+            linkage, problem.task, problem.requirements, problem=problem, cylinder=design.verdict.cylinder
+        )
         if not verdict.ok or verdict.square > most:
             raise BrokenError(WRONG, f"{linkage!r}: {verdict.defects}, {verdict.square} against {most}")
 

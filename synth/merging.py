@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, fields
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from grashof.problems.files.toml_file import file_text
 from grashof.problems.values.checks import located, plain_text
 from grashof.synth.designs.judging import alike, judged_again
 from grashof.synth.results.conclusion import conclude, needless
+from grashof.synth.results.mixed import one_list
 from grashof.synth.results.result import Result
 from grashof.synth.search.asked import asking
 from grashof.synth.search.chunks import CHUNK, which
@@ -163,18 +165,22 @@ def merge_shards(
         )
     plan = Plan.of(shards.problem, shards.search)
     if not plan.problems:
-        return needless(plan.scaled, asked)
+        return needless(plan.asked[0], asked)
     with stopping(asked), working(workers, None) as work:
         run = Run(shards.search, work, asked, progress=progress)
-        ledgers = [plan.ledger(scaled, plan.count) for scaled in plan.problems]
+        ledgers = [[plan.ledger(scaled, plan.count) for scaled in each] for each in plan.searched]
+        every = list(chain.from_iterable(ledgers))
         with run.timed("merging"):
-            for ledger, chunk in shards.chunks(ledgers, plan):
+            for ledger, chunk in shards.chunks(every, plan):
                 ledger.absorb(chunk)
                 run.tell(ledger)
-            for ledger in ledgers:
+            for ledger in every:
                 _refuse_unverified(folder, ledger)
-        used = ledgers if found_few(ledgers[0]) else ledgers[:1]
-        return conclude(plan.scaled, [finished(ledger, run) for ledger in used], run, asked)
+        found = []
+        for scaled, (first, *second) in zip(plan.asked, ledgers, strict=True):
+            used = [first, *second] if found_few(first) else [first]
+            found.append(conclude(scaled, [finished(ledger, run) for ledger in used], run, asked))
+        return one_list(plan.problem, found)
 
 
 def _named(folder: Path) -> Iterator[Shard]:

@@ -6,6 +6,7 @@ import logging
 from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
+from itertools import chain
 from pathlib import Path
 
 from grashof.problems import Problem, ProblemError, Search
@@ -99,15 +100,17 @@ class Plan:
 
     Parameters
     ----------
-    scaled : ScaledProblem
-        As it is asked.
-    problems : tuple of ScaledProblem
-        As it is searched; none where its targets need no linkage.
+    problem : Problem
+    asked : tuple of ScaledProblem
+        As it is asked, for each kind of linkage.
+    searched : tuple of tuple of ScaledProblem
+        As it is searched, for each kind; none where its targets need no linkage.
     search : Search
     """
 
-    scaled: ScaledProblem
-    problems: tuple[ScaledProblem, ...]
+    problem: Problem
+    asked: tuple[ScaledProblem, ...]
+    searched: tuple[tuple[ScaledProblem, ...], ...]
     search: Search
 
     @classmethod
@@ -115,8 +118,14 @@ class Plan:
         """The plan of a search."""
         if problem.task.has_output.any():
             raise ProblemError(f"{problem.name} is a function, which is searched at once; leave shards out")
-        scaled = ScaledProblem.of(problem)
-        return cls(scaled, () if finder_for(scaled).degenerate() else asked_in_turn(scaled), search)
+        asked = tuple(ScaledProblem.of(problem.for_kind(kind)) for kind in problem.mechanism)
+        needed = not finder_for(asked[0]).degenerate()
+        return cls(problem, asked, tuple(map(asked_in_turn, asked)) if needed else (), search)
+
+    @property
+    def problems(self) -> tuple[ScaledProblem, ...]:
+        """All problems that are searched, one after another."""
+        return tuple(chain.from_iterable(self.searched))
 
     def ledger(self, scaled: ScaledProblem, chunks: int) -> Ledger:
         """Bookkeeping of so many chunks of a problem, which nothing ends before all are done."""

@@ -267,20 +267,3 @@ class MachineTables(Table):
         return DynamicsSpec(
             **own, **{name: _argument(getattr(self, name)) for name in names if name != "dynamics"}
         )
-
-
-# By their names, lists of tables included; those in lists by the names of the lists.
-MACHINE_TABLES: dict[str, type[Table]] = {
-    "dynamics": DynamicsTable,
-    "loads": LoadTable,
-    "springs": SpringTable,
-    "springs.between": PlaceTable,
-    "dampers": DamperTable,
-    "dampers.between": PlaceTable,
-    "torsion_springs": TorsionSpringTable,
-    "counterweights": CounterweightTable,
-    "friction": FrictionTable,
-    "motor": MotorTable,
-    "section": SectionTable,
-    "strength": StrengthTable,
-}

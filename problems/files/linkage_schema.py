@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import AfterValidator, Field, ValidationInfo, create_model, field_validator
 
-from grashof.problems.files.dynamics_schema import MACHINE_TABLES, MachineTables, PumpingUnitTable
+from grashof.problems.files.dynamics_schema import MachineTables, PumpingUnitTable
 from grashof.problems.files.tables import Table, Text, listed, of_length, stated
 from grashof.problems.values.checks import GREATEST, MOST_TURNS, finite_number, noted, number_within, refused
 from grashof.problems.values.dynamics_spec import metres
@@ -51,7 +51,7 @@ def linkage_from(document: dict[str, Any], name: str, folder: Path | None = None
     rest = {key: value for key, value in document.items() if key not in wrong}
     lines = list(wrong.values())
     with noted(lines):
-        found: LinkageTable = stated(TABLES[kind][""], rest, TABLES[kind], folder)
+        found: LinkageTable = stated(FILES[kind], rest, folder)
         if not lines:
             return found.spec(name)
     raise refused(lines)
@@ -59,8 +59,8 @@ def linkage_from(document: dict[str, Any], name: str, folder: Path | None = None
 
 def _of_other_kinds(document: dict[str, Any], kind: str) -> Iterator[tuple[str, str]]:
     """Keys that only linkages of other kinds have, with what is wrong."""
-    for key in (key for key in document if key not in TABLES[kind][""].model_fields):
-        if having := [word for word, tables in TABLES.items() if key in tables[""].model_fields]:
+    for key in (key for key in document if key not in FILES[kind].model_fields):
+        if having := [word for word, file in FILES.items() if key in file.model_fields]:
             yield key, not_had(key, (kind,), having)
 
 
@@ -172,16 +172,14 @@ def _keys(row: Parameter) -> Iterator[tuple[str, Any]]:
         yield row.key, (_TYPES.get(row.kind, float), _USUAL.get(row.kind, ...))
 
 
-def _tables(kind: type[Linkage]) -> dict[str, Any]:
-    """The tables of files of a kind: the parameters that it has, and what else goes with them."""
+def _file(kind: type[Linkage]) -> type[LinkageTable]:
+    """The file of a kind: the parameters that it has, and what else goes with them."""
     keys = {key: made for row in kind.PARAMETERS for key, made in _keys(row)}
     also: dict[str, Any] = {"output_arm": (float | None, None)} if "o4" in keys else {}
-    unit: dict[str, Any] = {"pumping_unit": PumpingUnitTable} if kind.MECHANISM == FOUR_BAR else {}
-    begin = create_model(f"_{kind.__name__}", __base__=_Heading, **keys, **also)
-    optional: dict[str, Any] = {name: (table | None, None) for name, table in unit.items()}
-    whole = create_model(f"{kind.__name__}Table", __base__=(LinkageTable, MachineTables, begin), **optional)
-    return {"": whole, **MACHINE_TABLES, **unit}
+    if kind.MECHANISM == FOUR_BAR:
+        also["pumping_unit"] = (PumpingUnitTable | None, None)
+    begin = create_model(f"_{kind.__name__}", __base__=_Heading, **keys)
+    return create_model(f"{kind.__name__}Table", __base__=(LinkageTable, MachineTables, begin), **also)
 
 
-# Of each kind, by key paths.
-TABLES: dict[str, dict[str, Any]] = {word: _tables(kind) for word, kind in KINDS.items()}
+FILES: dict[str, type[LinkageTable]] = {word: _file(kind) for word, kind in KINDS.items()}

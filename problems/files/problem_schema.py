@@ -13,7 +13,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import AfterValidator, Discriminator, Tag, ValidationInfo, create_model, field_validator
 from pydantic_core import PydanticCustomError
 
-from grashof.problems.files.dynamics_schema import MACHINE_TABLES, MachineTables
+from grashof.problems.files.dynamics_schema import MachineTables
 from grashof.problems.files.tables import (
     LIST,
     NUMBER,
@@ -76,7 +76,7 @@ def problem_from(document: dict[str, Any], name: str, folder: Path | None = None
     """
     wrong: list[str] = []
     with noted(wrong):
-        return stated(ProblemFile, document, _TABLES, folder).problem(name)
+        return stated(ProblemFile, document, folder).problem(name)
     raise refused([*wrong, *_ill_matched(document)])
 
 
@@ -90,7 +90,7 @@ def _ill_matched(document: dict[str, Any]) -> Iterator[str]:
         if other != kind and other in document:
             yield f'{other} does not belong to kind = "{kind}"'
     wrong: list[str] = []
-    if any(table in document for table in MACHINE_TABLES) and isinstance(unit, str):
+    if any(table in document for table in MachineTables.model_fields) and isinstance(unit, str):
         with noted(wrong):
             metres(unit)
     yield from wrong
@@ -453,22 +453,3 @@ class ProblemFile(MachineTables, _Task):
         if "objective" in self.model_fields_set and not problem.by_objective:
             raise ProblemError(NO_OBJECTIVE)
         return problem
-
-
-_TABLES: dict[str, type[Table]] = {
-    "": ProblemFile,
-    "motion": MotionTable,
-    "path": PathTable,
-    "stroke": StrokeTable,
-    "function": FunctionTable,
-    "scene": SceneTable,
-    "requirements": RequirementsTable,
-    **{f"requirements.{name}": BoxTable for name in sorted(_PLACES)},
-    "driver": DriverTable,
-    "driver.cylinder": CylinderTable,
-    "objective": ObjectiveTable,
-    "objective.maximise": WeightsTable,
-    **MACHINE_TABLES,
-    "manufacturing": ManufacturingTable,
-    "search": SearchTable,
-}

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Self, TypeAlias, TypeVar
+from typing import Annotated, Any, ClassVar, Self, TypeAlias, TypeVar, get_args
 
 from pydantic import (
     AfterValidator,
@@ -57,7 +57,6 @@ AnyTable = TypeVar("AnyTable", bound=Table)
 def stated(
     table: type[AnyTable],
     document: dict[str, Any],
-    tables: Mapping[str, type[Table]],
     folder: Path | None = None,
 ) -> AnyTable:
     """What a parsed file states, as its table.
@@ -68,8 +67,6 @@ def stated(
         Of the whole file.
     document : dict
         The file as `tomllib` gives it.
-    tables : mapping of str to type
-        All tables of such a file by their key paths, those of lists without their numbers.
     folder : Path, optional
         That the names of other files in it are relative to; without it none may be named.
 
@@ -84,7 +81,24 @@ def stated(
         errors = refused.errors(include_url=False)
     # A missing key comes last: most often it stands in the file, misspelt, and that error is clearer.
     errors.sort(key=lambda error: error["type"] == "missing")
+    tables = dict(tables_of(table))
     raise ProblemError("\n".join(dict.fromkeys(_described(error, tables) for error in errors)))
+
+
+def tables_of(table: type[Table], path: str = "") -> Iterator[tuple[str, type[Table]]]:
+    """All tables of a file by their key paths, without the numbers of lists; the file itself first."""
+    yield path, table
+    for key, field in table.model_fields.items():
+        for inner in _tables_in(field.annotation):
+            yield from tables_of(inner, f"{path}.{key}".lstrip("."))
+
+
+def _tables_in(annotation: Any) -> Iterator[type[Table]]:
+    """The types of tables that a type is made of."""
+    if isinstance(annotation, type) and issubclass(annotation, Table):
+        yield annotation
+    for part in get_args(annotation):
+        yield from _tables_in(part)
 
 
 def _plain(text: str, key: ValidationInfo) -> str:

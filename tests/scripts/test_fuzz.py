@@ -18,8 +18,9 @@ import pytest
 
 from grashof import load
 from grashof.problems import ProblemError
-from grashof.problems.files.linkage_schema import TABLES as LINKAGE_TABLES
-from grashof.problems.files.problem_schema import _TABLES as PROBLEM_TABLES
+from grashof.problems.files.linkage_schema import FILES
+from grashof.problems.files.problem_schema import ProblemFile
+from grashof.problems.files.tables import tables_of
 
 SCRIPTS = Path(__file__).parents[2] / "scripts"
 pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGALRM"), reason="no alarms: hangs are not found")
@@ -33,9 +34,9 @@ def script(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], ModuleType]:
 
 def test_the_seeds_are_right_and_use_every_key(script: Callable[[str], ModuleType], tmp_path: Path) -> None:
     mutants, fuzz = script("mutants"), script("fuzz")
-    for seeds, tables in (
-        (mutants.problem_seeds(), PROBLEM_TABLES),
-        *((mutants.linkage_seeds(), tables) for tables in LINKAGE_TABLES.values()),
+    for seeds, file in (
+        (mutants.problem_seeds(), ProblemFile),
+        *((mutants.linkage_seeds(), file) for file in FILES.values()),
     ):
         used: dict[str, set[str]] = {}
         for seed in seeds:
@@ -47,7 +48,7 @@ def test_the_seeds_are_right_and_use_every_key(script: Callable[[str], ModuleTyp
             assert figures["accepted"] == 1, text
             for path, table in mutants.tables_of(seed.document):
                 used.setdefault(path, set()).update(table)
-        for path, table in tables.items():
+        for path, table in tables_of(file):
             if path.count(".") == 0:
                 missing = {"stroke"} if path == "stroke" else {"weights", "table"}  # a four-bar has no slide
                 assert set(table.model_fields) - missing <= used[path], path

@@ -34,6 +34,13 @@ KINDS: dict[str, tuple[Problem, dict[str, Any]]] = {
     "five poses": (Problem(task=MotionTask.from_degrees(FIVE)), {"starts": 16}),
     "points met": (load("path-vertical-line"), {"starts": 16, "enough": 6}),
     "points fitted": (load("path-ellipse"), {"effort": 0.5, "starts": 30}),
+    "three kinds": (
+        Problem(
+            task=MotionTask.from_degrees(FOUR[:3]),
+            mechanism=("slider-crank", "four-bar", "inverted-slider-crank"),
+        ),
+        {"starts": 16},
+    ),
     "zones": (Problem(task=ZONES, objective=Objective()), {"effort": 0.5, "starts": 30}),
     "none": (
         Problem(
@@ -56,7 +63,7 @@ def divided(kind: str, folder: Path, of: int, **more: Any) -> list[Made]:
 
 
 @pytest.mark.usefixtures("small_search")
-@pytest.mark.quick("poses", "zones", "degenerate")
+@pytest.mark.quick("poses", "three kinds", "zones", "degenerate")
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_list_does_not_depend_on_the_number_of_shards(kind: str, tmp_path: Path) -> None:
     merged = []
@@ -68,6 +75,14 @@ def test_the_list_does_not_depend_on_the_number_of_shards(kind: str, tmp_path: P
     assert table(one) == table(several)
     assert (len(one) > 0) == (kind not in ("none", "degenerate"))
     assert all(design.verdict.ok for design in one.candidates)
+
+
+@pytest.mark.usefixtures("small_search")
+def test_shards_search_every_kind_of_linkage(tmp_path: Path) -> None:
+    problem, _ = KINDS["three kinds"]
+    divided("three kinds", tmp_path, 2)
+    found = {design.linkage.MECHANISM for design in merge_shards(tmp_path).candidates}
+    assert found == set(problem.mechanism)
 
 
 def test_all_chunks_are_made_and_nothing_ends_them_early(tmp_path: Path) -> None:

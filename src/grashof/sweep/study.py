@@ -120,7 +120,7 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     sources: tuple[Source, ...] = ()
     wrong: list[str] = []
     with noted(wrong):
-        study = stated(StudyFile, document, _TABLES)
+        study = stated(StudyFile, document)
     elsewhere: list[str] = []
     with noted(elsewhere):
         sources = _sources(document, file.parent)
@@ -197,9 +197,6 @@ class StudyFile(Table):
             wrong.append("vary is missing; a study varies something, or has problems or a table")
         wrong += _ill_joined(self.together, dict(_flat(self.vary)))
         refuse(wrong)
-
-
-_TABLES: dict[str, type[Table]] = {"": StudyFile, "search": SearchOptions}
 
 
 def _ill_joined(together: Sequence[Sequence[str]], vary: Mapping[str, Any]) -> list[str]:

@@ -413,6 +413,7 @@ def test_a_cylinder_is_read_with_all_its_keys() -> None:
         ('on = ["ground"]', "driver.cylinder.on[0] is 'ground'; it must be one of driver, coupler, output"),
         ("base = { x = [3, 1] }", "driver.cylinder.base.x is [3, 1]; it must be [lo, hi] with lo <= hi"),
         ("bore = 3", "driver.cylinder.bore is unknown; the keys are closed, ratio_max, on, base"),
+        ("base = { xx = [3, 1] }", "driver.cylinder.base.xx is unknown; did you mean x?"),
     ],
 )
 def test_cylinders_that_cannot_be_are_refused_in_a_line(text: str, line: str) -> None:
