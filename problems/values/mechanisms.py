@@ -18,6 +18,7 @@ KINDS: dict[str, type[Linkage]] = {
     kind.MECHANISM: kind for kind in (FourBar, SliderCrank, InvertedSliderCrank)
 }
 FOUR_BAR, SLIDER_CRANK, INVERTED = KINDS
+NOISE = 1e-9  # share of a linkage's longest link that rounding leaves of a length of zero
 # The parameters of all kinds, each once, in the order of tables.
 PARAMETERS: tuple[Parameter, ...] = tuple(
     dict.fromkeys(row for kind in KINDS.values() for row in kind.PARAMETERS)
@@ -72,7 +73,20 @@ def lengths_text(linkage: Linkage, digits: int = 4) -> str:
     if linkage.MECHANISM == FOUR_BAR:
         return f"r1 to r4 {', '.join(f'{length:.{digits}g}' for length in linkage.lengths)}"
     names = (*linkage.LENGTHS, *(row.name for row in linkage.PARAMETERS if row.kind == "distance"))
-    return ", ".join(f"{name} {float(getattr(linkage, name)):.{digits}g}" for name in names)
+    sizes = {name: without_noise(float(getattr(linkage, name)), linkage) for name in names}
+    return ", ".join(f"{name} {value:.{digits}g}" for name, value in sizes.items())
+
+
+def without_noise(length: float, linkage: Linkage) -> float:
+    """A length of a single linkage as people read it: 0 where it is less than rounding leaves of zero.
+
+    Examples
+    --------
+    >>> rod = SliderCrank((0, 0), 1, 4, offset=-3e-12)
+    >>> without_noise(float(rod.offset), rod), without_noise(0.1, rod)
+    (0.0, 0.1)
+    """
+    return 0.0 if abs(length) < NOISE * float(linkage.lengths.max()) else length
 
 
 def not_had(what: str, asked: Sequence[str], kinds: Sequence[str]) -> str:

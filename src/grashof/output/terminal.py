@@ -20,7 +20,7 @@ from grashof.output.streams import say
 from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
-from grashof.problems.values.mechanisms import LENGTHS, having
+from grashof.problems.values.mechanisms import LENGTHS, having, without_noise
 from grashof.problems.values.quantities import Needs, Over, Quantity, Unit
 from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth import Candidate, Progress, Result
@@ -240,4 +240,6 @@ def _cell(quantity: Quantity, candidate: Candidate, digits: int) -> str:
     value = candidate.values[quantity.key] * quantity.unit.shown
     if quantity.unit is Unit.ANGLE and quantity.needs is not Needs.OUTPUTS:
         return f"{value:.1f}"
+    if quantity.unit is Unit.LENGTH and quantity.key != "error":
+        value = without_noise(value, candidate.linkage)
     return f"{value:.{2 if quantity.key == 'error' else digits}g}"

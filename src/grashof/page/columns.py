@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 
 from grashof.problems import Problem
+from grashof.problems.values.mechanisms import DIMENSIONS, NOISE
 from grashof.problems.values.quantities import Needs
 from grashof.synth.designs.table import LISTED, OWN
 from grashof.wording.problem import error_meaning
@@ -67,6 +68,7 @@ def columns_of(problem: Problem, frame: pd.DataFrame) -> list[Column]:
         if each.key != left_out and each.column in frame and not frame[each.column].isna().all()
     ]
     # In the table first what any design has, then what takes masses or tolerances, then the lengths.
+    longest = float(frame["size"].max())
     stated = Needs.DYNAMICS, Needs.MANUFACTURING
     known.sort(key=lambda each: (not each.digits, not each.better, each.needs in stated))
     return [
@@ -74,7 +76,7 @@ def columns_of(problem: Problem, frame: pd.DataFrame) -> list[Column]:
             each.column,
             each.label.replace("mu ", "μ "),
             each.unit.of(problem.length_unit),
-            _decimals(frame[each.column], each.digits),
+            _decimals(frame[each.column], each.digits, NOISE * longest if each.key in DIMENSIONS else 0.0),
             each.better,
             error_meaning(problem) if each.key == "error" else each.about,
             listed=each.digits > 0,
@@ -90,10 +92,10 @@ def figure_units(frame: pd.DataFrame, length_unit: str) -> list[tuple[str, str, 
     return [(str(key), *known.get(str(key), ("", ""))) for key in frame if not frame[key].isna().all()]
 
 
-def _decimals(values: pd.Series[Any], digits: int) -> int:
+def _decimals(values: pd.Series[Any], digits: int, noise: float) -> int:
     """How many decimals show so many digits of the largest of some values; -1 where that is no help."""
     known = values[np.isfinite(values)].abs()
-    if not known.any():
+    if not (known > noise).any():
         return 0
     power = math.floor(math.log10(known.max()))
     return max(digits - 1 - power, 0) if -3 <= power <= 6 else -1
