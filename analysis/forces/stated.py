@@ -23,7 +23,13 @@ from grashof.problems.values.acting import TURNING, LoadSpec, Place
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkage import Linkage
 
-_ROUNDING = 1e-9  # share of the greatest travel by which it may pass the rows of a load
+TRAVEL_ROUNDING = 1e-9  # share of the greatest travel by which it may pass the rows of a load
+
+
+class BeyondLoadError(ProblemError):
+    """A slide that travels farther than the rows of a load."""
+
+
 Clock = Callable[[Kinematics], FloatArray]
 
 
@@ -154,12 +160,12 @@ def _place(state: Kinematics, load: LoadSpec) -> FloatArray:
 def _within(travel: FloatArray, load: LoadSpec) -> FloatArray:
     """A travel, put back where rounding carries it past the rows of a load."""
     low, high = (load.values or ((0.0,),))[0][0], (load.values or ((0.0,),))[-1][0]
-    slack = _ROUNDING * max(abs(low), abs(high))
+    slack = TRAVEL_ROUNDING * max(abs(low), abs(high))
     known = np.asarray(travel)[np.isfinite(travel)]
     least, most = known.min(initial=high), known.max(initial=low)
     if least < low - slack or most > high + slack:
         past = least if least < low - slack else most
-        raise ProblemError(
+        raise BeyondLoadError(
             f"a load over travel covers {low:g} to {high:g}; the slide comes to {past:.6g}, too"
         )
     return np.clip(travel, low, high)

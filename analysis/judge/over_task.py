@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +12,7 @@ import numpy as np
 from grashof.analysis.curves.fit import coupler_fit_r2
 from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.joints import Joint
-from grashof.analysis.forces.stated import stated_loads, stated_masses
+from grashof.analysis.forces.stated import BeyondLoadError, stated_loads, stated_masses
 from grashof.analysis.four_bar.driver_law import DriverLaw
 from grashof.analysis.four_bar.kinematics import solve_kinematics
 from grashof.analysis.four_bar.means import mean_in_time
@@ -97,7 +98,7 @@ def over_task(linkage: Linkage, problem: Problem, verdict: Verdict) -> OverTask:
     linkage, spec = as_used(linkage, verdict), problem.dynamics
     start, end = motion_ends(problem.task, verdict)
     theta2 = sampled(linkage, start, end)
-    if not _joined(linkage, verdict, theta2):
+    if not joins(linkage, verdict, theta2):
         return _NONE
     forces: tuple[float, ...] = ()
     with warnings.catch_warnings():
@@ -105,14 +106,22 @@ def over_task(linkage: Linkage, problem: Problem, verdict: Verdict) -> OverTask:
         law = driver_law(problem, start, end)
         omega4, speed, acceleration = peaks(_speeds(linkage, law), law.stretches(theta2))[0]
         if spec is not None:
-            loaded, square = _loaded(linkage, spec, metres(problem.length_unit), law), np.inf
-            peak, force = peaks(loaded, law.stretches(theta2))[0]
-            if np.isfinite(peak):
-                mean, _ = mean_in_time(linkage, law, lambda place: loaded(place)[0] ** 2, panels=8)
-                square = float(mean)
-            forces = float(peak), float(np.sqrt(square)), float(force)
+            with suppress(BeyondLoadError):  # a defect by itself
+                forces = _forces(linkage, problem, spec, law, theta2)
     fit = float(coupler_fit_r2(linkage, start, end))
     return OverTask(float(omega4), float(speed), float(acceleration), fit, *forces)
+
+
+def _forces(
+    linkage: Linkage, problem: Problem, spec: DynamicsSpec, law: DriverLaw, theta2: FloatArray
+) -> tuple[float, float, float]:
+    """Peak and root mean square of the torque, N m, and the greatest joint force, N."""
+    loaded, square = _loaded(linkage, spec, metres(problem.length_unit), law), np.inf
+    peak, force = peaks(loaded, law.stretches(theta2))[0]
+    if np.isfinite(peak):
+        mean, _ = mean_in_time(linkage, law, lambda place: loaded(place)[0] ** 2, panels=8)
+        square = float(mean)
+    return float(peak), float(np.sqrt(square)), float(force)
 
 
 def torque_peak(linkage: Linkage, problem: Problem, verdict: Verdict) -> float:
@@ -122,12 +131,14 @@ def torque_peak(linkage: Linkage, problem: Problem, verdict: Verdict) -> float:
     linkage = as_used(linkage, verdict)
     ends = motion_ends(problem.task, verdict)
     theta2, law = sampled(linkage, *ends), driver_law(problem, *ends)
-    if not _joined(linkage, verdict, theta2):
+    if not joins(linkage, verdict, theta2):
         return np.nan
     loaded = _loaded(linkage, problem.dynamics, metres(problem.length_unit), law)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeadPositionWarning)
-        return float(peaks(lambda place: loaded(place)[:1], law.stretches(theta2))[0][0])
+        with suppress(BeyondLoadError):
+            return float(peaks(lambda place: loaded(place)[:1], law.stretches(theta2))[0][0])
+    return np.nan
 
 
 def as_used(linkage: Linkage, verdict: Verdict) -> Linkage:
@@ -136,7 +147,7 @@ def as_used(linkage: Linkage, verdict: Verdict) -> Linkage:
     return linkage if used == linkage.assembly else linkage.changed(assembly=used)
 
 
-def _joined(linkage: Linkage, verdict: Verdict, theta2: FloatArray) -> bool:
+def joins(linkage: Linkage, verdict: Verdict, theta2: FloatArray) -> bool:
     """Whether a motion joins the targets; at its very ends rounding may open the loop."""
     return verdict.branch_ok and not np.isnan(solve_position(linkage, theta2[1:-1]).theta3).any()
 

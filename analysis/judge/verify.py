@@ -23,6 +23,7 @@ from grashof.analysis.judge.driven import cylinder_defects, driven_travel
 from grashof.analysis.judge.function_output import StructuralError, met_as_function
 from grashof.analysis.judge.limit_positions import stroke_defects
 from grashof.analysis.judge.limits import SLACK, missed
+from grashof.analysis.judge.loads_known import load_defects
 from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.meet import meet
 from grashof.analysis.judge.task_motion import STEADY, Targets, TaskMotion
@@ -130,6 +131,7 @@ def verify(
         *drive,
         *_rotatability(linkage, task, wanted),
         *_covered(targets),
+        *(load_defects(linkage, problem, verdict) if problem is not None else []),
         *missed(Values(linkage, verdict, problem or Problem(task=task)), wanted),
         *(_own(Design.judged(linkage, verdict), constraints) if constraints else []),
         *(_kept_out(linkage, targets, motion, task, wanted, joined=branch_ok) if wanted.keep_out else []),

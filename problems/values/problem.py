@@ -157,7 +157,6 @@ class Problem(ReadOnly):
                     "payload, or else loads, springs or friction"
                 )
         wrong += self._not_of_these_kinds()
-        wrong += self._not_driven_yet()
         wrong += self._without_value()
         wrong += self._undecided()
         wrong += self._not_for_cylinders()
@@ -222,16 +221,6 @@ class Problem(ReadOnly):
             not_had(where, self.mechanism, kinds)
             for where, kinds in having.items()
             if not set(kinds) & set(self.mechanism)
-        ]
-
-    def _not_driven_yet(self) -> list[str]:
-        """Torques and forces that are asked of slider kinds, for which the search has no formulas of them."""
-        others = [word for word in self.mechanism if word != FOUR_BAR]
-        return [
-            f"{where} does not go with mechanism {' and '.join(others)}; torques and forces are limited and "
-            f"weighed for {FOUR_BAR} alone"
-            for where, quantity in self._asked.items()
-            if others and quantity.needs is Needs.DYNAMICS
         ]
 
     def for_kind(self, kind: str) -> Problem:

@@ -10,12 +10,12 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from grashof.problems import Problem
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 from grashof.synth.programme.burden import NOTHING, Burden
 from grashof.synth.programme.drive import drive_torque, joint_forces
 from grashof.synth.programme.driver_way import drive_of, driver_at
 from grashof.synth.programme.instant import Instant
+from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.vector import Vector
 
 SCREENED = 25  # instants at which many linkages are compared
@@ -47,7 +47,7 @@ def value_of(key: str, peak: Any) -> Any:
 
 
 def magnitudes(
-    problem: Problem,
+    scaled: ScaledProblem,
     key: str,
     points: ComplexArray,
     theta2: FloatArray,
@@ -59,7 +59,7 @@ def magnitudes(
 
     Parameters
     ----------
-    problem : Problem
+    scaled : ScaledProblem
     key : str
         Of `ALONG`.
     points : ndarray of complex, shape (n, 5), sizes
@@ -75,17 +75,16 @@ def magnitudes(
     ndarray, shape (n, count)
         In `Problem.scale` of the quantity; infinite where a linkage does not close.
     """
-    o2, o4, a, b, p = points.T[..., None]
-    coupler, ground = b - a, o4 - o2
+    problem, kind = scaled.problem, scaled.kind
+    ground, lengths, arm = kind.sides(points[:, None])
+    o2 = points[:, :1]
     last = theta2[:, 0] + direction * TURN if problem.task.closed else theta2[:, -1]
-    arm = (p - a) * np.abs(coupler) / coupler
-    lengths = [np.abs(link) for link in (ground, a - o2, coupler, b - o4)]
     share = np.linspace(0, 1, count)
     ends = theta2[:, :1], last[:, None]
     with np.errstate(all="ignore"):
         driver = driver_at(*drive_of(problem), share, *ends, direction[:, None])
         base, along, point = (Vector(each.real, each.imag) for each in (o2, ground, arm))
-        at = Instant.of(base, along, lengths, point, assembly[:, None], driver)
+        at = kind.instant.of(base, along, lengths, point, assembly[:, None], driver)
         values = ALONG[key](at, Burden.of(problem))
         found = [np.hypot(v.x, v.y) if isinstance(v, Vector) else np.abs(v) for v in values]
     greatest: FloatArray = np.nan_to_num(np.max(found, axis=0), nan=np.inf)
@@ -93,7 +92,7 @@ def magnitudes(
 
 
 def overlooked(
-    problem: Problem,
+    scaled: ScaledProblem,
     key: str,
     points: ComplexArray,
     theta2: FloatArray,
@@ -105,7 +104,7 @@ def overlooked(
 
     Parameters
     ----------
-    problem : Problem
+    scaled : ScaledProblem
     key : str
         Of `ALONG`.
     points : ndarray of complex, shape (5,), sizes
@@ -116,7 +115,7 @@ def overlooked(
         In `Problem.scale` of the quantity.
     """
     ways = theta2[None], np.array([direction]), np.array([assembly])
-    (curve,) = magnitudes(problem, key, points[None], *ways, LOOKED_AT)
+    (curve,) = magnitudes(scaled, key, points[None], *ways, LOOKED_AT)
     beside = np.concatenate([[-np.inf], curve, [-np.inf]])
     peaks = np.flatnonzero((curve >= beside[:-2]) & (curve > beside[2:]) & (curve > bound * (1 + AGREES)))
     worst = peaks[np.argsort(-curve[peaks], kind="stable")][:MOST_PEAKS]

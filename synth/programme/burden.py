@@ -60,8 +60,8 @@ class Push:
     values : tuple of float
         Of a constant one.
     over : str
-        "theta2", "theta4" or "time"; empty for a constant one.
-    places : tuple of float, deg or s
+        "theta2", "theta4", "travel" or "time"; empty for a constant one.
+    places : tuple of float, deg, sizes or s
     rows : tuple of tuples of float
         Its values there.
     """
@@ -105,6 +105,8 @@ class Burden:
         Torsion springs.
     viscous, constant, radius : four floats
         Friction in O2, A, B, O4.
+    slide_viscous, slide_constant, slide_mu, slide_length : float
+        Friction in a slide; the length in sizes.
     """
 
     inertia: float
@@ -116,6 +118,10 @@ class Burden:
     viscous: Numbers = (0.0,) * 4
     constant: Numbers = (0.0,) * 4
     radius: Numbers = (0.0,) * 4
+    slide_viscous: float = 0.0
+    slide_constant: float = 0.0
+    slide_mu: float = 0.0
+    slide_length: float = 0.0
 
     @classmethod
     def of(cls, problem: Problem) -> Burden | None:
@@ -142,6 +148,10 @@ class Burden:
             viscous=_four(friction.viscous, spec.omega2 / unit),
             constant=_four(friction.moment, 1 / unit),
             radius=_four(friction.radius, 1 / frame.scale),
+            slide_viscous=friction.slide_viscous * spec.omega2 * size**2 / unit,
+            slide_constant=friction.slide_force * size / unit,
+            slide_mu=friction.slide_mu,
+            slide_length=friction.slide_length / frame.scale,
         )
 
 
@@ -175,7 +185,7 @@ def _push(load: LoadSpec, frame: Frame, force: float, moment: float) -> Push:
     if load.values is None:
         values = (load.moment,) if load.moment is not None else load.force or ()
         return Push(load.link, at, turning, load.is_moment, _scaled(values, per))
-    places = tuple(row[0] for row in load.values)
+    places = tuple(row[0] / (frame.scale if load.over == "travel" else 1.0) for row in load.values)
     rows = tuple(_scaled(row[1:], per) for row in load.values)
     return Push(load.link, at, turning, load.is_moment, over=load.over, places=places, rows=rows)
 

@@ -316,14 +316,19 @@ def own_goal(build: Builder, form: Form, x: Unknowns, places: Places, objective:
     return ca.SX(on_symbols(objective, symbolic_design(build, form, x, places))) / unit
 
 
+def arm_of(form: Form, x: Unknowns, places: Places) -> ca.SX:
+    """P in the coupler's frame, sizes."""
+    if form.kind is not FOUR_BAR:
+        return x.arm
+    coupler, to_p = places.b[0] - places.a[0], places.p[0] - places.a[0]
+    return ca.vertcat(ca.dot(coupler, to_p) / x.r[2], cross(coupler, to_p) / x.r[2])
+
+
 def symbolic_design(build: Builder, form: Form, x: Unknowns, places: Places) -> Design:
     """What a user's function sees of the unknowns."""
     scale = build.parameter(lambda scaled, _: scaled.frame.scale)
     origin = build.parameter(lambda scaled, _: interleaved(scaled.frame.origin), 2)
-    arm = x.arm
-    if form.kind is FOUR_BAR:
-        coupler, to_p = places.b[0] - places.a[0], places.p[0] - places.a[0]
-        arm = ca.vertcat(ca.dot(coupler, to_p) / x.r[2], cross(coupler, to_p) / x.r[2])
+    arm = arm_of(form, x, places)
     named = form.kind.named([scale * length for length in ca.vertsplit(x.r)], x.theta1)
     o2, o4 = scale * x.o2 + origin, None if x.o4.is_empty() else scale * x.o4 + origin
     a, b, p = ([scale * point + origin for point in track] for track in (places.a, places.b, places.p))

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from grashof.problems.values.acting import JOINTS
+from grashof.problems.values.acting import JOINTS, TURNING
 from grashof.synth.programme.burden import Burden, Mass, Push
 from grashof.synth.programme.driver_way import pieces
 from grashof.synth.programme.instant import Instant
@@ -30,28 +30,32 @@ def drive_torque(at: Instant, burden: Burden) -> list[Any]:
     for link, moment in _moments(at, burden):
         torque = torque + moment * at.speed(link)
     for joint, moment in enumerate(moments):
-        torque = torque - moment * _opening(at, joint)
+        torque = torque - moment * at.opening(joint)
     return [torque]
 
 
 def joint_forces(at: Instant, burden: Burden) -> list[Any]:
-    """Forces in O2, A, B and O4, friction in the joints included."""
-    return _reactions(at, burden, _joint_moments(at, burden))
+    """Forces in O2, A, B and O4, or a slide there, friction in the joints included."""
+    return _reactions(at, burden, _joint_moments(at, burden))[0]
 
 
-def _reactions(at: Instant, burden: Burden, moments: list[Any]) -> list[Any]:
-    """Forces in O2, A, B and O4, from moments of link 3 about A and of link 4 about O4."""
+def _reactions(at: Instant, burden: Burden, moments: list[Any]) -> tuple[list[Any], tuple[Any, Any]]:
+    """Forces in O2, A, B and O4, and what presses in the slide.
+
+    From moments of link 3 about A and of link 4 about the origin of its frame; what is a moment in a pin
+    is a force along a slide.
+    """
     force: dict[int, Any] = {2: Vector(0.0, 0.0), 3: Vector(0.0, 0.0), 4: Vector(0.0, 0.0)}
-    about: dict[int, Any] = {2: 0.0, 3: moments[2] - moments[1], 4: -moments[2] - moments[3]}
+    turning = [0.0 if joint == at.slide else moment for joint, moment in enumerate(moments)]
+    about: dict[int, Any] = {2: 0.0, 3: turning[2] - turning[1], 4: -turning[2] - turning[3]}
     for link, arm, demand in _forces(at, burden):
         force[link] = force[link] + demand
         about[link] = about[link] + arm.cross(demand)
     for link, moment in _moments(at, burden):
         about[link] = about[link] + moment
-    # F43, by link 4 on link 3: AB x F43 = about A and O4B x F43 = -about O4.
-    in_b = (-about[4] * at.coupler - about[3] * at.output) / at.output.cross(at.coupler)
+    in_b = at.force_in_b(force, about, 0.0 if at.slide is None else moments[at.slide])
     in_a = force[3] - in_b  # by link 2 on link 3
-    return [force[2] + in_a, in_a, in_b, force[4] + in_b]
+    return [force[2] + in_a, in_a, in_b, force[4] + in_b], at.pressing(in_b, force, about)
 
 
 def _forces(at: Instant, burden: Burden) -> Iterator[tuple[int, Vector, Vector]]:
@@ -102,9 +106,12 @@ def _body(at: Instant, mass: Mass) -> tuple[Any, Any, Vector]:
         return mass.mass, 0.0, at.point
     if not mass.per_size:
         return mass.mass, mass.inertia, at.on_link(mass.link, mass.place)
-    square = at.link(mass.link).square
+    found = at.bar(mass.link)
+    if found is None:
+        return 0.0, 0.0, Vector(0.0, 0.0)
+    square, middle = found
     bar = mass.per_size * np.sqrt(square)
-    return bar, bar * (square + mass.width**2) / 12, at.on_link(mass.link, None)
+    return bar, bar * (square + mass.width**2) / 12, middle
 
 
 def _values(at: Instant, push: Push) -> list[Any]:
@@ -113,6 +120,8 @@ def _values(at: Instant, push: Push) -> list[Any]:
         return list(push.values)
     if push.over == "time":
         place = at.driver.time
+    elif push.over == "travel":
+        place = at.travel
     else:
         degrees = np.degrees(1.0) * at.turn(2 if push.over == "theta2" else 4)
         place = push.places[0] + np.remainder(degrees - push.places[0], _TURN_DEG)
@@ -122,7 +131,7 @@ def _values(at: Instant, push: Push) -> list[Any]:
 def _curve(push: Push, column: int, place: Any) -> Any:
     """The monotone cubic through a column; a sum of what each piece adds, so that nothing branches."""
     places, values = np.array(push.places), np.array(push.rows)[:, column]
-    if push.over != "time":  # its slopes look at the neighbours on the other turn
+    if push.over in TURNING:  # its slopes look at the neighbours on the other turn
         beside = min(2, len(places) - 1)
         places = np.concatenate(
             [places[-1 - beside : -1] - _TURN_DEG, places, places[1 : 1 + beside] + _TURN_DEG]
@@ -137,32 +146,43 @@ def _curve(push: Push, column: int, place: Any) -> Any:
     return value
 
 
-def _opening(at: Instant, joint: int) -> Any:
-    """Derivative of a joint's angle, its second link against its first."""
-    first, second = JOINTS[joint]
-    return at.speed(second) - at.speed(first)
-
-
 def _joint_moments(at: Instant, burden: Burden) -> list[Any]:
-    """On the second link of each joint: of torsion springs and friction."""
+    """On the second link of each joint: of torsion springs and friction; in a slide its friction along it."""
     moments: list[Any] = [0.0] * len(JOINTS)
     for joint, stiffness, free in burden.windings:
         first, second = JOINTS[joint]
         angle = at.turn(second) - at.turn(first) - free
         moments[joint] = moments[joint] - stiffness * (np.remainder(angle + np.pi, 2 * np.pi) - np.pi)
+    viscous, constant, slides = list(burden.viscous), list(burden.constant), at.slide is not None
+    if at.slide is not None:
+        viscous[at.slide], constant[at.slide] = burden.slide_viscous, burden.slide_constant
     for joint in range(len(JOINTS)):
-        rate = at.driver.pace * _opening(at, joint)
-        if burden.viscous[joint]:
-            moments[joint] = moments[joint] - burden.viscous[joint] * rate
-        if burden.constant[joint]:
-            moments[joint] = moments[joint] - burden.constant[joint] * np.sign(rate)
-    if not any(burden.radius):
+        rate = at.driver.pace * at.opening(joint)
+        if viscous[joint]:
+            moments[joint] = moments[joint] - viscous[joint] * rate
+        if constant[joint]:
+            moments[joint] = moments[joint] - constant[joint] * np.sign(rate)
+    if not any(burden.radius) and not (slides and burden.slide_mu):
         return moments
     known = moments
     for _ in range(_FRICTION_ROUNDS):
-        forces = _reactions(at, burden, moments)
+        forces, pressed = _reactions(at, burden, moments)
+        sizes = [
+            burden.slide_mu * _pressing(burden, *pressed)
+            if joint == at.slide
+            else burden.radius[joint] * np.sqrt(force.square + _TINY)
+            for joint, force in enumerate(forces)
+        ]
         moments = [
-            moment - radius * np.sqrt(force.square + _TINY) * np.sign(at.driver.pace * _opening(at, joint))
-            for joint, (moment, radius, force) in enumerate(zip(known, burden.radius, forces, strict=True))
+            moment - size * np.sign(at.driver.pace * at.opening(joint))
+            for joint, (moment, size) in enumerate(zip(known, sizes, strict=True))
         ]
     return moments
+
+
+def _pressing(burden: Burden, across: Any, moment: Any) -> Any:
+    """What friction in the slide grows with: max(|N|, 2 |M| / length)."""
+    across = np.sqrt(across**2 + _TINY)
+    if not burden.slide_length:
+        return across
+    return np.maximum(across, 2 * np.sqrt(moment**2 + _TINY) / burden.slide_length)

@@ -28,7 +28,7 @@ def solve_by_exchange(scaled: ScaledProblem, start: Start) -> Solve:
             break
         points, theta2 = np.array(solved.points), np.array(solved.theta2)
         ways = points, theta2, start.direction, start.assembly
-        found = {key: overlooked(scaled.problem, key, *ways, bound) for key, bound in solved.peaks.items()}
+        found = {key: overlooked(scaled, key, *ways, bound) for key, bound in solved.peaks.items()}
         if not any(found.values()):
             break
         added = {key: (*peaks, *start.peaks_at.get(key, ()))[:ADDED] for key, peaks in found.items()}

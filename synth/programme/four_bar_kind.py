@@ -12,6 +12,7 @@ from grashof.problems import FourBar, Requirements, Rotatability
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 from grashof.synth.programme import formulas
 from grashof.synth.programme.formulas import View
+from grashof.synth.programme.instant import FourBarInstant
 from grashof.synth.programme.kind import Closed, Kind, LoopOf, Shapes, as_vector
 from grashof.synth.theory.closure import FourBarClosure
 
@@ -23,6 +24,7 @@ class FourBarKind(Kind):
     formulas, smooth = formulas.FORMULAS, formulas.SMOOTH
     one_assembly = False
     closure = FourBarClosure()
+    instant = FourBarInstant
 
     def folded(self, d: View) -> Any:
         return formulas.folded(d)
@@ -93,6 +95,12 @@ class FourBarKind(Kind):
     def arguments(self, points: ComplexArray) -> dict[str, Any]:
         o2, o4, a, b, _ = np.moveaxis(points, -1, 0)
         return {"o2": o2, "o4": o4, "r2": np.abs(a - o2), "r3": np.abs(b - a), "r4": np.abs(b - o4)}
+
+    def sides(self, points: ComplexArray) -> tuple[ComplexArray, list[FloatArray], ComplexArray]:
+        o2, o4, a, b, p = np.moveaxis(points, -1, 0)
+        coupler, ground = b - a, o4 - o2
+        arm = (p - a) * np.abs(coupler) / coupler
+        return ground, [np.abs(link) for link in (ground, a - o2, coupler, b - o4)], arm
 
     def completed(
         self, _pivots: Mapping[str, complex], _turned: complex, _found: Mapping[str, float]

@@ -13,6 +13,7 @@ from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 from grashof.synth.programme import slider_formulas
 from grashof.synth.programme.formulas import View
 from grashof.synth.programme.kind import Closed, Kind, LoopOf, Shapes, as_vector, both_ways, by_two
+from grashof.synth.programme.slider_instants import InvertedInstant
 from grashof.synth.theory.closure import InvertedSliderCrankClosure
 
 
@@ -25,6 +26,7 @@ class InvertedKind(Kind):
     formulas, smooth = slider_formulas.INVERTED, slider_formulas.SMOOTH_INVERTED
     one_assembly, turns_with_coupler = True, True
     closure = InvertedSliderCrankClosure()
+    instant = InvertedInstant
 
     def folded(self, d: View) -> Any:
         return (d.r1 - d.r2) ** 2
@@ -95,6 +97,12 @@ class InvertedKind(Kind):
         o2, o4, a, b, _ = np.moveaxis(points, -1, 0)
         offset = (self.coupler(points).conj() * (b - o4)).imag
         return {"o2": o2, "o4": o4, "r2": np.abs(a - o2), "offset": offset}
+
+    def sides(self, points: ComplexArray) -> tuple[ComplexArray, list[FloatArray], ComplexArray]:
+        o2, o4, a, b, p = np.moveaxis(points, -1, 0)
+        ground, rod = o4 - o2, self.coupler(points)
+        lengths = [np.abs(ground), np.abs(a - o2), np.zeros_like(a.real), (rod.conj() * (b - o4)).imag]
+        return ground, lengths, (p - a) / rod
 
     def b_of(
         self, lengths: tuple[float, ...], o4: complex, a: ComplexArray, turned: ComplexArray

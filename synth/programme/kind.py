@@ -19,6 +19,7 @@ from grashof.problems import Linkage, Requirements
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 from grashof.synth.programme.formulas import Part, View
 from grashof.synth.programme.frame import Frame
+from grashof.synth.programme.instant import Instant
 from grashof.synth.programme.vector import Vector
 from grashof.synth.theory.closure import Closure
 
@@ -70,6 +71,7 @@ class Kind(ABC):
     smooth: ClassVar[Mapping[str, tuple[Part, ...]]]  # in place of those with a kink
     one_assembly: ClassVar[bool]
     closure: ClassVar[Closure]
+    instant: ClassVar[type[Instant]]
     turns_with_coupler: ClassVar[bool] = False  # the output link
 
     def __new__(cls) -> Self:
@@ -142,6 +144,10 @@ class Kind(ABC):
 
         Places as complex numbers, all lengths in the unit of the points.
         """
+
+    @abstractmethod
+    def sides(self, points: ComplexArray) -> tuple[ComplexArray, list[FloatArray], ComplexArray]:
+        """What `Instant.of` takes, from points (..., 5): ground, lengths, and P in the coupler's frame."""
 
     @abstractmethod
     def completed(

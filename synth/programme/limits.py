@@ -19,10 +19,9 @@ from grashof.synth.programme.along_motion import (
     value_of,
 )
 from grashof.synth.programme.builder import Builder, Fill, always
-from grashof.synth.programme.constraints import Places, Symbols, cross, vector
+from grashof.synth.programme.constraints import Places, Symbols, arm_of, unit, vector
 from grashof.synth.programme.driver_way import drive_of, driver_at
 from grashof.synth.programme.formulas import Part, parts_of, range_of
-from grashof.synth.programme.instant import Instant
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import Form
@@ -133,22 +132,21 @@ def _peak(build: Builder, form: Form, x: Unknowns, places: Places, key: str) -> 
 
     In units of its peak at the start.
     """
-    arm, coupler = places.p[0] - places.a[0], places.b[0] - places.a[0]
-    on_coupler = Vector(ca.dot(coupler, arm) / x.r[2], cross(coupler, arm) / x.r[2])
-    ground, lengths = vector(x.o4 - x.o2), ca.vertsplit(x.r)
-    unit = build.parameter(lambda scaled, start: peak_unit(form, scaled, start, key))
+    arm, lengths = vector(arm_of(form, x, places)), ca.vertsplit(x.r)
+    ground = vector(unit(x.theta1) if x.o4.is_empty() else x.o4 - x.o2)
+    one = build.parameter(lambda scaled, start: peak_unit(form, scaled, start, key))
     omega2 = build.parameter(lambda scaled, _: drive_of(scaled.problem)[1])
     added = ca.vertsplit(build.parameter(lambda _, start: _padded(start.peaks_at.get(key, ())), ADDED))
     peak = build.unknown(key, 1, lambda *_: 1.0, _most(form, key))
     last = x.theta2[0] + x.direction * TURN if form.closed else x.theta2[form.targets - 1]
     for share in (*np.linspace(0, 1, form.grid), *added):
         driver = driver_at(form.motor, omega2, share, x.theta2[0], last, x.direction)
-        at = Instant.of(vector(x.o2), ground, lengths, on_coupler, x.assembly, driver)
+        at = form.kind.instant.of(vector(x.o2), ground, lengths, arm, x.assembly, driver)
         for value in ALONG[key](at, form.burden):
             if isinstance(value, Vector):
-                build.row(peak**2 - (value / unit).square)
+                build.row(peak**2 - (value / one).square)
             else:
-                build.row(peak - value / unit, peak + value / unit)
+                build.row(peak - value / one, peak + value / one)
     return peak
 
 
@@ -159,7 +157,7 @@ def _padded(shares: Sequence[float]) -> FloatArray:
 def peak_unit(form: Form, scaled: ScaledProblem, start: Start, key: str) -> float:
     """The greatest magnitude of a quantity at the start, in `Problem.scale`."""
     ways = np.array([start.theta2]), np.array([start.direction]), np.array([start.assembly])
-    peak = float(magnitudes(scaled.problem, key, start.points[None], *ways, form.grid).max())
+    peak = float(magnitudes(scaled, key, start.points[None], *ways, form.grid).max())
     return peak if 1e-9 < peak < np.inf else 1.0
 
 

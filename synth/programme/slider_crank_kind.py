@@ -14,6 +14,7 @@ from grashof.synth.programme import slider_formulas
 from grashof.synth.programme.formulas import View
 from grashof.synth.programme.frame import Frame
 from grashof.synth.programme.kind import Closed, Kind, LoopOf, Shapes, both_ways, by_two
+from grashof.synth.programme.slider_instants import SliderCrankInstant
 from grashof.synth.theory.closure import SliderCrankClosure
 
 
@@ -26,6 +27,7 @@ class SliderCrankKind(Kind):
     formulas, smooth = slider_formulas.SLIDER_CRANK, slider_formulas.SMOOTH_SLIDER_CRANK
     one_assembly = True
     closure = SliderCrankClosure()
+    instant = SliderCrankInstant
 
     def folded(self, d: View) -> Any:
         return d.offset - d.r2
@@ -94,6 +96,12 @@ class SliderCrankKind(Kind):
         along = (o4 - b) / np.abs(o4 - b)
         lengths = {"r2": np.abs(a - o2), "r3": np.abs(b - a), "offset": (along.conj() * (b - o2)).imag}
         return {"o2": o2, **lengths, "slide_angle": np.angle(along)}
+
+    def sides(self, points: ComplexArray) -> tuple[ComplexArray, list[FloatArray], ComplexArray]:
+        o2, o4, a, b, p = np.moveaxis(points, -1, 0)
+        along = (o4 - b) / np.abs(o4 - b)
+        lengths = [np.zeros_like(a.real), np.abs(a - o2), np.abs(b - a), (along.conj() * (b - o2)).imag]
+        return 1j * along, lengths, (p - a) * np.abs(b - a) / (b - a)
 
     def o4_of(self, linkage: Linkage, b: complex, frame: Frame) -> complex:
         theta1, r3 = complex(linkage.theta1), float(linkage.r3) / frame.scale  # type: ignore[attr-defined]

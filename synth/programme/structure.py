@@ -14,7 +14,6 @@ from grashof.synth.programme.along_motion import ALONG
 from grashof.synth.programme.burden import Burden
 from grashof.synth.programme.driver_way import drive_of
 from grashof.synth.programme.kind import Kind
-from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 
@@ -101,9 +100,7 @@ class Form:
 
     @property
     def along(self) -> tuple[str, ...]:
-        """Keys of the quantities bounded along the motion; of slider kinds the judge alone looks at them."""
-        if self.kind is not FOUR_BAR:
-            return ()
+        """Keys of the quantities bounded along the motion."""
         limited = [LIMITS[name].quantity.key for name in self.limited]
         return tuple(key for key in ALONG if key in limited or key in self.goals)
 

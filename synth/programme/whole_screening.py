@@ -9,7 +9,6 @@ import numpy as np
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.requirements import LIMITS
 from grashof.synth.programme.along_motion import ALONG, SCREENED, magnitudes, value_of
-from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS, Screened
 from grashof.synth.programme.user_functions import own_violations
@@ -19,7 +18,6 @@ def fully_screened(scaled: ScaledProblem, linkages: Screened) -> Screened:
     """The same with these violations, too."""
     wanted = scaled.wanted
     along = [name for name in wanted.limited if LIMITS[name].quantity.key in ALONG]
-    along = along if scaled.kind is FOUR_BAR else []
     if not len(linkages) or not (along or wanted.size or scaled.constraints or wanted.keep_out):
         return linkages
     violations = linkages.violations.copy()
@@ -52,7 +50,7 @@ def _beyond(scaled: ScaledProblem, linkages: Screened, name: str) -> FloatArray:
     quantity = LIMITS[name].quantity
     low, high = scaled.problem.requirements.ranges(name)[""]
     ways = linkages.theta2, linkages.direction, linkages.assembly
-    peak = magnitudes(scaled.problem, quantity.key, linkages.points, *ways, SCREENED).max(axis=1)
+    peak = magnitudes(scaled, quantity.key, linkages.points, *ways, SCREENED).max(axis=1)
     value = value_of(quantity.key, peak) * scaled.problem.scale(quantity)
     share = np.maximum(low - value, value - high) / (high if np.isfinite(high) else max(low, 1.0))
     amount: FloatArray = np.maximum(np.nan_to_num(share, posinf=FAR), 0.0)

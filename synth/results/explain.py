@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.analysis import Verdict
-from grashof.problems import Rotatability
+from grashof.problems import Objective, Rotatability
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.families import listed
 from grashof.synth.designs.judging import judged_again
@@ -118,7 +118,9 @@ def _by_least_squares(scaled: ScaledProblem, run: Run) -> list[_Near]:
     if not _may_be_near(scaled):
         return []
     wanted = replace(scaled.problem.requirements, exact=False)
-    problem = replace(scaled.problem, requirements=wanted)
+    # Zones apart, an objective is of no effect there.
+    objective = scaled.problem.objective if scaled.bounded else Objective()
+    problem = replace(scaled.problem, requirements=wanted, objective=objective)
     search = replace(run.search, effort=NEAR_EFFORT, enough=min(run.search.enough, NEAR))
     alone = replace(run, search=search, progress=None, seconds=dict(run.seconds))
     found = search_designs(scaled.of_problem(problem), alone).best

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged_again
@@ -54,8 +55,12 @@ def relaxations(
     for key in limiting(scaled.problem, scaled.constraints):
         if run.ended():
             break
+        try:
+            loose = _loose(scaled, key)
+        except ProblemError:  # something else that is asked needs this requirement
+            continue
         rejected = [one for one in known if {d.requirement for d in one.verdict.defects} == {key}]
-        best = _least(scaled, key, _candidates(scaled, key, rng, run) + rejected)
+        best = _least(scaled, key, _candidates(scaled, loose, key, rng, run) + rejected)
         if best is not None:
             found.append(_finished(scaled, best, run))
     return sorted(found, key=lambda one: (one.miss, one.key))
@@ -71,9 +76,10 @@ def _least(scaled: ScaledProblem, key: str, candidates: list[Candidate]) -> Rela
     )
 
 
-def _candidates(scaled: ScaledProblem, key: str, rng: np.random.Generator, run: Run) -> list[Candidate]:
+def _candidates(
+    scaled: ScaledProblem, loose: ScaledProblem, key: str, rng: np.random.Generator, run: Run
+) -> list[Candidate]:
     """Designs that miss a requirement by little, and others by nothing if that can be."""
-    loose = _loose(scaled, key)
     finder = finder_for(loose)
     if isinstance(finder, LimitPositions):
         if key in UNSMOOTH:

@@ -10,7 +10,6 @@ import scipy
 from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth.programme.along_motion import ALONG, SCREENED, magnitudes, value_of
-from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS, Many, Screened
 from grashof.synth.programme.start import Start
@@ -154,7 +153,7 @@ def merits(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
 
 
 def _worth(scaled: ScaledProblem, linkages: Screened, key: str) -> FloatArray:
-    """What the objective counts a quantity as, greater is better; nothing where the search has no formula."""
+    """What the objective counts a quantity as, greater is better."""
     worth: FloatArray = np.zeros(len(linkages))
     if key == "transmission":
         worth = linkages.transmission / (np.pi / 2)
@@ -162,9 +161,9 @@ def _worth(scaled: ScaledProblem, linkages: Screened, key: str) -> FloatArray:
         known = [0, 1, 2, 3, 4] if "o4" in scaled.kind.linkage.GROUND else [0, 2, 3, 4]
         points = linkages.points[:, known]
         worth = -np.hypot(np.ptp(points.real, axis=1), np.ptp(points.imag, axis=1))
-    elif key in ALONG and scaled.kind is FOUR_BAR:
+    elif key in ALONG:
         ways = linkages.theta2, linkages.direction, linkages.assembly
-        peak = magnitudes(scaled.problem, key, linkages.points, *ways, SCREENED).max(axis=1)
+        peak = magnitudes(scaled, key, linkages.points, *ways, SCREENED).max(axis=1)
         worth = QUANTITIES[key].better * value_of(key, peak)
     elif key in scaled.kind.formulas:
         (part,) = scaled.kind.formulas[key]

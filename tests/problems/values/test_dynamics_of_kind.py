@@ -10,12 +10,10 @@ from grashof.problems import (
     PathTask,
     Problem,
     ProblemError,
-    Requirements,
     SliderCrank,
 )
 from grashof.problems.values.acting import FrictionSpec, LoadSpec, TorsionSpringSpec
 from grashof.problems.values.linkage import Linkage
-from grashof.problems.values.objective import Objective
 
 LINKAGES: dict[str, Linkage] = {
     "four-bar": FourBar((0, 0), (4, 0), 1, 4, 3),
@@ -69,16 +67,3 @@ def test_a_guide_length_needs_a_coefficient() -> None:
         FrictionSpec(slide_length=0.1)
     with pytest.raises(ProblemError, match=r"^slide_mu is -0.1; it must be"):
         FrictionSpec(slide_mu=-0.1)
-
-
-def test_torques_are_neither_limited_nor_weighed_for_slider_kinds() -> None:
-    task, bars = PathTask([[0, 0], [1, 0], [2, 1]]), DynamicsSpec(mass_per_length=1.0)
-    for mechanism in ("slider-crank", ["four-bar", "inverted-slider-crank"]):
-        with pytest.raises(ProblemError) as told:
-            Problem(
-                task=task, length_unit="m", dynamics=bars, mechanism=mechanism,
-                requirements=Requirements(torque_rms=(0, 1)), objective=Objective(1.0, torque=1.0),
-            )  # fmt: skip
-        for line in str(told.value).splitlines():
-            assert "torques and forces are limited and weighed for four-bar alone" in line
-        Problem(task=task, length_unit="m", dynamics=bars, mechanism=mechanism)

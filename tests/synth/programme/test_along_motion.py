@@ -15,12 +15,14 @@ from grashof.analysis.judge.planted import planted_motion, planted_path
 from grashof.problems import (
     DynamicsSpec,
     FourBar,
+    Linkage,
     MotionTask,
     Objective,
     PathTask,
     Problem,
     ProblemError,
     Requirements,
+    SliderCrank,
 )
 from grashof.problems.values.acting import (
     CounterweightSpec,
@@ -42,7 +44,7 @@ from grashof.synth.programme.burden import Burden
 from grashof.synth.programme.driver_way import drive_of, driver_at
 from grashof.synth.programme.exchange import SOLVED, solve_by_exchange
 from grashof.synth.programme.frame import Frame
-from grashof.synth.programme.instant import Instant
+from grashof.synth.programme.kinds import KINDS
 from grashof.synth.programme.nonlinear_programme import solve
 from grashof.synth.programme.on_symbols import numpy_on_symbols
 from grashof.synth.programme.scaled_problem import ScaledProblem
@@ -91,6 +93,37 @@ DRIVEN |= {
         ("measured", "m", MotorSpec(values=RESTS)),
     )
 }
+SLIDING = "slider-crank", "inverted-slider-crank"
+FAR = 1e3  # beyond all travels
+OF_SLIDES = {
+    **{name: DRIVEN[name] for name in ("bars", "masses", "weightless")},
+    **{
+        name: (
+            unit,
+            replace(
+                LOADED,
+                motor=motor,
+                loads=(
+                    *(load for load in LOADED.loads if load.over != "theta4"),
+                    LoadSpec(4, at=(0.1, 0.2), values=((-FAR, 1, 2), (0, 3, 1), (FAR, -2, 0)), over="travel"),
+                ),
+                torsion_springs=(TorsionSpringSpec((3, 2), 2.0, 40.0),),
+                counterweights=(*LOADED.counterweights, CounterweightSpec(4, 0.7, (0.1, -0.2))),
+                friction=friction,
+            ),
+        )
+        for name, unit, motor, friction in (
+            ("loaded", "m", None, FrictionSpec(viscous=0.1, slide_viscous=0.3, slide_force=0.2)),
+            ("sliding", "in", MotorSpec(profile="cycloid"), FrictionSpec(slide_mu=0.001)),
+            (
+                "guided",
+                "mm",
+                None,
+                FrictionSpec(0.001, 0.02, slide_mu=0.001, slide_length=2),
+            ),
+        )
+    },
+}
 ENDS = (-1.0, 3.5)  # rad, of the motion
 GRID_ERROR = 2e-3  # by which the peak at the grid falls short of the true one
 
@@ -100,34 +133,42 @@ def magnitude(values: list[Any]) -> Any:
     return np.max([np.hypot(v.x, v.y) if isinstance(v, Vector) else np.abs(v) for v in values], axis=0)
 
 
-def placed(problem: Problem, linkage: FourBar) -> tuple[Vector, Vector, FloatArray, Vector, float]:
+def placed(problem: Problem, linkage: Linkage) -> tuple[Vector, Vector, FloatArray, Vector, float]:
     """A linkage in the frame of the search."""
     frame, size = Frame.of(problem.task), problem.task.size
-    o2 = frame.inward(linkage.o2)
-    ground, arm = (Vector(*(pair / size)) for pair in (linkage.o4 - linkage.o2, linkage.coupler_point))
-    return Vector(o2.real, o2.imag), ground, linkage.lengths / size, arm, float(linkage.assembly)
+    o2, arm = frame.inward(linkage.o2), Vector(*(linkage.coupler_point / size))
+    lengths = [getattr(linkage, name, 0.0) for name in ("r1", "r2", "r3", "r4")]
+    if not isinstance(linkage, FourBar):
+        lengths[3] = linkage.offset  # type: ignore[attr-defined]
+    if isinstance(linkage, SliderCrank):
+        ground = Vector(float(np.cos(linkage.theta1)), float(np.sin(linkage.theta1)))
+    else:
+        ground = Vector(*((linkage.o4 - linkage.o2) / size))  # type: ignore[attr-defined]
+    return Vector(o2.real, o2.imag), ground, np.array(lengths) / size, arm, float(linkage.assembly)
 
 
-def found(problem: Problem, linkage: FourBar, share: FloatArray, key: str) -> FloatArray:
+def found(problem: Problem, linkage: Linkage, share: FloatArray, key: str) -> FloatArray:
     """The formula of the search on arrays, in the units of the judge."""
-    at = Instant.of(*placed(problem, linkage), driver_at(*drive_of(problem), share, *ENDS, 1.0))
+    instant = KINDS[linkage.MECHANISM].instant
+    at = instant.of(*placed(problem, linkage), driver_at(*drive_of(problem), share, *ENDS, 1.0))
     values: FloatArray = magnitude(ALONG[key](at, Burden.of(problem))) * problem.scale(QUANTITIES[key])
     return values
 
 
-def on_symbols(problem: Problem, linkage: FourBar, share: FloatArray, key: str) -> FloatArray:
+def on_symbols(problem: Problem, linkage: Linkage, share: FloatArray, key: str) -> FloatArray:
     """The same formula on the symbols of CasADi."""
     time, (o2, ground, lengths, arm, assembly) = ca.SX.sym("time"), placed(problem, linkage)
     o2, ground, arm = (Vector(ca.SX(v.x), ca.SX(v.y)) for v in (o2, ground, arm))
     with numpy_on_symbols():
         driver = driver_at(*drive_of(problem), time, *ENDS, 1.0)
-        every = ALONG[key](Instant.of(o2, ground, lengths, arm, assembly, driver), Burden.of(problem))
+        at = KINDS[linkage.MECHANISM].instant.of(o2, ground, lengths, arm, assembly, driver)
+        every = ALONG[key](at, Burden.of(problem))
         values = [np.hypot(v.x, v.y) if isinstance(v, Vector) else np.abs(v) for v in every]
     curve = ca.Function("curve", [time], [ca.mmax(ca.vertcat(*values))])
     return np.asarray(curve(share[None])).ravel() * problem.scale(QUANTITIES[key])
 
 
-def curves(problem: Problem, linkage: FourBar, share: FloatArray) -> dict[str, FloatArray]:
+def curves(problem: Problem, linkage: Linkage, share: FloatArray) -> dict[str, FloatArray]:
     """Every quantity by the analysis."""
     spec, metre, law = problem.dynamics, metres(problem.length_unit), driver_law(problem, *ENDS)
     assert spec is not None
@@ -144,7 +185,7 @@ def curves(problem: Problem, linkage: FourBar, share: FloatArray) -> dict[str, F
     }
 
 
-def judged(problem: Problem, linkage: FourBar, theta2: FloatArray) -> FloatArray:
+def judged(problem: Problem, linkage: Linkage, theta2: FloatArray) -> FloatArray:
     """The same by the analysis; batches of linkages first."""
     spec, metre = problem.dynamics, metres(problem.length_unit)
     assert spec is not None
@@ -154,13 +195,22 @@ def judged(problem: Problem, linkage: FourBar, theta2: FloatArray) -> FloatArray
     return torque
 
 
-@pytest.mark.parametrize("kind", DRIVEN)
-def test_formulas_agree_with_the_judge_on_arrays_and_on_symbols(kind: str) -> None:
-    unit, spec = DRIVEN[kind]
+@pytest.mark.parametrize(
+    ("mechanism", "given"),
+    [
+        *(("four-bar", given) for given in DRIVEN.values()),
+        *((slide, given) for slide in SLIDING for given in OF_SLIDES.values()),
+    ],
+    ids=[*DRIVEN, *(f"{slide} {name}" for slide in SLIDING for name in OF_SLIDES)],
+)
+def test_formulas_agree_with_the_judge_on_arrays_and_on_symbols(
+    mechanism: str, given: tuple[str, DynamicsSpec]
+) -> None:
+    unit, spec = given
     share = (np.arange(73) + 0.5) / 73
     for seed in range(50):
-        task, linkage = planted_motion(np.random.default_rng(seed), poses=4)
-        problem = Problem(task=task, length_unit=unit, dynamics=spec)
+        task, linkage = planted_motion(np.random.default_rng(seed), poses=4, mechanism=mechanism)
+        problem = Problem(task=task, length_unit=unit, dynamics=spec, mechanism=mechanism)
         for key, expected in curves(problem, linkage, share).items():
             near = 1e-9 * expected.max()
             np.testing.assert_allclose(found(problem, linkage, share, key), expected, rtol=0, atol=near)
@@ -264,6 +314,39 @@ def test_paths(closed: bool) -> None:
         assert solved.peaks["torque_peak"] * light.reference_torque == pytest.approx(
             made.values["torque_peak"], rel=10 * GRID_ERROR
         )
+
+
+@pytest.mark.parametrize("mechanism", SLIDING)
+@pytest.mark.parametrize("key", ["torque_peak", "joint_force_peak", "point_acceleration_max"])
+def test_slider_kinds(mechanism: str, key: str) -> None:
+    """What is aimed at is less than by default, and what the programme says of it is so."""
+    task, _ = planted_path(np.random.default_rng(5), points=5, mechanism=mechanism)
+    stiff = Problem(task=task, length_unit="mm", dynamics=DRIVEN["bars"][1], mechanism=mechanism)
+    goal = "torque" if key == "torque_peak" else key
+    light = replace(stiff, objective=Objective(**{"transmission": 0.0, goal: 1.0}))
+    others = synthesize(stiff, starts=4, enough=4).candidates
+    best = synthesize(light, starts=4, enough=4).best
+    assert best.values[key] < 0.95 * min(each.values[key] for each in others)
+    scaled, near = ScaledProblem.of(light), 0
+    for start in finder_for(scaled).round(0, 4, np.random.default_rng(0), 1).starts[:3]:
+        solved, made = solve_by_exchange(scaled, start), attempt(scaled, start, 0).candidate
+        if made is not None and solved.status in SOLVED:
+            said = solved.peaks[key] * light.scale(QUANTITIES[key])
+            assert said == pytest.approx(made.values[key], rel=10 * GRID_ERROR)
+            near += 1
+    assert near
+
+
+@pytest.mark.parametrize("mechanism", SLIDING)
+def test_limits_of_slider_kinds(mechanism: str) -> None:
+    """A limit below what any design has by default is kept."""
+    task = PathTask([[0, 0], [60, 90], [180, 140], [300, 90], [340, 0]])
+    plain = Problem(task=task, mechanism=mechanism)
+    fast = min(each.values["point_speed_max"] for each in synthesize(plain, starts=16, enough=16).candidates)
+    slow = replace(plain, requirements=Requirements(point_speed_max=(0, 0.9 * fast)))
+    kept = synthesize(slow, starts=16, enough=2)
+    assert len(kept)
+    assert all(each.values["point_speed_max"] <= 0.9 * fast for each in kept.candidates)
 
 
 @pytest.mark.slow

@@ -9,7 +9,7 @@ import pytest
 
 from grashof import load, synthesize
 from grashof.analysis import verify
-from grashof.problems import Box, MotionTask, PathTask, Problem, Requirements
+from grashof.problems import Box, MotionTask, Objective, PathTask, Problem, Requirements
 from grashof.synth import Result
 
 pytestmark = pytest.mark.usefixtures("small_search")
@@ -54,6 +54,17 @@ def test_more_poses_than_there_are_exact_ones_for() -> None:
     assert np.degrees(loose.angle_error).max() <= float(turned[1])
     squares = [verify(one.linkage, task, Requirements(exact=False)).square for one in result.nearest]
     assert squares == sorted(squares)
+
+
+@pytest.mark.parametrize("goal", ["compactness", "torque"])
+def test_a_goal_that_least_squares_or_a_loose_requirement_would_not_have(goal: str) -> None:
+    problem = load("luggage")
+    wanted = replace(problem.requirements, link_length=(30, 100), transmission_min_deg=70.0)
+    goals = Objective(**{"transmission": 0.0, goal: 1.0})
+    result = synthesize(replace(problem, requirements=wanted, objective=goals), starts=8)
+    assert len(result) == 0
+    assert result.note.startswith("no design meets all requirements")
+    assert result.nearest
 
 
 @pytest.mark.slow

@@ -1,0 +1,62 @@
+"""The judge of loads over a travel: whether their rows cover what the slide travels."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+
+import numpy as np
+
+from grashof.analysis.forces.joints import joint_motion, slide_of
+from grashof.analysis.forces.stated import TRAVEL_ROUNDING
+from grashof.analysis.four_bar.kinematics import solve_kinematics
+from grashof.analysis.judge.over_task import as_used, joins, motion_ends, sampled
+from grashof.analysis.judge.verdict import Defect, Verdict
+from grashof.analysis.numerics.peaks import peaks
+from grashof.problems import DeadPositionWarning, Linkage, Problem
+from grashof.problems.values.arrays import FloatArray
+
+
+def load_defects(linkage: Linkage, problem: Problem, verdict: Verdict) -> Iterator[Defect]:
+    """A defect for every load over the travel of a slide that does not say what it is all the way.
+
+    Examples
+    --------
+    >>> from grashof.analysis.judge.planted import planted_path
+    >>> from grashof.analysis.judge.verify import verify
+    >>> from grashof.problems import DynamicsSpec
+    >>> from grashof.problems.values.acting import LoadSpec
+    >>> task, slider = planted_path(np.random.default_rng(0), points=5, mechanism="slider-crank")
+    >>> short = LoadSpec(4, values=[(0, -9, 0), (0.1, -9, 0)], over="travel")
+    >>> problem = Problem(
+    ...     task=task, mechanism="slider-crank", length_unit="m", dynamics=DynamicsSpec(loads=[short])
+    ... )
+    >>> [one.what for one in verify(slider, task, problem.requirements, problem=problem).defects]
+    ['the travel of the slide under loads[0]']
+    """
+    loads = () if problem.dynamics is None else problem.dynamics.loads
+    over = {index: load.values for index, load in enumerate(loads) if load.over == "travel" and load.values}
+    slide = slide_of(linkage)
+    if not over or slide is None:
+        return
+    linkage = as_used(linkage, verdict)
+    theta2 = sampled(linkage, *motion_ends(problem.task, verdict))
+    if not joins(linkage, verdict, theta2):
+        return
+
+    def travels(angles: FloatArray) -> FloatArray:
+        travel = joint_motion(solve_kinematics(linkage, angles), slide)[0]
+        return np.stack([travel, -travel])
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeadPositionWarning)
+        high, low = peaks(travels, [theta2])[0] * [1.0, -1.0]
+    for index, rows in over.items():
+        least, most = rows[0][0], rows[-1][0]
+        slack = TRAVEL_ROUNDING * max(abs(least), abs(most))
+        for found, miss in ((low, least - low), (high, high - most)):
+            if miss > slack:
+                what = f"the travel of the slide under loads[{index}]"
+                yield Defect(
+                    "loads", what, float(found), f"{least:g} to {most:g}", float(miss / problem.task.size)
+                )
