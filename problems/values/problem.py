@@ -26,7 +26,7 @@ from grashof.problems.values.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.function_task import FunctionTask
 from grashof.problems.values.manufacturing import Manufacturing
-from grashof.problems.values.mechanisms import FOUR_BAR, KINDS, freedoms, mechanisms, not_had
+from grashof.problems.values.mechanisms import FOUR_BAR, INVERTED, KINDS, freedoms, mechanisms, not_had
 from grashof.problems.values.motion_task import MotionTask
 from grashof.problems.values.objective import GOALS, Objective
 from grashof.problems.values.path_task import PathTask
@@ -43,6 +43,8 @@ NO_OBJECTIVE = (
     "requirements.error_factor"
 )
 EFFORTS = (0.2, 10_000.0)
+# Of inverted slider-cranks: with offset 0 the transmission angle is 90 deg, and size decides.
+SMALLEST = Objective(transmission=1.0, compactness=0.05)
 ROCKING = (Rotatability.CRANK_ROCKER, Rotatability.DOUBLE_CRANK)  # told by link 4, which has to turn
 
 
@@ -226,6 +228,8 @@ class Problem(ReadOnly):
     def for_kind(self, kind: str) -> Problem:
         """The same for one kind of linkage alone, without the limits and goals that it has not.
 
+        By default inverted slider-cranks are searched for a small size, too.
+
         Examples
         --------
         >>> from grashof.problems import PathTask
@@ -241,6 +245,8 @@ class Problem(ReadOnly):
             wanted = replace(wanted, rotatability=Rotatability.FULL_CRANK)
         weights = {name: w for name, w in self.objective.stated.items() if kind in GOALS[name].kinds}
         objective = Objective(**{"transmission": 0.0} | weights) if any(weights.values()) else Objective()
+        if kind == INVERTED and objective == Objective() and self.by_objective:
+            objective = SMALLEST
         return replace(self, mechanism=(kind,), requirements=wanted, objective=objective)
 
     def _without_meaning(self, asked: Mapping[str, Quantity]) -> list[str]:

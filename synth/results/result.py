@@ -98,9 +98,23 @@ class Result(Displayed):
         return tuple(tuple(family) for family in members.values())
 
     def top(self, families: int) -> Result:
-        """The same with the first so many families only, each with all its members."""
-        kept = {each.id for family in self.families[:families] for each in family}
+        """The same with so many families only, each with all its members: see `first_of_each`."""
+        every = self.families
+        kept = {each.id for k in self.first_of_each(families) for each in every[k]}
         return replace(self, candidates=tuple(each for each in self.candidates if each.id in kept))
+
+    def first_of_each(self, most: int) -> list[int]:
+        """Numbers of so many families: the first ones, of a list of kinds of linkage an equal share of each.
+
+        What a kind has too few for goes to the first of the others.
+        """
+        numbers: dict[str, list[int]] = {}
+        for k, family in enumerate(self.families):
+            numbers.setdefault(family[0].linkage.MECHANISM, []).append(k)
+        share = most // len(numbers) if numbers else 0
+        shared = [k for each in numbers.values() for k in each[:share]]
+        others = sorted(k for each in numbers.values() for k in each[share:])
+        return sorted(shared + others[: most - len(shared)])
 
     def __len__(self) -> int:
         return len(self.candidates)

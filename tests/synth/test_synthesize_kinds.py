@@ -1,5 +1,6 @@
 """Lists of slider-cranks and inverted ones, and of several kinds: planted linkages found, limits kept."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,9 +11,11 @@ from grashof.analysis import output_stroke, solve_position
 from grashof.analysis.judge.planted import planted_motion, planted_path
 from grashof.problems import (
     Box,
+    FourBar,
     InvertedSliderCrank,
     Linkage,
     MotionTask,
+    Objective,
     PathTask,
     Problem,
     ProblemError,
@@ -126,6 +129,30 @@ def test_mixed_lists_have_one_ranking() -> None:
     assert list(found.to_frame()["mechanism"]) == kinds
     alone = synthesize(Problem(task=task, mechanism="slider-crank"), enough=10)
     assert {each.id for each in alone.candidates} <= {each.id for each in found.candidates}
+
+
+def test_a_shorter_list_has_an_equal_share_of_each_kind() -> None:
+    task = MotionTask.from_degrees([[0, 0, 0], [60, 90, 15], [180, 140, 40]])
+    whole = synthesize(Problem(task=task, mechanism=["slider-crank", "four-bar", "inverted-slider-crank"]))
+    for most in (3, 7, 12):
+        kept = whole.top(most)
+        kinds = [type(family[0].linkage) for family in kept.families]
+        assert len(kinds) == most
+        assert all(kinds.count(kind) >= most // 3 for kind in (SliderCrank, FourBar, InvertedSliderCrank))
+        assert kept.candidates == tuple(each for each in whole.candidates if each in kept.candidates)
+    assert whole.top(1).families[0] == whole.families[0]
+    assert whole.top(10_000) == whole
+
+
+def test_of_inverted_slider_cranks_without_offset_the_smallest_come_first() -> None:
+    """The transmission angle is 90 deg for all of them; a search for it alone finds larger ones."""
+    task, _ = planted_path(np.random.default_rng(1), 5, mechanism="inverted-slider-crank")
+    problem = Problem(task=task, mechanism="inverted-slider-crank")
+    best = synthesize(problem, starts=16, enough=16).best
+    blind = replace(problem, objective=Objective(transmission=1.0, compactness=1e-9))
+    found = synthesize(blind, starts=16, enough=16).candidates
+    assert np.degrees(best.verdict.transmission_min_task) == pytest.approx(90)
+    assert best.verdict.size < 0.97 * min(each.verdict.size for each in found)
 
 
 def test_a_kind_that_cannot_do_it_is_left_out() -> None:

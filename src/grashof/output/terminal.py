@@ -128,22 +128,23 @@ def best_rows(result: Result, digits: int = 4) -> list[dict[str, str]]:
 
     "like this" is how many others the family has. Columns that are alike for all of them are left out.
     """
-    front, families = pareto_optimal(result.problem, result.candidates), result.families[:_ROWS]
+    front, families = pareto_optimal(result.problem, result.candidates), result.families
+    shown = result.first_of_each(_ROWS)
     left_out = [
         *(["class"] if len(_classes(result)) == 1 else []),
         *([] if len(result.problem.mechanism) > 1 else ["mechanism"]),
         *([] if set(having("o4")) & set(result.problem.mechanism) else ["O4"]),
-        *([] if any(len(family) > 1 for family in families) else ["like this"]),
-        *([] if any(family[0].best_at for family in families) else ["best at"]),
+        *([] if any(len(families[k]) > 1 for k in shown) else ["like this"]),
+        *([] if any(families[k][0].best_at for k in shown) else ["best at"]),
     ]
     rows = [
         {
-            "#": f"{rank}{'*' if front[rank - 1] else ' '}",
-            **_cells(result.problem, family[0], digits),
-            "like this": str(len(family) - 1 or ""),
-            "best at": family[0].best_at,
+            "#": f"{k + 1}{'*' if front[k] else ' '}",
+            **_cells(result.problem, families[k][0], digits),
+            "like this": str(len(families[k]) - 1 or ""),
+            "best at": families[k][0].best_at,
         }
-        for rank, family in enumerate(families, start=1)
+        for k in shown
     ]
     return [{name: cell for name, cell in row.items() if name not in left_out} for row in rows]
 
@@ -203,9 +204,11 @@ def heading(result: Result, verified: int) -> str:
         found += f" ({kind.strip()})" if kind else ""
     unit = result.problem.length_unit
     lengths = f" Lengths in {unit}." if unit else ""
-    shown = f" The best {_ROWS}:" if families > _ROWS else ""
+    mixed = ", some of each kind" if len(result.problem.mechanism) > 1 else ""
+    shown = f" The best {_ROWS}{mixed}:" if families > _ROWS else ""
     if families < len(result):
-        shown = f" The best of {f'the first {_ROWS} families' if families > _ROWS else 'each family'}:"
+        many = f"{'' if mixed else 'the first '}{_ROWS} families{mixed}"
+        shown = f" The best of {many if families > _ROWS else 'each family'}:"
     counted_so = error_meaning(result.problem)
     return (
         f"{found}{error}.{lengths}\n"
