@@ -229,6 +229,7 @@ _PROBLEMS = (
     f"[requirements]\ntheta2_start_deg = 20\n{_MASSES.replace('masses', '# ').replace('inertias', '# ')}"
     f"mass_per_length = 0.01\n{_SEARCH}",
     f'kind = "stroke"\n{_HEAD}[stroke]\nswing_deg = 60\ntime_ratio = 1.2\n{_SEARCH}',
+    f'kind = "stroke"\nmechanism = "slider-crank"\n{_HEAD}[stroke]\nstroke = 60\ntime_ratio = 1.2\n{_SEARCH}',
     'kind = "function"\n[function]\nlaw = "power"\nexponent = 1.5\nx = [1, 4]\ninput_range_deg = 90\n'
     "output_range_deg = 90\npairs = 4\n[requirements]\nstructural_error_max_deg = [0, 5]\n"
     f"structural_error_rms_deg = [0, 4]\n{_SEARCH}",

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator
 
 import numpy as np
 
-from grashof.analysis.forces.joints import joint_motion, slide_of
 from grashof.analysis.forces.stated import TRAVEL_ROUNDING
-from grashof.analysis.four_bar.kinematics import solve_kinematics
+from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.four_bar.slide import slide_travel
 from grashof.analysis.judge.over_task import as_used, joins, motion_ends, sampled
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.numerics.peaks import peaks
-from grashof.problems import DeadPositionWarning, Linkage, Problem
+from grashof.problems import Linkage, Problem
 from grashof.problems.values.arrays import FloatArray
 
 
@@ -36,8 +35,7 @@ def load_defects(linkage: Linkage, problem: Problem, verdict: Verdict) -> Iterat
     """
     loads = () if problem.dynamics is None else problem.dynamics.loads
     over = {index: load.values for index, load in enumerate(loads) if load.over == "travel" and load.values}
-    slide = slide_of(linkage)
-    if not over or slide is None:
+    if not over or not linkage.SLIDES:
         return
     linkage = as_used(linkage, verdict)
     theta2 = sampled(linkage, *motion_ends(problem.task, verdict))
@@ -45,12 +43,10 @@ def load_defects(linkage: Linkage, problem: Problem, verdict: Verdict) -> Iterat
         return
 
     def travels(angles: FloatArray) -> FloatArray:
-        travel = joint_motion(solve_kinematics(linkage, angles), slide)[0]
+        travel = slide_travel(linkage, solve_position(linkage, angles))
         return np.stack([travel, -travel])
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeadPositionWarning)
-        high, low = peaks(travels, [theta2])[0] * [1.0, -1.0]
+    high, low = peaks(travels, [theta2])[0] * [1.0, -1.0]
     for index, rows in over.items():
         least, most = rows[0][0], rows[-1][0]
         slack = TRAVEL_ROUNDING * max(abs(least), abs(most))

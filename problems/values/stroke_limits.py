@@ -7,17 +7,13 @@ from dataclasses import astuple
 
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.checks import GREATEST, LEAST
-from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.problems.values.requirements import Requirements, Rotatability
 from grashof.problems.values.stroke_task import StrokeTask
 
 
 def strokes_wrong(task: StrokeTask, wanted: Requirements, kinds: tuple[str, ...]) -> list[str]:
     """What a stroke, the kinds of linkages and the requirements do not agree on, a line each."""
-    wrong = [line] if (line := task.impossible(FOUR_BAR)) else []
-    others = [kind for kind in kinds if kind != FOUR_BAR]
-    if others:
-        wrong.append(f"mechanism {' and '.join(others)} is not built for strokes; it must be {FOUR_BAR}")
+    wrong = [line for kind in kinds if (line := task.impossible(kind))]
     if wanted.exact is False:
         wrong.append("requirements.exact is false; with stroke it must be true: the time ratio is always met")
     if wanted.rotatability is Rotatability.DOUBLE_CRANK:

@@ -139,6 +139,11 @@ class StrokeTask(Task):
         >>> StrokeTask(stroke=100.0).impossible("four-bar")
         'stroke.stroke is of a slide; a four-bar has a swing, stroke.swing_deg'
         """
+        if mechanism == "inverted-slider-crank":
+            return (
+                f"mechanism {mechanism} is not for strokes, since its time ratio follows from its swing: "
+                "(180 + swing_deg) / (180 - swing_deg); it must be four-bar or slider-crank"
+            )
         if mechanism == "slider-crank":
             if self.stroke is None:
                 return "stroke.swing_deg is of a rocker; a slider-crank has a slide, stroke.stroke"

@@ -84,7 +84,7 @@ def _candidates(
     if isinstance(finder, LimitPositions):
         if key in UNSMOOTH:
             return []  # limit positions are always in order and on one branch
-        return _judged(scaled, loose, finder.closest_to(LimitPositions(scaled), rng), run)
+        return _judged(scaled, loose, finder.closest_to(type(finder)(scaled), rng), run)
     linkages = rejudged(scaled, finder.near(rng))
     starts = closest_starts(scaled, linkages, key, SOLVES)
     as_they_are = [replace(start, settled=True) for start in starts]

@@ -17,9 +17,19 @@ from grashof.synth.starts.function_search import FunctionPairs
 from grashof.synth.starts.least_squares import LeastSquares
 from grashof.synth.starts.limit_positions import LimitPositions
 from grashof.synth.starts.precision_points import EightPoints, NinePoints, PrecisionPoints
+from grashof.synth.starts.slide_limits import SlideLimits
 
 # The first that suits a problem is taken.
-KINDS = LimitPositions, Parallelograms, FewPoses, ManyPoses, NinePoints, EightPoints, PrecisionPoints
+KINDS = (
+    LimitPositions,
+    SlideLimits,
+    Parallelograms,
+    FewPoses,
+    ManyPoses,
+    NinePoints,
+    EightPoints,
+    PrecisionPoints,
+)
 
 
 class Finder(Protocol):
@@ -86,15 +96,7 @@ def rounds(finder: Finder, made: Callable[[int], Round | None]) -> Iterator[Roun
 
 def finder_for(scaled: ScaledProblem) -> Finder:
     """The first kind of search that suits a problem."""
-    for kind in (
-        LimitPositions,
-        Parallelograms,
-        FewPoses,
-        ManyPoses,
-        NinePoints,
-        EightPoints,
-        PrecisionPoints,
-    ):
+    for kind in KINDS:
         if kind.suits(scaled):
             return kind(scaled)
     return LeastSquares(scaled)

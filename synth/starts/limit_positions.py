@@ -1,4 +1,7 @@
-"""Swing and time ratio: crank-rockers in closed form, the best first, then a choice of the others."""
+"""Limit positions: all linkages with them in closed form, the best first, then a choice of the others.
+
+Crank-rockers with a swing and a time ratio here; slider-cranks with a stroke: `slide_limits`.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +12,9 @@ from typing import ClassVar, TypeAlias
 
 import numpy as np
 
-from grashof.problems import Box, Requirements, Rotatability, StrokeTask
+from grashof.problems import Box, FourBar, Requirements, Rotatability, StrokeTask
 from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.synth.programme.kind import Lengths
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Configurations, Screened, judge, violations_apart
 from grashof.synth.programme.start import Round, Start
@@ -40,8 +44,8 @@ _KEPT = (
     "ground_angle_deg", "theta2_start_deg", "driver_sense", "output_swing_deg", "time_ratio", "coupler_arms",
 )  # fmt: skip
 
-# O2, O4 (n,), and A, B and theta2 in the limit positions (n, 2), in the frame.
-_Places: TypeAlias = tuple[ComplexArray, ComplexArray, ComplexArray, ComplexArray, FloatArray]
+# O2, O4 (n,) as `Configurations` have them, and A, B and theta2 in the limit positions (n, 2), in the frame.
+Places: TypeAlias = tuple[ComplexArray, ComplexArray, ComplexArray, ComplexArray, FloatArray]
 
 # Families, whether mirrored, and where their members keep limits.
 _Stretches: TypeAlias = list[tuple[Family, bool, list[tuple[float, float]]]]
@@ -59,10 +63,13 @@ class LimitPositions:
     patience: ClassVar[float] = np.inf
     exhausted: ClassVar[str] = "no others are worth listing"
 
-    @staticmethod
-    def suits(scaled: ScaledProblem) -> bool:
-        """Swing and time ratio are asked for."""
-        return isinstance(scaled.problem.task, StrokeTask)
+    mechanism: ClassVar[str] = FourBar.MECHANISM
+    kept: ClassVar[tuple[str, ...]] = _KEPT  # limits that the families themselves keep
+
+    @classmethod
+    def suits(cls, scaled: ScaledProblem) -> bool:
+        """Limit positions are asked for, of this kind of linkage."""
+        return isinstance(scaled.problem.task, StrokeTask) and scaled.kind.mechanism == cls.mechanism
 
     @property
     def rounds_a_pass(self) -> int:
@@ -92,15 +99,25 @@ class LimitPositions:
     @property
     def elsewhere(self) -> bool:
         """Whether anything is asked besides lengths, pivots and transmission: more places are tried then."""
-        beyond = set(self.wanted.limited) - set(_KEPT)
+        beyond = set(self.wanted.limited) - set(self.kept)
         return bool(beyond or self.scaled.constraints or self.wanted.keep_out)
 
     @cached_property
     def kinds(self) -> list[tuple[Family, bool]]:
-        """The families, as they are, and mirrored where that differs: where the start angle is given."""
+        """The families, as they are, and mirrored where that differs."""
         families = families_of(self.task.swing, self.task.time_ratio)
-        either = (False, True) if self.wanted.theta2_start_deg is not None else (False,)
+        either = (False, True) if self.handed else (False,)
         return [(family, mirrored) for family in families for mirrored in either]
+
+    @property
+    def handed(self) -> bool:
+        """Whether a mirror image is another linkage to the limits: where the start angle is given."""
+        return self.wanted.theta2_start_deg is not None
+
+    @property
+    def fixed_angle(self) -> float | None:
+        """Direction of the ground line that is asked for, deg."""
+        return self.wanted.ground_angle_deg
 
     def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
         """First the best members and a choice of the others; then, where places decide, members anywhere."""
@@ -160,30 +177,50 @@ class LimitPositions:
 
     def _inside(self, members: Members, mirrored: bool) -> FloatArray:
         """How far members are inside the limits of lengths, pivots and transmission, (n,)."""
-        members, wanted = members.mirrored if mirrored else members, self.wanted
-        r1, r2, r3, r4 = lengths = members.lengths.T
+        members, wanted = self._taken(members, mirrored), self.wanted
+        lengths = self._links(members).T
         most = min(max(wanted.link_ratio_max, 1.0), 1e9)
-        turns = np.minimum(r3 + r4 - r1 - r2, r1 - r2 - np.abs(r3 - r4)) / lengths.sum(axis=0)
-        low, high = self._scales(members)
         inside = [
             members.transmission - np.radians(wanted.transmission_min_deg),
             np.log(most) - np.log(lengths.max(axis=0) / lengths.min(axis=0)),
-            turns - (0.0 if wanted.rotatability is Rotatability.ANY else wanted.rotatability_margin),
-            np.log(high / low),
+            self._turns(members)
+            - (0.0 if wanted.rotatability is Rotatability.ANY else wanted.rotatability_margin),
+            self._fit(members),
         ]
-        if wanted.ground_angle_deg is not None and wanted.theta2_start_deg is not None:
-            apart = np.exp(1j * (self._ground_angle(members) - np.radians(wanted.ground_angle_deg)))
+        if self.fixed_angle is not None and wanted.theta2_start_deg is not None:
+            apart = np.exp(1j * (self._ground_angle(members) - np.radians(self.fixed_angle)))
             inside.append(-np.abs(np.angle(apart)))
         margin: FloatArray = np.min(inside, axis=0)
         return margin
 
+    def _taken(self, members: Members, mirrored: bool) -> Members:
+        """Members, or their mirror images."""
+        return members.mirrored if mirrored else members
+
+    def _links(self, members: Members) -> FloatArray:
+        """Lengths of the links, (n, k)."""
+        return members.lengths
+
+    def _turns(self, members: Members) -> FloatArray:
+        """By how much the driver turns fully, as a share of all lengths, (n,)."""
+        r1, r2, r3, r4 = members.lengths.T
+        room: FloatArray = np.minimum(r3 + r4 - r1 - r2, r1 - r2 - np.abs(r3 - r4))
+        return room / members.lengths.T.sum(axis=0)
+
+    def _fit(self, members: Members) -> FloatArray:
+        """How far members are inside the limits of lengths and pivots, in logarithms, (n,)."""
+        low, high = self._scales(members)
+        fit: FloatArray = np.log(high / low)
+        return fit
+
     def _scales(self, members: Members) -> FloatArray:
+        """Least and greatest factor of members, (2, n)."""
         ground = Ground.of(self.wanted).lengths(self._ground_angle(members))
         return scales(members.lengths, self.wanted.link_lengths, ground)
 
     def _ground_angle(self, members: Members) -> FloatArray:
-        """Direction of O2O4 that the limits fix, rad; NaN where they do not; shape (n,)."""
-        start, fixed = self.wanted.theta2_start_deg, self.wanted.ground_angle_deg
+        """Direction of the ground line that the limits fix, rad; NaN where they do not; shape (n,)."""
+        start, fixed = self.wanted.theta2_start_deg, self.fixed_angle
         if start is not None:
             turned: FloatArray = np.radians(start) - (members.last if self._clockwise else members.first)
             return turned
@@ -225,7 +262,9 @@ class LimitPositions:
         if not groups or not most:
             return []
         factor = [self._factor(*group) for group in groups]
-        size = np.concatenate([f * diagonals(found) for f, (found, _) in zip(factor, groups, strict=True)])
+        size = np.concatenate(
+            [f * self._diagonals(found) for f, (found, _) in zip(factor, groups, strict=True)]
+        )
         angle = np.concatenate([found.transmission for found, _ in groups])
         lengths = [f[:, None] * found.lengths for f, (found, _) in zip(factor, groups, strict=True)]
         front = unbeaten(angle, size)
@@ -242,20 +281,20 @@ class LimitPositions:
 
     def _factor(self, members: Members, mirrored: bool, wish: float | FloatArray = 1.0) -> FloatArray:
         """By which members are scaled: as wished where that is allowed, or else what is nearest to it."""
-        low, high = self._scales(members.mirrored if mirrored else members)
+        low, high = self._scales(self._taken(members, mirrored))
         factor: FloatArray = np.minimum(np.maximum(wish, low), high)
         return factor
 
     def _starts(self, members: Members, mirrored: bool, wish: float | FloatArray = 1.0) -> list[Start]:
         """Members as the limits of lengths and pivots put them into the plane."""
         factor = self._factor(members, mirrored, wish)
-        members = members.mirrored if mirrored else members
+        members = self._taken(members, mirrored)
         ground = Ground.of(self.wanted)
         starts = []
         for k, angle in enumerate(self._ground_angle(members).tolist()):
-            r1 = float(factor[k] * members.lengths[k, 0])
-            towards = ground.direction(r1, 0.0) if np.isnan(angle) else angle
-            starts.append(self._start(members[k], *ground.pivots(r1, towards)))
+            size = float(factor[k])
+            towards = ground.direction(size, 0.0) if np.isnan(angle) else angle
+            starts.append(self._start(members[k], *ground.pivots(size, towards)))
         return starts
 
     def _anywhere(self, count: int, rng: np.random.Generator) -> list[Start]:
@@ -273,33 +312,40 @@ class LimitPositions:
         starts = [Start.of_screened(screened, int(k), self.scaled.objective) for k in chosen]
         return [replace(start, settled=True) for start in starts]
 
-    def _placed(self, members: Members, rng: np.random.Generator) -> _Places:
-        """O2, O4, A and B in the limit positions (n, 2) and theta2 there, anywhere, in the frame."""
+    def _diagonals(self, members: Members) -> FloatArray:
+        """Of a box around each, (n,)."""
+        return diagonals(members)
+
+    def _placed(self, members: Members, rng: np.random.Generator) -> Places:
+        """O2, the other end of what scales them, A, B (n, 2) and theta2 there, anywhere, in the frame."""
         ground, size, room = Ground.of(self.wanted), self.task.size, self._room
         low, high = self._scales(members)
         low, high = np.maximum(low, np.minimum(size / 30, high)), np.minimum(high, np.maximum(30 * size, low))
-        r1 = members.lengths[:, 0] * np.exp(rng.uniform(np.log(low), np.log(np.maximum(high, low))))
-        wish, fixed = rng.uniform(-np.pi, np.pi, len(r1)), self._ground_angle(members)
-        share = rng.uniform(0, 1, (len(r1), 2))
+        sizes = np.exp(rng.uniform(np.log(low), np.log(np.maximum(high, low))))
+        wish, fixed = rng.uniform(-np.pi, np.pi, len(sizes)), self._ground_angle(members)
+        share = rng.uniform(0, 1, (len(sizes), 2))
         pivots = []
         for k, angle in enumerate(fixed.tolist()):
-            towards = ground.direction(float(r1[k]), float(wish[k])) if np.isnan(angle) else angle
-            pivots.append(ground.pivots(float(r1[k]), towards, share[k], room))
+            towards = ground.direction(float(sizes[k]), float(wish[k])) if np.isnan(angle) else angle
+            pivots.append(ground.pivots(float(sizes[k]), towards, share[k], room))
         at = (
             np.array(pivots, dtype=np.complex128).reshape(-1, 2) - self.scaled.frame.origin
         ) / self.scaled.frame.scale
-        return at[:, 0], at[:, 1], *self._moving(members, at)
+        return self._moving(members, at)
 
-    def _moving(
-        self, members: Members, pivots: ComplexArray
-    ) -> tuple[ComplexArray, ComplexArray, FloatArray]:
-        """A, B and theta2 in the limit positions, each (n, 2), of members with pivots O2, O4 (n, 2)."""
-        o2, o4 = pivots.T[..., None]
-        _, r2, r3, r4 = (members.lengths / members.lengths[:, :1]).T[..., None] * np.abs(o4 - o2)
-        ends = (members.last, members.first) if self._clockwise else (members.first, members.last)
-        theta2 = np.stack(ends, axis=-1) + np.angle(o4 - o2)
+    def _moving(self, members: Members, at: ComplexArray) -> Places:
+        """Members in the limit positions, from O2 and the other end of what scales them, (n, 2): O4."""
+        o2, o4 = at.T[..., None]
+        _, r2, r3, r4 = members.lengths.T[..., None] * np.abs(o4 - o2)
+        theta2 = self._ends(members) + np.angle(o4 - o2)
         a = o2 + r2 * np.exp(1j * theta2)
-        return a, a + coupler_of(o4 - a, r3, r4, members.assembly[:, None]), theta2
+        b = a + coupler_of(o4 - a, r3, r4, members.assembly[:, None])
+        return o2[:, 0], o4[:, 0], a, b, theta2
+
+    def _ends(self, members: Members) -> FloatArray:
+        """Driver angles of the slow stroke from the ground line, (n, 2), rad."""
+        ends = (members.last, members.first) if self._clockwise else (members.first, members.last)
+        return np.stack(ends, axis=-1)
 
     def _screened(
         self, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray, theta2: FloatArray
@@ -307,7 +353,7 @@ class LimitPositions:
         """Linkages in the frame screened under all requirements, from the slow stroke alone; P is A."""
         count, sense = len(o2), -1.0 if self._clockwise else 1.0
         visit = np.tile(np.arange(2), (count, 1))
-        found = Configurations(o2, o4, a, b, visit, theta2, np.full(count, sense))
+        found = Configurations(o2, o4, a, b, visit, theta2, np.full(count, sense), self.scaled.kind)
         wanted = self.scaled.wanted
         violations = violations_apart(found, a[:, 0], a, wanted)
         return fully_screened(self.scaled, judge(found, a[:, 0], np.zeros(count), violations, wanted))
@@ -333,7 +379,7 @@ class LimitPositions:
             for mirrored in (False, True):
                 members = family(rng.uniform(low, high, _DRAWS // (2 * len(ranges))))
                 inside = self._inside(members, mirrored) >= 0
-                yield (members.mirrored if mirrored else members)[inside]
+                yield self._taken(members, mirrored)[inside]
 
     def _in_boxes(self, start: Start) -> bool:
         """Whether A and B are where they may be in both limit positions."""
@@ -345,13 +391,13 @@ class LimitPositions:
                     return False
         return True
 
-    def _start(self, member: Members, o2: complex, o4: complex) -> Start:
-        """One member, or its mirror image, with given pivots; P is A, as nothing is asked of it."""
-        pivots = (np.array([[o2, o4]]) - self.scaled.frame.origin) / self.scaled.frame.scale
-        a, b, theta2 = (each[0] for each in self._moving(member[None], pivots))
+    def _start(self, member: Members, *ends: complex) -> Start:
+        """One member, or its mirror image, at given places; P is A, as nothing is asked of it."""
+        at = (np.array([ends]) - self.scaled.frame.origin) / self.scaled.frame.scale
+        o2, o4, a, b, theta2 = (each[0] for each in self._moving(member[None], at))
         return Start(
-            o2=complex(pivots[0, 0]),
-            o4=complex(pivots[0, 1]),
+            o2=complex(o2),
+            o4=complex(o4),
             a=complex(a[0]),
             b=complex(b[0]),
             p=complex(a[0]),
@@ -362,11 +408,12 @@ class LimitPositions:
             assembly=int(member.assembly),
             objective=self.scaled.objective,
             settled=True,
+            kind=self.scaled.kind,
         )
 
 
 def _worst(start: Start) -> float:
     """Of the transmission angle over the turn, by the sizes of a start."""
-    r1, r2, r3, r4 = start.lengths
-    cosines = [(r3**2 + r4**2 - end**2) / (2 * r3 * r4) for end in (r1 - r2, r1 + r2)]
-    return float(np.arccos(max(map(abs, cosines))))
+    kind, lengths = start.kind, Lengths(*start.lengths)
+    cosines = [kind.cos_mu(lengths, reach(lengths)) for reach in (kind.folded, kind.stretched)]
+    return float(np.arccos(min(max(map(abs, cosines)), 1.0)))

@@ -50,8 +50,7 @@ def test_the_seeds_are_right_and_use_every_key(script: Callable[[str], ModuleTyp
                 used.setdefault(path, set()).update(table)
         for path, table in tables_of(file):
             if path.count(".") == 0:
-                missing = {"stroke"} if path == "stroke" else {"weights", "table"}  # a four-bar has no slide
-                assert set(table.model_fields) - missing <= used[path], path
+                assert set(table.model_fields) - {"weights", "table"} <= used[path], path
 
 
 def test_mutants_are_refused_or_right(

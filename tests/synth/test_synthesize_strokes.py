@@ -1,4 +1,4 @@
-"""Crank-rockers by swing and time ratio, from the problem to the list."""
+"""Crank-rockers by swing, slider-cranks by stroke, and by their time ratio: from the problem to the list."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from grashof.analysis import verify
-from grashof.problems import Problem, StrokeTask, load
+from grashof.problems import Linkage, Problem, ProblemError, SliderCrank, StrokeTask, load
 from grashof.problems.files.problem_schema import problem_from
 from grashof.synth import Result, synthesize
 from grashof.synth.theory.limit_positions import best_transmission
@@ -149,3 +149,120 @@ def test_effort_and_enough(effort: float) -> None:
     result = synthesize(load("quick-return"), effort=effort, enough=7)
     assert 7 <= len(result) < 30
     assert worst(result)[0] == pytest.approx(37.733, abs=5e-4)
+
+
+def slides(ratio: float = 1.2, travel: float = 1.0, **wanted: Any) -> Result:
+    stroke = {"stroke": travel, "time_ratio": ratio}
+    document = {"kind": "stroke", "mechanism": "slider-crank", "stroke": stroke, "requirements": wanted}
+    return synthesize(problem_from(document, "slide"), enough=8)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "angle", "r2", "r3", "offset"),
+    [
+        (1.05, 67.641, 0.49088, 2.53044, 0.47171),
+        (1.1, 58.852, 0.48302, 1.79519, 0.44555),
+        (1.2, 47.201, 0.47047, 1.27911, 0.39859),
+        (1.25, 42.808, 0.46554, 1.14896, 0.37738),
+        (1.5, 27.458, 0.45074, 0.83284, 0.28828),
+        (2.0, 11.211, 0.45078, 0.62481, 0.16211),
+        (2.5, 3.214, 0.47051, 0.54314, 0.07177),
+    ],
+)
+def test_the_best_slide_is_first(ratio: float, angle: float, r2: float, r3: float, offset: float) -> None:
+    result = slides(ratio, 100.0, rotatability_margin=0)
+    best = result.best.linkage
+    assert isinstance(best, SliderCrank)
+    assert worst(result)[0] == pytest.approx(angle, abs=5e-4)
+    assert [best.r2, best.r3, best.offset] == pytest.approx([100 * r2, 100 * r3, 100 * offset], abs=1e-3)
+    for each in result.candidates:
+        check_sampled(each.linkage, 100.0, ratio)
+
+
+def check_sampled(linkage: Linkage, travel: float, ratio: float) -> None:
+    """Stroke and time ratio of a turn in small steps, by the position of B written out."""
+    assert isinstance(linkage, SliderCrank)
+    phi = np.linspace(0, 2 * np.pi, 400_001)
+    rise = linkage.offset - linkage.r2 * np.sin(phi)
+    b = linkage.r2 * np.cos(phi) + linkage.assembly * np.sqrt(linkage.r3**2 - rise**2)
+    assert np.ptp(b) == pytest.approx(travel, rel=1e-9)
+    there = abs(phi[b.argmax()] - phi[b.argmin()])
+    slow = max(there, 2 * np.pi - there)
+    assert slow / (2 * np.pi - slow) == pytest.approx(ratio, rel=2e-4)
+
+
+def test_a_slide_that_takes_as_long_both_ways_has_no_offset() -> None:
+    best = slides(1.0, 50.0).best.linkage
+    assert isinstance(best, SliderCrank)
+    assert (float(best.r2), float(best.offset)) == pytest.approx((25.0, 0.0), abs=1e-9)
+    assert best.r3 > 350  # as long as is not unwieldy
+
+
+@pytest.mark.parametrize(
+    "wanted",
+    [
+        {"link_length": [0.3, 0.9]},
+        {"r2": [0.2, 0.4]},
+        {"offset": [-0.3, -0.1]},
+        {"offset": [0.6, 1.0], "o2": [3, 4], "slide_angle_deg": 90},
+        {"theta2_start_deg": 30},
+        {"theta2_start_deg": 30, "slide_angle_deg": 15},
+        {"theta2_start_deg": 30, "slide_angle_deg": 45, "driver_sense": "cw"},
+        {"link_ratio_max": 2.0, "driver_sense": "cw"},
+        {"o2": {"x": [10, 20]}, "a": {"y": [-5, 0.2]}},
+        {"keep_out": [[[-9, -9], [9, -9], [9, 9], [-9, 9]]], "o2": {"x": [-20, 20], "y": [-20, 20]}},
+    ],
+)
+def test_limits_of_slides_are_kept(wanted: dict[str, Any]) -> None:
+    result = slides(1.2, **wanted)
+    assert len(result) > 0
+    best = float(np.degrees(best_transmission(None, 1.2)))
+    assert worst(result)[0] == worst(result).max() <= best + 1e-6
+    for each in result.candidates:
+        assert verify(each.linkage, result.problem.task, result.problem.requirements).ok
+        check_sampled(each.linkage, 1.0, 1.2)
+
+
+def test_no_slide_within_limits_does_better() -> None:
+    """Against all members of the family that a dense grid has, limits active."""
+    result = slides(1.2, link_length=[0.3, 0.9], offset=[0.0, 0.2])
+    r3 = np.linspace(0.3, 0.9, 200_001)
+    # The triangle of both limit positions with unit stroke, solved for r2 / r3.
+    lag = np.pi * 0.2 / 2.2
+    share = np.sqrt(np.maximum((0.25 / r3**2 - np.sin(lag / 2) ** 2), 0.0)) / np.cos(lag / 2)
+    r2, offset = share * r3, (r3**2 - (share * r3) ** 2) * np.sin(lag)
+    fine = (share < 1) & (offset <= 0.2) & (r2 >= 0.3) & (r2 + offset < r3) & (4 * r2 * r3 > 1)
+    best = np.degrees(np.arccos(((r2 + offset) / r3)[fine].min()))
+    assert worst(result)[0] == pytest.approx(best, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "wanted", "words"),
+    [
+        (1.2, {"transmission_min_deg": 60}, "transmission_min_deg 47.2 instead of 60"),
+        (1.2, {"stroke": [2, 3]}, "stroke from 1 instead of 2"),
+        (1.2, {"r2": [0.6, 0.9]}, "r2 from 0.499 instead of 0.6"),
+        (2.9, {}, "rotatability_margin"),
+    ],
+)
+def test_an_empty_list_of_slides_names_what_would_do(
+    ratio: float, wanted: dict[str, Any], words: str
+) -> None:
+    result = slides(ratio, **wanted)
+    assert len(result) == 0
+    assert words in result.note
+    assert len(result.nearest) > 0
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "stroke", "words"),
+    [
+        (["slider-crank", "four-bar"], {"stroke": 9, "time_ratio": 1.2}, "a four-bar has a swing"),
+        (["slider-crank"], {"swing_deg": 9, "time_ratio": 1.2}, "a slider-crank has a slide"),
+        (["inverted-slider-crank"], {"swing_deg": 9, "time_ratio": 1.2}, "its time ratio follows from its"),
+        (["slider-crank"], {"stroke": 9, "time_ratio": 3.0}, "it must be less than 3 for a slider-crank"),
+    ],
+)
+def test_what_a_kind_cannot_do_is_refused(mechanism: list[str], stroke: dict[str, float], words: str) -> None:
+    with pytest.raises(ProblemError, match=words):
+        problem_from({"kind": "stroke", "mechanism": mechanism, "stroke": stroke}, "slide")
