@@ -179,7 +179,9 @@ def _file(kind: type[Linkage]) -> type[LinkageTable]:
     if kind.MECHANISM == FOUR_BAR:
         also["pumping_unit"] = (PumpingUnitTable | None, None)
     begin = create_model(f"_{kind.__name__}", __base__=_Heading, **keys)
-    return create_model(f"{kind.__name__}Table", __base__=(LinkageTable, MachineTables, begin), **also)
+    bases: tuple[Any, ...] = (LinkageTable, MachineTables, begin)
+    file: type[LinkageTable] = create_model(f"{kind.__name__}Table", __base__=bases, **also)
+    return file
 
 
 FILES: dict[str, type[LinkageTable]] = {word: _file(kind) for word, kind in KINDS.items()}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -129,7 +129,7 @@ class Problem(ReadOnly):
     outlines: tuple[FloatArray, ...] = ()
     manufacturing: Manufacturing | None = None
     dynamics: DynamicsSpec | None = None
-    mechanism: tuple[str, ...] = (FOUR_BAR,)
+    mechanism: Sequence[str] = (FOUR_BAR,)  # a tuple, once it is checked
     driver: CylinderSpec | None = None
 
     def __post_init__(self) -> None:

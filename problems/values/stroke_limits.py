@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import astuple
 
 from grashof.problems.values.arrays import Limits
@@ -11,7 +12,7 @@ from grashof.problems.values.requirements import Requirements, Rotatability
 from grashof.problems.values.stroke_task import StrokeTask
 
 
-def strokes_wrong(task: StrokeTask, wanted: Requirements, kinds: tuple[str, ...]) -> list[str]:
+def strokes_wrong(task: StrokeTask, wanted: Requirements, kinds: Sequence[str]) -> list[str]:
     """What a stroke, the kinds of linkages and the requirements do not agree on, a line each."""
     wrong = [line for kind in kinds if (line := task.impossible(kind))]
     if wanted.exact is False:

@@ -204,8 +204,9 @@ class LimitPositions:
     def _turns(self, members: Members) -> FloatArray:
         """By how much the driver turns fully, as a share of all lengths, (n,)."""
         r1, r2, r3, r4 = members.lengths.T
-        room: FloatArray = np.minimum(r3 + r4 - r1 - r2, r1 - r2 - np.abs(r3 - r4))
-        return room / members.lengths.T.sum(axis=0)
+        room = np.minimum(r3 + r4 - r1 - r2, r1 - r2 - np.abs(r3 - r4))
+        share: FloatArray = room / members.lengths.T.sum(axis=0)
+        return share
 
     def _fit(self, members: Members) -> FloatArray:
         """How far members are inside the limits of lengths and pivots, in logarithms, (n,)."""
