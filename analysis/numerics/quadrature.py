@@ -123,14 +123,16 @@ def held(value: float, error: float) -> float:
     --------
     >>> held(1234.5678, 0.03), held(1234.5678, 1e-9), held(1e-9, 1e-6), held(1.0, float("nan"))
     (1234.6, 1234.5678, 0.0, nan)
+    >>> held(float("inf"), 1.0), held(float("nan"), 1e308)
+    (nan, nan)
     """
-    if not np.isfinite(error):
+    if not (np.isfinite(error) and np.isfinite(value)):
         return float("nan")
     if error <= _FULL * abs(value):
         return value
     if error >= abs(value):
         return 0.0
-    return float(round(value, -int(np.ceil(np.log10(2 * error)))))
+    return float(round(value, -int(np.ceil(np.log10(2) + np.log10(error)))))
 
 
 def gauss_legendre(edges: FloatArray) -> tuple[FloatArray, FloatArray]:
