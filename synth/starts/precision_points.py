@@ -13,7 +13,7 @@ from typing import ClassVar
 import numpy as np
 
 from grashof.problems import FourBar, SliderCrank
-from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
+from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.synth.programme.driver_angles import shorter_way
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
@@ -102,7 +102,7 @@ class EveryLinkage(PrecisionPoints, ABC):
 
     def _settled(self, linkages: Screened, chosen: IntArray, every: int) -> Round:
         starts = [replace(start, settled=True) for start in starts_of(self.scaled, linkages, chosen)]
-        return Round(starts, {"feasible finds": int(linkages.feasible.sum()), THROUGH: every})
+        return Round(starts, {"feasible finds": int(_usable(linkages).sum()), THROUGH: every})
 
     def obstacle(self, _rng: np.random.Generator, counts: Mapping[str, int], /) -> str:
         """That none of all linkages does it; empty where they were not computed."""
@@ -122,7 +122,7 @@ class NinePoints(EveryLinkage):
         target = search_targets(self.scaled)
         through = linkages_through(target.points, rng)
         linkages = judged(self.scaled, target, *_at_points(_driven_from_both_sides(through), target))
-        feasible = linkages.feasible.reshape(-1, 3, 2)
+        feasible = _usable(linkages).reshape(-1, 3, 2)
         usable = feasible.any(axis=2)
         first = usable & (np.cumsum(usable, axis=1) == 1)
         return self._settled(linkages, np.flatnonzero(feasible & first[..., None]), 3 * len(through))
@@ -140,9 +140,12 @@ class EightPoints(EveryLinkage):
         target = search_targets(self.scaled)
         through = slider_cranks_through(target.points, rng)
         linkages = judged(self.scaled, target, *_sliders_at_points(through, target))
-        within_a_turn = np.ptp(linkages.theta2, axis=1) <= TURN
-        chosen = np.flatnonzero(linkages.feasible & within_a_turn)
-        return self._settled(linkages, chosen, len(through.theta2))
+        return self._settled(linkages, np.flatnonzero(_usable(linkages)), len(through.theta2))
+
+
+def _usable(linkages: Screened) -> BoolArray:
+    """Which are feasible with a driver that goes round once at most, shape (n,)."""
+    return linkages.feasible & (np.ptp(linkages.theta2, axis=1) <= TURN)
 
 
 def _driven_from_both_sides(linkages: ComplexArray) -> ComplexArray:
