@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from grashof.analysis.judge.design import Constraint, OwnObjective
-from grashof.problems import Problem, ProblemError
+from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.values.checks import readable
 from grashof.problems.values.errors import wrong_value
 from grashof.synth.programme.scaled_problem import ScaledProblem
@@ -22,7 +22,7 @@ from grashof.synth.search.asked import asking, search_of
 from grashof.synth.search.journal import journal_of
 from grashof.synth.search.run import Progress, Run
 from grashof.synth.search.searches import searches
-from grashof.synth.search.story import Ending
+from grashof.synth.search.story import Asking, Ending
 from grashof.synth.search.workers import working
 from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.stopping import stopping
@@ -109,7 +109,7 @@ def synthesize(
     how = problem.task.kind, search.seed, search.effort, search.starts, workers
     _LOG.info("%s: %s; seed %d, effort %g, at most %d starts, %d at a time", readable(problem.name), *how)
     if problem.task.has_output.any():
-        return function_list(problem, search, asked, constraints, objective, progress)
+        return _functions(problem, search, asked, constraints, objective, progress)
     kinds = [ScaledProblem.of(problem.for_kind(kind), constraints, objective) for kind in problem.mechanism]
     for scaled in kinds:
         refuse_unusable(scaled, in_processes=workers > 1 or executor is not None)
@@ -125,4 +125,23 @@ def synthesize(
                 found.append(conclude(scaled, searches(scaled, run), run, part))
             if part.ending not in (Ending.COMPLETE, Ending.TIME_LIMIT):
                 break
+    return one_list(problem, found)
+
+
+def _functions(
+    problem: Problem,
+    search: Search,
+    asked: Asking,
+    constraints: Sequence[Constraint],
+    objective: OwnObjective | None,
+    progress: Callable[[Progress], object] | None,
+) -> Result:
+    """One list of all kinds of linkage that may generate a function."""
+    found: list[Result] = []
+    count = len(problem.mechanism)
+    for number, kind in enumerate(problem.mechanism, start=1):
+        part, alone = asked.part(number, count), problem.for_kind(kind) if count > 1 else problem
+        found.append(function_list(alone, search, part, constraints, objective, progress))
+        if part.ending not in (Ending.COMPLETE, Ending.TIME_LIMIT):
+            break
     return one_list(problem, found)

@@ -7,9 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.analysis.four_bar.mobility import driver_ranges, rotatability
-from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.four_bar.position import Position, solve_position
+from grashof.analysis.four_bar.slide import slide_travel
 from grashof.analysis.judge.task_motion import Targets, TaskMotion
 from grashof.analysis.judge.verdict import Verdict
+from grashof.analysis.loops.kinds import kind_of
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import FourBar, FunctionTask, Linkage, ProblemError, Requirements
 from grashof.problems.values.arrays import TURN, FloatArray
@@ -20,7 +22,7 @@ _SAMPLES = 97  # of the range, where the greatest error decides
 _DENSE = 721
 _GAUSS = 12  # points between two samples of the quadrature
 _SAME = 1 + 1e-9
-_NOTHING = 1e-12  # rad: starts whose errors differ by less are as good
+_NOTHING = 1e-12  # rad, or shares of the travel: starts whose errors differ by less are as good
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,16 +47,16 @@ class StructuralError:
 
     Parameters
     ----------
-    at_pairs : ndarray, shape (N,), rad
+    at_pairs : ndarray, shape (N,), rad or length
         With its sign.
-    max, rms : float, rad
+    max, rms : float, rad or length
         Greatest magnitude, and root mean square over the driver angle.
     at : float, rad
         Driver rotation from the first pair to the greatest.
-    zero : float, rad
-        Direction theta4 that the wanted output zero stands for.
+    zero : float, rad or length
+        Direction theta4, or travel of the slide, that the wanted output zero stands for.
     sense : int
-        +1 where the output turns as wanted, -1 where it is the opposite.
+        +1 where the output moves as wanted, -1 where it is the opposite.
     """
 
     at_pairs: FloatArray
@@ -68,13 +70,24 @@ class StructuralError:
 def output_error(
     linkage: Linkage, task: FunctionTask, begun: Beginning, turned: FloatArray, sense: int
 ) -> FloatArray:
-    """Output rotation less what is wanted but for a constant, at growing driver rotations (K,), rad.
+    """Output less what is wanted but for a constant, at growing driver rotations (K,), rad or length.
 
-    NaN where the linkage cannot be assembled. Positive where the output is ahead in the sense of the driver.
+    NaN where the linkage cannot be assembled. A rotation is positive where the output is ahead in the sense
+    of the driver.
     """
-    theta4 = solve_position(linkage, begun.theta2 + begun.direction * turned).theta4
-    found: FloatArray = begun.direction * np.unwrap(theta4) - sense * task.output(turned)
+    state = solve_position(linkage, begun.theta2 + begun.direction * turned)
+    found: FloatArray = _moved(linkage, task, state, begun.direction) - sense * task.output(turned)
     return found
+
+
+def _moved(
+    linkage: Linkage, task: FunctionTask, state: Position, direction: int, *, unwrapped: bool = True
+) -> FloatArray:
+    """Output of a linkage in its positions: rotation in the sense of the driver, or travel of the slide."""
+    if task.travels:
+        return slide_travel(linkage, state)
+    moved: FloatArray = direction * (np.unwrap(state.theta4) if unwrapped else state.theta4)
+    return moved
 
 
 def begins(linkage: Linkage, task: FunctionTask, exact: bool, theta2_start: float | None) -> Beginning | None:
@@ -96,7 +109,7 @@ def begins(linkage: Linkage, task: FunctionTask, exact: bool, theta2_start: floa
     Raises
     ------
     ProblemError
-        Another linkage than a four-bar.
+        A linkage whose output does not move as the task's does.
 
     Examples
     --------
@@ -107,8 +120,11 @@ def begins(linkage: Linkage, task: FunctionTask, exact: bool, theta2_start: floa
     >>> round(begun.theta2, 9), begun.direction
     (0.7, 1)
     """
-    if not isinstance(linkage, FourBar):
-        raise ProblemError(f"mechanism {linkage.MECHANISM} is not built for functions; it must be four-bar")
+    if task.travels == hasattr(linkage, "o4"):
+        way = "slides" if task.travels else "turns"
+        raise ProblemError(
+            f"mechanism {linkage.MECHANISM} has no output that {way}; the function asks for one"
+        )
     search = _Search(linkage, task, exact or task.norm == "rms")
     found: list[tuple[float, int, float]] = []
     for direction in (1, -1):
@@ -123,7 +139,8 @@ def begins(linkage: Linkage, task: FunctionTask, exact: bool, theta2_start: floa
     if not found:
         return None
     least = min(value for value, _, _ in found)
-    _, direction, start = next(one for one in found if one[0] <= least * _SAME + _NOTHING)
+    alike = least * _SAME + _NOTHING * task.output_unit
+    _, direction, start = next(one for one in found if one[0] <= alike)
     return Beginning(start, direction)
 
 
@@ -131,7 +148,7 @@ def begins(linkage: Linkage, task: FunctionTask, exact: bool, theta2_start: floa
 class _Search:
     """Least error over the driver angle at the first pair."""
 
-    linkage: FourBar
+    linkage: Linkage
     task: FunctionTask
     squares: bool
 
@@ -147,15 +164,15 @@ class _Search:
     def values(self, starts: FloatArray, direction: int) -> FloatArray:
         """Root mean square, or greatest error, for driver angles at the first pair, shape (S,)."""
         turned, task = self.turned(), self.task
-        theta4 = solve_position(self.linkage, starts[:, None] + direction * turned).theta4
-        rotated = direction * (theta4 if self.squares else np.unwrap(theta4, axis=1))
+        state = solve_position(self.linkage, starts[:, None] + direction * turned)
+        moved = _moved(self.linkage, task, state, direction, unwrapped=not self.squares)
         wanted = task.outputs if self.squares else task.output(turned)
         best = np.full(len(starts), np.inf)
         for sense in self.senses:
-            off = rotated - sense * wanted
+            off = moved - sense * wanted
             if self.squares:
                 share = task.weights / task.weights.sum()
-                off = _from_first(off)
+                off = _from_first(task, off)
                 off = off - (off @ share)[:, None]
                 value = np.sqrt(off**2 @ share)
             else:
@@ -192,8 +209,9 @@ class _Search:
         """The bottom of the valley about a start."""
         from scipy.optimize import minimize_scalar  # here: few problems need it
 
+        most = 1e3 * self.task.output_unit
         found = minimize_scalar(
-            lambda at: min(self.value(at, direction), 1e3),
+            lambda at: min(self.value(at, direction), most),
             bounds=(start - step, start + step),
             method="bounded",
             options={"xatol": 1e-10},
@@ -208,13 +226,12 @@ class _Search:
         share = self.task.weights / self.task.weights.sum()
         for _ in range(6):
             state = solve_position(self.linkage, at + direction * self.task.inputs)
-            with np.errstate(divide="ignore", invalid="ignore"):
-                rate = self.linkage.r2 * np.sin(state.theta3 - state.theta2)
-                rate = rate / (self.linkage.r4 * np.sin(state.theta3 - state.theta4))
+            rate = kind_of(self.linkage).output_rate(self.linkage, state.theta2, state.theta3, state.theta4)
             if not np.isfinite(rate).all():  # a dead position
                 break
+            moved = _moved(self.linkage, self.task, state, direction, unwrapped=False)
             off = min(
-                (_from_first(direction * state.theta4 - sense * self.task.outputs) for sense in self.senses),
+                (_from_first(self.task, moved - sense * self.task.outputs) for sense in self.senses),
                 key=lambda each: float(np.nan_to_num(share @ (each - share @ each) ** 2, nan=np.inf)),
             )
             off, rate = off - share @ off, direction * (rate - share @ rate)
@@ -228,10 +245,10 @@ class _Search:
         return at
 
 
-def _from_first(angles: FloatArray) -> FloatArray:
-    """Differences from the first (last axis), by whole turns moved into [-pi, pi)."""
-    found: FloatArray = (angles - angles[..., :1] + np.pi) % TURN - np.pi
-    return found
+def _from_first(task: FunctionTask, outputs: FloatArray) -> FloatArray:
+    """Differences from the first (last axis), of angles by whole turns moved into [-pi, pi)."""
+    off: FloatArray = outputs - outputs[..., :1]
+    return off if task.travels else (off + np.pi) % TURN - np.pi
 
 
 def structural_error(
@@ -284,9 +301,8 @@ def structural_error(
     def curves(turned: FloatArray) -> FloatArray:
         order = np.argsort(turned, kind="stable")
         errors = np.empty(len(turned))
-        errors[order] = _near(
-            output_error(linkage, task, begun, turned[order], sense), turned[order], dense, off
-        )
+        found = output_error(linkage, task, begun, turned[order], sense)
+        errors[order] = found if task.travels else _near(found, turned[order], dense, off)
         return np.stack([errors, -errors])
 
     (high, low), (high_at, low_at) = (each.tolist() for each in peaks(curves, [dense]))
@@ -299,7 +315,8 @@ def structural_error(
     square = float((half[:, None] * weights).ravel() @ (curves(inner)[0] - zero) ** 2) / float(np.ptp(coarse))
     above, below = high - zero, low + zero
     worst, at = (above, high_at) if above >= below else (below, low_at)
-    return StructuralError(at_pairs - zero, worst, float(np.sqrt(square)), at, begun.direction * zero, sense)
+    rms, way = float(np.sqrt(square)), 1 if task.travels else begun.direction
+    return StructuralError(at_pairs - zero, worst, rms, at, way * zero, sense)
 
 
 def _near(errors: FloatArray, turned: FloatArray, dense: FloatArray, off: FloatArray) -> FloatArray:
@@ -334,14 +351,14 @@ def met_as_function(
 
 @dataclass(frozen=True, slots=True)
 class FunctionCurves:
-    """Wanted and generated output of a design over the range, each of shape (K,), rad.
+    """Wanted and generated output of a design over the range, each of shape (K,).
 
     Parameters
     ----------
-    turned : ndarray
+    turned : ndarray, rad
         Driver rotation from the first pair.
-    wanted, generated, error : ndarray
-        Output rotation, positive as the driver turns, from the wanted zero on.
+    wanted, generated, error : ndarray, rad or length
+        Output rotation, positive as the driver turns, or travel along the slide, from the wanted zero on.
     """
 
     turned: FloatArray
@@ -372,11 +389,9 @@ def function_curves(
     turned = np.linspace(*task.span, count) if at is None else at
     every = np.unique(np.concatenate([dense, turned]))
     begun = Beginning(float(verdict.theta2[0]), verdict.direction)
-    off = (
-        output_error(linkage, task, begun, every, verdict.output_sense)
-        - verdict.direction * verdict.output_zero
-    )
-    middle = TURN * np.round(np.median(off) / TURN)
+    way = 1 if task.travels else verdict.direction
+    off = output_error(linkage, task, begun, every, verdict.output_sense) - way * verdict.output_zero
+    middle = 0.0 if task.travels else TURN * np.round(np.median(off) / TURN)
     error = off[np.searchsorted(every, turned)] - middle
     wanted = verdict.output_sense * task.output(turned)
     return FunctionCurves(turned, wanted, wanted + error, error)

@@ -21,7 +21,7 @@ from grashof.problems import Cylinder, FourBar, Linkage, Problem, SliderCrank
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.mechanisms import LENGTHS, PARAMETERS
 from grashof.problems.values.quantities import Needs
-from grashof.problems.values.requirements import QUANTITIES
+from grashof.problems.values.requirements import QUANTITIES, TRAVEL_ERRORS
 
 
 class Values(Mapping[str, float]):
@@ -196,6 +196,7 @@ MEASURES: dict[str, Callable[[Values], float]] = {
         else float(np.sqrt(values.verdict.square / len(values.problem.task)))
     ),
     **{(key := f"structural_error_{name}"): attrgetter(f"verdict.{key}") for name in ("max", "rms", "at")},
+    **{key: attrgetter(f"verdict.{name}") for name, key in TRAVEL_ERRORS.items()},
     **{name: attrgetter(f"verdict.{name}") for name in ("error_max", "error_rms", "error_sse")},
     "angle_error_max": partial(_angle_error, np.nanmax),
     "angle_error_rms": partial(_angle_error, lambda errors: np.sqrt(np.nanmean(errors**2))),

@@ -38,6 +38,7 @@ from grashof.problems import (
     StrokeTask,
     Task,
 )
+from grashof.problems.values.arrays import FloatArray
 
 
 def verify(
@@ -165,7 +166,7 @@ def _exactness(targets: Targets, task: Task, wanted: Requirements) -> list[Defec
     errors = (
         ("position error", targets.position_error, allowed, task.size, 1.0),
         ("angle error in deg", targets.angle_error, allowed / task.angle_length, 1.0, deg),
-        ("output error in deg at the pairs", targets.output_error, wanted.tolerance, 1.0, deg),
+        _of_output(task, targets.output_error, wanted.tolerance),
     )
     return [
         Defect(
@@ -174,6 +175,15 @@ def _exactness(targets: Targets, task: Task, wanted: Requirements) -> list[Defec
         for what, error, most, size, unit in errors
         if not (worst := float(np.nanmax(error, initial=0.0))) <= most
     ]
+
+
+def _of_output(
+    task: Task, error: FloatArray, tolerance: float
+) -> tuple[str, FloatArray, float, float, float]:
+    """The same of the output of a function: rad, or as a share of its whole travel."""
+    if isinstance(task, FunctionTask) and task.travels:
+        return "output error at the pairs", error, tolerance * task.size, task.size, 1.0
+    return "output error in deg at the pairs", error, tolerance, 1.0, float(np.degrees(1.0))
 
 
 def _zones(targets: Targets, task: Task) -> list[Defect]:

@@ -183,6 +183,13 @@ class FourBarKind(Kind[FourBar]):
     ) -> FloatArray:
         return np.asarray(-linkage.r2 / linkage.r3 * np.sin(theta4 - theta2))
 
+    def output_rate(
+        self, linkage: FourBar, theta2: FloatArray, theta3: FloatArray, theta4: FloatArray
+    ) -> FloatArray:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            rate = linkage.r2 * np.sin(theta3 - theta2)
+            return np.asarray(rate / (linkage.r4 * np.sin(theta3 - theta4)))
+
     def limits(self, linkage: FourBar) -> FloatArray:
         """O2, A and B in line: triangles O2-B-O4 with O2B = r2 + r3 or |r2 - r3| (Norton, secs. 3.2, 3.4)."""
         r1, r2, r3, r4 = np.moveaxis(linkage.lengths, -1, 0)

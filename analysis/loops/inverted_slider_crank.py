@@ -161,6 +161,11 @@ class InvertedSliderCrankKind(Kind[InvertedSliderCrank]):
         diagonal = self.apart(linkage, theta2 - linkage.theta1)
         return np.asarray(-linkage.r2 / diagonal * np.cos(theta2 - theta3))
 
+    def output_rate(
+        self, linkage: InvertedSliderCrank, theta2: FloatArray, theta3: FloatArray, theta4: FloatArray
+    ) -> FloatArray:
+        return self.coupler_rates(linkage, theta2, theta3, theta4)[0]
+
     def limits(self, linkage: InvertedSliderCrank) -> FloatArray:
         """Crank square to the rod: r1 sin(theta1 - theta3) = +-r2 - offset, theta2 = theta3 +- 90 deg."""
         side = np.array([1.0, -1.0])

@@ -154,6 +154,12 @@ class Kind(ABC, Generic[L_contra]):
         """Derivative of theta3 by theta2, times the sine of `Loop`: finite in dead positions, too."""
 
     @abstractmethod
+    def output_rate(
+        self, linkage: L_contra, theta2: FloatArray, theta3: FloatArray, theta4: FloatArray
+    ) -> FloatArray:
+        """Derivative by theta2 of theta4, or of the travel along the slide; not finite in dead positions."""
+
+    @abstractmethod
     def limits(self, linkage: L_contra) -> FloatArray:
         """Driver angles at which the output turns back, shape (..., 2), rad; NaN where there are none."""
 

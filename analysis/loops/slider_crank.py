@@ -148,6 +148,14 @@ class SliderCrankKind(Kind[SliderCrank]):
     ) -> FloatArray:
         return np.asarray(-linkage.r2 / linkage.r3 * np.cos(theta2 - linkage.slide_angle))
 
+    def output_rate(
+        self, linkage: SliderCrank, theta2: FloatArray, theta3: FloatArray, theta4: FloatArray
+    ) -> FloatArray:
+        """Of r2 cos(theta2 - slide_angle) + r3 cos(theta3 - slide_angle)."""
+        along, turn = theta2 - linkage.slide_angle, theta3 - linkage.slide_angle
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(linkage.r2 * (np.cos(along) * np.tan(turn) - np.sin(along)))
+
     def limits(self, linkage: SliderCrank) -> FloatArray:
         """O2, A and B in line: sin(theta3 - slide_angle) = offset / (r3 +- r2)."""
         r2, r3, offset = (x[..., None] for x in (linkage.r2, linkage.r3, linkage.offset))

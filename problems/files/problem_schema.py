@@ -182,11 +182,13 @@ class StrokeTable(Table):
 class FunctionTable(Table):
     input_deg: Angles | None = None
     output_deg: Angles | None = None
+    output: Annotated[list[float], listed("a list of lengths")] | None = None
     law: str | None = None
     x: Pair | None = None
     exponent: float | None = None
     input_range_deg: float | None = None
     output_range_deg: float | None = None
+    output_range: float | None = None
     pairs: int | None = None
     sampled: Annotated[list[float], listed("a list of numbers")] | None = None
     sense: str = "given"

@@ -92,13 +92,15 @@ def _function(task: FunctionTask) -> dict[str, Any]:
     words = {"sense": task.sense, "norm": task.norm}
     law = task.law
     if law is None:
-        return {"input_deg": _degrees(task.inputs), "output_deg": _degrees(task.outputs), **words}
+        output = {"output": task.outputs} if task.travels else {"output_deg": _degrees(task.outputs)}
+        return {"input_deg": _degrees(task.inputs), **output, **words}
+    output = {"output_range_deg": _degrees(np.array(law.output_range))}
     return {
         "law": law.name,
         "x": law.x,
         "exponent": law.exponent,
         "input_range_deg": _degrees(np.array(law.input_range)),
-        "output_range_deg": _degrees(np.array(law.output_range)),
+        **({"output_range": law.output_range} if law.travels else output),
         "pairs": None if task.fits_range else len(task),
         "sampled": law.samples,
         **words,

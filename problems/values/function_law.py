@@ -8,7 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray, Limits, frozen_array
-from grashof.problems.values.checks import finite_number, limits, near_miss, number_within
+from grashof.problems.values.checks import (
+    finite_number,
+    limits,
+    near_miss,
+    number_within,
+    positive_number,
+)
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.read_only import ReadOnly
 
@@ -31,9 +37,9 @@ _DENSE = 2049  # places at which a law is looked at
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FunctionLaw(ReadOnly):
-    """y = f(x) over a range of x, as rotations of a driver and an output.
+    """y = f(x) over a range of x, as rotations of a driver and an output, or the travel of a slide.
 
-    The driver turns in proportion to x over `input_range`, the output in proportion to y: over
+    The driver turns in proportion to x over `input_range`, the output moves in proportion to y: over
     `output_range` from the least to the greatest y, and forward where the last y is greater than the
     first in the law's own sense, be it rising or falling: only a law that turns back turns its output back.
 
@@ -43,11 +49,14 @@ class FunctionLaw(ReadOnly):
         One of `LAWS`, or "sampled".
     x : tuple of float
         First and last x; of sin, cos and tan in degrees.
-    input_range, output_range : float, rad
+    input_range : float, rad
+    output_range : float, rad or length
     exponent : float, optional
         Of "power".
     samples : ndarray, shape (K,), optional
         Of "sampled": y at K Chebyshev-Lobatto points of the range.
+    travels : bool
+        The output is the travel of a slide.
 
     Raises
     ------
@@ -67,6 +76,7 @@ class FunctionLaw(ReadOnly):
     output_range: float
     exponent: float | None = None
     samples: FloatArray | None = None
+    travels: bool = False
 
     def __post_init__(self) -> None:
         if self.name != SAMPLED and self.name not in LAWS:
@@ -77,7 +87,9 @@ class FunctionLaw(ReadOnly):
         if low == high:
             raise ProblemError(f"function.x is [{low:g}, {high:g}]; the two must differ")
         object.__setattr__(self, "x", (low, high))
-        for name in ("input_range", "output_range"):
+        if self.travels:
+            positive_number(self.output_range, "function.output_range")
+        for name in ("input_range", *(() if self.travels else ("output_range",))):
             where = f"function.{name}_deg"
             given = np.degrees(finite_number(getattr(self, name), where))
             number_within(float(np.round(given, 9)), *RANGE, where)
@@ -100,14 +112,20 @@ class FunctionLaw(ReadOnly):
 
     @classmethod
     def of_callable(
-        cls, function: Callable[[FloatArray], FloatArray], x: Limits, input_range: float, output_range: float
+        cls,
+        function: Callable[[FloatArray], FloatArray],
+        x: Limits,
+        input_range: float,
+        output_range: float,
+        *,
+        travels: bool = False,
     ) -> FunctionLaw:
         """A law sampled densely from a function of x, so that it can be written and sent to processes."""
         low, high = limits(x, "function.x")
         places = low + (high - low) * _lobatto(SAMPLES)
         with np.errstate(all="ignore"):
             values = np.array([float(function(place)) for place in places])
-        return cls(SAMPLED, (low, high), input_range, output_range, samples=values)
+        return cls(SAMPLED, (low, high), input_range, output_range, samples=values, travels=travels)
 
     def _refuse_undefined(self) -> None:
         low, high = self.x
@@ -139,7 +157,7 @@ class FunctionLaw(ReadOnly):
             return LAWS[self.name](np.asarray(x, dtype=np.float64))
 
     def output(self, turned: FloatArray) -> FloatArray:
-        """Output rotation for driver rotations, both from the first x, rad."""
+        """Output for driver rotations, both from the first x, rad or length."""
         low, high = self.x
         ends = self.value(np.array([low, high]))
         values = self.value(low + (high - low) * np.asarray(turned) / self.input_range)

@@ -1,4 +1,4 @@
-"""The function task: output angles for input angles, as a value."""
+"""The function task: output angles or travels for input angles, as a value."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray, frozen_array
 from grashof.problems.values.checks import (
+    GREATEST,
     counted,
     finite_number,
     near_miss,
@@ -30,15 +31,17 @@ from grashof.problems.values.task import Task
 
 SENSES = ("given", "either")
 NORMS = ("rms", "max")
+INPUT, OUTPUT_DEG, OUTPUT = "input_deg", "output_deg", "output"  # keys of files
 LAW_PAIRS = 41  # of a law that is fitted over its whole range
 FEWEST, MOST_EXACT, MOST = 3, 5, 100_000
 _LEAST_STEP = 1e-6  # rad, between two inputs
+_SLIDING = 8  # freedoms of slider kinds
 _LEAST_OUTPUT = 1e-6  # rad, between the least and the greatest output
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
 class FunctionTask(Task):
-    """Function generation: link 4 turns with the driver as wanted.
+    """Function generation: link 4 turns, or slides, with the driver as wanted.
 
     Angles are relative: both start angles are free, and where pairs need not be met exactly the output's
     zero is, too, so that the first pair may err as the others.
@@ -48,8 +51,9 @@ class FunctionTask(Task):
     inputs : array_like, shape (N,), rad
         Driver rotation from the first pair, zero there, then growing over at most one turn. Designs may
         turn the driver either way.
-    outputs : array_like, shape (N,), rad
-        Rotation of link 4 from the first pair, positive where it turns as the driver does.
+    outputs : array_like, shape (N,), rad or length
+        Rotation of link 4 from the first pair, positive where it turns as the driver does; or the travel of
+        a slide from there, positive along its direction.
     sense : {"given", "either"}
         Either: the opposite output will do, too.
     norm : {"rms", "max"}
@@ -59,6 +63,8 @@ class FunctionTask(Task):
         Usual length of the ground, that others are compared with; a problem takes it from its requirements.
     law : FunctionLaw, optional
         That the pairs are of; between pairs without one the wanted output is the cubic spline through them.
+    travels : bool
+        The output is the travel of a slide.
 
     Raises
     ------
@@ -86,6 +92,7 @@ class FunctionTask(Task):
     norm: str
     law: FunctionLaw | None
     length: float
+    travels: bool
 
     def __init__(
         self,
@@ -96,34 +103,42 @@ class FunctionTask(Task):
         norm: str = "rms",
         law: FunctionLaw | None = None,
         length: float = 1.0,
+        travels: bool = False,
     ) -> None:
-        turned, output = _angles(inputs, "input"), _angles(outputs, "output")
+        turned, output = _numbers(inputs, INPUT), _numbers(outputs, _output_key(travels))
         if len(turned) != len(output):
-            counts = counted(len(turned), "angle"), counted(len(output), "angle")
+            counts = counted(len(turned), "angle"), counted(len(output), "travel" if travels else "angle")
             raise ProblemError(
-                f"function.input_deg has {counts[0]}, function.output_deg {counts[1]}; it must be as many"
+                f"function.{INPUT} has {counts[0]}, function.{_output_key(travels)} {counts[1]}; "
+                "it must be as many"
             )
         if len(turned) < FEWEST:
             raise ProblemError(f"function has {counted(len(turned), 'pair')}; it must have three or more")
         if len(turned) > MOST:
             raise ProblemError(f"function has {len(turned)} pairs; it must have at most {MOST}")
-        for name, angles in (("input", turned), ("output", output)):
-            if angles[0] != 0:
+        for key, values in ((INPUT, turned), (_output_key(travels), output)):
+            if values[0] != 0:
                 raise ProblemError(
-                    f"function.{name}_deg[0] is {_deg(angles[0])}; it must be 0, at the first pair"
+                    f"function.{key}[0] is {_shown(values[0], key)}; it must be 0, at the first pair"
                 )
         for index in np.flatnonzero(np.diff(turned) < _LEAST_STEP) + 1:
             raise ProblemError(
-                f"function.input_deg[{index}] is {_deg(turned[index])} after {_deg(turned[index - 1])}; "
+                f"function.{INPUT}[{index}] is {_deg(turned[index])} after {_deg(turned[index - 1])}; "
                 "inputs must grow (the driver may turn either way all the same)"
             )
-        for name, angles in (("input", turned), ("output", output)):
+        for key, angles in ((INPUT, turned), *(() if travels else ((OUTPUT_DEG, output),))):
             if np.ptp(angles) > TURN * (1 + 1e-12):
                 raise ProblemError(
-                    f"function.{name}_deg covers {_deg(np.ptp(angles))} deg; it must be at most one turn, 360"
+                    f"function.{key} covers {_deg(np.ptp(angles))} deg; it must be at most one turn, 360"
                 )
-        if np.ptp(output) < _LEAST_OUTPUT:
-            raise ProblemError("function.output_deg does not move; the output must turn")
+        if travels and not np.ptp(output) > 0:
+            raise ProblemError(f"function.{OUTPUT} does not move; the slide must travel")
+        if np.ptp(output) > GREATEST:
+            raise ProblemError(
+                f"function.{OUTPUT} covers {np.ptp(output):.6g}; it must be at most {GREATEST:g}"
+            )
+        if not travels and np.ptp(output) < _LEAST_OUTPUT:
+            raise ProblemError(f"function.{OUTPUT_DEG} does not move; the output must turn")
         if law is not None and not isinstance(law, FunctionLaw):
             raise wrong_value("function.law", law, "a FunctionLaw")
         object.__setattr__(self, "inputs", frozen_array(turned))
@@ -132,6 +147,7 @@ class FunctionTask(Task):
         object.__setattr__(self, "norm", _word(norm, NORMS, "function.norm"))
         object.__setattr__(self, "law", law)
         object.__setattr__(self, "length", positive_number(length, "function.length"))
+        object.__setattr__(self, "travels", bool(travels))
 
     @classmethod
     def of_law(
@@ -154,7 +170,8 @@ class FunctionTask(Task):
             places = chebyshev_spacing(pairs)
         turned = law.input_range * places
         output = law.output(turned)
-        return cls(turned - turned[0], output - output[0], sense=sense, norm=norm, law=law)
+        turned, output = turned - turned[0], output - output[0]
+        return cls(turned, output, sense=sense, norm=norm, law=law, travels=law.travels)
 
     @classmethod
     def from_degrees(
@@ -162,11 +179,13 @@ class FunctionTask(Task):
         input_deg: npt.ArrayLike | None = None,
         output_deg: npt.ArrayLike | None = None,
         *,
+        output: npt.ArrayLike | None = None,
         law: str | Callable[[FloatArray], FloatArray] | None = None,
         x: tuple[float, float] | None = None,
         exponent: float | None = None,
         input_range_deg: float | None = None,
         output_range_deg: float | None = None,
+        output_range: float | None = None,
         pairs: int | None = None,
         sampled: npt.ArrayLike | None = None,
         sense: str = "given",
@@ -174,7 +193,8 @@ class FunctionTask(Task):
     ) -> FunctionTask:
         """Task with its angles in degrees, as problem files write it: pairs, or a law with its ranges.
 
-        In Python `law` may be any function of x; it is sampled.
+        Of a slide `output` and `output_range` are its travel, in the problem's unit of length. In Python `law`
+        may be any function of x; it is sampled.
 
         Examples
         --------
@@ -183,31 +203,36 @@ class FunctionTask(Task):
         >>> np.degrees(task.inputs).round(3).tolist()
         [0.0, 10.898, 28.532, 46.165, 57.063]
         """
-        table: dict[str, Any] = {"input_deg": input_deg, "output_deg": output_deg}
+        table: dict[str, Any] = {INPUT: input_deg, OUTPUT_DEG: output_deg, OUTPUT: output}
         stated: dict[str, Any] = {
             "x": x,
             "input_range_deg": input_range_deg,
             "output_range_deg": output_range_deg,
+            "output_range": output_range,
         }
+        travels = _either(output_deg, output, OUTPUT) or _either(
+            output_range_deg, output_range, "output_range"
+        )
         if law is None:
             _refuse_beside(
                 {**stated, "exponent": exponent, "pairs": pairs, "sampled": sampled},
                 "goes with function.law only",
             )
-            _refuse_missing(table)
-            angles = [np.radians(_angles(table[f"{name}_deg"], name)) for name in ("input", "output")]
-            return cls(*angles, sense=sense, norm=norm)
+            _refuse_missing(table, OUTPUT, travels)
+            turned = np.radians(_numbers(input_deg, INPUT))
+            if travels:
+                return cls(turned, _numbers(output, OUTPUT), sense=sense, norm=norm, travels=True)
+            return cls(turned, np.radians(_numbers(output_deg, OUTPUT_DEG)), sense=sense, norm=norm)
         _refuse_beside(table, "does not go with function.law; give pairs or a law")
-        _refuse_missing(stated)
-        names = ("input_range_deg", "output_range_deg")
-        turned, output = (
-            float(np.radians(finite_number(stated[name], f"function.{name}"))) for name in names
-        )
+        _refuse_missing(stated, "output_range", travels)
+        key = "output_range" if travels else "output_range_deg"
+        ranges = [finite_number(stated[name], f"function.{name}") for name in ("input_range_deg", key)]
+        over = float(np.radians(ranges[0])), ranges[1] if travels else float(np.radians(ranges[1]))
         if callable(law):
-            made = FunctionLaw.of_callable(law, stated["x"], turned, output)
+            made = FunctionLaw.of_callable(law, stated["x"], *over, travels=travels)
         else:
             known = None if sampled is None else np.asarray(sampled, dtype=np.float64)
-            made = FunctionLaw(law, stated["x"], turned, output, exponent=exponent, samples=known)
+            made = FunctionLaw(law, stated["x"], *over, exponent=exponent, samples=known, travels=travels)
         return cls.of_law(made, pairs=pairs, sense=sense, norm=norm)
 
     def __len__(self) -> int:
@@ -251,12 +276,27 @@ class FunctionTask(Task):
 
     @property
     def size(self) -> float:
-        """Lengths are free but for a scale: r1, as limits or else (0, 0) and (1, 0) place the ground."""
-        return self.length
+        """The whole travel of a slide; lengths of a rotation are free but for a scale.
+
+        That is r1, as limits or else (0, 0) and (1, 0) place the ground.
+        """
+        if not self.travels:
+            return self.length
+        return float(np.ptp(self.outputs) if self.law is None else self.law.output_range)
+
+    @property
+    def output_unit(self) -> float:
+        """What errors of the output count in: 1 rad, or the whole travel."""
+        return self.size if self.travels else 1.0
+
+    @property
+    def error_field(self) -> str:
+        """The field of `Requirements` that limits the structural error."""
+        return "structural_error_max" if self.travels else "structural_error_max_deg"
 
     def under(self, requirements: Requirements) -> FunctionTask:
         """The task with the length that requirements give the ground."""
-        length = FunctionGround.of(requirements).length
+        length = self.length if self.travels else FunctionGround.of(requirements).length
         return self if length == self.length else replace(self, length=length)
 
     @property
@@ -286,7 +326,7 @@ class FunctionTask(Task):
         return (self.law.input_range - float(self.inputs[-1])) / 2  # Chebyshev's spacing is symmetric
 
     def output(self, turned: npt.ArrayLike) -> FloatArray:
-        """Wanted output at driver rotations from the first pair, rad: of the law, or the cubic spline.
+        """Wanted output at driver rotations from the first pair, rad or length: of the law, or the cubic spline.
 
         Examples
         --------
@@ -303,9 +343,12 @@ class FunctionTask(Task):
         before = self._before
         return self.law.output(at + before) - self.law.output(np.array(before))
 
-    def exact_for(self, freedoms: int) -> bool:  # noqa: ARG002
-        """Whether every pair is met: up to five, since both start angles and three lengths are free."""
-        return len(self) <= MOST_EXACT
+    def exact_for(self, freedoms: int) -> bool:
+        """Whether every pair is met: up to five, since the starts and three lengths are free.
+
+        Of an inverted slider-crank, whose output is a rotation too, one length less is.
+        """
+        return len(self) <= (MOST_EXACT if self.travels or freedoms > _SLIDING else MOST_EXACT - 1)
 
     def some(self, index: IntArray, positions: FloatArray, angles: FloatArray) -> FunctionTask:  # noqa: ARG002
         """Some of the pairs, from the first of them on."""
@@ -313,12 +356,25 @@ class FunctionTask(Task):
         return replace(self, inputs=turned - turned[0], outputs=output - output[0], law=None)
 
 
-def _angles(values: npt.ArrayLike, name: str) -> FloatArray:
-    where = f"function.{name}_deg"
-    numbers = number_array(values, f"{where} is {shown(values)}; it must be a list of angles", (1,))
+def _numbers(values: Any, key: str) -> FloatArray:
+    where, what = f"function.{key}", "lengths" if key == OUTPUT else "angles"
+    numbers = number_array(values, f"{where} is {shown(values)}; it must be a list of {what}", (1,))
     for index in np.flatnonzero(~np.isfinite(numbers)):
         raise ProblemError(f"{where}[{index}] is {numbers[index]}; all numbers must be finite")
     return numbers.astype(np.float64)
+
+
+def _output_key(travels: bool) -> str:  # noqa: FBT001
+    return OUTPUT if travels else OUTPUT_DEG
+
+
+def _either(angles: object, travel: object, key: str) -> bool:
+    """Whether the output is given as travel; not as both."""
+    if angles is not None and travel is not None:
+        raise ProblemError(
+            f"function.{key}_deg does not go with function.{key}; an output turns or slides, give one of them"
+        )
+    return travel is not None
 
 
 def _word(value: str, words: tuple[str, ...], where: str) -> str:
@@ -335,10 +391,15 @@ def _refuse_beside(values: Mapping[str, object], why: str) -> None:
             raise ProblemError(f"function.{name} {why}")
 
 
-def _refuse_missing(values: Mapping[str, object]) -> None:
-    missing = [f"function.{name}" for name, value in values.items() if value is None]
+def _refuse_missing(values: Mapping[str, object], output: str, travels: bool) -> None:  # noqa: FBT001
+    other = f"{output}_deg" if travels else output
+    missing = [f"function.{name}" for name, value in values.items() if value is None and name != other]
     if missing:
         raise ProblemError("\n".join(f"{name} is missing" for name in missing))
+
+
+def _shown(value: float, key: str) -> str:
+    return _deg(value) if key.endswith("_deg") else f"{value:.6g}"
 
 
 def _deg(angle: float) -> str:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from grashof.problems.values.checks import near_miss, number_within
 from grashof.problems.values.errors import ProblemError, shown_key
 from grashof.problems.values.quantities import Quantity
-from grashof.problems.values.requirements import QUANTITIES
+from grashof.problems.values.requirements import QUANTITIES, TRAVEL_ERRORS
 
 _HEAVIEST = 1e9
 _PLAIN = {"compactness": "size", "torque": "torque_peak"}  # goals that go by a name of their own
@@ -17,7 +17,11 @@ GOALS: dict[str, Quantity] = {
     for name in (
         "transmission",
         *_PLAIN,
-        *(key for key, quantity in QUANTITIES.items() if quantity.better and key not in _PLAIN.values()),
+        *(
+            key
+            for key, quantity in QUANTITIES.items()
+            if quantity.better and key not in (*_PLAIN.values(), *TRAVEL_ERRORS.values())
+        ),
     )
 }
 

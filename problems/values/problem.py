@@ -26,13 +26,27 @@ from grashof.problems.values.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.function_task import FunctionTask
 from grashof.problems.values.manufacturing import Manufacturing
-from grashof.problems.values.mechanisms import FOUR_BAR, INVERTED, KINDS, freedoms, mechanisms, not_had
+from grashof.problems.values.mechanisms import (
+    FOUR_BAR,
+    INVERTED,
+    KINDS,
+    SLIDER_CRANK,
+    freedoms,
+    mechanisms,
+    not_had,
+)
 from grashof.problems.values.motion_task import MotionTask
 from grashof.problems.values.objective import GOALS, Objective
 from grashof.problems.values.path_task import PathTask
-from grashof.problems.values.quantities import Needs, Quantity, Unit
+from grashof.problems.values.quantities import TURNING, Needs, Quantity, Unit
 from grashof.problems.values.read_only import ReadOnly
-from grashof.problems.values.requirements import LIMITS, QUANTITIES, Requirements, Rotatability
+from grashof.problems.values.requirements import (
+    LIMITS,
+    QUANTITIES,
+    TRAVEL_ERRORS,
+    Requirements,
+    Rotatability,
+)
 from grashof.problems.values.stroke_limits import stated_size, strokes_wrong
 from grashof.problems.values.stroke_task import StrokeTask
 from grashof.problems.values.task import Task
@@ -191,7 +205,7 @@ class Problem(ReadOnly):
             Needs.ANGLES: f"{self.task.kind} has no angles",
             Needs.CYLINDER: "driver.cylinder is missing",
             Needs.LOADED_CYLINDER: self._unloaded,
-            Needs.OUTPUTS: f'{self.task.kind} asks for no output; kind = "function" does',
+            **self._no_output,
         }
         wrong = [
             f"{missing[quantity.needs]}; {where} needs it"
@@ -210,9 +224,27 @@ class Problem(ReadOnly):
     @property
     def _asked(self) -> dict[str, Quantity]:
         """What is weighed or limited, by its key path."""
-        goals = {f"objective.maximise.{name}": GOALS[name] for name, w in self.objective.stated.items() if w}
+        stated = self.objective.stated.items()
+        goals = {f"objective.maximise.{name}": self._meant(GOALS[name]) for name, w in stated if w}
         limited = self.requirements.limited.items()
         return goals | {f"requirements.{name}": limit.quantity for name, limit in limited}
+
+    @property
+    def _no_output(self) -> dict[Needs, str]:
+        """What is missing where a structural error is asked for, in words."""
+        if not isinstance(self.task, FunctionTask):
+            none = f'{self.task.kind} asks for no output; kind = "function" does'
+            return dict.fromkeys((Needs.OUTPUTS, Needs.ROTATION, Needs.TRAVEL), none)
+        return {
+            Needs.ROTATION: "function has an output that slides, not one that turns",
+            Needs.TRAVEL: "function has an output that turns, not one that slides",
+        }
+
+    def _meant(self, quantity: Quantity) -> Quantity:
+        """The quantity that a goal stands for: of a slide the structural error is a length."""
+        meant = self.requirements.meant(quantity)
+        travels = isinstance(self.task, FunctionTask) and self.task.travels
+        return QUANTITIES[TRAVEL_ERRORS.get(meant.key, meant.key)] if travels else meant
 
     def _not_of_these_kinds(self) -> list[str]:
         """What is weighed or limited though no kind of linkage that is asked for has it."""
@@ -281,8 +313,11 @@ class Problem(ReadOnly):
             Needs.ANGLES: bool(self.task.has_angle.any()),
             Needs.CYLINDER: self.driver is not None,
             Needs.LOADED_CYLINDER: self.driver is not None and self.dynamics is not None,
-            Needs.OUTPUTS: bool(self.task.has_output.any()),
         }
+        if isinstance(self.task, FunctionTask):
+            stated |= {Needs.ROTATION: not self.task.travels, Needs.TRAVEL: self.task.travels}
+        else:
+            stated |= dict.fromkeys((Needs.OUTPUTS, Needs.ROTATION, Needs.TRAVEL), False)
         return stated.get(needs, True)
 
     @property
@@ -293,11 +328,18 @@ class Problem(ReadOnly):
         return f"{' and '.join(missing)} {'are' if len(missing) > 1 else 'is'} missing"
 
     def _not_for_functions(self) -> list[str]:
-        """Kinds of linkages that are not built for functions, where one is asked for."""
-        others = [word for word in self.mechanism if word != FOUR_BAR]
-        if not (others and isinstance(self.task, FunctionTask)):
+        """Kinds of linkages whose output does not move as a function asks for."""
+        if not isinstance(self.task, FunctionTask):
             return []
-        return [f"mechanism {' and '.join(others)} is not built for functions; it must be {FOUR_BAR}"]
+        kinds, way = ((SLIDER_CRANK,), "slides") if self.task.travels else (TURNING, "turns")
+        others = [word for word in self.mechanism if word not in kinds]
+        if not others:
+            return []
+        key = "output, a travel," if self.task.travels else "output_deg, a rotation,"
+        return [
+            f"function.{key} does not go with mechanism {' and '.join(others)}; "
+            f"the output {way} of {' and '.join(kinds)}"
+        ]
 
     def _not_for_cylinders(self) -> list[str]:
         """What a cylinder cannot do, where one is the driver."""
@@ -334,7 +376,7 @@ class Problem(ReadOnly):
     def goals(self) -> tuple[tuple[Quantity, float], ...]:
         """What the objective weighs, with its weights; the transmission angle over the motion required."""
         goals = self.objective.goals.items()
-        return tuple((self.requirements.meant(QUANTITIES[key]), weight) for key, weight in goals)
+        return tuple((self._meant(QUANTITIES[key]), weight) for key, weight in goals)
 
     @property
     def by_objective(self) -> bool:

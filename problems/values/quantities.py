@@ -70,6 +70,8 @@ class Needs(Enum):
     CYLINDER = "driver.cylinder"
     LOADED_CYLINDER = "driver.cylinder and dynamics"
     OUTPUTS = "a function"
+    ROTATION = "a function whose output turns"
+    TRAVEL = "a function whose output slides"
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +100,8 @@ class Quantity:
         Heading where there is little room, where that is not its label.
     kinds : tuple of str
         The kinds of linkages that have it.
+    named : str
+        Its name in candidates.csv, where that is not its key.
     """
 
     key: str
@@ -112,6 +116,7 @@ class Quantity:
     words: str = ""
     short: str = ""
     kinds: tuple[str, ...] = tuple(KINDS)
+    named: str = ""
 
     def __post_init__(self) -> None:
         for name in ("words", "short"):
@@ -120,7 +125,7 @@ class Quantity:
     @property
     def column(self) -> str:
         """Its name in candidates.csv."""
-        return f"{self.key}_deg" if self.unit is Unit.ANGLE else self.key
+        return self.named or (f"{self.key}_deg" if self.unit is Unit.ANGLE else self.key)
 
 
 def _length(key: str, label: str = "", **others: Any) -> Quantity:

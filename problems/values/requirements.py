@@ -51,6 +51,8 @@ _STROKES = "time of the slow stroke of link 4 over that of the quick one"
 _TRAVEL = "of the slide between its limit positions, over the task where the driver cannot turn"
 _FIRST_TO_LAST = "from the first target to the last"
 _FROM_ZERO = (0.0, GREATEST)
+# What structural errors of a slide, in the unit of length, are as quantities.
+TRAVEL_ERRORS = {f"structural_error_{key}": f"travel_error_{key}" for key in ("max", "rms")}
 
 
 def _place(name: str, over: Over) -> Quantity:
@@ -58,11 +60,14 @@ def _place(name: str, over: Over) -> Quantity:
     return Quantity(name, f"place of {name.upper()}", Unit.LENGTH, over, listed=False, kinds=kinds)
 
 
-def _structural(key: str, label: str) -> Quantity:
+def _structural(key: str, label: str, *, travels: bool = False) -> Quantity:
     about, words = "output less what is wanted, over the whole range", {"max": "greatest structural error"}
+    name, others = f"structural_error_{key}", {"words": words.get(key, "structural error (root mean square)")}
+    if not travels:
+        return Quantity(name, label, Unit.ANGLE, Over.TASK, -1, Needs.ROTATION, 3, about, **others)
     return Quantity(
-        f"structural_error_{key}", label, Unit.ANGLE, Over.TASK, -1, Needs.OUTPUTS, 3, about,
-        words=words.get(key, "structural error (root mean square)"),
+        TRAVEL_ERRORS[name], label, Unit.LENGTH, Over.TASK, -1, Needs.TRAVEL, 3, about, named=name,
+        kinds=(SLIDER_CRANK,), **others,
     )  # fmt: skip
 
 
@@ -131,6 +136,8 @@ class Requirements(ReadOnly):
         where the driver does not turn fully.
     structural_error_max_deg, structural_error_rms_deg : tuple of float, deg, optional
         (lo, hi) for the structural error of a function over its range, greatest and root mean square.
+    structural_error_max, structural_error_rms : tuple of float, optional
+        (lo, hi) for those of a slide.
     time_ratio : tuple of float, optional
         (lo, hi) for the time of the slow stroke of link 4 over that of the quick one, the driver turning
         steadily; of a driver that does not turn fully there is none.
@@ -254,6 +261,12 @@ class Requirements(ReadOnly):
     )
     structural_error_rms_deg: Limits | None = limit(
         _structural("rms", "rms error"), Kind.BETWEEN, allowed=(0.0, 360.0)
+    )
+    structural_error_max: Limits | None = limit(
+        _structural("max", "max error", travels=True), Kind.BETWEEN, allowed=_FROM_ZERO
+    )
+    structural_error_rms: Limits | None = limit(
+        _structural("rms", "rms error", travels=True), Kind.BETWEEN, allowed=_FROM_ZERO
     )
     a_on_body: Box | None = limit(_bracket("a"), Kind.ON_BODY)
     b_on_body: Box | None = limit(_bracket("b"), Kind.ON_BODY)

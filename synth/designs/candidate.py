@@ -88,7 +88,7 @@ class Candidate(Displayed):
         """What the design misses the task by, in sizes of the task.
 
         The greatest position error where every target is to be met, or else the root mean square of
-        what least squares makes small. Of a function, rad instead of sizes.
+        what least squares makes small. Of a function rad, or shares of the whole travel.
         """
         if problem.task.has_output.any():
             return self._output_error(problem)
@@ -97,12 +97,13 @@ class Candidate(Displayed):
         return float(np.sqrt(self.verdict.square / len(problem.task))) / problem.task.size
 
     def _output_error(self, problem: Problem) -> float:
-        """Of a function, in rad: the greatest at the pairs that are to be met, or what its norm counts."""
+        """Of a function: the greatest at the pairs that are to be met, or what its norm counts."""
+        unit = getattr(problem.task, "output_unit", 1.0)
         if problem.requirements.is_exact(problem.task):
-            return float(self.verdict.output_error.max())
+            return float(self.verdict.output_error.max()) / unit
         if getattr(problem.task, "norm", "rms") == "max":
-            return self.verdict.structural_error_max
-        return float(np.sqrt(self.verdict.square / len(problem.task)))
+            return self.verdict.structural_error_max / unit
+        return float(np.sqrt(self.verdict.square / len(problem.task))) / unit
 
     def objective(self, problem: Problem) -> float:
         """How good the design is by the objective, whatever its error; greater is better."""

@@ -15,6 +15,7 @@ from grashof.synth.programme.formulas import View
 from grashof.synth.programme.instant import FourBarInstant
 from grashof.synth.programme.kind import Closed, Kind, LoopOf, Shapes, as_vector
 from grashof.synth.theory.closure import FourBarClosure
+from grashof.synth.theory.function_four_bar import FourBars
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +26,7 @@ class FourBarKind(Kind):
     one_assembly = False
     closure = FourBarClosure()
     instant = FourBarInstant
+    generators = FourBars
 
     def folded(self, d: View) -> Any:
         return formulas.folded(d)

@@ -15,6 +15,7 @@ from grashof.synth.programme.formulas import View
 from grashof.synth.programme.kind import Closed, Kind, LoopOf, Shapes, as_vector, both_ways, by_two
 from grashof.synth.programme.slider_instants import InvertedInstant
 from grashof.synth.theory.closure import InvertedSliderCrankClosure
+from grashof.synth.theory.function_inverted import InvertedSliderCranks
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +28,7 @@ class InvertedKind(Kind):
     one_assembly, turns_with_coupler = True, True
     closure = InvertedSliderCrankClosure()
     instant = InvertedInstant
+    generators = InvertedSliderCranks
 
     def folded(self, d: View) -> Any:
         return (d.r1 - d.r2) ** 2

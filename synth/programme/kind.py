@@ -22,6 +22,7 @@ from grashof.synth.programme.frame import Frame
 from grashof.synth.programme.instant import Instant
 from grashof.synth.programme.vector import Vector
 from grashof.synth.theory.closure import Closure
+from grashof.synth.theory.function_output import Generators
 
 # r2, r3, r4 (n,) of loops, and their derivatives (n, 3 lengths, 3 proportions).
 Shapes: TypeAlias = tuple[tuple[FloatArray, FloatArray, FloatArray], FloatArray]
@@ -72,6 +73,7 @@ class Kind(ABC):
     one_assembly: ClassVar[bool]
     closure: ClassVar[Closure]
     instant: ClassVar[type[Instant]]
+    generators: ClassVar[type[Generators]]  # those that generate functions
     turns_with_coupler: ClassVar[bool] = False  # the output link
 
     def __new__(cls) -> Self:

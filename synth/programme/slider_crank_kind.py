@@ -16,6 +16,7 @@ from grashof.synth.programme.frame import Frame
 from grashof.synth.programme.kind import Closed, Kind, LoopOf, Shapes, both_ways, by_two
 from grashof.synth.programme.slider_instants import SliderCrankInstant
 from grashof.synth.theory.closure import SliderCrankClosure
+from grashof.synth.theory.function_slider_crank import SliderCranks
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +29,7 @@ class SliderCrankKind(Kind):
     one_assembly = True
     closure = SliderCrankClosure()
     instant = SliderCrankInstant
+    generators = SliderCranks
 
     def folded(self, d: View) -> Any:
         return d.offset - d.r2

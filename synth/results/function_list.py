@@ -73,12 +73,12 @@ def function_list(
     objective: OwnObjective | None = None,
     progress: Callable[[Progress], object] | None = None,
 ) -> Result:
-    """Find, verify and rank four-bars that generate a function.
+    """Find, verify and rank linkages of one kind that generate a function.
 
     Parameters
     ----------
     problem : Problem
-        Whose task is a function.
+        Whose task is a function; of one kind of linkage.
     search : Search
         `starts` has no part in it: its designs are not solved for one by one.
     asked : Asking
@@ -176,9 +176,10 @@ def _progress(judged: _Judged, search: Search, total: int) -> Progress:
 
 def _exhausted(aims: FunctionAims) -> str:
     count = len(aims.task)
-    if count >= 5:
-        return f"all four-bars through the {count} pairs were looked at; most sets of five have one, or three"
-    return "no more distinct four-bars go through the pairs under these requirements"
+    if count >= aims.kind.EXACT:
+        have = "most sets of five have one, or three" if count == 5 else "most sets of four have one"
+        return f"all {aims.kinds} through the {count} pairs were looked at; {have}"
+    return f"no more distinct {aims.kinds} go through the pairs under these requirements"
 
 
 def _why_none(aims: FunctionAims, judged: _Judged, complete: bool) -> tuple[str, tuple[Candidate, ...]]:
@@ -190,7 +191,7 @@ def _why_none(aims: FunctionAims, judged: _Judged, complete: bool) -> tuple[str,
         return "no design: the search was stopped before it found one", nearest
     if aims.exact:
         count = len(aims.task)
-        why = f"no four-bar goes through the {count} pairs on one branch under these requirements"
+        why = f"no {aims.kinds[:-1]} goes through the {count} pairs on one branch under these requirements"
         less = (
             "; fewer pairs, or exact = false, leave more freedom"
             if count > 3
@@ -198,7 +199,7 @@ def _why_none(aims: FunctionAims, judged: _Judged, complete: bool) -> tuple[str,
         )
         return f"no design: {why}{less}", nearest
     if not nearest:
-        return "no design: no four-bar covers the range under these requirements", nearest
+        return f"no design: no {aims.kinds[:-1]} covers the range under these requirements", nearest
     worst = nearest[0].verdict.defects
     return (
         f"no design meets all requirements; the closest one misses {' and '.join(map(str, worst))}",

@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from grashof.problems import FourBar, FunctionTask, Problem, ProblemError, Rotatability, TransmissionOver
-from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.function_ground import FunctionGround
+from grashof.problems import (
+    FunctionTask,
+    Linkage,
+    Problem,
+    ProblemError,
+    Requirements,
+    Rotatability,
+    TransmissionOver,
+)
+from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.function_law import lobatto_with_weights
+from grashof.synth.programme.kinds import KINDS
 from grashof.synth.theory.function_fit import Wanted
-from grashof.synth.theory.function_limits import ShapeLimits
+from grashof.synth.theory.function_limits import ShapeLimits, offset_rows
 from grashof.synth.theory.function_output import Generators
 
 SAMPLES = 41  # Chebyshev-Lobatto points of the range, of the greatest error
@@ -22,7 +30,7 @@ INSIDE = 1e-7  # by so much limits are kept, so that rounding misses none
 
 @dataclass(frozen=True, slots=True)
 class FunctionAims:
-    """The problem of a function as its search sees it: on the ground O2 = 0, O4 = 1.
+    """The problem of a function as its search sees it: on the ground O2 = 0, O4 = 1, or in units of travel.
 
     The driver turns counter-clockwise from the beginning of the range; designs that turn it clockwise are
     the mirror images.
@@ -31,93 +39,133 @@ class FunctionAims:
     ----------
     task : FunctionTask
     problem : Problem
-    ground : FunctionGround
+        Of one kind of linkage.
+    kind : type of Generators
+    wanted : Requirements
+        Resolved.
     limits : ShapeLimits
+        Of drivers that turn counter-clockwise.
+    sizes : dict of str to tuple of float
+        Limits of lengths, by name.
+    unit : float
+        Of outputs: 1 rad, or the whole travel.
     exact : bool
     """
 
     task: FunctionTask
     problem: Problem
-    ground: FunctionGround
+    kind: type[Generators]
+    wanted: Requirements
     limits: ShapeLimits
+    sizes: dict[str, Limits]
+    unit: float
     exact: bool
 
     @classmethod
     def of(cls, problem: Problem) -> FunctionAims:
-        """The aims of a problem whose task is a function."""
+        """The aims of a problem of one kind whose task is a function."""
         task = problem.task
         if not isinstance(task, FunctionTask):
             raise ProblemError(f"problem.task is a {type(task).__name__}; it must be a FunctionTask")
         wanted = problem.requirements.resolved(task.size)
-        ground, kind = FunctionGround.of(problem.requirements), wanted.rotatability
-        lengths = [
-            (
-                max(wanted.link_lengths[0][0], ground.lengths[0]),
-                min(wanted.link_lengths[0][1], ground.lengths[1]),
-            )
-        ]
-        low, high = np.array([*lengths, *wanted.link_lengths[1:]], dtype=np.float64).T
-        with np.errstate(divide="ignore"):
-            caps = np.minimum(np.log(wanted.link_ratio_max), np.log(high)[:, None] - np.log(low))
+        kind, unit = KINDS[problem.mechanism[0]].generators, task.output_unit
+        names, sizes = kind.sizes(wanted, unit)
+        rotatability = wanted.rotatability or Rotatability.ANY
         limits = ShapeLimits(
             span=task.span[1] - task.span[0],
-            caps=caps - INSIDE,
+            caps=_caps(kind, sizes, wanted.link_ratio_max),
             transmission=float(np.radians(wanted.transmission_min_deg)) + INSIDE,
             over_cycle=wanted.transmission_over is TransmissionOver.CYCLE,
-            margin=None if kind is Rotatability.ANY else wanted.rotatability_margin + INSIDE,
-            shortest={Rotatability.CRANK_ROCKER: 1, Rotatability.DOUBLE_CRANK: -1}.get(
-                kind or Rotatability.ANY, 0
-            ),
+            margin=None if rotatability is Rotatability.ANY else wanted.rotatability_margin + INSIDE,
+            shortest={Rotatability.CRANK_ROCKER: 1, Rotatability.DOUBLE_CRANK: -1}.get(rotatability, 0),
+            offset=_offset(sizes, wanted.offset, unit),
+            stroke=(-np.inf, np.inf) if wanted.stroke is None else _over(wanted.stroke, unit),
         )
-        return cls(task, problem, ground, limits, problem.requirements.is_exact(task))
+        exact = problem.requirements.is_exact(task)
+        return cls(task, problem, kind, wanted, limits, dict(zip(names, sizes, strict=True)), unit, exact)
+
+    def limits_of(self, driver: int) -> ShapeLimits:
+        """Limits of the shapes whose linkages, or mirror images, turn their driver in a sense."""
+        if driver > 0 or self.limits.offset is None:
+            return self.limits
+        return replace(self.limits, offset=self.limits.offset * np.append(np.ones(len(self.sizes)), -1.0))
+
+    @property
+    def kinds(self) -> str:
+        """What linkages of its kind are called."""
+        return f"{self.problem.mechanism[0].replace('inverted-', 'inverted ')}s"
 
     @property
     def obstacle(self) -> str:
         """Why there can be no linkage; empty where there may be one."""
-        low, high = self.ground.lengths
+        caps, names = self.limits.caps, tuple(self.sizes)
+        low, high = self.sizes[names[0]]
         if low > high:
             return "limits of o2, o4, r1 and the ground angle leave the ground link no length"
-        pairs = zip(*np.nonzero(self.limits.caps + self.limits.caps.T < -3 * INSIDE), strict=True)
-        names = [f"r{j + 1} and r{k + 1}" for j, k in pairs if j < k]
-        return f"limits of {names[0]} contradict each other" if names else ""
+        pairs = zip(*np.nonzero(caps + caps.T < -3 * INSIDE), strict=True)
+        found = [f"{names[j]} and {names[k]}" for j, k in pairs if j < k]
+        return f"limits of {found[0]} contradict each other" if found else ""
+
+    @property
+    def greatest_error(self) -> float:
+        """Structural error that is allowed, in units of the output."""
+        stated = getattr(self.wanted, self.task.error_field)
+        if stated is None:
+            return np.inf
+        return float(stated[1] if self.task.travels else np.radians(stated[1])) / self.unit
 
     def ways(self) -> Iterator[tuple[int, int, float | None]]:
         """Senses of output and driver that are searched, and the driver angle at the beginning, if given."""
         wanted = self.problem.requirements
-        senses = (1, -1) if self.task.sense == "either" else (1,)
-        drivers = {"ccw": (1,), "cw": (-1,)}.get(wanted.driver_sense, (1, -1))
         start = wanted.theta2_start_deg
-        for sense in senses:
+        one = self.task.sense != "either" or (self.kind.ONE_SENSE and start is None)
+        drivers = {"ccw": (1,), "cw": (-1,)}.get(wanted.driver_sense, (1, -1))
+        for sense in (1,) if one else (1, -1):
             if start is None:
-                yield sense, drivers[0], None
+                for driver in drivers if wanted.offset is not None else drivers[:1]:
+                    yield sense, driver, None
                 continue
             for driver in drivers:
-                first = driver * (float(np.radians(start)) - self.ground.theta1) + self.task.span[0]
+                first = driver * (float(np.radians(start)) - self.kind.direction(wanted)) + self.task.span[0]
                 yield sense, driver, float(np.angle(np.exp(1j * first)))
 
     def pairs(self, sense: int) -> Wanted:
         """The pairs, from the beginning of the range."""
-        return Wanted(self.task.inputs - self.task.span[0], sense * self.task.outputs, self.task.weights)
+        return Wanted(
+            self.task.inputs - self.task.span[0], sense * self.task.outputs / self.unit, self.task.weights
+        )
 
     def samples(self, sense: int, count: int = SAMPLES) -> Wanted:
         """Chebyshev-Lobatto points of the range."""
         places, weights = lobatto_with_weights(count)
         turned = self.limits.span * places
-        return Wanted(turned, sense * self.task.output(turned + self.task.span[0]), weights)
+        return Wanted(turned, sense * self.task.output(turned + self.task.span[0]) / self.unit, weights)
 
     def dense(self, sense: int) -> tuple[FloatArray, FloatArray]:
         """Rotations from the beginning of the range, and the outputs there: extremes are found among them."""
         turned = np.linspace(0.0, self.limits.span, DENSE)
-        return turned, sense * self.task.output(turned + self.task.span[0])
+        return turned, sense * self.task.output(turned + self.task.span[0]) / self.unit
 
-    def linkage(self, made: Generators, driver: int) -> FourBar:
+    def linkage(self, made: Generators, driver: int) -> Linkage:
         """The linkage of one generator, placed and scaled as limits have it."""
-        wanted = self.problem.requirements.resolved(self.task.size)
-        shares = made.lengths[0]
-        low, high = np.array(wanted.link_lengths).T
-        least = max(self.ground.lengths[0], float((low / shares).max()))
-        most = min(self.ground.lengths[1], float((high / shares).min()))
-        r1 = float(np.clip(self.ground.length, least, max(least, most)))
-        o2, o4 = self.ground.placed(r1)
-        r2, r3, r4 = (r1 * shares[1:]).tolist()
-        return FourBar(o2=o2, o4=o4, r2=r2, r3=r3, r4=r4, assembly=driver * made.assembly[0])
+        return made.linkage(self.wanted, self.unit, driver)
+
+
+def _caps(kind: type[Generators], sizes: list[Limits], ratio: float) -> FloatArray:
+    """Greatest logarithm of one length over another."""
+    low, high = np.array(sizes, dtype=np.float64).T
+    most = np.full((len(sizes), len(sizes)), np.log(ratio))
+    if not kind.FIRST_IS_LINK:
+        most[0], most[:, 0] = np.inf, np.inf
+    with np.errstate(divide="ignore", invalid="ignore"):
+        caps: FloatArray = np.minimum(most, np.log(high)[:, None] - np.log(low)) - INSIDE
+    return caps
+
+
+def _offset(sizes: list[Limits], offset: Limits | None, unit: float) -> FloatArray | None:
+    """Rows that keep an offset within its limits."""
+    return None if offset is None else offset_rows([_over(each, unit) for each in sizes], _over(offset, unit))
+
+
+def _over(limits: Limits, unit: float) -> Limits:
+    return limits[0] / unit, limits[1] / unit

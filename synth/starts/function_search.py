@@ -12,28 +12,23 @@ from grashof.synth.starts.function_aims import FunctionAims
 from grashof.synth.theory.function_fit import Wanted, best_apart, fitted
 from grashof.synth.theory.function_limits import ShapeLimits
 from grashof.synth.theory.function_optima import Aim, Optimum, refined, with_extremes
-from grashof.synth.theory.function_output import Generators, output_angles, worst_cosine
-from grashof.synth.theory.function_points import (
-    through_five_pairs,
-    through_four_and,
-    through_four_pairs,
-    through_three_pairs,
-)
-from grashof.synth.theory.function_starts import full_cranks, function_starts
+from grashof.synth.theory.function_output import Generators
+from grashof.synth.theory.function_starts import crank_starts, function_starts
 from grashof.synth.theory.stopping import asked_to_stop
 
 GRID = 220  # start angles of driver and output each, of three pairs
 CURVE = 2000  # output angles at a fifth place, of four pairs
 CRANKS = 8000  # random full cranks, from which least squares begins besides
-PULLS = (0.1, 1.0)  # rad: what a missed limit counts as in least squares
+PULLS = (0.1, 1.0)  # rad, or shares of the travel: what a missed limit counts as in least squares
 BASINS, TRIED, SHORT = 9, 30, 5  # starts that are refined to the end, and those tried in few steps
 WORSE = 10.0  # times the least error: a sense of output and driver in which no choice is offered
 HOPELESS = 50.0  # times the least error: no further
 LEAST, LOCAL = "least error", "least error nearby"
 CELL, NEAR = 0.04, 0.02  # of optima, and of exact designs: closer ones are alike
 LEVELS = (10.0, 20.0, 30.0, 40.0, 50.0, 60.0)  # deg of transmission, that a choice is offered at
-MET = 1e-9  # rad: exact
+MET = 1e-9  # rad, or shares of the travel: exact
 ROUNDING = 2e-8  # of limits
+_ERRORS = tuple(f"{kind}_error_{name}" for kind in ("structural", "travel") for name in ("max", "rms"))
 ZOOMED, ZOOMS, ZOOM = 6, 3, 120  # exact designs about which others are tried, how often, and how many each
 
 
@@ -62,7 +57,7 @@ class FoundFunction:
 class FunctionPairs:
     """The kind of search that functions have; it proposes whole designs."""
 
-    beginning = "looking for four-bars that generate the function"
+    beginning = "looking for linkages that generate the function"
 
     @staticmethod
     def refuse() -> None:
@@ -75,14 +70,14 @@ def exact_functions(
     """Generators through all pairs that keep the limits, the most promising distinct ones first."""
     found: list[tuple[FloatArray, Generators, int]] = []
     for sense, driver, first in aims.ways():
-        made = _through(aims, sense, first, rng, effort)
+        made = _through(aims, sense, driver, first, rng, effort)
         if len(made) and not asked_to_stop():
             found.append((promise(aims, made, sense), made, driver))
     if not found:
         return []
     merit = np.concatenate([each for each, _, _ in found])
     drivers = np.concatenate([np.full(len(made), driver) for _, made, driver in found])
-    made = Generators.joined([each for _, each, _ in found])
+    made = aims.kind.joined([each for _, each, _ in found])
     cell = NEAR
     best = best_apart(made, -merit, cell)
     while len(best) > 4 * most:  # a curve or surface of designs: farther apart
@@ -92,107 +87,131 @@ def exact_functions(
 
 
 def _through(
-    aims: FunctionAims, sense: int, first: float | None, rng: np.random.Generator, effort: float
+    aims: FunctionAims, sense: int, driver: int, first: float | None, rng: np.random.Generator, effort: float
 ) -> Generators:
     """All that are found through the pairs and keep the limits."""
-    wanted = aims.pairs(sense)
+    wanted, kind, limits = aims.pairs(sense), aims.kind, aims.limits_of(driver)
     turned, output = wanted.turned - wanted.turned[0], wanted.output - wanted.output[0]
-    count = len(turned)
-    if count > 5 or (first is not None and count > 3):
-        starts = function_starts(wanted, rng, first)
-        near = fitted(wanted, starts, aims.limits.of, held=first is not None)[0]
-        return _kept(aims, near, wanted)
+    count, pairs = len(turned), _Pairs(aims, sense, limits, wanted, turned, output)
+    pinned = _pinned(aims) and count < kind.EXACT
+    if count > kind.EXACT or (first is not None and count > kind.LINEAR) or pinned:
+        starts = function_starts(kind, wanted, rng, first)
+        near = fitted(wanted, starts, limits.of, held=first is not None)[0]
+        return pairs.kept(near)
     if first is not None:
-        psi = np.pi * (np.arange(round(GRID**2 * effort)) + rng.random()) / round(GRID**2 * effort)
+        angle = np.pi * (np.arange(round(GRID**2 * effort)) + rng.random()) / round(GRID**2 * effort)
         both = [
-            through_three_pairs(turned, output, np.full(len(psi), start), psi)
+            kind.at_starts(turned, output, np.full(len(angle), start), kind.place_of(angle))
             for start in (first + wanted.turned[0], first + wanted.turned[0] + np.pi)
         ]
-        made = Generators.joined(both)
-        held = np.abs(np.angle(np.exp(1j * (made.shape[:, 3] - first - wanted.turned[0])))) < MET
-        return _kept(aims, _begun(made[held], wanted), wanted)
-    if count == 5:
-        return _kept(aims, _begun(through_five_pairs(turned[None], output[None])[0], wanted), wanted)
-    if count == 4:
-        return _on_curve(aims, sense, wanted, turned, output, round(CURVE * effort))
-    return _on_surface(aims, sense, wanted, turned, output, round(GRID * np.sqrt(effort)), rng)
+        made = kind.joined(both)
+        held = np.abs(np.angle(np.exp(1j * (made.first - first - wanted.turned[0])))) < MET
+        return pairs.kept(made[held].begun(wanted.turned[0]))
+    if count == kind.EXACT:
+        return pairs.through()
+    if count == kind.EXACT - 1:
+        return pairs.on_curve(round(CURVE * effort))
+    return pairs.on_surface(round(GRID * np.sqrt(effort)), rng)
 
 
-def _on_curve(
-    aims: FunctionAims, sense: int, wanted: Wanted, turned: FloatArray, output: FloatArray, count: int
-) -> Generators:
-    """Of four pairs: the curve, and once more where it is best."""
-    wide = int(np.argmax(np.diff(turned)))
-    fifth = (turned[wide] + turned[wide + 1]) / 2
-    pool = _kept(aims, _begun(through_four_pairs(turned, output, count), wanted), wanted)
-    step = 2 * np.pi / count
-    for _ in range(ZOOMS):
-        if not len(pool):
-            break
-        best = pool[best_apart(pool, -promise(aims, pool, sense), NEAR)[:ZOOMED]]
-        at = _output_at(best, wanted.turned[0], fifth)
-        tried = (at[:, None] + step * np.linspace(-1, 1, ZOOM)).ravel()
-        more = _kept(aims, _begun(through_four_and(turned, output, fifth, tried), wanted), wanted)
-        pool, step = Generators.joined([pool, more]), 3 * step / ZOOM
-    return pool
+def _pinned(aims: FunctionAims) -> bool:
+    """Whether the offset is given, so that no sweep would come upon it."""
+    offset = aims.wanted.offset
+    return offset is not None and offset[0] == offset[1]
 
 
-def _on_surface(
-    aims: FunctionAims,
-    sense: int,
-    wanted: Wanted,
-    turned: FloatArray,
-    output: FloatArray,
-    count: int,
-    rng: np.random.Generator,
-) -> Generators:
-    """Of three pairs: both start angles on a grid, and once more where they are best."""
-    half = np.pi * np.arange(count) / count
-    shift = np.pi * rng.random(2) / count
-    driver, first = (each.ravel() for each in np.meshgrid(half + shift[0], half + shift[1]))
-    pool = _kept(aims, _begun(through_three_pairs(turned, output, driver, first), wanted), wanted)
-    step = np.pi / count
-    across = np.linspace(-1, 1, round(np.sqrt(ZOOM)))
-    about = np.stack([each.ravel() for each in np.meshgrid(across, across)])
-    for _ in range(ZOOMS):
-        if not len(pool):
-            break
-        best = pool[best_apart(pool, -promise(aims, pool, sense), NEAR)[:ZOOMED]]
-        drivers = best.shape[:, 3] + wanted.turned[0]
-        outputs = output_angles(best, wanted.turned[:1])[:, 0]
-        tried = [
-            (at[:, None] + step * move).ravel() for at, move in zip((drivers, outputs), about, strict=True)
-        ]
-        more = _kept(aims, _begun(through_three_pairs(turned, output, *tried), wanted), wanted)
-        pool, step = Generators.joined([pool, more]), 2.5 * step / len(across)
-    return pool
+@dataclass(frozen=True, slots=True)
+class _Pairs:
+    """Generators through a few pairs, in one sense."""
+
+    aims: FunctionAims
+    sense: int
+    limits: ShapeLimits
+    wanted: Wanted
+    turned: FloatArray  # from the first pair
+    output: FloatArray
+
+    def through(self) -> Generators:
+        """Of as many pairs as can be met: all there are."""
+        made, _ = self.aims.kind.through(self.turned[None], self.output[None])
+        return self.kept(made.begun(self.wanted.turned[0]))
+
+    def through_and(self, between: float, tried: FloatArray) -> Generators:
+        """Through the pairs and one more at a driver angle, at each of several outputs."""
+        turned = np.broadcast_to(np.append(self.turned, between), (len(tried), len(self.turned) + 1))
+        output = np.broadcast_to(self.output, (len(tried), len(self.output)))
+        made, _ = self.aims.kind.through(turned, np.concatenate([output, tried[:, None]], axis=1))
+        return self.kept(made.begun(self.wanted.turned[0]))
+
+    def on_curve(self, count: int) -> Generators:
+        """Of one pair less: the curve, and once more where it is best.
+
+        The other pair is between two of them, where every linkage without a defect closes.
+        """
+        wide = int(np.argmax(np.diff(self.turned)))
+        between = (self.turned[wide] + self.turned[wide + 1]) / 2
+        tried, step = self.aims.kind.tried_between(count)
+        pool = self.through_and(between, tried)
+        for _ in range(ZOOMS):
+            if not len(pool):
+                break
+            at = _output_at(self.best(pool), self.wanted.turned[0], between)
+            more = self.through_and(between, (at[:, None] + step * np.linspace(-1, 1, ZOOM)).ravel())
+            pool, step = self.aims.kind.joined([pool, more]), 3 * step / ZOOM
+        return pool
+
+    def on_surface(self, count: int, rng: np.random.Generator) -> Generators:
+        """Of two pairs less: both starts on a grid, and once more where they are best."""
+        kind = self.aims.kind
+        half = np.pi * np.arange(count) / count
+        shift = np.pi * rng.random(2) / count
+        driver, first = (each.ravel() for each in np.meshgrid(half + shift[0], half + shift[1]))
+        pool = self.at_starts(driver, first)
+        step = np.pi / count
+        across = np.linspace(-1, 1, round(np.sqrt(ZOOM)))
+        about = np.stack([each.ravel() for each in np.meshgrid(across, across)])
+        for _ in range(ZOOMS):
+            if not len(pool):
+                break
+            best = self.best(pool)
+            drivers = best.first + self.wanted.turned[0]
+            angles = kind.angle_of(best.outputs(self.wanted.turned[:1])[:, 0])
+            tried = [
+                (at[:, None] + step * move).ravel() for at, move in zip((drivers, angles), about, strict=True)
+            ]
+            pool, step = kind.joined([pool, self.at_starts(*tried)]), 2.5 * step / len(across)
+        return pool
+
+    def at_starts(self, driver: FloatArray, angle: FloatArray) -> Generators:
+        """Those with given starts."""
+        kind = self.aims.kind
+        made = kind.at_starts(self.turned, self.output, driver, kind.place_of(angle))
+        return self.kept(made.begun(self.wanted.turned[0]))
+
+    def best(self, pool: Generators) -> Generators:
+        """A few of the most promising that are distinct."""
+        return pool[best_apart(pool, -promise(self.aims, pool, self.sense), NEAR)[:ZOOMED]]
+
+    def kept(self, made: Generators) -> Generators:
+        """Those within the limits that meet every pair on one branch."""
+        made = made.finite
+        made = made[made.worst_cosine(self.limits.span) < 1]
+        made = made[self.limits.of(made)[0].min(axis=1) >= -ROUNDING]
+        if not len(made):
+            return made
+        wanted = self.wanted
+        dense = np.unique(np.concatenate([wanted.turned, np.linspace(0.0, self.limits.span, 41)]))
+        path = made.outputs(dense)[:, np.searchsorted(dense, wanted.turned)]
+        off = path - path[:, :1] - (wanted.output - wanted.output[0])
+        most = max(MET, 0.5 * self.aims.problem.requirements.tolerance)
+        return made[np.abs(off).max(axis=1) < most]
 
 
 def _output_at(made: Generators, before: float, turned: float) -> FloatArray:
-    """Output rotation from the first pair to a place, shape (M,)."""
-    path = output_angles(made, before + np.linspace(0.0, turned, 65))
+    """Output from the first pair to a place, shape (M,)."""
+    path = made.outputs(before + np.linspace(0.0, turned, 65))
     rotated: FloatArray = path[:, -1] - path[:, 0]
     return rotated
-
-
-def _begun(made: Generators, wanted: Wanted) -> Generators:
-    """The same, from the beginning of the range instead of the first pair."""
-    shape = made.shape.copy()
-    shape[:, 3] -= wanted.turned[0]
-    return Generators(shape, made.assembly)
-
-
-def _kept(aims: FunctionAims, made: Generators, wanted: Wanted) -> Generators:
-    """Those within the limits that meet every pair on one branch."""
-    made = made.finite
-    made = made[worst_cosine(made, aims.limits.span) < 1]
-    made = made[aims.limits.of(made)[0].min(axis=1) >= -ROUNDING]
-    if not len(made):
-        return made
-    dense = np.unique(np.concatenate([wanted.turned, np.linspace(0.0, aims.limits.span, 41)]))
-    path = output_angles(made, dense)[:, np.searchsorted(dense, wanted.turned)]
-    off = path - path[:, :1] - (wanted.output - wanted.output[0])
-    return made[np.abs(off).max(axis=1) < max(MET, 0.5 * aims.problem.requirements.tolerance)]
 
 
 def promise(aims: FunctionAims, made: Generators, sense: int) -> FloatArray:
@@ -208,27 +227,19 @@ def promise(aims: FunctionAims, made: Generators, sense: int) -> FloatArray:
 def _known(aims: FunctionAims, key: str, made: Generators, sense: int) -> FloatArray | None:
     """A quantity of generators; None for those that only the judge measures."""
     if key == "transmission_min_task":
-        return np.arccos(np.minimum(worst_cosine(made, aims.limits.span), 1.0))
+        return np.arccos(np.minimum(made.worst_cosine(aims.limits.span), 1.0))
     if key == "transmission_min_cycle":
-        return np.arccos(np.minimum(worst_cosine(made, 2 * np.pi), 1.0))
+        return np.arccos(np.minimum(made.worst_cosine(2 * np.pi), 1.0))
     if key == "link_ratio":
-        lengths = made.lengths
-        ratio: FloatArray = lengths.max(axis=1) / lengths.min(axis=1)
-        return ratio
-    if key in ("structural_error_max", "structural_error_rms"):
-        errors = aims.samples(sense, 31).errors(made)
+        return made.link_ratio
+    if key in _ERRORS:
+        errors = aims.unit * aims.samples(sense, 31).errors(made)
         size: FloatArray = (
             np.abs(errors).max(axis=1) if key.endswith("max") else np.sqrt((errors**2).mean(axis=1))
         )
         return size
     if key == "size":
-        pivots = made.shape[:, 3:] + np.linspace(0.0, aims.limits.span, 13)
-        a = made.lengths[:, 1:2] * np.exp(1j * pivots)
-        b = 1 + made.lengths[:, 3:] * np.exp(1j * output_angles(made, pivots[0] - pivots[0, 0]))
-        every = np.concatenate([a, b, np.zeros((len(made), 1)), np.ones((len(made), 1))], axis=1)
-        wide = np.hypot(np.ptp(every.real, axis=1), np.ptp(every.imag, axis=1))
-        extent: FloatArray = aims.ground.length * wide
-        return extent
+        return made.extent(aims.limits.span, aims.task.size)
     return None
 
 
@@ -253,24 +264,25 @@ def optimal_functions(
     for number, level in enumerate((0.0, *(usual if levels is None else levels))):
         if number and (asked_to_stop() or level <= reached):
             continue
-        limits = replace(aims.limits, transmission=max(aims.limits.transmission, float(np.radians(level))))
+        transmission = max(aims.limits.transmission, float(np.radians(level)))
         words = f"transmission from {level:g} deg" if number else LEAST
         least = min(errors.values(), default=np.inf)
         for way, (sense, driver, first) in enumerate(aims.ways()):
             if number and errors.get(way, np.inf) > WORSE * least:
                 continue
+            limits = replace(aims.limits_of(driver), transmission=transmission)
             search = _Optima(aims, limits, sense, first)
             starts = search.starts(rng, effort if not number else min(1.0, effort))
             for optimum in search.optima(starts, few=bool(number)):
                 better.setdefault((way, driver), []).append(optimum.made)
                 if not number and optimum.error < min(errors.values(), default=np.inf):
-                    reached = float(np.degrees(np.arccos(worst_cosine(optimum.made, limits.span)[0])))
+                    reached = float(np.degrees(np.arccos(optimum.made.worst_cosine(aims.limits.span)[0])))
                 if not number:
                     errors[way] = min(errors.get(way, np.inf), optimum.error)
                 yield FoundFunction(optimum.made, driver, optimum.steps, words)
     for way, (sense, driver, first) in enumerate(aims.ways()):  # what was found on the way may lead further
-        made = better.get((way, driver), [])
-        for optimum in _Optima(aims, aims.limits, sense, first).optima(Generators.joined(made), few=True):
+        made = aims.kind.joined(better.get((way, driver), []))
+        for optimum in _Optima(aims, aims.limits_of(driver), sense, first).optima(made, few=True):
             yield FoundFunction(optimum.made, driver, optimum.steps, LEAST)
 
 
@@ -291,27 +303,23 @@ class _Optima:
         full = limits.margin is not None or bool(limits.shortest)
         found: list[Generators] = []
         for _ in range(max(1, round(effort))):
-            kinds = [function_starts(wanted, rng, self.first)]
+            kinds = [function_starts(aims.kind, wanted, rng, self.first)]
             if full:
-                cranks = full_cranks(rng, CRANKS, self.first, limits.shortest)
+                cranks = crank_starts(aims.kind, wanted, rng, CRANKS, self.first, limits.shortest)
                 kinds.append(cranks[limits.of(cranks)[0].min(axis=1) > -0.1])
             for starts in kinds:
                 for pull in PULLS if full else PULLS[:1]:
                     made, square = fitted(wanted, starts, limits.of, pull=pull, held=self.first is not None)
                     found.append(made[best_apart(made, square, CELL)[:TRIED]])
-        made = Generators.joined(found)
+        made = aims.kind.joined(found)
         square = wanted.square(wanted.errors(made))
         return made[best_apart(made, np.nan_to_num(square, nan=np.inf), CELL)]
 
     def aim(self) -> Aim:
         """What is made least."""
-        greatest, stated = (
-            self.aims.task.norm == "max",
-            self.aims.problem.requirements.structural_error_max_deg,
-        )
+        greatest, most = self.aims.task.norm == "max", self.aims.greatest_error
         wanted = self.aims.samples(self.sense) if greatest else self.aims.pairs(self.sense)
-        band = np.inf if stated is None else float(np.radians(stated[1]))
-        return Aim(wanted, self.limits.of, greatest=greatest, held=self.first is not None, band=band)
+        return Aim(wanted, self.limits.of, greatest=greatest, held=self.first is not None, band=most)
 
     def optima(self, starts: Generators, *, few: bool) -> Iterator[Optimum]:
         """The best distinct optima from starts that come best first; of `few` only the most promising."""
@@ -331,5 +339,7 @@ class _Optima:
 def _apart(some: list[Optimum], worth: FloatArray) -> list[int]:
     """Which of some optima are distinct and finite, the least of `worth` first."""
     finite = np.flatnonzero(np.isfinite(worth))
-    made = Generators.joined([some[k].made for k in finite])
-    return finite[best_apart(made, worth[finite], CELL)].tolist() if finite.size else []
+    if not finite.size:
+        return []
+    made = some[0].made.joined([some[k].made for k in finite])
+    return finite[best_apart(made, worth[finite], CELL)].tolist()

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
-from grashof.synth.theory.function_output import SHAPE, Generators, output_angles, output_slopes
+from grashof.synth.theory.function_output import Generators
 
 Limits = Callable[[Generators], tuple[FloatArray, FloatArray]]
 
@@ -27,8 +27,8 @@ class Wanted:
     ----------
     turned : ndarray, shape (N,), rad
         Driver rotations from the first, growing from zero.
-    output : ndarray, shape (N,), rad
-        Output angles there, but for a constant.
+    output : ndarray, shape (N,)
+        Outputs there, but for a constant: angles in rad, or travel.
     weights : ndarray, shape (N,)
         Of the squared errors.
     """
@@ -39,7 +39,7 @@ class Wanted:
 
     def errors(self, made: Generators) -> FloatArray:
         """Output less what is wanted, with the best zero of least squares, shape (M, N); NaN: open."""
-        errors: FloatArray = output_angles(made, self.turned) - self.output
+        errors: FloatArray = made.outputs(self.turned) - self.output
         return self.centred(errors)
 
     def centred(self, values: FloatArray) -> FloatArray:
@@ -66,7 +66,8 @@ def fitted(
         Those that are open somewhere are left out.
     limits : callable, optional
         As `ShapeLimits.of`; what is below zero counts as an error of `pull` times as much.
-    pull : float, rad
+    pull : float
+        In rad, or in units of the travel.
     held : bool
         The first driver angle stays.
 
@@ -102,7 +103,7 @@ def fitted(
         damping[active] *= np.where(better, 0.2, 6.0)
         done[active] |= (damping[active] > 1e8) | (square[active] < _TINY)
         damping = np.clip(damping, 1e-14, 1e9)
-        made = Generators(shape, made.assembly)
+        made = made.changed(shape)
     order = np.argsort(square, kind="stable")
     return made[order], square[order]
 
@@ -135,12 +136,13 @@ def best_apart(made: Generators, square: FloatArray, cell: float) -> IntArray:
     Examples
     --------
     >>> shape = np.array([[0.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.01]])
-    >>> best_apart(Generators(shape, np.ones(3)), np.array([2.0, 3.0, 1.0]), 0.1).tolist()
+    >>> from grashof.synth.theory.function_four_bar import FourBars
+    >>> best_apart(FourBars(shape, np.ones(3)), np.array([2.0, 3.0, 1.0]), 0.1).tolist()
     [2, 1]
     """
     order = np.argsort(square, kind="stable")
     shape = made.shape.copy()
-    shape[:, 3] %= 2 * np.pi
+    shape[:, -1] %= 2 * np.pi
     keys = np.column_stack([np.round(shape / cell), made.assembly])[order]
     first = np.unique(keys, axis=0, return_index=True)[1]
     best: IntArray = order[np.sort(first)]
@@ -169,18 +171,18 @@ class _Model:
         normal, side = self._normal(made)
         scale = np.einsum("mii->mi", normal)
         floor = 1e-12 * scale.max(axis=1, keepdims=True) + 1e-300
-        normal = normal + np.eye(SHAPE) * (damping[:, None] * np.maximum(scale, floor))[:, None]
+        normal = normal + np.eye(made.UNKNOWNS) * (damping[:, None] * np.maximum(scale, floor))[:, None]
         moved = -np.linalg.solve(normal, side[..., None])[..., 0]
         moved /= np.maximum(1.0, np.abs(moved).max(axis=1, keepdims=True))
-        there = Generators(made.shape + moved, made.assembly)
+        there = made.changed(made.shape + moved)
         fresh = self.square(there)
         return there, fresh, square - fresh
 
     def _normal(self, made: Generators) -> tuple[FloatArray, FloatArray]:
         wanted = self.wanted
-        theta4 = output_angles(made, wanted.turned)
-        errors = wanted.centred(theta4 - wanted.output)
-        slopes = wanted.centred(output_slopes(made, wanted.turned, theta4))
+        output = made.outputs(wanted.turned)
+        errors = wanted.centred(output - wanted.output)
+        slopes = wanted.centred(made.slopes(wanted.turned, output))
         weighed = slopes * wanted.weights[:, None]
         normal = weighed.swapaxes(1, 2) @ slopes
         side = (weighed.swapaxes(1, 2) @ errors[..., None])[..., 0]
@@ -191,7 +193,7 @@ class _Model:
             normal = normal + pulled.swapaxes(1, 2) @ pulled
             side = side + (pulled.swapaxes(1, 2) @ short[..., None])[..., 0]
         if self.held:
-            normal[:, 3], normal[:, :, 3], side[:, 3] = 0.0, 0.0, 0.0
-            normal[:, 3, 3] = 1.0
+            normal[:, -1], normal[:, :, -1], side[:, -1] = 0.0, 0.0, 0.0
+            normal[:, -1, -1] = 1.0
         normal = np.nan_to_num(normal, nan=0.0, posinf=0.0, neginf=0.0)
         return normal, np.nan_to_num(side, nan=0.0, posinf=0.0, neginf=0.0)

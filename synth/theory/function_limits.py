@@ -1,13 +1,13 @@
-"""What limits four-bars as function generators, as smooth functions of their shape."""
+"""What limits function generators, as smooth functions of their shape."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 
-from grashof.problems.values.arrays import FloatArray
-from grashof.synth.theory.function_output import SHAPE, Generators, passes
+from grashof.problems.values.arrays import BoolArray, FloatArray, Limits
 
 LEAST_ANGLE = float(np.radians(0.3))  # so near to a dead position no generator may come
 
@@ -20,22 +20,26 @@ class ShapeLimits:
     ----------
     span : float, rad
         Rotation of the driver from its first angle.
-    caps : ndarray, shape (4, 4)
-        Greatest logarithm of length j over length k of r1 to r4.
+    caps : ndarray, shape (n, n)
+        Greatest logarithm of length j over length k, of `Generators.lengths`.
     transmission : float, rad
         Least min(mu, pi - mu).
     over_cycle : bool
         Over the whole turn, not only over the rotation.
     margin : float, optional
-        The driver turns fully: r3 + r4 - r1 - r2 and abs(r1 - r2) - abs(r3 - r4) are this share of the sum
-        of the lengths, or more.
+        The driver turns fully, and the shares that `rotatability` tells are this or more.
     shortest : int
         +1 where r1 has to be longer than r2, -1 where it has to be shorter, 0 for either.
+    offset : ndarray, shape (k, n + 1)
+        Sums of the lengths and the offset that have to be zero or positive; see `offset_rows`.
+    stroke : tuple of float
+        Limits of the travel over a whole turn, in units of the lengths.
 
     Examples
     --------
+    >>> from grashof.synth.theory.function_four_bar import FourBars
     >>> limits = ShapeLimits(1.0, transmission=0.5)
-    >>> values, slopes = limits.of(Generators(np.array([[0.1, 0.2, 0.3, 0.4]]), np.array([1.0])))
+    >>> values, slopes = limits.of(FourBars(np.array([[0.1, 0.2, 0.3, 0.4]]), np.array([1.0])))
     >>> values.shape, slopes.shape
     ((1, 20), (1, 20, 4))
     """
@@ -46,66 +50,119 @@ class ShapeLimits:
     over_cycle: bool = False
     margin: float | None = None
     shortest: int = 0
+    offset: FloatArray | None = None
+    stroke: Limits = (-np.inf, np.inf)
 
-    def of(self, made: Generators) -> tuple[FloatArray, FloatArray]:
-        """Values (M, K) and their derivatives by the shape (M, K, 4)."""
-        parts = [self._ratios(made), self._transmission(made), *self._turning(made)]
-        values, slopes = zip(*parts, strict=True)
-        return np.concatenate(values, axis=1), np.concatenate(slopes, axis=1)
+    def of(self, made: Limited) -> tuple[FloatArray, FloatArray]:
+        """Values (M, L) and their derivatives by the shape (M, L, K)."""
+        return made.limited(self)
 
-    def _ratios(self, made: Generators) -> tuple[FloatArray, FloatArray]:
-        logs = np.concatenate([np.zeros((len(made), 1)), made.shape[:, :3]], axis=1)
-        upper, lower = np.nonzero(~np.eye(4, dtype=bool) & np.isfinite(self.caps))
-        unit = np.concatenate([np.zeros((1, SHAPE)), np.eye(SHAPE)[:3]])
-        slopes = np.broadcast_to(unit[lower] - unit[upper], (len(made), len(upper), SHAPE))
-        return self.caps[upper, lower] - logs[:, upper] + logs[:, lower], slopes
+    @property
+    def most_cosine(self) -> float:
+        """Greatest absolute cosine of the transmission angle."""
+        return float(np.cos(max(self.transmission, LEAST_ANGLE)))
 
-    def _transmission(self, made: Generators) -> tuple[FloatArray, FloatArray]:
-        """At both ends, and where O2A is along the ground line if the motion passes there."""
-        r2, r3, r4 = np.exp(made.shape[:, :3]).T[..., None]
-        first = made.shape[:, 3]
-        if self.over_cycle:
-            places, met = np.tile([0.0, np.pi], (len(made), 1)), np.ones((len(made), 2), dtype=bool)
-            moving = np.zeros(2)
+
+class Limited(Protocol):
+    """What knows its limits: `Generators`."""
+
+    def limited(self, limits: ShapeLimits) -> tuple[FloatArray, FloatArray]:
+        """Values and derivatives."""
+
+
+Rows = tuple[FloatArray, FloatArray]  # values (M, L), derivatives (M, L, K)
+
+
+def joined_rows(parts: list[Rows]) -> Rows:
+    """All of several limits."""
+    values, slopes = zip(*parts, strict=True)
+    return np.concatenate(values, axis=1), np.concatenate(slopes, axis=1)
+
+
+def ratio_rows(logs: FloatArray, unit: FloatArray, caps: FloatArray) -> Rows:
+    """Limits of the ratios of lengths, from their logarithms (M, n) and derivatives of these (n, K)."""
+    upper, lower = np.nonzero(~np.eye(len(caps), dtype=bool) & np.isfinite(caps))
+    slopes = np.broadcast_to(unit[lower] - unit[upper], (len(logs), len(upper), unit.shape[1]))
+    return caps[upper, lower] - logs[:, upper] + logs[:, lower], slopes
+
+
+def cosine_rows(cosine: FloatArray, slope: FloatArray, met: BoolArray, most: float) -> Rows:
+    """Limits of a cosine (M, n) on both sides, where it is met."""
+    values = np.concatenate([np.where(met, most - cosine, 1.0), np.where(met, most + cosine, 1.0)], axis=1)
+    slope = np.where(met[..., None], slope, 0.0)
+    return values, np.concatenate([-slope, slope], axis=1)
+
+
+def linear_rows(rows: FloatArray, dimensions: FloatArray, slopes: FloatArray) -> Rows:
+    """Sums of dimensions (M, n) that have to be zero or positive, with their derivatives (M, n, K)."""
+    return dimensions @ rows.T, np.einsum("ln,mnk->mlk", rows, slopes)
+
+
+def places_met(first: FloatArray, span: float, along: Limits, over_cycle: bool) -> tuple[FloatArray, ...]:  # noqa: FBT001
+    """Where the transmission may be worst: at both ends, and at two angles if the motion passes there.
+
+    Returns
+    -------
+    places, met, moving : ndarray, shape (M, n), (M, n) and (n,)
+        Driver angles, whether each of them counts, and 1 where it moves with the first angle.
+    """
+    turns = np.tile(np.array(along), (len(first), 1))
+    if over_cycle:
+        return turns, np.ones(turns.shape, dtype=bool), np.zeros(2)
+    places = np.concatenate([first[:, None] + [0.0, span], turns], axis=1)
+    passed = np.stack([passes(first, span, angle) for angle in along], axis=1)
+    met = np.concatenate([np.ones_like(passed), passed], axis=1)
+    return places, met, np.array([1.0, 1.0, 0.0, 0.0])
+
+
+def passes(first: FloatArray, span: float, angle: float) -> BoolArray:
+    """Whether a rotation from a first angle passes another one, whatever its whole turns."""
+    inside: BoolArray = (angle - first) % (2 * np.pi) <= span
+    return inside
+
+
+def offset_rows(sizes: list[Limits], offset: Limits) -> FloatArray:
+    """Sums of lengths and offset that are not negative where some scale brings all within their limits.
+
+    Parameters
+    ----------
+    sizes : list of tuple of float
+        Of n lengths.
+    offset : tuple of float
+        Of the signed offset.
+
+    Returns
+    -------
+    ndarray, shape (k, n + 1)
+
+    Notes
+    -----
+    With the scale 1 / t limits are low t <= q <= high t: bounds of t, of which each lower one has to be
+    below each upper one (elimination by Fourier and Motzkin). Bounds by two lengths are left out: they
+    are those of `ShapeLimits.caps`.
+
+    Examples
+    --------
+    An offset of at most 2 where r1 is at least 1: 2 r1 - offset >= 0.
+
+    >>> offset_rows([(1.0, np.inf)], (-np.inf, 2.0))
+    array([[ 1. , -0.5]])
+    """
+    count = len(sizes)
+    unit = np.eye(count + 1)
+    upper = [unit[k] / low for k, (low, _) in enumerate(sizes) if low > 0]
+    lower = [unit[k] / high for k, (_, high) in enumerate(sizes) if np.isfinite(high)]
+    low, high = offset
+    rows: list[FloatArray] = []
+    if np.isfinite(low):
+        if low >= 0:
+            rows += [unit[-1], *(unit[-1] / low - row for row in lower if low > 0)]
         else:
-            along = np.tile([0.0, np.pi], (len(made), 1))
-            places = np.concatenate([first[:, None] + [0.0, self.span], along], axis=1)
-            passed = np.stack([passes(first, self.span, angle) for angle in (0.0, np.pi)], axis=1)
-            met = np.concatenate([np.ones_like(passed), passed], axis=1)
-            moving = np.array([1.0, 1.0, 0.0, 0.0])
-        square = 1 + r2**2 - 2 * r2 * np.cos(places)
-        cosine = (r3**2 + r4**2 - square) / (2 * r3 * r4)
-        by_square = -1 / (2 * r3 * r4)
-        slope = np.stack([
-            by_square * (2 * r2**2 - 2 * r2 * np.cos(places)),
-            r3 / r4 - cosine,
-            r4 / r3 - cosine,
-            by_square * 2 * r2 * np.sin(places) * moving,
-        ], axis=-1)  # fmt: skip
-        most = np.cos(max(self.transmission, LEAST_ANGLE))
-        values = np.concatenate(
-            [np.where(met, most - cosine, 1.0), np.where(met, most + cosine, 1.0)], axis=1
-        )
-        slope = np.where(met[..., None], slope, 0.0)
-        return values, np.concatenate([-slope, slope], axis=1)
-
-    def _turning(self, made: Generators) -> list[tuple[FloatArray, FloatArray]]:
-        """Full rotation of the driver, in shares of the sum of the lengths."""
-        lengths = made.lengths
-        total = lengths.sum(axis=1, keepdims=True)
-        rows = []
-        if self.margin is not None:
-            side = np.where(lengths[:, 1] < 1, 1.0, -1.0)
-            side = np.full(len(made), float(self.shortest)) if self.shortest else side
-            one = np.ones(len(made))
-            rows = [[-one, -one, one, one], [side, -side, -one, one], [side, -side, one, -one]]
-        elif self.shortest:
-            side = np.full(len(made), float(self.shortest))
-            rows = [[side, -side, 0 * side, 0 * side]]
-        if not rows:
-            return []
-        signs = np.array(rows).transpose(2, 0, 1)  # (M, rows, 4)
-        share = (signs * lengths[:, None]).sum(axis=-1) / total
-        slopes = (signs - share[..., None])[..., 1:] * (lengths[:, None, 1:] / total[..., None])
-        slopes = np.concatenate([slopes, np.zeros((*slopes.shape[:2], 1))], axis=-1)
-        return [(share - (self.margin or 0.0), slopes)]
+            rows += [row - unit[-1] / low for row in upper]
+    if np.isfinite(high):
+        if high <= 0:
+            rows += [-unit[-1], *(unit[-1] / high - row for row in lower if high < 0)]
+        else:
+            rows += [row - unit[-1] / high for row in upper]
+    rows = [row / np.abs(row).max() for row in rows if np.abs(row).max() > 0]
+    return np.array(rows).reshape(-1, count + 1)

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.theory.function_fit import Limits, Wanted
-from grashof.synth.theory.function_output import SHAPE, Generators, output_angles, output_slopes
+from grashof.synth.theory.function_output import Generators
 
 STEPS = 60
 CORRECTIONS = 2  # of a step
-PRICE = 10.0  # rad: of a limit missed by one, so that missing it never pays
+PRICE = 10.0  # rad, or units of the travel: of a limit missed by one, so that missing it never pays
 _FIRST, _LEAST, _MOST = 0.1, 1e-11, 0.5  # of the trust region
 _HEAVY = 1e4  # of the slack in a step of least squares
 
@@ -25,7 +25,7 @@ class Optimum:
     ----------
     made : Generators
         One.
-    error : float, rad
+    error : float
         What was made small: root mean square or greatest error at the samples.
     missed : float
         By how much the worst limit is missed; zero where all are kept.
@@ -52,7 +52,7 @@ class Aim:
         The greatest error is made small, or else the (weighted) mean square.
     held : bool
         The first driver angle stays.
-    band : float, rad
+    band : float
         Greatest error that is allowed at any sample.
     """
 
@@ -64,7 +64,7 @@ class Aim:
 
     def errors(self, made: Generators) -> FloatArray:
         """Output less what is wanted at the samples, about the best zero, shape (N,); NaN: open."""
-        off = (output_angles(made, self.wanted.turned) - self.wanted.output)[0]
+        off = (made.outputs(self.wanted.turned) - self.wanted.output)[0]
         if self.greatest:
             middle = (off.max() + off.min()) / 2
         else:
@@ -142,21 +142,20 @@ class _Linear:
 
     aim: Aim
     errors: FloatArray  # (N,)
-    slopes: FloatArray  # (N, 4)
-    limits: FloatArray  # (K,)
-    by_shape: FloatArray  # (K, 4)
-    free: FloatArray = field(default_factory=lambda: np.ones(SHAPE))
+    slopes: FloatArray  # (N, K)
+    limits: FloatArray  # (L,)
+    by_shape: FloatArray  # (L, K)
+    free: FloatArray  # (K,), 0 for what stays
 
     @classmethod
     def of(cls, aim: Aim, made: Generators) -> _Linear:
-        theta4 = output_angles(made, aim.wanted.turned)
-        slopes = output_slopes(made, aim.wanted.turned, theta4)[0]
+        slopes = made.slopes(aim.wanted.turned, made.outputs(aim.wanted.turned))[0]
         limits, by_shape = aim.limits(made)
-        free = np.array([1.0, 1.0, 1.0, 0.0 if aim.held else 1.0])
+        free = np.append(np.ones(made.UNKNOWNS - 1), 0.0 if aim.held else 1.0)
         return cls(aim, aim.errors(made), slopes, limits[0], by_shape[0], free)
 
     def step(self, radius: float) -> tuple[FloatArray, float]:
-        """The best step, shape (4,), and the merit that it promises."""
+        """The best step, shape (K,), and the merit that it promises."""
         moved = self._greatest(radius) if self.aim.greatest else self._square(radius)
         off = self.errors + self.slopes @ moved
         short = max(0.0, float(-(self.limits + self.by_shape @ moved).min(initial=0.0)))
@@ -176,18 +175,18 @@ class _Linear:
         The valleys of these errors are narrow and curved: without the correction (of second order, Fletcher)
         steps along them would have to be tiny.
         """
-        there = Generators(made.shape + moved, made.assembly)
+        there = made.changed(made.shape + moved)
         best = there, self.aim.merit(there)
         centred = (self.slopes - self.slopes.mean(axis=0)) * self.free
         promised = self.errors + self.slopes @ moved
         scale = float(np.einsum("nk,nk->", centred, centred))
-        normal = centred.T @ centred + 1e-8 * scale * np.eye(SHAPE)
+        normal = centred.T @ centred + 1e-8 * scale * np.eye(made.UNKNOWNS)
         for _ in range(CORRECTIONS):
             strayed = self.aim.errors(there) - promised
             if not np.isfinite(strayed).all():
                 break
             back = np.linalg.solve(normal, centred.T @ (strayed - strayed.mean()))
-            there = Generators(there.shape - back, made.assembly)
+            there = made.changed(there.shape - back)
             merit = self.aim.merit(there)
             if not merit < best[1]:
                 break
@@ -198,7 +197,7 @@ class _Linear:
         """Linear programme in the step, the zero, the greatest error and the slack."""
         from scipy.optimize import linprog  # here: few problems need it
 
-        count, kept = len(self.errors), len(self.limits)
+        count, kept, unknowns = len(self.errors), len(self.limits), len(self.free)
         scale = max(float(np.ptp(self.errors)) / 2, 1e-12)
         one, none = np.ones((count, 1)), np.zeros((count, 1))
         over = np.hstack([self.slopes / scale, -one, -one, none])
@@ -207,28 +206,29 @@ class _Linear:
         right = np.concatenate([-self.errors / scale, self.errors / scale, self.limits])
         most = radius * self.free
         bounds = [*zip(-most, most, strict=True), (None, None), (0, None), (0, None)]
-        cost = np.array([0.0] * SHAPE + [0.0, 1.0, PRICE / scale])
+        cost = np.array([0.0] * unknowns + [0.0, 1.0, PRICE / scale])
         found = linprog(cost, np.vstack([over, under, rows]), right, bounds=bounds, method="highs")
-        return np.zeros(SHAPE) if found.x is None else np.asarray(found.x[:SHAPE])
+        return np.zeros(unknowns) if found.x is None else np.asarray(found.x[:unknowns])
 
     def _square(self, radius: float) -> FloatArray:
         """Least squares in the step and the slack, the zero eliminated, under inequalities."""
+        unknowns = len(self.free)
         weights = self.aim.wanted.weights / self.aim.wanted.weights.sum()
         root = np.sqrt(weights)
         centred = self.slopes - weights @ self.slopes
-        damp = 1e-9 * np.linalg.norm(centred * root[:, None]) * np.eye(SHAPE)
-        matrix = np.zeros((len(self.errors) + SHAPE + 1, SHAPE + 1))
-        matrix[: len(self.errors), :SHAPE] = centred * root[:, None] * self.free
-        matrix[len(self.errors) : -1, :SHAPE] = damp
+        damp = 1e-9 * np.linalg.norm(centred * root[:, None]) * np.eye(unknowns)
+        matrix = np.zeros((len(self.errors) + unknowns + 1, unknowns + 1))
+        matrix[: len(self.errors), :unknowns] = centred * root[:, None] * self.free
+        matrix[len(self.errors) : -1, :unknowns] = damp
         matrix[-1, -1] = _HEAVY
         side = np.zeros(len(matrix))
         side[: len(self.errors)] = -self.errors * root
         rows = np.hstack([self.by_shape, np.ones((len(self.limits), 1))])
         bounds = -self.limits
-        box = np.hstack([np.vstack([np.eye(SHAPE), -np.eye(SHAPE)]), np.zeros((2 * SHAPE, 1))])
-        slack = np.append(np.zeros(SHAPE), 1.0)[None]
+        box = np.hstack([np.vstack([np.eye(unknowns), -np.eye(unknowns)]), np.zeros((2 * unknowns, 1))])
+        slack = np.append(np.zeros(unknowns), 1.0)[None]
         inequality = np.vstack([rows, box, slack])
-        least = np.concatenate([bounds, np.full(2 * SHAPE, -radius), [0.0]])
+        least = np.concatenate([bounds, np.full(2 * unknowns, -radius), [0.0]])
         if np.isfinite(self.aim.band):
             band = self.aim.band
             inequality = np.vstack([
@@ -238,7 +238,7 @@ class _Linear:
             ])  # fmt: skip
             least = np.concatenate([least, self.errors - band, -self.errors - band])
         found = under_inequalities(matrix, side, inequality, least)
-        return np.clip(found[:SHAPE], -radius, radius) * self.free
+        return np.clip(found[:unknowns], -radius, radius) * self.free
 
 
 def under_inequalities(
@@ -295,7 +295,7 @@ def under_inequalities(
 
 def with_extremes(aim: Aim, made: Generators, turned: FloatArray, output: FloatArray) -> Aim:
     """The same aim with samples where a generator errs most on a dense grid, shape (K,) each."""
-    off = (output_angles(made, turned) - output)[0]
+    off = (made.outputs(turned) - output)[0]
     inner = np.flatnonzero((off[1:-1] - off[:-2]) * (off[2:] - off[1:-1]) <= 0) + 1
     at = np.concatenate([aim.wanted.turned, turned[inner]])
     wished = np.concatenate([aim.wanted.output, output[inner]])

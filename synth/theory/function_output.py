@@ -1,35 +1,38 @@
-"""Four-bars as function generators: the output angle along a rotation of the driver, and its derivatives."""
+"""Function generators of any kind: what each of them puts out along a rotation of its driver.
+
+The driver turns counter-clockwise. A kind is a class, a file each: `grashof.synth.theory.function_four_bar`,
+`function_slider_crank` and `function_inverted`. All else of the search goes through `Generators`.
+"""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import ClassVar, Self
 
 import numpy as np
 
-from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-
-SHAPE = 4  # unknowns of a generator: the logarithms of r2, r3, r4, and the first driver angle
+from grashof.problems import Linkage, Requirements
+from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray, Limits
+from grashof.synth.theory.function_limits import ShapeLimits
 
 
 @dataclass(frozen=True, slots=True)
-class Generators:
-    """Four-bars on the ground O2 = 0, O4 = 1 with the driver angle at which they begin.
-
-    The driver turns counter-clockwise from there.
+class Generators(ABC):
+    """Linkages of one kind with the driver angle at which they begin.
 
     Parameters
     ----------
-    shape : ndarray, shape (M, 4)
-        Logarithms of r2, r3, r4, each over r1, and the first driver angle, rad.
+    shape : ndarray, shape (M, K)
+        Logarithms of lengths, the offset of a slide, and last the first driver angle, rad.
     assembly : ndarray, shape (M,)
-        Sign of sin(theta4 - theta3).
-
-    Examples
-    --------
-    >>> one = Generators(np.array([[0.0, np.log(2), np.log(1.5), 0.3]]), np.array([1.0]))
-    >>> one.lengths.round(9).tolist(), len(one)
-    ([[1.0, 1.0, 2.0, 1.5]], 1)
     """
+
+    UNKNOWNS: ClassVar[int]  # K
+    EXACT: ClassVar[int]  # through so many pairs go one or a few
+    LINEAR: ClassVar[int]  # through so many goes one, where both start angles are given
+    FIRST_IS_LINK: ClassVar[bool] = True  # of `lengths`; otherwise it is the unit
+    ONE_SENSE: ClassVar[bool] = False  # the opposite output is the same linkage, turned by half a turn
 
     shape: FloatArray
     assembly: FloatArray
@@ -37,125 +40,149 @@ class Generators:
     def __len__(self) -> int:
         return len(self.shape)
 
-    def __getitem__(self, index: IntArray | BoolArray | slice) -> Generators:
-        return Generators(self.shape[index], self.assembly[index])
+    def __getitem__(self, index: IntArray | BoolArray | slice) -> Self:
+        return type(self)(self.shape[index], self.assembly[index])
 
     @property
-    def finite(self) -> Generators:
+    def finite(self) -> Self:
         """Those whose numbers are finite."""
         return self[np.isfinite(self.shape.sum(axis=1))]
 
     @property
-    def lengths(self) -> FloatArray:
-        """r1, r2, r3, r4 over r1, shape (M, 4)."""
-        return np.concatenate([np.ones((len(self), 1)), np.exp(self.shape[:, :3])], axis=1)
+    def first(self) -> FloatArray:
+        """The first driver angle, shape (M,), rad."""
+        return self.shape[:, -1]
+
+    def changed(self, shape: FloatArray) -> Self:
+        """The same assemblies with other shapes."""
+        return type(self)(shape, self.assembly)
+
+    def begun(self, turned: float | FloatArray) -> Self:
+        """The same, begun by a driver rotation earlier, one for all or each."""
+        shape = self.shape.copy()
+        shape[:, -1] -= turned
+        return self.changed(shape)
 
     @classmethod
-    def of_pivots(cls, a: ComplexArray, b: ComplexArray) -> Generators:
-        """Those with A and B at given places at the first driver angle, each of shape (M,)."""
-        with np.errstate(divide="ignore"):
-            sizes = np.log([np.abs(a), np.abs(b - a), np.abs(b - 1)])
-        shape = np.stack([*sizes, np.angle(a)], axis=-1)
-        return cls(shape, np.where(((b - a).conj() * (b - 1)).imag >= 0, 1.0, -1.0))
-
-    @classmethod
-    def joined(cls, several: list[Generators]) -> Generators:
+    def joined(cls, several: list[Self]) -> Self:
         """All of several batches."""
         if not several:
-            return cls(np.empty((0, SHAPE)), np.empty(0))
+            return cls(np.empty((0, cls.UNKNOWNS)), np.empty(0))
         shapes, signs = zip(*((each.shape, each.assembly) for each in several), strict=True)
         return cls(np.concatenate(shapes), np.concatenate(signs))
 
+    @property
+    @abstractmethod
+    def lengths(self) -> FloatArray:
+        """What limits of lengths are about, shape (M, n); the first has a size of its own or is the unit."""
 
-def output_angles(made: Generators, turned: FloatArray) -> FloatArray:
-    """Output angle theta4, unwrapped along the rotation; NaN where the loop is open.
+    @property
+    def link_ratio(self) -> FloatArray:
+        """Longest over shortest link, shape (M,)."""
+        ratio: FloatArray = self.lengths.max(axis=1) / self.lengths.min(axis=1)
+        return ratio
 
-    Parameters
-    ----------
-    made : Generators
-    turned : ndarray, shape (N,), rad
-        Driver rotations from the first, growing; steps of the output are less than half a turn.
+    @abstractmethod
+    def outputs(self, turned: FloatArray) -> FloatArray:
+        """Angle of link 4 or place of the slide, shape (M, N); NaN where the loop is open.
 
-    Returns
-    -------
-    ndarray, shape (M, N), rad
+        Parameters
+        ----------
+        turned : ndarray, shape (N,), rad
+            Driver rotations from the first angle, growing.
+        """
 
-    Notes
-    -----
-    In the triangle O4, A, B the angle at O4 follows from its sides (law of cosines); the assembly says
-    on which side of O4A the link O4B lies.
+    @abstractmethod
+    def slopes(self, turned: FloatArray, output: FloatArray) -> FloatArray:
+        """Derivatives of the output by the shape, shape (M, N, K)."""
 
-    Examples
-    --------
-    A parallelogram turns its output as its driver:
+    @abstractmethod
+    def worst_cosine(self, span: float) -> FloatArray:
+        """Greatest absolute cosine of the transmission angle over a rotation, shape (M,); above 1: open."""
 
-    >>> one = Generators(np.array([[0.0, 0.0, 0.0, 1.0]]), np.array([1.0]))
-    >>> output_angles(one, np.array([0.0, 0.5, 1.0])).round(9).tolist()
-    [[1.0, 1.5, 2.0]]
-    """
-    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        r2, r3, r4 = np.exp(made.shape[:, :3, None]).swapaxes(0, 1)
-        seen = r2 * np.exp(1j * (made.shape[:, 3:] + turned)) - 1.0
-        apart = np.abs(seen)
-        cosine = (apart**2 + r4**2 - r3**2) / (2 * apart * r4)
-        angle = np.angle(seen) - made.assembly[:, None] * np.arccos(cosine)
-    unwrapped: FloatArray = np.unwrap(angle, axis=1)
-    return unwrapped
+    @abstractmethod
+    def limited(self, limits: ShapeLimits) -> tuple[FloatArray, FloatArray]:
+        """Limits (M, L), zero or positive where they are kept, and their derivatives (M, L, K)."""
 
+    @property
+    @abstractmethod
+    def other_assembly(self) -> Self:
+        """The same on the other assembly."""
 
-def output_slopes(made: Generators, turned: FloatArray, theta4: FloatArray) -> FloatArray:
-    """Derivatives of the output angle by the shape, shape (M, N, 4).
+    @classmethod
+    @abstractmethod
+    def through(cls, turned: FloatArray, output: FloatArray) -> tuple[Self, IntArray]:
+        """All that go through `EXACT` pairs of m sets, (m, EXACT) each, and the set of each.
 
-    Notes
-    -----
-    The loop r2 e2 + r3 e3 = 1 + r4 e4, differentiated and projected on e3, is linear in the rate of
-    theta4.
-    """
-    r2, r3, r4 = np.exp(made.shape[:, :3, None]).swapaxes(0, 1)
-    theta2 = made.shape[:, 3:] + turned
-    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        coupler = 1.0 + r4 * np.exp(1j * theta4) - r2 * np.exp(1j * theta2)
-        along = (coupler / np.abs(coupler)).conj()
-        driver, output = along * np.exp(1j * theta2), along * np.exp(1j * theta4)
-        lever = -r4 * output.imag  # r4 sin(theta3 - theta4)
-        slopes = [r2 * driver.real, np.broadcast_to(r3, theta2.shape), -r4 * output.real, -r2 * driver.imag]
-        by_shape: FloatArray = np.stack(slopes, axis=-1) / lever[..., None]
-    return by_shape
+        Rotations and outputs count from the first pair, zero there. There may be branch or circuit defects
+        between the pairs.
+        """
 
+    @classmethod
+    @abstractmethod
+    def at_starts(cls, turned: FloatArray, output: FloatArray, driver: FloatArray, place: FloatArray) -> Self:
+        """Those through `LINEAR` pairs at given starts, or nearly through more.
 
-def closes(made: Generators, span: float) -> BoolArray:
-    """Whether the loop stays closed, off dead positions, all over a rotation of the driver; shape (M,).
+        Parameters
+        ----------
+        turned, output : ndarray, shape (N,)
+            From the first pair, zero there.
+        driver, place : ndarray, shape (M,)
+            Driver angle and output at the first pair; the driver may come out turned by half a turn.
+        """
 
-    Parameters
-    ----------
-    made : Generators
-    span : float, rad
-        The rotation from the first driver angle.
-    """
-    _, r3, r4 = np.exp(made.shape[:, :3]).T
-    least, most = diagonals(made, span)
-    closed: BoolArray = (least > np.abs(r3 - r4)) & (most < r3 + r4)
-    return closed
+    @classmethod
+    @abstractmethod
+    def cranks(cls, rng: np.random.Generator, count: int, first: float | None, shortest: int) -> Self:
+        """Random ones whose driver turns fully, from a given driver angle on, or any."""
 
+    @classmethod
+    @abstractmethod
+    def anything(cls, rng: np.random.Generator, count: int, first: float, span: float) -> Self:
+        """Random ones that close over a rotation from a driver angle."""
 
-def diagonals(made: Generators, span: float) -> tuple[FloatArray, FloatArray]:
-    """Least and greatest distance A-O4 over a rotation from the first driver angle, each of shape (M,)."""
-    r2, first = np.exp(made.shape[:, 0]), made.shape[:, 3]
-    ends = np.abs(r2 * np.exp(1j * np.stack([first, first + span])) - 1.0)
-    near, far = passes(first, span, 0.0), passes(first, span, np.pi)
-    least = np.where(near, np.abs(1 - r2), ends.min(axis=0))
-    return least, np.where(far, 1 + r2, ends.max(axis=0))
+    def scaled_to(self, turned: FloatArray, output: FloatArray) -> Self:  # noqa: ARG002
+        """The same in the size that suits an output; where all sizes have the same output, themselves."""
+        return self
 
+    @staticmethod
+    def place_of(angle: FloatArray) -> FloatArray:
+        """Output at the first pair, from what is tried evenly over half a turn."""
+        return angle
 
-def passes(first: FloatArray, span: float, angle: float) -> BoolArray:
-    """Whether a rotation from a first angle passes another one, whatever its whole turns."""
-    inside: BoolArray = (angle - first) % (2 * np.pi) <= span
-    return inside
+    @staticmethod
+    def angle_of(place: FloatArray) -> FloatArray:
+        """What stands for it there."""
+        return place
 
+    @staticmethod
+    def tried_between(count: int) -> tuple[FloatArray, float]:
+        """Outputs from the first pair on that are tried at one more driver angle, and the step."""
+        return np.linspace(-np.pi, np.pi, count, endpoint=False) + np.pi / count, 2 * np.pi / count
 
-def worst_cosine(made: Generators, span: float) -> FloatArray:
-    """Greatest absolute cosine of the transmission angle over a rotation, shape (M,); above 1: open."""
-    _, r3, r4 = np.exp(made.shape[:, :3]).T
-    cosines = [(r3**2 + r4**2 - diagonal**2) / (2 * r3 * r4) for diagonal in diagonals(made, span)]
-    worst: FloatArray = np.abs(cosines).max(axis=0)
-    return worst
+    @staticmethod
+    @abstractmethod
+    def sizes(wanted: Requirements, unit: float) -> tuple[tuple[str, ...], list[Limits]]:
+        """Names and limits of `lengths` under resolved requirements."""
+
+    @staticmethod
+    @abstractmethod
+    def direction(wanted: Requirements) -> float:
+        """Direction of the ground line, or of the slide, rad."""
+
+    @abstractmethod
+    def linkage(self, wanted: Requirements, unit: float, driver: int) -> Linkage:
+        """The first of them as a linkage, placed and scaled as resolved requirements have it.
+
+        Parameters
+        ----------
+        wanted : Requirements
+        unit : float, length
+            Of outputs that are travel.
+        driver : int
+            Sense of the driver; -1 is the mirror image.
+        """
+
+    @abstractmethod
+    def extent(self, span: float, ground: float) -> FloatArray:
+        """Diagonal of the box around the pivots over a rotation, shape (M,), O2O4 having a length."""

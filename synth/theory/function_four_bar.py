@@ -1,0 +1,292 @@
+"""Four-bars as function generators: link 4 turns with the driver."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from grashof.problems import FourBar, Requirements
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray, Limits
+from grashof.problems.values.function_ground import FunctionGround
+from grashof.synth.theory.five_poses import five_pose_dyads_of_sets
+from grashof.synth.theory.function_limits import (
+    Rows,
+    ShapeLimits,
+    cosine_rows,
+    joined_rows,
+    passes,
+    places_met,
+    ratio_rows,
+)
+from grashof.synth.theory.function_output import Generators
+from grashof.synth.theory.many_systems import solved, weighed
+
+_TRIVIAL = 1e-6  # of the ground: a pivot so near to O2 or O4 is the ground link itself
+
+
+@dataclass(frozen=True, slots=True)
+class FourBars(Generators):
+    """Four-bars on the ground O2 = 0, O4 = 1 with the driver angle at which they begin.
+
+    The shape has the logarithms of r2, r3, r4, each over r1, and the first driver angle; the assembly is the
+    sign of sin(theta4 - theta3).
+
+    Examples
+    --------
+    >>> one = FourBars(np.array([[0.0, np.log(2), np.log(1.5), 0.3]]), np.array([1.0]))
+    >>> one.lengths.round(9).tolist(), len(one)
+    ([[1.0, 1.0, 2.0, 1.5]], 1)
+
+    A parallelogram turns its output as its driver:
+
+    >>> one = FourBars(np.array([[0.0, 0.0, 0.0, 1.0]]), np.array([1.0]))
+    >>> one.outputs(np.array([0.0, 0.5, 1.0])).round(9).tolist()
+    [[1.0, 1.5, 2.0]]
+    """
+
+    UNKNOWNS = 4
+    EXACT = 5
+    LINEAR = 3
+
+    @property
+    def lengths(self) -> FloatArray:
+        """r1, r2, r3, r4 over r1."""
+        return np.concatenate([np.ones((len(self), 1)), np.exp(self.shape[:, :3])], axis=1)
+
+    @classmethod
+    def of_pivots(cls, a: ComplexArray, b: ComplexArray) -> Self:
+        """Those with A and B at given places at the first driver angle, each of shape (M,)."""
+        with np.errstate(divide="ignore"):
+            sizes = np.log([np.abs(a), np.abs(b - a), np.abs(b - 1)])
+        shape = np.stack([*sizes, np.angle(a)], axis=-1)
+        return cls(shape, np.where(((b - a).conj() * (b - 1)).imag >= 0, 1.0, -1.0))
+
+    @property
+    def other_assembly(self) -> Self:
+        return type(self)(self.shape, -self.assembly)
+
+    def outputs(self, turned: FloatArray) -> FloatArray:
+        """theta4, unwrapped along the rotation, from the triangle A-B-O4."""
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            r2, r3, r4 = np.exp(self.shape[:, :3, None]).swapaxes(0, 1)
+            seen = r2 * np.exp(1j * (self.shape[:, 3:] + turned)) - 1.0
+            apart = np.abs(seen)
+            cosine = (apart**2 + r4**2 - r3**2) / (2 * apart * r4)
+            angle = np.angle(seen) - self.assembly[:, None] * np.arccos(cosine)
+        unwrapped: FloatArray = np.unwrap(angle, axis=1)
+        return unwrapped
+
+    def slopes(self, turned: FloatArray, output: FloatArray) -> FloatArray:
+        """The loop r2 e2 + r3 e3 = 1 + r4 e4, differentiated and projected on e3: linear in theta4's rate."""
+        r2, r3, r4 = np.exp(self.shape[:, :3, None]).swapaxes(0, 1)
+        theta2 = self.shape[:, 3:] + turned
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            coupler = 1.0 + r4 * np.exp(1j * output) - r2 * np.exp(1j * theta2)
+            along = (coupler / np.abs(coupler)).conj()
+            driver, out = along * np.exp(1j * theta2), along * np.exp(1j * output)
+            lever = -r4 * out.imag  # r4 sin(theta3 - theta4)
+            slopes = [r2 * driver.real, np.broadcast_to(r3, theta2.shape), -r4 * out.real, -r2 * driver.imag]
+            by_shape: FloatArray = np.stack(slopes, axis=-1) / lever[..., None]
+        return by_shape
+
+    def closes(self, span: float) -> BoolArray:
+        """Whether the loop stays closed, off dead positions, all over a rotation of the driver; shape (M,)."""
+        _, r3, r4 = np.exp(self.shape[:, :3]).T
+        least, most = self._diagonals(span)
+        closed: BoolArray = (least > np.abs(r3 - r4)) & (most < r3 + r4)
+        return closed
+
+    def _diagonals(self, span: float) -> tuple[FloatArray, FloatArray]:
+        """Least and greatest distance A-O4 over a rotation from the first angle, each of shape (M,)."""
+        r2, first = np.exp(self.shape[:, 0]), self.shape[:, 3]
+        ends = np.abs(r2 * np.exp(1j * np.stack([first, first + span])) - 1.0)
+        near, far = passes(first, span, 0.0), passes(first, span, np.pi)
+        least = np.where(near, np.abs(1 - r2), ends.min(axis=0))
+        return least, np.where(far, 1 + r2, ends.max(axis=0))
+
+    def worst_cosine(self, span: float) -> FloatArray:
+        """Where the diagonal is least or greatest."""
+        _, r3, r4 = np.exp(self.shape[:, :3]).T
+        cosines = [(r3**2 + r4**2 - diagonal**2) / (2 * r3 * r4) for diagonal in self._diagonals(span)]
+        worst: FloatArray = np.abs(cosines).max(axis=0)
+        return worst
+
+    def limited(self, limits: ShapeLimits) -> Rows:
+        logs = np.concatenate([np.zeros((len(self), 1)), self.shape[:, :3]], axis=1)
+        unit = np.concatenate([np.zeros((1, 4)), np.eye(4)[:3]])
+        return joined_rows(
+            [ratio_rows(logs, unit, limits.caps), self._transmission(limits), *self._turning(limits)]
+        )
+
+    def _transmission(self, limits: ShapeLimits) -> Rows:
+        """At both ends, and where O2A is along the ground line if the motion passes there."""
+        r2, r3, r4 = np.exp(self.shape[:, :3]).T[..., None]
+        places, met, moving = places_met(self.first, limits.span, (0.0, np.pi), limits.over_cycle)
+        square = 1 + r2**2 - 2 * r2 * np.cos(places)
+        cosine = (r3**2 + r4**2 - square) / (2 * r3 * r4)
+        by_square = -1 / (2 * r3 * r4)
+        slope = np.stack([
+            by_square * (2 * r2**2 - 2 * r2 * np.cos(places)),
+            r3 / r4 - cosine,
+            r4 / r3 - cosine,
+            by_square * 2 * r2 * np.sin(places) * moving,
+        ], axis=-1)  # fmt: skip
+        return cosine_rows(cosine, slope, met, limits.most_cosine)
+
+    def _turning(self, limits: ShapeLimits) -> list[Rows]:
+        """r3 + r4 - r1 - r2 and abs(r1 - r2) - abs(r3 - r4), in shares of the sum of the lengths."""
+        lengths = self.lengths
+        total = lengths.sum(axis=1, keepdims=True)
+        rows = []
+        if limits.margin is not None:
+            side = np.where(lengths[:, 1] < 1, 1.0, -1.0)
+            side = np.full(len(self), float(limits.shortest)) if limits.shortest else side
+            one = np.ones(len(self))
+            rows = [[-one, -one, one, one], [side, -side, -one, one], [side, -side, one, -one]]
+        elif limits.shortest:
+            side = np.full(len(self), float(limits.shortest))
+            rows = [[side, -side, 0 * side, 0 * side]]
+        if not rows:
+            return []
+        signs = np.array(rows).transpose(2, 0, 1)  # (M, rows, 4)
+        share = (signs * lengths[:, None]).sum(axis=-1) / total
+        slopes = (signs - share[..., None])[..., 1:] * (lengths[:, None, 1:] / total[..., None])
+        slopes = np.concatenate([slopes, np.zeros((*slopes.shape[:2], 1))], axis=-1)
+        return [(share - (limits.margin or 0.0), slopes)]
+
+    @classmethod
+    def through(cls, turned: FloatArray, output: FloatArray) -> tuple[Self, IntArray]:
+        """All four-bars through five pairs, both start angles free: one or three of most sets.
+
+        Notes
+        -----
+        Function generation is motion generation: seen from link 4, link 2 moves through known poses, and the
+        unknown coupler is an RR dyad of that motion (Erdman & Sandor; families of five poses: Burmester). One
+        of its roots is the ground link itself, which is left out: what remains is a cubic.
+
+        Examples
+        --------
+        >>> turned = np.radians([[0, 20, 45, 70, 90]])
+        >>> made, which = FourBars.through(turned, 0.5 * turned**1.2)
+        >>> len(made) in (1, 3)
+        True
+        """
+        rotation = np.exp(1j * (turned - output))
+        shift = 1.0 - np.exp(-1j * output)
+        dyads = five_pose_dyads_of_sets(rotation, shift)
+        a, b = dyads.moving, dyads.ground
+        with np.errstate(invalid="ignore"):
+            real = (np.abs(a) > _TRIVIAL) & (np.abs(b - 1) > _TRIVIAL) & (np.abs(b - a) > _TRIVIAL)
+        which, root = np.nonzero(real)
+        return cls.of_pivots(a[which, root], b[which, root]), which
+
+    @classmethod
+    def at_starts(cls, turned: FloatArray, output: FloatArray, driver: FloatArray, place: FloatArray) -> Self:
+        """Those through three pairs, where Freudenstein's equation gives a negative length by half a turn.
+
+        Notes
+        -----
+        K1 cos psi - K2 cos phi + K3 = cos(phi - psi) with K1 = r1 / r2, K2 = r1 / r4 and
+        K3 = (r1^2 + r2^2 - r3^2 + r4^2) / (2 r2 r4) (Freudenstein, *Trans. ASME* 77, 1955) is linear in K.
+        Its residual over its derivative by psi is the error of the output (structural instead of design
+        error), by which more than three pairs are weighted in a second step.
+
+        Examples
+        --------
+        y = 1/x, Chebyshev spacing, ranges of 90 deg, from 30 and 240 deg on (Shigley & Uicker):
+
+        >>> phi, psi = np.radians([36.03, 75, 113.97]), np.radians([251.30, 300, 326.88])
+        >>> FourBars.at_starts(phi - phi[0], psi - psi[0], phi[:1], psi[:1]).lengths.round(2).tolist()
+        [[1.0, 2.47, 0.91, 2.47]]
+        """
+        phi, psi = driver[:, None] + turned, place[:, None] + output
+        rows = np.stack([np.cos(psi), -np.cos(phi), np.ones_like(phi)], axis=-1)
+        right = np.cos(phi - psi)
+        k = solved(rows, right)
+        if len(turned) > 3:
+            slope = np.abs(-k[:, :1] * np.sin(psi) - np.sin(phi - psi))
+            k = solved(*weighed(rows, right, slope))
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            r2, r4 = 1.0 / k[:, 0], 1.0 / k[:, 1]
+            r3 = np.sqrt(1.0 + r2**2 + r4**2 - 2 * r2 * r4 * k[:, 2])
+            middle = len(turned) // 2
+            a, b = r2 * np.exp(1j * phi[:, middle]), 1.0 + r4 * np.exp(1j * psi[:, middle])
+            first = driver + np.pi * (r2 < 0)
+            shape = np.stack([np.log(np.abs(r2)), np.log(r3), np.log(np.abs(r4)), first], axis=-1)
+            assembly = np.where(((b - a).conj() * (b - 1)).imag >= 0, 1.0, -1.0)
+        shape[~np.isfinite(shape).all(axis=1)] = np.nan
+        return cls(shape, assembly)
+
+    @classmethod
+    def cranks(
+        cls, rng: np.random.Generator, count: int, first: float | None = None, shortest: int = 0
+    ) -> Self:
+        """Random four-bars whose driver turns fully, on both assemblies.
+
+        With r1 = 1, r3 + r4 = 1 + r2 + exp(b) and r3 - r4 = abs(1 - r2) tanh(c), r2 below or above 1, any b
+        and c give a full crank, and there is none besides.
+
+        Examples
+        --------
+        >>> r1, r2, r3, r4 = FourBars.cranks(np.random.default_rng(0), 100).lengths.T
+        >>> bool((r3 + r4 > r1 + r2).all() and (abs(r1 - r2) > abs(r3 - r4)).all())
+        True
+        """
+        crank = 1 / (1 + np.exp(-rng.normal(0, 1.5, count)))
+        longer = rng.random(count) < 0.5 if not shortest else np.full(count, shortest < 0)
+        r2 = np.where(longer, 1 / crank, crank)
+        total, difference = (
+            1 + r2 + np.exp(rng.normal(-1, 1.5, count)),
+            np.abs(1 - r2) * np.tanh(rng.normal(0, 1, count)),
+        )
+        begin = rng.uniform(-np.pi, np.pi, count) if first is None else np.full(count, first)
+        lengths = np.stack([r2, (total + difference) / 2, (total - difference) / 2], axis=-1)
+        return cls(np.column_stack([np.log(lengths), begin]), rng.choice([-1.0, 1.0], count))
+
+    @classmethod
+    def anything(cls, rng: np.random.Generator, count: int, first: float, span: float) -> Self:
+        """Lengths from 0.05 to 20.
+
+        Examples
+        --------
+        >>> made = FourBars.anything(np.random.default_rng(0), 1000, 0.5, 1.0)
+        >>> bool(made.closes(1.0).all() and (made.first == 0.5).all())
+        True
+        """
+        shape = np.column_stack([np.log(20) * rng.uniform(-1, 1, (count, 3)), np.full(count, first)])
+        made = cls(shape, rng.choice([-1.0, 1.0], count))
+        return made[made.closes(span)]
+
+    @staticmethod
+    def sizes(wanted: Requirements, unit: float) -> tuple[tuple[str, ...], list[Limits]]:  # noqa: ARG004
+        ground = FunctionGround.of(wanted)
+        first = (
+            max(wanted.link_lengths[0][0], ground.lengths[0]),
+            min(wanted.link_lengths[0][1], ground.lengths[1]),
+        )
+        return ("r1", "r2", "r3", "r4"), [first, *wanted.link_lengths[1:]]
+
+    @staticmethod
+    def direction(wanted: Requirements) -> float:
+        return FunctionGround.of(wanted).theta1
+
+    def linkage(self, wanted: Requirements, unit: float, driver: int) -> FourBar:  # noqa: ARG002
+        ground, shares = FunctionGround.of(wanted), self.lengths[0]
+        low, high = np.array(wanted.link_lengths).T
+        least = max(ground.lengths[0], float((low / shares).max()))
+        most = min(ground.lengths[1], float((high / shares).min()))
+        r1 = float(np.clip(ground.length, least, max(least, most)))
+        o2, o4 = ground.placed(r1)
+        r2, r3, r4 = (r1 * shares[1:]).tolist()
+        return FourBar(o2=o2, o4=o4, r2=r2, r3=r3, r4=r4, assembly=driver * self.assembly[0])
+
+    def extent(self, span: float, ground: float) -> FloatArray:
+        pivots = self.shape[:, 3:] + np.linspace(0.0, span, 13)
+        a = self.lengths[:, 1:2] * np.exp(1j * pivots)
+        b = 1 + self.lengths[:, 3:] * np.exp(1j * self.outputs(pivots[0] - pivots[0, 0]))
+        every = np.concatenate([a, b, np.zeros((len(self), 1)), np.ones((len(self), 1))], axis=1)
+        wide = np.hypot(np.ptp(every.real, axis=1), np.ptp(every.imag, axis=1))
+        extent: FloatArray = ground * wide
+        return extent

@@ -1,0 +1,262 @@
+"""Inverted slider-cranks as function generators: the block turns with the driver."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from grashof.problems import InvertedSliderCrank, Requirements
+from grashof.problems.values.arrays import FloatArray, IntArray, Limits
+from grashof.problems.values.function_ground import FunctionGround
+from grashof.synth.theory.function_limits import (
+    Rows,
+    ShapeLimits,
+    cosine_rows,
+    joined_rows,
+    linear_rows,
+    places_met,
+    ratio_rows,
+)
+from grashof.synth.theory.function_output import Generators
+from grashof.synth.theory.many_systems import weighed
+
+_TRIVIAL = 1e-9  # share of a null vector: without O4 it is no linkage
+
+
+@dataclass(frozen=True, slots=True)
+class InvertedSliderCranks(Generators):
+    """Inverted slider-cranks on the ground O2 = 0, O4 = 1 with the driver angle at which they begin.
+
+    The shape has the logarithm of r2 and the offset, each over r1, and the first driver angle. B always lies
+    ahead of A along the rod: the other assembly is the opposite offset.
+
+    Examples
+    --------
+    The block points from A to O4, where there is no offset:
+
+    >>> shaper = InvertedSliderCranks(np.array([[np.log(0.5), 0.0, np.pi / 2]]), np.ones(1))
+    >>> np.degrees(shaper.outputs(np.array([0.0, np.pi]))).round(6).tolist()
+    [[-26.565051, 26.565051]]
+    """
+
+    UNKNOWNS = 3
+    EXACT = 4
+    LINEAR = 2
+
+    @property
+    def lengths(self) -> FloatArray:
+        """r1 and r2 over r1."""
+        return np.column_stack([np.ones(len(self)), np.exp(self.shape[:, 0])])
+
+    @property
+    def other_assembly(self) -> Self:
+        return self.changed(self.shape * [1.0, -1.0, 1.0])
+
+    def _seen(self, theta2: FloatArray) -> FloatArray:
+        """Distance A-O4."""
+        r2 = np.exp(self.shape[:, :1])
+        return np.sqrt((1 - r2) ** 2 + 4 * r2 * np.sin(theta2 / 2) ** 2)
+
+    def outputs(self, turned: FloatArray) -> FloatArray:
+        """Direction of the rod, unwrapped: that of A-O4, and the offset beside it."""
+        r2, offset = np.exp(self.shape[:, :1]), self.shape[:, 1:2]
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            seen = 1.0 - r2 * np.exp(1j * (self.shape[:, 2:] + turned))
+            angle = np.angle(seen) + np.arcsin(offset / np.abs(seen))
+        unwrapped: FloatArray = np.unwrap(angle, axis=1)
+        return unwrapped
+
+    def slopes(self, turned: FloatArray, output: FloatArray) -> FloatArray:
+        """Of offset = sin(theta3) + r2 sin(theta2 - theta3): how far O4 is beside the rod's line."""
+        r2 = np.exp(self.shape[:, :1])
+        turn = self.shape[:, 2:] + turned - output
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            rod = np.cos(output) - r2 * np.cos(turn)
+            slopes = [-r2 * np.sin(turn), np.ones_like(turn), -r2 * np.cos(turn)]
+            by_shape: FloatArray = np.stack(slopes, axis=-1) / rod[..., None]
+        return by_shape
+
+    def worst_cosine(self, span: float) -> FloatArray:
+        """Abs(offset) over the distance A-O4, where that is least."""
+        places, met, _ = places_met(self.first, span, (0.0, np.pi), over_cycle=False)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            cosine = np.abs(self.shape[:, 1:2]) / self._seen(places)
+        worst: FloatArray = np.where(met, cosine, 0.0).max(axis=1)
+        return worst
+
+    def limited(self, limits: ShapeLimits) -> Rows:
+        logs = np.column_stack([np.zeros(len(self)), self.shape[:, 0]])
+        unit = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+        parts = [ratio_rows(logs, unit, limits.caps), self._transmission(limits)]
+        if limits.offset is not None:
+            zero, r2 = np.zeros(len(self)), self.lengths[:, 1]
+            dimensions = np.column_stack([self.lengths, self.shape[:, 1]])
+            rows = [[zero, zero, zero], [r2, zero, zero], [zero, zero + 1, zero]]
+            slopes = np.stack([np.stack(row, axis=-1) for row in rows], axis=1)
+            parts.append(linear_rows(limits.offset, dimensions, slopes))
+        if limits.margin is not None:
+            parts.append(self._turning(limits.margin))
+        return joined_rows(parts)
+
+    def _transmission(self, limits: ShapeLimits) -> Rows:
+        places, met, moving = places_met(self.first, limits.span, (0.0, np.pi), limits.over_cycle)
+        r2, offset = np.exp(self.shape[:, :1]), self.shape[:, 1:2]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            seen = self._seen(places)
+            by_square = -offset / (2 * seen**3)
+            slope = np.stack([
+                by_square * (2 * r2**2 - 2 * r2 * np.cos(places)),
+                1 / seen,
+                by_square * 2 * r2 * np.sin(places) * moving,
+            ], axis=-1)  # fmt: skip
+            return cosine_rows(offset / seen, slope, met, limits.most_cosine)
+
+    def _turning(self, margin: float) -> Rows:
+        """Abs(r1 - r2) -+ offset, in shares of r1 + r2 + abs(offset)."""
+        r2, offset = self.lengths[:, 1], self.shape[:, 1]
+        side, away, total = np.where(r2 < 1, 1.0, -1.0), np.sign(offset), 1 + r2 + np.abs(offset)
+        rows = []
+        for sign in (1.0, -1.0):
+            part = (side * (1 - r2) + sign * offset) / total
+            by = [(-side - part) * r2 / total, (sign - part * away) / total, np.zeros_like(r2)]
+            rows.append((part - margin, np.stack(by, axis=-1)))
+        values, slopes = zip(*rows, strict=True)
+        return np.stack(values, axis=1), np.stack(slopes, axis=1)
+
+    @classmethod
+    def through(cls, turned: FloatArray, output: FloatArray) -> tuple[Self, IntArray]:
+        """The inverted slider-crank through four pairs: one of most sets.
+
+        Notes
+        -----
+        With c = e^(i psi0) and w = r2 e^(i (phi0 - psi0)) of the start angles, O4 lies beside the rod's line
+        by offset = Im(e^(i psi) c + e^(i (phi - psi)) w): four equations, linear in five numbers, of which
+        the scale is free.
+
+        Examples
+        --------
+        >>> turned = np.radians([[0, 20, 45, 90]])
+        >>> len(InvertedSliderCranks.through(turned, 0.5 * turned**1.2)[0])
+        1
+        """
+        swung, seen = np.exp(1j * output), np.exp(1j * (turned - output))
+        rows = np.stack([swung.imag, swung.real, seen.imag, seen.real, -np.ones_like(turned)], axis=-1)
+        null = np.linalg.svd(rows)[2][:, -1]
+        c, w = null[:, 0] + 1j * null[:, 1], null[:, 2] + 1j * null[:, 3]
+        which = np.flatnonzero((np.abs(c) > _TRIVIAL) & (np.abs(w) > _TRIVIAL))
+        size, (c, w) = np.abs(c[which]), (c[which], w[which])
+        return cls._of(w / size, c / size, null[which, 4] / size), which
+
+    @classmethod
+    def at_starts(cls, turned: FloatArray, output: FloatArray, driver: FloatArray, place: FloatArray) -> Self:
+        """offset - r2 sin(theta2 - theta3) = sin(theta3) is linear in r2 and the offset.
+
+        Examples
+        --------
+        >>> shaper = InvertedSliderCranks(np.array([[np.log(0.5), 0.1, 0.3]]), np.ones(1))
+        >>> turned = np.array([0.0, 0.5, 1.0])
+        >>> theta3 = shaper.outputs(turned)[0]
+        >>> found = InvertedSliderCranks.at_starts(turned, theta3 - theta3[0], np.array([0.3]), theta3[:1])
+        >>> bool(np.abs(found.shape - shaper.shape).max() < 1e-9)
+        True
+        """
+        theta2, theta3 = driver[:, None] + turned, place[:, None] + output
+        rows = np.stack([-np.sin(theta2 - theta3), np.ones_like(theta2)], axis=-1)
+        found = _solved_by_two(rows, np.sin(theta3))
+        if len(turned) > 2:
+            rod = np.abs(np.cos(theta3) - found[:, :1] * np.cos(theta2 - theta3))
+            found = _solved_by_two(*weighed(rows, np.sin(theta3), rod))
+        r2, offset = found.T
+        c = np.exp(1j * place)
+        made = cls._of(r2 * np.exp(1j * (driver - place)), c, offset)
+        shape = made.shape.copy()
+        shape[:, 2] = driver + np.pi * (r2 < 0)
+        shape[~np.isfinite(shape).all(axis=1)] = np.nan
+        return made.changed(shape)
+
+    @classmethod
+    def _of(cls, w: FloatArray, c: FloatArray, offset: FloatArray) -> Self:
+        """Those with such a w, c and offset, each of shape (M,); the rod is taken from A to B."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            rod = c.real - w.real
+            side = np.where(rod < 0, -1.0, 1.0)
+            shape = np.stack([np.log(np.abs(w)), side * offset, np.angle(w * c)], axis=-1)
+        return cls(shape, np.ones(len(shape)))
+
+    @classmethod
+    def cranks(
+        cls, rng: np.random.Generator, count: int, first: float | None = None, shortest: int = 0
+    ) -> Self:  # noqa: ARG003
+        """Random ones whose driver turns fully: abs(offset) < abs(1 - r2).
+
+        Examples
+        --------
+        >>> made = InvertedSliderCranks.cranks(np.random.default_rng(0), 100)
+        >>> bool((made.worst_cosine(2 * np.pi) < 1).all())
+        True
+        """
+        crank = 1 / (1 + np.exp(-rng.normal(0, 1.5, count)))
+        r2 = np.where(rng.random(count) < 0.5, 1 / crank, crank)
+        offset = np.abs(1 - r2) * np.tanh(rng.normal(0, 1, count))
+        begin = rng.uniform(-np.pi, np.pi, count) if first is None else np.full(count, first)
+        return cls(np.column_stack([np.log(r2), offset, begin]), np.ones(count))
+
+    @classmethod
+    def anything(cls, rng: np.random.Generator, count: int, first: float, span: float) -> Self:
+        """r2 from 0.05 to 20, the offset up to the longer of r1 and r2.
+
+        Examples
+        --------
+        >>> made = InvertedSliderCranks.anything(np.random.default_rng(0), 1000, 0.5, 1.0)
+        >>> bool((made.worst_cosine(1.0) < 1).all() and (made.first == 0.5).all())
+        True
+        """
+        r2 = np.log(20) * rng.uniform(-1, 1, count)
+        offset = np.maximum(1.0, np.exp(r2)) * rng.uniform(-1, 1, count)
+        made = cls(np.column_stack([r2, offset, np.full(count, first)]), np.ones(count))
+        return made[made.worst_cosine(span) < 1]
+
+    @staticmethod
+    def sizes(wanted: Requirements, unit: float) -> tuple[tuple[str, ...], list[Limits]]:  # noqa: ARG004
+        (low, high), second = wanted.link_lengths[:2]
+        least, most = FunctionGround.of(wanted).lengths
+        return ("r1", "r2"), [(max(low, least), min(high, most)), second]
+
+    @staticmethod
+    def direction(wanted: Requirements) -> float:
+        return FunctionGround.of(wanted).theta1
+
+    def linkage(self, wanted: Requirements, unit: float, driver: int) -> InvertedSliderCrank:  # noqa: ARG002
+        ground, (_, share), offset = FunctionGround.of(wanted), self.lengths[0], driver * self.shape[0, 1]
+        (low1, high1), (low2, high2) = ground.lengths, wanted.link_lengths[1]
+        low, high = wanted.link_lengths[0]
+        least, most = max(low, low1, low2 / share), min(high, high1, high2 / share)
+        if wanted.offset is not None and offset:
+            ends = sorted(edge / offset for edge in wanted.offset)
+            least, most = max(least, ends[0]), min(most, ends[1])
+        r1 = float(np.clip(ground.length, least, max(least, most)))
+        o2, o4 = ground.placed(r1)
+        size = float(np.clip(r1 * offset, *(wanted.offset or (-np.inf, np.inf))))
+        return InvertedSliderCrank(o2=o2, o4=o4, r2=r1 * share, offset=size, assembly=1)
+
+    def extent(self, span: float, ground: float) -> FloatArray:
+        turned = np.linspace(0.0, span, 13)
+        a = self.lengths[:, 1:2] * np.exp(1j * (self.shape[:, 2:] + turned))
+        b = 1 + 1j * self.shape[:, 1:2] * np.exp(1j * self.outputs(turned))
+        every = np.concatenate([a, b, np.zeros((len(self), 1)), np.ones((len(self), 1))], axis=1)
+        extent: FloatArray = ground * np.hypot(np.ptp(every.real, axis=1), np.ptp(every.imag, axis=1))
+        return extent
+
+
+def _solved_by_two(rows: FloatArray, right: FloatArray) -> FloatArray:
+    """Least squares of many systems in two unknowns, (M, N, 2) and (M, N) to (M, 2); NaN where singular."""
+    normal = rows.swapaxes(1, 2) @ rows
+    side = (rows.swapaxes(1, 2) @ right[..., None])[..., 0]
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        determinant = normal[:, 0, 0] * normal[:, 1, 1] - normal[:, 0, 1] ** 2
+        first = normal[:, 1, 1] * side[:, 0] - normal[:, 0, 1] * side[:, 1]
+        second = normal[:, 0, 0] * side[:, 1] - normal[:, 0, 1] * side[:, 0]
+        found: FloatArray = np.stack([first, second], axis=-1) / determinant[:, None]
+    return found

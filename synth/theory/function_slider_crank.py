@@ -1,0 +1,325 @@
+"""Slider-cranks as function generators: the slide travels with the driver."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from grashof.problems import Requirements, SliderCrank
+from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray, Limits
+from grashof.synth.theory.five_poses import five_pose_dyads_of_sets
+from grashof.synth.theory.function_limits import (
+    Rows,
+    ShapeLimits,
+    cosine_rows,
+    joined_rows,
+    linear_rows,
+    places_met,
+    ratio_rows,
+)
+from grashof.synth.theory.function_output import Generators
+from grashof.synth.theory.many_systems import solved, weighed
+
+_FARTHEST = float(np.arcsinh(30.0))  # of the slide at the first pair that is tried, in travels
+_BETWEEN = 2.5  # travels from the first pair on that are tried between two others
+_TRIVIAL = 1e-6  # travels
+
+
+@dataclass(frozen=True, slots=True)
+class SliderCranks(Generators):
+    """Slider-cranks with O2 = 0 and the slide along the real axis, in units of the travel that is asked.
+
+    The shape has the logarithms of r2 and r3, offset / r3, and the first driver angle; the assembly is +1
+    where B lies ahead of A.
+
+    Examples
+    --------
+    >>> engine = SliderCranks(np.array([[np.log(1.0), np.log(3.0), 0.0, 0.0]]), np.array([1.0]))
+    >>> engine.outputs(np.array([0.0, np.pi])).round(9).tolist()
+    [[4.0, 2.0]]
+    """
+
+    UNKNOWNS = 4
+    EXACT = 5
+    LINEAR = 3
+    FIRST_IS_LINK = False
+    ONE_SENSE = True
+
+    @property
+    def lengths(self) -> FloatArray:
+        """The unit, r2, r3."""
+        return np.concatenate([np.ones((len(self), 1)), np.exp(self.shape[:, :2])], axis=1)
+
+    @property
+    def link_ratio(self) -> FloatArray:
+        ratio: FloatArray = np.exp(np.abs(self.shape[:, 0] - self.shape[:, 1]))
+        return ratio
+
+    @classmethod
+    def of_pivots(cls, a: ComplexArray, b: ComplexArray) -> Self:
+        """Those with A and B at given places at the first driver angle, each of shape (M,)."""
+        r3 = np.abs(b - a)
+        with np.errstate(divide="ignore"):
+            shape = np.stack([np.log(np.abs(a)), np.log(r3), b.imag / r3, np.angle(a)], axis=-1)
+        return cls(shape, np.where((b - a).real >= 0, 1.0, -1.0))
+
+    @property
+    def other_assembly(self) -> Self:
+        return type(self)(self.shape, -self.assembly)
+
+    def _closed(self, turned: FloatArray) -> tuple[FloatArray, ...]:
+        """r2 cos(theta2), r2 sin(theta2), h from A to the slide, and B less A along it, each (M, N)."""
+        r2, r3, share = np.exp(self.shape[:, :1]), np.exp(self.shape[:, 1:2]), self.shape[:, 2:3]
+        theta2 = self.shape[:, 3:] + turned
+        x, y = r2 * np.cos(theta2), r2 * np.sin(theta2)
+        h = share * r3 - y
+        return x, y, h, self.assembly[:, None] * np.sqrt((r3 - h) * (r3 + h))
+
+    def outputs(self, turned: FloatArray) -> FloatArray:
+        """Place of B along the slide."""
+        with np.errstate(invalid="ignore", over="ignore"):
+            x, _, _, ahead = self._closed(turned)
+            place: FloatArray = x + ahead
+        return place
+
+    def slopes(self, turned: FloatArray, output: FloatArray) -> FloatArray:  # noqa: ARG002
+        """From x_B = x + sqrt(r3^2 - h^2) with h = offset - y, A in (x, y)."""
+        r3, share = np.exp(self.shape[:, 1:2]), self.shape[:, 2:3]
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            x, y, h, ahead = self._closed(turned)
+            lean = h / ahead
+            slopes = [x + lean * y, (r3**2 - h * share * r3) / ahead, -lean * r3, lean * x - y]
+        return np.stack(slopes, axis=-1)
+
+    def worst_cosine(self, span: float) -> FloatArray:
+        """Abs(h) / r3 at both ends, and where the crank stands square to the slide."""
+        places, met, _ = places_met(self.first, span, (np.pi / 2, -np.pi / 2), over_cycle=False)
+        worst: FloatArray = np.where(met, np.abs(self._cosines(places)), 0.0).max(axis=1)
+        return worst
+
+    def _cosines(self, theta2: FloatArray) -> FloatArray:
+        share: FloatArray = self.shape[:, 2:3] - self._crank * np.sin(theta2)
+        return share
+
+    @property
+    def _crank(self) -> FloatArray:
+        """r2 / r3, shape (M, 1)."""
+        ratio: FloatArray = np.exp(self.shape[:, :1] - self.shape[:, 1:2])
+        return ratio
+
+    def limited(self, limits: ShapeLimits) -> Rows:
+        logs = np.concatenate([np.zeros((len(self), 1)), self.shape[:, :2]], axis=1)
+        unit = np.concatenate([np.zeros((1, 4)), np.eye(4)[:2]])
+        parts = [ratio_rows(logs, unit, limits.caps), self._transmission(limits)]
+        if limits.offset is not None:
+            parts.append(linear_rows(limits.offset, *self._dimensions()))
+        if limits.margin is not None:
+            parts.append(self._turning(limits.margin))
+            if np.isfinite(limits.stroke).any():
+                parts.append(self._stroke(limits.stroke))
+        return joined_rows(parts)
+
+    def _dimensions(self) -> tuple[FloatArray, FloatArray]:
+        """The unit, r2, r3 and the offset, shape (M, 4), and their derivatives (M, 4, 4)."""
+        (_, r2, r3), share = self.lengths.T, self.shape[:, 2]
+        zero = np.zeros_like(r2)
+        rows = [
+            [zero, zero, zero, zero],
+            [r2, zero, zero, zero],
+            [zero, r3, zero, zero],
+            [zero, share * r3, r3, zero],
+        ]
+        slopes = np.stack([np.stack(row, axis=-1) for row in rows], axis=1)
+        return np.column_stack([np.ones_like(r2), r2, r3, share * r3]), slopes
+
+    def _transmission(self, limits: ShapeLimits) -> Rows:
+        along = (np.pi / 2, -np.pi / 2)
+        places, met, moving = places_met(self.first, limits.span, along, limits.over_cycle)
+        rise = self._crank * np.sin(places)
+        turn = -self._crank * np.cos(places) * moving
+        slope = np.stack([-rise, rise, np.ones_like(rise), turn], axis=-1)
+        return cosine_rows(self._cosines(places), slope, met, limits.most_cosine)
+
+    def _turning(self, margin: float) -> Rows:
+        """r3 - r2 -+ offset, in shares of r2 + r3 + abs(offset)."""
+        crank, share = self._crank[:, 0], self.shape[:, 2]
+        total, side = 1 + crank + np.abs(share), np.sign(share)
+        rows = []
+        for sign in (1.0, -1.0):
+            part = (1 - crank + sign * share) / total
+            by_crank, by_share = (-1 - part) / total, (sign - part * side) / total
+            by = [by_crank * crank, -by_crank * crank, by_share, np.zeros_like(share)]
+            rows.append((part - margin, np.stack(by, axis=-1)))
+        values, slopes = zip(*rows, strict=True)
+        return np.stack(values, axis=1), np.stack(slopes, axis=1)
+
+    def _stroke(self, stroke: Limits) -> Rows:
+        """Of a full crank: sqrt((r3 + r2)^2 - offset^2) - sqrt((r3 - r2)^2 - offset^2)."""
+        dimensions, slopes = self._dimensions()
+        _, r2, r3, offset = dimensions.T
+        tiny = 1e-12 * (r2 + r3)
+        reaches = [
+            np.sqrt(np.maximum((side - offset) * (side + offset), tiny**2)) for side in (r3 + r2, r3 - r2)
+        ]
+        found = reaches[0] - reaches[1]
+        by = [
+            (r3 + r2) / reaches[0] + (r3 - r2) / reaches[1],
+            (r3 + r2) / reaches[0] - (r3 - r2) / reaches[1],
+            offset / reaches[1] - offset / reaches[0],
+        ]
+        slope = np.einsum("dm,mdk->mk", np.array(by), slopes[:, 1:])
+        sides = [(sign, edge) for sign, edge in zip((1.0, -1.0), stroke, strict=True) if np.isfinite(edge)]
+        values = np.stack([sign * (found - edge) / max(edge, 1e-3) for sign, edge in sides], axis=1)
+        return values, np.stack([sign * slope / max(edge, 1e-3) for sign, edge in sides], axis=1)
+
+    @classmethod
+    def through(cls, turned: FloatArray, output: FloatArray) -> tuple[Self, IntArray]:
+        """All slider-cranks through five pairs: one or three of most sets.
+
+        Notes
+        -----
+        Seen from the slide link 2 turns by the driver's angles and moves by less the travel, and the rod is
+        an RR dyad of that motion. One of its roots lies at infinity: the joint O2, on a line along the slide.
+
+        Examples
+        --------
+        >>> turned = np.radians([[0, 20, 45, 70, 90]])
+        >>> made, _ = SliderCranks.through(turned, 0.5 * turned**1.2)
+        >>> found = made.outputs(turned[0])
+        >>> len(made) in (1, 3)
+        True
+        """
+        dyads = five_pose_dyads_of_sets(np.exp(1j * turned), -output + 0j)
+        a, b = dyads.moving, dyads.ground
+        with np.errstate(invalid="ignore"):
+            which, root = np.nonzero((np.abs(a) > _TRIVIAL) & (np.abs(b - a) > _TRIVIAL))
+        return cls.of_pivots(a[which, root], b[which, root]), which
+
+    @classmethod
+    def at_starts(cls, turned: FloatArray, output: FloatArray, driver: FloatArray, place: FloatArray) -> Self:
+        """Those through three pairs, where a negative length is half a turn.
+
+        Notes
+        -----
+        s^2 = K1 s cos phi + K2 sin phi + K3 with K1 = 2 r2, K2 = 2 r2 offset and K3 = r3^2 - r2^2 - offset^2
+        (Freudenstein's equation of a slider-crank) is linear in K.
+
+        Examples
+        --------
+        >>> s = np.array([4.0, 10**0.5 + 0.5, 8**0.5])  # of r2 = 1 and r3 = 3
+        >>> turned = np.radians([0, 60, 90])
+        >>> made = SliderCranks.at_starts(turned, s - 4, np.zeros(1), np.full(1, 4.0))
+        >>> made.lengths.shape
+        (1, 3)
+        """
+        phi, s = driver[:, None] + turned, place[:, None] + output
+        rows = np.stack([s * np.cos(phi), np.sin(phi), np.ones_like(phi)], axis=-1)
+        k = solved(rows, s**2)
+        if len(turned) > 3:
+            k = solved(*weighed(rows, s**2, np.abs(2 * s - k[:, :1] * np.cos(phi))))
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            r2, offset = k[:, 0] / 2, k[:, 1] / k[:, 0]
+            r3 = np.sqrt(k[:, 2] + r2**2 + offset**2)
+            middle = len(turned) // 2
+            ahead = s[:, middle] - r2 * np.cos(phi[:, middle])
+            first = driver + np.pi * (r2 < 0)
+            shape = np.stack([np.log(np.abs(r2)), np.log(r3), offset / r3, first], axis=-1)
+        shape[~np.isfinite(shape).all(axis=1)] = np.nan
+        return cls(shape, np.where(ahead >= 0, 1.0, -1.0))
+
+    @classmethod
+    def cranks(
+        cls, rng: np.random.Generator, count: int, first: float | None = None, shortest: int = 0
+    ) -> Self:  # noqa: ARG003
+        """Random slider-cranks whose driver turns fully, r3 = 1: r2 + abs(offset) < 1.
+
+        Examples
+        --------
+        >>> made = SliderCranks.cranks(np.random.default_rng(0), 100)
+        >>> bool((made.worst_cosine(2 * np.pi) < 1).all())
+        True
+        """
+        crank = 1 / (1 + np.exp(-rng.normal(0, 1.5, count)))
+        share = (1 - crank) * np.tanh(rng.normal(0, 1, count))
+        begin = rng.uniform(-np.pi, np.pi, count) if first is None else np.full(count, first)
+        shape = np.column_stack([np.log(crank), np.zeros(count), share, begin])
+        return cls(shape, rng.choice([-1.0, 1.0], count))
+
+    @classmethod
+    def anything(cls, rng: np.random.Generator, count: int, first: float, span: float) -> Self:
+        """r2 / r3 from 0.05 to 20, r3 = 1.
+
+        Examples
+        --------
+        >>> made = SliderCranks.anything(np.random.default_rng(0), 1000, 0.5, 1.0)
+        >>> bool((made.worst_cosine(1.0) < 1).all() and (made.first == 0.5).all())
+        True
+        """
+        crank = np.log(20) * rng.uniform(-1, 1, count)
+        share = np.maximum(1.0, np.exp(crank)) * rng.uniform(-1.5, 1.5, count)
+        shape = np.column_stack([crank, np.zeros(count), share, np.full(count, first)])
+        made = cls(shape, rng.choice([-1.0, 1.0], count))
+        return made[made.worst_cosine(span) < 1]
+
+    def scaled_to(self, turned: FloatArray, output: FloatArray) -> Self:
+        """In the size of least squares; a negative one is the same linkage turned by half a turn."""
+        place = self.outputs(turned)
+        place, wanted = place - place.mean(axis=1, keepdims=True), output - output.mean()
+        with np.errstate(divide="ignore", invalid="ignore"):
+            scale = (place @ wanted) / (place**2).sum(axis=1)
+            more = np.log(np.abs(scale))
+        side, shape = np.where(scale < 0, -1.0, 1.0), self.shape.copy()
+        shape[:, :2] += more[:, None]
+        shape[:, 2] *= side
+        shape[:, 3] += np.pi * (side < 0)
+        return type(self)(shape, side * self.assembly)
+
+    @staticmethod
+    def place_of(angle: FloatArray) -> FloatArray:
+        """Farther and farther apart on both sides of O2."""
+        return np.sinh(_FARTHEST * (2 * angle / np.pi - 1))
+
+    @staticmethod
+    def angle_of(place: FloatArray) -> FloatArray:
+        angle: FloatArray = (np.arcsinh(place) / _FARTHEST + 1) * np.pi / 2
+        return angle
+
+    @staticmethod
+    def tried_between(count: int) -> tuple[FloatArray, float]:
+        return np.linspace(-_BETWEEN, _BETWEEN, count), 2 * _BETWEEN / (count - 1)
+
+    @staticmethod
+    def sizes(wanted: Requirements, unit: float) -> tuple[tuple[str, ...], list[Limits]]:
+        return ("travel", "r2", "r3"), [(unit, unit), *wanted.link_lengths[1:3]]
+
+    @staticmethod
+    def direction(wanted: Requirements) -> float:
+        return float(np.radians(wanted.slide_angle_deg or 0.0))
+
+    def linkage(self, wanted: Requirements, unit: float, driver: int) -> SliderCrank:
+        r2, r3 = (
+            float(np.clip(unit * length, *limits))
+            for length, limits in zip(self.lengths[0, 1:], wanted.link_lengths[1:3], strict=True)
+        )
+        offset = driver * unit * self.lengths[0, 2] * self.shape[0, 2]
+        if wanted.offset is not None:
+            offset = np.clip(offset, *wanted.offset)
+        o2 = (
+            [0.0, 0.0]
+            if wanted.o2 is None
+            else [float(np.clip(0.0, *side)) for side in (wanted.o2.x, wanted.o2.y)]
+        )
+        return SliderCrank(
+            o2=o2, r2=r2, r3=r3, offset=offset, slide_angle=self.direction(wanted),
+            assembly=self.assembly[0],
+        )  # fmt: skip
+
+    def extent(self, span: float, ground: float) -> FloatArray:
+        turned = np.linspace(0.0, span, 13)
+        a = self.lengths[:, 1:2] * np.exp(1j * (self.shape[:, 3:] + turned))
+        b = self.outputs(turned) + 1j * (self.lengths[:, 2] * self.shape[:, 2])[:, None]
+        every = np.concatenate([a, b, np.zeros((len(self), 1))], axis=1)
+        extent: FloatArray = ground * np.hypot(np.ptp(every.real, axis=1), np.ptp(every.imag, axis=1))
+        return extent
