@@ -13,7 +13,7 @@ from grashof.analysis.judge.task_motion import Targets, TaskMotion
 from grashof.analysis.judge.verdict import Verdict
 from grashof.analysis.loops.kinds import kind_of
 from grashof.analysis.numerics.peaks import peaks
-from grashof.problems import FourBar, FunctionTask, Linkage, ProblemError, Requirements
+from grashof.problems import FunctionTask, Linkage, ProblemError, Requirements
 from grashof.problems.values.arrays import TURN, FloatArray
 
 _STARTS = 720  # driver angles at the first pair that are tried, over what the driver can reach

@@ -9,6 +9,7 @@ import numpy as np
 
 from grashof.analysis.four_bar.mobility import rotatability
 from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.four_bar.slide import slide_travel
 from grashof.analysis.four_bar.transmission import worst_transmission
 from grashof.problems import (
     FourBar,
@@ -171,9 +172,9 @@ def planted_path(
 
 
 def planted_function(
-    rng: np.random.Generator, pairs: int, *, full: bool = False
-) -> tuple[FunctionTask, FourBar, float]:
-    """Pairs that some four-bar on O2 = (0, 0), O4 = (1, 0) generates, its driver counter-clockwise.
+    rng: np.random.Generator, pairs: int, *, full: bool = False, mechanism: str = FourBar.MECHANISM
+) -> tuple[FunctionTask, Any, float]:
+    """Pairs that some linkage generates, its driver counter-clockwise.
 
     Parameters
     ----------
@@ -181,12 +182,15 @@ def planted_function(
     pairs : int
     full : bool
         Its driver turns fully.
+    mechanism : str
+        The kind of linkage.
 
     Returns
     -------
-    FunctionTask, FourBar, float
-        The last is the driver angle at the first pair, rad. Lengths are 0.2 to 5, the range is 30 to 300
-        deg, the transmission angle at least 10 deg over it.
+    FunctionTask, Linkage, float
+        The last is the driver angle at the first pair, rad. O2 = (0, 0), and O4 = (1, 0) or the slide runs
+        along x; lengths are 0.2 to 5, the range is 30 to 300 deg, the transmission angle at least 10 deg
+        over it.
 
     Examples
     --------
@@ -196,19 +200,44 @@ def planted_function(
     True
     """
     while True:
-        r2, r3, r4 = np.exp(np.log(5) * rng.uniform(-1, 1, 3))
+        made = _LOOSE[mechanism](rng)
         start, span = rng.uniform(-np.pi, np.pi), np.radians(rng.uniform(30, 300))
-        linkage = FourBar((0, 0), (1, 0), r2, r3, r4, assembly=rng.choice([-1, 1]))
+        linkage = made.changed(assembly=rng.choice([-1, 1]))
         if full and rotatability(linkage).min() < _LEAST_MARGIN:
             continue
         if not (worst_transmission(linkage, start, start + span) >= np.radians(10)):
             continue
         inputs = np.concatenate([[0.0], np.sort(rng.uniform(0, span, pairs - 2)), [span]])
         dense = np.unique(np.concatenate([inputs, np.linspace(0, span, 201)]))
-        theta4 = solve_position(linkage, start + dense).theta4
-        if np.isnan(theta4).any() or np.diff(inputs).min() < span / pairs / 10:
+        state = solve_position(linkage, start + dense)
+        if np.isnan(state.theta4).any() or np.diff(inputs).min() < span / pairs / 10:
             continue
-        outputs = np.unwrap(theta4)[np.searchsorted(dense, inputs)]
-        if np.ptp(outputs) > TURN:
+        travels = mechanism == SliderCrank.MECHANISM
+        moved = slide_travel(linkage, state) if travels else np.unwrap(state.theta4)
+        outputs = moved[np.searchsorted(dense, inputs)]
+        if not travels and np.ptp(outputs) > TURN:
             continue
-        return FunctionTask(inputs, outputs - outputs[0]), linkage, float(start)
+        return FunctionTask(inputs, outputs - outputs[0], travels=travels), linkage, float(start)
+
+
+def _lengths(rng: np.random.Generator, count: int) -> FloatArray:
+    lengths: FloatArray = np.exp(np.log(5) * rng.uniform(-1, 1, count))
+    return lengths
+
+
+def _loose_slider_crank(rng: np.random.Generator) -> SliderCrank:
+    r2, r3 = _lengths(rng, 2)
+    return SliderCrank((0, 0), r2, r3, offset=rng.uniform(-1, 1) * max(r2, r3))
+
+
+def _loose_inverted(rng: np.random.Generator) -> InvertedSliderCrank:
+    (r2,) = _lengths(rng, 1)
+    return InvertedSliderCrank((0, 0), (1, 0), r2, offset=rng.uniform(-1, 1) * max(r2, 1.0))
+
+
+# Linkages whose driver need not turn fully, by the word for their kind.
+_LOOSE: dict[str, Callable[[np.random.Generator], Linkage]] = {
+    FourBar.MECHANISM: lambda rng: FourBar((0, 0), (1, 0), *_lengths(rng, 3)),
+    SliderCrank.MECHANISM: _loose_slider_crank,
+    InvertedSliderCrank.MECHANISM: _loose_inverted,
+}

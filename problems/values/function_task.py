@@ -193,8 +193,8 @@ class FunctionTask(Task):
     ) -> FunctionTask:
         """Task with its angles in degrees, as problem files write it: pairs, or a law with its ranges.
 
-        Of a slide `output` and `output_range` are its travel, in the problem's unit of length. In Python `law`
-        may be any function of x; it is sampled.
+        Of a slide `output` and `output_range` are its travel, in the problem's unit of length. In Python
+        `law` may be any function of x; it is sampled.
 
         Examples
         --------
@@ -326,7 +326,7 @@ class FunctionTask(Task):
         return (self.law.input_range - float(self.inputs[-1])) / 2  # Chebyshev's spacing is symmetric
 
     def output(self, turned: npt.ArrayLike) -> FloatArray:
-        """Wanted output at driver rotations from the first pair, rad or length: of the law, or the cubic spline.
+        """Wanted output at driver rotations from the first pair: of the law, or the cubic spline.
 
         Examples
         --------
@@ -364,7 +364,7 @@ def _numbers(values: Any, key: str) -> FloatArray:
     return numbers.astype(np.float64)
 
 
-def _output_key(travels: bool) -> str:  # noqa: FBT001
+def _output_key(travels: bool) -> str:
     return OUTPUT if travels else OUTPUT_DEG
 
 
@@ -391,7 +391,7 @@ def _refuse_beside(values: Mapping[str, object], why: str) -> None:
             raise ProblemError(f"function.{name} {why}")
 
 
-def _refuse_missing(values: Mapping[str, object], output: str, travels: bool) -> None:  # noqa: FBT001
+def _refuse_missing(values: Mapping[str, object], output: str, travels: bool) -> None:
     other = f"{output}_deg" if travels else output
     missing = [f"function.{name}" for name, value in values.items() if value is None and name != other]
     if missing:

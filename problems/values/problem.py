@@ -331,14 +331,15 @@ class Problem(ReadOnly):
         """Kinds of linkages whose output does not move as a function asks for."""
         if not isinstance(self.task, FunctionTask):
             return []
-        kinds, way = ((SLIDER_CRANK,), "slides") if self.task.travels else (TURNING, "turns")
+        travels = self.task.travels
+        kinds, what, unit = ((SLIDER_CRANK,), "travel", "") if travels else (TURNING, "rotation", "_deg")
         others = [word for word in self.mechanism if word not in kinds]
         if not others:
             return []
-        key = "output, a travel," if self.task.travels else "output_deg, a rotation,"
+        key = f"output{'' if self.task.law is None else '_range'}{unit}"
         return [
-            f"function.{key} does not go with mechanism {' and '.join(others)}; "
-            f"the output {way} of {' and '.join(kinds)}"
+            f"function.{key} is a {what}, which mechanism {' and '.join(others)} does not put out; "
+            f"it goes with {' and '.join(kinds)}"
         ]
 
     def _not_for_cylinders(self) -> list[str]:

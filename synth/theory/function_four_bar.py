@@ -92,7 +92,7 @@ class FourBars(Generators):
         return by_shape
 
     def closes(self, span: float) -> BoolArray:
-        """Whether the loop stays closed, off dead positions, all over a rotation of the driver; shape (M,)."""
+        """Whether the loop stays closed, off dead positions, all over a rotation; shape (M,)."""
         _, r3, r4 = np.exp(self.shape[:, :3]).T
         least, most = self._diagonals(span)
         closed: BoolArray = (least > np.abs(r3 - r4)) & (most < r3 + r4)
@@ -260,7 +260,7 @@ class FourBars(Generators):
         return made[made.closes(span)]
 
     @staticmethod
-    def sizes(wanted: Requirements, unit: float) -> tuple[tuple[str, ...], list[Limits]]:  # noqa: ARG004
+    def sizes(wanted: Requirements, unit: float) -> tuple[tuple[str, ...], list[Limits]]:
         ground = FunctionGround.of(wanted)
         first = (
             max(wanted.link_lengths[0][0], ground.lengths[0]),
@@ -272,7 +272,7 @@ class FourBars(Generators):
     def direction(wanted: Requirements) -> float:
         return FunctionGround.of(wanted).theta1
 
-    def linkage(self, wanted: Requirements, unit: float, driver: int) -> FourBar:  # noqa: ARG002
+    def linkage(self, wanted: Requirements, unit: float, driver: int) -> FourBar:
         ground, shares = FunctionGround.of(wanted), self.lengths[0]
         low, high = np.array(wanted.link_lengths).T
         least = max(ground.lengths[0], float((low / shares).max()))

@@ -74,6 +74,7 @@ class InvertedSliderCranks(Generators):
         turn = self.shape[:, 2:] + turned - output
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             rod = np.cos(output) - r2 * np.cos(turn)
+            rod = np.where(rod == 0, np.nan, rod)  # a dead position
             slopes = [-r2 * np.sin(turn), np.ones_like(turn), -r2 * np.cos(turn)]
             by_shape: FloatArray = np.stack(slopes, axis=-1) / rod[..., None]
         return by_shape
@@ -151,7 +152,7 @@ class InvertedSliderCranks(Generators):
 
     @classmethod
     def at_starts(cls, turned: FloatArray, output: FloatArray, driver: FloatArray, place: FloatArray) -> Self:
-        """offset - r2 sin(theta2 - theta3) = sin(theta3) is linear in r2 and the offset.
+        """Offset - r2 sin(theta2 - theta3) = sin(theta3) is linear in r2 and the offset.
 
         Examples
         --------
@@ -188,7 +189,7 @@ class InvertedSliderCranks(Generators):
     @classmethod
     def cranks(
         cls, rng: np.random.Generator, count: int, first: float | None = None, shortest: int = 0
-    ) -> Self:  # noqa: ARG003
+    ) -> Self:
         """Random ones whose driver turns fully: abs(offset) < abs(1 - r2).
 
         Examples
@@ -219,7 +220,7 @@ class InvertedSliderCranks(Generators):
         return made[made.worst_cosine(span) < 1]
 
     @staticmethod
-    def sizes(wanted: Requirements, unit: float) -> tuple[tuple[str, ...], list[Limits]]:  # noqa: ARG004
+    def sizes(wanted: Requirements, unit: float) -> tuple[tuple[str, ...], list[Limits]]:
         (low, high), second = wanted.link_lengths[:2]
         least, most = FunctionGround.of(wanted).lengths
         return ("r1", "r2"), [(max(low, least), min(high, most)), second]
@@ -228,7 +229,7 @@ class InvertedSliderCranks(Generators):
     def direction(wanted: Requirements) -> float:
         return FunctionGround.of(wanted).theta1
 
-    def linkage(self, wanted: Requirements, unit: float, driver: int) -> InvertedSliderCrank:  # noqa: ARG002
+    def linkage(self, wanted: Requirements, unit: float, driver: int) -> InvertedSliderCrank:
         ground, (_, share), offset = FunctionGround.of(wanted), self.lengths[0], driver * self.shape[0, 1]
         (low1, high1), (low2, high2) = ground.lengths, wanted.link_lengths[1]
         low, high = wanted.link_lengths[0]

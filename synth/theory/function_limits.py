@@ -98,7 +98,7 @@ def linear_rows(rows: FloatArray, dimensions: FloatArray, slopes: FloatArray) ->
     return dimensions @ rows.T, np.einsum("ln,mnk->mlk", rows, slopes)
 
 
-def places_met(first: FloatArray, span: float, along: Limits, over_cycle: bool) -> tuple[FloatArray, ...]:  # noqa: FBT001
+def places_met(first: FloatArray, span: float, along: Limits, over_cycle: bool) -> tuple[FloatArray, ...]:
     """Where the transmission may be worst: at both ends, and at two angles if the motion passes there.
 
     Returns

@@ -286,7 +286,7 @@ def under_inequalities(
     except RuntimeError:  # it goes round in circles
         return np.zeros(matrix.shape[1])
     rest = system @ dual - target
-    if np.linalg.norm(rest) < 1e-12:
+    if np.linalg.norm(rest) < 1e-12 or rest[-1] == 0:
         return np.zeros(matrix.shape[1])
     distance = -rest[:-1] / rest[-1] * scale
     found: FloatArray = np.linalg.solve(r, distance + inner)

@@ -94,7 +94,7 @@ class Generators(ABC):
 
     @abstractmethod
     def slopes(self, turned: FloatArray, output: FloatArray) -> FloatArray:
-        """Derivatives of the output by the shape, shape (M, N, K)."""
+        """Derivatives of the output by the shape, shape (M, N, K); NaN in dead positions."""
 
     @abstractmethod
     def worst_cosine(self, span: float) -> FloatArray:

@@ -84,11 +84,12 @@ class SliderCranks(Generators):
             place: FloatArray = x + ahead
         return place
 
-    def slopes(self, turned: FloatArray, output: FloatArray) -> FloatArray:  # noqa: ARG002
+    def slopes(self, turned: FloatArray, output: FloatArray) -> FloatArray:
         """From x_B = x + sqrt(r3^2 - h^2) with h = offset - y, A in (x, y)."""
         r3, share = np.exp(self.shape[:, 1:2]), self.shape[:, 2:3]
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             x, y, h, ahead = self._closed(turned)
+            ahead = np.where(ahead == 0, np.nan, ahead)  # a dead position
             lean = h / ahead
             slopes = [x + lean * y, (r3**2 - h * share * r3) / ahead, -lean * r3, lean * x - y]
         return np.stack(slopes, axis=-1)
@@ -159,11 +160,13 @@ class SliderCranks(Generators):
         """Of a full crank: sqrt((r3 + r2)^2 - offset^2) - sqrt((r3 - r2)^2 - offset^2)."""
         dimensions, slopes = self._dimensions()
         _, r2, r3, offset = dimensions.T
-        tiny = 1e-12 * (r2 + r3)
-        reaches = [
-            np.sqrt(np.maximum((side - offset) * (side + offset), tiny**2)) for side in (r3 + r2, r3 - r2)
-        ]
+        squares = [(side - offset) * (side + offset) for side in (r3 + r2, r3 - r2)]
+        reaches = [np.sqrt(np.maximum(square, 1e-24 * r3**2)) for square in squares]
         found = reaches[0] - reaches[1]
+        # Where it is no full crank, other limits count.
+        reaches = [
+            np.where(square > 0, reach, np.inf) for square, reach in zip(squares, reaches, strict=True)
+        ]
         by = [
             (r3 + r2) / reaches[0] + (r3 - r2) / reaches[1],
             (r3 + r2) / reaches[0] - (r3 - r2) / reaches[1],
@@ -232,7 +235,7 @@ class SliderCranks(Generators):
     @classmethod
     def cranks(
         cls, rng: np.random.Generator, count: int, first: float | None = None, shortest: int = 0
-    ) -> Self:  # noqa: ARG003
+    ) -> Self:
         """Random slider-cranks whose driver turns fully, r3 = 1: r2 + abs(offset) < 1.
 
         Examples

@@ -41,9 +41,9 @@ def function_starts(
             on_grid(kind, wanted, np.full(GRID**2, first), fine)
             for first in (first_driver, first_driver + np.pi)
         ])  # fmt: skip
-        held = grid[np.abs(np.angle(np.exp(1j * (grid.first - first_driver)))) < _SAME]
         random = kind.anything(rng, ANYTHING, first_driver, float(wanted.turned[-1]))
-        return kind.joined([held, random.scaled_to(wanted.turned, wanted.output)])
+        found = kind.joined([grid, random.scaled_to(wanted.turned, wanted.output)])
+        return _held(found, first_driver)
     driver, place = (
         each.ravel() for each in np.meshgrid(half, np.pi * (np.arange(GRID) + rng.random()) / GRID)
     )
@@ -66,7 +66,13 @@ def crank_starts(
 ) -> Generators:
     """Random linkages whose driver turns fully, in the size that suits what is wanted."""
     made = kind.cranks(rng, count, first_driver, shortest)
-    return made.scaled_to(wanted.turned, wanted.output).finite
+    made = made.scaled_to(wanted.turned, wanted.output).finite
+    return made if first_driver is None else _held(made, first_driver)
+
+
+def _held(made: Generators, first_driver: float) -> Generators:
+    """Those that begin at a driver angle, and not half a turn from it."""
+    return made[np.abs(np.angle(np.exp(1j * (made.first - first_driver)))) < _SAME]
 
 
 def _of_subsets(kind: type[Generators], wanted: Wanted, rng: np.random.Generator, count: int) -> Generators:

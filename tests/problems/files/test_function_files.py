@@ -74,7 +74,8 @@ def test_what_is_written_comes_back(table: dict[str, Any]) -> None:
         ),
         (
             {"function": PAIRS, "mechanism": ["four-bar", "slider-crank"]},
-            "mechanism slider-crank is not built for functions; it must be four-bar",
+            "function.output_deg is a rotation, which mechanism slider-crank does not put out; "
+            "it goes with four-bar and inverted-slider-crank",
         ),
         (
             {"function": PAIRS, "driver": {"cylinder": {}}},

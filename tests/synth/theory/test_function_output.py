@@ -1,0 +1,182 @@
+"""Function generators of all kinds against the judge's positions, differences, samples and planted pairs."""
+
+import numpy as np
+import pytest
+
+from grashof.analysis import solve_position
+from grashof.analysis.four_bar.slide import slide_travel
+from grashof.analysis.judge.planted import planted_function
+from grashof.problems import Linkage
+from grashof.problems.values.arrays import FloatArray
+from grashof.synth.programme.kinds import KINDS
+from grashof.synth.theory.function_limits import ShapeLimits, offset_rows
+from grashof.synth.theory.function_output import Generators
+
+EVERY = pytest.mark.parametrize("mechanism", list(KINDS))
+SAMPLES = {"four-bar": 300, "slider-crank": 1500, "inverted-slider-crank": 800}  # of which many are open
+
+
+def generator_of(linkage: Linkage, start: float, unit: float) -> Generators:
+    """As the search sees a linkage whose ground is (0, 0), (1, 0), or whose slide runs along x."""
+    kind, known = KINDS[linkage.MECHANISM].generators, linkage
+    sign, numbers = float(known.assembly), []
+    match linkage.MECHANISM:
+        case "four-bar":
+            numbers = np.log(known.lengths[1:]).tolist()
+        case "slider-crank":
+            numbers = [*np.log(known.lengths / unit), float(known.offset / known.r3)]  # type: ignore[attr-defined]
+        case _:
+            offset = float(known.offset)  # type: ignore[attr-defined]
+            numbers, sign = [float(np.log(known.lengths[1])), sign * offset], 1.0
+    return kind(np.array([[*numbers, start]]), np.array([sign]))
+
+
+def planted(
+    rng: np.random.Generator, pairs: int, mechanism: str, *, full: bool = False
+) -> tuple[Generators, FloatArray, FloatArray]:
+    """What generates some pairs, and the pairs in its unit."""
+    task, linkage, start = planted_function(rng, pairs, full=full, mechanism=mechanism)
+    return generator_of(linkage, start, task.output_unit), task.inputs, task.outputs / task.output_unit
+
+
+def nearest(made: Generators, there: Generators) -> float:
+    off = made.shape - there.shape
+    off[:, -1] = np.angle(np.exp(1j * off[:, -1]))
+    return float(np.abs(off).max(axis=1).min(initial=np.inf))
+
+
+def several(mechanism: str, seed: int, span: float) -> Generators:
+    rng = np.random.default_rng(seed)
+    made = KINDS[mechanism].generators.anything(rng, SAMPLES[mechanism], 0.0, span)
+    shape = made.shape.copy()
+    shape[:, -1] = rng.uniform(-np.pi, np.pi, len(made))
+    return made.changed(shape)
+
+
+@EVERY
+def test_output_is_that_of_the_judge(mechanism: str) -> None:
+    rng = np.random.default_rng(1)
+    for _ in range(50):
+        task, linkage, start = planted_function(rng, 6, mechanism=mechanism)
+        made, state = generator_of(linkage, start, 1.0), solve_position(linkage, start + task.inputs)
+        if task.travels:
+            assert np.abs(made.outputs(task.inputs)[0] - slide_travel(linkage, state)).max() < 1e-12
+            continue
+        off = np.exp(1j * (made.outputs(task.inputs)[0] - np.unwrap(state.theta4)))
+        assert np.abs(off - off[0]).max() < 1e-9
+
+
+@EVERY
+def test_slopes_are_those_of_differences(mechanism: str) -> None:
+    made, turned, _ = planted(np.random.default_rng(2), 8, mechanism)
+    slopes, step = made.slopes(turned, made.outputs(turned)), 1e-6
+    for k in range(made.UNKNOWNS):
+        moved = np.zeros(made.UNKNOWNS)
+        moved[k] = step
+        ahead, behind = (made.changed(made.shape + sign * moved).outputs(turned) for sign in (1, -1))
+        assert np.abs((ahead - behind) / (2 * step) - slopes[..., k]).max() < 1e-6
+
+
+@EVERY
+@pytest.mark.parametrize("full", [False, True])
+def test_slopes_of_limits_are_those_of_differences(mechanism: str, full: bool) -> None:
+    made, step = several(mechanism, 0, 1.0), 1e-6
+    count = made.lengths.shape[1]
+    limits = ShapeLimits(
+        2.5 if full else 1.0, caps=np.full((count, count), 3.0), transmission=0.5, over_cycle=full,
+        margin=0.01 if full else None, offset=offset_rows([(0.5, 2.0)] * count, (-0.3, 0.7)),
+    )  # fmt: skip
+    slopes = limits.of(made)[1]
+    for k in range(made.UNKNOWNS):
+        moved = np.zeros(made.UNKNOWNS)
+        moved[k] = step
+        ahead, behind = (limits.of(made.changed(made.shape + sign * moved))[0] for sign in (1, -1))
+        off = np.abs((ahead - behind) / (2 * step) - slopes[..., k]) / (1 + np.abs(slopes[..., k]))
+        assert off.max() < 1e-6
+
+
+def test_slopes_of_the_stroke_are_those_of_differences() -> None:
+    kind, step = KINDS["slider-crank"].generators, 1e-6
+    made = kind.cranks(np.random.default_rng(0), 100, None, 0)
+    made = made[made.worst_cosine(2 * np.pi) < 0.95]
+    limits = ShapeLimits(1.0, caps=np.full((3, 3), 3.0), margin=0.0, stroke=(0.5, 1.5))
+    values, slopes = limits.of(made)
+    for k in range(4):
+        moved = np.zeros(4)
+        moved[k] = step
+        ahead, behind = (limits.of(made.changed(made.shape + sign * moved))[0] for sign in (1, -1))
+        assert np.abs((ahead - behind) / (2 * step) - slopes[..., k]).max() < 1e-5
+    dense = made.outputs(np.linspace(0, 2 * np.pi, 20001))
+    assert np.abs(values[:, -2] - (np.ptp(dense, axis=1) - 0.5) / 0.5).max() < 1e-5
+
+
+@EVERY
+def test_worst_cosine_is_that_of_dense_samples(mechanism: str) -> None:
+    """sin mu by the velocity of the output that the driver gives: its lever over the whole."""
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        task, linkage, start = planted_function(rng, 4, mechanism=mechanism)
+        span = float(task.inputs[-1])
+        state = solve_position(linkage, start + np.linspace(0, span, 20001))
+        dense = np.abs(np.cos(state.theta4 - state.theta3))
+        if mechanism == "inverted-slider-crank":  # the rod against A-O4, beyond which it pushes
+            seen = linkage.o4 - state.a  # type: ignore[attr-defined]
+            direction = np.arctan2(seen[:, 1], seen[:, 0])
+            dense = np.abs(np.sin(direction - state.theta3))
+        assert abs(generator_of(linkage, start, 1.0).worst_cosine(span)[0] - dense.max()) < 1e-6
+
+
+@EVERY
+def test_all_planted_linkages_of_a_few_pairs_are_found(mechanism: str) -> None:
+    rng, kind = np.random.default_rng(4), KINDS[mechanism].generators
+    tasks = [planted(rng, kind.EXACT, mechanism) for _ in range(1000)]
+    made, which = kind.through(*(np.array(each) for each in list(zip(*tasks, strict=True))[1:]))
+    found = [nearest(made[which == k], tasks[k][0]) for k in range(1000)]
+    assert max(found) < 1e-6
+    assert set(np.bincount(which).tolist()) <= ({1} if kind.EXACT == 4 else {1, 3})
+
+
+@EVERY
+@pytest.mark.parametrize("count", [50, pytest.param(1000, marks=pytest.mark.slow)])
+def test_a_pair_less_is_always_met_where_a_linkage_meets_them(mechanism: str, count: int) -> None:
+    rng, kind = np.random.default_rng(5), KINDS[mechanism].generators
+    for _ in range(count):
+        _, turned, output = planted(rng, kind.EXACT - 1, mechanism)
+        wide = int(np.argmax(np.diff(turned)))
+        between, tried = (turned[wide] + turned[wide + 1]) / 2, kind.tried_between(400)[0]
+        inputs = np.tile(np.append(turned, between), (len(tried), 1))
+        made, _ = kind.through(inputs, np.column_stack([np.tile(output, (len(tried), 1)), tried]))
+        made = made[made.worst_cosine(float(turned[-1])) < 1]
+        dense = np.unique(np.concatenate([turned, np.linspace(0, turned[-1], 60)]))
+        path = made.outputs(dense)[:, np.searchsorted(dense, turned)]
+        assert np.abs(path - path[:, :1] - output).max(axis=1).min() < 1e-8
+
+
+@EVERY
+def test_given_starts_lead_to_the_linkage_that_has_them(mechanism: str) -> None:
+    rng, kind = np.random.default_rng(6), KINDS[mechanism].generators
+    for count in (kind.LINEAR + 1, 9):
+        there, turned, output = planted(rng, count, mechanism)
+        place = there.outputs(turned[:1])[:, 0]
+        made = kind.at_starts(turned, output - output[0], there.first, place)
+        assert nearest(made, there) < 1e-6
+        assert np.abs(kind.place_of(kind.angle_of(place)) - place).max() < 1e-12
+
+
+def test_limits_of_the_offset_leave_a_scale() -> None:
+    """Against trying many scales."""
+    rng = np.random.default_rng(7)
+    scales = np.exp(np.linspace(-8, 8, 4001))[:, None]
+    for _ in range(200):
+        low, offset = np.exp(rng.normal(size=2)), np.sort(rng.normal(size=2))
+        high = low * np.exp(rng.uniform(0.1, 2, 2))
+        made = np.array([1.0, np.exp(rng.normal()), rng.normal()])
+        sizes = [(float(a), float(b)) for a, b in zip(low, high, strict=True)]
+        bounds = np.array([*sizes, offset]).T
+        tried = scales * made
+        fits = ((tried >= bounds[0]) & (tried <= bounds[1])).all(axis=1).any()
+        lengths = max(low / made[:2]) <= min(high / made[:2])
+        found = lengths and (offset_rows(sizes, (float(offset[0]), float(offset[1]))) @ made >= 0).all()
+        assert found or not fits
+        close = ((tried >= bounds[0] - 1e-2) & (tried <= bounds[1] + 1e-2)).all(axis=1).any()
+        assert close or not found
