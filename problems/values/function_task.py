@@ -26,6 +26,7 @@ from grashof.problems.values.function_law import (
     chebyshev_spacing,
     lobatto_with_weights,
 )
+from grashof.problems.values.quantities import Unit
 from grashof.problems.values.requirements import Requirements
 from grashof.problems.values.task import Task
 
@@ -288,6 +289,27 @@ class FunctionTask(Task):
     def output_unit(self) -> float:
         """What errors of the output count in: 1 rad, or the whole travel."""
         return self.size if self.travels else 1.0
+
+    @property
+    def counted_in(self) -> Unit:
+        """The unit of outputs and their errors in files and tables."""
+        return Unit.LENGTH if self.travels else Unit.ANGLE
+
+    @property
+    def output_words(self) -> str:
+        """What the output is called."""
+        return "travel of the slide" if self.travels else "output rotation"
+
+    def shown(self, output: float, length_unit: str) -> str:
+        """An output or its error, with its unit, as people read it.
+
+        Examples
+        --------
+        >>> FunctionTask([0, 1, 2], [0, 1, 3], travels=True).shown(0.25, "mm")
+        '0.25 mm'
+        """
+        unit = length_unit if self.travels else self.counted_in
+        return f"{self.counted_in.shown * output:.3g} {unit}".strip()
 
     @property
     def error_field(self) -> str:

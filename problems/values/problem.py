@@ -225,7 +225,7 @@ class Problem(ReadOnly):
     def _asked(self) -> dict[str, Quantity]:
         """What is weighed or limited, by its key path."""
         stated = self.objective.stated.items()
-        goals = {f"objective.maximise.{name}": self._meant(GOALS[name]) for name, w in stated if w}
+        goals = {f"objective.maximise.{name}": self.meant(GOALS[name]) for name, w in stated if w}
         limited = self.requirements.limited.items()
         return goals | {f"requirements.{name}": limit.quantity for name, limit in limited}
 
@@ -240,8 +240,8 @@ class Problem(ReadOnly):
             Needs.TRAVEL: "function has an output that turns, not one that slides",
         }
 
-    def _meant(self, quantity: Quantity) -> Quantity:
-        """The quantity that a goal stands for: of a slide the structural error is a length."""
+    def meant(self, quantity: Quantity) -> Quantity:
+        """The quantity that is meant by a name: see `Requirements.meant`; of a slide errors are lengths."""
         meant = self.requirements.meant(quantity)
         travels = isinstance(self.task, FunctionTask) and self.task.travels
         return QUANTITIES[TRAVEL_ERRORS.get(meant.key, meant.key)] if travels else meant
@@ -377,7 +377,7 @@ class Problem(ReadOnly):
     def goals(self) -> tuple[tuple[Quantity, float], ...]:
         """What the objective weighs, with its weights; the transmission angle over the motion required."""
         goals = self.objective.goals.items()
-        return tuple((self._meant(QUANTITIES[key]), weight) for key, weight in goals)
+        return tuple((self.meant(QUANTITIES[key]), weight) for key, weight in goals)
 
     @property
     def by_objective(self) -> bool:

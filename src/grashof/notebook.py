@@ -16,8 +16,8 @@ from grashof.figures.linkage import plot_linkage
 from grashof.figures.parts import missing_glyphs_unwarned
 from grashof.figures.subject import Linkage
 from grashof.output.terminal import best_rows, heading, units
+from grashof.problems import FunctionTask, LinkageSpec, Problem, ProblemError, SliderCrank
 from grashof.problems import Linkage as AnyKind
-from grashof.problems import LinkageSpec, Problem, ProblemError, SliderCrank
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.synth import Candidate, Result
@@ -93,8 +93,10 @@ def _judged(candidate: Candidate) -> dict[str, str]:
 
 def _error(candidate: Candidate) -> dict[str, str]:
     verdict = candidate.verdict
-    if candidate.problem.task.has_output.any():
-        return {"greatest structural error": f"{np.degrees(verdict.structural_error_max):.3g} deg"}
+    problem = candidate.problem
+    if isinstance(problem.task, FunctionTask):
+        worst = problem.task.shown(verdict.structural_error_max, problem.length_unit)
+        return {"greatest structural error": worst}
     return {"largest position error": f"{verdict.error_max:.2g}"}
 
 

@@ -138,8 +138,9 @@ def _heading(problem: Problem, candidate: Candidate, rank: int) -> str:
     over = [f"{task:.1f} deg over the task"] if not problem.task.closed else []
     over += [f"{cycle:.1f} deg over the turn"] if verdict.full_rotation else []
     fit = "" if problem.requirements.is_exact(problem.task) else f", rms error {verdict.error_rms:.3g}"
-    if problem.task.has_output.any():
-        fit = f", structural error {np.degrees(verdict.structural_error_max):.3g} deg"
+    if isinstance(problem.task, FunctionTask):
+        worst = problem.task.shown(verdict.structural_error_max, problem.length_unit)
+        fit = f", structural error {worst}"
     return (
         f"{shortened(problem.title or problem.name)}: design {rank} ({candidate.id}), "
         f"{verdict.grashof_class}{fit}{_defect(candidate)}\n"

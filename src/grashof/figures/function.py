@@ -29,31 +29,32 @@ def plot_function(task: FunctionTask, candidate: Candidate, *, ax: Sequence[Axes
     output, error = ax
     curves = function_curves(candidate.linkage, task, candidate.verdict)
     if curves is not None:
-        places = np.degrees(curves.turned)
-        output.plot(places, np.degrees(curves.wanted), color=OUTPUT, linewidth=3, alpha=0.4, label="wanted")
-        output.plot(places, np.degrees(curves.generated), color=COUPLER, label="generated")
-        error.plot(places, np.degrees(curves.error), color=COUPLER)
+        places, shown = np.degrees(curves.turned), task.counted_in.shown
+        output.plot(places, shown * curves.wanted, color=OUTPUT, linewidth=3, alpha=0.4, label="wanted")
+        output.plot(places, shown * curves.generated, color=COUPLER, label="generated")
+        error.plot(places, shown * curves.error, color=COUPLER)
         at = function_curves(candidate.linkage, task, candidate.verdict, at=task.inputs)
         if at is not None and not task.fits_range:
             pairs: dict[str, Any] = {"marker": "o", "markersize": 4, "color": TARGET}
             pairs |= {"linestyle": "none", "markerfacecolor": "none"}
-            output.plot(np.degrees(task.inputs), np.degrees(at.wanted), label="pairs", **pairs)
-            error.plot(np.degrees(task.inputs), np.degrees(at.error), **pairs)
-    plot_labels(output, "output rotation (deg)")
-    plot_labels(error, "structural error (deg)")
+            output.plot(np.degrees(task.inputs), shown * at.wanted, label="pairs", **pairs)
+            error.plot(np.degrees(task.inputs), shown * at.error, **pairs)
+    unit = candidate.problem.length_unit
+    plot_labels(output, output_label(task, unit))
+    plot_labels(error, _with_unit("structural error", task, unit))
     if output.lines:
         output.legend(loc="best", fontsize="small")
 
 
-def plot_wanted(axes: Axes, task: FunctionTask) -> None:
+def plot_wanted(axes: Axes, task: FunctionTask, length_unit: str) -> None:
     """The function that is wanted, with its pairs."""
-    turned = np.linspace(*task.span, 361)
-    axes.plot(np.degrees(turned), np.degrees(task.output(turned)), color=OUTPUT, label="wanted")
+    turned, shown = np.linspace(*task.span, 361), task.counted_in.shown
+    axes.plot(np.degrees(turned), shown * task.output(turned), color=OUTPUT, label="wanted")
     axes.plot(
-        np.degrees(task.inputs), np.degrees(task.outputs), linestyle="none", marker="o", color=TARGET,
+        np.degrees(task.inputs), shown * task.outputs, linestyle="none", marker="o", color=TARGET,
         markerfacecolor="none", label="pairs",
     )  # fmt: skip
-    plot_labels(axes, "output rotation (deg)")
+    plot_labels(axes, output_label(task, length_unit))
     axes.legend(loc="best", fontsize="small")
 
 
@@ -61,3 +62,13 @@ def plot_labels(axes: Axes, across: str) -> None:
     """Names of both axes."""
     axes.set_xlabel(_OVER)
     axes.set_ylabel(across)
+
+
+def output_label(task: FunctionTask, length_unit: str) -> str:
+    """What the output is, with its unit."""
+    return _with_unit(task.output_words, task, length_unit)
+
+
+def _with_unit(words: str, task: FunctionTask, length_unit: str) -> str:
+    unit = task.counted_in.of(length_unit)
+    return f"{words} ({unit})"

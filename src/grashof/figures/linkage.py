@@ -129,7 +129,7 @@ def plot_task(problem: Problem, *, ax: Axes | None = None) -> Axes:
     """
     ax, task = new_axes(ax), problem.task
     if isinstance(task, FunctionTask):
-        plot_wanted(ax, task)
+        plot_wanted(ax, task, problem.length_unit)
         return ax
     draw_scene(ax, problem)
     draw_targets(ax, task, np.full((len(task), 2), np.nan), np.full(len(task), np.nan))
@@ -257,7 +257,7 @@ def _along(result: Result, key: str) -> tuple[FloatArray, str]:
         raise ProblemError(
             f"{key!r} is not a quantity of designs{f'; did you mean {meant}?' if meant else ''}"
         )
-    quantity = result.problem.requirements.meant(QUANTITIES[key])
+    quantity = result.problem.meant(QUANTITIES[key])
     values = [candidate.values[quantity.key] * quantity.unit.shown for candidate in result.candidates]
     unit = quantity.unit.of(result.problem.length_unit)
     return np.array(values), f"{quantity.words} ({unit})" if unit else quantity.words

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -17,7 +16,7 @@ from rich.progress import Progress as Bar
 from rich.table import Table
 
 from grashof.output.streams import say
-from grashof.problems import Problem
+from grashof.problems import FunctionTask, Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.problems.values.mechanisms import LENGTHS, having, without_noise
@@ -160,7 +159,8 @@ def _decided_by(problem: Problem) -> list[Quantity]:
     """The error where there is one, the transmission angle, whatever else is weighed, size and lengths."""
     error = [] if problem.requirements.is_exact(problem.task) else ["error"]
     if problem.task.has_output.any():
-        error = ["structural_error_max", "structural_error_rms"]
+        names = ("structural_error_max", "structural_error_rms")
+        error = [problem.meant(QUANTITIES[name]).key for name in names]
     goals = [goal.key for goal, _ in problem.goals if goal.key != "size"]
     made = [name for name in (*LENGTHS, "offset") if set(having(name)) & set(problem.mechanism)]
     keys = *error, "transmission_min_task", "transmission_min_cycle", *goals, "size", *made
@@ -189,9 +189,10 @@ def heading(result: Result, verified: int) -> str:
     if not exact:  # as the column shows it
         least = min(each.error(result.problem) for each in result.candidates)
         error = f", smallest error rms {least * result.problem.task.size:.2g}"
-    if result.problem.task.has_output.any():
-        worst = math.degrees(min(each.structural_error_max for each in verdicts))
-        error = f", structural error from {worst:.3g} deg"
+    task = result.problem.task
+    if isinstance(task, FunctionTask):
+        least = min(each.structural_error_max for each in verdicts)
+        error = f", structural error from {task.shown(least, result.problem.length_unit)}"
     classes = _classes(result)
     kind = f"{classes.pop()} " if len(classes) == 1 else ""
     families = len(result.families)

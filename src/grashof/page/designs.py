@@ -154,14 +154,18 @@ def _cylinder(design: Candidate) -> dict[str, Any]:
 
 
 def _function(problem: Problem, linkage: Linkage, design: Candidate) -> dict[str, Any]:
-    """Wanted and generated output of a function over the range, deg; nothing for other tasks."""
+    """Wanted and generated output of a function over the range, as files have it; nothing for other tasks."""
     if not isinstance(problem.task, FunctionTask):
         return {}
     curves = function_curves(linkage, problem.task, design.verdict, count=181)
     if curves is None:
         return {"function": None}
-    columns = asdict(curves)
-    return {"function": {name: compact(np.degrees(values).tolist()) for name, values in columns.items()}}
+    columns, shown = asdict(curves), problem.task.counted_in.shown
+    columns = {name: shown * values for name, values in columns.items()} | {
+        "turned": np.degrees(curves.turned)
+    }
+    names = {"title": problem.task.output_words, "unit": problem.task.counted_in.of(problem.length_unit)}
+    return {"function": names | {name: compact(values.tolist()) for name, values in columns.items()}}
 
 
 def _torques(

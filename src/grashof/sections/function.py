@@ -26,46 +26,55 @@ def function_section(study: LinkageStudy) -> Section | None:
     if curves is None:
         return None
     at_pairs = function_curves(study.linkage, task, verdict, at=task.inputs)
-    places = np.degrees(curves.turned)
-    output = {"wanted": np.degrees(curves.wanted), "generated": np.degrees(curves.generated)}
+    places, shown, unit = (
+        np.degrees(curves.turned),
+        task.counted_in.shown,
+        task.counted_in.of(problem.length_unit),
+    )
+    output = {"wanted": shown * curves.wanted, "generated": shown * curves.generated}
     plots = (
-        Plot("function-output", "output rotation", "deg", output, places, OVER, bounded=True),
+        Plot("function-output", task.output_words, unit, output, places, OVER, bounded=True),
         Plot(
-            "structural-error", "structural error", "deg", {"error": np.degrees(curves.error)}, places, OVER,
+            "structural-error", "structural error", unit, {"error": shown * curves.error}, places, OVER,
             bounded=True,
         ),
     )  # fmt: skip
-    tables = {} if at_pairs is None else {"function": _pairs(verdict, at_pairs)}
+    tables = {} if at_pairs is None else {"function": _pairs(task, verdict, at_pairs)}
+    way = "along the slide" if task.travels else "in the sense of the driver"
     between = "between pairs the wanted output is the cubic spline through them"
     notes = (
-        "error is output less what is wanted, in the sense of the driver",
+        f"error is output less what is wanted, {way}",
         between if task.law is None else f"wanted is the law {task.law.name}",
     )
-    return Section("function", "Function", tuple(_facts(verdict)), tables, plots, notes)
+    return Section("function", "Function", tuple(_facts(task, verdict, unit)), tables, plots, notes)
 
 
-def _facts(verdict: Verdict) -> Iterator[Fact]:
+def _facts(task: FunctionTask, verdict: Verdict, unit: str) -> Iterator[Fact]:
+    zero = "travel of the slide" if task.travels else "theta4"
     names = {
         "structural_error_max": "structural error, greatest",
-        "structural_error_at": "structural error, greatest: driver rotation from the first pair",
         "structural_error_rms": "structural error, root mean square",
-        "output_zero": "theta4 at the wanted output zero",
+        "output_zero": f"{zero} at the wanted output zero",
     }
+    ending = "" if task.travels else "_deg"
     for key, label in names.items():
-        yield Fact(f"{key}_deg", label, float(np.degrees(getattr(verdict, key))), "deg")
+        yield Fact(f"{key}{ending}", label, float(task.counted_in.shown * getattr(verdict, key)), unit)
+        if key == "structural_error_max":
+            where = f"{label}: driver rotation from the first pair"
+            yield Fact(
+                "structural_error_at_deg", where, float(np.degrees(verdict.structural_error_at)), "deg"
+            )
     yield Fact("theta2_first_deg", "theta2 at the first pair", float(np.degrees(verdict.theta2[0])), "deg")
     yield Fact("driver_sense", "sense of the driver (1: counter-clockwise)", verdict.direction)
 
 
-def _pairs(verdict: Verdict, at_pairs: FunctionCurves) -> pd.DataFrame:
+def _pairs(task: FunctionTask, verdict: Verdict, at_pairs: FunctionCurves) -> pd.DataFrame:
     """A row for each pair."""
-    columns = {
-        "input_deg": at_pairs.turned,
-        "theta2_deg": verdict.theta2,
-        "wanted_deg": at_pairs.wanted,
-        "generated_deg": at_pairs.generated,
-        "error_deg": at_pairs.error,
-    }
-    table = pd.DataFrame({name: np.degrees(values) for name, values in columns.items()})
+    angles = {"input_deg": at_pairs.turned, "theta2_deg": verdict.theta2}
+    outputs = {"wanted": at_pairs.wanted, "generated": at_pairs.generated, "error": at_pairs.error}
+    ending = "" if task.travels else "_deg"
+    columns = {name: np.degrees(values) for name, values in angles.items()}
+    columns |= {f"{name}{ending}": task.counted_in.shown * values for name, values in outputs.items()}
+    table = pd.DataFrame(columns)
     table.insert(0, "pair", np.arange(1, len(table) + 1))
     return table

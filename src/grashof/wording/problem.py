@@ -198,14 +198,14 @@ def _task(task: Task, unit: str) -> str:
         free = "place" if task.swing is None else "place and scale"
         return f"{way}, time ratio {task.time_ratio:g}, {free} free"
     if isinstance(task, FunctionTask):
-        return _function(task)
+        return _function(task, unit)
     kind = f"closed {task.kind}" if task.closed else task.kind
     timing = f" timed over {np.degrees(task.driver_turns[-1]):g} deg" if task.is_timed else ""
     length = f", angle_length {task.angle_length:g}{unit}" if task.kind == "motion" else ""
     return f"{kind} through {len(task)} {task.target}s{timing}, size {task.size:g}{unit}{length}"
 
 
-def _function(task: FunctionTask) -> str:
+def _function(task: FunctionTask, unit: str) -> str:
     """A function by its pairs or its law, with its ranges and senses."""
     first, last = np.degrees(task.span)
     swept = f"driver over {last - first:g} deg"
@@ -214,12 +214,12 @@ def _function(task: FunctionTask) -> str:
         said = f"function through {counted(len(task), 'pair')}, {swept}"
     else:
         power = "" if law.exponent is None else f" {law.exponent:g}"
-        ranges = (
-            f"x from {law.x[0]:g} to {law.x[1]:g}, {swept}, output over {np.degrees(law.output_range):g} deg"
-        )
+        over = f"{task.counted_in.shown * law.output_range:g}{unit if task.travels else ' deg'}"
+        ranges = f"x from {law.x[0]:g} to {law.x[1]:g}, {swept}, output over {over}"
         chosen = "" if task.fits_range else f", at {counted(len(task), 'pair')} by Chebyshev spacing"
         said = f"function {law.name}{power}, {ranges}{chosen}"
-    sense = "in the sense of the driver" if task.sense == "given" else "in either sense"
+    given = "along the slide" if task.travels else "in the sense of the driver"
+    sense = given if task.sense == "given" else "in either sense"
     return f"{said}; output {sense}"
 
 
@@ -230,7 +230,8 @@ def _exactness(problem: Problem) -> str:
     if isinstance(problem.task, FunctionTask) and (exact or problem.task.norm == "max"):
         if not exact:
             return "least greatest structural error"
-        return f"every pair met within {problem.requirements.tolerance:g} rad"
+        unit = "of the travel" if problem.task.travels else "rad"
+        return f"every pair met within {problem.requirements.tolerance:g} {unit}"
     if not exact:
         return "least squares"
     within = f"met within {problem.requirements.tolerance:g}"

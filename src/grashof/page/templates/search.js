@@ -87,13 +87,14 @@ class SearchPage {
 
   // Wanted and generated output of a function, and what lies between them.
   outputs(design) {
-    const none = { turned: [0, 1], wanted: [null, null], generated: [null, null], error: [null, null] };
-    const { turned, wanted, generated, error } = design.function || none;
-    const panel = { unit: "deg", places: turned, over: "driver rotation from the first pair (deg)" };
+    const empty = [null, null];
+    const none = { title: "output", unit: "", turned: [0, 1], wanted: empty, generated: empty, error: empty };
+    const { title, unit, turned, wanted, generated, error } = design.function || none;
+    const panel = { unit, places: turned, over: "driver rotation from the first pair (deg)" };
     const first = design.theta2[0];
     const marks = design.theta2.map((angle) => Math.abs(angle - first) * DEG);
     const series = [{ label: "wanted", values: wanted }, { label: "generated", values: generated }];
-    this.output.show({ ...panel, title: "Output rotation", series }, { marks, bounded: true });
+    this.output.show({ ...panel, title: title[0].toUpperCase() + title.slice(1), series }, { marks, bounded: true });
     const errors = [{ label: "error", values: error }];
     this.error.show({ ...panel, title: "Structural error", series: errors }, { marks, bounded: true });
   }
