@@ -229,9 +229,9 @@ class _Search:
             rate = kind_of(self.linkage).output_rate(self.linkage, state.theta2, state.theta3, state.theta4)
             if not np.isfinite(rate).all():  # a dead position
                 break
-            moved = _moved(self.linkage, self.task, state, direction, unwrapped=False)
+            output = _moved(self.linkage, self.task, state, direction, unwrapped=False)
             off = min(
-                (_from_first(self.task, moved - sense * self.task.outputs) for sense in self.senses),
+                (_from_first(self.task, output - sense * self.task.outputs) for sense in self.senses),
                 key=lambda each: float(np.nan_to_num(share @ (each - share @ each) ** 2, nan=np.inf)),
             )
             off, rate = off - share @ off, direction * (rate - share @ rate)

@@ -61,13 +61,13 @@ def _place(name: str, over: Over) -> Quantity:
 
 
 def _structural(key: str, label: str, *, travels: bool = False) -> Quantity:
-    about, words = "output less what is wanted, over the whole range", {"max": "greatest structural error"}
-    name, others = f"structural_error_{key}", {"words": words.get(key, "structural error (root mean square)")}
+    about, name = "output less what is wanted, over the whole range", f"structural_error_{key}"
+    words = "greatest structural error" if key == "max" else "structural error (root mean square)"
     if not travels:
-        return Quantity(name, label, Unit.ANGLE, Over.TASK, -1, Needs.ROTATION, 3, about, **others)
+        return Quantity(name, label, Unit.ANGLE, Over.TASK, -1, Needs.ROTATION, 3, about, words=words)
     return Quantity(
         TRAVEL_ERRORS[name], label, Unit.LENGTH, Over.TASK, -1, Needs.TRAVEL, 3, about, named=name,
-        kinds=(SLIDER_CRANK,), **others,
+        kinds=(SLIDER_CRANK,), words=words,
     )  # fmt: skip
 
 

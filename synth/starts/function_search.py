@@ -342,4 +342,5 @@ def _apart(some: list[Optimum], worth: FloatArray) -> list[int]:
     if not finite.size:
         return []
     made = some[0].made.joined([some[k].made for k in finite])
-    return finite[best_apart(made, worth[finite], CELL)].tolist()
+    best: list[int] = finite[best_apart(made, worth[finite], CELL)].tolist()
+    return best

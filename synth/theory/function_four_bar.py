@@ -123,7 +123,7 @@ class FourBars(Generators):
     def _transmission(self, limits: ShapeLimits) -> Rows:
         """At both ends, and where O2A is along the ground line if the motion passes there."""
         r2, r3, r4 = np.exp(self.shape[:, :3]).T[..., None]
-        places, met, moving = places_met(self.first, limits.span, (0.0, np.pi), limits.over_cycle)
+        places, met, moving = places_met(self.first, limits.span, (0.0, np.pi), over_cycle=limits.over_cycle)
         square = 1 + r2**2 - 2 * r2 * np.cos(places)
         cosine = (r3**2 + r4**2 - square) / (2 * r3 * r4)
         by_square = -1 / (2 * r3 * r4)

@@ -8,7 +8,7 @@ from typing import Self
 import numpy as np
 
 from grashof.problems import InvertedSliderCrank, Requirements
-from grashof.problems.values.arrays import FloatArray, IntArray, Limits
+from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray, Limits
 from grashof.problems.values.function_ground import FunctionGround
 from grashof.synth.theory.function_limits import (
     Rows,
@@ -57,7 +57,8 @@ class InvertedSliderCranks(Generators):
     def _seen(self, theta2: FloatArray) -> FloatArray:
         """Distance A-O4."""
         r2 = np.exp(self.shape[:, :1])
-        return np.sqrt((1 - r2) ** 2 + 4 * r2 * np.sin(theta2 / 2) ** 2)
+        distance: FloatArray = np.sqrt((1 - r2) ** 2 + 4 * r2 * np.sin(theta2 / 2) ** 2)
+        return distance
 
     def outputs(self, turned: FloatArray) -> FloatArray:
         """Direction of the rod, unwrapped: that of A-O4, and the offset beside it."""
@@ -81,7 +82,7 @@ class InvertedSliderCranks(Generators):
 
     def worst_cosine(self, span: float) -> FloatArray:
         """Abs(offset) over the distance A-O4, where that is least."""
-        places, met, _ = places_met(self.first, span, (0.0, np.pi), over_cycle=False)
+        places, met, _ = places_met(self.first, span, (0.0, np.pi))
         with np.errstate(divide="ignore", invalid="ignore"):
             cosine = np.abs(self.shape[:, 1:2]) / self._seen(places)
         worst: FloatArray = np.where(met, cosine, 0.0).max(axis=1)
@@ -102,7 +103,7 @@ class InvertedSliderCranks(Generators):
         return joined_rows(parts)
 
     def _transmission(self, limits: ShapeLimits) -> Rows:
-        places, met, moving = places_met(self.first, limits.span, (0.0, np.pi), limits.over_cycle)
+        places, met, moving = places_met(self.first, limits.span, (0.0, np.pi), over_cycle=limits.over_cycle)
         r2, offset = np.exp(self.shape[:, :1]), self.shape[:, 1:2]
         with np.errstate(divide="ignore", invalid="ignore"):
             seen = self._seen(places)
@@ -178,7 +179,7 @@ class InvertedSliderCranks(Generators):
         return made.changed(shape)
 
     @classmethod
-    def _of(cls, w: FloatArray, c: FloatArray, offset: FloatArray) -> Self:
+    def _of(cls, w: ComplexArray, c: ComplexArray, offset: FloatArray) -> Self:
         """Those with such a w, c and offset, each of shape (M,); the rod is taken from A to B."""
         with np.errstate(divide="ignore", invalid="ignore"):
             rod = c.real - w.real

@@ -98,7 +98,9 @@ def linear_rows(rows: FloatArray, dimensions: FloatArray, slopes: FloatArray) ->
     return dimensions @ rows.T, np.einsum("ln,mnk->mlk", rows, slopes)
 
 
-def places_met(first: FloatArray, span: float, along: Limits, over_cycle: bool) -> tuple[FloatArray, ...]:
+def places_met(
+    first: FloatArray, span: float, along: Limits, *, over_cycle: bool = False
+) -> tuple[FloatArray, BoolArray, FloatArray]:
     """Where the transmission may be worst: at both ends, and at two angles if the motion passes there.
 
     Returns

@@ -96,7 +96,7 @@ class SliderCranks(Generators):
 
     def worst_cosine(self, span: float) -> FloatArray:
         """Abs(h) / r3 at both ends, and where the crank stands square to the slide."""
-        places, met, _ = places_met(self.first, span, (np.pi / 2, -np.pi / 2), over_cycle=False)
+        places, met, _ = places_met(self.first, span, (np.pi / 2, -np.pi / 2))
         worst: FloatArray = np.where(met, np.abs(self._cosines(places)), 0.0).max(axis=1)
         return worst
 
@@ -137,7 +137,7 @@ class SliderCranks(Generators):
 
     def _transmission(self, limits: ShapeLimits) -> Rows:
         along = (np.pi / 2, -np.pi / 2)
-        places, met, moving = places_met(self.first, limits.span, along, limits.over_cycle)
+        places, met, moving = places_met(self.first, limits.span, along, over_cycle=limits.over_cycle)
         rise = self._crank * np.sin(places)
         turn = -self._crank * np.cos(places) * moving
         slope = np.stack([-rise, rise, np.ones_like(rise), turn], axis=-1)
@@ -194,7 +194,7 @@ class SliderCranks(Generators):
         >>> len(made) in (1, 3)
         True
         """
-        dyads = five_pose_dyads_of_sets(np.exp(1j * turned), -output + 0j)
+        dyads = five_pose_dyads_of_sets(np.exp(1j * turned), (-output).astype(np.complex128))
         a, b = dyads.moving, dyads.ground
         with np.errstate(invalid="ignore"):
             which, root = np.nonzero((np.abs(a) > _TRIVIAL) & (np.abs(b - a) > _TRIVIAL))
