@@ -238,8 +238,8 @@ _PROBLEMS = (
     f'kind = "function"\nmechanism = "slider-crank"\n{_HEAD}[function]\ninput_deg = [0, 30, 60, 100]\n'
     "output = [0, 9, 21, 40]\n[requirements]\nstructural_error_max = [0, 5]\nstructural_error_rms = [0, 4]\n"
     f"{_SEARCH}",
-    f'kind = "function"\nmechanism = "slider-crank"\n[function]\nlaw = "exp"\nx = [0, 1]\ninput_range_deg = 60\n'
-    f"output_range = 40\n{_SEARCH}",
+    f'kind = "function"\nmechanism = "slider-crank"\n[function]\nlaw = "exp"\nx = [0, 1]\n'
+    f"input_range_deg = 60\noutput_range = 40\n{_SEARCH}",
     f'kind = "path"\n{_HEAD}[path]\npoints = [[0, 0], [30, 10], [60, 0]]\n{_SEARCH}',
     f'kind = "path"\nmechanism = ["slider-crank", "four-bar"]\n{_HEAD}[path]\n{_POINTS}'
     f"[requirements]\noffset = [-90, 90]\nslide_angle_deg = 10\nstroke = [1, 900]\n{_SEARCH}",

@@ -86,11 +86,22 @@ def _moved(
     """Output of a linkage in its positions: rotation in the sense of the driver, or travel of the slide."""
     if task.travels:
         return slide_travel(linkage, state)
-    moved: FloatArray = direction * (np.unwrap(state.theta4) if unwrapped else state.theta4)
+    moved: FloatArray = _way(task, direction) * (np.unwrap(state.theta4) if unwrapped else state.theta4)
     return moved
 
 
-def begins(linkage: Linkage, task: FunctionTask, exact: bool, theta2_start: float | None) -> Beginning | None:
+def _way(task: FunctionTask, direction: int) -> int:
+    """Sense in which an output counts: a rotation in that of the driver, a travel along the slide."""
+    return 1 if task.travels else direction
+
+
+def begins(
+    linkage: Linkage,
+    task: FunctionTask,
+    exact: bool,
+    theta2_start: float | None,
+    directions: tuple[int, ...] = (1, -1),
+) -> Beginning | None:
     """Where the driver of a single linkage begins so that it errs least.
 
     Parameters
@@ -101,6 +112,8 @@ def begins(linkage: Linkage, task: FunctionTask, exact: bool, theta2_start: floa
         Every pair is to be met: the errors at the pairs decide, whatever the norm.
     theta2_start : float, rad, optional
         Driver angle at the first pair, where it is given.
+    directions : tuple of int
+        Senses in which the driver may turn.
 
     Returns
     -------
@@ -127,7 +140,7 @@ def begins(linkage: Linkage, task: FunctionTask, exact: bool, theta2_start: floa
         )
     search = _Search(linkage, task, exact or task.norm == "rms")
     found: list[tuple[float, int, float]] = []
-    for direction in (1, -1):
+    for direction in directions:
         if theta2_start is not None:
             found.append((search.value(theta2_start, direction), direction, theta2_start))
             continue
@@ -224,6 +237,7 @@ class _Search:
     def _newton(self, at: float, direction: int) -> float:
         """Gauss-Newton: squares alone give half of the digits."""
         share = self.task.weights / self.task.weights.sum()
+        way = _way(self.task, direction)
         for _ in range(6):
             state = solve_position(self.linkage, at + direction * self.task.inputs)
             rate = kind_of(self.linkage).output_rate(self.linkage, state.theta2, state.theta3, state.theta4)
@@ -234,7 +248,7 @@ class _Search:
                 (_from_first(self.task, output - sense * self.task.outputs) for sense in self.senses),
                 key=lambda each: float(np.nan_to_num(share @ (each - share @ each) ** 2, nan=np.inf)),
             )
-            off, rate = off - share @ off, direction * (rate - share @ rate)
+            off, rate = off - share @ off, way * (rate - share @ rate)
             curvature = float(share @ rate**2)
             if not curvature > 0:
                 break
@@ -315,7 +329,7 @@ def structural_error(
     square = float((half[:, None] * weights).ravel() @ (curves(inner)[0] - zero) ** 2) / float(np.ptp(coarse))
     above, below = high - zero, low + zero
     worst, at = (above, high_at) if above >= below else (below, low_at)
-    rms, way = float(np.sqrt(square)), 1 if task.travels else begun.direction
+    rms, way = float(np.sqrt(square)), _way(task, begun.direction)
     return StructuralError(at_pairs - zero, worst, rms, at, way * zero, sense)
 
 
@@ -335,7 +349,9 @@ def met_as_function(
     """
     exact = wanted.is_exact(task)
     start = None if wanted.theta2_start_deg is None else float(np.radians(wanted.theta2_start_deg))
-    begun = begins(linkage, task, exact, start)
+    allowed = {"ccw": (1,), "cw": (-1,)}.get(wanted.driver_sense, ())
+    begun = begins(linkage, task, exact, start, allowed) if allowed else None
+    begun = begun or begins(linkage, task, exact, start)
     met = begun or Beginning(start or 0.0, 1)
     first = met.theta2 if start is not None else met.theta2 - TURN * np.round(met.theta2 / TURN)
     met = Beginning(float(first), met.direction)
@@ -389,7 +405,7 @@ def function_curves(
     turned = np.linspace(*task.span, count) if at is None else at
     every = np.unique(np.concatenate([dense, turned]))
     begun = Beginning(float(verdict.theta2[0]), verdict.direction)
-    way = 1 if task.travels else verdict.direction
+    way = _way(task, verdict.direction)
     off = output_error(linkage, task, begun, every, verdict.output_sense) - way * verdict.output_zero
     middle = 0.0 if task.travels else TURN * np.round(np.median(off) / TURN)
     error = off[np.searchsorted(every, turned)] - middle

@@ -17,7 +17,7 @@ from grashof.study.study import LinkageStudy
 from grashof.synth import shards
 
 Grashof = Callable[..., Any]
-EXAMPLES = ("function-five-pairs", "function-log10", "function-sin")
+EXAMPLES = ("function-five-pairs", "function-log10", "function-sin", "function-dosing-slide")
 
 
 def test_a_function_is_solved_and_analysed(grashof: Grashof, tmp_path: Path) -> None:
@@ -33,7 +33,7 @@ def test_a_function_is_solved_and_analysed(grashof: Grashof, tmp_path: Path) -> 
     assert max(max(design["output_error"]) for design in designs) < 1e-6
     assert (folder / "design-01.png").stat().st_size > 10_000
     page = (folder / "report.html").read_text()
-    for word in ("Output rotation", "Structural error", "generated"):
+    for word in ("output rotation", "Structural error", "generated"):
         assert word in page
     spec = load_linkage_spec(f"{folder / 'candidates.json'}#1")
     section = function_section(LinkageStudy.of(spec, Asked()))
@@ -44,6 +44,28 @@ def test_a_function_is_solved_and_analysed(grashof: Grashof, tmp_path: Path) -> 
     assert worst == pytest.approx(table["structural_error_max_deg"][0])
     done = grashof("analyse", f"{folder / 'candidates.json'}#1")
     assert done.exit_code == 0, done.output
+
+
+def test_a_slide_is_told_in_its_unit_of_length(grashof: Grashof, tmp_path: Path) -> None:
+    done = grashof("solve", "function-dosing-slide", "--drawings", "1")
+    assert done.exit_code == 0, done.output
+    assert " mm. Lengths in mm" in done.output
+    folder = tmp_path / "function-dosing-slide-designs"
+    table = pd.read_csv(folder / "candidates.csv")
+    assert table[["structural_error_max_deg", "structural_error_rms_deg"]].isna().all(axis=None)
+    assert (table["structural_error_max"] >= table["structural_error_rms"]).all()
+    assert table["structural_error_at_deg"].between(0, 120).all()
+    page = (folder / "report.html").read_text()
+    assert '"title":"travel of the slide","unit":"mm"' in page.replace(": ", ":").replace(", ", ",")
+    spec = load_linkage_spec(f"{folder / 'candidates.json'}#1")
+    section = function_section(LinkageStudy.of(spec, Asked()))
+    assert section is not None
+    assert {plot.unit for plot in section.plots} == {"mm"}
+    pairs = section.tables["function"]
+    assert (pairs["generated"] - pairs["wanted"] - pairs["error"]).abs().max() < 1e-9
+    facts = {fact.key: fact.value for fact in section.facts}
+    assert facts["structural_error_max"] == pytest.approx(table["structural_error_max"][0])
+    assert pairs["error"].abs().max() == pytest.approx(facts["structural_error_max"], rel=1e-3)
 
 
 @pytest.mark.parametrize("name", EXAMPLES)

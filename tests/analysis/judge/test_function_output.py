@@ -5,7 +5,16 @@ import pytest
 
 from grashof.analysis import function_curves, solve_position, verify
 from grashof.analysis.judge.planted import planted_function
-from grashof.problems import FourBar, FunctionTask, Problem, Requirements
+from grashof.problems import (
+    FourBar,
+    FunctionTask,
+    InvertedSliderCrank,
+    Linkage,
+    Problem,
+    ProblemError,
+    Requirements,
+    SliderCrank,
+)
 from grashof.problems.values.arrays import FloatArray
 
 
@@ -121,3 +130,101 @@ def test_limits_of_the_structural_error() -> None:
     assert verify(linkage, task, Requirements(structural_error_max_deg=(0, 1.01 * most))).ok
     (defect,) = verify(linkage, task, Requirements(structural_error_max_deg=(0, 0.99 * most))).defects
     assert defect.requirement == "structural_error_max_deg"
+
+
+def followed(linkage: Linkage, theta2: FloatArray) -> FloatArray:
+    """Travel of the slide or direction of the rod: B by Newton's method on two conditions, step by step."""
+    state = solve_position(linkage, theta2[0])
+    b, found = state.b.astype(np.float64), []
+    e = np.array([np.cos(float(linkage.theta1) - np.pi / 2), np.sin(float(linkage.theta1) - np.pi / 2)])
+    n = np.array([-e[1], e[0]])
+    for angle in theta2:
+        a = linkage.o2 + float(linkage.r2) * np.array([np.cos(angle), np.sin(angle)])
+        for _ in range(30):
+            if isinstance(linkage, SliderCrank):  # |AB| = r3, and B on the line
+                rest = np.array([(b - a) @ (b - a) - linkage.r3**2, n @ (b - linkage.o2) - linkage.offset])
+                slope = np.array([2 * (b - a), n])
+            else:  # |O4B| = |offset|, and AB square to it
+                arm = b - linkage.o4  # type: ignore[attr-defined]
+                offset = float(linkage.offset)  # type: ignore[attr-defined]
+                rest, slope = np.array([arm @ arm - offset**2, arm @ (b - a)]), np.array([2 * arm, 2 * b - a])
+                slope[1] -= linkage.o4  # type: ignore[attr-defined]
+            b = b - np.linalg.solve(slope, rest)
+        along = (b - a) if isinstance(linkage, InvertedSliderCrank) else e
+        found.append(float(e @ (b - linkage.o2)) if along is e else float(np.arctan2(along[1], along[0])))
+    values = np.array(found)
+    return values if isinstance(linkage, SliderCrank) else np.unwrap(values)
+
+
+SLIDING = pytest.mark.parametrize("mechanism", ["slider-crank", "inverted-slider-crank"])
+
+
+@SLIDING
+@pytest.mark.parametrize("direction", [1, -1])
+@pytest.mark.parametrize("pairs", [4, 5, 9])
+def test_planted_functions_of_slides_are_accepted(mechanism: str, pairs: int, direction: int) -> None:
+    rng = np.random.default_rng([pairs, direction + 1])
+    for _ in range(5):
+        task, linkage, start = planted_function(rng, pairs, mechanism=mechanism)
+        if direction < 0:  # the mirror image turns its driver clockwise
+            linkage = linkage.changed(offset=-linkage.offset)
+        verdict = verify(linkage, task, Requirements(exact=True))
+        assert verdict.ok, verdict.defects
+        assert verdict.output_error.max() < 1e-9 * task.output_unit
+        if pairs > 4:
+            assert verdict.direction == direction
+            assert abs(np.exp(1j * (verdict.theta2[0] - direction * start)) - 1) < 1e-6
+
+
+@SLIDING
+@pytest.mark.parametrize("norm", ["rms", "max"])
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e5])
+def test_structural_error_of_slides_is_that_of_dense_continuation(
+    mechanism: str, norm: str, size: float
+) -> None:
+    rng = np.random.default_rng(11)
+    for _ in range(3):
+        task, linkage, _ = planted_function(rng, 5, mechanism=mechanism)
+        scale = size if task.travels else 1.0
+        numbers = {row.name: getattr(linkage, row.name) * size for row in linkage.PARAMETERS if row.in_length}
+        linkage = linkage.changed(**numbers)
+        outputs = task.outputs * 1.03 * scale
+        task = FunctionTask(task.inputs, outputs, norm=norm, travels=task.travels)
+        verdict = verify(linkage, task, Requirements(exact=False, tolerance=1.0))
+        turned = np.unique(np.concatenate([task.inputs, np.linspace(0, task.inputs[-1], 2001)]))
+        moved = followed(linkage, float(verdict.theta2[0]) + verdict.direction * turned)
+        off = moved * (1 if task.travels else verdict.direction) - task.output(turned)
+        zero = off[np.searchsorted(turned, task.inputs)].mean()
+        if norm == "max":
+            zero = (off.max() + off.min()) / 2
+        assert abs(np.abs(off - zero).max() - verdict.structural_error_max) < 1e-6 * scale
+        rms = np.sqrt(np.trapezoid((off - zero) ** 2, turned) / turned[-1])
+        assert abs(rms - verdict.structural_error_rms) < 1e-5 * scale
+
+
+def test_limits_of_the_structural_error_of_a_slide() -> None:
+    task, linkage, _ = planted_function(np.random.default_rng(8), 5, mechanism="slider-crank")
+    problem = Problem(task=task, mechanism="slider-crank")
+    most = verify(linkage, task, Requirements(), problem=problem).structural_error_max
+    wanted = Requirements(structural_error_max=(0, 1.01 * most))
+    assert verify(linkage, task, wanted, problem=problem).ok
+    wanted = Requirements(structural_error_max=(0, 0.99 * most))
+    (defect,) = verify(linkage, task, wanted, problem=problem).defects
+    assert defect.requirement == "structural_error_max"
+    assert defect.found == pytest.approx(most)
+
+
+def test_an_output_of_the_wrong_kind_is_refused() -> None:
+    task, linkage, _ = planted_function(np.random.default_rng(8), 5, mechanism="slider-crank")
+    turning = FunctionTask(task.inputs, task.outputs)
+    with pytest.raises(ProblemError, match="mechanism slider-crank has no output that turns"):
+        verify(linkage, turning, Requirements())
+
+
+def test_a_slide_that_the_crank_cannot_push_far_enough_is_a_defect() -> None:
+    linkage = SliderCrank((0, 0), 3, 1.5)  # its driver swings
+    task = FunctionTask([0, 1.0, 2.0, 3.0], [0, 0.5, 1.0, 1.5], travels=True)
+    verdict = verify(linkage, task, Requirements(exact=False))
+    assert not verdict.ok
+    assert np.isnan(verdict.structural_error_max)
+    assert function_curves(linkage, task, verdict) is None

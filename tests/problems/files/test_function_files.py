@@ -4,7 +4,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from grashof.problems import ProblemError
+from grashof.problems import FunctionTask, ProblemError
 from grashof.problems.files.problem_schema import problem_from
 from grashof.problems.files.problem_writing import problem_toml
 
@@ -12,6 +12,7 @@ PAIRS = {"input_deg": [0, 20, 45, 90], "output_deg": [0, 12, 31, 80]}
 BESIDE = "function.input_deg does not go with function.law; give pairs or a law"
 UNKNOWN = "function.input_dg is unknown; did you mean input_deg?"
 CORNERS = [[0, 0], [1, 0], [1, 1]]
+TRAVEL = {"input_deg": [0, 20, 45, 90], "output": [0, 3.1, 9, 20]}
 LAW = {"law": "power", "exponent": 1.5, "x": [1, 4], "input_range_deg": 90, "output_range_deg": 90}
 
 
@@ -34,6 +35,107 @@ def test_what_is_written_comes_back(table: dict[str, Any]) -> None:
     assert np.array_equal(again.task.outputs, problem.task.outputs)
     assert again.requirements == problem.requirements
     assert problem_toml(again) == problem_toml(problem)
+
+
+@pytest.mark.parametrize(
+    "table",
+    [
+        {**TRAVEL, "norm": "max"},
+        {"law": "exp", "x": [0, 1], "input_range_deg": 60, "output_range": 80.0},
+        {
+            "law": "sampled",
+            "x": [0, 1],
+            "sampled": [0, 1, 3, 4.0],
+            "input_range_deg": 60,
+            "output_range": 1e-3,
+        },
+    ],
+)
+def test_what_is_written_of_a_slide_comes_back(table: dict[str, Any]) -> None:
+    wanted = {"structural_error_max": [0, 2], "structural_error_rms": [0, 1]}
+    document = {
+        "kind": "function", "mechanism": "slider-crank", "function": table, "requirements": wanted,
+        "objective": {"maximise": {"structural_error_max": 1.0}},
+    }  # fmt: skip
+    if "law" in table:
+        del document["objective"]
+    problem = problem_from(document, "a")
+    again = problem_from(tomllib.loads(problem_toml(problem)), "a")
+    assert isinstance(again.task, FunctionTask)
+    assert again.task.travels
+    assert np.array_equal(again.task.outputs, problem.task.outputs)
+    assert again.requirements == problem.requirements
+    assert problem_toml(again) == problem_toml(problem)
+    assert [goal.column for goal, _ in problem.goals][-1:] != ["structural_error_max_deg"]
+
+
+SLIDER = {"mechanism": "slider-crank"}
+
+
+@pytest.mark.parametrize(
+    ("document", "message"),
+    [
+        (
+            {"function": TRAVEL},
+            "function.output is a travel, which mechanism four-bar does not put out; "
+            "it goes with slider-crank",
+        ),
+        (
+            {"function": TRAVEL, "mechanism": ["slider-crank", "inverted-slider-crank"]},
+            "function.output is a travel, which mechanism inverted-slider-crank does not put out; "
+            "it goes with slider-crank",
+        ),
+        (
+            {"function": {**PAIRS, "output": [0, 1, 2, 3]}, **SLIDER},
+            "function.output_deg does not go with function.output; an output turns or slides, "
+            "give one of them",
+        ),
+        (
+            {"function": {**LAW, "output_range": 3}, **SLIDER},
+            "function.output_range_deg does not go with function.output_range; an output turns or slides, "
+            "give one of them",
+        ),
+        (
+            {"function": TRAVEL, **SLIDER, "requirements": {"structural_error_max_deg": [0, 1]}},
+            "function has an output that slides, not one that turns; "
+            "requirements.structural_error_max_deg needs it",
+        ),
+        (
+            {"function": PAIRS, "requirements": {"structural_error_max": [0, 1]}, "mechanism": "four-bar"},
+            "requirements.structural_error_max does not go with mechanism four-bar; only slider-crank has it\n"
+            "function has an output that turns, not one that slides; "
+            "requirements.structural_error_max needs it",
+        ),
+        (
+            {"function": {**TRAVEL, "output": [0, 1, 2]}, **SLIDER},
+            "function.input_deg has 4 angles, function.output 3 travels; it must be as many",
+        ),
+        (
+            {"function": {**TRAVEL, "output": [0, 0, 0, 0]}, **SLIDER},
+            "function.output does not move; the slide must travel",
+        ),
+        (
+            {"function": {**TRAVEL, "output": [1, 2, 3, 4]}, **SLIDER},
+            "function.output[0] is 1; it must be 0, at the first pair",
+        ),
+        (
+            {"function": {**TRAVEL, "output": 3}, **SLIDER},
+            "function.output is 3; it must be a list of lengths",
+        ),
+        (
+            {"function": {"law": "exp", "x": [0, 1], "input_range_deg": 9, "output_range": -8}, **SLIDER},
+            "function.output_range is -8; it must be a number greater than zero",
+        ),
+        (
+            {"function": {"law": "exp", "x": [0, 1], "input_range_deg": 9}, **SLIDER},
+            "function.output_range_deg is missing",
+        ),
+    ],
+)
+def test_bad_files_of_slides_get_lines(document: dict[str, Any], message: str) -> None:
+    with pytest.raises(ProblemError) as caught:
+        problem_from({"kind": "function", **document}, "a")
+    assert str(caught.value) == message
 
 
 @pytest.mark.parametrize(

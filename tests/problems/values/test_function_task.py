@@ -66,6 +66,26 @@ def test_the_wanted_output_passes_through_all_pairs(count: int, seed: int) -> No
     assert task.exact_by_default == (count <= 5)
 
 
+def test_a_travel_may_have_any_size() -> None:
+    for size in (1e-9, 1.0, 1e8):
+        task = FunctionTask([0, 1, 2], [0, 3 * size, 2 * size], travels=True)
+        assert task.size == task.output_unit == 3 * size
+        assert task.output(1.0) == pytest.approx(3 * size)
+    law = FunctionTask.from_degrees(law="sin", x=(0, 180), input_range_deg=60, output_range=400.0, pairs=5)
+    assert law.size == 400
+    assert law.under(Requirements(r1=(7, 9))) is law
+
+
+def test_four_pairs_are_met_by_all_kinds_whose_output_turns() -> None:
+    four, five = (FunctionTask(np.arange(n), np.arange(n) ** 1.2) for n in (4, 5))
+    kinds = ["four-bar", "inverted-slider-crank"]
+    assert Problem(task=four, mechanism=kinds).requirements.is_exact(four)
+    assert not Problem(task=five, mechanism=kinds).requirements.is_exact(five)
+    assert Problem(task=five).requirements.is_exact(five)
+    slide = FunctionTask(five.inputs, five.outputs, travels=True)
+    assert Problem(task=slide, mechanism="slider-crank").requirements.is_exact(slide)
+
+
 def test_rotatability_is_any_unless_it_is_stated() -> None:
     task = FunctionTask([0, 1, 2], [0, 1, 2])
     assert Problem(task=task).requirements.rotatability is Rotatability.ANY
