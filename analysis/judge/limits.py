@@ -39,12 +39,16 @@ def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
     for name, limit in limited.items():
         if values.linkage.MECHANISM not in limit.quantity.kinds:  # of a list of several kinds
             continue
+        if limit.quantity.key in values.problem.task.without:  # a default
+            continue
         if not values.problem.states(limit.quantity.needs):
             raise ProblemError(f"requirements.{name} needs a problem with {limit.quantity.needs.value}")
         if limit.quantity.over is Over.TASK and not joined:
             continue
         if verdict.cylinder is None and limit.quantity.needs in _OF_CYLINDERS:
             continue  # that there is none is a defect by itself
+        if limit.quantity.key in values.problem.task.without:  # the usual limit of what is not asked for
+            continue
         quantity, ranges = wanted.meant(limit.quantity), wanted.ranges(name)
         for part, numbers in values.parts(quantity.key).items():
             if part in limited:  # r1 and link_length: its own limits take their place

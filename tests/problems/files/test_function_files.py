@@ -102,7 +102,8 @@ SLIDER = {"mechanism": "slider-crank"}
         ),
         (
             {"function": PAIRS, "requirements": {"structural_error_max": [0, 1]}, "mechanism": "four-bar"},
-            "requirements.structural_error_max does not go with mechanism four-bar; only slider-crank has it\n"
+            "requirements.structural_error_max does not go with mechanism four-bar; "
+            "only slider-crank has it\n"
             "function has an output that turns, not one that slides; "
             "requirements.structural_error_max needs it",
         ),
