@@ -149,7 +149,10 @@ def followed(linkage: Linkage, theta2: FloatArray) -> FloatArray:
                 offset = float(linkage.offset)  # type: ignore[attr-defined]
                 rest, slope = np.array([arm @ arm - offset**2, arm @ (b - a)]), np.array([2 * arm, 2 * b - a])
                 slope[1] -= linkage.o4  # type: ignore[attr-defined]
-            b = b - np.linalg.solve(slope, rest)
+            step = np.linalg.solve(slope, rest)
+            b = b - step
+            if np.abs(step).max() < 1e-13 * np.abs(a - b).max():
+                break
         along = (b - a) if isinstance(linkage, InvertedSliderCrank) else e
         found.append(float(e @ (b - linkage.o2)) if along is e else float(np.arctan2(along[1], along[0])))
     values = np.array(found)
