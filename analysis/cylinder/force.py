@@ -37,14 +37,14 @@ def cylinder_force(state: Kinematics, cylinder: Cylinder, masses: Masses, loads:
     Notes
     -----
     Virtual work (Norton, *Design of Machinery*, sec. 11.10): the cylinder gives the power that a torque T on
-    link 2 would give, F dL/dtheta2 = T. Friction in pins follows from the forces in them, which a cylinder
-    loads otherwise than a torque does: there F is put on the link and corrected until no torque is left.
+    link 2 would give, F dL/dtheta2 = T. Friction in pins, and where a slide rubs by the force across it,
+    follows from forces which a cylinder makes others than a torque does: there F is put on the link and corrected until no torque is left.
     """
     found = cylinder_state(cylinder, state.linkage, state)
     out = found.pivot - np.asarray(cylinder.base)
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         force: FloatArray = inverse_dynamics(state, masses, loads).torque / found.rate
-        if not loads.friction.each("radius").any():
+        if not loads.friction.of(state.linkage, "radius").any():
             return force
         push = out / found.length[..., None]
         for _ in range(_ROUNDS):

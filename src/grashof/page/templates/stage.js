@@ -314,7 +314,7 @@ class Stage {
       set(parts.body, { d: through(corners.map(this.at), true) });
     }
     if (parts.ram) {
-      const found = cylinderAt(this.design.cylinder, state);
+      const found = cylinderAt(this.design.linkage, this.design.cylinder, state);
       const [base, end, pivot] = [found.base, found.end, found.pivot].map(this.at);
       set(parts.bracket, { d: through(found.bracket.map(this.at)) });
       set(parts.ram, { d: through([base, end]) });
