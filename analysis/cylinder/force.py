@@ -38,8 +38,9 @@ def cylinder_force(state: Kinematics, cylinder: Cylinder, masses: Masses, loads:
     Notes
     -----
     Virtual work (Norton, *Design of Machinery*, sec. 11.10): the cylinder gives the power that a torque T on
-    link 2 would give, F dL/dtheta2 = T. Friction in pins, and where a slide rubs by the force across it,
-    follows from forces which a cylinder makes others than a torque does: there F is put on the link and corrected until no torque is left.
+    link 2 would give, F dL/dtheta2 = T. Friction in pins, and that of slides by the force across them,
+    follow from forces that a cylinder makes others than a torque does: there F is put on the link and
+    corrected until no torque is left.
     """
     found = cylinder_state(cylinder, state.linkage, state)
     out = found.pivot - np.asarray(cylinder.base)

@@ -67,13 +67,20 @@ def best_cylinder(
     found = {on: _in_closed_form(planes[on], rooms[on], theta[on]) for on in allowed if on in theta}
     best = max((each[2] for each in found.values() if each is not None), default=0.0)
     for number, on in enumerate(spec.on):
-        if on in allowed and found.get(on) is None and best < _GREATEST:
+        drives = on in allowed and (on not in theta or not _reverses(planes[on]))
+        if drives and found.get(on) is None and best < _GREATEST:
             found[on] = best_by_search(planes[on], rooms[on], number, effort)
     ranked = [(each[2], on, each) for on in allowed if (each := found.get(on)) is not None]
     if not ranked:
         return None
     _, on, (point, base, _) = max(ranked, key=lambda each: each[0])
     return Cylinder(on, (base.real, base.imag), (point.real, point.imag))
+
+
+def _reverses(plane: Plane) -> bool:
+    """Whether a link with a pivot or a slide on the ground turns back, and with it all cylinders on it."""
+    way = plane.turn if plane.turn.any() else np.real(np.conj(plane.axis) * plane.slide)
+    return bool(way.min() < 0 < way.max())
 
 
 def _in_closed_form(plane: Plane, room: Room, theta: FloatArray) -> tuple[complex, complex, float] | None:

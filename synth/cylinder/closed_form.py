@@ -10,6 +10,7 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.cylinder.room import Room
 
 _GRID = 65
+_AT_B = 1e-12  # share of the reach within which a pivot is B
 
 
 def best_on_arm(
@@ -118,7 +119,8 @@ def best_on_slide(
     if not len(fine):
         return None
     order = fine[np.lexsort((length[fine], np.round(np.abs(points[fine]) / room.reach, 9)))[:8]]
-    return points[order], np.tile(base, 2)[order]
+    points = points[order]
+    return np.where(np.abs(points) > _AT_B * room.reach, points, 0.0), np.tile(base, 2)[order]
 
 
 def _bases(room: Room) -> ComplexArray:

@@ -28,7 +28,7 @@ class Plane:
     middle : complex, length
         Of the link, in its frame: its pivot of the ground, or half way from A to B.
     reach : float, length
-        How far from there it may carry pivots: as far as it is long; a slider or block as far as the crank is.
+        How far from there it may carry pivots: as far as it is long, a slider or block as far as link 2 is.
     power : ndarray, shape (M,), or None
         What a drive has to give in that motion, in N times the length; None where nothing limits the force.
     """
@@ -99,9 +99,10 @@ def planes_of(
 def _loop(linkage: Linkage, e2: ComplexArray, e3: ComplexArray, e4: ComplexArray) -> _Loop:
     """How the links turn.
 
-    Crank k, coupler c = B - A and n = e^(i theta4) keep Re(n* (k + c)) but for what n itself turns by, so that
-    w2 : w3 = n x c : k x n in every kind of loop, also where c is a part of a rod. Link 4 turns as the one that
-    it slides on, or else i (w2 k + w3 c) = i w4 (B - O4). None of this is infinite in a dead position.
+    Along n = e^(i theta4) what link 4 does has no part: with the crank k and c = B - A, that is
+    w2 : w3 = n x c : k x n in every kind of loop, also where c is a part of a rod. Link 4 turns as
+    the one that it slides on, or else i (w2 k + w3 c) = i w4 (B - O4). None of this is infinite in a dead
+    position.
     """
     sizes = dict(zip(linkage.LENGTHS, linkage.lengths.tolist(), strict=True))
     ground = {name: complex(*getattr(linkage, name)) for name in linkage.GROUND}

@@ -37,9 +37,7 @@ class Room:
     force: float
 
     @classmethod
-    def of(
-        cls, plane: Plane, spec: CylinderSpec, around: ComplexArray, force: float = np.inf
-    ) -> Room:
+    def of(cls, plane: Plane, spec: CylinderSpec, around: ComplexArray, force: float = np.inf) -> Room:
         """The room of a cylinder.
 
         Parameters
@@ -92,4 +90,3 @@ class Room:
         points = self.middle + off * np.where(size > self.reach, self.reach / np.maximum(size, 1e-300), 1.0)
         x = np.clip(bases.real, self.low[0], self.high[0])
         return points, x + 1j * np.clip(bases.imag, self.low[1], self.high[1])
-
