@@ -245,6 +245,10 @@ _PROBLEMS = (
     f"[requirements]\noffset = [-90, 90]\nslide_angle_deg = 10\nstroke = [1, 900]\n{_SEARCH}",
     f'kind = "path"\nmechanism = "inverted-slider-crank"\n{_HEAD}[path]\npoints = [[0, 0], [3, 1], [6, 0]]\n'
     f"{_SEARCH}{_SLIDING.replace('-30', '30')}",
+    f'kind = "path"\nmechanism = ["slider-crank", "inverted-slider-crank"]\n{_HEAD}[path]\n'
+    "points = [[0, 0], [30, 10], [60, 0]]\n[requirements]\ncylinder_angle_min_deg = 20\n[driver]\n"
+    'cylinder = { closed = [20, 90], ratio_max = 1.7, on = ["driver", "output"], base = { x = [-90, 90] } }\n'
+    f"{_SEARCH}",
     f'kind = "motion"\n{_HEAD}[motion]\nposes = [[0, 0, 10], [30, 10, 10], [60, 5, 10]]\n{_SEARCH}',
 )
 _LINKAGES = (

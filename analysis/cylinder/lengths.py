@@ -9,8 +9,9 @@ import numpy as np
 from grashof.analysis.cylinder.travel import Travel
 from grashof.analysis.four_bar.kinematics import Kinematics
 from grashof.analysis.four_bar.position import Position
+from grashof.analysis.loops.kinds import kind_of, way_to
 from grashof.analysis.numerics.peaks import peaks
-from grashof.problems import Cylinder, FourBar, Linkage, ProblemError
+from grashof.problems import Cylinder, Linkage
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 
 _NOTHING = 1e-13  # share of the lengths about it: a shorter way is rounding
@@ -40,7 +41,10 @@ class CylinderState:
 
     @property
     def angle(self) -> FloatArray:
-        """Lever angle, shape (...), rad: min(beta, pi - beta) between the cylinder and the arm of Q."""
+        """Lever angle, shape (...), rad: min(beta, pi - beta) between the cylinder and the arm of Q.
+
+        Where Q goes round no pivot of the ground, pi / 2 less the angle between the cylinder and its way.
+        """
         return np.asarray(np.arcsin(np.clip(np.abs(self.lever), 0.0, 1.0)))
 
 
@@ -81,7 +85,6 @@ def cylinder_state(cylinder: Cylinder, linkage: Linkage, at: Position | Kinemati
     ----------
     cylinder : Cylinder
     linkage : Linkage
-        A four-bar.
     at : Position or Kinematics
         Of the linkage, shape (...).
 
@@ -91,38 +94,37 @@ def cylinder_state(cylinder: Cylinder, linkage: Linkage, at: Position | Kinemati
 
     Notes
     -----
-    The rates of the links are in the ratio r3 r4 sin(theta3 - theta4) : r2 r4 sin(theta4 - theta2) :
-    r2 r3 sin(theta3 - theta2), from the loop's derivative (Norton, *Design of Machinery*, sec. 6.7). All
-    three stay finite in dead positions; dL = dQ . (Q - C) / L.
+    The links turn as the loop's derivative lets them (Norton, *Design of Machinery*, ch. 6), in
+    a motion that has no infinite rates in dead positions; dL = dQ . (Q - C) / L.
 
     Examples
     --------
     >>> from grashof.analysis.four_bar.position import solve_position
+    >>> from grashof.problems import FourBar
     >>> linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
     >>> jack = Cylinder("driver", base=(0, -2), point=(1, 0))
     >>> found = cylinder_state(jack, linkage, solve_position(linkage, [0.0, np.pi / 4]))
     >>> found.length.round(6).tolist(), np.degrees(found.angle).round(3).tolist()
     ([2.236068, 2.797933], [63.435, 30.361])
     """
-    theta2, theta3, theta4 = at.theta2, at.theta3, at.theta4
-    if not isinstance(linkage, FourBar):
-        raise ProblemError(f"cylinder does not go with mechanism {linkage.MECHANISM}; only four-bar has it")
-    r2, r3, r4 = linkage.r2, linkage.r3, linkage.r4
-    omega2 = r3 * r4 * np.sin(theta3 - theta4)
-    omega3, omega4 = r2 * r4 * np.sin(theta4 - theta2), r2 * r3 * np.sin(theta3 - theta2)
-    foot = _complex(linkage.o4 if cylinder.link == 4 else linkage.o2)
-    theta, turn = ((theta2, omega2), (theta3, omega3), (theta4, omega4))[cylinder.link - 2]
-    arm = complex(*cylinder.point) * np.exp(1j * theta)
-    crank = r2 * np.exp(1j * theta2) if cylinder.link == 3 else 0.0
-    pivot = foot + crank + arm
-    way = 1j * (omega2 * crank + turn * arm)
+    kind, angles = kind_of(linkage), {2: at.theta2, 3: at.theta3, 4: at.theta4}
+    turns = dict(zip(angles, kind.turning(linkage, *angles.values()), strict=True))
+    foot, bars = way_to(linkage, cylinder.link)
+    pivot, way = _complex(foot), np.zeros(at.theta2.shape, dtype=complex)
+    for link, bar in bars:
+        carrying = bar * np.exp(1j * angles[link])
+        pivot, way = pivot + carrying, way + turns[link] * carrying
+    u = kind.direction4(linkage, at.theta4) if cylinder.link == 4 else angles[cylinder.link]
+    arm = complex(*cylinder.point) * np.exp(1j * u)
+    pivot, way = pivot + arm, 1j * (way + turns[cylinder.link] * arm)
     out = pivot - complex(*cylinder.base)
     length, speed = np.abs(out), np.abs(way)
-    scale = np.maximum(np.maximum(r2, r3), r4) ** 2 * (r2 + r3 + r4 + np.abs(arm))
+    lengths = linkage.lengths
+    scale = lengths.max(axis=-1) ** 2 * (lengths.sum(axis=-1) + np.abs(arm))
     with np.errstate(invalid="ignore", divide="ignore"):
         change = np.real(np.conj(out) * way) / length
         lever = np.where((length > 0) & (speed > _NOTHING * scale), change / speed, 0.0)
-        rate = np.where(length > 0, change / omega2, 0.0)
+        rate = np.where(length > 0, change / turns[2], 0.0)
     lever = np.where(np.isnan(speed), np.nan, lever)
     return CylinderState(np.stack([pivot.real, pivot.imag], axis=-1), length, rate, lever)
 

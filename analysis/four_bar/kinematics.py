@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from grashof.analysis.four_bar.mobility import driver_ranges
 from grashof.analysis.four_bar.position import sides
-from grashof.analysis.loops.kinds import kind_of
+from grashof.analysis.loops.kinds import kind_of, way_to
 from grashof.analysis.loops.loop import Sides
 from grashof.analysis.numerics.blockwise import in_blocks
 from grashof.problems import AssemblyError, DeadPositionWarning, Linkage, ProblemError
@@ -166,17 +166,11 @@ class Kinematics:
         if link == 4:
             turning = (kind_of(self.linkage).direction4(self.linkage, self.theta4), *turning[1:])
         carried = _carried(at, turning)
-        pivot, way = self._way_to(link)
+        pivot, way = way_to(self.linkage, link)
         for before, length in way:
             carried = carried + _carried(_along(length), self.angular(before))
         carried[0] += pivot
         return PointMotion(*carried)
-
-    def _way_to(self, link: int) -> tuple[FloatArray, tuple[tuple[int, FloatArray], ...]]:
-        """A ground pivot, and the links from it on to the origin of a link's frame, with their lengths."""
-        if link == 4:
-            return kind_of(self.linkage).way_to_4(self.linkage)
-        return self.linkage.o2, ((2, self.linkage.r2),) if link == 3 else ()
 
 
 def solve_kinematics(

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator
+from contextlib import suppress
 
 import numpy as np
 
 from grashof.analysis.cylinder.force import cylinder_force
 from grashof.analysis.cylinder.lengths import CylinderFigures, cylinder_figures
 from grashof.analysis.cylinder.travel import Travel, travel
-from grashof.analysis.forces.stated import stated_loads, stated_masses
+from grashof.analysis.forces.stated import BeyondLoadError, stated_loads, stated_masses
 from grashof.analysis.four_bar.kinematics import Kinematics, solve_kinematics
 from grashof.analysis.judge.over_task import as_used, driver_law, motion_ends, sampled
 from grashof.analysis.judge.verdict import Defect, Verdict
@@ -91,8 +92,8 @@ def figures_of(linkage: Linkage, task: Task, verdict: Verdict) -> CylinderFigure
 def cylinder_force_peak(linkage: Linkage, problem: Problem, verdict: Verdict) -> float:
     """Greatest magnitude of the cylinder's force over the task motion, N.
 
-    NaN without dynamics, or where the motion leads through a dead position of link 2, whose speed the problem
-    states; infinite where the length stands.
+    NaN without dynamics, where the motion leads through a dead position of link 2, whose speed the problem
+    states, or beyond the rows of a load; infinite where the length stands.
     """
     if problem.dynamics is None or verdict.cylinder is None or not verdict.branch_ok:
         return np.nan
@@ -105,7 +106,9 @@ def cylinder_force_peak(linkage: Linkage, problem: Problem, verdict: Verdict) ->
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeadPositionWarning)
-        return float(peaks(force, law.stretches(theta2))[0][0])
+        with suppress(BeyondLoadError):  # a defect by itself
+            return float(peaks(force, law.stretches(theta2))[0][0])
+    return np.nan
 
 
 def cylinder_forces(linkage: Linkage, problem: Problem, verdict: Verdict) -> FloatArray:
@@ -123,7 +126,9 @@ def forces_at(linkage: Linkage, problem: Problem, verdict: Verdict, theta2: Floa
     law = driver_law(problem, *motion_ends(problem.task, verdict))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeadPositionWarning)
-        return _force(problem, verdict, law.state(as_used(linkage, verdict), theta2))
+        with suppress(BeyondLoadError):
+            return _force(problem, verdict, law.state(as_used(linkage, verdict), theta2))
+    return np.full(len(theta2), np.nan)
 
 
 def _force(problem: Problem, verdict: Verdict, state: Kinematics) -> FloatArray:

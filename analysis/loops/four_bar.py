@@ -190,6 +190,17 @@ class FourBarKind(Kind[FourBar]):
             rate = linkage.r2 * np.sin(theta3 - theta2)
             return np.asarray(rate / (linkage.r4 * np.sin(theta3 - theta4)))
 
+    def turning(
+        self, linkage: FourBar, theta2: FloatArray, theta3: FloatArray, theta4: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """From the loop's derivative, without the division by sin(theta3 - theta4) (Norton, sec. 6.7)."""
+        r2, r3, r4 = linkage.r2, linkage.r3, linkage.r4
+        return (
+            r3 * r4 * np.sin(theta3 - theta4),
+            r2 * r4 * np.sin(theta4 - theta2),
+            r2 * r3 * np.sin(theta3 - theta2),
+        )
+
     def limits(self, linkage: FourBar) -> FloatArray:
         """O2, A and B in line: triangles O2-B-O4 with O2B = r2 + r3 or |r2 - r3| (Norton, secs. 3.2, 3.4)."""
         r1, r2, r3, r4 = np.moveaxis(linkage.lengths, -1, 0)

@@ -166,6 +166,14 @@ class InvertedSliderCrankKind(Kind[InvertedSliderCrank]):
     ) -> FloatArray:
         return self.coupler_rates(linkage, theta2, theta3, theta4)[0]
 
+    def turning(
+        self, linkage: InvertedSliderCrank, theta2: FloatArray, theta3: FloatArray, theta4: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """In the ratio l : -r2 cos(theta2 - theta3), l from A along the rod to B; the block turns with it."""
+        size, along = linkage.r1 + linkage.r2, linkage.r2 * np.cos(theta2 - theta3)
+        omega3 = -size * along
+        return size * (linkage.r1 * np.cos(linkage.theta1 - theta3) - along), omega3, omega3
+
     def limits(self, linkage: InvertedSliderCrank) -> FloatArray:
         """Crank square to the rod: r1 sin(theta1 - theta3) = +-r2 - offset, theta2 = theta3 +- 90 deg."""
         side = np.array([1.0, -1.0])

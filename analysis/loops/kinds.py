@@ -8,6 +8,7 @@ from grashof.analysis.loops.four_bar import FourBarKind
 from grashof.analysis.loops.inverted_slider_crank import InvertedSliderCrankKind
 from grashof.analysis.loops.loop import Kind
 from grashof.analysis.loops.slider_crank import SliderCrankKind
+from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.four_bar import FourBar
 from grashof.problems.values.inverted_slider_crank import InvertedSliderCrank
 from grashof.problems.values.linkage import Linkage
@@ -23,3 +24,10 @@ _KINDS: dict[type[Linkage], Kind[Any]] = {
 def kind_of(linkage: Linkage) -> Kind[Any]:
     """How the loop of a linkage closes."""
     return _KINDS[type(linkage)]
+
+
+def way_to(linkage: Linkage, link: int) -> tuple[FloatArray, tuple[tuple[int, FloatArray], ...]]:
+    """A ground pivot, and the links from it on to the origin of a link's frame, with their lengths."""
+    if link == 4:
+        return kind_of(linkage).way_to_4(linkage)
+    return linkage.o2, ((2, linkage.r2),) if link == 3 else ()

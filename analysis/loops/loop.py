@@ -160,6 +160,15 @@ class Kind(ABC, Generic[L_contra]):
         """Derivative by theta2 of theta4, or of the travel along the slide; not finite in dead positions."""
 
     @abstractmethod
+    def turning(
+        self, linkage: L_contra, theta2: FloatArray, theta3: FloatArray, theta4: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Angular velocities of links 2, 3 and 4 in a motion of the loop, length^2: finite everywhere.
+
+        They follow the circuit, in one sense all around it; link 2 stands in dead positions.
+        """
+
+    @abstractmethod
     def limits(self, linkage: L_contra) -> FloatArray:
         """Driver angles at which the output turns back, shape (..., 2), rad; NaN where there are none."""
 

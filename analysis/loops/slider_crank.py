@@ -156,6 +156,15 @@ class SliderCrankKind(Kind[SliderCrank]):
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.asarray(linkage.r2 * (np.cos(along) * np.tan(turn) - np.sin(along)))
 
+    def turning(
+        self, linkage: SliderCrank, theta2: FloatArray, theta3: FloatArray, theta4: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """In the ratio r3 cos(theta3 - e) : -r2 cos(theta2 - e) : 0, e the slide's direction."""
+        size = linkage.r2 + linkage.r3
+        omega2 = size * linkage.r3 * np.cos(theta3 - linkage.slide_angle)
+        omega3 = -size * linkage.r2 * np.cos(theta2 - linkage.slide_angle)
+        return omega2, omega3, np.zeros_like(omega3)
+
     def limits(self, linkage: SliderCrank) -> FloatArray:
         """O2, A and B in line: sin(theta3 - slide_angle) = offset / (r3 +- r2)."""
         r2, r3, offset = (x[..., None] for x in (linkage.r2, linkage.r3, linkage.offset))

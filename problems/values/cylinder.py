@@ -83,12 +83,12 @@ class Cylinder:
     Parameters
     ----------
     on : {"driver", "coupler", "output"}
-        The link that it acts on: link 2, 3 or 4.
+        The link that it acts on: link 2, 3 or 4, of other kinds than the four-bar slider or block.
     base : tuple of float, length
         Its pivot of the ground (x, y).
     point : tuple of float, length
         Its pivot (u, v) of the link, in that link's frame: u from O2 along O2A, from A along AB, or from O4
-        along O4B, and v to the left.
+        along O4B, and v to the left; of a slider u from B along the slide.
 
     Examples
     --------

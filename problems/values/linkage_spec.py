@@ -57,10 +57,6 @@ class LinkageSpec(Displayed):
             raise ProblemError(
                 f"pumping_unit does not go with mechanism {self.linkage.MECHANISM}; only four-bar has it"
             )
-        if self.cylinder is not None and not isinstance(self.linkage, FourBar):
-            raise ProblemError(
-                f"cylinder does not go with mechanism {self.linkage.MECHANISM}; only four-bar has it"
-            )
         if self.dynamics is not None:
             refuse(misplaced(self.dynamics, type(self.linkage)))
 

@@ -347,10 +347,6 @@ class Problem(ReadOnly):
         if self.driver is None:
             return []
         wrong, wanted = [], self.requirements
-        if others := [word for word in self.mechanism if word != FOUR_BAR]:
-            wrong.append(
-                f"driver.cylinder does not go with mechanism {' and '.join(others)}; it must be {FOUR_BAR}"
-            )
         if isinstance(self.task, FunctionTask):
             wrong.append("driver.cylinder does not go with function, whose driver is link 2")
         elif isinstance(self.task, StrokeTask):

@@ -150,7 +150,7 @@ _BOX = "diagonal of the box around O2, O4 and all that A, B and P reach from the
 _FITTED = "what least squares makes small: root mean square of positions and angles together, weighted"
 _WORST = "worst transmission angle over the"
 _LEVER = (
-    "between cylinder and arm; on the coupler 90 deg less the angle between cylinder and path of its pivot"
+    "between cylinder and arm; on coupler and slider 90 deg less that between cylinder and path of its pivot"
 )
 _MISSED: dict[str, Any] = {"over": Over.TARGETS, "better": -1}
 _OVERALL: dict[str, Any] = {"over": Over.TASK, "about": "from the first target to the last"}

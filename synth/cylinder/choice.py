@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from grashof.problems import Cylinder, CylinderSpec, FourBar
+from grashof.problems import Cylinder, CylinderSpec, Linkage
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.synth.cylinder.closed_form import best_on_arm
+from grashof.synth.cylinder.closed_form import best_on_arm, best_on_slide
 from grashof.synth.cylinder.planes import Plane, driven, planes_of
 from grashof.synth.cylinder.room import Room
 from grashof.synth.cylinder.search import best_by_search
 
+_GREATEST = 1 - 1e-12  # sine of a lever angle of 90 deg, but for rounding: no other link has a better one
+
 
 def best_cylinder(
-    linkage: FourBar,
+    linkage: Linkage,
     angles: tuple[FloatArray, FloatArray, FloatArray],
     spec: CylinderSpec,
     *,
@@ -26,7 +28,7 @@ def best_cylinder(
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     angles : tuple of ndarray, shape (M,), rad
         theta2, theta3 and theta4 at samples of the task motion, in its order.
@@ -47,6 +49,7 @@ def best_cylinder(
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2.5, r4=3)
     >>> from grashof.analysis import solve_position
     >>> at = solve_position(linkage, np.linspace(0.7, 1.4, 33))
@@ -55,36 +58,44 @@ def best_cylinder(
     """
     theta2, theta3, theta4 = map(np.unwrap, angles)
     planes = planes_of(linkage, theta2, theta3, theta4, power if np.isfinite(force) else None)
-    corners = [planes["driver"].origin, planes["output"].origin, planes["coupler"].origin]
-    corners += [planes["coupler"].origin + c * planes["coupler"].axis for c in _corners(linkage)]
-    around = np.concatenate(corners)
-    found: list[tuple[float, Cylinder]] = []
+    coupler = planes["coupler"]
+    corners = [coupler.origin + c * coupler.axis for c in coupler.joints]
+    around = np.concatenate([planes["driver"].origin, planes["output"].origin, *corners])
+    theta = {"driver": theta2, "output": theta4}
+    allowed = [on for on in spec.on if one_branch or on != "driver"]
+    rooms = {on: Room.of(planes[on], spec, around, force) for on in allowed}
+    found = {on: _in_closed_form(planes[on], rooms[on], theta[on]) for on in allowed if on in theta}
+    best = max((each[2] for each in found.values() if each is not None), default=0.0)
     for number, on in enumerate(spec.on):
-        if on == "driver" and not one_branch:
-            continue
-        room = Room.of(linkage, on, spec, around, force)
-        best = (
-            None
-            if on == "coupler"
-            else _in_closed_form(planes[on], room, theta2 if on == "driver" else theta4)
-        )
-        best = best or best_by_search(planes[on], room, number, effort)
-        if best is not None:
-            point, base, least = best
-            found.append((least, Cylinder(on, (base.real, base.imag), (point.real, point.imag))))
-    return max(found, key=lambda each: each[0])[1] if found else None
+        drives = on in allowed and (on not in theta or not _reverses(planes[on]))
+        if drives and found.get(on) is None and best < _GREATEST:
+            found[on] = best_by_search(planes[on], rooms[on], number, effort)
+    ranked = [(each[2], on, each) for on in allowed if (each := found.get(on)) is not None]
+    if not ranked:
+        return None
+    _, on, (point, base, _) = max(ranked, key=lambda each: each[0])
+    return Cylinder(on, (base.real, base.imag), (point.real, point.imag))
 
 
-def _corners(linkage: FourBar) -> tuple[complex, complex]:
-    return complex(linkage.r3), complex(*linkage.coupler_point)
+def _reverses(plane: Plane) -> bool:
+    """Whether a link with a pivot or a slide on the ground turns back, and with it all cylinders on it."""
+    way = plane.turn if plane.turn.any() else np.real(np.conj(plane.axis) * plane.slide)
+    return bool(way.min() < 0 < way.max())
 
 
 def _in_closed_form(plane: Plane, room: Room, theta: FloatArray) -> tuple[complex, complex, float] | None:
-    """On link 2 or 4: the longest arm of the best angle, and of those the least force."""
-    step = np.diff(theta)
+    """On link 2 or 4: the longest arm of the best angle; on a slider the point nearest to B."""
+    along = np.real(np.conj(plane.axis[0]) * plane.origin)
+    slides = not plane.turn.any()
+    step = np.diff(along if slides else theta)
     if not ((step > 0).all() or (step < 0).all()):
         return None
-    pivots = best_on_arm(complex(plane.origin[0]), float(theta[0]), float(theta[-1]), room)
+    ends = complex(plane.origin[0]), complex(plane.origin[-1])
+    pivots = (
+        best_on_slide(*ends, complex(plane.axis[0]), room)
+        if slides
+        else best_on_arm(ends[0], float(theta[0]), float(theta[-1]), room)
+    )
     if pivots is None:
         return None
     points, bases = _sound(room, *pivots)

@@ -1,6 +1,8 @@
-"""The best cylinder on link 2, in closed form."""
+"""The best cylinder on a link that turns about the ground, or slides on it, in closed form."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 
@@ -8,6 +10,7 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.cylinder.room import Room
 
 _GRID = 65
+_AT_B = 1e-12  # share of the reach within which a pivot is B
 
 
 def best_on_arm(
@@ -18,7 +21,7 @@ def best_on_arm(
     Parameters
     ----------
     pivot : complex, length
-        O2.
+        O2 or O4.
     start, end : float, rad
         Directions of the arm's link at the ends of the motion.
     room : Room
@@ -48,9 +51,7 @@ def best_on_arm(
     sine, cosine = np.sin(half), np.cos(half)
     if not 0 < half < np.pi / 2:
         return None
-    sides = zip(room.low, room.high, strict=True)
-    axes = [np.linspace(low, high, _GRID if high > low else 1) for low, high in sides]
-    base = np.add.outer(axes[0], 1j * axes[1]).ravel()
+    base = _bases(room)
     far = np.abs(base - pivot)
     per_stroke = 2 * sine / (room.ratio - 1)
     most = np.minimum(far / np.sqrt(1 + per_stroke**2 + 2 * per_stroke * sine), room.reach)
@@ -71,6 +72,89 @@ def best_on_arm(
         points.append(arm * np.exp(1j * (middle - (start + end) / 2)))
         bases.append(base)
     return np.concatenate(points), np.concatenate(bases)
+
+
+def best_on_slide(
+    first: complex, last: complex, along: complex, room: Room
+) -> tuple[ComplexArray, ComplexArray] | None:
+    """Pivots Q and C of cylinders in line with a slide, whose lever angle is 90 deg all the way.
+
+    Parameters
+    ----------
+    first, last : complex, length
+        B at the ends of the motion.
+    along : complex
+        Unit vector along the slide, and along u of the slider.
+    room : Room
+
+    Returns
+    -------
+    ndarray of complex, shape (K,), ndarray of complex, shape (K,)
+        Points in the slider's frame and bases on the ground, those first whose cylinder passes closest to B,
+        and of those the shortest; None where the limits allow none.
+
+    Notes
+    -----
+    The stroke S is that of the slider, so that a closed length L opens to (L + S) / L. A base C beside the
+    line of B has Q as far beside B; along the slide Q is where L needs it, at best in B.
+
+    Examples
+    --------
+    >>> room = Room(0j, np.zeros(1), 1.0, np.array([-9.0, 0]), np.array([0.0, 0]), (0.0, np.inf), 1.5, np.inf)
+    >>> points, bases = best_on_slide(4 + 0j, 6 + 0j, 1 + 0j, room)
+    >>> complex(points[0]), complex(bases[0])
+    (0j, 0j)
+    """
+    low, high = sorted((_along(along, first), _along(along, last)))
+    least, most = max(room.closed[0], (high - low) / (room.ratio - 1)), room.closed[1]
+    if least > most:
+        return None
+    base = np.concatenate([_bases(room), _on_line(first, along, (low, high), least, room)])
+    at, beside = _along(along, base), np.imag(np.conj(along) * (base - first))
+    behind, ahead = np.clip(low - at, least, most), np.clip(at - high, least, most)
+    shifts = np.concatenate([at + behind - low, at - ahead - high])
+    points = shifts + 1j * np.tile(beside, 2)
+    length = np.concatenate([behind, ahead])
+    fine = np.flatnonzero(np.abs(points) <= room.reach)
+    if not len(fine):
+        return None
+    order = fine[np.lexsort((length[fine], np.round(np.abs(points[fine]) / room.reach, 9)))[:8]]
+    points = points[order]
+    return np.where(np.abs(points) > _AT_B * room.reach, points, 0.0), np.tile(base, 2)[order]
+
+
+def _bases(room: Room) -> ComplexArray:
+    """A grid of bases all over their box."""
+    sides = zip(room.low, room.high, strict=True)
+    axes = [np.linspace(low, high, _GRID if high > low else 1) for low, high in sides]
+    base: ComplexArray = np.add.outer(axes[0], 1j * axes[1]).ravel()
+    return base
+
+
+def _on_line(
+    first: complex, along: complex, travel: tuple[float, float], least: float, room: Room
+) -> ComplexArray:
+    """Bases in their box on the line of B: all over it, and those of the shortest cylinders at B."""
+    start, end = -np.inf, np.inf
+    for low, high, place, slope in zip(
+        room.low, room.high, (first.real, first.imag), (along.real, along.imag), strict=True
+    ):
+        if slope != 0:
+            one, other = sorted(((low - place) / slope, (high - place) / slope))
+            start, end = max(start, one), min(end, other)
+        elif not low <= place <= high:
+            end = -np.inf
+    if not start <= end:
+        return np.zeros(0, dtype=complex)
+    from_first = np.array([travel[0] - least, travel[1] + least]) - _along(along, first)
+    nearest = np.clip(from_first, start, end)
+    line: ComplexArray = first + along * np.concatenate([np.linspace(start, end, _GRID), nearest])
+    return line
+
+
+def _along(along: complex, place: Any) -> Any:
+    """How far places are along a direction."""
+    return np.real(np.conj(along) * place)
 
 
 def _arm(far: FloatArray, length: float, sine: float, cosine: float) -> FloatArray:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from grashof.problems import FourBar
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 
 
@@ -18,11 +18,17 @@ class Plane:
     Parameters
     ----------
     origin, axis : ndarray of complex, shape (M,), length and 1
-        O2, A or O4, and the unit vector along the link.
+        Of the frame: O2, A, and O4 or B of a slider; the unit vector along u.
     slide : ndarray of complex, shape (M,)
         How the origin moves.
     turn : ndarray, shape (M,)
         How the link turns.
+    joints : ndarray of complex, shape (J,), length
+        The link's own points, in its frame.
+    middle : complex, length
+        Of the link, in its frame: its pivot of the ground, or half way from A to B.
+    reach : float, length
+        How far from there it may carry pivots: as far as it is long, a slider or block as far as link 2 is.
     power : ndarray, shape (M,), or None
         What a drive has to give in that motion, in N times the length; None where nothing limits the force.
     """
@@ -31,6 +37,9 @@ class Plane:
     axis: ComplexArray
     slide: ComplexArray
     turn: FloatArray
+    joints: ComplexArray
+    middle: complex
+    reach: float
     power: FloatArray | None = None
 
 
@@ -47,40 +56,83 @@ class Driven(NamedTuple):
     force: FloatArray
 
 
+class _Loop(NamedTuple):
+    """The loop at the samples: pivots of the ground, crank, AB, and how links 2, 3 and 4 turn."""
+
+    ground: dict[str, complex]
+    r2: float
+    r4: float
+    crank: ComplexArray
+    coupler: ComplexArray
+    farthest: float  # B from A, negative behind it
+    turns: tuple[FloatArray, FloatArray, FloatArray]
+
+
 def planes_of(
-    linkage: FourBar, theta2: FloatArray, theta3: FloatArray, theta4: FloatArray, power: FloatArray | None
+    linkage: Linkage, theta2: FloatArray, theta3: FloatArray, theta4: FloatArray, power: FloatArray | None
 ) -> dict[str, Plane]:
-    """The planes of links 2, 3 and 4, by their names.
+    """The planes of links 2, 3 and 4, by the words for them.
 
     Parameters
     ----------
-    linkage : FourBar
+    linkage : Linkage
         A single linkage.
     theta2, theta3, theta4 : ndarray, shape (M,), rad
     power : ndarray, shape (M,), or None
         Of a driver of link 2 at 1 rad/s, N times the length: the drive torque.
-
-    Notes
-    -----
-    The links turn as the sides of the loop let them: i (w2 A + w3 (B - A)) = i w4 (B - O4) with all three
-    rates times the area of A-B-O4, so that none is infinite in a dead position.
     """
-    o2, o4 = complex(*linkage.o2), complex(*linkage.o4)
-    r2, r3, r4 = (float(length) for length in (linkage.r2, linkage.r3, linkage.r4))
     e2, e3, e4 = (np.exp(1j * angle) for angle in (theta2, theta3, theta4))
-    crank, coupler, output = r2 * e2, r3 * e3, r4 * e4
-    w2, w3, w4 = (
-        np.imag(np.conj(one) * other) for one, other in ((output, coupler), (crank, output), (crank, coupler))
-    )
-    size = (r2 + r3 + r4) ** 2
-    w2, w3, w4 = w2 / size, w3 / size, w4 / size
+    loop = _loop(linkage, e2, e3, e4)
+    o2, r2, (w2, w3, _) = loop.ground["o2"], loop.r2, loop.turns
     given = None if power is None else power * w2
-    still = np.zeros_like(crank)
+    still = np.zeros_like(loop.crank)
+    far, p = complex(loop.farthest), complex(*linkage.coupler_point)
+    corners, length = np.array([0j, far, p]), max(abs(far), abs(p), abs(p - far))
+    way = 1j * w2 * loop.crank
     return {
-        "driver": Plane(still + o2, e2, still, w2, given),
-        "coupler": Plane(o2 + crank, e3, 1j * w2 * crank, w3, given),
-        "output": Plane(still + o4, e4, still, w4, given),
+        "driver": Plane(still + o2, e2, still, w2, np.array([complex(r2)]), 0j, r2, given),
+        "coupler": Plane(o2 + loop.crank, e3, way, w3, corners, far / 2, length, given),
+        "output": _link_4(linkage, loop, e4, given),
     }
+
+
+def _loop(linkage: Linkage, e2: ComplexArray, e3: ComplexArray, e4: ComplexArray) -> _Loop:
+    """How the links turn.
+
+    Along n = e^(i theta4) what link 4 does has no part: with the crank k and c = B - A, that is
+    w2 : w3 = n x c : k x n in every kind of loop, also where c is a part of a rod. Link 4 turns as
+    the one that it slides on, or else i (w2 k + w3 c) = i w4 (B - O4). None of this is infinite in a dead
+    position.
+    """
+    sizes = dict(zip(linkage.LENGTHS, linkage.lengths.tolist(), strict=True))
+    ground = {name: complex(*getattr(linkage, name)) for name in linkage.GROUND}
+    r2, crank = sizes["r2"], sizes["r2"] * e2
+    r4 = sizes.get("r4", r2)  # of what slides any length will do
+    if "r3" in sizes:
+        farthest, coupler = sizes["r3"], sizes["r3"] * e3
+    else:  # a rod, up to the foot of O4 on it
+        along = np.real(np.conj(e3) * (ground["o4"] - ground["o2"] - crank))
+        farthest, coupler = float(along[np.argmax(np.abs(along))]), along * e3
+    output = r4 * e4
+    size = (r2 + abs(farthest) + r4) ** 2
+    w2, w3, w4 = (
+        np.imag(np.conj(one) * other) / size
+        for one, other in ((output, coupler), (crank, output), (crank, coupler))
+    )
+    slides = {link: on for on, link in linkage.SLIDES}
+    turns = {1: np.zeros_like(w2), 2: w2, 3: w3, 4: w4}
+    return _Loop(ground, r2, r4, crank, coupler, farthest, (w2, w3, turns[slides.get(4, 4)]))
+
+
+def _link_4(linkage: Linkage, loop: _Loop, e4: ComplexArray, power: FloatArray | None) -> Plane:
+    """The plane of link 4: about O4, or with B along a slide of the ground."""
+    w2, w3, w4 = loop.turns
+    if "o4" in loop.ground:
+        arm = float(getattr(linkage, "r4" if "r4" in linkage.LENGTHS else "offset"))
+        still, reach = np.zeros_like(e4), max(loop.r4, abs(arm))
+        return Plane(still + loop.ground["o4"], e4, still, w4, np.array([complex(arm)]), 0j, reach, power)
+    b, way = loop.ground["o2"] + loop.crank + loop.coupler, 1j * (w2 * loop.crank + w3 * loop.coupler)
+    return Plane(b, e4 / 1j, way, w4, np.array([0j]), 0j, loop.r4, power)
 
 
 def driven(plane: Plane, point: ComplexArray, base: ComplexArray) -> Driven:

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.problems import CylinderSpec, FourBar
+from grashof.problems import CylinderSpec
 from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
-from grashof.synth.cylinder.planes import Driven
+from grashof.synth.cylinder.planes import Driven, Plane
 
 INSET = 1e-7  # share: limits are kept with this to spare, so that the judge finds them kept
 
@@ -19,12 +19,8 @@ class Room:
 
     Parameters
     ----------
-    middle : complex, length
-        Of the link, in its frame: O2 and O4 of links 2 and 4, half way from A to B of link 3.
-    joints : ndarray of complex, shape (J,), length
-        The link's own points, in its frame.
-    reach : float, length
-        How far from there its pivot Q may be: as far as the link is long.
+    middle, joints, reach : complex, ndarray of complex, shape (J,), float, length
+        Of the link, see `Plane`: its pivot Q may be that far from the middle.
     low, high : ndarray, shape (2,), length
         Corners of the box in which its base C may be.
     closed, ratio, force : pair of float
@@ -41,17 +37,13 @@ class Room:
     force: float
 
     @classmethod
-    def of(
-        cls, linkage: FourBar, on: str, spec: CylinderSpec, around: ComplexArray, force: float = np.inf
-    ) -> Room:
+    def of(cls, plane: Plane, spec: CylinderSpec, around: ComplexArray, force: float = np.inf) -> Room:
         """The room of a cylinder.
 
         Parameters
         ----------
-        linkage : FourBar
-            A single linkage.
-        on : str
-            Link that it acts on.
+        plane : Plane
+            Of the link that it acts on.
         spec : CylinderSpec
         around : ndarray of complex, shape (N,), length
             Places that the linkage reaches.
@@ -76,8 +68,8 @@ class Room:
         least, most = closed[0] * (1 + INSET), closed[1] * (1 - INSET)
         if least > most:
             least = most = closed[0] / 2 + closed[1] / 2
-        middle, joints, reach = _carried(linkage, on)
-        return cls(middle, joints, reach, low, high, (least, most), ratio, force * (1 - INSET))
+        carried = plane.middle, plane.joints, plane.reach
+        return cls(*carried, low, high, (least, most), ratio, force * (1 - INSET))
 
     def beyond(self, found: Driven) -> FloatArray:
         """How far cylinders are beyond the limits, in logarithms; shape (K,), 0 where all are kept."""
@@ -98,12 +90,3 @@ class Room:
         points = self.middle + off * np.where(size > self.reach, self.reach / np.maximum(size, 1e-300), 1.0)
         x = np.clip(bases.real, self.low[0], self.high[0])
         return points, x + 1j * np.clip(bases.imag, self.low[1], self.high[1])
-
-
-def _carried(linkage: FourBar, on: str) -> tuple[complex, ComplexArray, float]:
-    """Middle of a link in its frame, its moving points, and how long it is."""
-    if on != "coupler":
-        length = float(linkage.r2 if on == "driver" else linkage.r4)
-        return 0j, np.array([complex(length)]), length
-    r3, p = float(linkage.r3), complex(*linkage.coupler_point)
-    return complex(r3 / 2), np.array([0j, complex(r3), p]), max(r3, abs(p), abs(p - r3))

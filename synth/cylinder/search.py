@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -87,7 +88,8 @@ def _thinned(plane: Plane, step: int) -> Plane:
     """The plane at every so many samples, and at the last."""
     kept = np.unique(np.append(np.arange(0, len(plane.axis), step), len(plane.axis) - 1))
     power = None if plane.power is None else plane.power[kept]
-    return Plane(plane.origin[kept], plane.axis[kept], plane.slide[kept], plane.turn[kept], power)
+    frame = {name: getattr(plane, name)[kept] for name in ("origin", "axis", "slide", "turn")}
+    return replace(plane, **frame, power=power)
 
 
 def _drawn(

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import warnings
+from contextlib import suppress
 
 import numpy as np
 
 from grashof.analysis import Verdict, inverse_dynamics, stated_loads, stated_masses
 from grashof.analysis.cylinder.travel import Travel, travel
+from grashof.analysis.forces.stated import BeyondLoadError
 from grashof.analysis.judge.over_task import as_used, driver_law, motion_ends
-from grashof.problems import Cylinder, DeadPositionWarning, FourBar, Linkage, Problem
+from grashof.problems import Cylinder, DeadPositionWarning, Linkage, Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.dynamics_spec import metres
 from grashof.synth.cylinder.choice import best_cylinder
@@ -33,11 +35,10 @@ def cylinder_for(problem: Problem, linkage: Linkage, verdict: Verdict) -> Cylind
     Returns
     -------
     Cylinder or None
-        None where none is asked for or found, for other linkages than four-bars, and where the linkage has
-        other defects anyhow.
+        None where none is asked for or found, and where the linkage has other defects anyhow.
     """
     left = {each.requirement for each in verdict.defects if not each.requirement.startswith(_OWN)}
-    if not isinstance(linkage, FourBar) or problem.driver is None:
+    if problem.driver is None:
         return None
     if left - _OF_LINK2 or (left and verdict.branch_ok):
         return None
@@ -77,8 +78,11 @@ def _samples(moved: Travel) -> FloatArray:
     return every if way > 0 else every[::-1]
 
 
-def _power(problem: Problem, linkage: FourBar, verdict: Verdict, theta2: FloatArray) -> FloatArray | None:
-    """Drive torque at driver angles, in N times the length, shape (M,); None without dynamics."""
+def _power(problem: Problem, linkage: Linkage, verdict: Verdict, theta2: FloatArray) -> FloatArray | None:
+    """Drive torque at driver angles, in N times the length, shape (M,); None without dynamics.
+
+    None as well where the motion leads beyond the rows of a load, a defect by itself.
+    """
     spec = problem.dynamics
     if spec is None:
         return None
@@ -88,4 +92,6 @@ def _power(problem: Problem, linkage: FourBar, verdict: Verdict, theta2: FloatAr
         warnings.simplefilter("ignore", DeadPositionWarning)
         state = law.state(used, theta2)
         loads = stated_loads(spec, metre, lambda moved: law.time_at(moved.theta2))
-        return metre * inverse_dynamics(state, stated_masses(used, spec, metre), loads).torque
+        with suppress(BeyondLoadError):
+            return metre * inverse_dynamics(state, stated_masses(used, spec, metre), loads).torque
+    return None

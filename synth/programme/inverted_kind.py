@@ -92,7 +92,7 @@ class InvertedKind(Kind):
 
     def lengths_of(self, points: ComplexArray) -> tuple[float, float, float, float]:
         o2, o4, a, b, _ = points.tolist()
-        along = (b - a) / abs(b - a)
+        along = (b - a) / (abs(b - a) or np.nan)  # the block is at A: no direction
         return abs(o4 - o2), abs(a - o2), 0.0, (along.conjugate() * (b - o4)).imag
 
     def arguments(self, points: ComplexArray) -> dict[str, Any]:

@@ -150,7 +150,7 @@ class Start:
     @property
     def arm(self) -> complex:
         """The coupler point as u + iv."""
-        return (self.p - self.a) * abs(self.b - self.a) / (self.b - self.a)
+        return (self.p - self.a) * abs(self.b - self.a) / (self.b - self.a or np.nan)
 
     @property
     def track(self) -> ComplexArray:

@@ -9,13 +9,18 @@ from grashof.analysis import Verdict, driver_ranges, solve_position, verify
 from grashof.analysis.cylinder.lengths import cylinder_state
 from grashof.analysis.judge.driven import cylinder_forces
 from grashof.problems import (
+    Box,
     Cylinder,
     CylinderSpec,
+    DynamicsSpec,
     FourBar,
+    InvertedSliderCrank,
+    Linkage,
     MotionTask,
     Problem,
     ProblemError,
     Requirements,
+    SliderCrank,
     load,
 )
 from grashof.problems.files.problem_file import problem_of
@@ -100,7 +105,7 @@ def test_designs_are_found_again_from_plain_text(problem: Problem, result: Resul
     assert dict(again.values) == pytest.approx(dict(result.best.values), nan_ok=True)
 
 
-def driven_problem(linkage: FourBar, theta2: np.ndarray, assembly: np.ndarray, spec: CylinderSpec) -> Problem:
+def driven_problem(linkage: Linkage, theta2: np.ndarray, assembly: np.ndarray, spec: CylinderSpec) -> Problem:
     at = solve_position(linkage, theta2, assembly)
     task = MotionTask(at.p, at.theta3)
     return Problem(task=task, requirements=Requirements(rotatability="any"), driver=spec)
@@ -126,6 +131,73 @@ def test_a_dead_position_of_link_2_is_none_for_a_cylinder_on_the_output(sense: i
     assert cylinder_for(on_link_2, used, without) is None
     missed = {each.requirement for each in judged(replace(cylinder, on="driver"), on_link_2).defects}
     assert "same_branch" in missed
+
+
+ENGINE = SliderCrank((0, 0), 1, 3, 0.4, 0.3, (1.5, 0.7))
+SHAPER = InvertedSliderCrank((0, 0), (3, 0.4), 1.2, 0.3, (1.5, 0.7))
+
+
+@pytest.mark.parametrize("linkage", [ENGINE, SHAPER])
+def test_slider_kinds_are_driven_and_judged_from_the_pivots_alone(linkage: Linkage) -> None:
+    spec = CylinderSpec(base=Box((-6, 6), (-6, 0)))
+    of = driven_problem(linkage, np.radians([75.0, 95.0, 115.0, 135.0]), np.ones(4, dtype=int), spec)
+    loaded = DynamicsSpec(speed_rpm=30, mass_per_length=2.0)
+    wanted = replace(of.requirements, cylinder_angle_min_deg=20)
+    of = replace(of, mechanism=linkage.MECHANISM, dynamics=loaded, length_unit="m", requirements=wanted)
+    found = synthesize(of, enough=3, starts=16)
+    assert len(found)
+    for each in found.candidates:
+        assert type(each.linkage) is type(linkage)
+        stated = Cylinder(**each.verdict.cylinder.stated)  # type: ignore[union-attr]
+        again = verify(each.linkage, of.task, of.requirements, problem=of, cylinder=stated)
+        assert again.ok
+        at = solve_position(each.linkage, np.linspace(*again.theta2[[0, -1]], 2001), again.assembly[0])
+        dense = cylinder_state(stated, each.linkage, at)
+        assert each.values["cylinder_closed"] == pytest.approx(dense.length.min(), rel=1e-9)
+        assert each.values["cylinder_stroke"] == pytest.approx(np.ptp(dense.length), rel=1e-9)
+        assert each.values["cylinder_angle_min"] == pytest.approx(dense.angle.min(), abs=1e-6)
+        forces = cylinder_forces(each.linkage, of, again)
+        assert np.abs(forces).max() <= each.values["cylinder_force_max"] * (1 + 1e-12)
+    restored_ = restored(plain(found.best), of)
+    assert restored_.verdict.cylinder == found.best.verdict.cylinder
+
+
+def test_kinds_together_give_one_list_of_driven_designs() -> None:
+    kinds = ("four-bar", "slider-crank", "inverted-slider-crank")
+    of = driven_problem(ENGINE, np.radians([60.0, 90.0, 120.0]), np.ones(3, dtype=int), CylinderSpec())
+    frame = synthesize(replace(of, mechanism=kinds), enough=1, starts=4).to_frame()
+    assert set(frame["mechanism"]) == set(kinds)
+    assert frame["cylinder_on"].notna().all()
+    assert (frame["cylinder_stroke"] <= 0.6 * frame["cylinder_closed"] * (1 + 1e-9)).all()
+    assert frame["cylinder_angle_min_deg"].gt(0).all()
+
+
+def through_a_dead_position(linkage: Linkage) -> tuple[Problem, Linkage]:
+    """Poses on both sides of a dead position of link 2, and the linkage that has them."""
+    high = float(driver_ranges(linkage)[0, 1])
+    theta2, assembly = high - np.array([0.3, 0.1, 0.2]), np.array([1, 1, -1])
+    of = driven_problem(linkage, theta2, assembly, CylinderSpec(on=["coupler", "output"]))
+    return replace(of, mechanism=linkage.MECHANISM), linkage
+
+
+@pytest.mark.parametrize(
+    "linkage",
+    [
+        SliderCrank((0, 0), 2, 1.5, 0.2, 0.7, (1, 0.6)),
+        InvertedSliderCrank((0, 0), (2, 0.5), 1.5, 0.9, (2, 0.6)),
+    ],
+)
+@pytest.mark.parametrize("on", ["coupler", "output"])
+def test_slider_kinds_go_through_dead_positions_of_link_2(linkage: Linkage, on: str) -> None:
+    of, used = through_a_dead_position(linkage)
+    of = replace(of, driver=CylinderSpec(on=[on]))
+    without = verify(used, of.task, of.requirements, problem=of)
+    assert "same_branch" in {each.requirement for each in without.defects}
+    cylinder = cylinder_for(of, used, without)
+    assert cylinder is not None
+    assert verify(used, of.task, of.requirements, problem=of, cylinder=cylinder).ok
+    on_link_2 = replace(of, driver=CylinderSpec(on=["driver"]))
+    assert cylinder_for(on_link_2, used, without) is None
 
 
 def test_a_cylinder_needs_a_driver_that_need_not_turn() -> None:

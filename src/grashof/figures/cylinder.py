@@ -14,7 +14,6 @@ from grashof.analysis.four_bar.position import Position, places
 from grashof.analysis.judge.driven import figures_of
 from grashof.figures.parts import COLOURS
 from grashof.figures.subject import Subject
-from grashof.problems import Cylinder, FourBar
 from grashof.problems.values.arrays import FloatArray
 
 BODY, ROD, BASE = "#5d6d7e", "#aab2b9", "#17202a"
@@ -32,13 +31,9 @@ def cylinder_places(subject: Subject, position: Position) -> FloatArray:
     closed = float(found.length.min()) if figures is None else figures.closed
     base = np.broadcast_to(np.asarray(verdict.cylinder.base), found.pivot.shape)
     share = np.minimum(_SHARE * closed / np.maximum(found.length, 1e-300), 1.0)[:, None]
-    at, (one, other) = places(subject.linkage, position), _joints(verdict.cylinder)
-    return np.stack([base, base + share * (found.pivot - base), found.pivot, at[one], at[other]], axis=1)
-
-
-def _joints(cylinder: Cylinder) -> tuple[str, ...]:
-    """Both joints of the link that it acts on."""
-    return next(link.points[:2] for link in FourBar.LINKS if link.name == cylinder.on)
+    at, points = places(subject.linkage, position), subject.linkage.LINKS[verdict.cylinder.link - 1].points
+    one, other = at[points[0]], at[points[:2][-1]]  # a slider has one alone
+    return np.stack([base, base + share * (found.pivot - base), found.pivot, one, other], axis=1)
 
 
 class DrawnCylinder:

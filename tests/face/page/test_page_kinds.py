@@ -13,11 +13,13 @@ import pytest
 from playwright.sync_api import Page
 
 from grashof.analysis import driver_ranges, solve_position, transmission_angle
+from grashof.analysis.cylinder.lengths import cylinder_state
+from grashof.analysis.four_bar.position import places
 from grashof.analysis.four_bar.slide import slide_travel
 from grashof.analysis.four_bar.transmission import quality
 from grashof.page import analysis_page, designs
 from grashof.page.designs import linkage_data
-from grashof.problems import FourBar, InvertedSliderCrank, Linkage, LinkageSpec, SliderCrank
+from grashof.problems import Cylinder, FourBar, InvertedSliderCrank, Linkage, LinkageSpec, SliderCrank
 from grashof.problems.values.arrays import FloatArray
 from grashof.survey import report_on
 
@@ -125,6 +127,43 @@ def test_the_drawing_follows_the_driver(shown: Callable[[str], Page], name: str)
     words = page.locator(".legend").inner_text()
     assert ("slider B" if guides else "block O4-B") in words
     assert "slide" in page.locator("#angles").inner_text()
+
+
+@pytest.mark.parametrize("name", LINKAGES)
+@pytest.mark.parametrize("on", ["driver", "coupler", "output"])
+def test_cylinders_are_where_the_analysis_has_them(window: Page, name: str, on: str) -> None:
+    linkage, jack = LINKAGES[name], Cylinder(on, (-2.0, 1.5), (0.8, -0.3))
+    low, high = driver_ranges(linkage)[0]
+    theta2 = np.linspace(low, high, 20)[1:-1]
+    scripts = "".join((TEMPLATES / each).read_text(encoding="utf-8") for each in ("kinds.js", "linkage.js"))
+    window.goto("about:blank")
+    found = window.evaluate(
+        f"([linkage, jack, angles]) => {{ {scripts} "
+        "return angles.map((angle) => cylinderAt(linkage, jack, positionOf(linkage, angle))); }",
+        [linkage_data(linkage), {**jack.stated, "closed": 1.0}, theta2.tolist()],
+    )
+    state = solve_position(linkage, theta2)
+    there = cylinder_state(jack, linkage, state).pivot
+    np.testing.assert_allclose([each["pivot"] for each in found], there, atol=1e-9)
+    first, _, second = zip(*(each["bracket"] for each in found), strict=True)
+    joints = linkage.LINKS[jack.link - 1].points
+    at = places(linkage, state)
+    np.testing.assert_allclose(first, at[joints[0]], atol=1e-9)
+    np.testing.assert_allclose(second, at[joints[:2][-1]], atol=1e-9)
+
+
+def test_the_rod_of_a_cylinder_is_not_that_of_the_linkage(window: Page, tmp_path: Path) -> None:
+    jack = Cylinder("coupler", (-2.0, 1.5), (0.8, -0.3))
+    report = report_on(LinkageSpec(LINKAGES["crank-shaper"], "jack", cylinder=jack))
+    page = analysis_page(replace(report, sections=()), {"versions": {"grashof": "0"}, "settings": {}})
+    (tmp_path / "jack.html").write_text(page, encoding="utf-8")
+    window.goto((tmp_path / "jack.html").as_uri())
+    drawn = [
+        window.evaluate(f"document.querySelector('#stage .linkage {style}').getAttribute('d')")
+        for style in (".piston", ".ram", ".coupler.rod", ".bracket.coupler")
+    ]
+    assert len(set(drawn)) == 4
+    assert drawn[0].split("L")[0] == "M" + drawn[1].split("L")[1]  # it comes out of the body
 
 
 def test_the_page_says_what_kind_it_is(pages: Path) -> None:

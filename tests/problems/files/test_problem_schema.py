@@ -440,11 +440,10 @@ def test_what_a_cylinder_cannot_do_is_refused_in_a_line() -> None:
     assert message(f"{HEAD}[driver]\n") == "driver.cylinder is missing"
 
 
-def test_a_cylinder_drives_four_bars_alone_and_no_strokes() -> None:
+def test_a_cylinder_drives_every_kind_but_no_strokes() -> None:
     driven = "[driver]\ncylinder = {}\n"
-    assert message(f'mechanism = ["four-bar", "slider-crank"]\n{HEAD}{driven}') == (
-        "driver.cylinder does not go with mechanism slider-crank; it must be four-bar"
-    )
+    kinds = ["four-bar", "slider-crank", "inverted-slider-crank"]
+    assert problem(f"mechanism = {kinds}\n{HEAD}{driven}").driver == CylinderSpec()
     stroke = 'kind = "stroke"\n[stroke]\nswing_deg = 80\ntime_ratio = 1.2\n'
     assert message(f"{stroke}{driven}") == (
         "driver.cylinder does not go with stroke, whose driver turns all round"

@@ -130,3 +130,10 @@ def test_a_start_is_its_linkage(mechanism: str) -> None:
 def test_a_kind_is_the_same_object_wherever_it_is_sent(mechanism: str) -> None:
     scaled = scaled_of(mechanism)
     assert pickle.loads(pickle.dumps(scaled)).kind is scaled.kind
+
+
+def test_a_rod_whose_block_is_at_a_has_no_direction() -> None:
+    """A start in such a dead position fails; it ends no search."""
+    lengths = KINDS["inverted-slider-crank"].lengths_of(np.array([0, 3, 1, 1, 2], dtype=complex))
+    assert lengths[:3] == (3, 1, 0)
+    assert np.isnan(lengths[3])

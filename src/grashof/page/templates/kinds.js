@@ -75,13 +75,16 @@ function rodOf({ linkage, from, to }, { a, theta3, slide }, half) {
 }
 
 // Of each kind: points on the ground, the others, and its links as parts of a drawing, from below: name,
-// class, and whether the outline is closed. `shapes` gives the corners of each.
+// class, and whether the outline is closed. `shapes` gives the corners of each. `frames` has the origin of each
+// link, its direction and another point on it.
 const BARS = [["output", "output"], ["driver", "driver"]];
+const FRAMES = { driver: ["o2", "theta2", "a"], coupler: ["a", "theta3", "b"], output: ["o4", "theta4", "b"] };
 const KINDS = {
   "four-bar": {
     ground: ["o2", "o4"],
     moving: ["a", "b", "p"],
     close: closeFourBar,
+    frames: FRAMES,
     parts: [["coupler", "coupler", true], ...BARS],
     shapes: (_, { o2, o4, a, b, p }) => ({ coupler: [a, b, p], output: [o4, b], driver: [o2, a] }),
   },
@@ -89,6 +92,7 @@ const KINDS = {
     ground: ["o2"],
     moving: ["a", "b", "p"],
     close: closeSliderCrank,
+    frames: { ...FRAMES, output: ["b", "slide_angle", "b"] },
     parts: [["block", "output block", true], ["coupler", "coupler", true], BARS[1]],
     shapes: ({ linkage }, { o2, a, b, p }, half) => ({
       block: blockAt(b, linkage.slide_angle, half),
@@ -100,6 +104,7 @@ const KINDS = {
     ground: ["o2", "o4"],
     moving: ["a", "b", "p"],
     close: closeInverted,
+    frames: { ...FRAMES, coupler: ["a", "theta3", "p"] },
     parts: [["block", "output block", true], ["rod", "coupler rod"], ["arm", "coupler"], ...BARS],
     shapes: (slid, state, half) => {
       const { o2, o4, a, b, p, theta3 } = state;

@@ -17,12 +17,8 @@ function positionOf(linkage, theta2, assembly = linkage.assembly) {
 }
 
 // The two pivots of a cylinder, the end of its body and what holds it on its link, in a position.
-function cylinderAt({ on, base, point, closed }, state) {
-  const [origin, angle, joint] = {
-    driver: [state.o2, state.theta2, state.a],
-    coupler: [state.a, state.theta3, state.b],
-    output: [state.o4, state.theta4, state.b],
-  }[on];
+function cylinderAt(linkage, { on, base, point, closed }, state) {
+  const [origin, angle, joint] = kindOf(linkage).frames[on].map((name) => state[name] ?? linkage[name]);
   const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
   const [u, v] = point;
   const pivot = [origin[0] + u * cos - v * sin, origin[1] + u * sin + v * cos];

@@ -264,7 +264,7 @@ class Stage {
     if (this.scene.body) parts.body = add(layer, "path", { class: "body live" });
     if (this.design.cylinder) {
       parts.bracket = add(layer, "path", { class: `bracket ${this.design.cylinder.on}` });
-      parts.rod = add(layer, "path", { class: "piston" });
+      parts.piston = add(layer, "path", { class: "piston" });
       parts.ram = add(layer, "path", { class: "ram" });
     }
     for (const [name, style] of links) parts[name] = add(layer, "path", { class: style });
@@ -314,11 +314,11 @@ class Stage {
       set(parts.body, { d: through(corners.map(this.at), true) });
     }
     if (parts.ram) {
-      const found = cylinderAt(this.design.cylinder, state);
+      const found = cylinderAt(this.design.linkage, this.design.cylinder, state);
       const [base, end, pivot] = [found.base, found.end, found.pivot].map(this.at);
       set(parts.bracket, { d: through(found.bracket.map(this.at)) });
       set(parts.ram, { d: through([base, end]) });
-      set(parts.rod, { d: through([end, pivot]) });
+      set(parts.piston, { d: through([end, pivot]) });
       set(parts.base, { cx: px(base[0]), cy: px(base[1]) });
       set(parts.pivot, { cx: px(pivot[0]), cy: px(pivot[1]) });
     }

@@ -1,0 +1,185 @@
+"""The best cylinder of slider-cranks and inverted ones: closed forms, limits, an independent search."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from scipy.optimize import differential_evolution
+
+from grashof.analysis import driver_ranges
+from grashof.analysis.cylinder.lengths import CylinderFigures, cylinder_figures
+from grashof.analysis.cylinder.travel import Travel, travel
+from grashof.problems import Box, Cylinder, CylinderSpec, InvertedSliderCrank, Linkage, SliderCrank
+from grashof.synth.cylinder.choice import best_cylinder
+from grashof.synth.cylinder.planes import planes_of
+
+LINKS = ("driver", "coupler", "output")
+KINDS = (SliderCrank, InvertedSliderCrank)
+ENGINE = SliderCrank((0.3, -0.2), 1, 3, 0.4, 0.7, (1.5, 0.6))
+SHAPER = InvertedSliderCrank((0.3, -0.2), (3, 0.5), 1.1, 0.3, (2.5, 0.6))
+
+
+def drawn(rng: np.random.Generator, kind: type[Linkage]) -> Travel:
+    """A linkage whose driver covers 30 to 140 deg between its dead positions, in either sense."""
+    while True:
+        r1, r2, r3 = rng.uniform(0.3, 3, 3)
+        offset, p, sign = rng.uniform(-0.7, 0.7), rng.uniform(-1, 1, 2) * r3, rng.choice([-1, 1])
+        linkage: Linkage = (
+            SliderCrank((0, 0), r2, r3, offset, rng.uniform(-3, 3), p, sign)
+            if kind is SliderCrank
+            else InvertedSliderCrank((0, 0), (r1, 0.3), r2, offset, p, sign)
+        )
+        (low, high), wide = driver_ranges(linkage)[0], np.radians(rng.uniform(30, 140))
+        if not high - low > 1.05 * wide:
+            continue
+        start = rng.uniform(low + 0.02 * wide, high - 1.02 * wide)
+        ends = np.array([start, start + wide])[:: rng.choice([-1, 1])]
+        found = travel(linkage, ends, np.array([int(linkage.assembly)] * 2))
+        if found is not None:
+            return found
+
+
+def moved(linkage: Linkage, *theta2_deg: float) -> Travel:
+    found = travel(linkage, np.radians(theta2_deg), np.ones(len(theta2_deg), dtype=int))
+    assert found is not None
+    return found
+
+
+def angles_of(way: Travel) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    share = (1 - np.cos(np.linspace(0, np.pi, 129))) / 2
+    at = way.at(way.start + (way.end - way.start) * share)
+    return at.theta2, at.theta3, at.theta4
+
+
+def chosen(way: Travel, spec: CylinderSpec) -> tuple[Cylinder, CylinderFigures] | None:
+    found = best_cylinder(way.linkage, angles_of(way), spec)
+    return None if found is None else (found, cylinder_figures(found, way))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_on_link_2_the_worst_angle_is_90_deg_less_half_the_range(kind: type[Linkage]) -> None:
+    rng = np.random.default_rng(3)
+    for _ in range(40):
+        way = drawn(rng, kind)
+        found = chosen(way, CylinderSpec(on=["driver"]))
+        assert found is not None
+        assert found[1].monotone
+        theta2 = way.at([way.start, way.end]).theta2
+        expected = 90 - np.degrees(abs(theta2[1] - theta2[0])) / 2
+        assert np.degrees(found[1].angle_min) == pytest.approx(expected, abs=1e-5)
+
+
+def test_on_a_slider_it_is_in_line_with_the_slide_wherever_that_moves_one_way() -> None:
+    rng = np.random.default_rng(4)
+    driven = 0
+    for _ in range(40):
+        way = drawn(rng, SliderCrank)
+        angle = float(way.linkage.slide_angle)  # type: ignore[attr-defined]
+        along = np.array([np.cos(angle), np.sin(angle)])
+        step = np.diff(way.at(way.places).b @ along)
+        found = chosen(way, CylinderSpec(on=["output"]))
+        if not ((step > 0).all() or (step < 0).all()):
+            assert found is None
+            continue
+        assert found is not None
+        driven += 1
+        assert np.degrees(found[1].angle_min) == pytest.approx(90, abs=1e-5)
+        assert found[1].stroke == pytest.approx(abs(step.sum()), rel=1e-9)
+        assert found[0].point == (0, 0)  # nothing keeps it from B
+    assert driven > 10
+
+
+def test_a_base_beside_the_slide_has_its_pivot_as_far_beside_b() -> None:
+    way = moved(SliderCrank((0, 0), 1, 3), 20, 140)
+    beside = chosen(way, CylinderSpec(on=["output"], base=Box((-4, 8), (0.5, 0.5))))
+    assert beside is not None
+    assert beside[0].point == pytest.approx((0, 0.5), abs=1e-8)
+    assert np.degrees(beside[1].angle_min) == pytest.approx(90, abs=1e-5)
+    beyond = chosen(way, CylinderSpec(on=["output"], base=Box((-9, 12), (1.5, 1.5))))  # beyond its reach
+    assert beyond is not None
+    assert beyond[0].point[1] == pytest.approx(1, abs=0.02)
+    assert 60 < np.degrees(beyond[1].angle_min) < 89
+
+
+def test_where_the_slider_is_driven_at_90_deg_no_other_link_is() -> None:
+    found = chosen(moved(ENGINE, 60, 150), CylinderSpec())
+    assert found is not None
+    assert found[0].on == "output"
+
+
+LIMITED = {"closed": (1.5, 2.5), "ratio_max": 1.5, "base": Box((-3.0, 0.5), (-2.0, -0.2))}
+
+
+@pytest.mark.parametrize("linkage", [ENGINE, SHAPER])
+@pytest.mark.parametrize("on", LINKS)
+@pytest.mark.parametrize("active", list(product([False, True], repeat=3)))
+def test_limits_are_kept_in_all_combinations(
+    linkage: Linkage, on: str, active: tuple[bool, bool, bool]
+) -> None:
+    limits = {key: value for (key, value), given in zip(LIMITED.items(), active, strict=True) if given}
+    spec = CylinderSpec(on=[on], **limits)
+    found = chosen(moved(linkage, 95, 145), spec)
+    assert found is not None
+    cylinder, figures = found
+    assert figures.monotone
+    assert figures.ratio <= spec.ratio_max
+    low, high = spec.closed or (0.0, np.inf)
+    assert low <= figures.closed <= high
+    box = spec.base or Box()
+    assert box.x[0] <= cylinder.base[0] <= box.x[1]
+    assert box.y[0] <= cylinder.base[1] <= box.y[1]
+
+
+def test_contradictory_limits_leave_none() -> None:
+    for linkage in (ENGINE, SHAPER):
+        far = CylinderSpec(closed=(0.1, 0.2), base=Box((50, 51), (50, 51)))
+        assert chosen(moved(linkage, 95, 145), far) is None
+
+
+@pytest.mark.parametrize("linkage", [ENGINE, SHAPER])
+@pytest.mark.parametrize("scale", [1e-6, 1e6])
+def test_it_is_the_same_in_every_unit(linkage: Linkage, scale: float) -> None:
+    for on in ("driver", "output"):
+        one = chosen(moved(linkage, 95, 145), CylinderSpec(on=[on]))
+        other = chosen(moved(linkage.scaled(scale, np.zeros(2)), 95, 145), CylinderSpec(on=[on]))
+        assert one is not None
+        assert other is not None
+        assert other[1].angle_min == pytest.approx(one[1].angle_min, abs=1e-7)
+
+
+def searched(way: Travel, spec: CylinderSpec, on: str, seed: int) -> float:
+    """The worst lever angle of what differential evolution finds by differences of places, judged, deg."""
+    assert spec.base is not None
+    at = way.at(np.linspace(way.start, way.end, 81))
+    plane = planes_of(way.linkage, *map(np.unwrap, (at.theta2, at.theta3, at.theta4)), None)[on]
+    low, high = spec.closed or (0.0, np.inf)
+
+    def pivot(x: np.ndarray) -> complex:
+        return complex(plane.middle + x[0] * np.exp(1j * x[1]))
+
+    def cost(x: np.ndarray) -> float:
+        places = plane.origin + pivot(x) * plane.axis
+        out, way_of = places - complex(x[2], x[3]), np.gradient(places)
+        lever = (np.real(np.conj(out) * way_of) / np.abs(out) / np.maximum(np.abs(way_of), 1e-12))[1:-1]
+        least, closed = max(lever.min(), (-lever).min()), np.abs(out).min()
+        over = max(np.abs(out).max() / max(closed, 1e-9) - spec.ratio_max, 0)
+        return float(-least + 100 * (over + max(low - closed, 0) + max(closed - high, 0)))
+
+    bounds = [(0, plane.reach), (-np.pi, np.pi), spec.base.x, spec.base.y]
+    best = differential_evolution(cost, bounds, seed=seed, popsize=24, maxiter=260, tol=1e-10, polish=False)
+    if best.fun >= 0:
+        return 0.0
+    q, base = pivot(best.x), (float(best.x[2]), float(best.x[3]))
+    return float(np.degrees(cylinder_figures(Cylinder(on, base, (q.real, q.imag)), way).angle_min))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("seed", range(12))
+def test_an_independent_search_of_great_effort_finds_no_better_one(kind: type[Linkage], seed: int) -> None:
+    way = drawn(np.random.default_rng(100 + seed), kind)
+    for on in LINKS:
+        spec = CylinderSpec(closed=(1.0, 4.0), ratio_max=1.5, base=Box((-4, 5), (-4, 0)), on=[on])
+        found = chosen(way, spec)
+        angle = 0.0 if found is None else np.degrees(found[1].angle_min)
+        assert angle > searched(way, spec, on, seed) - 0.1
