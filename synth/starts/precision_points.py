@@ -145,7 +145,8 @@ class EightPoints(EveryLinkage):
 
 def _usable(linkages: Screened) -> BoolArray:
     """Which are feasible with a driver that goes round once at most, shape (n,)."""
-    return linkages.feasible & (np.ptp(linkages.theta2, axis=1) <= TURN)
+    once: BoolArray = np.ptp(linkages.theta2, axis=1) <= TURN
+    return linkages.feasible & once
 
 
 def _driven_from_both_sides(linkages: ComplexArray) -> ComplexArray:
