@@ -18,6 +18,7 @@ _BLOCK = 500
 _BEST, _APART = 2000, 0.12  # parents are so far apart, as a share of the room, and among the best
 _HOPELESS = -0.5  # merit so far below zero is not mended
 _POLISHED, _AGAIN = 8, 3
+_LAST, _BESIDE = 3, 0.01  # rounds of polishing at the end, and how far beside the best: share of the room
 COARSE, FINE = 4, 2  # every so many samples are enough to compare, and to polish
 _SEEDS = 16  # times that each joint is tried
 
@@ -60,6 +61,10 @@ def best_by_search(
     points, bases, least = _judged(plane, room, tried)
     if least.max() <= 0:  # what hides between the samples
         points, bases, least = _judged(plane, room, [_polished(plane, room, *tried[0])])
+    else:  # where limits are narrow, some are a degree better between all samples and a little beside
+        for _ in range(_LAST):
+            tried += [_polished(plane, room, *pair) for pair in _nearby(plane, room, tried, rng)]
+        points, bases, least = _judged(plane, room, tried)
     first = int(least.argmax())
     return None if least[first] <= 0 else (complex(points[first]), complex(bases[first]), float(least[first]))
 
@@ -71,6 +76,18 @@ def _judged(
     points, bases = room.kept(*(np.array(each) for each in zip(*tried, strict=True)))
     found = driven(plane, points, bases)
     return points, bases, np.where(room.beyond(found) <= 0, found.least, -1.0)
+
+
+def _nearby(
+    plane: Plane, room: Room, tried: list[tuple[complex, complex]], rng: np.random.Generator
+) -> list[tuple[complex, complex]]:
+    """The best two cylinders, and two a little beside the best, from where polishing may go further."""
+    best = _best_of(plane, room, tried, 2)
+    u, v, x, y = _BESIDE * rng.standard_normal((4, 2))
+    span = room.high - room.low
+    points = best[0][0] + room.reach * (u + 1j * v)
+    bases = best[0][1] + span[0] * x + 1j * span[1] * y
+    return best + list(zip(*room.kept(points, bases), strict=True))
 
 
 def _best_of(
