@@ -28,7 +28,10 @@ cylinder_force_max
 FIRST = [name.strip() for name in CONTRACT.split(",")]
 # Quantities that a requirement declares follow.
 COLUMNS = FIRST + [each.column for each in LISTED if each.key not in MEASURED]
-OF_FUNCTIONS = [f"structural_error_{name}_deg" for name in ("max", "rms", "at")]
+OF_FUNCTIONS = [
+    *(f"structural_error_{name}_deg" for name in ("max", "rms", "at")),
+    *(f"structural_error_{name}" for name in ("max", "rms")),  # of slides
+]
 WITHOUT_MEANING = [
     "error", "cognate_of", "best_at", "hausdorff", "frechet", *FIRST[-21:], "stroke", *OF_FUNCTIONS,
 ]  # fmt: skip
