@@ -126,6 +126,7 @@ def begins(
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
     >>> theta4 = solve_position(linkage, 0.7 + np.array([0, 0.4, 0.9, 1.5, 2.0])).theta4
     >>> task = FunctionTask([0, 0.4, 0.9, 1.5, 2.0], theta4 - theta4[0])
@@ -293,6 +294,7 @@ def structural_error(
     --------
     Half of the output of a parallelogram, wanted as a rotation by 1 rad with 1 rad:
 
+    >>> from grashof.problems import FourBar
     >>> parallelogram = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=1, assembly=1)
     >>> task = FunctionTask([0, 0.5, 1], [0, 0.25, 0.5])
     >>> found = structural_error(parallelogram, task, Beginning(0.5, 1), exact=False)
@@ -392,6 +394,7 @@ def function_curves(
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> from grashof.analysis.judge.verify import verify
     >>> linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
     >>> task = FunctionTask([0, 0.5, 1.0], [0, 0.1, 0.3])
