@@ -177,7 +177,8 @@ def _progress(judged: _Judged, search: Search, total: int) -> Progress:
 def _exhausted(aims: FunctionAims) -> str:
     count = len(aims.task)
     if count >= aims.kind.EXACT:
-        have = "most sets of five have one, or three" if count == 5 else "most sets of four have one"
+        five = aims.kind.EXACT == 5
+        have = "most sets of five have one, or three" if five else "most sets of four have one"
         return f"all {aims.kinds} through the {count} pairs were looked at; {have}"
     return f"no more distinct {aims.kinds} go through the pairs under these requirements"
 

@@ -117,7 +117,7 @@ def refined(aim: Aim, start: Generators, steps: int = STEPS) -> Optimum:
     linear = _Linear.of(aim, made)
     flat = 0
     taken = 0
-    while taken < steps:
+    while taken < steps and linear.finite:
         taken += 1
         moved, hoped = linear.step(radius)
         there, fresh = linear.best_along(made, moved)
@@ -153,6 +153,11 @@ class _Linear:
         limits, by_shape = aim.limits(made)
         free = np.append(np.ones(made.UNKNOWNS - 1), 0.0 if aim.held else 1.0)
         return cls(aim, aim.errors(made), slopes, limits[0], by_shape[0], free)
+
+    @property
+    def finite(self) -> bool:
+        """Whether the output has a rate everywhere: in a dead position it has none."""
+        return bool(np.isfinite(self.slopes).all())
 
     def step(self, radius: float) -> tuple[FloatArray, float]:
         """The best step, shape (K,), and the merit that it promises."""

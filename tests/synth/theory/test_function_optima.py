@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from grashof.synth.theory.function_optima import under_inequalities
+from grashof.synth.theory.function_fit import Wanted
+from grashof.synth.theory.function_inverted import InvertedSliderCranks
+from grashof.synth.theory.function_limits import ShapeLimits
+from grashof.synth.theory.function_optima import Aim, refined, under_inequalities
+from grashof.synth.theory.function_output import Generators
+from grashof.synth.theory.function_slider_crank import SliderCranks
 
 
 def test_least_squares_under_inequalities_meets_the_conditions_of_kuhn_and_tucker() -> None:
@@ -30,3 +35,28 @@ def test_least_squares_under_inequalities_meets_the_conditions_of_kuhn_and_tucke
 def test_it_does_not_depend_on_the_scale(scale: float) -> None:
     found = under_inequalities(scale * np.eye(2), np.zeros(2), np.array([[1.0, 1.0]]), np.array([2.0]))
     assert np.abs(found - 1).max() < 1e-9
+
+
+@pytest.mark.parametrize("greatest", [False, True])
+@pytest.mark.parametrize(
+    ("start", "lengths"),
+    [
+        (SliderCranks(np.array([[0.0, np.log(2.0), 0.5, -np.pi / 2]]), np.array([1.0])), 3),
+        (InvertedSliderCranks(np.array([[np.log(0.5), 0.5, 0.0]]), np.array([1.0])), 2),
+    ],
+    ids=["offset + r2 = r3", "r1 - r2 = offset"],
+)
+def test_a_start_in_a_dead_position_ends_well(start: Generators, lengths: int, greatest: bool) -> None:
+    """Its output has no rate there, or an enormous one: it is left as it is, or improved."""
+    turned = np.linspace(0.0, 1.0, 8)
+    wanted = Wanted(turned, 0.9 * start.outputs(turned)[0], np.ones(8))
+    limits = ShapeLimits(1.0, caps=np.full((lengths, lengths), 5.0))
+    aim = Aim(wanted, limits.of, greatest=greatest)
+    slopes = start.slopes(turned, start.outputs(turned))[0, 0]
+    assert not np.abs(slopes).max() < 1e12
+    found = refined(aim, start)
+    assert np.isfinite(found.error)
+    assert aim.merit(found.made) <= aim.merit(start)
+    if np.isnan(slopes).any():
+        assert found.steps == 0
+        assert found.missed > 0
