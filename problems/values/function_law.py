@@ -92,7 +92,7 @@ class FunctionLaw(ReadOnly):
         for name in ("input_range", *(() if self.travels else ("output_range",))):
             where = f"function.{name}_deg"
             given = np.degrees(finite_number(getattr(self, name), where))
-            number_within(float(np.round(given, 9)), *RANGE, where)
+            number_within(round(float(given), 9), *RANGE, where)
         if (self.exponent is None) == (self.name == "power"):
             needed = (
                 'is missing; law = "power" needs it'
