@@ -263,23 +263,25 @@ def _peaks(margin: Callable[[FloatArray], FloatArray], at_grid: FloatArray) -> F
     """Where a margin that is negative on the grid is greatest between its points."""
     padded = np.pad(at_grid, 1, constant_values=-np.inf)
     peak = (at_grid >= padded[:-2]) & (at_grid >= padded[2:]) & (at_grid < 0) & np.isfinite(at_grid)
-    found = [highest(margin, *_beside(k)) for k in np.flatnonzero(peak).tolist()]
-    return np.array(found, dtype=np.float64)
-
-
-def _beside(k: int) -> tuple[float, float]:
-    return float(_GRID[max(k - 1, 0)]), float(_GRID[min(k + 1, len(_GRID) - 1)])
+    index = np.flatnonzero(peak)
+    return _highest(margin, _GRID[np.maximum(index - 1, 0)], _GRID[np.minimum(index + 1, len(_GRID) - 1)])
 
 
 def highest(value: Callable[[FloatArray], FloatArray], low: float, high: float) -> float:
-    """Where a function of shares (n,) is greatest between two of them, if it has one maximum there.
+    """Where a function of shares (n,) is greatest between two of them, if it has one maximum there."""
+    return float(_highest(value, np.array([low]), np.array([high]))[0])
+
+
+def _highest(value: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray) -> FloatArray:
+    """The same between each of some shares (m,) and others, all at once.
 
     Golden section: limits meet in kinks, at which methods that fit parabolas lose half of the digits.
     """
-    for _ in range(_SECTIONS):
-        inner = np.array([high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)])
-        left, right = value(inner)
-        low, high = (low, float(inner[1])) if left >= right else (float(inner[0]), high)
+    for _ in range(_SECTIONS if len(low) else 0):
+        before, behind = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
+        left, right = np.split(value(np.concatenate([before, behind])), 2)
+        is_left = left >= right
+        low, high = np.where(is_left, low, before), np.where(is_left, behind, high)
     return (low + high) / 2
 
 
