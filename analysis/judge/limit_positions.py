@@ -1,4 +1,4 @@
-"""Strokes: where a linkage has its limit positions, and what its swing and time ratio miss."""
+"""Strokes: where a linkage has its limit positions, and what its swing or stroke and time ratio miss."""
 
 from __future__ import annotations
 
@@ -52,19 +52,26 @@ def at_limits(linkage: Linkage, task: StrokeTask, wanted: Requirements) -> tuple
 
 
 def stroke_defects(linkage: Linkage, task: StrokeTask, wanted: Requirements) -> Iterator[Defect]:
-    """What swing or stroke and time ratio miss, by the linkage's own motion.
+    """What swing, or stroke, and time ratio miss, by the linkage's own motion.
 
     The swing may differ by `tolerance` in rad, stroke and time ratio by that share of them.
     """
     found = output_stroke(linkage)
-    swing, ratio = float(found.swing), float(found.time_ratio)
-    if np.isnan(swing):  # link 4 does not turn back
-        swing, ratio = TURN, task.time_ratio
-    way = ("the swing in deg", swing, task.swing or 0.0, float(np.degrees(1.0)), 1.0)
-    if task.stroke is not None:
-        way = ("the stroke", float(found.chord), task.stroke, 1.0, task.stroke)
-    asked = (way, ("the time ratio", ratio, task.time_ratio, 1.0, task.time_ratio))
-    for what, value, wish, unit, scale in asked:
+    ratio = float(found.time_ratio)
+    if task.stroke is None:
+        swing = float(found.swing)
+        if np.isnan(swing):  # link 4 does not turn back
+            swing, ratio = TURN, task.time_ratio
+        first = ("the swing in deg", swing, task.swing or 0.0, float(np.degrees(1.0)), 1.0)
+    elif lacking := int(np.isnan(found.theta2).sum()):
+        yield Defect("exact", "the number of limit positions", 2 - lacking, "2", 1.0)
+        return
+    else:
+        first = ("the stroke", float(found.chord), task.stroke, 1.0, task.stroke)
+    for what, value, wish, unit, scale in (
+        first,
+        ("the time ratio", ratio, task.time_ratio, 1.0, task.time_ratio),
+    ):
         miss = abs(value - wish) / scale if np.isfinite(value) else np.inf
         if not miss <= wanted.tolerance:
             within = f"{wish * unit:.6g} within {wanted.tolerance * scale * unit:.2g}"

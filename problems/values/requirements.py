@@ -27,7 +27,7 @@ from grashof.problems.values.quantities import (
     limit,
 )
 from grashof.problems.values.read_only import ReadOnly
-from grashof.problems.values.task import Task
+from grashof.problems.values.task import USUAL_MARGIN, Task
 
 
 class Rotatability(StrEnum):
@@ -97,7 +97,8 @@ class Requirements(ReadOnly):
         full-crank (the driver turns fully), crank-rocker, double-crank, or any (the driver
         covers the task). By default full-crank, of functions any.
     rotatability_margin : float
-        r3+r4-r1-r2 and |r1-r2|-|r3-r4| are at least this share of r1+r2+r3+r4.
+        r3+r4-r1-r2 and |r1-r2|-|r3-r4| are at least this share of r1+r2+r3+r4; by default 0.001, for the
+        stroke of a slide 0, as its transmission angle says the same.
     order : bool
         The driver meets the targets in sequence, in one sense, within one turn.
     same_branch : bool
@@ -160,7 +161,7 @@ class Requirements(ReadOnly):
     tolerance: float = 1e-6
     error_factor: float | None = None
     rotatability: Rotatability = None  # type: ignore[assignment]  # the task's own, in a problem
-    rotatability_margin: float = 1e-3
+    rotatability_margin: float = None  # type: ignore[assignment]  # the task's own, in a problem
     order: bool = True
     same_branch: bool = True
     transmission_min_deg: float = limit(
@@ -305,9 +306,11 @@ class Requirements(ReadOnly):
     def _comparable(self) -> tuple[object, ...]:
         """Every field, the arrays among them as tuples."""
         areas = tuple(tuple(map(tuple, corners.tolist())) for corners in self.keep_out)
+        named = ("keep_out", "rotatability", "rotatability_margin")
         turns = self.rotatability or Rotatability.FULL_CRANK  # where no task says otherwise
-        others = (field.name for field in fields(self) if field.name not in ("keep_out", "rotatability"))
-        return areas, turns, *(getattr(self, name) for name in others)
+        margin = USUAL_MARGIN if self.rotatability_margin is None else self.rotatability_margin
+        others = (field.name for field in fields(self) if field.name not in named)
+        return areas, turns, margin, *(getattr(self, name) for name in others)
 
     @property
     def link_lengths(self) -> tuple[Limits, Limits, Limits, Limits]:
@@ -343,10 +346,13 @@ class Requirements(ReadOnly):
         return task.exact_by_default if self.exact is None else self.exact
 
     def for_task(self, task: Task) -> Requirements:
-        """These requirements with the rotatability that is usual for a task, where they state none."""
-        if self.rotatability in tuple(Rotatability):
-            return self
-        return replace(self, rotatability=Rotatability(task.usual_rotatability))
+        """These requirements with the rotatability and margin usual for a task, where they state none."""
+        usual: dict[str, Any] = {}
+        if self.rotatability not in tuple(Rotatability):
+            usual["rotatability"] = Rotatability(task.usual_rotatability)
+        if self.rotatability_margin is None:
+            usual["rotatability_margin"] = task.usual_margin
+        return replace(self, **usual) if usual else self
 
     def resolved(self, size: float, *, scale_free: bool = False) -> Requirements:
         """These requirements with every default that depends on the size of the task filled in.

@@ -8,6 +8,7 @@ from dataclasses import astuple
 
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.checks import GREATEST, LEAST
+from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.problems.values.requirements import Requirements, Rotatability
 from grashof.problems.values.stroke_task import StrokeTask
 
@@ -15,14 +16,29 @@ from grashof.problems.values.stroke_task import StrokeTask
 def strokes_wrong(task: StrokeTask, wanted: Requirements, kinds: Sequence[str]) -> list[str]:
     """What a stroke, the kinds of linkages and the requirements do not agree on, a line each."""
     wrong = [line for kind in kinds if (line := task.impossible(kind))]
+    if task.stroke is not None and task.time_ratio > 1 + wanted.tolerance and wanted.offset == (0, 0):
+        wrong.append(
+            f"stroke.time_ratio is {task.time_ratio:.6g}; it must be 1 where requirements.offset is [0, 0]"
+        )
+    wrong += _too_small(task, wanted)
     if wanted.exact is False:
         wrong.append("requirements.exact is false; with stroke it must be true: the time ratio is always met")
-    if wanted.rotatability is Rotatability.DOUBLE_CRANK:
+    if wanted.rotatability is Rotatability.DOUBLE_CRANK and FOUR_BAR in kinds:
         wrong.append(
             'requirements.rotatability is "double-crank", whose output does not swing; '
             "with stroke it must be full-crank or crank-rocker"
         )
     return wrong
+
+
+def _too_small(task: StrokeTask, wanted: Requirements) -> list[str]:
+    """That B has no room for its stroke, where a slide is asked for."""
+    if task.stroke is None or wanted.b is None:
+        return []
+    wide, tall = wanted.b.x[1] - wanted.b.x[0], wanted.b.y[1] - wanted.b.y[0]
+    if math.hypot(wide, tall) >= task.stroke * (1 - wanted.tolerance):
+        return []
+    return [f"requirements.b is {wide:g} by {tall:g}; it must hold the stroke, {task.stroke:g}"]
 
 
 def stated_size(wanted: Requirements) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import ClassVar, Literal, Self
 
@@ -10,12 +11,13 @@ import numpy as np
 from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.checks import finite_number, noted, refuse, size_number
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.task import Task
+from grashof.problems.values.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
+from grashof.problems.values.task import USUAL_MARGIN, Task
 
 LEAST_SWING = 1e-3  # rad
-MOST_SLIDE_RATIO = (
-    3.0  # of an offset slider-crank; its slow stroke takes less than so many times the quick one
-)
+# Of an offset slider-crank: its slow stroke takes less than so many times the quick one.
+MOST_SLIDE_RATIO = 3.0
+_SAME_RATIO = 1e-6  # share by which a time ratio may differ from that of a swing
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
@@ -112,6 +114,11 @@ class StrokeTask(Task):
         return self.stroke is None
 
     @property
+    def limits_size(self) -> bool:
+        """Not that of a slide: the longer its rod, the better, as far as limits go."""
+        return self.stroke is None
+
+    @property
     def returns(self) -> bool:
         """No: the last limit position is the other one."""
         return False
@@ -120,6 +127,11 @@ class StrokeTask(Task):
     def exact_by_default(self) -> bool:
         """Yes: swing or stroke and time ratio are met."""
         return True
+
+    @property
+    def usual_margin(self) -> float:
+        """None for a slide: it is tan²(mu / 2), so that near the greatest time ratios there is hardly any."""
+        return USUAL_MARGIN if self.stroke is None else 0.0
 
     def sized(self, reference: float) -> Self:
         """The same with another length that counts as the size where the scale is free."""
@@ -139,24 +151,54 @@ class StrokeTask(Task):
         >>> StrokeTask(stroke=100.0).impossible("four-bar")
         'stroke.stroke is of a slide; a four-bar has a swing, stroke.swing_deg'
         """
-        if mechanism == "inverted-slider-crank":
-            return (
-                f"mechanism {mechanism} is not for strokes, since its time ratio follows from its swing: "
-                "(180 + swing_deg) / (180 - swing_deg); it must be four-bar or slider-crank"
-            )
-        if mechanism == "slider-crank":
-            if self.stroke is None:
-                return "stroke.swing_deg is of a rocker; a slider-crank has a slide, stroke.stroke"
-            most, whose = MOST_SLIDE_RATIO, "a slider-crank"
-        elif self.swing is None:
-            return f"stroke.stroke is of a slide; a {mechanism} has a swing, stroke.swing_deg"
-        else:
-            # Beyond, limit positions on one assembly need a driver that does not turn fully.
-            most = (3 * np.pi + self.swing) / (np.pi - self.swing)
-            whose = f"a crank-rocker that swings by {np.degrees(self.swing):.6g} deg"
-        if self.time_ratio < most:
-            return ""
-        return f"stroke.time_ratio is {self.time_ratio:.6g}; it must be less than {most:.6g} for {whose}"
+        return _IMPOSSIBLE[mechanism](self)
+
+
+def _for_rocker(task: StrokeTask) -> str:
+    if task.swing is None:
+        return _no_slide(FOUR_BAR)
+    # Beyond, limit positions on one assembly need a driver that does not turn fully.
+    most = (3 * np.pi + task.swing) / (np.pi - task.swing)
+    return _too_slow(task, most, f"a crank-rocker that swings by {np.degrees(task.swing):.6g} deg")
+
+
+def _for_slide(task: StrokeTask) -> str:
+    if task.stroke is None:
+        return "stroke.swing_deg is of a rocker; a slider-crank has a slide, stroke.stroke"
+    return _too_slow(task, MOST_SLIDE_RATIO, "a slider-crank, whose crank would not turn fully")
+
+
+def _for_block(task: StrokeTask) -> str:
+    if task.swing is None:
+        return _no_slide(INVERTED)
+    # In both limit positions the crank stands square to the rod.
+    ratio = (np.pi + task.swing) / (np.pi - task.swing)
+    if abs(task.time_ratio - ratio) <= _SAME_RATIO * ratio:
+        return ""
+    swing = f"swings by {np.degrees(task.swing):.6g} deg"
+    return (
+        f"stroke.time_ratio is {task.time_ratio:.6g}; it must be {ratio:.8g} for an {INVERTED} that {swing}, "
+        "(180 + swing) / (180 - swing)"
+    )
+
+
+def _no_slide(mechanism: str) -> str:
+    article = "an" if mechanism[0] in "aeiou" else "a"
+    return f"stroke.stroke is of a slide; {article} {mechanism} has a swing, stroke.swing_deg"
+
+
+def _too_slow(task: StrokeTask, most: float, whose: str) -> str:
+    if task.time_ratio < most:
+        return ""
+    return f"stroke.time_ratio is {task.time_ratio:.6g}; it must be less than {most:.6g} for {whose}"
+
+
+# Why a kind of linkage cannot do a stroke, or nothing where it may.
+_IMPOSSIBLE: Mapping[str, Callable[[StrokeTask], str]] = {
+    FOUR_BAR: _for_rocker,
+    SLIDER_CRANK: _for_slide,
+    INVERTED: _for_block,
+}
 
 
 def _one_of_the_two(swing: float | None, stroke: float | None) -> None:

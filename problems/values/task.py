@@ -13,6 +13,7 @@ from grashof.problems.values.extent import span
 from grashof.problems.values.read_only import ReadOnly
 
 _SAME = 1e-12  # sizes, rad
+USUAL_MARGIN = 1e-3  # of full rotation
 
 
 class Task(ReadOnly, ABC):
@@ -128,6 +129,16 @@ class Task(ReadOnly, ABC):
     def only_points(self) -> bool:
         """Whether every target is a position alone."""
         return bool((self.has_position & ~self.has_angle).all())
+
+    @property
+    def usual_margin(self) -> float:
+        """Of full rotation, where requirements do not state one."""
+        return USUAL_MARGIN
+
+    @property
+    def limits_size(self) -> bool:
+        """Whether nobody builds linkages many times its size; functions have none to compare with."""
+        return not self.has_output.any()
 
     @property
     def returns(self) -> bool:

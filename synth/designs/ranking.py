@@ -32,9 +32,8 @@ WORSE_ERROR, WORSE_OBJECTIVE = 1.02, 0.01
 
 def impractical(problem: Problem, verdict: Verdict) -> bool:
     """Whether nobody would build it: far too large, a driver that hardly turns, or a dead position met."""
-    sized = not problem.task.has_output.any()  # functions have no size that lengths could be compared with
     return bool(
-        (sized and verdict.size > MOST_SIZE * problem.task.size)
+        (problem.task.limits_size and verdict.size > MOST_SIZE * problem.task.size)
         or np.ptp(verdict.theta2) < LEAST_TURN
         or verdict.transmission_min_task < LEAST_TRANSMISSION
     )

@@ -5,10 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.problems import Problem, StrokeTask
+from grashof.problems.values.mechanisms import FOUR_BAR, SLIDER_CRANK
 from grashof.synth.theory.limit_positions import best_transmission
 
 GOOD = float(np.radians(40))  # transmission angle that textbooks ask for (Norton, sec. 3.3)
-_HALVINGS = 8
+LITTLE = float(np.radians(1))  # of which tenths of a degree say nothing
+_HALVINGS = 12
+# Linkages and what they do, by the kind; others transmit well.
+_WORDS = {FOUR_BAR: ("crank-rockers", "swing"), SLIDER_CRANK: ("slider-cranks", "stroke")}
 
 
 def advice(problem: Problem) -> str:
@@ -24,17 +28,20 @@ def advice(problem: Problem) -> str:
     crank-rockers with this swing and time ratio transmit at 31.8 deg at best, less than the usual 40 deg; \
 time ratios up to 1.30 allow 40 deg, and a six-bar may do it as asked
     """
-    task = problem.task
-    if not isinstance(task, StrokeTask) or (best := best_transmission(task.swing, task.time_ratio)) >= GOOD:
+    task, words = problem.task, _WORDS.get(problem.mechanism[0])
+    if not isinstance(task, StrokeTask) or words is None:
         return ""
-    kinds, what = ("slider-cranks", "stroke") if task.swing is None else ("crank-rockers", "swing")
+    if (best := best_transmission(task.swing, task.time_ratio)) >= GOOD:
+        return ""
+    kinds, what = words
     usual = f"{np.degrees(GOOD):.0f} deg"
     ratio = _ratio_that_allows(task)
     smaller = (
         f"time ratios up to {ratio:.2f} allow {usual}" if ratio > 1 else f"{usual} takes a smaller {what}"
     )
+    angle = f"{np.degrees(best):.{1 if best > LITTLE else 4}f}"
     return (
-        f"{kinds} with this {what} and time ratio transmit at {np.degrees(best):.1f} deg at best, less than "
+        f"{kinds} with this {what} and time ratio transmit at {angle} deg at best, less than "
         f"the usual {usual}; {smaller}, and a six-bar may do it as asked"
     )
 

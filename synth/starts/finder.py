@@ -17,12 +17,10 @@ from grashof.synth.starts.function_search import FunctionPairs
 from grashof.synth.starts.least_squares import LeastSquares
 from grashof.synth.starts.limit_positions import LimitPositions
 from grashof.synth.starts.precision_points import EightPoints, NinePoints, PrecisionPoints
-from grashof.synth.starts.slide_limits import SlideLimits
 
 # The first that suits a problem is taken.
 KINDS = (
     LimitPositions,
-    SlideLimits,
     Parallelograms,
     FewPoses,
     ManyPoses,

@@ -1,7 +1,4 @@
-"""Limit positions: all linkages with them in closed form, the best first, then a choice of the others.
-
-Crank-rockers with a swing and a time ratio here; slider-cranks with a stroke: `slide_limits`.
-"""
+"""Swing or stroke, and time ratio: linkages in closed form, the best first, then a choice of the others."""
 
 from __future__ import annotations
 
@@ -12,24 +9,19 @@ from typing import ClassVar, TypeAlias
 
 import numpy as np
 
-from grashof.problems import Box, FourBar, Requirements, Rotatability, StrokeTask
+from grashof.problems import Box, Requirements, StrokeTask
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.synth.programme.kind import Lengths
+from grashof.problems.values.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Configurations, Screened, judge, violations_apart
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.programme.whole_screening import fully_screened
-from grashof.synth.starts.member_choice import apart, diagonals, unbeaten
-from grashof.synth.starts.placing import Ground, scales
-from grashof.synth.theory.closure import coupler_of
-from grashof.synth.theory.limit_positions import (
-    Family,
-    Members,
-    best_of,
-    families_of,
-    highest,
-    stretches,
-)
+from grashof.synth.starts.member_choice import apart, unbeaten
+from grashof.synth.starts.rocker_places import RockerPlaces
+from grashof.synth.starts.shaper_places import ShaperPlaces
+from grashof.synth.starts.slide_places import SlidePlaces
+from grashof.synth.starts.stroke_places import Places
+from grashof.synth.theory.limit_positions import Family, Members, best_of, highest, stretches
 
 _SPARE = 1.3  # times as many as are enough: the judge may find some alike
 _SAMPLES = 400  # members of a stretch that are looked at
@@ -38,14 +30,15 @@ _ROUNDS = 6  # of members put anywhere, where more than lengths and pivots decid
 _DRAWS = 4000  # of them in each round
 _MANY = 20  # members to choose the closest from, where the families do not tell
 _MISSING = 4  # of these are kept though they miss something, to tell what it is
-# Fields that the families themselves keep.
-_KEPT = (
-    "transmission_min_deg", "link_length", "r1", "r2", "r3", "r4", "link_ratio_max", "o2", "o4",
-    "ground_angle_deg", "theta2_start_deg", "driver_sense", "output_swing_deg", "time_ratio", "coupler_arms",
-)  # fmt: skip
+# By the kind of linkage.
+_PLACES: Mapping[str, type[Places]] = {
+    FOUR_BAR: RockerPlaces,
+    SLIDER_CRANK: SlidePlaces,
+    INVERTED: ShaperPlaces,
+}
 
-# O2, O4 (n,) as `Configurations` have them, and A, B and theta2 in the limit positions (n, 2), in the frame.
-Places: TypeAlias = tuple[ComplexArray, ComplexArray, ComplexArray, ComplexArray, FloatArray]
+# O2, O4 (n,), and A, B and theta2 in the limit positions (n, 2), in the frame.
+_Places: TypeAlias = tuple[ComplexArray, ComplexArray, ComplexArray, ComplexArray, FloatArray]
 
 # Families, whether mirrored, and where their members keep limits.
 _Stretches: TypeAlias = list[tuple[Family, bool, list[tuple[float, float]]]]
@@ -53,23 +46,29 @@ _Stretches: TypeAlias = list[tuple[Family, bool, list[tuple[float, float]]]]
 
 @dataclass(frozen=True)
 class LimitPositions:
-    """All crank-rockers with a swing and a time ratio: nothing is left to solve."""
+    """All linkages with a swing, or a stroke, and a time ratio: nothing is left to solve."""
 
     scaled: ScaledProblem
 
-    beginning: ClassVar[str] = "computing crank-rockers by their limit positions"
     freedom: ClassVar[bool] = False
     cognates: ClassVar[bool] = False
     patience: ClassVar[float] = np.inf
     exhausted: ClassVar[str] = "no others are worth listing"
 
-    mechanism: ClassVar[str] = FourBar.MECHANISM
-    kept: ClassVar[tuple[str, ...]] = _KEPT  # limits that the families themselves keep
+    @staticmethod
+    def suits(scaled: ScaledProblem) -> bool:
+        """Swing and time ratio are asked for."""
+        return isinstance(scaled.problem.task, StrokeTask)
 
-    @classmethod
-    def suits(cls, scaled: ScaledProblem) -> bool:
-        """Limit positions are asked for, of this kind of linkage."""
-        return isinstance(scaled.problem.task, StrokeTask) and scaled.kind.mechanism == cls.mechanism
+    @property
+    def beginning(self) -> str:
+        """Whose limit positions are looked at."""
+        return f"computing {self.places.what} by their limit positions"
+
+    @cached_property
+    def places(self) -> Places:
+        """What differs between kinds of linkage."""
+        return _PLACES[self.scaled.kind.mechanism](self.task, self.wanted)
 
     @property
     def rounds_a_pass(self) -> int:
@@ -99,25 +98,13 @@ class LimitPositions:
     @property
     def elsewhere(self) -> bool:
         """Whether anything is asked besides lengths, pivots and transmission: more places are tried then."""
-        beyond = set(self.wanted.limited) - set(self.kept)
+        beyond = set(self.wanted.limited) - self.places.kept
         return bool(beyond or self.scaled.constraints or self.wanted.keep_out)
 
     @cached_property
     def kinds(self) -> list[tuple[Family, bool]]:
-        """The families, as they are, and mirrored where that differs."""
-        families = families_of(self.task.swing, self.task.time_ratio)
-        either = (False, True) if self.handed else (False,)
-        return [(family, mirrored) for family in families for mirrored in either]
-
-    @property
-    def handed(self) -> bool:
-        """Whether a mirror image is another linkage to the limits: where the start angle is given."""
-        return self.wanted.theta2_start_deg is not None
-
-    @property
-    def fixed_angle(self) -> float | None:
-        """Direction of the ground line that is asked for, deg."""
-        return self.wanted.ground_angle_deg
+        """The families, as they are, and mirrored where that differs: where the start angle is given."""
+        return self.places.families(elsewhere=self.elsewhere)
 
     def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
         """First the best members and a choice of the others; then, where places decide, members anywhere."""
@@ -176,61 +163,8 @@ class LimitPositions:
         return Round(starts, {"feasible finds": len(starts)})
 
     def _inside(self, members: Members, mirrored: bool) -> FloatArray:
-        """How far members are inside the limits of lengths, pivots and transmission, (n,)."""
-        members, wanted = self._taken(members, mirrored), self.wanted
-        lengths = self._links(members).T
-        most = min(max(wanted.link_ratio_max, 1.0), 1e9)
-        inside = [
-            members.transmission - np.radians(wanted.transmission_min_deg),
-            np.log(most) - np.log(lengths.max(axis=0) / lengths.min(axis=0)),
-            self._turns(members)
-            - (0.0 if wanted.rotatability is Rotatability.ANY else wanted.rotatability_margin),
-            self._fit(members),
-        ]
-        if self.fixed_angle is not None and wanted.theta2_start_deg is not None:
-            apart = np.exp(1j * (self._ground_angle(members) - np.radians(self.fixed_angle)))
-            inside.append(-np.abs(np.angle(apart)))
-        margin: FloatArray = np.min(inside, axis=0)
-        return margin
-
-    def _taken(self, members: Members, mirrored: bool) -> Members:
-        """Members, or their mirror images."""
-        return members.mirrored if mirrored else members
-
-    def _links(self, members: Members) -> FloatArray:
-        """Lengths of the links, (n, k)."""
-        return members.lengths
-
-    def _turns(self, members: Members) -> FloatArray:
-        """By how much the driver turns fully, as a share of all lengths, (n,)."""
-        r1, r2, r3, r4 = members.lengths.T
-        room = np.minimum(r3 + r4 - r1 - r2, r1 - r2 - np.abs(r3 - r4))
-        share: FloatArray = room / members.lengths.T.sum(axis=0)
-        return share
-
-    def _fit(self, members: Members) -> FloatArray:
-        """How far members are inside the limits of lengths and pivots, in logarithms, (n,)."""
-        low, high = self._scales(members)
-        fit: FloatArray = np.log(high / low)
-        return fit
-
-    def _scales(self, members: Members) -> FloatArray:
-        """Least and greatest factor of members, (2, n)."""
-        ground = Ground.of(self.wanted).lengths(self._ground_angle(members))
-        return scales(members.lengths, self.wanted.link_lengths, ground)
-
-    def _ground_angle(self, members: Members) -> FloatArray:
-        """Direction of the ground line that the limits fix, rad; NaN where they do not; shape (n,)."""
-        start, fixed = self.wanted.theta2_start_deg, self.fixed_angle
-        if start is not None:
-            turned: FloatArray = np.radians(start) - (members.last if self._clockwise else members.first)
-            return turned
-        angle = np.nan if fixed is None else float(np.radians(fixed))
-        return np.full(len(members.share), angle)
-
-    @property
-    def _clockwise(self) -> bool:
-        return self.wanted.driver_sense == "cw"
+        """How far members are inside the limits of lengths, places and transmission, (n,)."""
+        return self.places.inside(members.mirrored if mirrored else members)
 
     @cached_property
     def _stretches(self) -> _Stretches:
@@ -253,7 +187,7 @@ class LimitPositions:
                 starts += self._starts(members, mirrored)
                 shares = np.concatenate([np.linspace(low, high, _SAMPLES) for low, high in within])
                 groups.append((family(shares), mirrored))
-        best = sorted(starts, key=lambda start: -_worst(start))
+        best = sorted(starts, key=lambda start: -self.places.worst(start))
         if self.elsewhere:  # rounds of members anywhere follow
             return [one for one in best + self._spread(groups, _FIRST) if self._in_boxes(one)]
         return best + self._spread(groups, round(_SPARE * enough))
@@ -263,9 +197,8 @@ class LimitPositions:
         if not groups or not most:
             return []
         factor = [self._factor(*group) for group in groups]
-        size = np.concatenate(
-            [f * self._diagonals(found) for f, (found, _) in zip(factor, groups, strict=True)]
-        )
+        whole = self.places.diagonals
+        size = np.concatenate([f * whole(found) for f, (found, _) in zip(factor, groups, strict=True)])
         angle = np.concatenate([found.transmission for found, _ in groups])
         lengths = [f[:, None] * found.lengths for f, (found, _) in zip(factor, groups, strict=True)]
         front = unbeaten(angle, size)
@@ -280,23 +213,15 @@ class LimitPositions:
             starts += self._starts(found[at : at + 1], mirrored)
         return starts
 
-    def _factor(self, members: Members, mirrored: bool, wish: float | FloatArray = 1.0) -> FloatArray:
-        """By which members are scaled: as wished where that is allowed, or else what is nearest to it."""
-        low, high = self._scales(self._taken(members, mirrored))
-        factor: FloatArray = np.minimum(np.maximum(wish, low), high)
-        return factor
+    def _factor(self, members: Members, mirrored: bool) -> FloatArray:
+        """By which members are scaled, (n,)."""
+        return self.places.factor(members.mirrored if mirrored else members)
 
     def _starts(self, members: Members, mirrored: bool, wish: float | FloatArray = 1.0) -> list[Start]:
-        """Members as the limits of lengths and pivots put them into the plane."""
-        factor = self._factor(members, mirrored, wish)
-        members = self._taken(members, mirrored)
-        ground = Ground.of(self.wanted)
-        starts = []
-        for k, angle in enumerate(self._ground_angle(members).tolist()):
-            size = float(factor[k])
-            towards = ground.direction(size, 0.0) if np.isnan(angle) else angle
-            starts.append(self._start(members[k], *ground.pivots(size, towards)))
-        return starts
+        """Members as the limits of lengths and places put them into the plane."""
+        members = members.mirrored if mirrored else members
+        points = self._inward(self.places.put(members, self.places.factor(members, wish)))
+        return [self._start(members[k : k + 1], points[k : k + 1]) for k in range(len(members))]
 
     def _anywhere(self, count: int, rng: np.random.Generator) -> list[Start]:
         """Members of random scale, place and handedness: those that keep all limits, then some others."""
@@ -313,46 +238,20 @@ class LimitPositions:
         starts = [Start.of_screened(screened, int(k), self.scaled.objective) for k in chosen]
         return [replace(start, settled=True) for start in starts]
 
-    def _diagonals(self, members: Members) -> FloatArray:
-        """Of a box around each, (n,)."""
-        return diagonals(members)
+    def _placed(self, members: Members, rng: np.random.Generator) -> _Places:
+        """O2, O4, A and B in the limit positions (n, 2) and theta2 there, anywhere, in the frame."""
+        points = self._inward(self.places.put_anywhere(members, self._room, rng))
+        o4, a, b, theta2 = self.places.moving(members, points)
+        return points[:, 0], o4, a, b, theta2
 
-    def _placed(self, members: Members, rng: np.random.Generator) -> Places:
-        """O2, the other end of what scales them, A, B (n, 2) and theta2 there, anywhere, in the frame."""
-        ground, size, room = Ground.of(self.wanted), self.task.size, self._room
-        low, high = self._scales(members)
-        low, high = np.maximum(low, np.minimum(size / 30, high)), np.minimum(high, np.maximum(30 * size, low))
-        sizes = np.exp(rng.uniform(np.log(low), np.log(np.maximum(high, low))))
-        wish, fixed = rng.uniform(-np.pi, np.pi, len(sizes)), self._ground_angle(members)
-        share = rng.uniform(0, 1, (len(sizes), 2))
-        pivots = []
-        for k, angle in enumerate(fixed.tolist()):
-            towards = ground.direction(float(sizes[k]), float(wish[k])) if np.isnan(angle) else angle
-            pivots.append(ground.pivots(float(sizes[k]), towards, share[k], room))
-        at = (
-            np.array(pivots, dtype=np.complex128).reshape(-1, 2) - self.scaled.frame.origin
-        ) / self.scaled.frame.scale
-        return self._moving(members, at)
-
-    def _moving(self, members: Members, at: ComplexArray) -> Places:
-        """Members in the limit positions, from O2 and the other end of what scales them, (n, 2): O4."""
-        o2, o4 = at.T[..., None]
-        _, r2, r3, r4 = members.lengths.T[..., None] * np.abs(o4 - o2)
-        theta2 = self._ends(members) + np.angle(o4 - o2)
-        a = o2 + r2 * np.exp(1j * theta2)
-        b = a + coupler_of(o4 - a, r3, r4, members.assembly[:, None])
-        return o2[:, 0], o4[:, 0], a, b, theta2
-
-    def _ends(self, members: Members) -> FloatArray:
-        """Driver angles of the slow stroke from the ground line, (n, 2), rad."""
-        ends = (members.last, members.first) if self._clockwise else (members.first, members.last)
-        return np.stack(ends, axis=-1)
+    def _inward(self, points: ComplexArray) -> ComplexArray:
+        return (points - self.scaled.frame.origin) / self.scaled.frame.scale
 
     def _screened(
         self, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray, theta2: FloatArray
     ) -> Screened:
         """Linkages in the frame screened under all requirements, from the slow stroke alone; P is A."""
-        count, sense = len(o2), -1.0 if self._clockwise else 1.0
+        count, sense = len(o2), -1.0 if self.places.clockwise else 1.0
         visit = np.tile(np.arange(2), (count, 1))
         found = Configurations(o2, o4, a, b, visit, theta2, np.full(count, sense), self.scaled.kind)
         wanted = self.scaled.wanted
@@ -375,29 +274,23 @@ class LimitPositions:
     def _drawn(self, rng: np.random.Generator) -> Iterator[Members]:
         """Random members, half of them mirrored."""
         ranges = [(family, within) for family, mirrored, within in self._stretches if within and not mirrored]
+        either = self.places.mirrored
         for family, within in ranges:
             low, high = within[int(rng.integers(len(within)))]
-            for mirrored in (False, True):
-                members = family(rng.uniform(low, high, _DRAWS // (2 * len(ranges))))
+            for mirrored in either:
+                members = family(rng.uniform(low, high, _DRAWS // (len(either) * len(ranges))))
                 inside = self._inside(members, mirrored) >= 0
-                yield self._taken(members, mirrored)[inside]
+                yield (members.mirrored if mirrored else members)[inside]
 
     def _in_boxes(self, start: Start) -> bool:
         """Whether A and B are where they may be in both limit positions."""
-        frame = self.scaled.frame
-        for box, track in zip((self.wanted.a, self.wanted.b), start.track[:2], strict=True):
-            if box is not None:
-                x, y = frame.outward(track).T
-                if x.min() < box.x[0] or x.max() > box.x[1] or y.min() < box.y[0] or y.max() > box.y[1]:
-                    return False
-        return True
+        return self.places.in_boxes(*map(self.scaled.frame.outward, start.track[:2]))
 
-    def _start(self, member: Members, *ends: complex) -> Start:
-        """One member, or its mirror image, at given places; P is A, as nothing is asked of it."""
-        at = (np.array([ends]) - self.scaled.frame.origin) / self.scaled.frame.scale
-        o2, o4, a, b, theta2 = (each[0] for each in self._moving(member[None], at))
+    def _start(self, member: Members, points: ComplexArray) -> Start:
+        """One member, (1,), where two points of the frame, (1, 2), put it; P is A, as it may be anything."""
+        o4, a, b, theta2 = (each[0] for each in self.places.moving(member, points))
         return Start(
-            o2=complex(o2),
+            o2=complex(points[0, 0]),
             o4=complex(o4),
             a=complex(a[0]),
             b=complex(b[0]),
@@ -405,16 +298,9 @@ class LimitPositions:
             visit=(0, 1),
             theta2=(float(theta2[0]), float(theta2[1])),
             theta3=tuple(np.unwrap(np.angle(b - a)).tolist()),
-            direction=-1 if self._clockwise else 1,
-            assembly=int(member.assembly),
+            direction=-1 if self.places.clockwise else 1,
+            assembly=int(member.assembly[0]),
             objective=self.scaled.objective,
             settled=True,
             kind=self.scaled.kind,
         )
-
-
-def _worst(start: Start) -> float:
-    """Of the transmission angle over the turn, by the sizes of a start."""
-    kind, lengths = start.kind, Lengths(*start.lengths)
-    cosines = [kind.cos_mu(lengths, reach(lengths)) for reach in (kind.folded, kind.stretched)]
-    return float(np.arccos(min(max(map(abs, cosines)), 1.0)))

@@ -1,10 +1,10 @@
-"""A choice of many linkages by limit positions: how large, which no other one beats, which are well apart."""
+"""A choice of many crank-rockers: how large they are, which no other beats, which are well apart."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 from grashof.synth.theory.closure import coupler_of
 from grashof.synth.theory.distinct import DISTINCT, pick_apart
 from grashof.synth.theory.limit_positions import Members
@@ -17,23 +17,10 @@ def diagonals(members: Members) -> FloatArray:
     _, r2, r3, r4 = members.lengths.T[..., None]
     a = r2 * np.exp(1j * np.linspace(0, 2 * np.pi, _POSITIONS))
     b = a + np.nan_to_num(coupler_of(1 - a, r3, r4, members.assembly[:, None]))
-    return _across(np.concatenate([a, b, np.ones_like(a[:, :1])], axis=1))
-
-
-def _across(places: ComplexArray) -> FloatArray:
-    """Diagonals of boxes around places (n, k), shape (n,)."""
+    places = np.concatenate([a, b, np.ones_like(a[:, :1])], axis=1)
     sides = [np.ptp(part, axis=1) for part in (places.real, places.imag)]
     across: FloatArray = np.hypot(sides[0], sides[1])
     return across
-
-
-def slide_diagonals(members: Members) -> FloatArray:
-    """The same of slider-cranks, with the slide along x, stroke 1; shape (n,)."""
-    r2, r3, offset = members.lengths.T[..., None]
-    a = r2 * np.exp(1j * np.linspace(0, 2 * np.pi, _POSITIONS))
-    apart = offset - a.imag
-    b = a + np.sqrt(np.maximum(r3**2 - apart**2, 0.0)) + 1j * apart
-    return _across(np.concatenate([a, b], axis=1))
 
 
 def unbeaten(angle: FloatArray, size: FloatArray) -> BoolArray:

@@ -59,6 +59,9 @@ class Members:
     def __getitem__(self, index: Any) -> Members:
         return Members(*(getattr(self, name)[index] for name in self.__slots__))
 
+    def __len__(self) -> int:
+        return len(self.share)
+
     @property
     def mirrored(self) -> Members:
         """Their mirror images, in which the driver turns the other way."""
@@ -70,6 +73,7 @@ class Members:
         return self.margin > 0
 
 
+_LEAST_SHARE = float(_GRID[0])
 Family: TypeAlias = Callable[[FloatArray], Members]
 # How far members are inside limits, (n,): negative outside.
 Allowed: TypeAlias = Callable[[Members], FloatArray]
@@ -150,7 +154,7 @@ def slider_cranks(lag: float, share: FloatArray) -> Members:
     Parameters
     ----------
     lag : float, rad
-        See `lag_of`.
+        See `lag_of`; negative where the slide lies to the right of O2.
     share : ndarray, shape (n,)
         r2 / r3, between 0 and 1.
 
@@ -161,7 +165,7 @@ def slider_cranks(lag: float, share: FloatArray) -> Members:
         S² = (r3 + r2)² + (r3 − r2)² − 2 (r3² − r2²) cos lag        offset = (r3² − r2²) sin(lag) / S
 
     Both are on one assembly where B1 and B2 lie on one side of the foot of O2 on the slide, that is where the
-    angle at B2 is obtuse. The worst transmission angle has cos mu = (r2 + offset) / r3.
+    angle at B2 is obtuse. The worst transmission angle has cos mu = (r2 + |offset|) / r3.
 
     Examples
     --------
@@ -172,14 +176,58 @@ def slider_cranks(lag: float, share: FloatArray) -> Members:
     r3 = 0.5 / np.hypot(np.sin(lag / 2), share * np.cos(lag / 2))
     r2 = share * r3
     offset = (r3**2 - r2**2) * np.sin(lag)
-    turns = (r3 - r2 - offset) / (r3 + r2 + offset)
+    beside = np.abs(offset)
+    stretched = np.arcsin(np.clip(offset / (r3 + r2), -1.0, 1.0))
+    turns = (r3 - r2 - beside) / (r3 + r2 + beside)
     return Members(
         share=share,
         lengths=np.stack([r2, r3, offset], axis=-1),
-        transmission=np.arccos(np.clip((r2 + offset) / r3, 0.0, 1.0)),
+        transmission=np.arccos(np.clip((r2 + beside) / r3, 0.0, 1.0)),
         margin=np.minimum(4 * r2 * r3 - 1, turns),
-        first=(first := np.arcsin(np.clip(offset / (r3 + r2), 0.0, 1.0))),
-        last=first + lag + np.pi,
+        first=stretched if lag >= 0 else stretched + lag + np.pi,
+        last=stretched + lag + np.pi if lag >= 0 else stretched + 2 * np.pi,
+        assembly=np.ones_like(share),
+    )
+
+
+def crank_shapers(swing: float, side: float, share: FloatArray) -> Members:
+    """The inverted slider-cranks whose block swings by so much, O2O4 = 1; their time ratio follows from it.
+
+    Parameters
+    ----------
+    swing : float, rad
+        Of the block, below pi.
+    side : float
+        Sign of the offset.
+    share : ndarray, shape (n,)
+        Between 0 and 1, what the offset has of the most that a full turn allows; the least of the grid counts
+        as none. The lengths are r1 (1), r2 and the offset.
+
+    Notes
+    -----
+    The crank stands square to the rod in both limit positions, in which the rod has the directions
+    -asin(r2 − offset) and asin(r2 + offset) from the ground line. With p between 0 and 90° − swing/2
+
+        r2 = sin(swing/2) cos p        offset = cos(swing/2) sin p
+
+    The slow stroke turns the crank by 180° + swing; at worst cos mu = |offset| / (1 − r2).
+
+    Examples
+    --------
+    >>> found = crank_shapers(np.radians(60), 1, np.array([0.0, 0.5]))
+    >>> found.lengths.round(4).tolist(), np.degrees(found.transmission).round(3).tolist()
+    ([[1.0, 0.5, 0.0], [1.0, 0.433, 0.433]], [90.0, 40.208])
+    """
+    p = (np.pi - swing) / 2 * np.maximum(share - _LEAST_SHARE, 0.0)
+    r2, offset = np.sin(swing / 2) * np.cos(p), side * np.cos(swing / 2) * np.sin(p)
+    room = 1 - np.sin(swing / 2 + p)  # 1 - r2 - |offset|
+    return Members(
+        share=share,
+        lengths=np.stack([np.ones_like(r2), r2, offset], axis=-1),
+        transmission=np.arccos(np.clip(np.abs(offset) / (1 - r2), 0.0, 1.0)),
+        margin=room / (1 + r2 + np.abs(offset)),
+        first=np.pi / 2 - np.arcsin(r2 - offset),
+        last=3 * np.pi / 2 + np.arcsin(r2 + offset),
         assembly=np.ones_like(share),
     )
 

@@ -194,8 +194,10 @@ def _motor(spec: DynamicsSpec) -> str:
 
 def _task(task: Task, unit: str) -> str:
     if isinstance(task, StrokeTask):
-        way = f"stroke {task.stroke}{unit}" if task.swing is None else f"swing {np.degrees(task.swing):g} deg"
-        free = "place" if task.swing is None else "place and scale"
+        if task.swing is None:
+            way, free = f"stroke {task.stroke:g}{unit}", "place"
+        else:
+            way, free = f"swing {np.degrees(task.swing):g} deg", "place and scale"
         return f"{way}, time ratio {task.time_ratio:g}, {free} free"
     if isinstance(task, FunctionTask):
         return _function(task, unit)

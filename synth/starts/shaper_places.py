@@ -1,0 +1,100 @@
+"""Crank-shapers, inverted slider-cranks whose block swings, by their limit positions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar
+
+import numpy as np
+
+from grashof.problems import Rotatability
+from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
+from grashof.synth.programme.start import Start
+from grashof.synth.starts.placing import Ground, scales
+from grashof.synth.starts.rocker_places import RockerPlaces
+from grashof.synth.starts.stroke_places import KEPT
+from grashof.synth.theory.limit_positions import Family, Members, crank_shapers
+
+_POSITIONS = 73  # of a turn, for the size
+_LEAST = 1e-30  # scale
+
+
+@dataclass(frozen=True, slots=True)
+class ShaperPlaces(RockerPlaces):
+    """Of any scale, as crank-rockers; their time ratio follows from the swing."""
+
+    what: ClassVar[str] = "crank-shapers"
+    kept: ClassVar[frozenset[str]] = KEPT | {"r1", "o4", "offset", "ground_angle_deg", "output_swing_deg"}
+    mirrored: ClassVar[tuple[bool, ...]] = (False,)  # that is a family of its own
+
+    def families(self, *, elsewhere: bool) -> list[tuple[Family, bool]]:
+        wanted, swing = self.wanted, self.task.swing
+        if swing is None:
+            raise TypeError("only a swing has crank-shapers")
+        least, most = wanted.offset or (-1.0, 1.0)
+        sided = wanted.offset is not None or wanted.theta2_start_deg is not None or elsewhere
+        sides = [1.0] * (most >= 0) + [-1.0] * (least < 0 and (sided or most < 0))
+        return [(partial(crank_shapers, swing, side), False) for side in sides]
+
+    def inside(self, members: Members) -> FloatArray:
+        wanted = self.wanted
+        r1, r2, offset = members.lengths.T
+        most = min(max(wanted.link_ratio_max, 1.0), 1e9)
+        turns = (r1 - r2 - np.abs(offset)) / (r1 + r2 + np.abs(offset))
+        low, high = self._scales(members)
+        inside = [
+            members.transmission - np.radians(wanted.transmission_min_deg),
+            np.log(most) - np.log(r1 / r2),
+            turns - (0.0 if wanted.rotatability is Rotatability.ANY else wanted.rotatability_margin),
+            np.log(high / low),
+        ]
+        if wanted.ground_angle_deg is not None and wanted.theta2_start_deg is not None:
+            apart = np.exp(1j * (self._angle(members) - np.radians(wanted.ground_angle_deg)))
+            inside.append(-np.abs(np.angle(apart)))
+        margin: FloatArray = np.min(inside, axis=0)
+        return margin
+
+    def diagonals(self, members: Members) -> FloatArray:
+        _, r2, offset = members.lengths.T[..., None]
+        a = r2 * np.exp(1j * np.linspace(0, TURN, _POSITIONS))
+        places = np.concatenate(
+            [a, a + _along_rod(1 - a, offset), np.tile([0, 1], (len(members), 1))], axis=1
+        )
+        across: FloatArray = np.hypot(np.ptp(places.real, axis=1), np.ptp(places.imag, axis=1))
+        return across
+
+    def moving(
+        self, members: Members, points: ComplexArray
+    ) -> tuple[ComplexArray, ComplexArray, ComplexArray, FloatArray]:
+        o2, o4 = points.T[..., None]
+        _, r2, offset = members.lengths.T[..., None] * np.abs(o4 - o2)
+        theta2 = np.stack(self.ends(members), axis=-1) + np.angle(o4 - o2)
+        a = o2 + r2 * np.exp(1j * theta2)
+        return points[:, 1], a, a + _along_rod(o4 - a, offset), theta2
+
+    def worst(self, start: Start) -> float:
+        r1, r2, _, offset = start.lengths
+        return float(np.arccos(min(abs(offset) / abs(r1 - r2), 1.0)))
+
+    def _scales(self, members: Members) -> FloatArray:
+        r1, r2, *_ = self.wanted.link_lengths
+        ground = Ground.of(self.wanted).lengths(self._angle(members))
+        low, high = scales(members.lengths[:, :2], (r1, r2), ground)
+        if self.wanted.offset is None:
+            return np.stack([low, high])
+        offset, (least, most) = members.lengths[:, 2], self.wanted.offset
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ends = np.sort(np.stack([least / offset, most / offset]), axis=0)
+        ends = np.maximum(ends, [[_LEAST], [_LEAST**2]])  # the greatest below the least: at no scale
+        still, anyhow = offset == 0, least <= 0 <= most
+        low = np.maximum(low, np.where(still, _LEAST, ends[0]))
+        high = np.minimum(high, np.where(still, np.inf if anyhow else _LEAST**2, ends[1]))
+        return np.stack([low, high])
+
+
+def _along_rod(diagonal: ComplexArray, offset: FloatArray) -> ComplexArray:
+    """From A to B, the foot of the perpendicular from O4 on the rod; the diagonal is that from A to O4."""
+    rod = np.sqrt(np.maximum(np.abs(diagonal) ** 2 - offset**2, 0.0))
+    coupler: ComplexArray = rod * diagonal / (rod - 1j * offset)
+    return coupler

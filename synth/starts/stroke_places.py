@@ -1,0 +1,103 @@
+"""What a kind of linkage is to the search by limit positions: its families, and where its members lie."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from grashof.problems import Box, Requirements, StrokeTask
+from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.synth.programme.start import Start
+from grashof.synth.theory.limit_positions import Family, Members
+
+# Fields that every kind keeps by itself.
+KEPT = frozenset({
+    "transmission_min_deg", "link_length", "r2", "r3", "link_ratio_max", "o2", "theta2_start_deg",
+    "driver_sense", "time_ratio", "coupler_arms",
+})  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Places(ABC):
+    """Members of the families of a task, inside limits and in the plane.
+
+    A member is put there by two points: O2, and the end of the length that counts as 1 in its family,
+    along the ground line or the slide.
+
+    Parameters
+    ----------
+    task : StrokeTask
+    wanted : Requirements
+        Resolved, in the problem's unit.
+    """
+
+    task: StrokeTask
+    wanted: Requirements
+
+    what: ClassVar[str]  # the linkages, in words
+    kept: ClassVar[frozenset[str]] = KEPT  # fields that families and places keep
+    mirrored: ClassVar[tuple[bool, ...]] = (False, True)  # how members of a family are drawn at random
+
+    @property
+    def clockwise(self) -> bool:
+        """Whether the driver has to turn clockwise."""
+        return self.wanted.driver_sense == "cw"
+
+    @abstractmethod
+    def families(self, *, elsewhere: bool) -> list[tuple[Family, bool]]:
+        """The families, and whether their mirror images are meant; both where limits tell them apart.
+
+        Parameters
+        ----------
+        elsewhere : bool
+            Places decide that the families do not know of.
+        """
+
+    @abstractmethod
+    def inside(self, members: Members) -> FloatArray:
+        """How far members are inside the limits of lengths, places and transmission, (n,)."""
+
+    @abstractmethod
+    def factor(self, members: Members, wish: float | FloatArray = 1.0) -> FloatArray:
+        """By which members are scaled, (n,), length: as wished where it is allowed, or else nearly so."""
+
+    @abstractmethod
+    def diagonals(self, members: Members) -> FloatArray:
+        """Diagonals of the boxes around the pivots and all that A and B reach, unscaled; (n,)."""
+
+    @abstractmethod
+    def put(self, members: Members, factor: FloatArray) -> ComplexArray:
+        """Both points of members as the limits put them into the plane, (n, 2), length."""
+
+    @abstractmethod
+    def put_anywhere(self, members: Members, room: Box, rng: np.random.Generator) -> ComplexArray:
+        """The same at random, of random size where that is free; O2 in a room where it is not bounded."""
+
+    @abstractmethod
+    def moving(
+        self, members: Members, points: ComplexArray
+    ) -> tuple[ComplexArray, ComplexArray, ComplexArray, FloatArray]:
+        """O4 (n,) as `Start` has it, and A, B and theta2 in the limit positions, each (n, 2).
+
+        Parameters
+        ----------
+        members : Members
+        points : ndarray of complex, shape (n, 2)
+            In any unit.
+        """
+
+    @abstractmethod
+    def in_boxes(self, a: FloatArray, b: FloatArray) -> bool:
+        """Whether A and B, (2, 2) in the limit positions, are where they may be."""
+
+    @abstractmethod
+    def worst(self, start: Start) -> float:
+        """Worst transmission angle over the turn, rad, by the sizes of a start."""
+
+    def ends(self, members: Members) -> tuple[FloatArray, FloatArray]:
+        """Driver angles at the beginning and at the end of the slow stroke, each (n,), rad."""
+        first, last = members.first, members.last
+        return (last, first) if self.clockwise else (first, last)
