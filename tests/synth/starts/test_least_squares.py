@@ -36,7 +36,9 @@ def target_of(rotatability: str, over: str, order: bool = True, **wanted: Any) -
     points = np.exp(0.7j * along) * (1 + 0.2 * along) + rng.normal(0, 0.1, (6, 2)) @ np.array([1, 1j])
     limits = {"rotatability": rotatability, "transmission_over": over, "order": order, **wanted}
     free = np.zeros(6)
-    return SearchTargets(points, rng.uniform(0.5, 2, 6), free, free, free, Requirements(**limits))
+    return SearchTargets(
+        points, rng.uniform(0.5, 2, 6), free, free, free, Requirements(rotatability_margin=1e-3, **limits)
+    )
 
 
 def drawn(target: SearchTargets, count: int) -> Batch:

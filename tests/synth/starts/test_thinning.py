@@ -18,7 +18,7 @@ def target_of(count: int, timed: bool = False, **wanted: object) -> SearchTarget
         turns=np.zeros(count),
         turn_weights=np.zeros(count),
         timing=angle if timed else np.zeros(count),
-        wanted=Requirements(**wanted).resolved(1.0),
+        wanted=Requirements(rotatability_margin=1e-3, **wanted).resolved(1.0),
     )
 
 
