@@ -15,8 +15,9 @@ from grashof.problems.values.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
 from grashof.problems.values.task import USUAL_MARGIN, Task
 
 LEAST_SWING = 1e-3  # rad
-# Of an offset slider-crank: its slow stroke takes less than so many times the quick one.
-MOST_SLIDE_RATIO = 3.0
+# Of an offset slider-crank. Up to 3 there are some in theory, whose transmission angle is below
+# a thousandth of a degree: rounding locks them.
+MOST_SLIDE_RATIO = 2.999
 _SAME_RATIO = 1e-6  # share by which a time ratio may differ from that of a swing
 
 

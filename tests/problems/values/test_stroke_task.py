@@ -99,7 +99,7 @@ def test_what_cannot_be_is_refused_in_a_line(stated: dict[str, Any], message: st
         (
             {"stroke": 1, "time_ratio": 3.0},
             "slider-crank",
-            r"stroke.time_ratio is 3; it must be less than 3 for .*",
+            r"stroke.time_ratio is 3; it must be less than 2.999 for .*",
         ),
         ({"stroke": 1, "time_ratio": 2.99}, "slider-crank", ""),
         ({"stroke": 1}, "four-bar", "stroke.stroke is of a slide; .*"),
