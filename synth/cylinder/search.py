@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.cylinder.planes import Driven, Plane, driven
+from grashof.synth.cylinder.polish import Pivots, by_linear, by_quadratic
 from grashof.synth.cylinder.room import Room
 
 _SAMPLES, _PARENTS, _CHILDREN, _ROUNDS = 6000, 48, 24, 24
@@ -18,7 +18,10 @@ _BLOCK = 500
 _BEST, _APART = 2000, 0.12  # parents are so far apart, as a share of the room, and among the best
 _HOPELESS = -0.5  # merit so far below zero is not mended
 _POLISHED, _AGAIN = 8, 3
-_LAST, _BESIDE = 3, 0.01  # rounds of polishing at the end, and how far beside the best: share of the room
+_FINISHED, _TURNS = (
+    2,
+    2,
+)  # cylinders polished to the end, and how often linear programmes follow quadratic ones
 COARSE, FINE = 4, 2  # every so many samples are enough to compare, and to polish
 _SEEDS = 16  # times that each joint is tried
 
@@ -54,45 +57,37 @@ def best_by_search(
     points, bases, merit = _closed_in(coarse, room, points[best], bases[best], merit[best], rng)
     if merit[0] < _HOPELESS:
         return None
-    tried = [(points[k], bases[k]) for k in _distinct(room, points, bases, _POLISHED)]
-    tried += [_polished(coarse, room, *pair) for pair in tried]
+    tried = [(complex(points[k]), complex(bases[k])) for k in _distinct(room, points, bases, _POLISHED)]
+    tried += [by_quadratic(coarse, room, pair) for pair in tried]
     for _ in range(_AGAIN):  # it may go on from where it stopped
-        tried += [_polished(fine, room, *pair) for pair in _best_of(fine, room, tried, 2)]
+        tried += [by_quadratic(fine, room, pair) for pair in _best_of(fine, room, tried, 2)]
+    for first in _best_of(plane, room, tried, _FINISHED):  # between all samples
+        tried += _finished(plane, room, first)
     points, bases, least = _judged(plane, room, tried)
-    if least.max() <= 0:  # what hides between the samples
-        points, bases, least = _judged(plane, room, [_polished(plane, room, *tried[0])])
-    else:  # where limits are narrow, some are a degree better between all samples and a little beside
-        for _ in range(_LAST):
-            tried += [_polished(plane, room, *pair) for pair in _nearby(plane, room, tried, rng)]
-        points, bases, least = _judged(plane, room, tried)
     first = int(least.argmax())
     return None if least[first] <= 0 else (complex(points[first]), complex(bases[first]), float(least[first]))
 
 
-def _judged(
-    plane: Plane, room: Room, tried: list[tuple[complex, complex]]
-) -> tuple[ComplexArray, ComplexArray, FloatArray]:
+def _judged(plane: Plane, room: Room, tried: list[Pivots]) -> tuple[ComplexArray, ComplexArray, FloatArray]:
     """Cylinders put where they may be, and their least levers, negative beyond the limits."""
     points, bases = room.kept(*(np.array(each) for each in zip(*tried, strict=True)))
     found = driven(plane, points, bases)
     return points, bases, np.where(room.beyond(found) <= 0, found.least, -1.0)
 
 
-def _nearby(
-    plane: Plane, room: Room, tried: list[tuple[complex, complex]], rng: np.random.Generator
-) -> list[tuple[complex, complex]]:
-    """The best two cylinders, and two a little beside the best, from where polishing may go further."""
-    best = _best_of(plane, room, tried, 2)
-    u, v, x, y = _BESIDE * rng.standard_normal((4, 2))
-    span = room.high - room.low
-    points = best[0][0] + room.reach * (u + 1j * v)
-    bases = best[0][1] + span[0] * x + 1j * span[1] * y
-    return best + list(zip(*room.kept(points, bases), strict=True))
+def _finished(plane: Plane, room: Room, first: Pivots) -> list[Pivots]:
+    """What linear programmes make of a cylinder, and quadratic ones in turn.
+
+    Linear ones are exact where many limits are active, and quadratic ones go on where few are.
+    """
+    found = [by_linear(plane, room, first)]
+    for _ in range(_TURNS):
+        found.append(by_quadratic(plane, room, found[-1]))
+        found.append(by_linear(plane, room, found[-1]))
+    return found
 
 
-def _best_of(
-    plane: Plane, room: Room, tried: list[tuple[complex, complex]], count: int
-) -> list[tuple[complex, complex]]:
+def _best_of(plane: Plane, room: Room, tried: list[Pivots], count: int) -> list[Pivots]:
     least = _judged(plane, room, tried)[2]
     return [tried[k] for k in np.argsort(-least, kind="stable")[:count]]
 
@@ -176,53 +171,3 @@ def _distinct(
         if len(kept) == most:
             break
     return kept
-
-
-def _polished(plane: Plane, room: Room, point: complex, base: complex) -> tuple[complex, complex]:
-    """The same cylinder made better: the least lever t is made greatest, all levers at least t."""
-    from scipy import optimize  # only here, and few problems have cylinders
-
-    span = np.maximum(room.high - room.low, 1e-12 * room.reach)
-    sizes, first = np.array([room.reach, room.reach, *span]), np.array([0.0, 0.0, *room.low])
-
-    def pivots(x: FloatArray) -> tuple[ComplexArray, ComplexArray]:
-        scaled = first + np.atleast_2d(x)[:, :4] * sizes
-        return scaled[:, 0] + 1j * scaled[:, 1], scaled[:, 2] + 1j * scaled[:, 3]
-
-    def margins(x: FloatArray) -> FloatArray:
-        points, bases = pivots(x)
-        found = driven(plane, points, bases)
-        with np.errstate(divide="ignore"):
-            closed = np.log(np.maximum(found.closed, 1e-300))
-            rows = [np.log(room.ratio) - np.log(found.ratio)]
-            rows += [closed - np.log(room.closed[0])] if room.closed[0] > 0 else []
-            rows += [np.log(room.closed[1]) - closed] if np.isfinite(room.closed[1]) else []
-            rows += [np.log(room.force) - np.log(found.force + 1e-300)] if np.isfinite(room.force) else []
-        rows.append(1 - (np.abs(points - room.middle) / room.reach) ** 2)
-        levers = found.levers - np.atleast_2d(x)[:, 4:]
-        every = np.concatenate([levers, np.stack(rows, axis=1)], axis=1)
-        return np.asarray(np.nan_to_num(every, posinf=50.0, neginf=-50.0))
-
-    def slopes(x: FloatArray) -> FloatArray:
-        step = 1e-7
-        every = margins(np.concatenate([x[None] + step * np.eye(5), x[None] - step * np.eye(5)]))
-        slope: FloatArray = ((every[:5] - every[5:]) / (2 * step)).T
-        return slope
-
-    start = (np.array([point.real, point.imag, base.real, base.imag]) - first) / sizes
-    least = driven(plane, np.array([point]), np.array([base])).least
-    sides = ((0.0, side) for side in (room.high - room.low) / span)
-    bounds: Any = [(None, None), (None, None), *sides, (-1.0, 1.0)]
-    kept: Any = {"type": "ineq", "fun": lambda x: margins(x)[0], "jac": slopes}
-    given: dict[str, Any] = {"jac": lambda _: np.array([0.0, 0.0, 0.0, 0.0, -1.0]), "bounds": bounds}
-    minimize: Any = optimize.minimize
-    found = minimize(
-        lambda x: float(-x[4]),
-        np.concatenate([start, least]),
-        constraints=kept,
-        method="SLSQP",
-        options={"maxiter": 60, "ftol": 1e-9},
-        **given,
-    )
-    points, bases = pivots(found.x) if np.isfinite(found.x).all() else (np.array([point]), np.array([base]))
-    return complex(points[0]), complex(bases[0])
