@@ -23,6 +23,10 @@ _FINISHED, _TURNS = (
     2,
 )  # cylinders polished to the end, and how often linear programmes follow quadratic ones
 COARSE, FINE = 4, 2  # every so many samples are enough to compare, and to polish
+_OVER = (
+    0.15  # share of their box that bases are drawn beyond it and put back: the best are often on its sides
+)
+_MORE = 4  # times the samples, where a first search came near but found none
 _SEEDS = 16  # times that each joint is tried
 
 
@@ -45,6 +49,16 @@ def best_by_search(
         None where no sample and nothing near one drives the linkage within the limits.
     """
     rng = np.random.default_rng(seed)
+    found, near = _searched(plane, room, effort, rng)
+    if found is None and near:
+        found, _ = _searched(plane, room, _MORE * effort, rng)
+    return found
+
+
+def _searched(
+    plane: Plane, room: Room, effort: float, rng: np.random.Generator
+) -> tuple[tuple[complex, complex, float] | None, bool]:
+    """The best cylinder found, and where there is none, whether one came near."""
     points, bases = _drawn(plane, room, round(_SAMPLES * effort), rng)
     coarse, fine = _thinned(plane, COARSE), _thinned(plane, FINE)
     merit = np.concatenate([
@@ -56,7 +70,7 @@ def best_by_search(
     best = best[apart]
     points, bases, merit = _closed_in(coarse, room, points[best], bases[best], merit[best], rng)
     if merit[0] < _HOPELESS:
-        return None
+        return None, False
     tried = [(complex(points[k]), complex(bases[k])) for k in _distinct(room, points, bases, _POLISHED)]
     tried += [by_quadratic(coarse, room, pair) for pair in tried]
     for _ in range(_AGAIN):  # it may go on from where it stopped
@@ -65,7 +79,9 @@ def best_by_search(
         tried += _finished(plane, room, first)
     points, bases, least = _judged(plane, room, tried)
     first = int(least.argmax())
-    return None if least[first] <= 0 else (complex(points[first]), complex(bases[first]), float(least[first]))
+    if least[first] <= 0:
+        return None, True
+    return (complex(points[first]), complex(bases[first]), float(least[first])), True
 
 
 def _judged(plane: Plane, room: Room, tried: list[Pivots]) -> tuple[ComplexArray, ComplexArray, FloatArray]:
@@ -110,7 +126,8 @@ def _drawn(
     """Random pivots: half of the bases anywhere in their box, and half about the chord of a point's way."""
     share, turn = rng.random((2, count))
     points = room.middle + room.reach * np.sqrt(share) * np.exp(2j * np.pi * turn)
-    x, y = room.low[:, None] + (room.high - room.low)[:, None] * rng.random((2, count))
+    place = np.clip((1 + 2 * _OVER) * rng.random((2, count)) - _OVER, 0, 1)
+    x, y = room.low[:, None] + (room.high - room.low)[:, None] * place
     own = np.repeat(room.joints, _SEEDS)[: count // 2]
     points[: len(own)] = own
     half, ends = count // 2, plane.origin[[0, -1]] + points[:, None] * plane.axis[[0, -1]]
