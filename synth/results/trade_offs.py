@@ -48,12 +48,13 @@ def trade_offs(scaled: ScaledProblem, ledger: Ledger, run: Run) -> Chosen:
 
     Of all designs those that no other one beats in every goal, up to twice the least error.
     """
-    problem, least = scaled.problem, max(ledger.least, same_error(scaled.problem))
+    problem = scaled.problem
+    least = max(ledger.least, _exact(problem))
     seeds = seeds_of(problem, ledger.verified, FACTORS[-1] * least, SEEDS)
     stand_in = StandIn.of(scaled, seeds[0], ledger.least) if seeds else StandIn(scaled)
     begun_from = [(_error(problem, one), stand_in.taken(one)) for one in seeds]
     found, attempts, latest = list[Candidate](), list[Attempt](), dict[str, list[Candidate]]()
-    factors = FACTORS if ledger.least > same_error(problem) else FACTORS[:1]
+    factors = FACTORS if ledger.least > same_error(problem) else FACTORS[:1]  # exact but for rounding
     there_and_back = (*factors, *factors[-2::-1])  # what much error allows may lead to more at little, too
     for before, factor in zip((0.0, *there_and_back), there_and_back, strict=False):
         if run.ended():
@@ -77,6 +78,11 @@ def trade_offs(scaled: ScaledProblem, ledger: Ledger, run: Run) -> Chosen:
         found = on_all_targets(scaled, found, FACTORS[-1] * least)
     designs = _worth_choosing(problem, [*ledger.verified, *found], least)
     return Chosen(designs, [one for one in attempts if not one.verified], len(attempts))
+
+
+def _exact(problem: Problem) -> float:
+    """Least error for which others are traded: so little that all targets together miss by `same_error`."""
+    return same_error(problem) / (FACTORS[0] * float(np.sqrt(len(problem.task))))
 
 
 def _best_at(
