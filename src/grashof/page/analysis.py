@@ -75,7 +75,7 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         spec=spec,
         report=report,
         dimensions=dimensions_text(spec),
-        links=legend([spec.linkage.MECHANISM]),
+        links=legend([spec.linkage.MECHANISM], [spec.cylinder]),
         ranges=[f"{np.degrees(low):.6g} to {np.degrees(high):.6g} deg" for low, high in sweep.ranges],
         facts=_facts(report.facts),
         groups=[_group(section) for section in sections],

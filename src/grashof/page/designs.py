@@ -21,7 +21,7 @@ from grashof.analysis import (
 from grashof.analysis.four_bar.mobility import range_index
 from grashof.analysis.judge.over_task import driver_law, motion_ends
 from grashof.page.render import compact
-from grashof.problems import DynamicsSpec, FunctionTask, Linkage, Problem
+from grashof.problems import Cylinder, DynamicsSpec, FunctionTask, Linkage, Problem
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics_spec import metres
 from grashof.problems.values.mechanisms import KINDS
@@ -86,8 +86,8 @@ def driver_travel(linkage: Linkage, theta2: FloatArray) -> Travel:
     return Travel(float(low) + turned, float(high) + turned, False)
 
 
-def legend(kinds: Iterable[str]) -> list[tuple[str, str]]:
-    """Style and words of each link in drawings of linkages of some kinds.
+def legend(kinds: Iterable[str], cylinders: Iterable[Cylinder | None] = ()) -> list[tuple[str, str]]:
+    """Style and words of each link in drawings of linkages of some kinds, and of their cylinders.
 
     Examples
     --------
@@ -99,7 +99,8 @@ def legend(kinds: Iterable[str]) -> list[tuple[str, str]]:
     for style, index in (("driver", 1), ("coupler", 2), ("output", 3)):
         links = [KINDS[kind].LINKS[index] for kind in every]
         found[style] = [f"{link.name} {'-'.join(link.labels)}" for link in links]
-    return [(style, ", ".join(dict.fromkeys(words))) for style, words in found.items()]
+    links = [(style, ", ".join(dict.fromkeys(words))) for style, words in found.items()]
+    return links + [("cylinder", "cylinder")] * any(each is not None for each in cylinders)
 
 
 def linkage_data(linkage: Linkage) -> dict[str, Any]:

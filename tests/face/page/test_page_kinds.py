@@ -163,6 +163,7 @@ def test_the_rod_of_a_cylinder_is_not_that_of_the_linkage(window: Page, tmp_path
         for style in (".piston", ".ram", ".coupler.rod", ".bracket.coupler")
     ]
     assert len(set(drawn)) == 4
+    assert "cylinder" in window.locator(".legend").first.inner_text()
     assert drawn[0].split("L")[0] == "M" + drawn[1].split("L")[1]  # it comes out of the body
 
 
