@@ -82,7 +82,7 @@ def trade_offs(scaled: ScaledProblem, ledger: Ledger, run: Run) -> Chosen:
 
 def _exact(problem: Problem) -> float:
     """Least error for which others are traded: so little that all targets together miss by `same_error`."""
-    return same_error(problem) / (FACTORS[0] * float(np.sqrt(len(problem.task))))
+    return same_error(problem) / (FACTORS[-1] * float(np.sqrt(len(problem.task))))
 
 
 def _best_at(

@@ -20,7 +20,7 @@ from grashof.synth.theory.function_limits import (
     places_met,
     ratio_rows,
 )
-from grashof.synth.theory.function_output import Generators
+from grashof.synth.theory.function_output import Generators, beginnings, crank_ratios
 from grashof.synth.theory.many_systems import solved, weighed
 
 _TRIVIAL = 1e-6  # of the ground: a pivot so near to O2 or O4 is the ground link itself
@@ -234,14 +234,14 @@ class FourBars(Generators):
         >>> bool((r3 + r4 > r1 + r2).all() and (abs(r1 - r2) > abs(r3 - r4)).all())
         True
         """
-        crank = 1 / (1 + np.exp(-rng.normal(0, 1.5, count)))
+        crank = crank_ratios(rng, count)
         longer = rng.random(count) < 0.5 if not shortest else np.full(count, shortest < 0)
         r2 = np.where(longer, 1 / crank, crank)
         total, difference = (
             1 + r2 + np.exp(rng.normal(-1, 1.5, count)),
             np.abs(1 - r2) * np.tanh(rng.normal(0, 1, count)),
         )
-        begin = rng.uniform(-np.pi, np.pi, count) if first is None else np.full(count, first)
+        begin = beginnings(rng, count, first)
         lengths = np.stack([r2, (total + difference) / 2, (total - difference) / 2], axis=-1)
         return cls(np.column_stack([np.log(lengths), begin]), rng.choice([-1.0, 1.0], count))
 

@@ -19,7 +19,7 @@ from grashof.synth.theory.function_limits import (
     places_met,
     ratio_rows,
 )
-from grashof.synth.theory.function_output import Generators
+from grashof.synth.theory.function_output import Generators, beginnings, crank_ratios
 from grashof.synth.theory.many_systems import weighed
 
 _TRIVIAL = 1e-9  # share of a null vector: without O4 it is no linkage
@@ -199,10 +199,10 @@ class InvertedSliderCranks(Generators):
         >>> bool((made.worst_cosine(2 * np.pi) < 1).all())
         True
         """
-        crank = 1 / (1 + np.exp(-rng.normal(0, 1.5, count)))
+        crank = crank_ratios(rng, count)
         r2 = np.where(rng.random(count) < 0.5, 1 / crank, crank)
         offset = np.abs(1 - r2) * np.tanh(rng.normal(0, 1, count))
-        begin = rng.uniform(-np.pi, np.pi, count) if first is None else np.full(count, first)
+        begin = beginnings(rng, count, first)
         return cls(np.column_stack([np.log(r2), offset, begin]), np.ones(count))
 
     @classmethod

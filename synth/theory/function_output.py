@@ -186,3 +186,14 @@ class Generators(ABC):
     @abstractmethod
     def extent(self, span: float, ground: float) -> FloatArray:
         """Diagonal of the box around the pivots over a rotation, shape (M,), O2O4 having a length."""
+
+
+def crank_ratios(rng: np.random.Generator, count: int) -> FloatArray:
+    """Random lengths of cranks, in lengths of the link that a crank must be shorter than; shape (count,)."""
+    ratio: FloatArray = 1 / (1 + np.exp(-rng.normal(0, 1.5, count)))
+    return ratio
+
+
+def beginnings(rng: np.random.Generator, count: int, first: float | None) -> FloatArray:
+    """Driver angles at the first pair in rad: the given one, or random ones; shape (count,)."""
+    return rng.uniform(-np.pi, np.pi, count) if first is None else np.full(count, first)

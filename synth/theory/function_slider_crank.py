@@ -19,7 +19,7 @@ from grashof.synth.theory.function_limits import (
     places_met,
     ratio_rows,
 )
-from grashof.synth.theory.function_output import Generators
+from grashof.synth.theory.function_output import Generators, beginnings, crank_ratios
 from grashof.synth.theory.many_systems import solved, weighed
 
 _FARTHEST = float(np.arcsinh(30.0))  # of the slide at the first pair that is tried, in travels
@@ -244,9 +244,9 @@ class SliderCranks(Generators):
         >>> bool((made.worst_cosine(2 * np.pi) < 1).all())
         True
         """
-        crank = 1 / (1 + np.exp(-rng.normal(0, 1.5, count)))
+        crank = crank_ratios(rng, count)
         share = (1 - crank) * np.tanh(rng.normal(0, 1, count))
-        begin = rng.uniform(-np.pi, np.pi, count) if first is None else np.full(count, first)
+        begin = beginnings(rng, count, first)
         shape = np.column_stack([np.log(crank), np.zeros(count), share, begin])
         return cls(shape, rng.choice([-1.0, 1.0], count))
 
