@@ -20,6 +20,7 @@ GRID = 220  # start angles of driver and output each, of three pairs
 CURVE = 2000  # output angles at a fifth place, of four pairs
 CRANKS = 8000  # random full cranks, from which least squares begins besides
 PULLS = (0.1, 1.0)  # rad, or shares of the travel: what a missed limit counts as in least squares
+NUDGE = 1e-4  # rad, of transmission angles
 BASINS, TRIED, SHORT = 9, 30, 5  # starts that are refined to the end, and those tried in few steps
 WORSE = 10.0  # times the least error: a sense of output and driver in which no choice is offered
 HOPELESS = 50.0  # times the least error: no further
@@ -334,6 +335,23 @@ class _Optima:
         good = [one for one in ends if one.missed <= ROUNDING]
         for k in _apart(good, np.array([one.error for one in good])):
             yield good[k]
+            yield from self._farther_inside(good[k])
+
+    def _farther_inside(self, best: Optimum) -> Iterator[Optimum]:
+        """The same with a little more transmission, where its limit is met at one end of the range.
+
+        The judge takes the start at which the error is least, which may be a little beyond that limit.
+        """
+        limits, made = self.limits, best.made
+        if self.first is not None or made.worst_cosine(limits.span)[0] < limits.most_cosine - NUDGE:
+            return
+        inner = replace(self, limits=replace(limits, transmission=limits.transmission + NUDGE))
+        aim = inner.aim()
+        if aim.greatest:
+            aim = with_extremes(aim, made, *self.aims.dense(self.sense))
+        found = refined(aim, made)
+        if found.missed <= ROUNDING:
+            yield found
 
 
 def _apart(some: list[Optimum], worth: FloatArray) -> list[int]:

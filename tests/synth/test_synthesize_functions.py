@@ -83,16 +83,13 @@ def test_reference_optima_are_reached(name: str, column: int) -> None:
     assert best.linkage.lengths.max() / best.linkage.lengths.min() <= 10 + 1e-6
 
 
-# The search falls short of the third: it finds 0.399.
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("law", "options", "reference"),
     [
         ("log10", {"x": (1, 2), "input_range_deg": 60}, 0.8269),
         ("power", {"x": (0, 1), "input_range_deg": 90, "exponent": 2.0}, 1.196),
-        pytest.param(
-            "sqrt", {"x": (1, 4), "input_range_deg": 90}, 0.2587, marks=pytest.mark.xfail(strict=True)
-        ),
+        ("sqrt", {"x": (1, 4), "input_range_deg": 90}, 0.2587),
     ],
 )
 def test_full_crank_references_are_reached(law: str, options: dict[str, Any], reference: float) -> None:
