@@ -75,8 +75,8 @@ def _searched(
     tried += [by_quadratic(coarse, room, pair) for pair in tried]
     for _ in range(_AGAIN):  # it may go on from where it stopped
         tried += [by_quadratic(fine, room, pair) for pair in _best_of(fine, room, tried, 2)]
-    for first in _best_of(plane, room, tried, _FINISHED):  # between all samples
-        tried += _finished(plane, room, first)
+    for pair in _best_of(plane, room, tried, _FINISHED):  # between all samples
+        tried += _finished(plane, room, pair)
     points, bases, least = _judged(plane, room, tried)
     first = int(least.argmax())
     if least[first] <= 0:

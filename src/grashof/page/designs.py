@@ -99,8 +99,8 @@ def legend(kinds: Iterable[str], cylinders: Iterable[Cylinder | None] = ()) -> l
     for style, index in (("driver", 1), ("coupler", 2), ("output", 3)):
         links = [KINDS[kind].LINKS[index] for kind in every]
         found[style] = [f"{link.name} {'-'.join(link.labels)}" for link in links]
-    links = [(style, ", ".join(dict.fromkeys(words))) for style, words in found.items()]
-    return links + [("cylinder", "cylinder")] * any(each is not None for each in cylinders)
+    words = [(style, ", ".join(dict.fromkeys(names))) for style, names in found.items()]
+    return words + [("cylinder", "cylinder")] * any(each is not None for each in cylinders)
 
 
 def linkage_data(linkage: Linkage) -> dict[str, Any]:
