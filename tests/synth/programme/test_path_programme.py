@@ -276,7 +276,7 @@ def test_least_squares_keep_the_requirements() -> None:
         {"o2": Box((-1, 1), (-1, 1)), "rotatability": "crank-rocker"},
         {"transmission_min_deg": 30.0, "transmission_over": "cycle"},
     ):
-        requirements = Requirements(**({"exact": False} | wanted))
+        requirements = Requirements(**({"exact": False, "rotatability_margin": 1e-3} | wanted))
         scaled = ScaledProblem.of(Problem(task=free.problem.task, requirements=requirements))
         finds = search(scaled, 5, np.random.default_rng(0))
         best = np.argsort(finds.error + finds.violations.sum(axis=1))[:2]
