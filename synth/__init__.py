@@ -4,5 +4,6 @@ from grashof.synth.designs.candidate import Candidate
 from grashof.synth.results.result import Result
 from grashof.synth.search.run import Progress
 from grashof.synth.synthesize import synthesize
+from grashof.synth.track import track
 
-__all__ = ["Candidate", "Progress", "Result", "synthesize"]
+__all__ = ["Candidate", "Progress", "Result", "synthesize", "track"]

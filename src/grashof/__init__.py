@@ -16,7 +16,7 @@ if TYPE_CHECKING:
         plot_linkage,
     )
     from grashof.problems import GrashofError, load
-    from grashof.synth import synthesize
+    from grashof.synth import synthesize, track
 
 __all__ = [
     "GrashofError",
@@ -28,6 +28,7 @@ __all__ = [
     "plot_kinematics",
     "plot_linkage",
     "synthesize",
+    "track",
 ]
 
 logging.getLogger(__name__).addHandler(logging.NullHandler())  # who uses the library decides what is logged
@@ -37,6 +38,7 @@ _HOMES = {
     "GrashofError": "problems",
     "load": "problems",
     "synthesize": "synth",
+    "track": "synth",
     **dict.fromkeys((name for name in __all__ if name.startswith(("animate", "plot_"))), "figures"),
 }
 

@@ -1,0 +1,109 @@
+"""Designs that follow their problem: solved again from where they are, when a target or a limit moves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from grashof.analysis.judge.design import Constraint, OwnObjective
+from grashof.problems import Problem, ProblemError
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.judging import judged_again
+from grashof.synth.programme.merit import same_error
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.start import Start
+from grashof.synth.programme.user_functions import refuse_unusable
+from grashof.synth.results.trade_offs import GOALS
+from grashof.synth.search.attempt import attempt
+
+_TRADED = 1.001  # times the least error: designs of more were made better at something else
+
+
+def track(
+    designs: Sequence[Candidate],
+    problem: Problem,
+    *,
+    constraints: Sequence[Constraint] = (),
+    objective: OwnObjective | None = None,
+) -> tuple[Candidate, ...]:
+    """Designs of one problem, moved to do another one that differs by a little.
+
+    Parameters
+    ----------
+    designs : sequence of Candidate
+    problem : Problem
+        The changed one: targets elsewhere, more or fewer of them, other limits.
+    constraints, objective
+        Your own, as in `synthesize`.
+
+    Returns
+    -------
+    tuple of Candidate
+        One for each design, in their order, judged for `problem`. A lost design has defects, `verdict.ok` is
+        False: it is what the solver came to, or where that is no linkage the design as it was.
+
+    Raises
+    ------
+    ProblemError
+        The problem is one of a function or a stroke, or does not ask for the kind of a design.
+
+    Notes
+    -----
+    One solve of some 10 ms each; no search, so that better designs elsewhere are not seen. Where all targets are
+    to be met, a design moves no farther than it has to; in least squares to the least error near it, or, where
+    it has more error than another one for the sake of its size or transmission, to as much more.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> from grashof import load, synthesize
+    >>> from grashof.problems import MotionTask
+    >>> problem = load("luggage")
+    >>> best = synthesize(problem, enough=5).best
+    >>> moved = problem.task.positions.copy()
+    >>> moved[1] += 0.05
+    >>> there = replace(problem, task=MotionTask(moved, problem.task.angles))
+    >>> (design,) = track([best], there)
+    >>> design.verdict.ok, bool(design.verdict.error_max < 1e-9), design.linkage == best.linkage
+    (True, True, False)
+    """
+    if not problem.task.has_position.any():
+        raise ProblemError(f"designs of a {problem.task.kind} cannot be tracked; search again")
+    kinds: dict[str, ScaledProblem] = {}
+    for number, design in enumerate(designs):
+        kind = design.linkage.MECHANISM
+        if kind not in problem.mechanism:
+            asked = ", ".join(problem.mechanism)
+            raise ProblemError(f"designs[{number}] is a {kind}; the problem asks for {asked}")
+        if kind not in kinds:
+            kinds[kind] = ScaledProblem.of(problem.for_kind(kind), constraints, objective)
+            refuse_unusable(kinds[kind], in_processes=False)
+    errors = [0.0 if kinds[one.linkage.MECHANISM].exact else one.error(one.problem) for one in designs]
+    least = max(min(errors, default=0.0), same_error(problem))
+    moved: dict[int, Candidate] = {}
+    reached = np.inf
+    for number in sorted(
+        range(len(designs)), key=errors.__getitem__
+    ):  # the least error first: it bounds that of others
+        scaled = kinds[designs[number].linkage.MECHANISM]
+        share = errors[number] / least
+        most = np.inf if share < _TRADED else share * max(reached, same_error(problem))
+        moved[number] = _moved(scaled, designs[number], number, most)
+        if moved[number].verdict.ok:
+            reached = min(reached, moved[number].error(scaled.problem))
+    return tuple(replace(moved[number], problem=problem) for number in range(len(designs)))
+
+
+def _moved(scaled: ScaledProblem, design: Candidate, number: int, most_error: float) -> Candidate:
+    """A design after one solve from where it is; one that traded error for more may err as much again."""
+    here = judged_again(scaled, design)
+    start = replace(Start.of_linkage(scaled, here.linkage, here.verdict), settled=scaled.exact)
+    if np.isfinite(most_error):
+        goal = GOALS["size"] if "smallest" in design.best_at else GOALS["mu"]
+        traded = attempt(scaled, replace(start, objective=goal, most_error=most_error), number)
+        if traded.verified:
+            return replace(traded.verified[0], best_at=design.best_at, family=design.family)
+    found = attempt(scaled, start, number).candidate
+    return here if found is None else replace(found, best_at=design.best_at, family=design.family)

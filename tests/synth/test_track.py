@@ -1,0 +1,96 @@
+"""Designs that follow a moved problem, held against the judge, the search and the moved targets."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from grashof import load, synthesize, track
+from grashof.analysis import solve_position, verify
+from grashof.problems import MotionTask, PathTask, Problem, ProblemError, Requirements
+
+LINE = np.array([[0.0, 0.0], [0.4, 0.1], [0.9, 0.15], [1.4, 0.1], [1.8, 0.0]])
+
+
+@pytest.fixture(scope="module")
+def luggage() -> tuple[Problem, tuple]:  # type: ignore[type-arg]
+    problem = load("luggage")
+    return problem, synthesize(problem, enough=10).candidates[:10]
+
+
+def moved(problem: Problem, by: float) -> Problem:
+    positions = problem.task.positions.copy()
+    positions[1] += by * problem.task.size
+    return replace(problem, task=MotionTask(positions, problem.task.angles))
+
+
+def test_ten_designs_follow_a_pose_over_eight_steps(luggage) -> None:  # type: ignore[no-untyped-def]
+    problem, designs = luggage
+    for step in range(1, 9):
+        there = moved(problem, 0.005 * step)
+        designs = track(designs, there)
+        for design in designs:
+            state = solve_position(design.linkage, design.verdict.theta2, design.verdict.assembly)
+            np.testing.assert_allclose(state.p, there.task.positions, atol=1e-8)
+            assert verify(design.linkage, there.task, there.requirements).ok
+    assert len({design.id for design in designs}) == len(designs)
+
+
+def test_nothing_moves_where_nothing_changed(luggage) -> None:  # type: ignore[no-untyped-def]
+    problem, designs = luggage
+    for before, after in zip(designs, track(designs, problem), strict=True):
+        assert after.verdict.ok
+        np.testing.assert_allclose(after.linkage.lengths, before.linkage.lengths, rtol=1e-6)
+
+
+def test_lost_designs_keep_their_place_and_say_what_they_miss(luggage) -> None:  # type: ignore[no-untyped-def]
+    problem, designs = luggage
+    limited = replace(problem, requirements=replace(problem.requirements, link_length=(1e-3, 1e-2)))
+    after = track(designs, limited)
+    assert len(after) == len(designs)
+    assert not any(design.verdict.ok for design in after)
+    assert all(design.verdict.defects and design.problem is limited for design in after)
+
+
+def test_trade_offs_of_least_squares_stay_apart() -> None:
+    problem = load("path-gait")
+    designs = synthesize(problem).candidates
+    positions = problem.task.positions.copy()
+    positions[1] += 0.005 * problem.task.size
+    there = replace(problem, task=PathTask(positions, closed=problem.task.closed))
+    after = track(designs, there)
+    assert all(design.verdict.ok for design in after)
+    errors = np.array([design.error(there) for design in after])
+    searched = min(design.error(there) for design in synthesize(there).candidates)
+    assert errors.min() <= 1.01 * searched
+    before = np.array([design.error(problem) for design in designs])
+    np.testing.assert_allclose(errors / errors.min(), before / before.min(), rtol=0.05)
+
+
+def test_a_point_more_and_a_point_less() -> None:
+    problem = Problem(task=PathTask(LINE), requirements=Requirements(exact=False))
+    designs = synthesize(problem, enough=3).candidates[:3]
+    more = replace(problem, task=PathTask(np.insert(LINE, 2, [0.65, 0.13], axis=0)))
+    after = track(designs, more)
+    assert all(len(design.verdict.theta2) == 6 for design in after)
+    assert any(design.verdict.ok for design in after)
+    assert all(design.verdict.ok for design in track(after, problem))
+
+
+def test_slider_cranks_follow_and_other_kinds_are_refused() -> None:
+    problem = Problem(task=PathTask(LINE), mechanism="slider-crank")
+    designs = synthesize(problem, enough=3).candidates[:3]
+    there = replace(problem, task=PathTask(LINE + np.array([0.0, 0.01])))
+    after = track(designs, there)
+    assert len(after) == len(designs) > 0
+    assert all(design.verdict.ok for design in after)
+    assert all(design.linkage.MECHANISM == "slider-crank" for design in after)
+    with pytest.raises(ProblemError, match=r"designs\[0\] is a slider-crank; the problem asks for four-bar"):
+        track(designs, replace(problem, mechanism="four-bar"))
+
+
+def test_functions_cannot_be_tracked() -> None:
+    with pytest.raises(ProblemError, match="designs of a function cannot be tracked; search again"):
+        track([], load("function-log10"))
