@@ -51,9 +51,9 @@ def track(
 
     Notes
     -----
-    One solve of some 10 ms each; no search, so that better designs elsewhere are not seen. Where all targets are
-    to be met, a design moves no farther than it has to; in least squares to the least error near it, or, where
-    it has more error than another one for the sake of its size or transmission, to as much more.
+    One solve of some 10 ms each; no search, so that better designs elsewhere are not seen. Where all targets
+    are to be met, a design moves no farther than it has to; in least squares to the least error near it, or,
+    where it has more error than another one for the sake of its size or transmission, to as much more.
 
     Examples
     --------
@@ -99,7 +99,8 @@ def track(
 def _moved(scaled: ScaledProblem, design: Candidate, number: int, most_error: float) -> Candidate:
     """A design after one solve from where it is; one that traded error for more may err as much again."""
     here = judged_again(scaled, design)
-    start = replace(Start.of_linkage(scaled, here.linkage, here.verdict), settled=scaled.exact)
+    start = Start.of_linkage(scaled, here.linkage, here.verdict)
+    start = replace(start, settled=scaled.exact, stay=scaled.exact)
     if np.isfinite(most_error):
         goal = GOALS["size"] if "smallest" in design.best_at else GOALS["mu"]
         traded = attempt(scaled, replace(start, objective=goal, most_error=most_error), number)

@@ -94,3 +94,15 @@ def test_slider_cranks_follow_and_other_kinds_are_refused() -> None:
 def test_functions_cannot_be_tracked() -> None:
     with pytest.raises(ProblemError, match="designs of a function cannot be tracked; search again"):
         track([], load("function-log10"))
+
+
+def test_a_limit_that_is_raised_moves_designs_no_farther_than_onto_it(luggage) -> None:  # type: ignore[no-untyped-def]
+    problem, designs = luggage
+    asked = 26.8  # deg; the greatest within the limits of the links is 27.33
+    limited = replace(problem, requirements=replace(problem.requirements, transmission_min_deg=asked))
+    short = [design for design in designs if np.degrees(design.values["transmission"]) < asked][:3]
+    after = track(short, limited)
+    assert len(after) == 3
+    for design in after:
+        assert design.verdict.ok
+        assert asked - 1e-6 <= np.degrees(design.values["transmission"]) <= asked + 0.02
