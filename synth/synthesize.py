@@ -11,9 +11,8 @@ from pathlib import Path
 from grashof.analysis.judge.design import Constraint, OwnObjective
 from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.values.checks import readable
-from grashof.problems.values.errors import wrong_value
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.user_functions import refuse_unusable
+from grashof.synth.programme.user_functions import refuse_no_list, refuse_unusable
 from grashof.synth.results.conclusion import conclude, needless
 from grashof.synth.results.function_list import function_list
 from grashof.synth.results.mixed import one_list
@@ -102,8 +101,7 @@ def synthesize(
     """
     asked = asking(time_limit, stop)
     search = search_of(problem, workers, starts=starts, enough=enough, seed=seed, effort=effort)
-    if isinstance(constraints, str) or not isinstance(constraints, Sequence):
-        raise wrong_value("constraints", constraints, "a list of functions of a design")
+    refuse_no_list(constraints)
     if record is not None and (constraints or objective is not None):
         raise ProblemError("record does not go with constraints or an objective of your own")
     how = problem.task.kind, search.seed, search.effort, search.starts, workers

@@ -9,12 +9,13 @@ import numpy as np
 
 from grashof.analysis.judge.design import Constraint, OwnObjective
 from grashof.problems import Problem, ProblemError
+from grashof.problems.values.errors import wrong_value
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged_again
 from grashof.synth.programme.merit import same_error
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
-from grashof.synth.programme.user_functions import refuse_unusable
+from grashof.synth.programme.user_functions import refuse_no_list, refuse_unusable
 from grashof.synth.results.trade_offs import GOALS
 from grashof.synth.search.attempt import attempt
 
@@ -47,7 +48,8 @@ def track(
     Raises
     ------
     ProblemError
-        The problem is one of a function or a stroke, or does not ask for the kind of a design.
+        An argument is invalid; the problem is one of a function or a stroke, or does not ask for the kind of a
+        design.
 
     Notes
     -----
@@ -69,6 +71,12 @@ def track(
     >>> design.verdict.ok, bool(design.verdict.error_max < 1e-9), design.linkage == best.linkage
     (True, True, False)
     """
+    refuse_no_list(constraints)
+    if not isinstance(problem, Problem):
+        raise wrong_value("problem", problem, "a Problem")
+    for number, design in enumerate(designs):
+        if not isinstance(design, Candidate):
+            raise wrong_value(f"designs[{number}]", design, "a Candidate, as results list them")
     if not problem.task.has_position.any():
         raise ProblemError(f"designs of a {problem.task.kind} cannot be tracked; search again")
     kinds: dict[str, ScaledProblem] = {}

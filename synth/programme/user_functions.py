@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -44,6 +45,12 @@ class _Kind:
 
 _CONSTRAINT = _Kind("constraint", "zero or negative where it is met", several=True)
 _OBJECTIVE = _Kind("objective", "smaller where the design is better", several=False)
+
+
+def refuse_no_list(constraints: object) -> None:
+    """Raise `ProblemError` where the user's constraints are no list."""
+    if isinstance(constraints, str) or not isinstance(constraints, Sequence):
+        raise wrong_value("constraints", constraints, "a list of functions of a design")
 
 
 def refuse_unusable(scaled: ScaledProblem, *, in_processes: bool) -> None:

@@ -106,3 +106,17 @@ def test_a_limit_that_is_raised_moves_designs_no_farther_than_onto_it(luggage) -
     for design in after:
         assert design.verdict.ok
         assert asked - 1e-6 <= np.degrees(design.values["transmission"]) <= asked + 0.02
+
+
+def test_what_is_no_design_is_refused(luggage) -> None:  # type: ignore[no-untyped-def]
+    problem, designs = luggage
+    with pytest.raises(
+        ProblemError, match=r"designs\[1\] is 7; it must be a Candidate, as results list them"
+    ):
+        track([designs[0], 7], problem)  # type: ignore[list-item]
+    with pytest.raises(ProblemError, match="problem is 'luggage'; it must be a Problem"):
+        track(designs, "luggage")  # type: ignore[arg-type]
+    with pytest.raises(
+        ProblemError, match="constraints is 'short'; it must be a list of functions of a design"
+    ):
+        track(designs, problem, constraints="short")  # type: ignore[arg-type]
