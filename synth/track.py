@@ -48,8 +48,8 @@ def track(
     Raises
     ------
     ProblemError
-        An argument is invalid; the problem is one of a function or a stroke, or does not ask for the kind of a
-        design.
+        An argument is invalid; the problem is one of a function or a stroke, or does not ask for the kind
+        of a design.
 
     Notes
     -----
@@ -74,34 +74,39 @@ def track(
     refuse_no_list(constraints)
     if not isinstance(problem, Problem):
         raise wrong_value("problem", problem, "a Problem")
+    if not problem.task.has_position.any():
+        raise ProblemError(f"designs of a {problem.task.kind} cannot be tracked; search again")
+    kinds = _kinds_of(designs, problem)
+    ready = {kind: ScaledProblem.of(problem.for_kind(kind), constraints, objective) for kind in kinds}
+    for scaled in ready.values():
+        refuse_unusable(scaled, in_processes=False)
+    exact = problem.requirements.is_exact(problem.task) and problem.zones is None
+    errors = [0.0 if exact else one.error(one.problem) for one in designs]
+    least = max(min(errors, default=0.0), same_error(problem))
+    moved: dict[int, Candidate] = {}
+    reached = np.inf
+    for number in np.argsort(errors, kind="stable").tolist():  # the least error bounds that of others
+        design = designs[number]
+        share = errors[number] / least
+        most = np.inf if share < _TRADED else share * max(reached, same_error(problem))
+        moved[number] = _moved(ready[design.linkage.MECHANISM], design, number, most)
+        if moved[number].verdict.ok:
+            reached = min(reached, moved[number].error(problem))
+    return tuple(replace(moved[number], problem=problem) for number in range(len(designs)))
+
+
+def _kinds_of(designs: Sequence[Candidate], problem: Problem) -> list[str]:
+    """Kinds of linkage among the designs, each of which the problem has to ask for."""
+    kinds: dict[str, None] = {}
     for number, design in enumerate(designs):
         if not isinstance(design, Candidate):
             raise wrong_value(f"designs[{number}]", design, "a Candidate, as results list them")
-    if not problem.task.has_position.any():
-        raise ProblemError(f"designs of a {problem.task.kind} cannot be tracked; search again")
-    kinds: dict[str, ScaledProblem] = {}
-    for number, design in enumerate(designs):
         kind = design.linkage.MECHANISM
         if kind not in problem.mechanism:
             asked = ", ".join(problem.mechanism)
             raise ProblemError(f"designs[{number}] is a {kind}; the problem asks for {asked}")
-        if kind not in kinds:
-            kinds[kind] = ScaledProblem.of(problem.for_kind(kind), constraints, objective)
-            refuse_unusable(kinds[kind], in_processes=False)
-    errors = [0.0 if kinds[one.linkage.MECHANISM].exact else one.error(one.problem) for one in designs]
-    least = max(min(errors, default=0.0), same_error(problem))
-    moved: dict[int, Candidate] = {}
-    reached = np.inf
-    for number in sorted(
-        range(len(designs)), key=errors.__getitem__
-    ):  # the least error first: it bounds that of others
-        scaled = kinds[designs[number].linkage.MECHANISM]
-        share = errors[number] / least
-        most = np.inf if share < _TRADED else share * max(reached, same_error(problem))
-        moved[number] = _moved(scaled, designs[number], number, most)
-        if moved[number].verdict.ok:
-            reached = min(reached, moved[number].error(scaled.problem))
-    return tuple(replace(moved[number], problem=problem) for number in range(len(designs)))
+        kinds[kind] = None
+    return list(kinds)
 
 
 def _moved(scaled: ScaledProblem, design: Candidate, number: int, most_error: float) -> Candidate:
