@@ -138,7 +138,7 @@ def test_the_public_verbs() -> None:
     import grashof
 
     plots = {"plot_linkage", "plot_coupler_curve", "plot_kinematics", "plot_dynamics", "plot_design_space"}
-    assert set(grashof.__all__) == {"GrashofError", "load", "synthesize", "animate"} | plots
+    assert set(grashof.__all__) == {"GrashofError", "load", "synthesize", "track", "animate"} | plots
     assert all(callable(getattr(grashof, name)) for name in grashof.__all__)
     with pytest.raises(AttributeError, match="no attribute 'solve'"):
         _ = grashof.solve
