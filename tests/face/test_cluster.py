@@ -6,11 +6,10 @@ from pathlib import Path
 
 import pytest
 
-SCRIPT = """
+SCRIPT = '''
 import os
-
-import dask
-from distributed import LocalCluster
+import subprocess
+import sys
 
 from grashof import load
 from grashof.output.cluster import cluster
@@ -23,6 +22,17 @@ def crash(_scaled, code):
     os._exit(code)
 
 
+SCHEDULER = """
+import sys
+from distributed import LocalCluster
+
+if __name__ == "__main__":
+    started = LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None)
+    print(started.scheduler_address, flush=True)
+    sys.stdin.read()
+"""
+
+
 def nap(_scaled, seconds):
     import time
 
@@ -30,10 +40,13 @@ def nap(_scaled, seconds):
 
 
 if __name__ == "__main__":
-    dask.config.set({"distributed.scheduler.allowed-failures": 1})
-    started = LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None)
+    with open("scheduler.py", "w", encoding="utf-8") as file:
+        file.write(SCHEDULER)
+    piped = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+    once = {**os.environ, "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "1"}
+    scheduler = subprocess.Popen([sys.executable, "scheduler.py"], env=once, **piped)
     scaled = ScaledProblem.of(load("luggage"))
-    with cluster(started.scheduler_address, 1) as (executor, width):
+    with cluster(scheduler.stdout.readline().strip(), 1) as (executor, width):
         work = Elsewhere(executor, width)
         try:
             work.made(crash, scaled, 7)
@@ -44,12 +57,13 @@ if __name__ == "__main__":
         made = work.attempts(scaled, starts, 0)
         print([one.status for one in made] == [one.status for one in known], flush=True)
         work.begin(nap, scaled, 30)
-        started.close()
+        scheduler.kill()
+        scheduler.wait()
         try:
             work.made(nap, scaled, 30)
         except SolverError as error:
             print("told:", error)
-"""
+'''
 
 
 @pytest.mark.slow
