@@ -1,4 +1,4 @@
-"""The command line: solve, merge, sweep, check, problems, linkages, analyse, animate, export."""
+"""The command line: solve, merge, sweep, check, problems, linkages, analyse, live, animate, export."""
 
 from __future__ import annotations
 
@@ -369,6 +369,29 @@ def analyse(
             release_deg=release,
             release_rpm=release_rpm,
         )
+
+
+@app.command()
+def live(
+    problem: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="PROBLEM", help="Name in the catalogue, or a TOML file.", show_default="luggage"
+        ),
+    ] = None,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Of the server; 0 takes a free one.")] = 0,
+    browser: Annotated[
+        bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")
+    ] = True,
+) -> None:
+    """Edit PROBLEM by hand in the browser, and see the verified list follow.
+
+    Exit code 0: ended by Ctrl-C; 2: bad input; 3: environment error.
+    """
+    with _errors_told():
+        from grashof.live.command import live as serve
+
+        raise typer.Exit(serve(problem, port, browser=browser))
 
 
 @app.command()

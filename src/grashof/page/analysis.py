@@ -19,8 +19,8 @@ from grashof.wording.linkage import dimensions_text
 from grashof.wording.numbers import number_text, value_text
 
 _SCRIPTS = (
-    "kinds.js", "linkage.js", "svg.js", "stage.js", "player.js", "axes.js", "picture.js", "curves.js",
-    "tracks.js", "saving.js", "analysis.js",
+    "kinds.js", "linkage.js", "svg.js", "stage.js", "grabbing.js", "player.js", "axes.js", "picture.js",
+    "curves.js", "tracks.js", "saving.js", "analysis.js",
 )  # fmt: skip
 _EXTREMES = (("min", "least"), ("theta2_min_deg", "at θ2"), ("max", "largest"), ("theta2_max_deg", "at θ2"))
 _SMALL = 30  # rows up to which a table stands in the page; a larger one is a file beside it

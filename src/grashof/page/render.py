@@ -29,12 +29,22 @@ def render(template: str, scripts: Sequence[str], data: Mapping[str, Any], **sho
         _environment()
         .get_template(template)
         .render(
-            style=_text("page.css"),
-            script="\n".join(map(_text, scripts)),
+            style=text_of("page.css"),
+            script=script_of(scripts),
             data=data,
             **shown,
         )
     )
+
+
+def script_of(scripts: Iterable[str]) -> str:
+    """Some scripts of this package, in order, as one."""
+    return "\n".join(map(text_of, scripts))
+
+
+def page_of(template: str, **shown: Any) -> str:
+    """A page whose style and scripts are files beside it."""
+    return _environment().get_template(template).render(**shown)
 
 
 def compact(values: Iterable[float], digits: int = 5) -> list[float | None]:
@@ -56,6 +66,6 @@ def _environment() -> Environment:
 
 
 @cache
-def _text(name: str) -> str:
+def text_of(name: str) -> str:
     """A style sheet or script of this package."""
     return (resources.files("grashof.page") / "templates" / name).read_text(encoding="utf-8")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -14,14 +14,15 @@ from grashof.page.columns import Column, columns_of, figure_units
 from grashof.page.designs import designs_of, driver_travel, legend
 from grashof.page.render import render
 from grashof.page.scene import scene_of
+from grashof.problems import Problem
 from grashof.problems.values.checks import counted
-from grashof.synth import Result
+from grashof.synth import Candidate, Result
 from grashof.synth.search.tally import DISTINCT, Tally
 from grashof.wording.problem import goals, summary
 
 _SCRIPTS = (
-    "kinds.js", "linkage.js", "svg.js", "stage.js", "player.js", "axes.js", "picture.js", "curves.js",
-    "scatter.js", "table.js", "compare.js", "search.js",
+    "kinds.js", "linkage.js", "svg.js", "stage.js", "grabbing.js", "player.js", "axes.js", "picture.js",
+    "curves.js", "scatter.js", "table.js", "compare.js", "search.js",
 )  # fmt: skip
 
 
@@ -48,17 +49,8 @@ def search_page(result: Result, frame: pd.DataFrame, record: Mapping[str, Any], 
     moving = [not np.isnan(driver_travel(each.linkage, each.verdict.theta2).low) for each in listing]
     designs = [each for each, moves in zip(listing, moving, strict=True) if moves]
     frame = frame[moving] if designs else frame.iloc[:0]
-    axes = columns_of(problem, frame) if designs else []
-    columns = [column for column in axes if column.listed]
-    data = {
-        "found": bool(result.candidates),
-        "scene": scene_of(problem),
-        "columns": [asdict(each) for each in columns],
-        "axes": [asdict(each) for each in axes],
-        "units": figure_units(frame, problem.length_unit) if designs else [],
-        "designs": designs_of(problem, designs, frame),
-        "torqueUnit": "N m",
-    }
+    data = search_data(problem, designs, frame, found=bool(result.candidates))
+    columns = [Column(**each) for each in data["columns"]]
     return render(
         "search.html",
         _SCRIPTS,
@@ -67,7 +59,7 @@ def search_page(result: Result, frame: pd.DataFrame, record: Mapping[str, Any], 
         problem=problem,
         asked=[line.strip() for line in summary(problem)][1:],
         found=bool(result.candidates),
-        headline=_headline(result),
+        headline=headline(result),
         note=result.note,
         goals=goals(problem).replace("mu", "μ"),
         columns=columns,
@@ -85,7 +77,35 @@ def search_page(result: Result, frame: pd.DataFrame, record: Mapping[str, Any], 
     )
 
 
-def _headline(result: Result) -> str:
+def search_data(
+    problem: Problem, designs: Sequence[Candidate], frame: pd.DataFrame, *, found: bool
+) -> dict[str, Any]:
+    """What the scripts have of a search: the scene, its designs, and what is told of them.
+
+    Parameters
+    ----------
+    problem : Problem
+    designs : sequence of Candidate
+        Linkages that can be assembled.
+    frame : DataFrame
+        Their rows, as `to_frame` makes them.
+    found : bool
+        They are designs, not closest misses.
+    """
+    axes = columns_of(problem, frame) if designs else []
+    return {
+        "found": found,
+        "scene": scene_of(problem),
+        "columns": [asdict(each) for each in axes if each.listed],
+        "axes": [asdict(each) for each in axes],
+        "units": figure_units(frame, problem.length_unit) if designs else [],
+        "designs": designs_of(problem, designs, frame),
+        "torqueUnit": "N m",
+    }
+
+
+def headline(result: Result) -> str:
+    """How many designs a search found, and of how many the list is."""
     listed = len(result.candidates)
     if not listed:
         return "No design found." if result.complete else "Interrupted before any design was found."

@@ -3,6 +3,8 @@ const MANY_TARGETS = 24;
 const DIGIT = 7; // px: no character of an axis is wider
 const BLOCK = 13; // px: half the length of the block of a slide
 const STRIP = { left: 34, below: 18 }; // px: along the edges, for the numbers of the axes
+const ZOOM = 1.25; // by one step of the wheel or press of a button
+const CLOSEST = 1e6; // times as large as all of the drawing, at most
 
 // Corners of the body that stands at a place in a direction.
 function bodyAt(body, [x, y], angle) {
@@ -75,9 +77,12 @@ class Stage {
       trace: true,
       ghosts: false,
       close: false,
+      view: null,
+      drawnOver: () => {},
     });
     onResize(svg, () => this.draw());
-    if (onDrive) this.drags();
+    if (onDrive) listenToJoints(this);
+    listenToView(this);
   }
 
   // Shows a design, or only the scene; `together`: designs that share the scale.
@@ -104,9 +109,22 @@ class Stage {
       this.move(this.theta2);
     }
     this.svg.append(numbers);
+    this.drawnOver();
   }
 
+  // All that is to be seen, or the view that was chosen.
   scale(width, height, seen) {
+    this.whole = this.fitted(width, height, seen);
+    const { unit, middle } = this.view || this.whole;
+    const [x0, y0] = [width / 2 - unit * middle[0], height / 2 + unit * middle[1]];
+    this.at = ([x, y]) => [x0 + unit * x, y0 - unit * y];
+    this.back = ([x, y]) => [(x - x0) / unit, (y0 - y) / unit];
+    this.unit = unit;
+    this.decimals = Math.max(0, Math.ceil(Math.log10(unit)) + 1); // a tenth of a pixel and less
+  }
+
+  fitted(width, height, seen) {
+    if (!seen.length) seen = [[0, 0], [1, 1]];
     const xs = seen.map((point) => point[0]);
     const ys = seen.map((point) => point[1]);
     const [left, right, low, high] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
@@ -115,11 +133,43 @@ class Stage {
       (width - 2 * margin) / (right - left || 1),
       (height - 2 * margin) / (high - low || 1),
     );
-    const [x0, y0] = [width / 2 - (unit * (left + right)) / 2, height / 2 + (unit * (low + high)) / 2];
-    this.at = ([x, y]) => [x0 + unit * x, y0 - unit * y];
-    this.back = ([x, y]) => [(x - x0) / unit, (y0 - y) / unit];
-    this.unit = unit;
-    this.decimals = Math.max(0, Math.ceil(Math.log10(unit)) + 1); // a tenth of a pixel and less
+    return { unit, middle: [(left + right) / 2, (low + high) / 2] };
+  }
+
+  // Larger by a factor about a place in the drawing, px.
+  zoom(factor, about = [this.svg.clientWidth / 2, this.svg.clientHeight / 2]) {
+    const most = CLOSEST * this.whole.unit;
+    const unit = Math.min(Math.max(this.unit * factor, this.whole.unit / 20), most);
+    const held = this.back(about);
+    const { clientWidth, clientHeight } = this.svg;
+    const middle = [
+      held[0] - (about[0] - clientWidth / 2) / unit,
+      held[1] + (about[1] - clientHeight / 2) / unit,
+    ];
+    this.see({ unit, middle });
+  }
+
+  // Moved by so many px.
+  pan([dx, dy]) {
+    const { unit, middle } = this.view || this.whole;
+    this.see({ unit, middle: [middle[0] - dx / unit, middle[1] + dy / unit] });
+  }
+
+  // A part of the drawing; null for all of it.
+  see(view) {
+    this.view = view;
+    this.draw();
+  }
+
+  // The part that is seen now, so that it stays while what is drawn changes.
+  hold() {
+    this.view ||= this.whole;
+  }
+
+  // Place of the mouse or a finger in the drawing, px.
+  pointer(event) {
+    const frame = this.svg.getBoundingClientRect();
+    return [event.clientX - frame.left - this.svg.clientLeft, event.clientY - frame.top - this.svg.clientTop];
   }
 
   // Lines below all that is drawn, their numbers above it; what lies outside a close view does not
@@ -127,7 +177,7 @@ class Stage {
   grid(width, height) {
     const lines = add(this.svg, "g", { class: "grid" });
     const numbers = element("g", { class: "numbers" });
-    if (this.close) {
+    if (this.close || this.view) {
       add(numbers, "path", { d: `M0 0H${STRIP.left}V${height - STRIP.below}H${width}V${height}H0Z` });
     }
     const text = (place, words, style = "") => add(numbers, "text", { ...place, class: style }, words);
@@ -277,8 +327,12 @@ class Stage {
     }
     for (const name of ["A", "B", "P"]) parts[name] = add(layer, "text", {}, name);
     if (this.onDrive) {
-      parts.hold = add(layer, "path", { class: "hold" });
+      parts.hold = add(layer, "path", { class: "hold", "data-joint": "a" });
       add(parts.hold, "title", {}, "Drag the driver");
+      for (const name of moving.filter((each) => each !== "a")) {
+        parts[`hold-${name}`] = add(layer, "circle", { r: 12, class: "hold", "data-joint": name });
+        add(parts[`hold-${name}`], "title", {}, `Drag ${name.toUpperCase()}`);
+      }
     }
     return parts;
   }
@@ -297,7 +351,10 @@ class Stage {
     for (const [name, , d] of partsOf(this.design, state, this.at, BLOCK / this.unit)) {
       set(parts[name], { d });
     }
-    for (const [name, [x, y]] of Object.entries(places)) set(parts[name], { cx: px(x), cy: px(y) });
+    for (const [name, [x, y]] of Object.entries(places)) {
+      set(parts[name], { cx: px(x), cy: px(y) });
+      if (parts[`hold-${name}`]) set(parts[`hold-${name}`], { cx: px(x), cy: px(y) });
+    }
     const middle = [(a[0] + b[0] + p[0]) / 3, (a[1] + b[1] + p[1]) / 3];
     set(parts.P, { x: px(p[0] + 9), y: px(p[1] + 16) });
     for (const name of ["A", "B"]) {
@@ -345,39 +402,6 @@ class Stage {
     const arc = Array.from({ length: 13 }, (_, k) => on(from + ((to - from) * k) / 12));
     const barb = to - (direction * 8) / radius;
     return through(arc) + through([on(barb, radius + 4), on(to), on(barb, radius - 4)]);
-  }
-
-  // Dragging adds up turns, so that a driver held at its limit comes back where it left it.
-  drags() {
-    let last = null;
-    let wanted = 0;
-    const angleAt = (event) => {
-      const frame = this.svg.getBoundingClientRect();
-      const [x, y] = this.back([
-        event.clientX - frame.left - this.svg.clientLeft,
-        event.clientY - frame.top - this.svg.clientTop,
-      ]);
-      return Math.atan2(y - this.design.linkage.o2[1], x - this.design.linkage.o2[0]);
-    };
-    this.svg.addEventListener("pointerdown", (event) => {
-      if (!this.design || !event.target.closest(".hold")) return;
-      event.preventDefault();
-      this.svg.focus({ preventScroll: true });
-      this.svg.setPointerCapture(event.pointerId);
-      last = angleAt(event);
-      wanted = this.theta2;
-    });
-    this.svg.addEventListener("pointermove", (event) => {
-      if (last === null) return;
-      const angle = angleAt(event);
-      wanted += wrapped(angle - last);
-      last = angle;
-      this.onDrive(wanted);
-    });
-    for (const end of ["pointerup", "pointercancel"])
-      this.svg.addEventListener(end, () => {
-        last = null;
-      });
   }
 }
 

@@ -1,0 +1,40 @@
+"""The front end of the live page: the modules of the reports, and its own."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from grashof.page.render import page_of, script_of, text_of
+
+SCRIPTS = (
+    "kinds.js", "linkage.js", "svg.js", "stage.js", "grabbing.js", "player.js", "axes.js", "picture.js", "curves.js",
+    "table.js", "compare.js", "saving.js", "live/task.js", "live/handles.js", "live/backdrop.js", "live/form.js",
+    "live/listing.js", "live/transport.js", "live/live.js",
+)  # fmt: skip
+
+
+@cache
+def live_page() -> str:
+    """The page as HTML; what it shows it asks for."""
+    return page_of("live/live.html")
+
+
+def live_script() -> str:
+    """All scripts as one, which defines `startLive`."""
+    return f'"use strict";\n(() => {{\n{script_of(SCRIPTS)}\nwindow.startLive = startLive;\n}})();\n'
+
+
+def live_style() -> str:
+    """Both style sheets."""
+    return text_of("page.css") + text_of("live/live.css")
+
+
+def _start() -> str:
+    return text_of("live/start.js")
+
+
+FRONT = {
+    "/live.css": lambda: (live_style(), "text/css"),
+    "/live.js": lambda: (live_script(), "text/javascript"),
+    "/start.js": lambda: (_start(), "text/javascript"),
+}

@@ -1,0 +1,183 @@
+"""The server of the live page: on this machine alone, for one browser that has its token."""
+
+from __future__ import annotations
+
+import json
+import secrets
+from collections.abc import AsyncGenerator, AsyncIterator, Awaitable, Callable
+from contextlib import aclosing, asynccontextmanager
+from dataclasses import dataclass, field
+from typing import Any
+
+from starlette.applications import Starlette
+from starlette.middleware import Middleware
+from starlette.middleware.trustedhost import TrustedHostMiddleware
+from starlette.requests import ClientDisconnect, Request
+from starlette.responses import JSONResponse, Response, StreamingResponse
+from starlette.routing import Route
+
+from grashof.live.asked import MOST_BYTES, document_from, job_of, name_of, request_of
+from grashof.live.front import FRONT, live_page
+from grashof.live.session import Sessions
+from grashof.live.solvers import Solvers
+from grashof.problems import ProblemError, catalogue
+from grashof.problems.files.problem_file import problem_text
+
+HOST = "127.0.0.1"
+TOKEN = "Grashof-Token"  # noqa: S105  (the name of the header)
+HEADERS = {
+    "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; "
+    "connect-src 'self'; img-src 'self' blob: data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cache-Control": "no-store",
+}
+JSON_LINES = "application/x-ndjson"
+
+
+@dataclass(frozen=True, slots=True)
+class Live:
+    """What is served.
+
+    Parameters
+    ----------
+    begin : dict
+        The problem that a new page has: "document" and "name".
+    port : int
+        Of the server; with the host, its own origin.
+    token : str
+        What every request has to bring along; the page has it from the fragment of its address.
+    """
+
+    begin: dict[str, Any]
+    port: int
+    token: str = field(default_factory=lambda: secrets.token_urlsafe(24))
+    solvers: Solvers = field(default_factory=Solvers)
+
+    @property
+    def origin(self) -> str:
+        """Where the page comes from."""
+        return f"http://{HOST}:{self.port}"
+
+    @property
+    def address(self) -> str:
+        """What to open in a browser."""
+        return f"{self.origin}/#{self.token}"
+
+
+def application(live: Live) -> Starlette:
+    """The application: the page, its style and scripts, and what the page asks for."""
+    sessions = Sessions(live.solvers)
+
+    async def page(_request: Request) -> Response:
+        return Response(live_page(), media_type="text/html")
+
+    async def front(request: Request) -> Response:
+        content, kind = FRONT[request.url.path]()
+        return Response(content, media_type=kind)
+
+    async def begin(_request: Request, body: dict[str, Any]) -> Response:
+        return JSONResponse({**_opened(live, body), "catalogue": list(catalogue())})
+
+    async def ask(_request: Request, body: dict[str, Any]) -> Response:
+        session = sessions.of(body.get("page"))
+        job = job_of(body, session.shown)
+        return StreamingResponse(_until_left(session.lines(job)), media_type=JSON_LINES)
+
+    @asynccontextmanager
+    async def lifespan(_app: Starlette) -> AsyncIterator[None]:
+        live.solvers.start()
+        try:
+            yield
+        finally:
+            live.solvers.end()
+
+    return Starlette(
+        routes=[
+            Route("/", page),
+            *(Route(path, front) for path in FRONT),
+            Route("/begin", _guarded(live, begin), methods=["POST"]),
+            Route("/ask", _guarded(live, ask), methods=["POST"]),
+        ],
+        middleware=[
+            Middleware(TrustedHostMiddleware, allowed_hosts=[HOST, "localhost"], www_redirect=False),
+            Middleware(_Headers),
+        ],
+        lifespan=lifespan,
+    )
+
+
+def _opened(live: Live, body: dict[str, Any]) -> dict[str, Any]:
+    """The problem that a page begins with, one of the catalogue, or one whose file it has read."""
+    if "text" in body:
+        text, name = body["text"], name_of(body.get("name", ""))
+        if not isinstance(text, str):
+            raise ProblemError("text must be that of a problem file")
+        return {"document": document_from(text, name), "name": name}
+    if "catalogue" in body:
+        name = str(body["catalogue"])
+        return {"document": document_from(problem_text(name), name), "name": name}
+    return live.begin
+
+
+async def _until_left(lines: AsyncGenerator[str]) -> AsyncIterator[str]:
+    """Lines of a job; closing the request ends the work."""
+    async with aclosing(lines):
+        async for line in lines:
+            yield line + "\n"
+
+
+Answer = Callable[[Request, dict[str, Any]], Awaitable[Response]]
+
+
+def _guarded(live: Live, answer: Answer) -> Callable[[Request], Awaitable[Response]]:
+    """An answer to requests of our own page alone."""
+
+    async def guarded(request: Request) -> Response:
+        if request.headers.get("origin") != live.origin:
+            return _refused(403, "the request does not come from the live page")
+        if not secrets.compare_digest(request.headers.get(TOKEN, "").encode(), live.token.encode()):
+            return _refused(403, "the token is missing or wrong; open the address that grashof live prints")
+        try:
+            body = await _body(request)
+            return await answer(request, request_of(body))
+        except ClientDisconnect:
+            return Response(status_code=499)
+        except ProblemError as error:
+            return _refused(413 if "bytes" in str(error) else 422, *str(error).splitlines())
+
+    return guarded
+
+
+async def _body(request: Request) -> bytes:
+    """The body, as long as it is not too large."""
+    stated = request.headers.get("content-length", "")
+    if stated.isdecimal() and int(stated) > MOST_BYTES:
+        raise ProblemError(f"the request has {stated} bytes; at most {MOST_BYTES} are allowed")
+    body = b""
+    async for part in request.stream():
+        body += part
+        if len(body) > MOST_BYTES:
+            raise ProblemError(f"the request has more than {MOST_BYTES} bytes")
+    return body
+
+
+def _refused(status: int, *lines: str) -> Response:
+    return Response(json.dumps({"kind": "error", "lines": list(lines)}), status, media_type="application/json")
+
+
+class _Headers:
+    """Headers that every answer has."""
+
+    def __init__(self, app: Any) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+        async def send_with(message: Any) -> None:
+            if message["type"] == "http.response.start":
+                message["headers"] += [(k.lower().encode(), v.encode()) for k, v in HEADERS.items()]
+            await send(message)
+
+        await self._app(scope, receive, send_with if scope["type"] == "http" else send)

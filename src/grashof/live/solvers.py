@@ -1,0 +1,189 @@
+"""Solver processes of the live page: warm, interruptible, replaced when one is lost."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+from collections.abc import AsyncGenerator, Callable
+from contextlib import suppress
+from dataclasses import dataclass, field
+from enum import Enum
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
+from time import monotonic
+
+from grashof.live.jobs import Job, Line
+
+WARM = 2  # one works, the other one takes over where that one does not stop at once
+GRACE = 2.0  # s after which a solver that was asked to stop is replaced
+PAUSE = 0.002  # s between two looks at a solver
+
+
+class State(Enum):
+    """What a solver is at."""
+
+    STARTING = "starting"
+    IDLE = "idle"
+    WORKING = "working"
+    STOPPING = "stopping"  # it was asked to leave its job
+
+
+STOP, DONE, READY = "stop", "done", "ready"
+LOST = "a solver was lost twice over this; the task is left as it is"
+
+
+def run_solver(pipe: Connection) -> None:
+    """What a solver process does: job after job, until the pipe closes."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the server, which closes the pipe
+    from grashof.live.work import lines, warm_up
+
+    with suppress(EOFError, BrokenPipeError, ConnectionResetError):
+        warm_up()
+        pipe.send(READY)
+        while True:
+            job = pipe.recv()
+            if job == STOP:  # it came after the end of the job that it is for
+                continue
+            lines(job, pipe.poll, pipe.send)
+            pipe.send(DONE)
+
+
+@dataclass(slots=True, eq=False)
+class Solver:
+    """A process that does one job at a time.
+
+    Parameters
+    ----------
+    process : Process
+    pipe : Connection
+    state : State
+    stopped : float, s
+        When it was asked to stop, while it does.
+    """
+
+    process: BaseProcess
+    pipe: Connection
+    state: State = State.STARTING
+    stopped: float = 0.0
+
+    @classmethod
+    def started(cls) -> Solver:
+        """A new process, which tells when it is ready."""
+        context = get_context("spawn")
+        ours, theirs = context.Pipe()
+        process = context.Process(target=run_solver, args=(theirs,), daemon=True)
+        process.start()
+        theirs.close()
+        return cls(process, ours)
+
+    def received(self) -> object | None:
+        """What it has sent, or None; `EOFError` where it is lost."""
+        with suppress(ConnectionResetError, BrokenPipeError):
+            return self.pipe.recv() if self.pipe.poll() else None
+        raise EOFError
+
+    def stop(self) -> None:
+        """Ask it to leave its job."""
+        if self.state is State.WORKING:
+            self.state, self.stopped = State.STOPPING, monotonic()
+            with suppress(OSError):
+                self.pipe.send(STOP)
+
+    def end(self) -> None:
+        """End the process, whatever it does."""
+        self.process.kill()
+        self.process.join()
+        self.pipe.close()
+
+
+@dataclass(slots=True)
+class Solvers:
+    """Some warm solvers, for jobs of any page.
+
+    Parameters
+    ----------
+    warm : int
+    """
+
+    warm: int = WARM
+    every: list[Solver] = field(default_factory=list)
+
+    def start(self) -> None:
+        """Begin to warm them up."""
+        self.every += [Solver.started() for _ in range(self.warm - len(self.every))]
+
+    def end(self) -> None:
+        """End them all."""
+        for solver in self.every:
+            solver.end()
+        self.every.clear()
+
+    async def lines(self, job: Job, left: Callable[[], bool]) -> AsyncGenerator[Line]:
+        """Lines of a job, which is begun once more where its solver is lost.
+
+        Parameters
+        ----------
+        job : Job
+        left : callable
+            Whether nobody waits for it any more; it is then asked to stop, and no more lines come.
+        """
+        for _ in range(2):
+            solver = await self._taken(left)
+            if solver is None:
+                return
+            try:
+                async for line in self._done_by(solver, job, left):
+                    yield line
+                return
+            except EOFError:
+                self._replace(solver)
+            finally:
+                solver.stop()  # where it is not done
+        yield Line('{"kind":"error","lines":["%s"]}' % LOST)
+
+    async def _done_by(self, solver: Solver, job: Job, left: Callable[[], bool]) -> AsyncGenerator[Line]:
+        solver.pipe.send(job)
+        while True:
+            found = solver.received()
+            if isinstance(found, Line):
+                if left():
+                    return
+                yield found
+            elif found == DONE:
+                solver.state = State.IDLE
+                return
+            elif left():
+                return
+            else:
+                await asyncio.sleep(PAUSE)
+
+    async def _taken(self, left: Callable[[], bool]) -> Solver | None:
+        """A solver for a job, as soon as there is one; None where nobody waits any more."""
+        while not left():
+            self._look()
+            for solver in self.every:
+                if solver.state is State.IDLE:
+                    solver.state = State.WORKING
+                    return solver
+            await asyncio.sleep(PAUSE)
+        return None
+
+    def _look(self) -> None:
+        """See which solvers have become ready, and replace those that are lost or do not stop."""
+        for solver in list(self.every):
+            try:
+                while solver.state in (State.STARTING, State.STOPPING) and (said := solver.received()) is not None:
+                    if said in (READY, DONE):
+                        solver.state = State.IDLE
+            except EOFError:
+                self._replace(solver)
+                continue
+            late = solver.state is State.STOPPING and monotonic() > solver.stopped + GRACE
+            if late or not solver.process.is_alive():
+                self._replace(solver)
+
+    def _replace(self, solver: Solver) -> None:
+        solver.end()
+        if solver in self.every:
+            self.every[self.every.index(solver)] = Solver.started()

@@ -1,0 +1,259 @@
+"""What a solver of the live page does: designs followed, searched for, written to files; as lines of JSON."""
+
+from __future__ import annotations
+
+import json
+import pickle
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from grashof.live.jobs import Job, Line
+from grashof.page.designs import driver_travel
+from grashof.page.scene import scene_of
+from grashof.page.search import headline, search_data
+from grashof.problems import Problem, ProblemError
+from grashof.problems.files.problem_schema import problem_from
+from grashof.problems.files.problem_writing import problem_toml
+from grashof.synth import Candidate, Progress, Result, synthesize, track
+from grashof.synth.designs.table import to_frame
+from grashof.wording.problem import summary
+
+TOP = 50  # families in a list, as `grashof solve` has them
+TIME_LIMIT = 120.0  # s, of a search
+TRACKED = 10  # designs that follow the hand
+SHARE = 0.2  # of the time of a search that telling of it may take
+SAME = 1e-6  # of all that states them: two designs are one
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """Designs on a page by their keys, which stay while a design is followed.
+
+    Parameters
+    ----------
+    designs : dict of int to Candidate
+    result : Result, optional
+        Of a search that is done.
+    next_key : int
+    """
+
+    designs: Mapping[int, Candidate] = field(default_factory=dict)
+    result: Result | None = None
+    next_key: int = 1
+
+    @classmethod
+    def read(cls, shown: bytes) -> Shown:
+        """As a job before wrote it."""
+        return pickle.loads(shown) if shown else cls()  # noqa: S301  (our own, from a solver)
+
+    def written(self) -> bytes:
+        """For the next job, in whatever process."""
+        return pickle.dumps(self)
+
+    def matched(self, found: Sequence[Candidate], result: Result | None = None) -> Shown:
+        """A new list, in which those that are known keep their keys."""
+        known = {key: _numbers(design) for key, design in self.designs.items()}
+        designs: dict[int, Candidate] = {}
+        key = self.next_key
+        for design in found:
+            numbers = _numbers(design)
+            same = (k for k, other in known.items() if k not in designs and _alike(numbers, other))
+            kept = next(same, None)
+            designs[key if kept is None else kept] = design
+            key += kept is None
+        return Shown(designs, result, key)
+
+
+def _numbers(design: Candidate) -> np.ndarray[Any, np.dtype[np.float64]]:
+    stated = [np.ravel(each) for each in design.linkage.parameters]
+    return np.concatenate([[len(design.linkage.MECHANISM)], *stated]).astype(float)
+
+
+def _alike(one: np.ndarray[Any, Any], other: np.ndarray[Any, Any]) -> bool:
+    return one.shape == other.shape and bool(np.abs(one - other).max() <= SAME * np.abs(one).max())
+
+
+def lines(job: Job, stop: Callable[[], bool], tell: Callable[[Line], object]) -> None:
+    """Do a job, and tell of it line by line; the last line says that it is done.
+
+    Parameters
+    ----------
+    job : Job
+    stop : callable
+        Asked often; the job ends soon after it returns True.
+    tell : callable
+        Called with each line.
+    """
+    since = perf_counter()
+    try:
+        problem = problem_from(job.document, job.name)
+        _JOBS[job.what](job, problem, stop, tell)
+    except ProblemError as error:
+        tell(_line("error", lines=str(error).splitlines()))
+    tell(_line("done", seconds=round(perf_counter() - since, 4)))
+
+
+def _line(kind: str, shown: Shown | None = None, **content: Any) -> Line:
+    text = json.dumps({"kind": kind, **content}, allow_nan=False, separators=(",", ":"))
+    return Line(text, None if shown is None else shown.written())
+
+
+def _task(_job: Job, problem: Problem, _stop: object, tell: Callable[[Line], object]) -> None:
+    """What is asked, to be drawn before any design is known."""
+    tell(_line("task", scene=scene_of(problem), asked=_asked(problem), title=problem.title or problem.name))
+
+
+def _track(job: Job, problem: Problem, _stop: object, tell: Callable[[Line], object]) -> None:
+    shown = Shown.read(job.shown)
+    chosen = [key for key in job.options.get("keys", ()) if key in shown.designs]
+    order = list(dict.fromkeys([*chosen, *shown.designs]))[:TRACKED]
+    kept = {key: design for key, design in shown.designs.items() if key in order}
+    kept = {key: design for key, design in kept.items() if design.linkage.MECHANISM in problem.mechanism}
+    moved = dict(zip(kept, track(list(kept.values()), problem), strict=True))
+    there = {key: design for key, design in moved.items() if design.verdict.ok}
+    lost = {
+        key: "; ".join(map(str, design.verdict.defects))
+        for key, design in moved.items()
+        if not design.verdict.ok
+    }
+    following = replace(shown, designs=moved, result=None)  # a lost one may come back
+    tell(_list_line("track", problem, there, following, lost=lost))
+
+
+def _search(job: Job, problem: Problem, stop: Callable[[], bool], tell: Callable[[Line], object]) -> None:
+    shown = Shown.read(job.shown)
+    next_at = 0.0
+
+    def told(progress: Progress) -> None:
+        nonlocal shown, next_at
+        since = perf_counter()
+        tell(_line("progress", solved=progress.solved, starts=progress.starts, verified=progress.verified))
+        if since < next_at or stop() or not progress.designs:
+            return
+        so_far = Result(problem, progress.designs).top(TOP)
+        shown = shown.matched(so_far.candidates)
+        tell(_list_line("searching", problem, shown.designs, shown))
+        now = perf_counter()
+        next_at = now + (now - since) / SHARE
+
+    result = synthesize(problem, progress=told, stop=stop, time_limit=TIME_LIMIT).top(TOP)
+    if stop():
+        return
+    shown = shown.matched(result.candidates, result)
+    designs = shown.designs or shown.matched(result.nearest).designs
+    tell(_list_line("found", problem, designs, shown, result))
+
+
+def _list_line(
+    phase: str,
+    problem: Problem,
+    designs: Mapping[int, Candidate],
+    shown: Shown,
+    result: Result | None = None,
+    lost: Mapping[int, str] | None = None,
+) -> Line:
+    """A list as the page draws it; of closest misses where the search found none."""
+    drawn = {key: one for key, one in designs.items() if moves(one)}
+    misses = {key: "; ".join(map(str, one.verdict.defects)) for key, one in drawn.items()}
+    listing = Result(problem, tuple(drawn.values())) if result is None else result
+    frame = to_frame(problem, list(drawn.values()))
+    data = search_data(problem, list(drawn.values()), frame, found=result is None or bool(result.candidates))
+    for key, design in zip(drawn, data["designs"], strict=True):
+        design |= {"key": key, "misses": misses[key]}
+    return _line(
+        "list",
+        shown,
+        phase=phase,
+        headline="" if result is None else headline(listing),
+        note="" if result is None else listing.note,
+        asked=_asked(problem),
+        lost=[{"key": key, "why": why} for key, why in (lost or {}).items()],
+        **data,
+    )
+
+
+def moves(design: Candidate) -> bool:
+    """Whether there is any position of it that could be drawn."""
+    if not np.isfinite(design.verdict.theta2).all():
+        return False
+    return not np.isnan(driver_travel(design.linkage, design.verdict.theta2).low)
+
+
+def _asked(problem: Problem) -> list[str]:
+    return [line.strip() for line in summary(problem)][1:]
+
+
+def _file(job: Job, problem: Problem, _stop: object, tell: Callable[[Line], object]) -> None:
+    """A file to save: the problem, or one that `grashof solve` or `grashof export` writes of the list."""
+    wanted = job.options["file"]
+    text = problem_toml(problem)
+    if wanted == "problem":
+        tell(_line("file", name=f"{job.name}.toml", type="application/toml", text=text))
+        return
+    shown = Shown.read(job.shown)
+    there = {key: design for key, design in shown.designs.items() if design.verdict.ok}
+    if not there:
+        raise ProblemError("there is no design to save")
+    result = shown.result or Result(problem, tuple(there.values()))
+    with TemporaryDirectory() as name:
+        made, kind = _FILES[wanted](Path(name), result, text, there.get(job.options.get("key", 0)))
+        content = made.read_text(encoding="utf-8")
+    tell(_line("file", name=f"{job.name}-{made.name}", type=kind, text=content))
+
+
+def _run_file(name: str, kind: str) -> Callable[..., tuple[Path, str]]:
+    """One of the files of a run."""
+
+    def make(folder: Path, result: Result, text: str, _design: Candidate | None) -> tuple[Path, str]:
+        from grashof.output.run_files import write_run
+
+        write_run(folder, result, {"top": TOP, "made by": "grashof live"}, drawings=0, problem_text=text)
+        return folder / name, kind
+
+    return make
+
+
+def _dxf(folder: Path, result: Result, text: str, design: Candidate | None) -> tuple[Path, str]:
+    """The plates of a design."""
+    from grashof.workshop.export import Making, export_files
+    from grashof.workshop.plates import PlateSizes
+
+    if design is None:
+        raise ProblemError("choose a design first; DXF is of one of them")
+    listed, _ = _run_file("candidates.json", "")(folder, Result(result.problem, (design,)), text, design)
+    file = folder / f"{design.id}.dxf"
+    export_files(f"{listed}#1", Making(PlateSizes()), {"dxf": file})
+    return file, "image/vnd.dxf"
+
+
+_FILES = {
+    "list": _run_file("candidates.csv", "text/csv"),
+    "designs": _run_file("candidates.json", "application/json"),
+    "report": _run_file("report.html", "text/html"),
+    "dxf": _dxf,
+}
+_JOBS: dict[str, Callable[[Job, Problem, Callable[[], bool], Callable[[Line], object]], None]] = {
+    "task": _task,
+    "track": _track,
+    "search": _search,
+    "file": _file,
+}
+
+def warm_up() -> None:
+    """Load all that a first job would wait for."""
+    from grashof.problems import load
+    from grashof.problems.files.problem_file import problem_text
+    from grashof.problems.files.toml_file import document_of
+
+    document = document_of(problem_text("luggage"), "luggage.toml")
+    found = synthesize(load("luggage"), enough=2, starts=16)
+    shown = Shown().matched(found.candidates)
+    lines(Job("track", document, "luggage", shown=shown.written()), lambda: False, lambda _line: None)
+
+
