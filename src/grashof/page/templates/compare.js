@@ -4,11 +4,26 @@ class Comparison {
     Object.assign(this, { root, scene, designs, columns, onPick, onChange, indexes: [], stages: [] });
     this.list = $("[data-list]", root);
     this.player = new Player(root, { onMove: (progress) => this.move(progress) });
-    const last = (designs[0] ? designs[0].theta2.length : 2) - (scene.closed ? 0 : 1);
-    this.player.travel({ low: 0, high: last, wraps: scene.closed, step: 0.02 });
+    this.travel();
     root.addEventListener("keydown", (event) => {
       if (event.target.closest(".stage") && this.player.key(event)) event.preventDefault();
     });
+  }
+
+  // From the first target to the last, or around.
+  travel() {
+    const { designs, scene } = this;
+    const last = (designs[0] ? designs[0].theta2.length : 2) - (scene.closed ? 0 : 1);
+    this.player.travel({ low: 0, high: last, wraps: scene.closed, step: 0.02 });
+  }
+
+  // Another list, and which designs of it are compared.
+  renew(given) {
+    Object.assign(this, given);
+    this.root.hidden = !this.indexes.length;
+    if (this.root.hidden) this.player.pause();
+    this.travel();
+    this.draw();
   }
 
   toggle(index, wanted) {

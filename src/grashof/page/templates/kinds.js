@@ -21,6 +21,7 @@ function closeFourBar({ o4, r3, r4 }, a, assembly) {
     e3: [(b[0] - a[0]) / r3, (b[1] - a[1]) / r3],
     theta4: Math.atan2(b[1] - o4[1], b[0] - o4[0]),
     mu: smallAngle((r3 * r3 + r4 * r4 - s * s) / (2 * r3 * r4)),
+    across: [b[0] - o4[0], b[1] - o4[1]],
   };
 }
 
@@ -35,6 +36,7 @@ function closeSliderCrank({ o2, r3, offset, slide_angle }, a, assembly) {
     e3: unitVector(along * cos - h * sin, along * sin + h * cos),
     theta4: wrapped(slide_angle + Math.PI / 2),
     mu: smallAngle(h / r3),
+    across: [-sin, cos],
     slide: x * cos + y * sin + along,
   };
 }

@@ -106,9 +106,47 @@ function fileName(...parts) {
 }
 
 function download(name, text, type) {
+  downloadBlob(name, new Blob([text], { type }));
+}
+
+function downloadBlob(name, blob) {
   const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([text], { type }));
+  link.href = URL.createObjectURL(blob);
   link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+}
+
+// The drawing as it stands, as SVG that needs no style sheet.
+function savedDrawing(svg) {
+  const { clientWidth: width, clientHeight: height } = svg;
+  const holder = document.createElement("div");
+  holder.className = "sheet";
+  const copy = svg.cloneNode(true);
+  for (const node of $$(".hold, .handle, .by-hand, image, title", copy)) node.remove();
+  for (const name of ["id", "role", "tabindex", "style"]) copy.removeAttribute(name);
+  for (const { name } of [...copy.attributes]) if (name.startsWith("aria-")) copy.removeAttribute(name);
+  holder.append(copy);
+  document.body.append(holder);
+  set(copy, { xmlns: "http://www.w3.org/2000/svg", "font-family": FONT, width, height, viewBox: `0 0 ${width} ${height}` });
+  styleInlined(copy);
+  copy.removeAttribute("class");
+  copy.insertBefore(element("rect", { width, height, fill: "#ffffff" }), copy.firstChild);
+  holder.remove();
+  return `<?xml version="1.0" encoding="UTF-8"?>\n${plain(new XMLSerializer().serializeToString(copy))}\n`;
+}
+
+// The same as a picture of three dots a pixel.
+function downloadPng(name, svg, dots = 3) {
+  const picture = new Image();
+  picture.onload = () => {
+    const canvas = document.createElement("canvas");
+    Object.assign(canvas, { width: dots * picture.naturalWidth, height: dots * picture.naturalHeight });
+    const context = canvas.getContext("2d");
+    context.scale(dots, dots);
+    context.drawImage(picture, 0, 0);
+    URL.revokeObjectURL(picture.src);
+    canvas.toBlob((blob) => downloadBlob(name, blob));
+  };
+  picture.src = URL.createObjectURL(new Blob([svg], { type: "image/svg+xml" }));
 }

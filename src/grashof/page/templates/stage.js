@@ -78,7 +78,9 @@ class Stage {
       ghosts: false,
       close: false,
       view: null,
-      drawnOver: () => {},
+      behind: null, // { points, draw }: what lies behind the drawing
+      beside: () => {}, // draws what goes with the linkage
+      drawnOver: () => {}, // draws what lies over all
     });
     onResize(svg, () => this.draw());
     if (onDrive) listenToJoints(this);
@@ -97,10 +99,13 @@ class Stage {
     const [width, height] = [this.svg.clientWidth, this.svg.clientHeight];
     if (width < 80) return;
     set(this.svg, { viewBox: `0 0 ${width} ${height}` });
-    this.scale(width, height, pointsToSee(this.scene, this.together, this.close));
+    const behind = this.behind ? this.behind.points() : [];
+    this.scale(width, height, [...pointsToSee(this.scene, this.together, this.close), ...behind]);
     this.svg.replaceChildren();
     const numbers = this.grid(width, height);
+    if (this.behind) this.behind.draw();
     this.areas();
+    this.beside();
     if (this.design && this.trace) this.traces();
     this.targets();
     if (this.design) {

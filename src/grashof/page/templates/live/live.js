@@ -1,0 +1,323 @@
+// The live page: the task as the hand leaves it, the designs that follow it, and those that a search finds.
+const REST = 120; // ms without a change after which a search begins
+const OTHERS = 10; // designs whose paths are drawn beside the chosen one
+const AGAIN = 2000; // ms after which a server that does not answer is asked again
+
+class Live {
+  constructor(root, transport) {
+    Object.assign(this, { root, transport, designs: [], chosen: null, version: 0, listed: null, busy: null, lost: [] });
+    Object.assign(this, { trackDue: false, searchDue: false, published: null, columns: [], compared: [], timer: null });
+    this.task = new Task({ onChange: (what) => this.changed(what) });
+    this.stage = new Stage($("#stage", root), {}, {
+      onDrive: (theta2) => this.turnTo(theta2),
+      onDraw: (state) => this.moved(state),
+    });
+    this.stage.beside = () => this.paths();
+    this.player = new Player($("#player", root), { onMove: (theta2) => this.stage.move(theta2) });
+    this.handles = new Handles(this.stage, this.task, { onMode: (mode) => this.showMode(mode) });
+    this.backdrop = new Backdrop(this.stage);
+    this.stage.behind = this.backdrop;
+    this.form = new Form($(".asked", root), this.task, { onFocusTarget: (k) => this.handles.toggleLock(k) });
+    this.listing = new Listing($(".answer", root), {
+      onPick: (key) => this.choose(key),
+      onCompare: (key, wanted) => this.compare(key, wanted),
+    });
+    const turnTo = (degrees) => this.turnTo(degrees / DEG);
+    for (const name of ["transmission", "torque", "velocity"]) {
+      this[name] = new Curves($(`#${name}`, root), { onPick: turnTo });
+    }
+    this.comparison = null;
+    new Commands(this);
+    this.open({});
+  }
+
+  // Begins with a task: that of the server, one of the catalogue, or a file's text.
+  async open(wanted) {
+    try {
+      const { document, name, catalogue } = await this.transport.begin(wanted);
+      this.designs = [];
+      this.chosen = null;
+      this.stage.view = null;
+      this.catalogue(catalogue, name);
+      this.task.open(document, name);
+    } catch (error) {
+      this.failed(error, () => this.open(wanted));
+    }
+  }
+
+  catalogue(names, name) {
+    const select = $("[name=catalogue]", this.root);
+    if (!names) return;
+    select.replaceChildren(new Option("choose", ""), ...names.map((each) => new Option(each, each)));
+    select.value = names.includes(name) ? name : "";
+  }
+
+  // The task has changed, or only how it looks: it is drawn at once, followed, and searched when it rests.
+  changed({ opened = false, looks = false }) {
+    this.form.show();
+    $("[data-undo]", this.root).disabled = !this.task.past.length;
+    $("[data-redo]", this.root).disabled = !this.task.future.length;
+    $("[data-title]", this.root).textContent = this.task.document.title || this.task.name;
+    const before = JSON.stringify(this.stage.scene);
+    this.stage.scene = sceneOf(this.task, this.published);
+    if (opened || looks || before !== JSON.stringify(this.stage.scene)) this.stage.draw();
+    const document = JSON.stringify(this.task.document);
+    if (document === this.asked) return;
+    this.asked = document;
+    this.version += 1;
+    this.trackDue = this.designs.length > 0 && !opened;
+    this.searchDue = false;
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => {
+      this.searchDue = true;
+      this.pump();
+    }, REST);
+    if (this.busy && this.busy.what === "search") this.busy.leave();
+    this.pump();
+  }
+
+  // One job at a time: designs are followed first, then searched for.
+  pump() {
+    if (this.busy) return;
+    if (this.trackDue) {
+      this.trackDue = false;
+      const keys = this.chosen === null ? [] : [this.chosen];
+      this.run("track", { keys });
+    } else if (this.searchDue) {
+      this.searchDue = false;
+      this.run("search", {});
+    }
+  }
+
+  async run(what, options) {
+    const { version } = this;
+    const leaving = new AbortController();
+    const busy = { what, leave: () => leaving.abort() };
+    this.busy = busy;
+    this.tell(what === "track" ? "following" : "searching");
+    const { document, name } = this.task;
+    try {
+      const body = { document, name, ...options };
+      await this.transport.ask(what, body, (line) => this.received(line, version), leaving.signal);
+    } catch (error) {
+      if (error.name !== "AbortError") this.failed(error, () => this.again());
+    } finally {
+      this.busy = null;
+    }
+    this.pump();
+  }
+
+  // The same once more, of a server that did not answer.
+  again() {
+    this.searchDue = true;
+    this.pump();
+  }
+
+  received(line, version) {
+    if (line.kind === "error") this.refused(line.lines);
+    else if (line.kind === "progress") this.tell(`searching: ${line.solved} of ${line.starts} starts, ${line.verified} designs`);
+    else if (line.kind === "done") this.took = line.seconds;
+    else if (line.kind === "list") this.list(line, version);
+  }
+
+  list(line, version) {
+    const { phase, designs, columns, scene, lost, found, note } = line;
+    if (phase !== "track" && version !== this.version) return;
+    const first = this.designs.length === 0;
+    this.listed = { version, phase };
+    Object.assign(this, { columns, found, lost });
+    if (phase === "track") {
+      // Those that are lost or not followed stay as they were until the next search.
+      const moved = new Map(designs.map((design) => [design.key, design]));
+      this.designs = this.designs.map((design) => moved.get(design.key) || design);
+      this.followed = designs.map(({ key }) => key);
+    } else {
+      this.designs = designs;
+      this.followed = null;
+    }
+    this.published = scene.published;
+    this.stage.scene = sceneOf(this.task, this.published);
+    this.listing.show({ designs, columns, lost, phase, found });
+    this.notice(note ? `${note[0].toUpperCase()}${note.slice(1)}.` : "");
+    $("[data-asked]", this.root).replaceChildren(
+      ...line.asked.map((words) => Object.assign(document.createElement("li"), { textContent: words })),
+    );
+    this.headline(line);
+    const kept = this.designs.some(({ key }) => key === this.chosen);
+    if (this.designs.length) this.choose(kept ? this.chosen : this.designs[0].key, { first });
+    else this.showNone();
+    this.showComparison();
+  }
+
+  headline({ phase, designs, lost, headline, found }) {
+    const words = {
+      track: `${designs.length} designs follow${lost.length ? `, ${lost.length} lost` : ""}`,
+      searching: `${designs.length} designs so far`,
+      found: found ? headline : "Closest misses: no design meets all requirements",
+    };
+    $("[data-headline]", this.root).textContent = words[phase];
+    if (phase === "found") this.tell(found ? "verified, ranked" : "no design");
+  }
+
+  showNone() {
+    this.chosen = null;
+    this.stage.show(null);
+  }
+
+  get design() {
+    return this.designs.find(({ key }) => key === this.chosen);
+  }
+
+  choose(key, { first = false } = {}) {
+    const other = key !== this.chosen;
+    this.chosen = key;
+    const { design } = this;
+    if (other) this.player.pause();
+    this.stage.svg.classList.toggle("lost", this.lost.some((each) => each.key === key));
+    this.curves(design);
+    this.stage.show(design);
+    this.travel(design);
+    if (first || other) this.player.set(design.theta2[0]);
+    else this.player.set(within(design, this.stage.theta2));
+    this.listing.mark(key);
+  }
+
+  travel({ low, high, turns, direction }) {
+    this.player.travel({ low, high, wraps: turns, sense: direction, step: 1 / DEG });
+    tellTravel(this.stage, low, high);
+  }
+
+  turnTo(theta2) {
+    this.player.pause();
+    this.player.set(theta2);
+  }
+
+  curves(design) {
+    const { angles } = travelPath(design);
+    const places = angles.map((angle) => angle * DEG);
+    const marks = design.theta2.map((angle) => within(design, angle) * DEG);
+    const whole = this.stage.scene.closed || !design.task;
+    const bold = whole ? null : design.task.map((angle) => angle * DEG).sort((a, b) => a - b);
+    const over = { places, angles: places };
+    const states = angles.map((angle) => positionOf(design.linkage, angle));
+    const mu = states.map((state) => state.mu * DEG);
+    this.transmission.show({ title: "Transmission angle", unit: "deg", limits: [0, 90], ...over, series: [{ label: "μ", values: mu }] }, { bold, marks });
+    const speeds = states.map((state) => pointSpeed(design.linkage, state));
+    const unit = this.stage.scene.unit ? `${this.stage.scene.unit}/rad` : "per rad";
+    this.velocity.show({ title: "Velocity of P per driver speed", unit, ...over, series: [{ label: "v", values: speeds }] }, { bold, marks, bounded: !design.turns });
+    $("#torque", this.root).hidden = !design.torque;
+    if (!design.torque) return;
+    const sampled = travelAngles(design).map((angle) => angle * DEG);
+    this.torque.show({ title: "Drive torque", unit: "N m", places: sampled, angles: sampled, series: [{ label: "T", values: design.torque }] }, { bold, marks, bounded: !design.turns });
+  }
+
+  moved(state) {
+    const degrees = state.theta2 * DEG;
+    this.transmission.mark(degrees, [state.mu * DEG]);
+    this.velocity.mark(degrees, [pointSpeed(this.design.linkage, state)]);
+    if (this.design.torque) this.torque.mark(degrees);
+    tellPosition(this.stage, state);
+  }
+
+  // The paths of the other designs, in the colours of their rows.
+  paths() {
+    if (!$("[name=paths]", this.root).checked) return;
+    const shown = this.designs.filter(({ key }) => !this.followed || this.followed.includes(key)).slice(0, OTHERS);
+    for (const design of shown) {
+      if (design.key === this.chosen) continue;
+      const { points } = design.task ? pathOf(design.linkage, anglesBetween(...design.task, true, 60)) : travelPath(design);
+      add(this.stage.svg, "path", { d: through(points.map(this.stage.at)), class: `other pen-${1 + (design.key % 8)}` });
+    }
+  }
+
+  compare(key, wanted) {
+    this.compared = this.compared.filter((each) => each !== key);
+    if (wanted) this.compared.push(key);
+    this.showComparison();
+  }
+
+  showComparison() {
+    const known = this.compared.filter((key) => this.designs.some((design) => design.key === key));
+    this.compared = known;
+    this.listing.markCompared(known);
+    if (!known.length && !this.comparison) return;
+    const { scene } = this.stage;
+    this.comparison ||= new Comparison($("#compare", this.root), {
+      scene,
+      designs: this.designs,
+      columns: this.columns,
+      onPick: (index) => this.choose(this.designs[index].key),
+      onChange: (index, wanted) => this.compare(this.designs[index].key, wanted),
+    });
+    const indexes = known.map((key) => this.designs.findIndex((design) => design.key === key));
+    this.comparison.renew({ scene, designs: this.designs, columns: this.columns, indexes });
+  }
+
+  showMode(mode) {
+    for (const button of $$("[data-mode]", this.root)) {
+      button.setAttribute("aria-pressed", String(button.dataset.mode === mode));
+    }
+  }
+
+  tell(words) {
+    $("[data-status]", this.root).textContent = words;
+  }
+
+  notice(words) {
+    const node = $("[data-notice]", this.root);
+    node.textContent = words;
+    node.hidden = !words;
+  }
+
+  refused(lines) {
+    this.notice(lines.join("\n"));
+    this.tell("not a task");
+  }
+
+  // A refusal is told; a server that does not answer is asked again.
+  failed(error, again) {
+    if (error.lines) return this.refused(error.lines);
+    this.notice("The server does not answer; it is asked again every two seconds. Is grashof live still running?");
+    this.tell("no answer");
+    setTimeout(again, AGAIN);
+  }
+
+  state() {
+    const { version, listed, chosen, lost, busy, compared } = this;
+    const designs = this.designs.map(({ key, id, linkage }) => ({ key, id, linkage }));
+    const rows = [...this.listing.rows.keys()];
+    return { version, listed, chosen, lost, designs, rows, compared, busy: busy && busy.what, document: this.task.document };
+  }
+}
+
+// A task as the drawing has it: as Python's `scene_of`.
+function sceneOf(task, published) {
+  const { scene = {}, requirements = {}, length_unit: unit = "" } = task.document;
+  const rows = task.targets;
+  const table = task.document[task.kind] || {};
+  const closed = Boolean(table.closed);
+  const shown =
+    task.kind === "motion"
+      ? { poses: rows.map(({ x, y, angle }) => [x, y, angle === null ? null : angle / DEG]), body: table.body || null }
+      : { points: rows.map(({ x, y }) => [x, y]) };
+  const regions = task.regions.map(([names, box]) => {
+    const { x, y } = Array.isArray(box) ? { x: [box[0], box[0]], y: [box[1], box[1]] } : box;
+    return { name: names.map((name) => name.toUpperCase()).join(", "), x: x || [null, null], y: y || [null, null] };
+  });
+  return {
+    ...(task.list ? shown : { points: [] }),
+    closed,
+    unit,
+    outlines: scene.outlines || [],
+    keepOut: requirements.keep_out || [],
+    keptOut: requirements.keep_out_for || ["o2", "o4"],
+    regions,
+    published: published || null,
+  };
+}
+
+function startLive(root, token) {
+  const live = new Live(root, typeof token === "string" ? new HttpTransport(token) : token);
+  window.grashof = Object.freeze({ state: () => live.state() });
+  return live;
+}
