@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 
 from grashof.live.jobs import FILES, KINDS, Job
 from grashof.problems import ProblemError
-from grashof.problems.files.problem_file import problem_of, problem_text
+from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.files.toml_file import document_of
 from grashof.problems.values.checks import readable
@@ -34,8 +34,8 @@ def request_of(body: bytes) -> dict[str, Any]:
 
     Examples
     --------
-    >>> request_of(b'{"what": "task"}')
-    {'what': 'task'}
+    >>> request_of(b'{"what": "track"}')
+    {'what': 'track'}
     """
     if len(body) > MOST_BYTES:
         raise ProblemError(f"the request has {len(body)} bytes; at most {MOST_BYTES} are allowed")
@@ -58,7 +58,7 @@ def job_of(request: dict[str, Any], shown: bytes = b"") -> Job:
     Parameters
     ----------
     request : dict
-        "what", "document", "name", and for some kinds "keys", "key", "file".
+        "what", "document", "name", and for some kinds "keys", "key", "file", "text".
     shown : bytes
         What its page has.
 
@@ -73,6 +73,10 @@ def job_of(request: dict[str, Any], shown: bytes = b"") -> Job:
         raise wrong_value("document", document, "a problem file as a table")
     refuse_too_much(document)
     options: dict[str, Any] = {"keys": _keys(request.get("keys", []), "keys")}
+    if what == "outline":
+        if not isinstance(text := request.get("text"), str):
+            raise ProblemError("text must be that of a DXF file")
+        options = {"text": text}
     if what == "file":
         options = {"file": _one_of(request, "file", FILES), "key": _keys([request.get("key", 0)], "key")[0]}
     return Job(what, document, name_of(request.get("name", "")), options, shown)
@@ -118,9 +122,14 @@ def refuse_too_much(document: dict[str, Any]) -> None:
     targets = max((len(each) for table in _tables(document) for each in _lists(table)), default=0)
     if targets > MOST_TARGETS:
         raise ProblemError(f"the task has {targets} targets; the live page takes at most {MOST_TARGETS}")
-    corners = _numbers(document.get("scene")) + _numbers(document.get("requirements"))
+    _numbers(document)
+    wanted = document.get("requirements")
+    areas = wanted.get("keep_out") if isinstance(wanted, dict) else None
+    corners = _numbers(document.get("scene")) + _numbers(areas)
     if corners > 2 * MOST_CORNERS:
-        raise ProblemError(f"areas and outlines have {corners // 2} corners; at most {MOST_CORNERS} are drawn")
+        raise ProblemError(
+            f"areas and outlines have {corners // 2} corners; at most {MOST_CORNERS} are drawn"
+        )
     search = document.get("search")
     effort = search.get("effort") if isinstance(search, dict) else None
     if isinstance(effort, int | float) and effort > MOST_EFFORT:
@@ -128,7 +137,9 @@ def refuse_too_much(document: dict[str, Any]) -> None:
 
 
 def _tables(document: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    return (each for each in document.values() if isinstance(each, dict) and each is not document.get("scene"))
+    return (
+        each for each in document.values() if isinstance(each, dict) and each is not document.get("scene")
+    )
 
 
 def _lists(table: dict[str, Any]) -> Iterator[list[Any]]:
@@ -136,7 +147,7 @@ def _lists(table: dict[str, Any]) -> Iterator[list[Any]]:
 
 
 def _numbers(value: object, depth: int = 0) -> int:
-    """How many numbers there are in tables and lists within each other."""
+    """How many numbers there are in tables and lists within each other; too deep ones are refused."""
     if depth > _DEPTH:
         raise ProblemError(f"the document has tables in each other more than {_DEPTH} deep")
     if isinstance(value, dict):

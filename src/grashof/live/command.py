@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import webbrowser
-from contextlib import closing
+from contextlib import closing, suppress
 from importlib.util import find_spec
 from socket import AF_INET, SO_REUSEADDR, SOCK_STREAM, SOL_SOCKET, socket
 
@@ -35,7 +35,9 @@ def live(problem: str | None, port: int, *, browser: bool) -> Exit:
         The port is taken.
     """
     if any(find_spec(name) is None for name in NEEDED):
-        raise ProblemError("grashof live needs Starlette and uvicorn; pip install 'grashof[live]' installs them")
+        raise ProblemError(
+            "grashof live needs Starlette and uvicorn; pip install 'grashof[live]' installs them"
+        )
     from uvicorn import Config, Server
 
     from grashof.live.server import HOST, Live, application
@@ -51,9 +53,9 @@ def live(problem: str | None, port: int, *, browser: bool) -> Exit:
         say(f"{served.address}\nThe page of {begin['name']}, for this machine alone. Ctrl-C ends it.")
         if browser:
             webbrowser.open(served.address)
-        config = Config(application(served), log_level="warning", access_log=False, timeout_graceful_shutdown=2)
-        try:
+        config = Config(
+            application(served), log_level="warning", access_log=False, timeout_graceful_shutdown=2
+        )
+        with suppress(KeyboardInterrupt):  # uvicorn raises it again once all is closed
             Server(config).run(sockets=[own])
-        except KeyboardInterrupt:  # uvicorn raises it again once all is closed
-            pass
     return Exit.OK

@@ -7,10 +7,11 @@ from functools import cache
 from grashof.page.render import page_of, script_of, text_of
 
 SCRIPTS = (
-    "kinds.js", "linkage.js", "svg.js", "stage.js", "grabbing.js", "player.js", "axes.js", "picture.js", "curves.js",
-    "table.js", "compare.js", "saving.js", "live/task.js", "live/handles.js", "live/backdrop.js", "live/form.js",
-    "live/listing.js", "live/transport.js", "live/commands.js", "live/live.js",
-)  # fmt: skip
+    *("kinds.js", "linkage.js", "svg.js", "stage.js", "grabbing.js", "player.js", "axes.js", "picture.js"),
+    *("curves.js", "table.js", "compare.js", "saving.js", "live/task.js", "live/handles.js"),
+    *("live/backdrop.js", "live/form.js", "live/listing.js", "live/transport.js", "live/commands.js"),
+    "live/live.js",
+)
 
 
 @cache

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-KINDS = ("task", "track", "search", "file")
+KINDS = ("track", "search", "file", "outline")
 FILES = ("problem", "list", "designs", "report", "dxf")
 
 
@@ -17,13 +18,13 @@ class Job:
     Parameters
     ----------
     what : str
-        track, search, file or task.
+        One of `KINDS`.
     document : dict
         The problem file as JSON.
     name : str
         What the problem is called.
     options : mapping
-        Of a kind of job: for track and file, keys of designs.
+        Of its kind: keys of designs, which file, the text of a drawing.
     shown : bytes
         What the page has, as the job before left it.
     """
@@ -49,3 +50,14 @@ class Line:
 
     text: str
     shown: bytes | None = None
+
+
+def error_line(*lines: str) -> Line:
+    """A line that tells what is wrong.
+
+    Examples
+    --------
+    >>> error_line("there is no design to save").text
+    '{"kind": "error", "lines": ["there is no design to save"]}'
+    """
+    return Line(json.dumps({"kind": "error", "lines": list(lines)}))

@@ -26,8 +26,8 @@ from grashof.problems.files.problem_file import problem_text
 HOST = "127.0.0.1"
 TOKEN = "Grashof-Token"  # noqa: S105  (the name of the header)
 HEADERS = {
-    "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; "
-    "connect-src 'self'; img-src 'self' blob: data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
+    "img-src 'self' blob: data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
     "Cross-Origin-Resource-Policy": "same-origin",
@@ -165,7 +165,9 @@ async def _body(request: Request) -> bytes:
 
 
 def _refused(status: int, *lines: str) -> Response:
-    return Response(json.dumps({"kind": "error", "lines": list(lines)}), status, media_type="application/json")
+    return Response(
+        json.dumps({"kind": "error", "lines": list(lines)}), status, media_type="application/json"
+    )
 
 
 class _Headers:

@@ -13,7 +13,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from time import monotonic
 
-from grashof.live.jobs import Job, Line
+from grashof.live.jobs import Job, Line, error_line
 
 WARM = 2  # one works, the other one takes over where that one does not stop at once
 GRACE = 2.0  # s after which a solver that was asked to stop is replaced
@@ -45,7 +45,12 @@ def run_solver(pipe: Connection) -> None:
             job = pipe.recv()
             if job == STOP:  # it came after the end of the job that it is for
                 continue
-            lines(job, pipe.poll, pipe.send)
+            try:
+                lines(job, pipe.poll, pipe.send)
+            except (OSError, EOFError):
+                raise
+            except Exception as error:  # noqa: BLE001  (the outermost boundary: nobody else reports what is left)
+                pipe.send(error_line(f"unexpected {type(error).__name__}: {error}"))
             pipe.send(DONE)
 
 
@@ -140,7 +145,7 @@ class Solvers:
                 self._replace(solver)
             finally:
                 solver.stop()  # where it is not done
-        yield Line('{"kind":"error","lines":["%s"]}' % LOST)
+        yield error_line(LOST)
 
     async def _done_by(self, solver: Solver, job: Job, left: Callable[[], bool]) -> AsyncGenerator[Line]:
         solver.pipe.send(job)
@@ -173,7 +178,10 @@ class Solvers:
         """See which solvers have become ready, and replace those that are lost or do not stop."""
         for solver in list(self.every):
             try:
-                while solver.state in (State.STARTING, State.STOPPING) and (said := solver.received()) is not None:
+                while (
+                    solver.state in (State.STARTING, State.STOPPING)
+                    and (said := solver.received()) is not None
+                ):
                     if said in (READY, DONE):
                         solver.state = State.IDLE
             except EOFError:

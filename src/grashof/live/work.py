@@ -13,9 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from grashof.live.jobs import Job, Line
+from grashof.live.jobs import Job, Line, error_line
 from grashof.page.designs import driver_travel
-from grashof.page.scene import scene_of
 from grashof.page.search import headline, search_data
 from grashof.problems import Problem, ProblemError
 from grashof.problems.files.problem_schema import problem_from
@@ -92,10 +91,9 @@ def lines(job: Job, stop: Callable[[], bool], tell: Callable[[Line], object]) ->
     """
     since = perf_counter()
     try:
-        problem = problem_from(job.document, job.name)
-        _JOBS[job.what](job, problem, stop, tell)
+        _JOBS[job.what](job, stop, tell)
     except ProblemError as error:
-        tell(_line("error", lines=str(error).splitlines()))
+        tell(error_line(*str(error).splitlines()))
     tell(_line("done", seconds=round(perf_counter() - since, 4)))
 
 
@@ -104,13 +102,12 @@ def _line(kind: str, shown: Shown | None = None, **content: Any) -> Line:
     return Line(text, None if shown is None else shown.written())
 
 
-def _task(_job: Job, problem: Problem, _stop: object, tell: Callable[[Line], object]) -> None:
-    """What is asked, to be drawn before any design is known."""
-    tell(_line("task", scene=scene_of(problem), asked=_asked(problem), title=problem.title or problem.name))
+def _problem(job: Job) -> Problem:
+    return problem_from(job.document, job.name)
 
 
-def _track(job: Job, problem: Problem, _stop: object, tell: Callable[[Line], object]) -> None:
-    shown = Shown.read(job.shown)
+def _track(job: Job, _stop: object, tell: Callable[[Line], object]) -> None:
+    problem, shown = _problem(job), Shown.read(job.shown)
     chosen = [key for key in job.options.get("keys", ()) if key in shown.designs]
     order = list(dict.fromkeys([*chosen, *shown.designs]))[:TRACKED]
     kept = {key: design for key, design in shown.designs.items() if key in order}
@@ -122,12 +119,13 @@ def _track(job: Job, problem: Problem, _stop: object, tell: Callable[[Line], obj
         for key, design in moved.items()
         if not design.verdict.ok
     }
-    following = replace(shown, designs=moved, result=None)  # a lost one may come back
+    # A lost one stays as it last was, and may come back from there.
+    following = replace(shown, designs={**kept, **there}, result=None)
     tell(_list_line("track", problem, there, following, lost=lost))
 
 
-def _search(job: Job, problem: Problem, stop: Callable[[], bool], tell: Callable[[Line], object]) -> None:
-    shown = Shown.read(job.shown)
+def _search(job: Job, stop: Callable[[], bool], tell: Callable[[Line], object]) -> None:
+    problem, shown = _problem(job), Shown.read(job.shown)
     next_at = 0.0
 
     def told(progress: Progress) -> None:
@@ -189,9 +187,9 @@ def _asked(problem: Problem) -> list[str]:
     return [line.strip() for line in summary(problem)][1:]
 
 
-def _file(job: Job, problem: Problem, _stop: object, tell: Callable[[Line], object]) -> None:
+def _file(job: Job, _stop: object, tell: Callable[[Line], object]) -> None:
     """A file to save: the problem, or one that `grashof solve` or `grashof export` writes of the list."""
-    wanted = job.options["file"]
+    problem, wanted = _problem(job), job.options["file"]
     text = problem_toml(problem)
     if wanted == "problem":
         tell(_line("file", name=f"{job.name}.toml", type="application/toml", text=text))
@@ -232,18 +230,27 @@ def _dxf(folder: Path, result: Result, text: str, design: Candidate | None) -> t
     return file, "image/vnd.dxf"
 
 
+def _outline(job: Job, _stop: object, tell: Callable[[Line], object]) -> None:
+    """The lines of a DXF drawing, to be seen behind the task."""
+    from grashof.workshop.dxf_reading import dxf_polylines
+
+    lines = dxf_polylines(job.options["text"])
+    tell(_line("outline", polylines=[line.tolist() for line in lines]))
+
+
 _FILES = {
     "list": _run_file("candidates.csv", "text/csv"),
     "designs": _run_file("candidates.json", "application/json"),
     "report": _run_file("report.html", "text/html"),
     "dxf": _dxf,
 }
-_JOBS: dict[str, Callable[[Job, Problem, Callable[[], bool], Callable[[Line], object]], None]] = {
-    "task": _task,
+_JOBS: dict[str, Callable[[Job, Callable[[], bool], Callable[[Line], object]], None]] = {
     "track": _track,
     "search": _search,
     "file": _file,
+    "outline": _outline,
 }
+
 
 def warm_up() -> None:
     """Load all that a first job would wait for."""
@@ -255,5 +262,3 @@ def warm_up() -> None:
     found = synthesize(load("luggage"), enough=2, starts=16)
     shown = Shown().matched(found.candidates)
     lines(Job("track", document, "luggage", shown=shown.written()), lambda: False, lambda _line: None)
-
-

@@ -22,7 +22,17 @@ from grashof.sweep.result import Sweep
 from grashof.sweep.table import varied_columns
 from grashof.synth.designs.table import LISTED
 
-_SCRIPTS = ("kinds.js", "linkage.js", "svg.js", "stage.js", "grabbing.js", "grabbing.js", "player.js", "table.js", "sweep.js")
+_SCRIPTS = (
+    "kinds.js",
+    "linkage.js",
+    "svg.js",
+    "stage.js",
+    "grabbing.js",
+    "grabbing.js",
+    "player.js",
+    "table.js",
+    "sweep.js",
+)
 _ROWS = 1000  # that a browser shows at once without delay
 _DIGITS = 5
 _TEXTS = ("status", "grashof_class")

@@ -34,7 +34,7 @@ def dxf(drawing: Sheet) -> str:
     ProblemError
         ezdxf is not installed.
     """
-    ezdxf = _ezdxf()
+    ezdxf = ezdxf_installed()
     with _without_times(ezdxf):
         document = ezdxf.new("R2010", units=ezdxf.units.MM)
         for index, name in enumerate(drawing.layers):
@@ -66,12 +66,13 @@ def _add(space: Modelspace, shape: Outline | Circle | Text) -> None:
         text.set_placement((shape.x, shape.y), align=place)
 
 
-def _ezdxf() -> ModuleType:
+def ezdxf_installed() -> ModuleType:
+    """The library that reads and writes DXF; `ProblemError` where it is not installed."""
     try:
         import ezdxf
     except ModuleNotFoundError:
         raise ProblemError(
-            "--dxf needs ezdxf: pip install 'grashof[export]' (in a clone '.[export]')"
+            "DXF needs ezdxf: pip install 'grashof[export]' (in a clone '.[export]')"
         ) from None
     return ezdxf
 
