@@ -111,8 +111,9 @@ def _kinds_of(designs: Sequence[Candidate], problem: Problem) -> list[str]:
 
 def _moved(scaled: ScaledProblem, design: Candidate, number: int, most_error: float) -> Candidate:
     """A design after one solve from where it is; one that traded error for more may err as much again."""
-    here = judged_again(scaled, design)
-    start = Start.of_linkage(scaled, here.linkage, here.verdict)
+    same = design.verdict.theta2.shape == (len(scaled.problem.task),)
+    verdict = design.verdict if same else judged_again(scaled, design).verdict
+    start = Start.of_linkage(scaled, design.linkage, verdict)
     start = replace(start, settled=scaled.exact, stay=scaled.exact)
     if np.isfinite(most_error):
         goal = GOALS["size"] if "smallest" in design.best_at else GOALS["mu"]
@@ -120,4 +121,6 @@ def _moved(scaled: ScaledProblem, design: Candidate, number: int, most_error: fl
         if traded.verified:
             return replace(traded.verified[0], best_at=design.best_at, family=design.family)
     found = attempt(scaled, start, number).candidate
-    return here if found is None else replace(found, best_at=design.best_at, family=design.family)
+    if found is None:
+        return judged_again(scaled, design)
+    return replace(found, best_at=design.best_at, family=design.family)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import pandas as pd
@@ -26,15 +27,20 @@ COLUMNS = tuple(name for quantity in LISTED for name in (*_BEFORE.get(quantity.k
 OWN = Quantity("objective", "objective", Unit.RATIO, better=-1, digits=4, about="less is better")
 
 
-def to_frame(problem: Problem, candidates: tuple[Candidate, ...]) -> pd.DataFrame:
-    """Candidates as rows, in the order given, with the columns `COLUMNS`."""
+def to_frame(
+    problem: Problem, candidates: Sequence[Candidate], quantities: Sequence[Quantity] = LISTED
+) -> pd.DataFrame:
+    """Candidates as rows, in the order given, with the columns `COLUMNS`.
+
+    Of some `quantities` alone the other columns stay empty; nothing is measured for them.
+    """
     own = any(candidate.own_objective is not None for candidate in candidates)
     rows = [
         {
             "rank": rank,
             "pareto": bool(front),
             **facts(candidate),
-            **{each.column: candidate.values[each.key] * each.unit.shown for each in LISTED},
+            **{each.column: candidate.values[each.key] * each.unit.shown for each in quantities},
             OWN.column: candidate.own_objective,
         }
         for rank, (candidate, front) in enumerate(

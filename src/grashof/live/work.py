@@ -19,13 +19,17 @@ from grashof.page.search import headline, search_data
 from grashof.problems import Problem, ProblemError
 from grashof.problems.files.problem_schema import problem_from
 from grashof.problems.files.problem_writing import problem_toml
+from grashof.problems.values.mechanisms import DIMENSIONS
 from grashof.synth import Candidate, Progress, Result, synthesize, track
-from grashof.synth.designs.table import to_frame
+from grashof.synth.designs.table import LISTED, to_frame
 from grashof.wording.problem import summary
 
 TOP = 50  # families in a list, as `grashof solve` has them
 TIME_LIMIT = 120.0  # s, of a search
 TRACKED = 10  # designs that follow the hand
+# What of a design is known at once; other figures take longer than to follow it.
+_FOLLOWED = ("error", "transmission_min_task", "transmission_min_cycle", "size", *DIMENSIONS)
+AT_ONCE = tuple(each for each in LISTED if each.key in _FOLLOWED)
 SHARE = 0.2  # of the time of a search that telling of it may take
 SAME = 1e-6  # of all that states them: two designs are one
 
@@ -160,7 +164,8 @@ def _list_line(
     drawn = {key: one for key, one in designs.items() if moves(one)}
     misses = {key: "; ".join(map(str, one.verdict.defects)) for key, one in drawn.items()}
     listing = Result(problem, tuple(drawn.values())) if result is None else result
-    frame = to_frame(problem, list(drawn.values()))
+    told = AT_ONCE if phase == "track" else LISTED
+    frame = to_frame(problem, list(drawn.values()), told)
     data = search_data(problem, list(drawn.values()), frame, found=result is None or bool(result.candidates))
     for key, design in zip(drawn, data["designs"], strict=True):
         design |= {"key": key, "misses": misses[key]}
