@@ -16,7 +16,6 @@ from grashof.synth.programme.merit import same_error
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.user_functions import refuse_no_list, refuse_unusable
-from grashof.synth.results.trade_offs import GOALS
 from grashof.synth.search.attempt import attempt
 
 _TRADED = 1.001  # times the least error: designs of more were made better at something else
@@ -53,9 +52,10 @@ def track(
 
     Notes
     -----
-    One solve of some 10 ms each; no search, so that better designs elsewhere are not seen. Where all targets
-    are to be met, a design moves no farther than it has to; in least squares to the least error near it, or,
-    where it has more error than another one for the sake of its size or transmission, to as much more.
+    One solve of some 10 ms each; no search, so that better designs elsewhere are not seen. A design moves no
+    farther than it has to where all targets are to be met, and in least squares where it has more error than
+    another one for the sake of its size or transmission: then it may err as much as before, or as many times
+    the least error. Others move to the least error near them.
 
     Examples
     --------
@@ -88,7 +88,7 @@ def track(
     for number in np.argsort(errors, kind="stable").tolist():  # the least error bounds that of others
         design = designs[number]
         share = errors[number] / least
-        most = np.inf if share < _TRADED else share * max(reached, same_error(problem))
+        most = np.inf if share < _TRADED else max(share * max(reached, same_error(problem)), errors[number])
         moved[number] = _moved(ready[design.linkage.MECHANISM], design, number, most)
         if moved[number].verdict.ok:
             reached = min(reached, moved[number].error(problem))
@@ -116,11 +116,10 @@ def _moved(scaled: ScaledProblem, design: Candidate, number: int, most_error: fl
     start = Start.of_linkage(scaled, design.linkage, verdict)
     start = replace(start, settled=scaled.exact, stay=scaled.exact)
     if np.isfinite(most_error):
-        goal = GOALS["size"] if "smallest" in design.best_at else GOALS["mu"]
-        traded = attempt(scaled, replace(start, objective=goal, most_error=most_error), number)
+        traded = attempt(scaled, replace(start, stay=True, most_error=most_error), number, cognates=False)
         if traded.verified:
             return replace(traded.verified[0], best_at=design.best_at, family=design.family)
-    found = attempt(scaled, start, number).candidate
+    found = attempt(scaled, start, number, cognates=False).candidate
     if found is None:
         return judged_again(scaled, design)
     return replace(found, best_at=design.best_at, family=design.family)

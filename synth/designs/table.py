@@ -11,7 +11,7 @@ from grashof.problems import Problem
 from grashof.problems.values.quantities import Quantity, Unit
 from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.designs.ranking import pareto_optimal
+from grashof.synth.designs.ranking import pareto_goals, pareto_optimal
 
 LISTED = tuple(quantity for quantity in QUANTITIES.values() if quantity.listed)
 # Columns that are not quantities, by the quantity that follows them.
@@ -34,6 +34,9 @@ def to_frame(
 
     Of some `quantities` alone the other columns stay empty; nothing is measured for them.
     """
+    keys = {each.key for each in quantities}
+    ranked = keys.issuperset(goal.key for goal in pareto_goals(problem))
+    fronts = pareto_optimal(problem, candidates) if ranked else [False] * len(candidates)
     own = any(candidate.own_objective is not None for candidate in candidates)
     rows = [
         {
@@ -43,9 +46,7 @@ def to_frame(
             **{each.column: candidate.values[each.key] * each.unit.shown for each in quantities},
             OWN.column: candidate.own_objective,
         }
-        for rank, (candidate, front) in enumerate(
-            zip(candidates, pareto_optimal(problem, candidates), strict=True), start=1
-        )
+        for rank, (candidate, front) in enumerate(zip(candidates, fronts, strict=True), start=1)
     ]
     return pd.DataFrame(rows, columns=[*COLUMNS, *([OWN.column] if own else [])])
 

@@ -76,8 +76,8 @@ class Attempt:
         return (self.candidate, *self.cognates)
 
 
-def attempt(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
-    """Solve from a start, polish the design, verify it.
+def attempt(scaled: ScaledProblem, start: Start, number: int, *, cognates: bool = True) -> Attempt:
+    """Solve from a start, polish the design, verify it, and its cognates where they are designs, too.
 
     `number` is that of the start.
     """
@@ -92,7 +92,7 @@ def attempt(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
     may_move = scaled.has_targets and start.settled and finder.freedom
     if done is None or (may_move and not done.verified):
         done = _solved(scaled, start, number)
-    if done.verified and finder.cognates:
+    if cognates and done.verified and finder.cognates:
         done = replace(done, cognates=verified_cognates(scaled, done.verified[0]))
     return done
 
