@@ -69,8 +69,8 @@ class Form {
   typed(input) {
     const value = Number(input.value);
     const k = Number(input.closest("tr").dataset.target);
-    if (input.value.trim() === "" || !Number.isFinite(value)) return this.show();
-    this.task.edit(() => this.task.setTarget(k, { [input.dataset.cell]: value }));
+    if (input.value.trim() === "" || !Number.isFinite(value)) input.value = String(this.task.targets[k][input.dataset.cell]);
+    else this.task.edit(() => this.task.setTarget(k, { [input.dataset.cell]: value }));
   }
 
   chooseKinds() {

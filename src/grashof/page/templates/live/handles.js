@@ -26,9 +26,13 @@ class Handles {
 
   // A place as it is written into the file: on the grid where it snaps, else no finer than can be seen.
   rounded([x, y]) {
-    const fine = 10 ** -Math.max(0, Math.ceil(Math.log10(this.stage.unit)));
-    const step = this.snaps ? this.grid() : fine;
+    const step = this.step();
     return [x, y].map((value) => Number((Math.round(value / step) * step).toPrecision(12)));
+  }
+
+  // The finest step that can be seen, or that of the grid.
+  step() {
+    return this.snaps ? this.grid() : 10 ** -Math.ceil(Math.log10(this.stage.unit));
   }
 
   // The distance of round numbers that are some 12 px apart.
@@ -250,7 +254,7 @@ class Handles {
     }
   }
 
-  // Arrow keys move what has the focus by about a pixel, with shift ten times; Delete removes it, L locks it.
+  // Arrow keys move what has the focus by a step, with shift ten times; Delete removes it, L locks it.
   key(event) {
     const handle = this.focused && this.list().find(({ name }) => name === this.focused);
     if (event.key === "Escape" && this.mode !== "move") return this.setMode("move");
@@ -261,7 +265,7 @@ class Handles {
     if (event.key in ways && !this.isLocked(handle.name)) {
       stage.hold();
       const [dx, dy] = ways[event.key];
-      const step = (this.snaps ? this.grid() : 10 ** -Math.floor(Math.log10(stage.unit))) * times;
+      const step = this.step() * times;
       task.edit(() => {
         if (handle.turn) handle.turn(this.turned(handle.degrees + (dy - dx) * times * (this.snaps ? 5 : 1)));
         else handle.move(this.rounded([handle.at[0] + dx * step, handle.at[1] + dy * step]));

@@ -48,6 +48,12 @@ class Listing {
     if (!following) this.body.append(...designs.map(({ key }) => this.rows.get(key)));
   }
 
+  clear() {
+    this.rows.clear();
+    this.seen.clear();
+    this.body.replaceChildren();
+  }
+
   heads(columns) {
     const cells = columns.map(({ label, unit, about }) => {
       const cell = document.createElement("th");

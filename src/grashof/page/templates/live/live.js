@@ -35,14 +35,22 @@ class Live {
   async open(wanted) {
     try {
       const { document, name, catalogue } = await this.transport.begin(wanted);
-      this.designs = [];
-      this.chosen = null;
-      this.stage.view = null;
+      this.forget();
       this.catalogue(catalogue, name);
       this.task.open(document, name);
     } catch (error) {
       this.failed(error, () => this.open(wanted));
     }
+  }
+
+  // Nothing of the last task stays.
+  forget() {
+    this.player.pause();
+    Object.assign(this, { designs: [], chosen: null, followed: null, lost: [], compared: [], listed: null });
+    Object.assign(this.stage, { view: null, design: null, together: [] });
+    this.listing.clear();
+    this.showComparison();
+    this.notice("");
   }
 
   catalogue(names, name) {
@@ -162,6 +170,7 @@ class Live {
   showNone() {
     this.chosen = null;
     this.stage.show(null);
+    for (const name of ["transmission", "torque", "velocity"]) $(`#${name}`, this.root).hidden = true;
   }
 
   get design() {
@@ -194,6 +203,7 @@ class Live {
 
   curves(design) {
     const { angles } = travelPath(design);
+    for (const name of ["transmission", "velocity"]) $(`#${name}`, this.root).hidden = false;
     const places = angles.map((angle) => angle * DEG);
     const marks = design.theta2.map((angle) => within(design, angle) * DEG);
     const whole = this.stage.scene.closed || !design.task;

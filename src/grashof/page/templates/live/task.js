@@ -186,8 +186,8 @@ function resampled(points, count) {
   }
   return Array.from({ length: count }, (_, n) => {
     const wanted = (lengths.at(-1) * n) / (count - 1);
-    let k = lengths.findIndex((length) => length >= wanted);
-    if (k <= 0) k = 1;
+    const beyond = lengths.findIndex((length) => length >= wanted);
+    const k = beyond < 0 ? lengths.length - 1 : Math.max(beyond, 1);
     const share = (wanted - lengths[k - 1]) / (lengths[k] - lengths[k - 1] || 1);
     return points[k].map((value, axis) => points[k - 1][axis] + share * (value - points[k - 1][axis]));
   });

@@ -1,0 +1,305 @@
+"""The live page in a real browser: what hands do to it, and what it shows then."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import tomllib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, sync_playwright
+
+from grashof import load, synthesize, track
+from grashof.problems import Problem
+from grashof.problems.files.problem_schema import problem_from
+
+State = dict[str, Any]
+
+
+@pytest.fixture(scope="module")
+def window(chromium: str) -> Iterator[Page]:
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
+        yield browser.new_page(viewport={"width": 1440, "height": 900})
+        browser.close()
+
+
+@pytest.fixture
+def page(window: Page, served: str) -> Iterator[Page]:
+    """A fresh live page whose first search is done; nothing may have been complained of."""
+    complaints: list[str] = []
+    window.on("console", lambda message: complaints.append(f"{message.type}: {message.text}"))
+    window.on("pageerror", lambda error: complaints.append(str(error)))
+    window.goto("about:blank")
+    window.goto(served)
+    searched(window)
+    yield window
+    assert complaints == []
+
+
+def state(page: Page) -> State:
+    found: State = page.evaluate("window.grashof.state()")
+    return found
+
+
+def searched(page: Page) -> State:
+    """The page once its newest task is searched."""
+    page.wait_for_function(
+        "() => { const s = window.grashof && window.grashof.state();"
+        " return s && s.listed && s.listed.phase === 'found' && s.listed.version === s.version && !s.busy; }"
+    )
+    return state(page)
+
+
+def problem_of(found: State) -> Problem:
+    return problem_from(found["document"], "luggage")
+
+
+def linkages(found: State) -> list[dict[str, Any]]:
+    return [design["linkage"] for design in found["designs"]]
+
+
+def stated(designs: Any) -> list[dict[str, Any]]:
+    return [{"mechanism": each.linkage.MECHANISM, **each.linkage.stated} for each in designs]
+
+
+def place_of(page: Page, handle: str) -> tuple[float, float]:
+    box = page.locator(f"[data-handle='{handle}'] .reach").bounding_box()
+    assert box is not None
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
+def drag(page: Page, handle: str, by: tuple[float, float], steps: int = 5) -> None:
+    x, y = place_of(page, handle)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + by[0], y + by[1], steps=steps)
+    page.mouse.up()
+
+
+def test_forty_moves_show_what_the_library_gives(page: Page) -> None:
+    """Each followed list is `track` of the last one, and in the end the list is that of a search."""
+    page.locator("[data-handle='target-1']").focus()
+    designs = list(synthesize(load("luggage")).top(50).candidates[:10])
+    ways = ["ArrowUp", "ArrowLeft", "ArrowDown", "ArrowRight"]
+    for number in range(40):
+        keys = [one["key"] for one in state(page)["designs"]][:10]
+        page.keyboard.press(ways[number // 3 % 4])
+        page.wait_for_function(
+            "() => { const s = window.grashof.state(); return s.listed.version === s.version; }"
+        )
+        found = state(page)
+        if found["listed"]["phase"] == "track":
+            moved = track(designs, problem_of(found))
+            designs = [new if new.verdict.ok else old for new, old in zip(moved, designs, strict=True)]
+            assert len(found["lost"]) == sum(not new.verdict.ok for new in moved)
+            assert linkages(found)[:10] == stated(designs)
+            assert [one["key"] for one in found["designs"]][:10] == keys
+        else:
+            result = synthesize(problem_of(found)).top(50)
+            assert linkages(found) == stated(result.candidates)
+            designs = list(result.candidates[:10])
+    last = searched(page)
+    assert linkages(last) == stated(synthesize(problem_of(last)).top(50).candidates)
+    assert last["document"]["motion"]["poses"] == page.evaluate("grashof.state().document.motion.poses")
+
+
+def test_a_pose_is_dragged_by_its_place_and_by_its_angle(page: Page) -> None:
+    before = state(page)["document"]["motion"]["poses"]
+    drag(page, "target-2", (12, -20))
+    after = searched(page)["document"]["motion"]["poses"]
+    assert after[2][0] > before[2][0]
+    assert after[2][1] > before[2][1]
+    assert [after[k] for k in (0, 1, 3)] == [before[k] for k in (0, 1, 3)]
+    drag(page, "angle-2", (0, 15))
+    turned = searched(page)["document"]["motion"]["poses"]
+    assert turned[2][2] < after[2][2] - 5
+    assert turned[2][:2] == after[2][:2]
+    page.keyboard.press("Control+z")
+    assert searched(page)["document"]["motion"]["poses"] == after
+    page.keyboard.press("Control+z")
+    assert searched(page)["document"]["motion"]["poses"] == before
+    page.keyboard.press("Control+Shift+z")
+    assert searched(page)["document"]["motion"]["poses"] == after
+
+
+def test_a_locked_target_stays(page: Page) -> None:
+    page.locator("tr[data-target='1'] [data-do=lock]").click()
+    before = state(page)["document"]
+    drag(page, "target-1", (30, 30))
+    page.locator("[data-handle='target-1']").focus()
+    page.keyboard.press("Shift+ArrowLeft")
+    page.keyboard.press("Delete")
+    assert state(page)["document"] == before
+    assert page.locator("tr[data-target='1'] [data-do=remove]").is_disabled()
+
+
+def test_numbers_limits_goals_and_kinds_are_those_of_the_file(page: Page) -> None:
+    page.locator("tr[data-target='1'] [data-cell=x]").fill("3.4")
+    page.locator("tr[data-target='1'] [data-cell=x]").press("Enter")
+    page.locator("[name=objective]").select_option("compactness")
+    page.locator("input[type=number][data-limit=size]").fill("13")
+    page.locator("input[type=number][data-limit=size]").press("Enter")
+    page.locator("[name=mechanism][value=slider-crank]").check()
+    found = searched(page)
+    document = found["document"]
+    assert document["motion"]["poses"][1][0] == 3.4
+    assert document["objective"] == {"maximise": "compactness"}
+    assert document["requirements"]["size"] == [0, 13]
+    assert document["mechanism"] == ["four-bar", "slider-crank"]
+    assert linkages(found) == stated(synthesize(problem_of(found)).top(50).candidates)
+    page.locator("input[type=number][data-limit=size]").fill("")
+    page.locator("input[type=number][data-limit=size]").press("Enter")
+    page.locator("tr[data-target='0'] [data-cell=x]").fill("none")
+    page.locator("tr[data-target='0'] [data-cell=x]").press("Enter")
+    again = searched(page)["document"]
+    assert "size" not in again["requirements"]
+    assert again["motion"]["poses"][0][0] == 5
+    assert page.locator("tr[data-target='0'] [data-cell=x]").input_value() == "5"
+
+
+def test_areas_regions_and_targets_are_added_and_removed(page: Page) -> None:
+    stage = page.locator("#stage").bounding_box()
+    assert stage is not None
+    page.locator("[data-mode='area']").click()
+    page.mouse.click(stage["x"] + 120, stage["y"] + stage["height"] - 150)
+    page.locator("[data-mode='region o2 o4']").click()
+    page.mouse.click(stage["x"] + stage["width"] / 2, stage["y"] + stage["height"] / 2)
+    page.locator("[data-mode='add']").click()
+    page.mouse.click(stage["x"] + 80, stage["y"] + 200)
+    page.locator("[data-mode='move']").click()
+    document = state(page)["document"]
+    assert len(document["requirements"]["keep_out"][0]) == 4
+    assert document["requirements"]["o2"] == document["requirements"]["o4"]
+    assert len(document["motion"]["poses"]) == 5
+    drag(page, "area 1 2", (25, -10))
+    assert state(page)["document"]["requirements"]["keep_out"] != document["requirements"]["keep_out"]
+    page.locator("[data-handle='target-4']").focus()
+    page.keyboard.press("Delete")
+    page.locator("[data-handle^='O2, O4 region']").first.focus()
+    page.keyboard.press("Delete")
+    after = state(page)["document"]
+    assert len(after["motion"]["poses"]) == 4
+    assert "o2" not in after["requirements"]
+    problem_from(after, "luggage")
+
+
+def test_a_path_is_drawn_by_hand(page: Page) -> None:
+    page.locator("[data-menu=open] summary").click()
+    page.locator("[name=catalogue]").select_option("path-vertical-line")
+    page.wait_for_function("() => window.grashof.state().document.kind === 'path'")
+    searched(page)
+    stage = page.locator("#stage").bounding_box()
+    assert stage is not None
+    page.locator("[data-mode='draw']").click()
+    left, middle = stage["x"] + 150, stage["y"] + stage["height"] / 2
+    page.mouse.move(left, middle - 56)
+    page.mouse.down()
+    for k in range(30):
+        page.mouse.move(left + 10 * k, middle - (k - 15) ** 2 / 4)
+    page.mouse.up()
+    points = state(page)["document"]["path"]["points"]
+    assert len(points) == 12
+    steps = [
+        ((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2) ** 0.5 for a, b in zip(points, points[1:], strict=False)
+    ]
+    assert max(steps) < 1.1 * min(steps)
+
+
+def test_joints_move_the_linkage_and_the_wheel_brings_it_closer(page: Page) -> None:
+    before = page.locator("#angles").inner_text()
+    box = page.locator("[data-joint=b]").bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 12, box["y"] + 12)
+    page.mouse.down()
+    page.mouse.move(box["x"] - 40, box["y"] + 20, steps=6)
+    page.mouse.up()
+    assert page.locator("#angles").inner_text() != before
+    document = state(page)["document"]
+    page.locator("#stage").focus()
+    page.locator("#stage").hover()
+    page.mouse.wheel(0, -300)
+    assert state(page)["document"] == document
+
+
+@pytest.mark.parametrize("what", ["problem", "list", "report", "dxf", "svg", "png"])
+def test_files_are_saved(page: Page, what: str, tmp_path: Path) -> None:
+    page.locator("[data-menu=save] summary").click()
+    with page.expect_download() as waiting:
+        page.locator(f"[data-save={what}]").click()
+    path = tmp_path / waiting.value.suggested_filename
+    waiting.value.save_as(path)
+    if what == "problem":
+        read = load(str(path))
+        assert [one.id for one in synthesize(read).candidates] == [
+            one.id for one in synthesize(load("luggage")).candidates
+        ]
+        assert tomllib.loads(path.read_text())["kind"] == "motion"
+    elif what == "dxf":
+        import ezdxf
+
+        assert len(list(ezdxf.readfile(path).modelspace())) > 10
+    elif what == "png":
+        assert path.read_bytes().startswith(b"\x89PNG")
+    elif what == "svg":
+        assert path.read_text().count("<path") > 10
+        assert "class=" not in path.read_text()
+    else:
+        assert path.stat().st_size > 10_000
+
+
+def solver_pids(served: str) -> list[int]:
+    """Processes of the solvers: children of the server that were spawned."""
+    port = served.split(":")[2].split("/")[0]
+    found = []
+    for folder in Path("/proc").iterdir():
+        if not folder.name.isdecimal():
+            continue
+        try:
+            command = (folder / "cmdline").read_bytes().replace(b"\0", b" ")
+        except OSError:
+            continue
+        if b"spawn_main" in command:
+            found.append(int(folder.name))
+    assert port
+    return found
+
+
+def test_a_killed_solver_is_replaced_in_mid_work(page: Page, served: str) -> None:
+    before = solver_pids(served)
+    assert len(before) >= 2
+    page.locator("[data-handle='target-1']").focus()
+    page.keyboard.press("ArrowUp")
+    page.wait_for_function("() => window.grashof.state().busy === 'search'")
+    for pid in before:
+        os.kill(pid, signal.SIGKILL)
+    found = searched(page)
+    assert linkages(found) == stated(synthesize(problem_of(found)).top(50).candidates)
+    assert not set(solver_pids(served)) & set(before)
+
+
+def test_without_a_design_the_closest_miss_is_shown_and_what_to_relax(page: Page) -> None:
+    page.locator("input[type=number][data-limit=transmission_min_deg]").fill("60")
+    page.locator("input[type=number][data-limit=transmission_min_deg]").press("Enter")
+    found = searched(page)
+    assert found["designs"]
+    assert "Closest misses" in page.locator("[data-headline]").inner_text()
+    assert "transmission_min_deg" in page.locator("[data-notice]").inner_text()
+
+
+@pytest.mark.parametrize("size", [(1440, 900), (1920, 1080), (390, 844)])
+def test_it_fits_the_screen(page: Page, size: tuple[int, int]) -> None:
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    page.wait_for_timeout(200)
+    wide = page.evaluate("document.documentElement.scrollWidth")
+    assert wide <= size[0]
+    if size[0] > 1000:
+        box = page.locator(".listing tbody tr").nth(3).bounding_box()
+        assert box is not None
+        assert box["y"] + box["height"] < size[1]
+    page.set_viewport_size({"width": 1440, "height": 900})
