@@ -88,6 +88,13 @@ class Solver:
             return self.pipe.recv() if self.pipe.poll() else None
         raise EOFError
 
+    def give(self, job: Job) -> None:
+        """Let it begin; `EOFError` where it is lost."""
+        try:
+            self.pipe.send(job)
+        except OSError:
+            raise EOFError from None
+
     def stop(self) -> None:
         """Ask it to leave its job."""
         if self.state is State.WORKING:
@@ -148,7 +155,7 @@ class Solvers:
         yield error_line(LOST)
 
     async def _done_by(self, solver: Solver, job: Job, left: Callable[[], bool]) -> AsyncGenerator[Line]:
-        solver.pipe.send(job)
+        solver.give(job)
         while True:
             found = solver.received()
             if isinstance(found, Line):

@@ -1,0 +1,110 @@
+"""Solver processes: interruptible, replaced when they are lost, and as fast to answer as they are warm."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import signal
+from collections.abc import Iterator
+from time import monotonic
+from typing import Any
+
+import pytest
+
+from grashof.live.jobs import Job
+from grashof.live.session import MOST_PAGES, Sessions
+from grashof.live.solvers import GRACE, Solvers, State
+from grashof.problems import problem_text
+from grashof.problems.files.toml_file import document_of
+
+
+def job_of(name: str, what: str = "search") -> Job:
+    return Job(what, document_of(problem_text(name), name), name)
+
+
+@pytest.fixture(scope="module")
+def solvers() -> Iterator[Solvers]:
+    started = Solvers()
+    started.start()
+    yield started
+    started.end()
+
+
+async def kinds(solvers: Solvers, job: Job, left: Any = lambda: False) -> list[str]:
+    return [json.loads(line.text)["kind"] async for line in solvers.lines(job, left)]
+
+
+def test_a_job_that_nobody_waits_for_ends_and_its_solver_is_used_again(solvers: Solvers) -> None:
+    async def tried() -> list[int | None]:
+        since = monotonic()
+        assert "done" not in await kinds(solvers, job_of("nine-points"), lambda: monotonic() > since + 1)
+        assert monotonic() < since + 1.5
+        assert (await kinds(solvers, job_of("luggage")))[-1] == "done"
+        await asyncio.sleep(GRACE)
+        assert (await kinds(solvers, job_of("luggage")))[-1] == "done"
+        return [each.process.pid for each in solvers.every]
+
+    before = [each.process.pid for each in solvers.every]
+    assert asyncio.run(tried()) == before
+
+
+def test_an_idle_solver_that_is_killed_is_replaced(solvers: Solvers) -> None:
+    async def tried() -> list[str]:
+        await kinds(solvers, job_of("luggage"))
+        for each in solvers.every:
+            os.kill(each.process.pid or 0, signal.SIGKILL)
+        return await kinds(solvers, job_of("luggage"))
+
+    assert asyncio.run(tried())[-1] == "done"
+
+
+def test_a_job_that_ends_every_solver_is_told_in_a_line(solvers: Solvers) -> None:
+    async def killing() -> None:
+        killed = 0
+        while killed < 2:
+            await asyncio.sleep(0.05)
+            for each in solvers.every:
+                if each.state is State.WORKING:
+                    os.kill(each.process.pid or 0, signal.SIGKILL)
+                    each.process.join()
+                    killed += 1
+                    await asyncio.sleep(0.1)
+
+    async def tried() -> list[str]:
+        killer = asyncio.ensure_future(killing())
+        found = [json.loads(line.text) async for line in solvers.lines(job_of("nine-points"), lambda: False)]
+        await killer
+        return [line for each in found if each["kind"] == "error" for line in each["lines"]]
+
+    assert asyncio.run(tried()) == ["a solver was lost twice over this; the task is left as it is"]
+    assert asyncio.run(kinds(solvers, job_of("luggage")))[-1] == "done"
+
+
+def test_the_newest_job_of_a_page_wins(solvers: Solvers) -> None:
+    session = Sessions(solvers).of("one")
+
+    async def asked(job: Job) -> list[str]:
+        return [json.loads(line)["kind"] async for line in session.lines(job)]
+
+    async def both() -> tuple[list[str], list[str]]:
+        first = asyncio.ensure_future(asked(job_of("nine-points")))
+        await asyncio.sleep(0.5)
+        second = await asked(job_of("luggage"))
+        return await asyncio.wait_for(first, 1), second
+
+    first, second = asyncio.run(both())
+    assert "done" not in first
+    assert second[-1] == "done"
+
+
+def test_pages_that_were_left_long_ago_are_forgotten() -> None:
+    sessions = Sessions(Solvers())
+    first = sessions.of("0")
+    for number in range(MOST_PAGES):
+        sessions.of(str(number))
+    assert sessions.of("0") is first
+    sessions.of("another")
+    assert "1" not in sessions.pages
+    assert "0" in sessions.pages
+    assert len(sessions.pages) == MOST_PAGES
