@@ -5,11 +5,12 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any, NoReturn
 
 from grashof.live.jobs import FILES, KINDS, Job
-from grashof.problems import ProblemError
-from grashof.problems.files.problem_file import problem_of
+from grashof.problems import Problem, ProblemError, catalogue, load_with_text
+from grashof.problems.files.problem_file import problem_of, problem_text
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.files.toml_file import document_of
 from grashof.problems.values.checks import readable
@@ -174,19 +175,48 @@ def document_from(text: str, name: str) -> dict[str, Any]:
     return document_of(text, f"{name}.toml")
 
 
-def beginning(problem: str | None) -> dict[str, Any]:
-    """What a page begins with: a problem of the catalogue, one from a file, or luggage.
+def beginning(problem: Problem | str | None) -> dict[str, Any]:
+    """What a page begins with: a problem, one of the catalogue, one from a file, or luggage.
 
     Tables of numbers that a file names become part of the document.
+
+    Raises
+    ------
+    ProblemError
+        It is no problem, or more than a page may ask for.
     """
-    from pathlib import Path
-
-    from grashof.problems import load_with_text
-
-    found, text = load_with_text("luggage" if problem is None else problem)
+    if isinstance(problem, Problem):
+        found, text = problem, problem_toml(problem)
+    else:
+        found, text = load_with_text("luggage" if problem is None else problem)
     try:
         document = document_from(text, found.name)
     except ProblemError:  # it names files beside it, which the page has no way to
         document = document_of(problem_toml(found), found.name)
     refuse_too_much(document)
     return {"document": document, "name": name_of(Path(found.name).name)}
+
+
+def opened(begin: dict[str, Any], request: dict[str, Any]) -> dict[str, Any]:
+    """The problem that a page asks for: the one it begins with, one of the catalogue, or a file's text.
+
+    Returns
+    -------
+    dict
+        "document", "name", and the names of the "catalogue".
+
+    Raises
+    ------
+    ProblemError
+        It is no problem.
+    """
+    found = begin
+    if "text" in request:
+        text, name = request["text"], name_of(request.get("name", ""))
+        if not isinstance(text, str):
+            raise ProblemError("text must be that of a problem file")
+        found = {"document": document_from(text, name), "name": name}
+    elif "catalogue" in request:
+        name = str(request["catalogue"])
+        found = {"document": document_from(problem_text(name), name), "name": name}
+    return {**found, "catalogue": list(catalogue())}

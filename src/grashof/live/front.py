@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from functools import cache
 
 from grashof.page.render import page_of, script_of, text_of
@@ -28,6 +29,12 @@ def live_script() -> str:
 def live_style() -> str:
     """Both style sheets."""
     return text_of("page.css") + text_of("live/live.css")
+
+
+def widget_module() -> str:
+    """The module of the notebook's widget, with the whole page in it."""
+    page = page_of("live/widget.html", style=live_style(), script=live_script())
+    return f"const PAGE = {json.dumps(page)};\n{text_of('live/widget.js')}"
 
 
 def _start() -> str:

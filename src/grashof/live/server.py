@@ -16,12 +16,11 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Route
 
-from grashof.live.asked import MOST_BYTES, document_from, job_of, name_of, request_of
+from grashof.live.asked import MOST_BYTES, job_of, opened, request_of
 from grashof.live.front import FRONT, live_page
 from grashof.live.session import Sessions
 from grashof.live.solvers import Solvers
-from grashof.problems import ProblemError, catalogue
-from grashof.problems.files.problem_file import problem_text
+from grashof.problems import ProblemError
 
 HOST = "127.0.0.1"
 TOKEN = "Grashof-Token"  # noqa: S105  (the name of the header)
@@ -79,7 +78,7 @@ def application(live: Live) -> Starlette:
         return Response(content, media_type=kind)
 
     async def begin(_request: Request, body: dict[str, Any]) -> Response:
-        return JSONResponse({**_opened(live, body), "catalogue": list(catalogue())})
+        return JSONResponse(opened(live.begin, body))
 
     async def ask(_request: Request, body: dict[str, Any]) -> Response:
         session = sessions.of(body.get("page"))
@@ -107,19 +106,6 @@ def application(live: Live) -> Starlette:
         ],
         lifespan=lifespan,
     )
-
-
-def _opened(live: Live, body: dict[str, Any]) -> dict[str, Any]:
-    """The problem that a page begins with, one of the catalogue, or one whose file it has read."""
-    if "text" in body:
-        text, name = body["text"], name_of(body.get("name", ""))
-        if not isinstance(text, str):
-            raise ProblemError("text must be that of a problem file")
-        return {"document": document_from(text, name), "name": name}
-    if "catalogue" in body:
-        name = str(body["catalogue"])
-        return {"document": document_from(problem_text(name), name), "name": name}
-    return live.begin
 
 
 async def _until_left(lines: AsyncGenerator[str]) -> AsyncIterator[str]:

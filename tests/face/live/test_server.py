@@ -202,7 +202,7 @@ def test_nothing_is_served_beyond_loopback(client: Client) -> None:
         (b"{}", "page is None; it must be a name of up to 64 characters"),
         (b'{"page": "one"}', "what is None; it must be one of track, search, file, outline"),
         (b'{"page": "one", "what": "search"}', "document is None; it must be a problem file as a table"),
-        (b'{"page": "one", "what": "track", "document": {}, "keys": [1.5]}', "keys is 1.5; it must be the number of a design"),
+        (b'{"page": "1", "what": "track", "document": {}, "keys": [1.5]}', "keys is 1.5; it must be the number of a design"),  # noqa: E501
     ],
 )  # fmt: skip
 def test_malformed_requests_are_refused_in_a_line(client: Client, body: bytes, told: str) -> None:
@@ -221,9 +221,10 @@ def test_work_has_limits(client: Client) -> None:
     deep: Any = 0
     for _ in range(50):
         deep = [deep]
+    corners = {"outlines": [[[0, 0]] * 5000]}
     cases = {
         "the task has 500 targets; the live page takes at most 200": many,
-        "areas and outlines have 5000 corners; at most 1000 are drawn": {**DOCUMENT, "scene": {"outlines": [[[0, 0]] * 5000]}},
+        "areas and outlines have 5000 corners; at most 1000 are drawn": {**DOCUMENT, "scene": corners},
         "the document has tables in each other more than 12 deep": {**DOCUMENT, "scene": {"outlines": deep}},
         "search.effort is 20; the live page takes at most 4": {**DOCUMENT, "search": {"effort": 20}},
     }  # fmt: skip

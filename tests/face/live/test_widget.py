@@ -1,0 +1,110 @@
+"""The live page in a notebook: its frame in a browser, its messages answered in Python."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from typing import Any
+
+import pytest
+from playwright.sync_api import sync_playwright
+
+from grashof import load, synthesize
+from grashof.live import live
+from grashof.live.widget import LiveWidget
+from grashof.problems import ProblemError
+
+
+class Model:
+    """What a notebook does between the kernel and the page: messages to and fro."""
+
+    def __init__(self, widget: LiveWidget, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.widget, self.sent = widget, list[dict[str, Any]]()
+        monkeypatch.setattr(widget, "send", self.sent.append)
+
+    def ask(self, message: dict[str, Any]) -> list[dict[str, Any]]:
+        """All that comes back of one message."""
+
+        async def until_answered() -> None:
+            self.widget._asked(self.widget, message, [])
+            await asyncio.gather(*self.widget._tasks.values())
+
+        self.sent.clear()
+        asyncio.run(until_answered())
+        return list(self.sent)
+
+    def lines(self, what: str, **body: Any) -> list[dict[str, Any]]:
+        *answers, end = self.ask({"number": 7, "what": what, "body": body})
+        assert end == {"number": 7, "end": True}
+        return [json.loads(answer["line"]) for answer in answers]
+
+
+def test_the_widget_answers_as_the_server_does(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    widget = live(load("luggage"))
+    try:
+        model = Model(widget, monkeypatch)
+        (begun,) = model.lines("begin")
+        assert begun["name"] == "luggage"
+        document = begun["document"]
+        document["motion"]["poses"][1][1] += 0.05
+        model.lines("search", document=document, name="luggage")
+        assert widget.problem.task.positions[1, 1] == 4.05
+        expected = synthesize(widget.problem).top(50).candidates
+        assert [one.id for one in widget.designs] == [one.id for one in expected]
+        (refused,) = model.lines("search", document=[], name="luggage")
+        assert refused == {"kind": "error", "lines": ["document is []; it must be a problem file as a table"]}
+        assert model.ask({"what": "search"}) == []
+    finally:
+        widget.close()
+    assert widget._session.solvers.every == []
+
+
+def test_the_page_works_in_its_frame(chromium: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    widget = live("luggage")
+    model = Model(widget, monkeypatch)
+    module = f"{widget._esm}\nwindow.render = render;".replace("export default { render };", "")
+    script = """
+    const listeners = [];
+    const tell = (messages) => { for (const m of messages) for (const l of listeners) l(m); };
+    const model = {
+      on: (_, listener) => listeners.push(listener),
+      send: async (message) => {
+        if (!message.leave) tell(JSON.parse(await window.askPython(JSON.stringify(message))));
+      },
+    };
+    render({ model, el: document.body });
+    """
+    try:
+        with sync_playwright() as playwright:
+            browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
+            page = browser.new_page(viewport={"width": 1200, "height": 850})
+            wrong: list[str] = []
+            page.on("pageerror", lambda error: wrong.append(str(error)))
+            page.expose_function("askPython", lambda text: json.dumps(_in_thread(model, json.loads(text))))
+            page.evaluate(f"(() => {{ {module}\n {script} }})()")
+            frame = page.frames[1]
+            frame.wait_for_function("window.grashof && window.grashof.state().listed?.phase === 'found'")
+            shown = frame.evaluate("window.grashof.state().designs.map((one) => one.id)")
+            assert shown == [one.id for one in widget.designs]
+            assert page.evaluate("getComputedStyle(document.body).marginTop") == "8px"
+            browser.close()
+        assert wrong == []
+    finally:
+        widget.close()
+
+
+def _in_thread(model: Model, message: dict[str, Any]) -> list[dict[str, Any]]:
+    """Playwright has a loop of its own in this thread."""
+    from concurrent.futures import ThreadPoolExecutor
+
+    with ThreadPoolExecutor(1) as thread:
+        return thread.submit(model.ask, message).result()
+
+
+def test_what_is_no_problem_is_refused() -> None:
+    with pytest.raises(ProblemError, match="problem is 3; it must be a Problem or a name"):
+        live(3)  # type: ignore[arg-type]
+    with pytest.raises(ProblemError, match="neither a problem of the catalogue nor a file"):
+        live("nothing")
