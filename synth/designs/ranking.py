@@ -97,7 +97,7 @@ def pareto_goals(problem: Problem) -> list[Quantity]:
     return list(dict.fromkeys([*usual, *(goal for goal, _ in problem.goals)]))
 
 
-def pareto_optimal(problem: Problem, candidates: tuple[Candidate, ...]) -> BoolArray:
+def pareto_optimal(problem: Problem, candidates: Sequence[Candidate]) -> BoolArray:
     """Which candidates no other one beats in error and `pareto_goals`; shape (n,).
 
     Errors up to `same_error` count as equal. What has no value is worst.
@@ -105,7 +105,7 @@ def pareto_optimal(problem: Problem, candidates: tuple[Candidate, ...]) -> BoolA
     Parameters
     ----------
     problem : Problem
-    candidates : tuple of Candidate
+    candidates : sequence of Candidate
     """
     goals = pareto_goals(problem)
     costs = np.array([

@@ -10,6 +10,7 @@ from grashof.synth.search.run import Run
 # Solves between two looks at what is verified, fixed, so that workers change nothing: of exact designs,
 # and of least squares, where every look may spare solves.
 BATCH, BATCH_LEAST_SQUARES = 16, 8
+EARLY = 2  # first solves after which is told what there is; nothing is decided there
 LAST = 8  # solves at most of a search that is stopped before it has a design
 
 
@@ -25,9 +26,12 @@ def solve_round(found: Round, ledger: Ledger, run: Run) -> None:
             return
         some = ledger.worthwhile(found, starts[begin : begin + (LAST if ended else batch)], first=begin == 0)
         run.begin(scaled, some + ledger.promising(found, starts[begin + batch :]))
-        if some:
-            solve(some[: ledger.starts - ledger.solved], ledger, run)
-        run.tell(ledger)
+        some = some[: ledger.starts - ledger.solved]
+        early = 0 if ledger.solved else EARLY
+        for part in (some[:early], some[early:]):
+            if part:
+                solve(part, ledger, run)
+            run.tell(ledger)
 
 
 def solve(starts: list[Start], ledger: Ledger, run: Run) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from functools import cache
 
 from grashof.page.render import page_of, script_of, text_of
@@ -41,7 +42,7 @@ def _start() -> str:
     return text_of("live/start.js")
 
 
-FRONT = {
+FRONT: dict[str, Callable[[], tuple[str, str]]] = {
     "/live.css": lambda: (live_style(), "text/css"),
     "/live.js": lambda: (live_script(), "text/javascript"),
     "/start.js": lambda: (_start(), "text/javascript"),

@@ -18,7 +18,7 @@ from grashof.problems.files.problem_schema import problem_from
 from grashof.synth import Candidate
 
 
-class LiveWidget(anywidget.AnyWidget):  # type: ignore[misc]  # without types
+class LiveWidget(anywidget.AnyWidget):
     """A page in a cell; what it shows is read by `problem` and `designs`.
 
     Parameters
