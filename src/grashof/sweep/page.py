@@ -28,7 +28,6 @@ _SCRIPTS = (
     "svg.js",
     "stage.js",
     "grabbing.js",
-    "grabbing.js",
     "player.js",
     "table.js",
     "sweep.js",

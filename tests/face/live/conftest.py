@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-import shutil
+import asyncio
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Coroutine, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 import pytest
 
 
 @pytest.fixture(scope="package")
-def served() -> Iterator[str]:
-    """The address of a page that the command line serves; Ctrl-C has to end it."""
+def server() -> Iterator[tuple[str, int]]:
+    """A page that the command line serves: its address and the process; Ctrl-C has to end it."""
     command = [
         sys.executable,
         "-c",
@@ -25,16 +27,23 @@ def served() -> Iterator[str]:
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert process.stdout is not None
     address = process.stdout.readline().strip()
-    yield address
+    yield address, process.pid
     process.send_signal(signal.SIGINT)
     _, errors = process.communicate(timeout=20)
     assert (process.returncode, errors) == (0, "")
 
 
 @pytest.fixture(scope="package")
-def chromium() -> str:
-    found = [shutil.which(name) for name in ("chromium", "chromium-browser", "google-chrome")]
-    path = next((name for name in found if name), None)
-    if path is None:
-        pytest.skip("no Chromium on this machine: the page is not tested in a browser")
-    return path
+def served(server: tuple[str, int]) -> str:
+    return server[0]
+
+
+@pytest.fixture
+def run() -> Callable[[Coroutine[Any, Any, Any]], Any]:
+    """Runs a coroutine in a thread: that of the tests may have the loop of a browser."""
+
+    def in_thread(coroutine: Coroutine[Any, Any, Any]) -> Any:
+        with ThreadPoolExecutor(1) as thread:
+            return thread.submit(asyncio.run, coroutine).result()
+
+    return in_thread

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.sync_api import Page, sync_playwright
+from playwright.sync_api import Browser, Page
 
 from grashof import load, synthesize, track
 from grashof.problems import Problem
@@ -21,11 +21,10 @@ State = dict[str, Any]
 
 
 @pytest.fixture(scope="module")
-def window(chromium: str) -> Iterator[Page]:
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
-        yield browser.new_page(viewport={"width": 1440, "height": 900})
-        browser.close()
+def window(browser: Browser) -> Iterator[Page]:
+    opened = browser.new_page(viewport={"width": 1440, "height": 900})
+    yield opened
+    opened.close()
 
 
 @pytest.fixture
@@ -46,13 +45,16 @@ def state(page: Page) -> State:
     return found
 
 
+def shown(page: Page, condition: str) -> State:
+    """The page as soon as a condition holds for its state `s`."""
+    there = "const s = window.grashof && window.grashof.state(); return s && s.listed"
+    found: State = page.wait_for_function(f"() => {{ {there} && {condition} && s; }}").json_value()
+    return found
+
+
 def searched(page: Page) -> State:
     """The page once its newest task is searched."""
-    page.wait_for_function(
-        "() => { const s = window.grashof && window.grashof.state();"
-        " return s && s.listed && s.listed.phase === 'found' && s.listed.version === s.version && !s.busy; }"
-    )
-    return state(page)
+    return shown(page, "s.listed.phase === 'found' && s.listed.version === s.version && !s.busy")
 
 
 def problem_of(found: State) -> Problem:
@@ -68,9 +70,9 @@ def stated(designs: Any) -> list[dict[str, Any]]:
 
 
 def place_of(page: Page, handle: str) -> tuple[float, float]:
-    box = page.locator(f"[data-handle='{handle}'] .reach").bounding_box()
-    assert box is not None
-    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    found = f"document.querySelector(`[data-handle='{handle}'] .reach`).getBoundingClientRect()"
+    x, y = page.evaluate(f"() => {{ const r = {found}; return [r.x + r.width / 2, r.y + r.height / 2]; }}")
+    return x, y
 
 
 def drag(page: Page, handle: str, by: tuple[float, float], steps: int = 5) -> None:
@@ -81,6 +83,7 @@ def drag(page: Page, handle: str, by: tuple[float, float], steps: int = 5) -> No
     page.mouse.up()
 
 
+@pytest.mark.slow
 def test_forty_moves_show_what_the_library_gives(page: Page) -> None:
     """Each followed list is `track` of the last one, and in the end the list is that of a search."""
     page.locator("[data-handle='target-1']").focus()
@@ -89,10 +92,7 @@ def test_forty_moves_show_what_the_library_gives(page: Page) -> None:
     for number in range(40):
         keys = [one["key"] for one in state(page)["designs"]][:10]
         page.keyboard.press(ways[number // 3 % 4])
-        page.wait_for_function(
-            "() => { const s = window.grashof.state(); return s.listed.version === s.version; }"
-        )
-        found = state(page)
+        found = shown(page, "s.listed.version === s.version && s.listed.phase !== 'searching'")
         if found["listed"]["phase"] == "track":
             moved = track(designs, problem_of(found))
             designs = [new if new.verdict.ok else old for new, old in zip(moved, designs, strict=True)]
@@ -250,25 +250,14 @@ def test_files_are_saved(page: Page, what: str, tmp_path: Path) -> None:
         assert path.stat().st_size > 10_000
 
 
-def solver_pids(served: str) -> list[int]:
+def solver_pids(server: int) -> list[int]:
     """Processes of the solvers: children of the server that were spawned."""
-    port = served.split(":")[2].split("/")[0]
-    found = []
-    for folder in Path("/proc").iterdir():
-        if not folder.name.isdecimal():
-            continue
-        try:
-            command = (folder / "cmdline").read_bytes().replace(b"\0", b" ")
-        except OSError:
-            continue
-        if b"spawn_main" in command:
-            found.append(int(folder.name))
-    assert port
-    return found
+    listed = Path(f"/proc/{server}/task/{server}/children").read_text().split()
+    return [int(each) for each in listed if b"spawn_main" in Path(f"/proc/{each}/cmdline").read_bytes()]
 
 
-def test_a_killed_solver_is_replaced_in_mid_work(page: Page, served: str) -> None:
-    before = solver_pids(served)
+def test_a_killed_solver_is_replaced_in_mid_work(page: Page, server: tuple[str, int]) -> None:
+    before = solver_pids(server[1])
     assert len(before) >= 2
     page.locator("[data-handle='target-1']").focus()
     page.keyboard.press("ArrowUp")
@@ -277,7 +266,7 @@ def test_a_killed_solver_is_replaced_in_mid_work(page: Page, served: str) -> Non
         os.kill(pid, signal.SIGKILL)
     found = searched(page)
     assert linkages(found) == stated(synthesize(problem_of(found)).top(50).candidates)
-    assert not set(solver_pids(served)) & set(before)
+    assert not set(solver_pids(server[1])) & set(before)
 
 
 def test_without_a_design_the_closest_miss_is_shown_and_what_to_relax(page: Page) -> None:

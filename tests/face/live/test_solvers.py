@@ -6,7 +6,7 @@ import asyncio
 import json
 import os
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Coroutine, Iterator
 from time import monotonic
 from typing import Any
 
@@ -17,6 +17,8 @@ from grashof.live.session import MOST_PAGES, Sessions
 from grashof.live.solvers import GRACE, Solvers, State
 from grashof.problems import problem_text
 from grashof.problems.files.toml_file import document_of
+
+Run = Callable[[Coroutine[Any, Any, Any]], Any]
 
 
 def job_of(name: str, what: str = "search") -> Job:
@@ -35,7 +37,7 @@ async def kinds(solvers: Solvers, job: Job, left: Any = lambda: False) -> list[s
     return [json.loads(line.text)["kind"] async for line in solvers.lines(job, left)]
 
 
-def test_a_job_that_nobody_waits_for_ends_and_its_solver_is_used_again(solvers: Solvers) -> None:
+def test_a_job_that_nobody_waits_for_ends_and_its_solver_is_used_again(solvers: Solvers, run: Run) -> None:
     async def tried() -> list[int | None]:
         since = monotonic()
         assert "done" not in await kinds(solvers, job_of("nine-points"), lambda: monotonic() > since + 1)
@@ -46,20 +48,20 @@ def test_a_job_that_nobody_waits_for_ends_and_its_solver_is_used_again(solvers: 
         return [each.process.pid for each in solvers.every]
 
     before = [each.process.pid for each in solvers.every]
-    assert asyncio.run(tried()) == before
+    assert run(tried()) == before
 
 
-def test_an_idle_solver_that_is_killed_is_replaced(solvers: Solvers) -> None:
+def test_an_idle_solver_that_is_killed_is_replaced(solvers: Solvers, run: Run) -> None:
     async def tried() -> list[str]:
         await kinds(solvers, job_of("luggage"))
         for each in solvers.every:
             os.kill(each.process.pid or 0, signal.SIGKILL)
         return await kinds(solvers, job_of("luggage"))
 
-    assert asyncio.run(tried())[-1] == "done"
+    assert run(tried())[-1] == "done"
 
 
-def test_a_job_that_ends_every_solver_is_told_in_a_line(solvers: Solvers) -> None:
+def test_a_job_that_ends_every_solver_is_told_in_a_line(solvers: Solvers, run: Run) -> None:
     async def killing() -> None:
         killed = 0
         while killed < 2:
@@ -77,11 +79,11 @@ def test_a_job_that_ends_every_solver_is_told_in_a_line(solvers: Solvers) -> Non
         await killer
         return [line for each in found if each["kind"] == "error" for line in each["lines"]]
 
-    assert asyncio.run(tried()) == ["a solver was lost twice over this; the task is left as it is"]
-    assert asyncio.run(kinds(solvers, job_of("luggage")))[-1] == "done"
+    assert run(tried()) == ["a solver was lost twice over this; the task is left as it is"]
+    assert run(kinds(solvers, job_of("luggage")))[-1] == "done"
 
 
-def test_the_newest_job_of_a_page_wins(solvers: Solvers) -> None:
+def test_the_newest_job_of_a_page_wins(solvers: Solvers, run: Run) -> None:
     session = Sessions(solvers).of("one")
 
     async def asked(job: Job) -> list[str]:
@@ -93,7 +95,7 @@ def test_the_newest_job_of_a_page_wins(solvers: Solvers) -> None:
         second = await asked(job_of("luggage"))
         return await asyncio.wait_for(first, 1), second
 
-    first, second = asyncio.run(both())
+    first, second = run(both())
     assert "done" not in first
     assert second[-1] == "done"
 

@@ -4,22 +4,25 @@ from __future__ import annotations
 
 import asyncio
 import json
+from collections.abc import Callable, Coroutine
 from typing import Any
 
 import pytest
-from playwright.sync_api import sync_playwright
+from playwright.sync_api import Browser
 
 from grashof import load, synthesize
 from grashof.live import live
 from grashof.live.widget import LiveWidget
 from grashof.problems import ProblemError
 
+Run = Callable[[Coroutine[Any, Any, Any]], Any]
+
 
 class Model:
     """What a notebook does between the kernel and the page: messages to and fro."""
 
-    def __init__(self, widget: LiveWidget, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.widget, self.sent = widget, list[dict[str, Any]]()
+    def __init__(self, widget: LiveWidget, monkeypatch: pytest.MonkeyPatch, run: Run) -> None:
+        self.widget, self.run, self.sent = widget, run, list[dict[str, Any]]()
         monkeypatch.setattr(widget, "send", self.sent.append)
 
     def ask(self, message: dict[str, Any]) -> list[dict[str, Any]]:
@@ -30,7 +33,7 @@ class Model:
             await asyncio.gather(*self.widget._tasks.values())
 
         self.sent.clear()
-        asyncio.run(until_answered())
+        self.run(until_answered())
         return list(self.sent)
 
     def lines(self, what: str, **body: Any) -> list[dict[str, Any]]:
@@ -39,12 +42,10 @@ class Model:
         return [json.loads(answer["line"]) for answer in answers]
 
 
-def test_the_widget_answers_as_the_server_does(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_the_widget_answers_as_the_server_does(monkeypatch: pytest.MonkeyPatch, run: Run) -> None:
     widget = live(load("luggage"))
     try:
-        model = Model(widget, monkeypatch)
+        model = Model(widget, monkeypatch, run)
         (begun,) = model.lines("begin")
         assert begun["name"] == "luggage"
         document = begun["document"]
@@ -61,9 +62,9 @@ def test_the_widget_answers_as_the_server_does(
     assert widget._session.solvers.every == []
 
 
-def test_the_page_works_in_its_frame(chromium: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_page_works_in_its_frame(browser: Browser, monkeypatch: pytest.MonkeyPatch, run: Run) -> None:
     widget = live("luggage")
-    model = Model(widget, monkeypatch)
+    model = Model(widget, monkeypatch, run)
     module = f"{widget._esm}\nwindow.render = render;".replace("export default { render };", "")
     script = """
     const listeners = [];
@@ -77,30 +78,20 @@ def test_the_page_works_in_its_frame(chromium: str, monkeypatch: pytest.MonkeyPa
     render({ model, el: document.body });
     """
     try:
-        with sync_playwright() as playwright:
-            browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
-            page = browser.new_page(viewport={"width": 1200, "height": 850})
-            wrong: list[str] = []
-            page.on("pageerror", lambda error: wrong.append(str(error)))
-            page.expose_function("askPython", lambda text: json.dumps(_in_thread(model, json.loads(text))))
-            page.evaluate(f"(() => {{ {module}\n {script} }})()")
-            frame = page.frames[1]
-            frame.wait_for_function("window.grashof && window.grashof.state().listed?.phase === 'found'")
-            shown = frame.evaluate("window.grashof.state().designs.map((one) => one.id)")
-            assert shown == [one.id for one in widget.designs]
-            assert page.evaluate("getComputedStyle(document.body).marginTop") == "8px"
-            browser.close()
+        page = browser.new_page(viewport={"width": 1200, "height": 850})
+        wrong: list[str] = []
+        page.on("pageerror", lambda error: wrong.append(str(error)))
+        page.expose_function("askPython", lambda text: json.dumps(model.ask(json.loads(text))))
+        page.evaluate(f"(() => {{ {module}\n {script} }})()")
+        frame = page.frames[1]
+        frame.wait_for_function("window.grashof && window.grashof.state().listed?.phase === 'found'")
+        shown = frame.evaluate("window.grashof.state().designs.map((one) => one.id)")
+        assert shown == [one.id for one in widget.designs]
+        assert page.evaluate("getComputedStyle(document.body).marginTop") == "8px"
+        page.close()
         assert wrong == []
     finally:
         widget.close()
-
-
-def _in_thread(model: Model, message: dict[str, Any]) -> list[dict[str, Any]]:
-    """Playwright has a loop of its own in this thread."""
-    from concurrent.futures import ThreadPoolExecutor
-
-    with ThreadPoolExecutor(1) as thread:
-        return thread.submit(model.ask, message).result()
 
 
 def test_what_is_no_problem_is_refused() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page
 
 from grashof.page import analysis_page, search_page
 from grashof.problems import FourBar, LinkageSpec, load_linkage_spec
@@ -106,18 +105,6 @@ def swinging() -> LinkageReport:
     return report_on(
         LinkageSpec(FourBar((0, 0), (4, 0), 3, 1, 3, (0.5, 1)), "double rocker", length_unit="mm")
     )
-
-
-@pytest.fixture(scope="package")
-def browser() -> Iterator[Browser]:
-    found = [shutil.which(name) for name in ("chromium", "chromium-browser", "google-chrome")]
-    path = next((name for name in found if name), None)
-    if path is None:
-        pytest.skip("no Chromium on this machine: the page is not tested in a browser")
-    with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
-        yield started
-        started.close()
 
 
 @pytest.fixture(scope="package")

@@ -3,6 +3,8 @@ const CROWD = 5; // lines from which a plot is twice as wide
 
 // A group that folds: its plots are made when it is opened for the first time.
 class Group {
+  node; pictures; page; plots;
+
   constructor(node, plots, page) {
     Object.assign(this, { node, plots, page, pictures: [] });
     node.addEventListener("toggle", () => this.open());
@@ -50,6 +52,8 @@ class Group {
 }
 
 class AnalysisPage {
+  designs;
+
   constructor({ name, scene, designs, groups, columns, driver }) {
     Object.assign(this, { name, designs, range: 0, degrees: 0, heading: $("h1").textContent });
     this.stage = new Stage($("#stage"), scene, {
@@ -61,8 +65,8 @@ class AnalysisPage {
     const nodes = $$("#groups details");
     const panels = groups.map((plots) => plots.map((plot) => panelOf(plot, columns, driver)));
     this.groups = panels.map((plots, k) => new Group(nodes[k], plots, this));
-    for (const [button, open] of [["#open-all", true], ["#close-all", false]]) {
-      $(button).addEventListener("click", () => {
+    for (const open of [true, false]) {
+      $(open ? "#open-all" : "#close-all").addEventListener("click", () => {
         for (const node of nodes) node.open = open;
       });
     }
@@ -133,5 +137,5 @@ function panelOf(plot, columns, driver) {
   };
 }
 
-const page = new AnalysisPage(JSON.parse($("#data").textContent));
-window.grashof = Object.freeze({ state: () => page.state() });
+const analysisPage = new AnalysisPage(JSON.parse($("#data").textContent));
+window.grashof = Object.freeze({ state: () => analysisPage.state() });

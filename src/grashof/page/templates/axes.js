@@ -101,7 +101,7 @@ function extent(values) {
   return low <= high ? [low, high] : null;
 }
 
-const margined = ([low, high], share) => {
+const margined = (/** @type {number[]} */ [low, high], share) => {
   const margin = share * (high - low) || 0.1 * Math.abs(high) || 1;
   return [low - margin, high + margin];
 };

@@ -1,5 +1,7 @@
 // Designs side by side, at the same scale, at the same place of the task at the same moment.
 class Comparison {
+  designs; scene; root; onChange; onPick; columns;
+
   constructor(root, { scene, designs, columns, onPick, onChange }) {
     Object.assign(this, { root, scene, designs, columns, onPick, onChange, indexes: [], stages: [] });
     this.list = $("[data-list]", root);

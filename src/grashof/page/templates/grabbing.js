@@ -1,5 +1,5 @@
 // What hands do to a drawing: they drag the driver or another joint, move the drawing, and bring it closer.
-const REACH = 40 / DEG; // a joint that is dragged takes the driver no farther at a time
+const STRETCH = 40 / DEG; // a joint that is dragged takes the driver no farther at a time
 
 // Driver angle near the one now at which a joint is nearest to a place.
 function nearestAngle(design, theta2, name, [x, y]) {
@@ -7,7 +7,7 @@ function nearestAngle(design, theta2, name, [x, y]) {
     const [px0, py0] = positionOf(design.linkage, within(design, angle))[name];
     return Math.hypot(px0 - x, py0 - y);
   };
-  let [best, step] = [theta2, REACH / 32];
+  let [best, step] = [theta2, STRETCH / 32];
   for (let k = -32; k <= 32; k += 1) {
     const angle = theta2 + k * step;
     if (away(angle) < away(best)) best = angle;

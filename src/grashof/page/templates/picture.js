@@ -8,6 +8,8 @@ const sight = new IntersectionObserver(
 );
 
 class Picture {
+  svg; marked; panel; caption; frame; onPick; options;
+
   constructor(node, { onPick = null } = {}) {
     Object.assign(this, { svg: $(":scope > svg", node), caption: $("figcaption", node), onPick });
     Object.assign(this, { seen: false, drawn: false, marked: null });
@@ -18,6 +20,13 @@ class Picture {
       this.refresh();
     });
   }
+
+  // What it looks like, and what follows the driver on it: a matter of each kind of plot.
+  paint(_svg, _box, _named = false) {}
+
+  pointers() {}
+
+  mark(..._marked) {}
 
   sighted(seen) {
     this.seen = seen;

@@ -1,5 +1,7 @@
 // Play, pause, step and set: a value that runs to and fro over its travel, or around.
 class Player {
+  low; high; wraps; onMove; step;
+
   constructor(root, { onMove }) {
     Object.assign(this, {
       onMove,

@@ -1,5 +1,7 @@
 // Designs by two quantities, a third as the area of the points; a click picks one.
 class Scatter {
+  svg; columns; designs; onPick;
+
   constructor(root, { columns, designs, onPick }) {
     Object.assign(this, {
       svg: $("svg", root),

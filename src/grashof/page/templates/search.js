@@ -1,5 +1,7 @@
 // The page of a search: what is chosen is drawn, marked and described everywhere.
 class SearchPage {
+  designs; scene; torqueUnit; found; units;
+
   constructor({ found, scene, columns, axes, units, designs, torqueUnit }) {
     Object.assign(this, { found, scene, units, designs, torqueUnit, chosen: 0 });
     const choose = (index) => this.choose(index);
@@ -178,5 +180,5 @@ function start(data) {
   return { state: () => ({ design: null }) };
 }
 
-const page = start(JSON.parse($("#data").textContent));
-window.grashof = Object.freeze({ state: () => page.state() });
+const searchPage = start(JSON.parse($("#data").textContent));
+window.grashof = Object.freeze({ state: () => searchPage.state() });

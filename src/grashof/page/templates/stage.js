@@ -65,6 +65,8 @@ function guideOf(design) {
 }
 
 class Stage {
+  trace; beside; behind; scene; svg; close; ghosts; drawnOver; onDrive; onDraw;
+
   constructor(svg, scene, { onDrive = null, onDraw = () => {} } = {}) {
     Object.assign(this, {
       svg,
@@ -122,7 +124,9 @@ class Stage {
     this.whole = this.fitted(width, height, seen);
     const { unit, middle } = this.view || this.whole;
     const [x0, y0] = [width / 2 - unit * middle[0], height / 2 + unit * middle[1]];
+    /** @param {number[]} place */
     this.at = ([x, y]) => [x0 + unit * x, y0 - unit * y];
+    /** @param {number[]} place */
     this.back = ([x, y]) => [(x - x0) / unit, (y0 - y) / unit];
     this.unit = unit;
     this.decimals = Math.max(0, Math.ceil(Math.log10(unit)) + 1); // a tenth of a pixel and less

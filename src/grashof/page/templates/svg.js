@@ -1,5 +1,7 @@
 // Small functions: elements, paths, round numbers for axes, numbers as text.
+/** @type {(selector: string, root?: ParentNode) => any} */
 const $ = (selector, root = document) => root.querySelector(selector);
+/** @type {(selector: string, root?: ParentNode) => any[]} */
 const $$ = (selector, root = document) => [...root.querySelectorAll(selector)];
 
 function element(name, attributes = {}, text = null) {

@@ -1,5 +1,7 @@
 // The page of a sweep: a table of combinations, and the best design of the one that is chosen.
 class SweepPage {
+  designs; scenes; values;
+
   constructor({ scenes, designs, values }) {
     Object.assign(this, { scenes, designs, values, chosen: null });
     this.body = $("#combinations tbody");
@@ -81,16 +83,16 @@ class SweepPage {
     const sign = order === "ascending" ? 1 : -1;
     const value = (row) => this.values[Number(row.dataset.index)][place];
     const compared = (a, b) => {
-      if (a === null || b === null) return (a === null) - (b === null);
+      if (a === null || b === null) return Number(a === null) - Number(b === null);
       return sign * (typeof a === "number" && typeof b === "number" ? a - b : String(a).localeCompare(String(b)));
     };
-    this.rows.sort((a, b) => compared(value(a), value(b)) || a.dataset.index - b.dataset.index);
+    this.rows.sort((a, b) => compared(value(a), value(b)) || Number(a.dataset.index) - Number(b.dataset.index));
     this.body.append(...this.rows);
   }
 
   filter() {
     const wanted = new FormData(this.form);
-    const text = wanted.get("text").trim().toLowerCase();
+    const text = String(wanted.get("text")).trim().toLowerCase();
     for (const row of this.rows) {
       const passes = row.textContent.toLowerCase().includes(text);
       row.hidden = !passes || (wanted.get("found") && row.dataset.found !== "1");
@@ -114,5 +116,5 @@ class SweepPage {
   }
 }
 
-const page = new SweepPage(JSON.parse($("#data").textContent));
-window.grashof = Object.freeze({ state: () => page.state() });
+const sweepPage = new SweepPage(JSON.parse($("#data").textContent));
+window.grashof = Object.freeze({ state: () => sweepPage.state() });

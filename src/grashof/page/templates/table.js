@@ -1,5 +1,7 @@
 // The table of designs: sorted by its headers, filtered by the form above it.
 class DesignTable {
+  body; form; designs; open; onFilter;
+
   constructor(root, { designs, onPick, onFilter, onCompare }) {
     Object.assign(this, { designs, onFilter, body: $("tbody", root), form: $("form", root), open: new Set() });
     this.rows = $$("tr", this.body);
@@ -42,10 +44,10 @@ class DesignTable {
     const key = header.dataset.key;
     const value = (row) => this.design(row).figures[key];
     const compared = (a, b) => {
-      if (a === null || b === null) return (a === null) - (b === null);
+      if (a === null || b === null) return Number(a === null) - Number(b === null);
       return sign * (typeof a === "string" ? a.localeCompare(b) : a - b);
     };
-    this.rows.sort((a, b) => compared(value(a), value(b)) || a.dataset.index - b.dataset.index);
+    this.rows.sort((a, b) => compared(value(a), value(b)) || Number(a.dataset.index) - Number(b.dataset.index));
     this.arrange();
   }
 
@@ -60,7 +62,7 @@ class DesignTable {
 
   filter() {
     const wanted = new FormData(this.form);
-    const text = wanted.get("text").trim().toLowerCase();
+    const text = String(wanted.get("text")).trim().toLowerCase();
     const [least, most] = [wanted.get("transmission"), wanted.get("size")];
     const passes = (row, { id, figures }) =>
       `${figures.rank} ${id} ${figures.grashof_class} ${figures.best_at || ""}`.toLowerCase().includes(text) &&
@@ -82,7 +84,7 @@ class DesignTable {
   fold(folded) {
     const sizes = new Map();
     this.first = new Map();
-    for (const row of [...this.rows].sort((a, b) => a.dataset.index - b.dataset.index)) {
+    for (const row of [...this.rows].sort((a, b) => Number(a.dataset.index) - Number(b.dataset.index))) {
       const { family } = this.design(row).figures;
       const behind = this.first.has(family);
       const button = $("[data-alike]", row);

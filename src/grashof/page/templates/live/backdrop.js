@@ -1,5 +1,7 @@
 // A photo or the lines of a drawing behind the task, at a place and a scale.
 class Backdrop {
+  stage; lines;
+
   constructor(stage) {
     Object.assign(this, { stage, picture: null, lines: null, at: [0, 0], unit: 1, marks: null });
   }

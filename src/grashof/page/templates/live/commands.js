@@ -1,5 +1,7 @@
 // Buttons, menus and keys of the live page.
 class Commands {
+  root; live;
+
   constructor(live) {
     Object.assign(this, { live, root: live.root });
     const on = (selector, type, act) => {

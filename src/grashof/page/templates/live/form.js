@@ -19,6 +19,8 @@ const ROTATABILITY = [
 ];
 
 class Form {
+  root; task; onFocusTarget;
+
   constructor(root, task, { onFocusTarget }) {
     Object.assign(this, { root, task, onFocusTarget });
     this.rows = $("[data-targets]", root);

@@ -3,6 +3,8 @@ const ARM = 46; // px: how far from a target the handle of its angle is
 const FREEHAND = 12; // points that a line drawn by hand becomes
 
 class Handles {
+  stage; onMode; snaps; task; onPlace;
+
   constructor(stage, task, { onMode }) {
     Object.assign(this, { stage, task, onMode, mode: "move", snaps: false, held: null, focused: null, line: null, onPlace: null });
     this.layer = element("g", { class: "handles" });
@@ -12,7 +14,10 @@ class Handles {
     svg.addEventListener("pointermove", (event) => this.moved(event));
     for (const end of ["pointerup", "pointercancel"]) svg.addEventListener(end, () => this.up());
     svg.addEventListener("keydown", (event) => this.key(event), { capture: true });
-    document.addEventListener("focusin", ({ target }) => (this.focused = target.dataset.handle || null));
+    document.addEventListener("focusin", ({ target }) => {
+      const handle = target.closest("[data-handle]");
+      this.focused = handle ? handle.dataset.handle : null;
+    });
     document.addEventListener("pointerdown", ({ target }) => {
       if (!svg.contains(target)) this.focused = null;
     });
@@ -25,7 +30,7 @@ class Handles {
   }
 
   // A place as it is written into the file: on the grid where it snaps, else no finer than can be seen.
-  rounded([x, y]) {
+  rounded(/** @type {number[]} */ [x, y]) {
     const step = this.step();
     return [x, y].map((value) => Number((Math.round(value / step) * step).toPrecision(12)));
   }

@@ -2,6 +2,8 @@
 const SHOWN_COLUMNS = 4;
 
 class Listing {
+  rows; seen; root;
+
   constructor(root, { onPick, onCompare }) {
     Object.assign(this, { root, onPick, onCompare, rows: new Map(), compared: new Set(), seen: new Set() });
     this.head = $("thead tr", root);

@@ -4,6 +4,8 @@ const OTHERS = 10; // designs whose paths are drawn beside the chosen one
 const AGAIN = 2000; // ms after which a server that does not answer is asked again
 
 class Live {
+  transport; root; version; lost; transmission; velocity; torque; columns;
+
   constructor(root, transport) {
     Object.assign(this, { root, transport, designs: [], chosen: null, version: 0, listed: null, busy: null, lost: [] });
     Object.assign(this, { trackDue: false, searchDue: false, published: null, columns: [], compared: [], timer: null });

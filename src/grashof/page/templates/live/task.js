@@ -4,6 +4,8 @@ const REGIONS = ["o2", "o4", "a", "b"];
 const FEWEST = { motion: 2, path: 3 };
 
 class Task {
+  name; onChange;
+
   constructor({ onChange }) {
     Object.assign(this, { onChange, document: {}, name: "task", past: [], future: [], before: null });
     this.locked = new Set(); // names of handles that stay where they are

@@ -1,5 +1,7 @@
 // How a page asks its solvers: over HTTP, or, in a notebook, through its widget. Lines of JSON come back.
 class HttpTransport {
+  token; page;
+
   constructor(token) {
     Object.assign(this, { token, page: crypto.randomUUID() });
   }

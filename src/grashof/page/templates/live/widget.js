@@ -1,5 +1,7 @@
 // The live page in a notebook: in a frame of its own, so that neither changes how the other looks.
 class WidgetTransport {
+  waiting; number; model;
+
   constructor(model) {
     Object.assign(this, { model, number: 0, waiting: new Map() });
     model.on("msg:custom", (message) => this.waiting.get(message.number)?.(message));

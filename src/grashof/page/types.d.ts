@@ -1,0 +1,14 @@
+// What the scripts of the pages have besides each other.
+
+interface Window {
+  grashof: Readonly<{ state: () => any }>;
+  startLive: (root: HTMLElement, token: any) => any;
+}
+
+/** Every event here comes from an element. */
+interface EventTarget {
+  closest(selector: string): any;
+}
+
+/** The whole page, before the widget's module. */
+declare const PAGE: string;
