@@ -189,6 +189,7 @@ def test_areas_regions_and_targets_are_added_and_removed(page: Page) -> None:
 
 
 def test_a_path_is_drawn_by_hand(page: Page) -> None:
+    assert page.locator("[data-mode=draw]").is_hidden()  # of poses there is no path to draw
     page.locator("[data-menu=open] summary").click()
     page.locator("[name=catalogue]").select_option("path-vertical-line")
     page.wait_for_function("() => window.grashof.state().document.kind === 'path'")
@@ -276,6 +277,14 @@ def test_without_a_design_the_closest_miss_is_shown_and_what_to_relax(page: Page
     assert found["designs"]
     assert "Closest misses" in page.locator("[data-headline]").inner_text()
     assert "transmission_min_deg" in page.locator("[data-notice]").inner_text()
+
+
+@pytest.mark.parametrize("name", ["function-log10", "quick-return-slide", "lifting-arm"])
+def test_tasks_without_points_and_with_cylinders_are_searched(page: Page, name: str) -> None:
+    page.locator("[data-menu=open] summary").click()
+    page.locator("[name=catalogue]").select_option(name)
+    found = shown(page, f"s.listed.phase === 'found' && !s.busy && s.document.title === {load(name).title!r}")
+    assert linkages(found) == stated(synthesize(load(name)).top(50).candidates)
 
 
 @pytest.mark.parametrize("size", [(1440, 900), (1920, 1080), (390, 844)])

@@ -16,7 +16,7 @@ function positionOf(linkage, theta2, assembly = linkage.assembly) {
   return { theta2, theta3: Math.atan2(sin, cos), o2, o4, a, p, ...closed };
 }
 
-// How far P goes for a radian of the driver; without limit in a dead position. B of a bar or a slide has no
+// How far P goes for a radian of the driver; null in a dead position, where that has no limit. B of a bar or a slide has no
 // velocity along `across`; a rod turns so that it keeps passing O4.
 function pointSpeed(linkage, state) {
   const { o2, a, b, p, across, slide, theta3 } = state;
@@ -24,7 +24,8 @@ function pointSpeed(linkage, state) {
   const rate = across
     ? -(da[0] * across[0] + da[1] * across[1]) / ((b[0] - a[0]) * across[1] - (b[1] - a[1]) * across[0])
     : (Math.sin(theta3) * da[0] - Math.cos(theta3) * da[1]) / slide;
-  return Math.hypot(da[0] - rate * (p[1] - a[1]), da[1] + rate * (p[0] - a[0]));
+  const speed = Math.hypot(da[0] - rate * (p[1] - a[1]), da[1] + rate * (p[0] - a[0]));
+  return Number.isFinite(speed) ? speed : null;
 }
 
 // The two pivots of a cylinder, the end of its body and what holds it on its link, in a position.

@@ -68,6 +68,8 @@ class Live {
     $("[data-undo]", this.root).disabled = !this.task.past.length;
     $("[data-redo]", this.root).disabled = !this.task.future.length;
     $("[data-title]", this.root).textContent = this.task.document.title || this.task.name;
+    $("[data-mode=add]", this.root).hidden = !this.task.list;
+    $("[data-mode=draw]", this.root).hidden = this.task.kind !== "path";
     const before = JSON.stringify(this.stage.scene);
     this.stage.scene = sceneOf(this.task, this.published);
     if (opened || looks || before !== JSON.stringify(this.stage.scene)) this.stage.draw();
@@ -205,7 +207,8 @@ class Live {
 
   curves(design) {
     const { angles } = travelPath(design);
-    for (const name of ["transmission", "velocity"]) $(`#${name}`, this.root).hidden = false;
+    $("#transmission", this.root).hidden = false;
+    $("#velocity", this.root).hidden = !this.task.list; // of functions and strokes P means nothing
     const places = angles.map((angle) => angle * DEG);
     const marks = design.theta2.map((angle) => within(design, angle) * DEG);
     const whole = this.stage.scene.closed || !design.task;
