@@ -13,6 +13,7 @@ import pandas as pd
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
+from grashof import load, synthesize
 from grashof.page import analysis_page, search_page
 from grashof.problems import FourBar, LinkageSpec, load_linkage_spec
 from grashof.survey import Fact, LinkageReport, Plot, Section, report_on
@@ -109,6 +110,12 @@ def swinging() -> LinkageReport:
 
 
 @pytest.fixture(scope="package")
+def inexact() -> Result:
+    """Designs by least squares, whose errors differ."""
+    return synthesize(load("path-gait"), starts=40)
+
+
+@pytest.fixture(scope="package")
 def browser() -> Iterator[Browser]:
     found = [shutil.which(name) for name in ("chromium", "chromium-browser", "google-chrome")]
     path = next((name for name in found if name), None)
@@ -124,6 +131,7 @@ def browser() -> Iterator[Browser]:
 def folder(
     few: Result,
     alike: Result,
+    inexact: Result,
     told: LinkageReport,
     swinging: LinkageReport,
     tmp_path_factory: pytest.TempPathFactory,
@@ -136,6 +144,7 @@ def folder(
     pages = {
         "search": search_page(named, frame, RECORD, "kind"),
         "alike": search_page(alike, alike.to_frame(), RECORD),
+        "inexact": search_page(inexact, inexact.to_frame(), RECORD),
         "missed": search_page(missed, frame.iloc[:1].assign(misses=MISSES), RECORD),
         "nothing": search_page(replace(missed, nearest=()), frame.iloc[:0], RECORD),
         "rocker": analysis_page(report_on(LinkageSpec(ROCKER, "rocker", title=TITLE)), RECORD),

@@ -153,3 +153,19 @@ def test_all_values_have_names_in_words_and_sensible_digits(opened: Open, few: R
         assert texts[key].startswith("≈ 0")
     for value in texts.values():
         assert not re.search(r"-0(\.0*)?( |$)|\d{7}|e-1", value)
+
+
+def test_error_against_size_comes_first_where_errors_differ(
+    opened: Open, few: Result, inexact: Result
+) -> None:
+    axes = "['y', 'x'].map((axis) => document.querySelector(`[data-axis=${axis}]`).value)"
+    assert opened("search").evaluate(axes) == ["transmission_min_task_deg", "size"]
+    page, frame = opened("inexact"), inexact.to_frame()
+    assert frame["error"].max() > 1.1 * frame["error"].min()
+    assert page.evaluate(axes) == ["error", "size"]
+    heights = page.evaluate(
+        "Object.fromEntries([...document.querySelectorAll('.point')].map("
+        "(point) => [point.dataset.index, Number(point.getAttribute('cy'))]))"
+    )
+    order = sorted(range(len(frame)), key=lambda row: -heights[str(row)])
+    assert frame["error"].iloc[order].is_monotonic_increasing
