@@ -102,6 +102,8 @@ class Quantity:
         The kinds of linkages that have it.
     named : str
         Its name in candidates.csv, where that is not its key.
+    full : str
+        Its name in words in a list of all values, where that is not `words`.
     """
 
     key: str
@@ -117,19 +119,46 @@ class Quantity:
     short: str = ""
     kinds: tuple[str, ...] = tuple(KINDS)
     named: str = ""
+    full: str = ""
 
     def __post_init__(self) -> None:
         for name in ("words", "short"):
             object.__setattr__(self, name, getattr(self, name) or self.label)
+        object.__setattr__(self, "full", self.full or self.words)
 
     @property
     def column(self) -> str:
         """Its name in candidates.csv."""
         return self.named or (f"{self.key}_deg" if self.unit is Unit.ANGLE else self.key)
 
+    @property
+    def deviates(self) -> bool:
+        """Whether it is a length or an angle by which something is missed: none at all is best."""
+        return self.better < 0 and self.key != "size" and self.unit in (Unit.LENGTH, Unit.AREA, Unit.ANGLE)
+
+
+# What the lengths and places that a linkage is stated by are called, by their columns.
+_STATED = {
+    "o2_x": "O2, x",
+    "o2_y": "O2, y",
+    "o4_x": "O4, x",
+    "o4_y": "O4, y",
+    "r1": "r1, ground link O2-O4",
+    "r2": "r2, driver O2-A",
+    "r3": "r3, coupler A-B",
+    "r4": "r4, output link O4-B",
+    "p_u": "P from A, along the coupler",
+    "p_v": "P from A, square to the coupler",
+    "offset": "offset of the slide",
+    "cylinder_base_x": "cylinder, fixed pivot, x",
+    "cylinder_base_y": "cylinder, fixed pivot, y",
+    "cylinder_u": "cylinder, moving pivot, along its link",
+    "cylinder_v": "cylinder, moving pivot, square to its link",
+}
+
 
 def _length(key: str, label: str = "", **others: Any) -> Quantity:
-    return Quantity(key, label or key, Unit.LENGTH, **others)
+    return Quantity(key, label or key, Unit.LENGTH, **{"full": _STATED.get(key, ""), **others})
 
 
 def _stated(kind: str, digits: int = 0) -> list[Quantity]:
@@ -142,12 +171,14 @@ def _move(name: str) -> Quantity:
     about = f"how far the worst target moves per unit of change of {name}"
     return Quantity(
         f"move_{name}", f"move by {name}", Unit.RATIO, Over.TARGETS, -1, Needs.MANUFACTURING, about=about,
-        kinds=having(name),
+        kinds=having(name), full=f"sensitivity to {name}",
     )  # fmt: skip
 
 
 _BOX = "diagonal of the box around O2, O4 and all that A, B and P reach from the first target to the last"
 _FITTED = "what least squares makes small: root mean square of positions and angles together, weighted"
+_RMS = " (root mean square)"
+_ALL = f"error of positions and angles{_RMS}"
 _WORST = "worst transmission angle over the"
 _LEVER = (
     "between cylinder and arm; on coupler and slider 90 deg less that between cylinder and path of its pivot"
@@ -167,53 +198,84 @@ MEASURED: dict[str, Quantity] = {
         Quantity("body_angle", "body angle", Unit.ANGLE, about="orientation of the body minus theta3"),
         Quantity("theta2_start", "driver angle at the first target", Unit.ANGLE, Over.TARGETS),
         Quantity("theta2_end", "driver angle at the last target", Unit.ANGLE, Over.TARGETS),
-        _length("error", "error rms", digits=3, needs=Needs.LEAST_SQUARES, about=_FITTED, **_MISSED),
+        _length(
+            "error", "error rms", digits=3, needs=Needs.LEAST_SQUARES, about=_FITTED, full=_ALL, **_MISSED
+        ),
         _length("error_max", "largest position error", over=Over.TARGETS, better=-1),
-        _length("error_rms", "position error rms", over=Over.TARGETS, better=-1),
+        _length("error_rms", "position error rms", full=f"position error{_RMS}", **_MISSED),
         Quantity("error_sse", "sum of squared position errors", Unit.AREA, Over.TARGETS, -1),
         Quantity("angle_error_max", "largest angle error", Unit.ANGLE, Over.TARGETS, -1),
-        Quantity("angle_error_rms", "angle error rms", Unit.ANGLE, Over.TARGETS, -1),
+        Quantity(
+            "angle_error_rms", "angle error rms", Unit.ANGLE, full=f"angle error{_RMS}", **_MISSED,
+        ),
         Quantity(
             "transmission_min_task", "mu task", Unit.ANGLE, Over.TASK, +1, digits=3, words=f"{_WORST} task"
         ),
         Quantity(
             "transmission_min_cycle", "mu turn", Unit.ANGLE, Over.CYCLE, +1, digits=3, words=f"{_WORST} turn"
         ),
-        Quantity("omega4_max", "omega4", Unit.ANGULAR_VELOCITY, better=-1, kinds=TURNING, **_OVERALL),
-        Quantity("point_speed_max", "speed of P", Unit.VELOCITY, better=-1, **_OVERALL),
-        Quantity("point_acceleration_max", "acceleration of P", Unit.ACCELERATION, better=-1, **_OVERALL),
+        Quantity(
+            "omega4_max", "omega4", Unit.ANGULAR_VELOCITY, better=-1, kinds=TURNING,
+            full="largest angular velocity of link 4", **_OVERALL,
+        ),
+        Quantity(
+            "point_speed_max", "speed of P", Unit.VELOCITY, better=-1, full="largest speed of P", **_OVERALL
+        ),
+        Quantity(
+            "point_acceleration_max", "acceleration of P", Unit.ACCELERATION, better=-1,
+            full="largest acceleration of P", **_OVERALL,
+        ),
         Quantity(
             "torque_peak", "peak torque, task", Unit.TORQUE, digits=4, words="peak torque", short="torque",
-            **_DRIVEN,
+            full="peak drive torque", **_DRIVEN,
         ),
-        Quantity("torque_rms", "rms torque, task", Unit.TORQUE, words="rms torque", **_DRIVEN),
+        Quantity(
+            "torque_rms", "rms torque, task", Unit.TORQUE, words="rms torque",
+            full=f"drive torque{_RMS}", **_DRIVEN,
+        ),
         Quantity(
             "joint_force_peak", "peak force, task", Unit.FORCE, digits=4, words="peak joint force",
             short="force", **_DRIVEN,
         ),
-        Quantity("coupler_fit_r2", "fit of P", Unit.RATIO, better=+1, **_OVERALL),
-        _length("size", over=Over.TASK, better=-1, digits=4, about=_BOX),
+        Quantity(
+            "coupler_fit_r2", "fit of P", Unit.RATIO, better=+1,
+            full="R2 of a polynomial through the path of P", **_OVERALL,
+        ),
+        _length("size", over=Over.TASK, better=-1, digits=4, about=_BOX, full="size of the linkage"),
         _length("hausdorff", "Hausdorff distance", over=Over.CYCLE, better=-1, needs=Needs.CLOSED),
         _length("frechet", "Fréchet distance", over=Over.CYCLE, better=-1, needs=Needs.CLOSED),
         *(_move(name) for name in FourBar.DIMENSIONS),
-        _length("worst_move", "worst move", over=Over.TARGETS, better=-1, needs=Needs.MANUFACTURING),
-        Quantity("share_within_linear", "within, linear", Unit.SHARE, Over.TARGETS, +1, Needs.MANUFACTURING),
+        _length(
+            "worst_move", "worst move", needs=Needs.MANUFACTURING,
+            full="largest move of a target within the tolerances", **_MISSED,
+        ),
         Quantity(
-            "share_within_made", "made within", Unit.SHARE, Over.TARGETS, +1, Needs.MANUFACTURING, digits=3
+            "share_within_linear", "within, linear", Unit.SHARE, Over.TARGETS, +1, Needs.MANUFACTURING,
+            full="share made within the allowed error, linearised",
+        ),
+        Quantity(
+            "share_within_made", "made within", Unit.SHARE, Over.TARGETS, +1, Needs.MANUFACTURING, digits=3,
+            full="share made within the allowed error",
         ),
         *_stated("distance", digits=4),
         Quantity("slide_angle", "direction of the slide", Unit.ANGLE, kinds=having("slide_angle")),
         *(_move(name) for name in DIMENSIONS if name not in FourBar.DIMENSIONS),
         *(_length(name, name.replace("_", " "), needs=Needs.CYLINDER) for name in Cylinder.COLUMNS),
-        _length("cylinder_closed", "closed cylinder", over=Over.TASK, needs=Needs.CYLINDER, digits=4),
-        _length("cylinder_stroke", "cylinder stroke", over=Over.TASK, needs=Needs.CYLINDER, digits=4),
+        _length(
+            "cylinder_closed", "closed cylinder", over=Over.TASK, needs=Needs.CYLINDER, digits=4,
+            full="cylinder, closed length",
+        ),
+        _length(
+            "cylinder_stroke", "cylinder stroke", over=Over.TASK, needs=Needs.CYLINDER, digits=4,
+            full="cylinder, stroke",
+        ),
         Quantity(
             "cylinder_angle_min", "lever angle", Unit.ANGLE, Over.TASK, +1, Needs.CYLINDER, digits=3,
-            about=_LEVER, words="worst lever angle of the cylinder",
+            about=_LEVER, words="worst lever angle of the cylinder", full="cylinder, worst lever angle",
         ),
         Quantity(
             "cylinder_force_max", "cylinder force", Unit.FORCE, Over.TASK, -1, Needs.LOADED_CYLINDER,
-            digits=4, words="peak force of the cylinder",
+            digits=4, words="peak force of the cylinder", full="cylinder, peak force",
         ),
     )
 }  # fmt: skip

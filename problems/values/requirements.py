@@ -407,6 +407,7 @@ _ADVANTAGE = Quantity(
     Unit.RATIO,
     Over.TASK,
     about="omega2 / omega4 where it is least over the task motion, with its sign",
+    full="least mechanical advantage",
     kinds=TURNING,
 )
 # All quantities of a design, by key; those that are listed in the order of the columns.
@@ -419,6 +420,7 @@ _ERROR_AT = Quantity(
     Over.TASK,
     needs=Needs.OUTPUTS,
     about="driver rotation from the first pair to the greatest structural error",
+    full="driver rotation to the greatest structural error",
 )
 QUANTITIES[_ERROR_AT.key] = _ERROR_AT
 

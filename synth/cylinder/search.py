@@ -18,14 +18,10 @@ _BLOCK = 500
 _BEST, _APART = 2000, 0.12  # parents are so far apart, as a share of the room, and among the best
 _HOPELESS = -0.5  # merit so far below zero is not mended
 _POLISHED, _AGAIN = 8, 3
-_FINISHED, _TURNS = (
-    2,
-    2,
-)  # cylinders polished to the end, and how often linear programmes follow quadratic ones
+# Cylinders polished to the end, and how often linear programmes follow quadratic ones.
+_FINISHED, _TURNS = 2, 2
 COARSE, FINE = 4, 2  # every so many samples are enough to compare, and to polish
-_OVER = (
-    0.15  # share of their box that bases are drawn beyond it and put back: the best are often on its sides
-)
+_OVER = 0.15  # of their box: so far beyond it bases are drawn, and put back on its sides, where the best are
 _MORE = 4  # times the samples, where a first search came near but found none
 _SEEDS = 16  # times that each joint is tried
 

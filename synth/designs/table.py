@@ -14,17 +14,44 @@ from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.ranking import pareto_goals, pareto_optimal
 
 LISTED = tuple(quantity for quantity in QUANTITIES.values() if quantity.listed)
-# Columns that are not quantities, by the quantity that follows them.
+# Columns that are not quantities and their names in words, by the quantity that follows them.
 _BEFORE = {
-    "o2_x": ("rank", "id", "mechanism", "family", "grashof_class", "direction", "assembly"),
-    "cylinder_base_x": ("cylinder_on",),
-    "omega4_max": ("circuit_ok", "branch_ok", "order_ok", "full_rotation"),
-    "hausdorff": ("pareto", "cognate_of", "start", "iterations", "best_at"),
+    "o2_x": {
+        "rank": "rank",
+        "id": "id",
+        "mechanism": "kind of linkage",
+        "family": "family",
+        "grashof_class": "Grashof class",
+        "direction": "sense of the driver (+1 counter-clockwise)",
+        "assembly": "assembly mode (+1 or −1)",
+    },
+    "cylinder_base_x": {"cylinder_on": "cylinder, on link"},
+    "omega4_max": {
+        "circuit_ok": "all targets on one circuit",
+        "branch_ok": "all targets on one branch",
+        "order_ok": "targets in their order",
+        "full_rotation": "driver turns fully",
+    },
+    "hausdorff": {
+        "pareto": "Pareto-optimal",
+        "cognate_of": "cognate of",
+        "start": "start of the search",
+        "iterations": "iterations from that start",
+        "best_at": "best at",
+    },
 }
 # Columns without a meaning for a task stay empty.
 COLUMNS = tuple(name for quantity in LISTED for name in (*_BEFORE.get(quantity.key, ()), quantity.column))
 # The user's own objective, a last column where there is one.
-OWN = Quantity("objective", "objective", Unit.RATIO, better=-1, digits=4, about="less is better")
+OWN = Quantity(
+    "objective", "objective", Unit.RATIO, better=-1, digits=4, about="less is better", full="own objective"
+)
+# Every column in words; of nearest misses also what they miss.
+NAMES: dict[str, str] = {
+    **{column: words for before in _BEFORE.values() for column, words in before.items()},
+    **{quantity.column: quantity.full for quantity in (*LISTED, OWN)},
+    "misses": "misses",
+}
 
 
 def to_frame(

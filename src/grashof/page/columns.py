@@ -1,4 +1,4 @@
-"""Which quantities of a design the page lists, and in which unit each of them is."""
+"""Which quantities of a design the page lists, by which name, in which unit and with which digits."""
 
 from __future__ import annotations
 
@@ -11,9 +11,12 @@ import pandas as pd
 
 from grashof.problems import Problem
 from grashof.problems.values.mechanisms import DIMENSIONS, NOISE
-from grashof.problems.values.quantities import Needs
-from grashof.synth.designs.table import LISTED, OWN
+from grashof.problems.values.quantities import Needs, Quantity, Unit
+from grashof.synth.designs.table import LISTED, NAMES, OWN
 from grashof.wording.problem import error_meaning
+
+ROUNDING = "≈ 0"  # in place of an error that is rounding
+_LENGTH_DIGITS, _ANGLE_DECIMALS = 5, 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +31,8 @@ class Column:
     unit : str
     decimals : int
         Of its numbers, -1 for powers of ten.
+    noise : float
+        Size up to which an error is rounding.
     better : int
         +1 where more is better, -1 where less is, 0 for neither.
     about : str
@@ -40,6 +45,7 @@ class Column:
     label: str
     unit: str
     decimals: int
+    noise: float = 0.0
     better: int = 0
     about: str = ""
     listed: bool = True
@@ -51,6 +57,8 @@ class Column:
             return "no limit"
         if math.isnan(number):
             return "–"
+        if 0 < abs(number) <= self.noise:
+            return ROUNDING
         return f"{number:z.{self.decimals}f}" if self.decimals >= 0 else f"{number:.3e}"
 
 
@@ -68,15 +76,22 @@ def columns_of(problem: Problem, frame: pd.DataFrame) -> list[Column]:
         if each.key != left_out and each.column in frame and not frame[each.column].isna().all()
     ]
     # In the table first what any design has, then what takes masses or tolerances, then the lengths.
-    longest = float(frame["size"].max())
     stated = Needs.DYNAMICS, Needs.MANUFACTURING
     known.sort(key=lambda each: (not each.digits, not each.better, each.needs in stated))
+    lengths, longest = length_decimals(frame), float(frame["size"].max())
     return [
         Column(
             each.column,
             each.label.replace("mu ", "μ "),
             each.unit.of(problem.length_unit),
-            _decimals(frame[each.column], each.digits, NOISE * longest if each.key in DIMENSIONS else 0.0),
+            lengths
+            if _is_length(each) and lengths is not None
+            else _decimals(
+                frame[each.column],
+                each.digits,
+                NOISE * longest if each.key in DIMENSIONS else noise_of(each, frame),
+            ),
+            noise_of(each, frame),
             each.better,
             error_meaning(problem) if each.key == "error" else each.about,
             listed=each.digits > 0,
@@ -85,11 +100,75 @@ def columns_of(problem: Problem, frame: pd.DataFrame) -> list[Column]:
     ]
 
 
-def figure_units(frame: pd.DataFrame, length_unit: str) -> list[tuple[str, str, str]]:
-    """Name, unit and meaning of every column of candidates.csv that is filled, in its order."""
-    known = {each.column: (each.unit.of(length_unit), each.about) for each in (*LISTED, OWN)}
-    known["family"] = "", "the best of the designs that are alike"
-    return [(str(key), *known.get(str(key), ("", ""))) for key in frame if not frame[key].isna().all()]
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """A column of candidates.csv as a list of all values has it.
+
+    Parameters
+    ----------
+    key : str
+        Its name in candidates.csv.
+    name : str
+        The same in words.
+    unit : str
+    about : str
+        What it is, where its name does not show it.
+    decimals : int, optional
+        Of its numbers; None where they have so many significant digits, or are words.
+    noise : float
+        Size up to which an error is rounding.
+    """
+
+    key: str
+    name: str
+    unit: str = ""
+    about: str = ""
+    decimals: int | None = None
+    noise: float = 0.0
+
+
+def figures_of(frame: pd.DataFrame, length_unit: str) -> list[Figure]:
+    """Every column of candidates.csv that is filled, in its order."""
+    known = {each.column: each for each in (*LISTED, OWN)}
+    lengths = length_decimals(frame)
+    figures = [Figure("family", NAMES["family"], about="the best of the designs that are alike")]
+    for key, each in known.items():
+        angle = each.unit is Unit.ANGLE and not each.deviates
+        decimals = lengths if _is_length(each) else _ANGLE_DECIMALS if angle else None
+        noise = noise_of(each, frame) if key in frame else 0.0
+        unit = each.unit.of(length_unit)
+        figures.append(Figure(key, NAMES[key], unit, each.about, decimals, noise))
+    by_key = {figure.key: figure for figure in figures}
+    return [
+        by_key.get(str(key)) or Figure(str(key), NAMES[str(key)])
+        for key in frame
+        if not frame[key].isna().all()
+    ]
+
+
+def length_decimals(frame: pd.DataFrame) -> int | None:
+    """Decimals of all lengths of some designs; None where they are very long or short."""
+    columns = [each.column for each in LISTED if _is_length(each) and each.column in frame]
+    values = frame[columns].to_numpy(dtype=float)
+    known = np.abs(values[np.isfinite(values)])
+    if not known.size or not known.max():
+        return None
+    decimals = _decimals(pd.Series(known), _LENGTH_DIGITS, 0.0)
+    return decimals if decimals >= 0 else None
+
+
+def noise_of(quantity: Quantity, frame: pd.DataFrame) -> float:
+    """Size up to which an error of some designs is rounding, as files have it; 0 of what is no error."""
+    if not quantity.deviates:
+        return 0.0
+    if quantity.unit is Unit.ANGLE:
+        return NOISE * Unit.ANGLE.shown
+    return float((NOISE * float(frame["size"].max())) ** quantity.unit.lengths)
+
+
+def _is_length(quantity: Quantity) -> bool:
+    """Whether it is a length or a place, not an error."""
+    return quantity.unit is Unit.LENGTH and not quantity.deviates
 
 
 def _decimals(values: pd.Series[Any], digits: int, noise: float) -> int:

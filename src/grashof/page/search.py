@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from grashof.page.columns import Column, columns_of, figure_units
+from grashof.page.columns import Column, columns_of, figures_of
 from grashof.page.designs import designs_of, driver_travel, legend
 from grashof.page.render import render
 from grashof.page.scene import scene_of
@@ -98,7 +98,7 @@ def search_data(
         "scene": scene_of(problem),
         "columns": [asdict(each) for each in axes if each.listed],
         "axes": [asdict(each) for each in axes],
-        "units": figure_units(frame, problem.length_unit) if designs else [],
+        "values": [asdict(each) for each in figures_of(frame, problem.length_unit)] if designs else [],
         "designs": designs_of(problem, designs, frame),
         "torqueUnit": "N m",
     }

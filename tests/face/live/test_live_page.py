@@ -48,7 +48,9 @@ def state(page: Page) -> State:
 def shown(page: Page, condition: str) -> State:
     """The page as soon as a condition holds for its state `s`."""
     there = "const s = window.grashof && window.grashof.state(); return s && s.listed"
-    found: State = page.wait_for_function(f"() => {{ {there} && {condition} && s; }}").json_value()
+    found: State = page.wait_for_function(
+        f"() => {{ {there} && {condition} && s; }}", timeout=90_000
+    ).json_value()
     return found
 
 

@@ -12,6 +12,7 @@ import pandas as pd
 import pytest
 from playwright.sync_api import Browser, Page
 
+from grashof import load, synthesize
 from grashof.page import analysis_page, search_page
 from grashof.problems import FourBar, LinkageSpec, load_linkage_spec
 from grashof.survey import Fact, LinkageReport, Plot, Section, report_on
@@ -108,9 +109,16 @@ def swinging() -> LinkageReport:
 
 
 @pytest.fixture(scope="package")
+def inexact() -> Result:
+    """Designs by least squares, whose errors differ."""
+    return synthesize(load("path-gait"), starts=40)
+
+
+@pytest.fixture(scope="package")
 def folder(
     few: Result,
     alike: Result,
+    inexact: Result,
     told: LinkageReport,
     swinging: LinkageReport,
     tmp_path_factory: pytest.TempPathFactory,
@@ -123,6 +131,7 @@ def folder(
     pages = {
         "search": search_page(named, frame, RECORD, "kind"),
         "alike": search_page(alike, alike.to_frame(), RECORD),
+        "inexact": search_page(inexact, inexact.to_frame(), RECORD),
         "missed": search_page(missed, frame.iloc[:1].assign(misses=MISSES), RECORD),
         "nothing": search_page(replace(missed, nearest=()), frame.iloc[:0], RECORD),
         "rocker": analysis_page(report_on(LinkageSpec(ROCKER, "rocker", title=TITLE)), RECORD),

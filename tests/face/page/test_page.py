@@ -222,7 +222,7 @@ def test_what_figures_are_taken_over_is_said(few: Result) -> None:
     assert told["size"].startswith("diagonal of the box around O2, O4")
     assert told["peak torque, task"] == told["peak force, task"] == "from the first target to the last"
     assert set(told.values()) - {""} <= {attributes.get("title") for _, attributes in parts.tags}
-    abouts = {key: about for key, _, about in parts.data["units"]}
+    abouts = {value["key"]: value["about"] for value in parts.data["values"]}
     assert abouts["coupler_fit_r2"] == "from the first target to the last"
     for linkage, over in ((load_linkage_spec("pumpjack"), "turn"), (LinkageSpec(ROCKER, "rocker"), "travel")):
         report = report_on(linkage)

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any
 
+import pandas as pd
+import pytest
 from playwright.sync_api import Page, expect
 
 from grashof.synth import Result
+from grashof.synth.designs.table import NAMES
 
 Open = Callable[..., Page]
 
@@ -32,11 +36,11 @@ def test_columns_are_sorted(opened: Open, few: Result) -> None:
 
 def test_designs_are_filtered(opened: Open, few: Result) -> None:
     page, frame = opened("search"), few.to_frame()
-    sizes = frame["size"].round(2)  # as the table shows them
+    sizes = frame["size"].round(3)  # as the table shows them
     angles = frame["transmission_min_task_deg"].round(1)
     size, transmission = sorted(sizes)[len(frame) // 2], sorted(angles)[len(frame) // 2]
     assert (frame["size"] > size).any()
-    page.fill("[name=size]", f"{size:.2f}")
+    page.fill("[name=size]", f"{size:.3f}")
     assert set(state(page)["listed"]) == set(frame.loc[sizes <= size, "id"])
     page.fill("[name=transmission]", f"{transmission:.1f}")
     both = (sizes <= size) & (angles >= transmission)
@@ -123,3 +127,45 @@ def test_a_filter_compares_with_the_numbers_shown(opened: Open, few: Result) -> 
     page.fill("[name=transmission]", "89")
     assert state(page)["listed"] == []
     assert nothing.is_visible()
+
+
+def test_all_values_have_names_in_words_and_sensible_digits(opened: Open, few: Result) -> None:
+    page, frame = opened("search"), few.to_frame()
+    page.evaluate("document.querySelector('#figures').open = true")
+    lines = page.locator("#figures dl div")
+    told = {
+        line.get_attribute("title").partition(":")[0]: (  # type: ignore[union-attr]
+            line.locator("dt").inner_text(),
+            line.locator("dd").inner_text(),
+        )
+        for line in lines.all()
+    }
+    filled = [key for key in frame if not pd.isna(frame.loc[0, key])]
+    assert list(told) == filled
+    assert {key: name for key, (name, _) in told.items()} == {key: NAMES[str(key)] for key in filled}
+    texts = {key: value.replace("−", "-") for key, (_, value) in told.items()}
+    lengths = ["o2_x", "o2_y", "o4_x", "o4_y", "r1", "r2", "r3", "r4", "p_u", "p_v", "size"]
+    assert {len(texts[key].split()[0].partition(".")[2]) for key in lengths} == {3}
+    for key in lengths:
+        assert float(texts[key].split()[0]) == pytest.approx(frame.loc[0, key], abs=6e-4)
+    assert len(texts["theta2_start_deg"].split()[0].partition(".")[2]) == 2
+    for key in ("error_max", "error_rms", "error_sse", "angle_error_max_deg"):
+        assert texts[key].startswith("≈ 0")
+    for value in texts.values():
+        assert not re.search(r"-0(\.0*)?( |$)|\d{7}|e-1", value)
+
+
+def test_error_against_size_comes_first_where_errors_differ(
+    opened: Open, few: Result, inexact: Result
+) -> None:
+    axes = "['y', 'x'].map((axis) => document.querySelector(`[data-axis=${axis}]`).value)"
+    assert opened("search").evaluate(axes) == ["transmission_min_task_deg", "size"]
+    page, frame = opened("inexact"), inexact.to_frame()
+    assert frame["error"].max() > 1.1 * frame["error"].min()
+    assert page.evaluate(axes) == ["error", "size"]
+    heights = page.evaluate(
+        "Object.fromEntries([...document.querySelectorAll('.point')].map("
+        "(point) => [point.dataset.index, Number(point.getAttribute('cy'))]))"
+    )
+    order = sorted(range(len(frame)), key=lambda row: -heights[str(row)])
+    assert frame["error"].iloc[order].is_monotonic_increasing

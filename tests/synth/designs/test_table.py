@@ -1,6 +1,7 @@
 """The table: the columns of the contract, and numbers that come back from CSV as they were."""
 
 import csv
+from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,7 +12,7 @@ import pytest
 from grashof.problems import Problem
 from grashof.problems.values.quantities import MEASURED
 from grashof.synth import Result
-from grashof.synth.designs.table import LISTED, to_frame
+from grashof.synth.designs.table import LISTED, NAMES, to_frame
 
 # DESIGN section 4, word for word, and what has been added since.
 CONTRACT = """
@@ -159,3 +160,20 @@ def test_the_driver_starts_within_half_a_turn_and_is_never_wrapped(
         first, last = np.degrees(candidate.verdict.theta2[[0, -1]])
         assert row.theta2_end_deg - row.theta2_start_deg == pytest.approx(last - first, abs=1e-9)
         assert np.sin(np.radians(row.theta2_start_deg - first)) == pytest.approx(0, abs=1e-9)
+
+
+def test_every_column_has_a_name_in_words() -> None:
+    """Of all kinds of tasks and linkages: no key, and nothing that only code says."""
+    for column in (*COLUMNS, "objective"):
+        name = NAMES[column]
+        assert "_" not in name
+        assert name == name.strip() != ""
+        assert name[:1].islower() or name.startswith(
+            ("O2", "O4", "P ", "R2", "Grashof", "Hausdorff", "Fréchet", "Pareto")
+        )
+    assert NAMES["o2_x"] == "O2, x"
+    assert NAMES["transmission_min_task_deg"] == "worst transmission angle over the task"
+    assert NAMES["cylinder_closed"] == "cylinder, closed length"
+    counts = Counter(NAMES[column] for column in COLUMNS)
+    of_both = {"greatest structural error", "structural error (root mean square)"}  # turning or sliding
+    assert {name for name, count in counts.items() if count > 1} == of_both

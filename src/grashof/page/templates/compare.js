@@ -64,9 +64,10 @@ class Comparison {
       }),
     );
     $("tbody", card).append(
-      ...this.columns.map(({ key, label, unit }) => {
+      ...this.columns.map(({ key, label, unit, decimals, noise }) => {
         const row = document.createElement("tr");
-        for (const text of [label, figure(design.figures[key]), unit]) row.insertCell().textContent = text;
+        const value = rounded(design.figures[key], decimals < 0 ? null : decimals, noise);
+        for (const text of [label, value, unit]) row.insertCell().textContent = text;
         return row;
       }),
     );

@@ -15,7 +15,7 @@ class Scatter {
     this.visible = new Set(designs.keys());
     const wanted = {
       x: ["size"],
-      y: ["transmission_min_task_deg", "transmission_min_cycle_deg"],
+      y: [...this.differing(), "transmission_min_task_deg", "transmission_min_cycle_deg"],
       area: ["torque_peak", ""],
     };
     for (const [axis, select] of Object.entries(this.selects)) {
@@ -26,6 +26,15 @@ class Scatter {
     }
     this.svg.addEventListener("keydown", (event) => this.key(event));
     onResize(this.svg, () => this.draw());
+  }
+
+  // Errors that designs are chosen by, where they differ by more than rounding.
+  differing() {
+    return ["error", "structural_error_max_deg", "structural_error_max"].filter((key) => {
+      const column = this.columns.find((each) => each.key === key);
+      const [low, high] = extent(this.designs.map(({ figures }) => figures[key])) || [0, 0];
+      return column && high - low > Math.max(column.noise, 1e-6 * high);
+    });
   }
 
   column(axis) {
@@ -42,41 +51,57 @@ class Scatter {
     if (width < 80) return;
     set(this.svg, { viewBox: `0 0 ${width} ${height}` });
     this.svg.replaceChildren();
-    const frame = { left: 46, right: width - 14, top: 8, bottom: height - 34 };
+    this.paint(this.svg, { left: 0, top: 0, right: width, bottom: height });
+  }
+
+  // Into a box of a drawing.
+  paint(svg, box) {
+    const top = box.top + 8;
+    const bottom = box.bottom - 34;
     this.shown = [...this.designs.keys()].filter(
       (k) => this.value(k, "x") !== null && this.value(k, "y") !== null,
     );
-    const scales = { x: this.axis("x", frame), y: this.axis("y", frame) };
+    const up = this.limits("y");
+    const numbers = ticksAlong(...up, bottom - top, false, 36);
+    const frame = {
+      left: box.left + Math.max(46, longest(numbers) + 10),
+      right: box.right - 14,
+      top,
+      bottom,
+    };
+    const across = this.limits("x");
+    const along = ticksAlong(...across, frame.right - frame.left, false, 70);
+    const scales = { x: this.axis(svg, "x", frame, across, along), y: this.axis(svg, "y", frame, up, numbers) };
     this.place = (k) => [scales.x(this.value(k, "x")), scales.y(this.value(k, "y"))];
-    this.front();
-    const layer = add(this.svg, "g", { class: "points" });
+    this.front(svg);
+    const layer = add(svg, "g", { class: "points" });
     // Big ones first, so that none is hidden.
     const order = [...this.shown].sort((a, b) => this.radius(b) - this.radius(a));
     this.points = new Map(order.map((k) => [k, this.point(layer, k)]));
     this.mark(this.chosen);
   }
 
-  axis(axis, { left, right, top, bottom }) {
-    const values = this.shown.map((k) => this.value(k, axis));
-    let [low, high] = values.length ? [Math.min(...values), Math.max(...values)] : [0, 1];
+  limits(axis) {
+    const [low, high] = extent(this.shown.map((k) => this.value(k, axis))) || [0, 1];
     const margin = Math.max(0.08 * (high - low), 1e-3 * Math.abs(high)) || 1; // more than rounding
-    [low, high] = [low - margin, high + margin];
+    return [low - margin, high + margin];
+  }
+
+  axis(svg, axis, { left, right, top, bottom }, /** @type {number[]} */ [low, high], numbers) {
     const share = (value) => (value - low) / (high - low);
     const scale =
       axis === "x"
         ? (value) => left + (right - left) * share(value)
         : (value) => bottom - (bottom - top) * share(value);
-    const layer = add(this.svg, "g", { class: "grid" });
-    const { at, decimals } = ticks(low, high, axis === "x" ? (right - left) / 70 : (bottom - top) / 36);
-    for (const value of at) {
-      const label = fixed(value, decimals);
+    const layer = add(svg, "g", { class: "grid" });
+    for (const { value, text } of numbers) {
       const place = px(scale(value));
       if (axis === "x") {
         add(layer, "path", { d: `M${place} ${top}V${bottom}` });
-        add(layer, "text", { x: place, y: bottom + 14, "text-anchor": "middle" }, label);
+        add(layer, "text", { x: place, y: bottom + 14, "text-anchor": "middle" }, text);
       } else {
         add(layer, "path", { d: `M${left} ${place}H${right}` });
-        add(layer, "text", { x: left - 5, y: Number(place) + 4, "text-anchor": "end" }, label);
+        add(layer, "text", { x: left - 5, y: Number(place) + 4, "text-anchor": "end" }, text);
       }
     }
     const { label, unit } = this.column(axis);
@@ -96,7 +121,7 @@ class Scatter {
   }
 
   // A step line through the designs that no other beats in both axes.
-  front() {
+  front(svg) {
     const better = { x: this.column("x").better, y: this.column("y").better };
     if (!better.x || !better.y) return;
     const gain = (k, axis) => better[axis] * this.value(k, axis);
@@ -115,7 +140,7 @@ class Scatter {
           ]
         : [[x, y]];
     });
-    add(this.svg, "path", { d: through(corners), class: "front" });
+    add(svg, "path", { d: through(corners), class: "front" });
   }
 
   point(layer, k) {
@@ -124,7 +149,7 @@ class Scatter {
     const values = ["x", "y", "area"]
       .map((axis) => this.column(axis))
       .filter(Boolean)
-      .map(({ key, label, unit }) => `${label} ${figure(figures[key])} ${unit}`.trim());
+      .map(({ key, label, unit, noise }) => `${label} ${rounded(figures[key], null, noise)} ${unit}`.trim());
     const name = `design ${figures.rank}: ${values.join(", ")}${figures.pareto ? ", Pareto-optimal" : ""}`;
     const style = `point${figures.pareto ? " pareto" : ""}${this.visible.has(k) ? "" : " filtered"}`;
     const node = add(layer, "circle", {

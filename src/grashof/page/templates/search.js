@@ -1,9 +1,9 @@
 // The page of a search: what is chosen is drawn, marked and described everywhere.
 class SearchPage {
-  designs; scene; torqueUnit; found; units;
+  designs; scene; torqueUnit; found; values;
 
-  constructor({ found, scene, columns, axes, units, designs, torqueUnit }) {
-    Object.assign(this, { found, scene, units, designs, torqueUnit, chosen: 0 });
+  constructor({ found, scene, columns, axes, values, designs, torqueUnit }) {
+    Object.assign(this, { found, scene, values, designs, torqueUnit, chosen: 0 });
     const choose = (index) => this.choose(index);
     const turnTo = (degrees) => this.turnTo(degrees / DEG);
     this.stage = new Stage($("#stage"), scene, {
@@ -117,13 +117,13 @@ class SearchPage {
     $("#named").textContent = $("#chosen").textContent.toLowerCase();
     for (const node of $$("[data-rank]")) node.textContent = figures.rank;
     if (!found) $("#misses").textContent = figures.misses;
-    const known = this.units.filter(([key]) => figures[key] !== null);
-    const lines = known.map(([key, unit, about]) => {
+    const known = this.values.filter(({ key }) => figures[key] !== null);
+    const lines = known.map(({ key, name, unit, about, decimals, noise }) => {
       const line = document.createElement("div");
-      line.title = about;
+      line.title = about ? `${key}: ${about}` : key;
       line.append(document.createElement("dt"), document.createElement("dd"));
-      line.firstChild.textContent = key;
-      line.lastChild.textContent = `${figure(figures[key], 6)} ${unit}`.trim();
+      line.firstChild.textContent = name;
+      line.lastChild.textContent = `${rounded(figures[key], decimals, noise)} ${unit}`.trim();
       return line;
     });
     $("#figures dl").replaceChildren(...lines);

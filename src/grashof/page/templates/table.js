@@ -169,3 +169,10 @@ function thumbnail(design, width = 66, height = 44) {
   }
   return svg;
 }
+
+// A value with so many decimals, or with few digits; an error that is rounding is said to be.
+function rounded(value, decimals, noise) {
+  if (typeof value !== "number") return figure(value);
+  if (value !== 0 && Math.abs(value) <= noise) return "≈ 0";
+  return decimals === null ? figure(value) : fixed(value, decimals);
+}
