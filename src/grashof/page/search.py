@@ -21,7 +21,7 @@ from grashof.wording.problem import goals, summary
 
 _SCRIPTS = (
     "kinds.js", "linkage.js", "svg.js", "stage.js", "player.js", "axes.js", "picture.js", "curves.js",
-    "scatter.js", "table.js", "compare.js", "search.js",
+    "scatter.js", "table.js", "compare.js", "saving.js", "search.js",
 )  # fmt: skip
 
 
@@ -51,6 +51,7 @@ def search_page(result: Result, frame: pd.DataFrame, record: Mapping[str, Any], 
     axes = columns_of(problem, frame) if designs else []
     columns = [column for column in axes if column.listed]
     data = {
+        "name": problem.name,
         "found": bool(result.candidates),
         "scene": scene_of(problem),
         "columns": [asdict(each) for each in columns],
