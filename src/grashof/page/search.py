@@ -22,7 +22,7 @@ from grashof.wording.problem import goals, summary
 
 _SCRIPTS = (
     "kinds.js", "linkage.js", "svg.js", "stage.js", "grabbing.js", "player.js", "axes.js", "picture.js",
-    "curves.js", "scatter.js", "table.js", "compare.js", "search.js",
+    "curves.js", "scatter.js", "table.js", "compare.js", "saving.js", "search.js",
 )  # fmt: skip
 
 
@@ -94,6 +94,7 @@ def search_data(
     """
     axes = columns_of(problem, frame) if designs else []
     return {
+        "name": problem.name,
         "found": found,
         "scene": scene_of(problem),
         "columns": [asdict(each) for each in axes if each.listed],

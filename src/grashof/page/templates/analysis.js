@@ -29,12 +29,10 @@ class Group {
 
   saves(node, panel, picture) {
     const { name, heading } = this.page;
-    const [svg, csv] = $$(".save button", node);
-    svg.setAttribute("aria-label", `Save ${panel.title} as SVG`);
-    csv.setAttribute("aria-label", `Save ${panel.title} as CSV`);
-    const file = fileName(name, panel.key) || "plot";
-    svg.addEventListener("click", () => download(`${file}.svg`, savedSvg(picture, heading), "image/svg+xml"));
-    csv.addEventListener("click", () => download(`${file}.csv`, savedCsv(panel), "text/csv"));
+    offerSaves($(".save", node), panel.title, () => fileName(name, panel.key) || "plot", {
+      svg: () => savedSvg(picture, heading),
+      csv: () => savedCsv(panel),
+    });
   }
 
   // The plots, those over the driver angle within the range that the driver is in.

@@ -28,6 +28,11 @@ class Picture {
 
   mark(..._marked) {}
 
+  // Whether a file of it is about as high as it is wide.
+  get tall() {
+    return false;
+  }
+
   sighted(seen) {
     this.seen = seen;
     if (this.drawn && this.marked) this.mark(...this.marked);

@@ -1,4 +1,4 @@
-// Plots as files: pictures that need no style sheet, and tables.
+// Plots and drawings as files: pictures that need no style sheet, and tables.
 const SHEET = { width: 720, curves: 400, tracks: 620, margin: 14, line: 18 };
 // What becomes an attribute, of lines and of letters, with what goes without saying.
 const SAVED = {
@@ -11,7 +11,16 @@ const SAVED = {
   "stroke-linejoin": "miter",
   opacity: "1",
 };
-const LETTERS = { fill: "", "font-size": "", "font-weight": "400" };
+const LETTERS = {
+  fill: "",
+  "font-size": "",
+  "font-weight": "400",
+  stroke: "none",
+  "stroke-width": "1px",
+  "paint-order": "normal",
+};
+const SCREEN = ["class", "id", "style", "role", "tabindex"]; // and aria-…, data-…
+const FINE = 2; // pixels of a picture to one of the screen
 // As `no_formula` in Python: no cell is a formula to a spreadsheet, also where it divides at semicolons.
 const FORMULA = /(^|;)(?=\s*[=+\-@＝＋－＠]|[\t\r\n])/g;
 
@@ -21,24 +30,68 @@ const plain = (text) => String(text).replace(/[\u0000-\u0008\u000b\u000c\u000e-\
 // A plot as SVG of its own: white, with title, names of the axes and a legend.
 function savedSvg(picture, heading) {
   const { width, margin } = SHEET;
-  const holder = document.createElement("div");
-  holder.className = "sheet";
-  document.body.append(holder);
+  const holder = sheet();
   const { panel } = picture;
   const svg = element("svg", { xmlns: "http://www.w3.org/2000/svg", "font-family": FONT });
   holder.append(svg);
   add(svg, "text", { x: margin, y: 24, class: "title" }, shortened(panel.title, width / 1.3));
   add(svg, "text", { x: margin, y: 42 }, shortened(heading, width - 2 * margin));
   const begin = legend(svg, panel, 60);
-  const height = begin + (picture instanceof Tracks ? SHEET.tracks : SHEET.curves);
+  const height = begin + (picture.tall ? SHEET.tracks : SHEET.curves);
   const copy = Object.assign(Object.create(Object.getPrototypeOf(picture)), picture);
   const half = margin / 2;
   copy.paint(svg, { left: half, top: begin, right: width - half, bottom: height - half }, true);
+  return savedSheet(holder, svg, width, height);
+}
+
+// A drawing of the page as SVG of its own, as it is at this moment.
+function savedDrawing(drawn) {
+  const { clientWidth: width, clientHeight: height } = drawn;
+  const holder = sheet();
+  const svg = set(drawn.cloneNode(true), { xmlns: "http://www.w3.org/2000/svg", "font-family": FONT });
+  holder.append(svg);
+  for (const node of $$(".hold, .handle, .by-hand, image, title", svg)) node.remove();
+  return savedSheet(holder, svg, width, height);
+}
+
+// Where what is saved has the light colours of paper.
+function sheet() {
+  const holder = document.createElement("div");
+  holder.className = "sheet";
+  document.body.append(holder);
+  return holder;
+}
+
+function savedSheet(holder, svg, width, height) {
   set(svg, { width, height, viewBox: `0 0 ${width} ${height}` });
   styleInlined(svg);
   svg.insertBefore(element("rect", { width, height, fill: "#ffffff" }), svg.firstChild);
   holder.remove();
   return `<?xml version="1.0" encoding="UTF-8"?>\n${plain(new XMLSerializer().serializeToString(svg))}\n`;
+}
+
+// The same as PNG, as fine as print needs it.
+async function savedPng(text) {
+  const image = new Image();
+  image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text)}`;
+  await image.decode();
+  const canvas = document.createElement("canvas");
+  [canvas.width, canvas.height] = [FINE * image.width, FINE * image.height];
+  canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
+  return new Promise((resolve) => canvas.toBlob(resolve, "image/png"));
+}
+
+// Buttons of a picture: `svg` makes it, `csv` its numbers; `file` names both.
+function offerSaves(node, title, file, { svg = null, csv = null }) {
+  const savers = {
+    SVG: () => download(`${file()}.svg`, svg(), "image/svg+xml"),
+    PNG: async () => download(`${file()}.png`, await savedPng(svg()), "image/png"),
+    CSV: () => download(`${file()}.csv`, csv(), "text/csv"),
+  };
+  for (const button of $$("button", node)) {
+    button.setAttribute("aria-label", `Save ${title} as ${button.textContent}`);
+    button.addEventListener("click", savers[button.textContent]);
+  }
 }
 
 // Names of lines and points in rows; returns where the plot begins below them.
@@ -67,7 +120,15 @@ function styleInlined(svg) {
       if (value !== usual) node.setAttribute(name, value.replaceAll("px", ""));
     }
   }
-  for (const node of $$("[class]", svg)) node.removeAttribute("class");
+  for (const node of $$("g", svg)) {
+    const { opacity } = getComputedStyle(node);
+    if (opacity !== "1") node.setAttribute("opacity", opacity);
+  }
+  for (const node of [svg, ...$$("*", svg)]) {
+    for (const { name } of [...node.attributes]) {
+      if (SCREEN.includes(name) || /^(aria|data)-/.test(name)) node.removeAttribute(name);
+    }
+  }
 }
 
 // A plot as CSV: the driver angle or what else it goes over, then every line with its full name.
@@ -88,11 +149,18 @@ function savedCsv({ title, unit, over, driver, places, angles, series, points = 
     column(places ? `${label}, ${over || driver}` : withUnit(`${label}, x`, unit), xy[0]);
     column(withUnit(places ? label : `${label}, y`, unit), xy[1]);
   }
+  return csvOf(columns);
+}
+
+// Columns of words and values below them.
+function csvOf(columns) {
   const count = Math.max(0, ...columns.map(([, values]) => values.length));
-  const rows = Array.from({ length: count }, (_, k) => columns.map(([, values]) => values[k] ?? ""));
+  const rows = Array.from({ length: count }, (_, k) => columns.map(([, values]) => field(values[k] ?? "")));
   const lines = [columns.map(([words]) => cell(words)), ...rows].map((row) => row.join(","));
   return `\ufeff${lines.join("\n")}\n`; // spreadsheets read a table without the mark in some other code
 }
+
+const field = (value) => (typeof value === "string" ? cell(value) : value);
 
 function cell(words) {
   const text = plain(words).replace(FORMULA, "$1'");
@@ -106,47 +174,9 @@ function fileName(...parts) {
 }
 
 function download(name, text, type) {
-  downloadBlob(name, new Blob([text], { type }));
-}
-
-function downloadBlob(name, blob) {
   const link = document.createElement("a");
-  link.href = URL.createObjectURL(blob);
+  link.href = URL.createObjectURL(new Blob([text], { type }));
   link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 60000);
-}
-
-// The drawing as it stands, as SVG that needs no style sheet.
-function savedDrawing(svg) {
-  const { clientWidth: width, clientHeight: height } = svg;
-  const holder = document.createElement("div");
-  holder.className = "sheet";
-  const copy = svg.cloneNode(true);
-  for (const node of $$(".hold, .handle, .by-hand, image, title", copy)) node.remove();
-  for (const name of ["id", "role", "tabindex", "style"]) copy.removeAttribute(name);
-  for (const { name } of [...copy.attributes]) if (name.startsWith("aria-")) copy.removeAttribute(name);
-  holder.append(copy);
-  document.body.append(holder);
-  set(copy, { xmlns: "http://www.w3.org/2000/svg", "font-family": FONT, width, height, viewBox: `0 0 ${width} ${height}` });
-  styleInlined(copy);
-  copy.removeAttribute("class");
-  copy.insertBefore(element("rect", { width, height, fill: "#ffffff" }), copy.firstChild);
-  holder.remove();
-  return `<?xml version="1.0" encoding="UTF-8"?>\n${plain(new XMLSerializer().serializeToString(copy))}\n`;
-}
-
-// The same as a picture of three dots a pixel.
-function downloadPng(name, svg, dots = 3) {
-  const picture = new Image();
-  picture.onload = () => {
-    const canvas = document.createElement("canvas");
-    Object.assign(canvas, { width: dots * picture.naturalWidth, height: dots * picture.naturalHeight });
-    const context = canvas.getContext("2d");
-    context.scale(dots, dots);
-    context.drawImage(picture, 0, 0);
-    URL.revokeObjectURL(picture.src);
-    canvas.toBlob((blob) => downloadBlob(name, blob));
-  };
-  picture.src = URL.createObjectURL(new Blob([svg], { type: "image/svg+xml" }));
 }

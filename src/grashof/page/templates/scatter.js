@@ -37,6 +37,12 @@ class Scatter {
     });
   }
 
+  // What a file of it is headed by: nothing is a line of its own.
+  get panel() {
+    const [up, across] = ["y", "x"].map((axis) => this.column(axis).label);
+    return { title: `${up} against ${across}`, series: [] };
+  }
+
   column(axis) {
     return this.columns.find(({ key }) => key === this.selects[axis].value);
   }

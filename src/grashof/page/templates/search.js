@@ -1,9 +1,9 @@
 // The page of a search: what is chosen is drawn, marked and described everywhere.
 class SearchPage {
-  designs; scene; torqueUnit; found; values;
+  designs; scene; torqueUnit; found; values; name; columns;
 
-  constructor({ found, scene, columns, axes, values, designs, torqueUnit }) {
-    Object.assign(this, { found, scene, values, designs, torqueUnit, chosen: 0 });
+  constructor({ name, found, scene, columns, axes, values, designs, torqueUnit }) {
+    Object.assign(this, { name, found, scene, columns, values, designs, torqueUnit, chosen: 0 });
     const choose = (index) => this.choose(index);
     const turnTo = (degrees) => this.turnTo(degrees / DEG);
     this.stage = new Stage($("#stage"), scene, {
@@ -34,6 +34,7 @@ class SearchPage {
     });
     this.table.pictures();
     this.controls();
+    this.saves();
     this.choose(0);
   }
 
@@ -76,13 +77,20 @@ class SearchPage {
     const whole = this.scene.closed || !design.task;
     const bold = whole ? null : design.task.map((angle) => angle * DEG).sort((a, b) => a - b);
     const mu = angles.map((angle) => positionOf(design.linkage, angle).mu * DEG);
-    const panel = { title: "Transmission angle", unit: "deg", limits: [0, 90] };
+    const driver = "driver angle theta2 (deg)";
+    const panel = { title: "Transmission angle", unit: "deg", limits: [0, 90], driver };
     const series = [{ label: "μ", values: mu }];
     this.transmission.show({ ...panel, places, angles: places, series }, { bold, marks });
     if (this.output) this.outputs(design);
     if (!this.torque) return;
     const sampled = travelAngles(design).map((angle) => angle * DEG);
-    const torque = { title: "Drive torque", unit: this.torqueUnit, places: sampled, angles: sampled };
+    const torque = {
+      title: "Drive torque",
+      unit: this.torqueUnit,
+      places: sampled,
+      angles: sampled,
+      driver,
+    };
     const options = { bold, marks, bounded: !design.turns };
     this.torque.show({ ...torque, series: [{ label: "T", values: design.torque }] }, options);
   }
@@ -160,6 +168,42 @@ class SearchPage {
     const { comparison, player } = this;
     listenToKeys(this.stage, player);
     listenOnPage(() => (comparison.root.contains(document.activeElement) ? comparison.player : player));
+  }
+
+  // What the page shows, as files; of the table every digit of what is listed now.
+  saves() {
+    const design = () => `${this.found ? "design" : "closest-miss"}-${this.design.figures.rank}`;
+    const heading = () => `${$("h1").textContent}, ${$("#named").textContent} (${this.design.id})`;
+    const plots = { transmission: this.transmission, output: this.output, error: this.error, torque: this.torque };
+    for (const [key, picture] of Object.entries(plots).filter((entry) => entry[1])) {
+      const title = { transmission: "transmission angle", error: "structural error" }[key] || key;
+      offerSaves($(`#${key} .save`), title, () => fileName(this.name, design(), key), {
+        svg: () => savedSvg(picture, heading()),
+        csv: () => savedCsv(picture.panel),
+      });
+    }
+    offerSaves($("#save-drawing"), "drawing", () => fileName(this.name, design()), {
+      svg: () => savedDrawing(this.stage.svg),
+    });
+    if (this.scatter) {
+      offerSaves($("#scatter .save"), "comparison", () => fileName(this.name, this.scatter.panel.title), {
+        svg: () => savedSvg(this.scatter, $("h1").textContent),
+      });
+    }
+    const file = () => fileName(this.name, this.found ? "designs" : "closest-misses");
+    offerSaves($("#save-table"), "table", file, { csv: () => this.listedCsv() });
+  }
+
+  listedCsv() {
+    const rows = this.table.listed().map((index) => this.designs[index].figures);
+    const known = ({ key }) => rows.some((row) => row[key] !== null);
+    const others = ["best_at", "mechanism", "grashof_class", "misses"];
+    const named = ["rank", "id", ...others].map((key) => this.values.find((each) => each.key === key));
+    const [rank, id, ...words] = named.filter((each) => each && (each.key === "rank" || known(each)));
+    const columns = [rank, id, ...this.columns, ...words];
+    return csvOf(
+      columns.map(({ key, label, name, unit }) => [withUnit(label || name, unit), rows.map((row) => row[key])]),
+    );
   }
 
   state() {

@@ -10,6 +10,10 @@ class Tracks extends Picture {
     this.svg.classList.add("picks");
   }
 
+  get tall() {
+    return true;
+  }
+
   paint(svg, box, named = false) {
     const [xs, ys] = [0, 1].map((axis) => margined(this.reach(axis), 0.05));
     const [width, height] = [box.right - box.left, box.bottom - box.top];

@@ -121,8 +121,9 @@ class Commands {
     this.closeMenus();
     const { live } = this;
     const name = fileName(live.task.name, live.design ? live.design.id : "task");
-    if (what === "svg") return download(`${name}.svg`, savedDrawing(live.stage.svg), "image/svg+xml");
-    if (what === "png") return downloadPng(`${name}.png`, savedDrawing(live.stage.svg));
+    const drawing = () => savedDrawing(live.stage.svg);
+    if (what === "svg") return download(`${name}.svg`, drawing(), "image/svg+xml");
+    if (what === "png") return download(`${name}.png`, await savedPng(drawing()), "image/png");
     const body = { file: what, ...(live.chosen === null ? {} : { key: live.chosen }) };
     await this.ask("file", body, ({ name: file, text, type }) => download(file, text, type));
   }
