@@ -14,8 +14,10 @@ import pytest
 from playwright.sync_api import Browser, Page
 
 from grashof import load, synthesize, track
+from grashof.analysis import solve_kinematics
 from grashof.problems import Problem
 from grashof.problems.files.problem_schema import problem_from
+from grashof.problems.values.mechanisms import KINDS
 
 State = dict[str, Any]
 
@@ -279,6 +281,29 @@ def test_without_a_design_the_closest_miss_is_shown_and_what_to_relax(page: Page
     assert found["designs"]
     assert "Closest misses" in page.locator("[data-headline]").inner_text()
     assert "transmission_min_deg" in page.locator("[data-notice]").inner_text()
+
+
+@pytest.mark.parametrize("kind", ["four-bar", "slider-crank", "inverted-slider-crank"])
+def test_the_velocity_of_p_is_that_of_the_analysis(page: Page, kind: str) -> None:
+    page.locator("[data-menu=open] summary").click()
+    page.locator("[name=catalogue]").select_option("path-gait")
+    shown(page, "s.document.kind === 'path'")
+    page.locator("[name=rotatability]").select_option("full-crank")  # only a four-bar is a crank-rocker
+    page.locator(f"[name=mechanism][value={kind}]").check()
+    for other in {"four-bar", "slider-crank", "inverted-slider-crank"} - {kind}:
+        page.locator(f"[name=mechanism][value={other}]").uncheck()
+    found = searched(page)
+    given = next(one["linkage"] for one in found["designs"] if one["key"] == found["chosen"])
+    assert given.pop("mechanism") == kind
+    linkage = KINDS[kind](**given)
+    for _ in range(5):
+        theta2 = state(page)["theta2"]
+        speed = float(solve_kinematics(linkage, theta2, omega2=1.0).p.speed)
+        told = float(page.locator("#velocity output").inner_text().replace("−", "-"))
+        assert told == pytest.approx(speed, rel=1e-3)
+        page.locator("#player input[type=range]").focus()
+        for _ in range(4):
+            page.keyboard.press("PageUp")
 
 
 @pytest.mark.parametrize("name", ["function-log10", "quick-return-slide", "lifting-arm"])

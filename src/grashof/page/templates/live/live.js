@@ -301,7 +301,9 @@ class Live {
     const { version, listed, chosen, lost, busy, compared } = this;
     const designs = this.designs.map(({ key, id, linkage }) => ({ key, id, linkage }));
     const rows = [...this.listing.rows.keys()];
-    return { version, listed, chosen, lost, designs, rows, compared, busy: busy && busy.what, document: this.task.document };
+    const { theta2 } = this.stage;
+    const { document } = this.task;
+    return { version, listed, chosen, lost, designs, rows, compared, theta2, busy: busy && busy.what, document };
   }
 }
 
