@@ -26,6 +26,7 @@ from grashof.synth.theory.stopping import Stopped
 STOPPED = "no design: the search was stopped before it found one"
 UNEXPLAINED = "no design: the search for the reason was stopped"
 SHOWN = 8  # least-squares designs that stand for the nearest
+_WOULD, _BETWEEN = " alone would do", "; "
 ALTERNATIVES = 6  # that the note names
 NEAR_EFFORT, NEAR = 0.35, 8  # of a search for designs that come near
 
@@ -142,8 +143,22 @@ def _miss(near: _Near, size: float) -> float:
 def _ways_note(why: str, words: list[str]) -> str:
     """The note that names single requirements."""
     reason = f"no design: {why}" if why else "no design meets all requirements"
-    alone = "this alone would do" if len(words) == 1 else "each of these alone would do"
-    return f"{reason}; {alone}: {'; '.join(words)}"
+    alone = f"{'this' if len(words) == 1 else 'each of these'}{_WOULD}"
+    return f"{reason}; {alone}: {_BETWEEN.join(words)}"
+
+
+def note_parts(note: str) -> tuple[str, list[str]]:
+    """What a note says, and the requirements that it names one by one.
+
+    Examples
+    --------
+    >>> note_parts("no design; each of these alone would do: r 3 instead of 2; order = false")
+    ('no design; each of these alone would do', ['r 3 instead of 2', 'order = false'])
+    >>> note_parts("no design: the search found none")
+    ('no design: the search found none', [])
+    """
+    said, found, ways = note.partition(f"{_WOULD}: ")
+    return (f"{said}{_WOULD}", ways.split(_BETWEEN)) if found else (note, [])
 
 
 def _comes_within(scaled: ScaledProblem, near: _Near, then: str = "") -> str:

@@ -17,6 +17,7 @@ from grashof.page.scene import scene_of
 from grashof.problems import Problem
 from grashof.problems.values.checks import counted
 from grashof.synth import Candidate, Result
+from grashof.synth.results.explain import note_parts
 from grashof.synth.search.tally import DISTINCT, Tally
 from grashof.wording.problem import goals, summary
 
@@ -49,6 +50,7 @@ def search_page(result: Result, frame: pd.DataFrame, record: Mapping[str, Any], 
     moving = [not np.isnan(driver_travel(each.linkage, each.verdict.theta2).low) for each in listing]
     designs = [each for each, moves in zip(listing, moving, strict=True) if moves]
     frame = frame[moving] if designs else frame.iloc[:0]
+    note, ways = note_parts(result.note)
     data = search_data(problem, designs, frame, found=bool(result.candidates))
     columns = [Column(**each) for each in data["columns"]]
     return render(
@@ -60,7 +62,8 @@ def search_page(result: Result, frame: pd.DataFrame, record: Mapping[str, Any], 
         asked=[line.strip() for line in summary(problem)][1:],
         found=bool(result.candidates),
         headline=headline(result),
-        note=result.note,
+        note=note,
+        ways=ways,
         goals=goals(problem).replace("mu", "μ"),
         columns=columns,
         rows=(rows := _rows(frame, columns)),

@@ -62,6 +62,7 @@ def test_groups_are_drawn_when_they_are_opened_and_seen(opened: Open) -> None:
     assert {(group["open"], group["made"]) for group in others} == {(False, 0)}
     page.locator("#open-all").click()
     wait_until(page, "grashof.state().groups.every((group) => group.open)")
+    page.locator("summary").nth(1).evaluate("(node) => node.scrollIntoView()")
     wait_until(page, "grashof.state().groups[1].drawn === 3")
     assert [group["made"] for group in state(page)["groups"]] == [5, 3, 7, 9, 14, 3, 0, 5]
     assert state(page)["groups"][-1]["drawn"] == 0  # far below

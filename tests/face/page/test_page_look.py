@@ -77,3 +77,40 @@ def test_what_is_missed_is_not_called_a_design(opened: Open, misses: str) -> Non
     page = opened("nothing")
     assert state(page)["design"] is None
     assert page.locator("#stage .body").count() == 4
+
+
+@pytest.mark.parametrize("name", ["missed", "nothing"])
+def test_a_page_without_designs_uses_its_width(opened: Open, name: str) -> None:
+    page = opened(name, size=(1440, 900))
+    drawing = page.locator("#stage").bounding_box()
+    beside = page.locator(".split > div").nth(1).bounding_box()
+    assert drawing is not None
+    assert beside is not None
+    assert drawing["x"] + drawing["width"] <= beside["x"]
+    assert beside["x"] + beside["width"] > 1400
+    assert beside["height"] > 0.5 * drawing["height"]
+    for heading in ("What was asked", "What was searched"):
+        assert page.get_by_role("heading", name=heading).count() == 1
+
+
+def test_what_would_do_is_listed_at_the_top(opened: Open) -> None:
+    page = opened("relaxed", size=(1440, 900))
+    assert page.locator("#note p").inner_text() == "No design; each of these alone would do:"
+    ways = page.locator("#note li")
+    assert ways.all_inner_texts() == ["order = false", "transmission_min_deg 13 instead of 60"]
+    box = ways.last.bounding_box()
+    assert box is not None
+    assert box["y"] + box["height"] < 200
+
+
+@pytest.mark.parametrize("name", ["rocker", "swinging", "missed", "nothing"])
+def test_no_box_scrolls_within_the_page(opened: Open, name: str) -> None:
+    page = opened(name, size=(1440, 900))
+    inner = "[...document.querySelectorAll('main *')].filter((node) => "
+    inner += (
+        "/auto|scroll/.test(getComputedStyle(node).overflowY) && node.scrollHeight > node.clientHeight + 1)"
+    )
+    inner += ".map((node) => node.getAttribute('aria-label') || node.className)"
+    for group in page.locator("#close-all").all():
+        group.click()
+    assert page.evaluate(inner) == []
