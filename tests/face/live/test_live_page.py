@@ -255,6 +255,69 @@ def test_files_are_saved(page: Page, what: str, tmp_path: Path) -> None:
         assert path.stat().st_size > 10_000
 
 
+def behind(page: Page) -> list[float]:
+    """Left, top, width and height of what lies behind the task, px."""
+    script = "document.querySelector('.backdrop').firstElementChild.getBoundingClientRect()"
+    found: list[float] = page.evaluate(f"(r => [r.x, r.y, r.width, r.height])({script})")
+    return found
+
+
+def test_a_drawing_and_a_photo_lie_behind_scaled_by_two_points(page: Page, tmp_path: Path) -> None:
+    import ezdxf
+    from PIL import Image
+
+    document = ezdxf.new()
+    document.modelspace().add_line((0, 0), (4, 2))
+    document.saveas(tmp_path / "plan.dxf")
+    page.locator("[name=drawing]").set_input_files(tmp_path / "plan.dxf")
+    page.wait_for_selector(".backdrop path", state="attached")
+    grid = page.evaluate("document.querySelector('#stage').getBoundingClientRect().width")
+    first = behind(page)
+    assert 0 < first[2] < grid
+    assert first[3] == pytest.approx(first[2] / 2, abs=2)
+    left, bottom = first[0], first[1] + first[3]
+    for x, y in ((left, bottom), (left + first[2], first[1])):
+        page.mouse.click(x, y)
+    page.locator("[name=distance]").fill(str(2 * 20**0.5))  # the line is to be twice as long
+    page.locator("[data-distance] button").click()
+    view = behind(page)
+    assert view[2] / view[3] == pytest.approx(2, rel=0.05)
+    Image.new("RGB", (40, 20), "red").save(tmp_path / "photo.png")
+    page.locator("[name=photo]").set_input_files(tmp_path / "photo.png")
+    page.wait_for_selector(".backdrop image", state="attached")
+    _, _, width, height = behind(page)
+    assert width == pytest.approx(2 * height, rel=0.01)
+    (tmp_path / "broken.png").write_text("no picture")
+    page.locator("[name=photo]").set_input_files(tmp_path / "broken.png")
+    page.wait_for_function(
+        "() => document.querySelector('[data-notice]').textContent.includes('not a picture')"
+    )
+    (tmp_path / "broken.dxf").write_text("no drawing")
+    page.locator("[name=drawing]").set_input_files(tmp_path / "broken.dxf")
+    page.wait_for_function("() => document.querySelector('[data-notice]').textContent.includes('not a DXF')")
+
+
+def test_designs_are_compared_and_lost_ones_fade_with_what_they_miss(page: Page) -> None:
+    for row in (0, 2):
+        page.locator(".listing tbody input").nth(row).check()
+    assert page.locator("#compare article").count() == 2
+    keys = state(page)["compared"]
+    page.locator("[data-handle='target-1']").focus()
+    page.keyboard.press("ArrowUp")
+    shown(page, "s.listed.version === s.version && s.listed.phase === 'track'")
+    assert state(page)["compared"] == keys
+    searched(page)
+    page.locator("[data-handle='target-3']").focus()
+    page.keyboard.press("ArrowUp")
+    for _ in range(40):
+        page.keyboard.press("Shift+ArrowUp")
+        found = shown(page, "s.listed.version === s.version")
+        if found["lost"]:
+            break
+    assert found["lost"]
+    assert found["lost"][0]["why"]
+
+
 def solver_pids(server: int) -> list[int]:
     """Processes of the solvers: children of the server that were spawned."""
     listed = Path(f"/proc/{server}/task/{server}/children").read_text().split()
