@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import socket
 from collections.abc import Iterator
+from time import monotonic
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -89,6 +90,18 @@ def test_lost_designs_are_named_with_what_they_miss_and_come_back(client: Client
 def test_pages_have_their_own_designs(client: Client) -> None:
     client.ask("search", page="mine")
     assert client.ask("track", page="another")[0]["designs"] == []
+
+
+def test_leaving_ends_the_work(client: Client) -> None:
+    """More searches are left than there are solvers; each of them would take far longer than a second."""
+    long = {"what": "search", "document": document_of(problem_text("straight-line"), "x"), "name": "x"}
+    for page in ("left 1", "left 2", "left 3"):
+        body = {**long, "page": page, "document": {**long["document"], "search": {"effort": 4}}}
+        with client.http.stream("POST", "/ask", json=body, headers=client.headers) as answer:
+            next(answer.iter_lines())
+    since = monotonic()
+    assert client.ask("search", page="after")[-1]["kind"] == "done"
+    assert monotonic() < since + 10
 
 
 def test_what_is_no_task_is_told_line_by_line(client: Client) -> None:
