@@ -142,6 +142,7 @@ def test_a_locked_target_stays(page: Page) -> None:
     assert page.locator("tr[data-target='1'] [data-do=remove]").is_disabled()
 
 
+@pytest.mark.slow
 def test_numbers_limits_goals_and_kinds_are_those_of_the_file(page: Page) -> None:
     page.locator("tr[data-target='1'] [data-cell=x]").fill("3.4")
     page.locator("tr[data-target='1'] [data-cell=x]").press("Enter")
@@ -229,6 +230,7 @@ def test_joints_move_the_linkage_and_the_wheel_brings_it_closer(page: Page) -> N
     assert state(page)["document"] == document
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", ["problem", "list", "report", "dxf", "svg", "png"])
 def test_files_are_saved(page: Page, what: str, tmp_path: Path) -> None:
     page.locator("[data-menu=save] summary").click()
@@ -262,6 +264,7 @@ def behind(page: Page) -> list[float]:
     return found
 
 
+@pytest.mark.slow
 def test_a_drawing_and_a_photo_lie_behind_scaled_by_two_points(page: Page, tmp_path: Path) -> None:
     import ezdxf
     from PIL import Image
@@ -297,6 +300,7 @@ def test_a_drawing_and_a_photo_lie_behind_scaled_by_two_points(page: Page, tmp_p
     page.wait_for_function("() => document.querySelector('[data-notice]').textContent.includes('not a DXF')")
 
 
+@pytest.mark.slow
 def test_designs_are_compared_and_lost_ones_fade_with_what_they_miss(page: Page) -> None:
     for row in (0, 2):
         page.locator(".listing tbody input").nth(row).check()
@@ -346,6 +350,7 @@ def test_without_a_design_the_closest_miss_is_shown_and_what_to_relax(page: Page
     assert "transmission_min_deg" in page.locator("[data-notice]").inner_text()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["four-bar", "slider-crank", "inverted-slider-crank"])
 def test_the_velocity_of_p_is_that_of_the_analysis(page: Page, kind: str) -> None:
     page.locator("[data-menu=open] summary").click()
@@ -369,6 +374,7 @@ def test_the_velocity_of_p_is_that_of_the_analysis(page: Page, kind: str) -> Non
             page.keyboard.press("PageUp")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["function-log10", "quick-return-slide", "lifting-arm"])
 def test_tasks_without_points_and_with_cylinders_are_searched(page: Page, name: str) -> None:
     page.locator("[data-menu=open] summary").click()

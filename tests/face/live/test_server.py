@@ -92,6 +92,7 @@ def test_pages_have_their_own_designs(client: Client) -> None:
     assert client.ask("track", page="another")[0]["designs"] == []
 
 
+@pytest.mark.slow
 def test_leaving_ends_the_work(client: Client) -> None:
     """More searches are left than there are solvers; each of them would take far longer than a second."""
     long = {"what": "search", "document": document_of(problem_text("straight-line"), "x"), "name": "x"}
