@@ -6,6 +6,7 @@ const GOALS = [
   ["point_speed_max", "low speed of P"],
   ["point_acceleration_max", "low acceleration of P"],
 ];
+const AS_STATED = "as the file says"; // several goals, weighed
 const MECHANISMS = [
   ["four-bar", "four-bar"],
   ["slider-crank", "slider-crank"],
@@ -46,7 +47,7 @@ class Form {
       const { name, dataset } = event.target;
       if (dataset.cell) this.typed(event.target);
       else if (name === "mechanism") this.chooseKinds();
-      else if (name === "objective") task.edit((document) => (document.objective = { maximise: event.target.value }));
+      else if (name === "objective") this.chooseGoal(event.target.value);
       else if (name === "rotatability") {
         task.edit(() => {
           if (event.target.value) task.requirements.rotatability = event.target.value;
@@ -73,6 +74,10 @@ class Form {
     const k = Number(input.closest("tr").dataset.target);
     if (input.value.trim() === "" || !Number.isFinite(value)) input.value = String(this.task.targets[k][input.dataset.cell]);
     else this.task.edit(() => this.task.setTarget(k, { [input.dataset.cell]: value }));
+  }
+
+  chooseGoal(goal) {
+    if (goal !== AS_STATED) this.task.edit((document) => (document.objective = { maximise: goal }));
   }
 
   chooseKinds() {
@@ -152,7 +157,7 @@ class Form {
 
   goal() {
     const wanted = (this.task.document.objective || {}).maximise ?? "transmission";
-    return typeof wanted === "string" ? wanted : "as the file says";
+    return typeof wanted === "string" ? wanted : AS_STATED;
   }
 
   select(select, value) {
