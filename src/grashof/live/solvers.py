@@ -30,7 +30,8 @@ class State(Enum):
 
 
 STOP, DONE, READY = "stop", "done", "ready"
-LOST = "a solver was lost twice over this; the task is left as it is"
+TRIES = WARM + 1  # of a job: all warm solvers may be lost together, and none of them over it
+LOST = f"{TRIES} solvers were lost over this; the task is left as it is"
 
 
 def run_solver(pipe: Connection) -> None:
@@ -132,7 +133,7 @@ class Solvers:
         self.every.clear()
 
     async def lines(self, job: Job, left: Callable[[], bool]) -> AsyncGenerator[Line]:
-        """Lines of a job, which is begun once more where its solver is lost.
+        """Lines of a job, which is begun again where its solver is lost.
 
         Parameters
         ----------
@@ -140,7 +141,7 @@ class Solvers:
         left : callable
             Whether nobody waits for it any more; it is then asked to stop, and no more lines come.
         """
-        for _ in range(2):
+        for _ in range(TRIES):
             solver = await self._taken(left)
             if solver is None:
                 return
