@@ -27,11 +27,13 @@ def solve_round(found: Round, ledger: Ledger, run: Run) -> None:
         some = ledger.worthwhile(found, starts[begin : begin + (LAST if ended else batch)], first=begin == 0)
         run.begin(scaled, some + ledger.promising(found, starts[begin + batch :]))
         some = some[: ledger.starts - ledger.solved]
-        early = 0 if ledger.solved else EARLY
-        for part in (some[:early], some[early:]):
-            if part:
-                solve(part, ledger, run)
+        if not ledger.solved and len(some) > EARLY:
+            early, some = some[:EARLY], some[EARLY:]
+            solve(early, ledger, run)
             run.tell(ledger)
+        if some:
+            solve(some, ledger, run)
+        run.tell(ledger)
 
 
 def solve(starts: list[Start], ledger: Ledger, run: Run) -> None:

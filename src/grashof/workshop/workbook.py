@@ -260,7 +260,7 @@ def _openpyxl() -> ModuleType:
         import openpyxl
     except ModuleNotFoundError:
         raise ProblemError(
-            "--xlsx needs openpyxl: pip install 'grashof[export]' (in a clone '.[export]')"
+            "XLSX needs openpyxl: pip install 'grashof[export]' (in a clone '.[export]')"
         ) from None
     return openpyxl
 
