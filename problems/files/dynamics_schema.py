@@ -85,6 +85,14 @@ _SECTION: dict[str, Any] = {"section": SectionSpec(1.0, 1.0)}
 
 
 class LoadTable(_Spec):
+    """A force or moment on a link.
+
+    Parameters
+    ----------
+    table : str
+        Instead of `values`: a CSV file beside this one, with the columns over, fx, fy or over, moment.
+    """
+
     spec = LoadSpec
     link: int
     at: Point = Field(default=[0.0, 0.0])
@@ -160,6 +168,17 @@ class FrictionTable(_Spec):
 
 
 class MotorTable(_Spec):
+    """The drive of link 2.
+
+    Parameters
+    ----------
+    profile : str
+        constant; trapezoid: even acceleration from rest, even speed, even deceleration to rest; cycloid: from
+        rest to rest without a jump of acceleration; or a CSV file with the columns time and angle. Over a
+        task from its first target to its last, of a linkage over each turn, or from one dead position to the
+        other; `speed_rpm` is the mean.
+    """
+
     spec = MotorSpec
     profile: Any = "constant"
     ramp: float = 1 / 3
@@ -184,6 +203,14 @@ class MotorTable(_Spec):
 
 
 class PumpingUnitTable(_Spec):
+    """A linkage as a beam pumping unit; its `output_arm` is that of the horsehead.
+
+    Parameters
+    ----------
+    table : str
+        Instead of `values`: a CSV file beside this one, with the columns crank, load or position, up, down.
+    """
+
     spec = PumpingUnitSpec
     well: str = "right"
     crank: str = "clockwise"

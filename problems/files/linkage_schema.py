@@ -74,7 +74,19 @@ Mechanism = Annotated[str, AfterValidator(mechanism)]
 
 
 class _Heading(Table):
-    """What every linkage file may begin with; the keys of a file come in this order."""
+    """What every linkage file may begin with; the keys of a file come in this order.
+
+    Parameters
+    ----------
+    title : str
+        For people: headings of pages and drawings.
+    source : str
+        Where the linkage is from, for people.
+    length_unit : str
+        Unit of all lengths: mm, cm, m, in or ft where there are masses, otherwise any word.
+    mechanism : str
+        The kind of linkage; each has parameters of its own.
+    """
 
     title: Text = ""
     source: Text = ""
@@ -83,7 +95,15 @@ class _Heading(Table):
 
 
 class LinkageTable(MachineTables, _Heading):
-    """The whole linkage file, whatever the kind; the tables of each kind have its parameters besides."""
+    """The whole linkage file, whatever the kind; the tables of each kind have its parameters besides.
+
+    Parameters
+    ----------
+    r1 : float, length
+        Instead of `o4`: length O2O4.
+    ground_angle_deg : float, deg
+        With `r1`: direction of O4 from O2; 0 without it.
+    """
 
     @field_validator(*(key for key, row in _PARAMETERS.items() if row.kind != "angle"), check_fields=False)
     @classmethod

@@ -209,6 +209,14 @@ Outlines = Annotated[list[Corners], listed("a list of outlines, each a list of c
 
 
 class SceneTable(Table):
+    """What is drawn with the designs and limits nothing.
+
+    Parameters
+    ----------
+    outlines : list, length
+        Lines from corner to corner, such as the machine's frame.
+    """
+
     outlines: Outlines | None = None
 
     def value(self) -> tuple[FloatArray, ...]:
@@ -316,6 +324,14 @@ Maximise = Annotated[
 
 
 class ObjectiveTable(Table):
+    """What makes one design better than another.
+
+    Parameters
+    ----------
+    maximise : str or table
+        The goal, or weights of several; quantities that are better when small are made small.
+    """
+
     maximise: Maximise = "transmission"
 
     def value(self) -> Objective:
@@ -348,6 +364,14 @@ class CylinderTable(Table):
 
 
 class DriverTable(Table):
+    """What drives the linkage in place of a crank.
+
+    Parameters
+    ----------
+    cylinder : CylinderSpec
+        Between the ground and a link.
+    """
+
     cylinder: CylinderTable
 
     def value(self) -> CylinderSpec:
@@ -393,7 +417,19 @@ Mechanism = Annotated[
 
 
 class _Task(Table):
-    """What is asked; the keys of a file come in this order."""
+    """What is asked; the keys of a file come in this order.
+
+    Parameters
+    ----------
+    kind : str
+        The kind of task; the table of this name states it.
+    title : str
+        For people: headings of lists, pages and drawings.
+    source : str
+        Where the problem is from, for people.
+    length_unit : str
+        Unit of all lengths: mm, cm, m, in or ft where forces are asked for, otherwise any word.
+    """
 
     kind: Annotated[str, one_of(*_KINDS)]
     mechanism: Mechanism = FOUR_BAR

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Self, TypeAlias, TypeVar, get_args
 
@@ -111,13 +112,13 @@ Text: TypeAlias = Annotated[str, AfterValidator(_plain)]
 
 def listed(wanted: str) -> BeforeValidator:
     """Validator that refuses what is not a list, with what it must be."""
+    return BeforeValidator(partial(_listed, wanted=wanted))
 
-    def refuse(value: object) -> object:
-        if not isinstance(value, list):
-            raise PydanticCustomError(WRONG, wanted)
-        return value
 
-    return BeforeValidator(refuse)
+def _listed(value: object, *, wanted: str) -> object:
+    if not isinstance(value, list):
+        raise PydanticCustomError(WRONG, wanted)
+    return value
 
 
 def of_length(count: int, wanted: str) -> AfterValidator:
@@ -133,13 +134,13 @@ def of_length(count: int, wanted: str) -> AfterValidator:
 
 def one_of(*words: str) -> AfterValidator:
     """Validator of a word: one of those given."""
+    return AfterValidator(partial(_one_of, wanted=f"{', '.join(words[:-1])} or {words[-1]}", words=words))
 
-    def refuse(word: str) -> str:
-        if word not in words:
-            raise PydanticCustomError(WRONG, f"{', '.join(words[:-1])} or {words[-1]}")
-        return word
 
-    return AfterValidator(refuse)
+def _one_of(word: str, *, wanted: str, words: tuple[str, ...]) -> str:
+    if word not in words:
+        raise PydanticCustomError(WRONG, wanted)
+    return word
 
 
 def tag(value: object) -> str | None:

@@ -49,10 +49,11 @@ class LoadSpec(Stated):
     Parameters
     ----------
     link : int
-        2, 3 or 4.
+        The link that it acts on: 2, 3 or 4.
     at : pair of float, length
         Of a force: its point in the link's frame.
     force : pair of float, N, optional
+        Its components, in the axes of `frame`.
     moment : float, N m, optional
         Counter-clockwise.
     values : sequence of rows, optional
@@ -124,8 +125,11 @@ class SpringSpec(Stated):
     Parameters
     ----------
     between : pair of Place
+        Its two ends.
     stiffness : float, N/m
+        Force for each metre that it is longer than its free length.
     free_length : float, length
+        Where it is slack.
     """
 
     between: tuple[Place, Place]
@@ -145,7 +149,9 @@ class DamperSpec(Stated):
     Parameters
     ----------
     between : pair of Place
+        Its two ends.
     damping : float, N s/m
+        Force for each m/s at which its ends part.
     """
 
     between: tuple[Place, Place]
@@ -165,6 +171,7 @@ class TorsionSpringSpec(Stated):
     between : pair of int
         Links of a joint: 1 and 2 (O2), 2 and 3 (A), 3 and 4 (B), 1 and 4 (O4).
     stiffness : float, N m/rad
+        Moment for each radian from the free angle.
     free_angle_deg : float, deg
         Angle of the second link less that of the first where it is slack, the ground's being 0.
     """
@@ -193,10 +200,11 @@ class CounterweightSpec(Stated):
     Parameters
     ----------
     link : int
-        2, 3 or 4.
+        The link that carries it: 2, 3 or 4.
     mass : float, kg
+        Of the weight.
     at : pair of float, length
-        In the link's frame.
+        Its place in the link's frame.
     """
 
     link: int
@@ -218,6 +226,7 @@ class FrictionSpec(Stated):
     coulomb : float or four floats
         Coefficient of friction of the pins; it needs `pin_radius`.
     pin_radius : float or four floats, length
+        Of the pins, for `coulomb`.
     viscous : float or four floats, N m s/rad
         Moment for each rad/s.
     moment : float or four floats, N m

@@ -13,7 +13,13 @@ from grashof.problems.values.errors import ProblemError, wrong_value
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """An upright rectangle x[0] <= x <= x[1], y[0] <= y <= y[1]; an infinite side is open."""
+    """An upright rectangle x[0] <= x <= x[1], y[0] <= y <= y[1]; an infinite side is open.
+
+    Parameters
+    ----------
+    x, y : pair of float, length
+        Least and greatest coordinate; without it any will do.
+    """
 
     x: Limits = (-np.inf, np.inf)
     y: Limits = (-np.inf, np.inf)

@@ -50,8 +50,10 @@ class DynamicsSpec(Stated):
     ----------
     mass_per_length : float, kg/length, optional
         The links are slender uniform bars from joint to joint.
-    masses, inertias : three floats, kg and kg length^2, optional
-        Instead: of links 2, 3 and 4, inertias about the centres of mass.
+    masses : three floats, kg, optional
+        Instead, with `inertias`: of links 2, 3 and 4.
+    inertias : three floats, kg length^2, optional
+        Of links 2, 3 and 4 about their centres of mass.
     centres : three pairs of float, length, optional
         Centres of mass of links 2, 3 and 4 in their frames; by default halfway between the joints of
         each link (the coupler's between A and B, wherever P is).
@@ -65,13 +67,19 @@ class DynamicsSpec(Stated):
     gravity : two floats, m/s^2
         In metres whatever the length unit; none by default.
     loads : tuple of LoadSpec
+        Forces and moments on the links.
     springs : tuple of SpringSpec
+        Between points of two links.
     dampers : tuple of DamperSpec
+        Between points of two links.
     torsion_springs : tuple of TorsionSpringSpec
+        In joints.
     counterweights : tuple of CounterweightSpec
+        Point masses on the links, besides their own.
     friction : FrictionSpec, optional
+        In joints and in a slide.
     motor : MotorSpec, optional
-        Steady speed without it.
+        Speed profile, gear and inertia of the drive; steady speed without it.
     section : SectionSpec, optional
         Of the bars; `density` needs it, and strength.
     strength : StrengthSpec, optional

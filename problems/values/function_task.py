@@ -194,8 +194,34 @@ class FunctionTask(Task):
     ) -> FunctionTask:
         """Task with its angles in degrees, as problem files write it: pairs, or a law with its ranges.
 
-        Of a slide `output` and `output_range` are its travel, in the problem's unit of length. In Python
-        `law` may be any function of x; it is sampled.
+        In Python `law` may be any function of x; it is sampled.
+
+        Parameters
+        ----------
+        input_deg : array_like, deg, optional
+            Driver rotation from the first pair: zero, then growing over at most one turn.
+        output_deg : array_like, deg, optional
+            Rotation of link 4 from the first pair, one for each input; positive as the driver turns.
+        output : array_like, length, optional
+            Instead, travel of a slide from the first pair.
+        law : str, optional
+            Instead of pairs, a function y(x): log10, ln, exp, sin, cos, tan (of degrees), sqrt, reciprocal,
+            power or sampled.
+        x : pair of float, optional
+            Range of the law, from and to.
+        exponent : float, optional
+            Of a power.
+        input_range_deg : float, deg, optional
+            Driver rotation over the range of x.
+        output_range_deg : float, deg, optional
+            Rotation of link 4 over the range of y.
+        output_range : float, length, optional
+            Instead, travel of a slide over the range of y.
+        pairs : int, optional
+            Pairs that are met exactly, at Chebyshev's spacing; without them the law is fitted over its range.
+        sampled : array_like, optional
+            Of a sampled law, as Grashof saves one that was a function in Python: y at Chebyshev-Lobatto
+            points of `x`.
 
         Examples
         --------

@@ -161,7 +161,14 @@ class MotionTask(Task):
         timing_deg: npt.ArrayLike | None = None,
         closed: bool = False,
     ) -> MotionTask:
-        """Task from rows [x, y, angle in degrees], or tables of x, y, angle, as problem files write them."""
+        """Task from rows [x, y, angle in degrees], or tables of x, y, angle, as problem files write them.
+
+        Parameters
+        ----------
+        poses : sequence, length
+            Where the coupler point P and the body carried with it have to be, in order; a table such as
+            ``{ x = 2, y = 3 }`` or ``{ angle = 30 }`` leaves parts of a pose free.
+        """
         if isinstance(poses, (str, bytes, Mapping)) or not isinstance(poses, Iterable):
             raise wrong_value("motion.poses", poses, "a list of poses")
         given: list[tuple[float, float, float]] = []

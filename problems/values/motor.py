@@ -24,13 +24,14 @@ class MotorSpec(Stated):
         sec. 8.3). Over a task from its first target to its last, of a linkage over each turn, or from one
         dead position to the other; `speed_rpm` is the mean.
     ramp : float
-        Of a trapezoid: share of the time that it takes to speed up, and to slow down.
+        Of a trapezoid: share of the time that it takes to speed up, and to slow down, 0.01 to 0.5.
     values : sequence of rows, optional
         Instead of a profile: (time in s, angle in deg), both rising: their curve, its angles stretched to the
         motion. Its time counts, not `speed_rpm`.
     gear_ratio : float
         Speed of the motor over that of link 2.
     gear_efficiency : float
+        Of the gear, 0.01 to 1.
     inertia : float, kg m^2
         Of the motor.
 

@@ -23,7 +23,7 @@ class PathTask(Task):
     Parameters
     ----------
     points : array_like, shape (N, 2), length
-        Where P has to be.
+        Where the coupler point P has to be, in order.
     timing : array_like, shape (N,), rad, optional
         Driver rotation from the first point, zero there, growing or falling throughout and over at
         most one turn. Its sense is free: a design may turn the driver either way.

@@ -87,8 +87,8 @@ class Requirements(ReadOnly):
     Parameters
     ----------
     exact : bool, optional
-        Every target is met; False: least squares. By default exact wherever linkages that meet
-        every target can be expected (see `is_exact`).
+        Whether every target is met, or the squared errors are made least. By default exact wherever
+        linkages that meet every target can be expected (see `is_exact`).
     tolerance : float
         A design is exact when its largest error is at most ``tolerance * size``.
     error_factor : float, optional
@@ -138,7 +138,7 @@ class Requirements(ReadOnly):
     structural_error_max_deg, structural_error_rms_deg : tuple of float, deg, optional
         (lo, hi) for the structural error of a function over its range, greatest and root mean square.
     structural_error_max, structural_error_rms : tuple of float, optional
-        (lo, hi) for those of a slide.
+        (lo, hi) for those of a function whose output is the travel of a slide.
     time_ratio : tuple of float, optional
         (lo, hi) for the time of the slow stroke of link 4 over that of the quick one, the driver turning
         steadily; of a driver that does not turn fully there is none.

@@ -31,9 +31,9 @@ class StrokeTask(Task):
     Parameters
     ----------
     swing : float, rad, optional
-        Of link 4 between its limit positions, below pi.
+        Of link 4 between its limit positions, below half a turn.
     stroke : float, length, optional
-        Of the slide between them; one of the two is given.
+        Of a slide between its limit positions; either this or the swing is given.
     time_ratio : float
         Time of the slow stroke over that of the quick one, the driver turning steadily; from 1 on.
 

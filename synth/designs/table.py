@@ -40,6 +40,20 @@ _BEFORE = {
         "best_at": "best at",
     },
 }
+# What those of them are that their words do not tell.
+ABOUT = {
+    "rank": "place in the list, from 1",
+    "id": "name of the design, the same in every list that has it: `candidates.json#df2467fa`",
+    "family": "id of the best of the designs that are like this one",
+    "grashof_class": "crank-rocker, double-crank and so on; with a slide crank-shaper, Whitworth and so on",
+    "direction": "from the first target to the last",
+    "assembly": "B left (+1) or right (-1) of the line from A to O4",
+    "pareto": "nothing in the list is better in every goal",
+    "cognate_of": "id of the design that has the same coupler curve",
+    "start": "which one it came from",
+    "iterations": "that Ipopt needed",
+    "best_at": "what a design of a least-squares list offers, such as the least error",
+}
 # Columns without a meaning for a task stay empty.
 COLUMNS = tuple(name for quantity in LISTED for name in (*_BEFORE.get(quantity.key, ()), quantity.column))
 # The user's own objective, a last column where there is one.

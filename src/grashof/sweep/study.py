@@ -142,6 +142,14 @@ def load_study(path: str | os.PathLike[str]) -> Study:
 
 
 class SearchOptions(Table):
+    """How hard to search, in place of the problems' own tables of this name.
+
+    Parameters
+    ----------
+    time_limit : float, s
+        Of each combination; the table of the sweep then depends on the machine.
+    """
+
     starts: int | None = None
     enough: int | None = None
     effort: float | None = None
@@ -164,6 +172,31 @@ Keys = Annotated[list[str], listed("a list of keys of vary")]
 
 
 class StudyFile(Table):
+    """The whole study file.
+
+    Parameters
+    ----------
+    title : str
+        For people: heading of the page and of the plot.
+    problem : str
+        The problem that is varied: a name of the catalogue or a file, relative to the study.
+    problems : str
+        Instead: a folder, all problem files of which are solved.
+    table : str
+        With `problem`: a CSV file, each row of which holds the targets of a problem of its own.
+    designs : int
+        Best designs that the table lists of each combination.
+    parquet : bool
+        Whether sweep.parquet is written, too; needs `grashof[parquet]`.
+    together : list
+        Keys that vary in step; all others vary in every combination.
+    vary : table
+        Keys of the problem file, each with a list of values or an even range
+        ``{ from = 1, to = 2, steps = 3 }``; entries of lists count from 0.
+    search : SearchOptions
+        In place of the problem's own.
+    """
+
     title: Text = ""
     problem: str | None = None
     problems: str | None = None

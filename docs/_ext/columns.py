@@ -1,0 +1,37 @@
+"""The columns of candidates.csv, from the quantities that are declared."""
+
+from __future__ import annotations
+
+from marking import code, row, sentence
+
+from grashof.problems.values.mechanisms import KINDS
+from grashof.problems.values.quantities import Needs, Over, Quantity
+from grashof.synth.designs.table import ABOUT, COLUMNS, LISTED, NAMES, OWN
+
+_BY_COLUMN = {quantity.column: quantity for quantity in (*LISTED, OWN)}
+
+
+def column_table() -> str:
+    """All columns in their order as a table in Markdown."""
+    head = [row("column", "unit", "better", "meaning", "taken over"), "|---|---|---|---|---|"]
+    return "\n".join([*head, *(_row(name) for name in (*COLUMNS, OWN.column))])
+
+
+def _row(name: str) -> str:
+    quantity = _BY_COLUMN.get(name)
+    if quantity is None:
+        return row(code(name), "", "", f"{sentence(NAMES[name])} {sentence(ABOUT.get(name, ''))}", "")
+    better = {1: "greater", -1: "smaller", 0: ""}[quantity.better]
+    over = "" if quantity.over is Over.DESIGN else str(quantity.over)
+    return row(code(name), str(quantity.unit), better, _meaning(quantity), over)
+
+
+def _meaning(quantity: Quantity) -> str:
+    told = (quantity.full, str(quantity.over), "from the first target to the last")
+    about = "" if quantity.about in told else quantity.about
+    parts = [sentence(quantity.full), sentence(about)]
+    if quantity.needs is not Needs.NOTHING:
+        parts.append(f"Needs {quantity.needs.value}.")
+    if set(quantity.kinds) != set(KINDS):
+        parts.append(f"Of {', '.join(quantity.kinds)}.")
+    return " ".join(filter(None, parts))

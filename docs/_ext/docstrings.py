@@ -1,0 +1,71 @@
+"""The parameters that a numpydoc docstring describes."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from dataclasses import dataclass
+from itertools import pairwise
+
+_ENTRY = re.compile(r"^(?P<names>\*{0,2}\w+(?:, (?:\w+|\.\.\.))*) : (?P<type>.+)$")
+
+
+@dataclass(frozen=True, slots=True)
+class Described:
+    """A parameter as its docstring has it.
+
+    Parameters
+    ----------
+    type : str
+        What stands after the colon.
+    text : str
+        The lines below, as one; empty where there are none.
+    """
+
+    type: str
+    text: str
+
+
+def parameters_of(documented: object) -> dict[str, Described]:
+    """Parameters of a class or function by name, those of a line shared by several names for each of them.
+
+    Examples
+    --------
+    >>> class Bar:
+    ...     '''A bar.
+    ...
+    ...     Parameters
+    ...     ----------
+    ...     width, height : float, length
+    ...         Of its section.
+    ...     '''
+    >>> parameters_of(Bar)["height"]
+    Described(type='float, length', text='Of its section.')
+    """
+    lines = _section(inspect.cleandoc(documented.__doc__ or "").splitlines(), "Parameters")
+    found: dict[str, Described] = {}
+    examples: set[str] = set()  # "size, worst_move, ..." describes a group, not its members
+    names: list[str] = []
+    for line in lines:
+        if entry := _ENTRY.match(line):
+            names = [name.lstrip("*") for name in entry["names"].split(", ")]
+            found |= dict.fromkeys(names, Described(entry["type"], ""))
+        elif line.strip():
+            known = found[names[0]]
+            found |= dict.fromkeys(names, Described(known.type, f"{known.text} {line.strip()}".strip()))
+            examples |= {*names} if "..." in names else set()
+    return {name: each for name, each in found.items() if name not in examples}
+
+
+def summary_of(documented: object) -> str:
+    """The first line of a docstring."""
+    return inspect.cleandoc(documented.__doc__ or "").partition("\n")[0]
+
+
+def _section(lines: list[str], title: str) -> list[str]:
+    """The lines of a section of a docstring, without its heading."""
+    heads = [i for i in range(len(lines) - 1) if lines[i + 1] and not lines[i + 1].strip("-")]
+    for start, end in pairwise([*heads, len(lines)]):
+        if lines[start] == title:
+            return lines[start + 2 : end]
+    return []

@@ -1,0 +1,101 @@
+"""The generated reference: every key, column, option and public name is there, and is told what it means."""
+
+import doctest
+import re
+import sys
+from importlib import import_module
+from inspect import isclass, isroutine
+from pathlib import Path
+from pkgutil import iter_modules
+
+import pytest
+import typer
+
+import grashof
+from grashof.cli import app
+from grashof.synth.designs.table import COLUMNS
+
+DOCS = Path(__file__).parents[1] / "docs"
+sys.path.append(str(DOCS / "_ext"))
+
+import api  # noqa: E402
+import columns  # noqa: E402
+import command_line  # noqa: E402
+import docstrings  # noqa: E402
+import keys  # noqa: E402
+import marking  # noqa: E402
+
+FILES = {
+    "problem": keys.problem_tables,
+    "linkage": keys.linkage_tables,
+    "study": keys.study_tables,
+}
+TABLES = [(f"{file}: {path}", table) for file, tables in FILES.items() for path, table in tables().items()]
+
+
+@pytest.mark.parametrize(("path", "table"), TABLES, ids=[path for path, _ in TABLES])
+def test_every_key_has_a_value_and_a_sentence(path: str, table: type) -> None:
+    told = keys.keys_of(table)
+    assert [key.name for key in told] == list(table.model_fields)  # type: ignore[attr-defined]
+    assert [key.name for key in told if not key.value or not key.text.endswith(".")] == []
+
+
+@pytest.mark.parametrize(
+    ("table", "row"),
+    [
+        ("requirements", "| `transmission_min_deg` | number, 0 to 90 | deg | `0` |"),
+        ("requirements", "| `link_length` | [lo, hi], from 0 | length | 0.01 to 20 sizes of the task |"),
+        ("requirements", '| `driver_sense` | `"either"`, `"ccw"`, `"cw"` |  | `"either"` |'),
+        ("search", "| `starts` | whole number |  | `200` |"),
+        ("springs", "| `stiffness` | number | N/m | required |"),
+        ("strength", "| `yield_stress` | number | Pa | required |"),
+    ],
+)
+def test_rows_state_value_unit_and_default(table: str, row: str) -> None:
+    assert row in keys.key_table(keys.problem_tables()[table])
+
+
+@pytest.mark.parametrize("name", COLUMNS)
+def test_every_column_has_a_row(name: str) -> None:
+    assert f"\n| `{name}` |" in columns.column_table()
+
+
+def test_every_command_and_option_is_told() -> None:
+    page = command_line.commands_page()
+    for name, command in typer.main.get_command(app).commands.items():  # type: ignore[attr-defined]
+        section = page.split(f"## grashof {name}\n")[1].split("\n## ")[0]
+        rows = re.findall(r"^\| `([^`]+)` \| ([^|]+) \|$", section, re.MULTILINE)
+        options = [each.opts[0] for each in command.params if each.param_type_name == "option"]
+        assert [option for option in options if option not in {row[0].split()[0] for row in rows}] == []
+        assert all(meaning.strip() for _, meaning in rows)
+
+
+def test_every_public_package_has_a_page() -> None:
+    packages = [each.name for each in iter_modules(grashof.__path__, "grashof.") if each.ispkg]
+    packages += ["grashof.problems", "grashof.analysis", "grashof.synth"]
+    public = {name for name in packages if getattr(import_module(name), "__all__", ())}
+    assert public <= {each.name for each in api.PACKAGES}
+
+
+@pytest.mark.parametrize("package", api.PACKAGES, ids=lambda each: each.name)
+def test_every_public_name_is_listed_and_has_a_docstring(package: api.Package) -> None:
+    listed = re.findall(r"^   (\w+)$", api.package_page(package), re.MULTILINE)
+    names = api.public_names(package.name)
+    assert sorted(listed) == sorted(names)
+    module = import_module(package.name)
+    values = {name: getattr(module, name) for name in names}
+    assert [
+        name for name, value in values.items() if (isclass(value) or isroutine(value)) and not value.__doc__
+    ] == []
+
+
+@pytest.mark.parametrize("module", [docstrings, marking], ids=lambda each: each.__name__)
+def test_examples_of_the_generators(module) -> None:  # type: ignore[no-untyped-def]
+    assert doctest.testmod(module).failed == 0
+
+
+def test_every_example_is_short_and_has_a_title() -> None:
+    for path in (DOCS / "gallery").glob("*.py"):
+        text = path.read_text(encoding="utf-8")
+        assert len(text.splitlines()) <= 90, path.name
+        assert re.match(r'"""\n.+\n=+\n', text), path.name
