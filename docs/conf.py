@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import sys
 import warnings
@@ -78,12 +79,14 @@ def plain_figures(_gallery: dict[str, Any], _file: str) -> None:
             "savefig.dpi": 110,
             "font.size": 10,
             "axes.grid": True,
+            "axes.axisbelow": True,
             "grid.color": "0.9",
             "axes.spines.top": False,
             "axes.spines.right": False,
             "legend.frameon": False,
         }
     )
+    logging.getLogger("matplotlib.font_manager").setLevel(logging.ERROR)
     warnings.filterwarnings("ignore", message="FigureCanvasAgg is non-interactive")
 
 
