@@ -45,6 +45,7 @@ for name, place in {"A": first.a[0], "B": first.b[0], "O2": best.linkage.o2, "O4
     curve = circle_points if name in "AB" else centre_points
     gap = np.abs(curve - place @ [1, 1j]).min()
     assert gap < 0.15, f"{name} is {gap:.2f} m off the curve as drawn"
+ax.set_aspect("equal", adjustable="box")
 ax.set(xlim=(-4, 16), ylim=(-8, 9))
 ax.legend(loc="upper right")
 

@@ -2,8 +2,8 @@
 Three kinds of linkage in one list
 ==================================
 
-The pusher of the last example once more: six points of an arc. This time it is left open which kind of
-linkage does it.
+The pusher of the example before this one once more: six points of an arc. This time it is left open which
+kind of linkage does it.
 """
 
 # %%
