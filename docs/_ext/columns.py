@@ -20,9 +20,11 @@ def column_table() -> str:
 def _row(name: str) -> str:
     quantity = _BY_COLUMN.get(name)
     if quantity is None:
-        return row(code(name), "", "", f"{sentence(NAMES[name])} {sentence(ABOUT.get(name, ''))}", "")
+        words = "" if NAMES[name].replace(" ", "_").lower() == name else NAMES[name]
+        told = ": ".join(filter(None, (words, ABOUT.get(name, ""))))
+        return row(code(name), "", "", sentence(told), "")
     better = {1: "greater", -1: "smaller", 0: ""}[quantity.better]
-    over = "" if quantity.over is Over.DESIGN else str(quantity.over)
+    over = "" if quantity.over is Over.DESIGN else str(quantity.over).partition(",")[0]
     return row(code(name), str(quantity.unit), better, _meaning(quantity), over)
 
 

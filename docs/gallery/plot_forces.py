@@ -48,7 +48,7 @@ assert by_torque.values["torque_peak"] < by_angle.values["torque_peak"]
 # %%
 # A good transmission angle does not make a small torque: what counts is how much the weights rise for each
 # degree of the crank. Over the turn the torque and the forces look like this. On the way back the torque is
-# larger still, because the box is counted there, too: a machine that lets go of it needs less.
+# larger still and brakes the box, which is counted there, too: a machine that lets go of it needs less.
 
 plot_dynamics(by_torque, problem, quantities=["torque", "joint force"])
 
