@@ -61,7 +61,7 @@ html_theme_options: dict[str, Any] = {
     "navigation_with_keys": False,
     "show_prev_next": False,
     "footer_start": ["copyright"],
-    "footer_end": ["sphinx-version"],
+    "footer_end": [],
     "pygments_light_style": "tango",
     "pygments_dark_style": "monokai",
 }
