@@ -104,7 +104,7 @@ class Masses:
         return Masses(self.crank, self.coupler + Body(mass, 0.0, at), self.output)
 
 
-# Links that have no mass.
+#: Links that have no mass.
 WEIGHTLESS = Masses(Body(0.0), Body(0.0), Body(0.0))
 
 

@@ -37,6 +37,7 @@ class Measure:
     unit: str
 
 
+#: What is known of a bar at a position: forces, stresses, deflection, the share of its strength in use.
 BAR_MEASURES = (
     Measure("tension", "tension", "N"),
     Measure("compression", "compression", "N"),
@@ -49,6 +50,7 @@ BAR_MEASURES = (
     Measure("deflection", "deflection", "length"),
     Measure("utilisation", "share of its strength in use", ""),
 )
+#: The same of a pin.
 PIN_MEASURES = (
     Measure("pin_force", "force", "N"),
     Measure("pin_shear", "shear stress of the pin", "Pa"),

@@ -85,7 +85,8 @@ class Design:
         return cls.of(linkage, verdict.theta2[visit], verdict.assembly[visit])
 
 
-Constraint: TypeAlias = Callable[[Design], Any]  # zero or negative where it is met; a scalar or several
+#: A constraint of your own: a function of a design, zero or negative where it is met; a scalar or several.
+Constraint: TypeAlias = Callable[[Design], Any]
 OwnObjective: TypeAlias = Callable[[Design], Any]  # smaller is better; a scalar
 
 

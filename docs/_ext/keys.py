@@ -22,7 +22,7 @@ from pydantic_core import PydanticUndefined
 
 from grashof.problems import DynamicsSpec, Problem, Requirements
 from grashof.problems.files.dynamics_schema import MachineTables
-from grashof.problems.files.linkage_schema import FILES
+from grashof.problems.files.linkage_schema import FILES, LinkageTable
 from grashof.problems.files.problem_schema import ProblemFile, WeightsTable
 from grashof.problems.files.tables import Table, tables_of
 from grashof.problems.values.checks import GREATEST
@@ -73,11 +73,12 @@ def problem_tables() -> dict[str, type[Table]]:
 
 
 def linkage_tables() -> dict[str, type[Table]]:
-    """The file of each kind of linkage, and the tables that it has besides those of problem files."""
+    """What all linkage files have, the file of each kind, and tables that problem files have not."""
     shared = MachineTables.model_fields
     inner = {path: table for file in FILES.values() for path, table in tables_of(file)}
     own = {path: table for path, table in inner.items() if path and path.split(".")[0] not in shared}
-    return {f'mechanism = "{kind}"': file for kind, file in FILES.items()} | own
+    kinds: dict[str, type[Table]] = {f'mechanism = "{kind}"': file for kind, file in FILES.items()}
+    return {"": LinkageTable, **kinds, **own}
 
 
 def study_tables() -> dict[str, type[Table]]:
@@ -105,7 +106,7 @@ def _sources(table: type[Table]) -> Iterator[object]:
         yield Search
     if issubclass(table, ProblemFile):
         yield from (Problem, DynamicsSpec)
-    elif table in FILES.values():
+    elif issubclass(table, LinkageTable):
         yield from (KINDS[kind] for kind, file in FILES.items() if file is table)
         yield from (LinkageSpec, DynamicsSpec)
     elif isinstance(made := _made(table), type):
@@ -236,7 +237,12 @@ def _toml(value: Any) -> str:
 
 
 def key_table(table: type[Table]) -> str:
-    """The keys of a table as a table in Markdown."""
+    """The keys of a table as a table in Markdown; of a kind of linkage those that not all kinds have."""
+    shared = LinkageTable.model_fields if table in FILES.values() else ()
     head = [row("key", "value", "unit", "default", "meaning"), "|---|---|---|---|---|"]
-    body = [row(code(key.name), key.value, key.unit, key.default, key.text) for key in keys_of(table)]
+    body = [
+        row(code(key.name), key.value, key.unit, key.default, key.text)
+        for key in keys_of(table)
+        if key.name not in shared
+    ]
     return "\n".join([*head, *body])

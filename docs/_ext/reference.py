@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import ast
+import inspect
 import re
 from collections.abc import Callable, Mapping
+from importlib import import_module
 from itertools import groupby
 from pathlib import Path
 
@@ -14,6 +17,7 @@ from keys import LISTS, key_table, linkage_tables, problem_tables, study_tables
 from marking import code
 from sphinx.application import Sphinx
 from sphinx.config import Config
+from sphinx.pycode import ModuleAnalyzer
 
 from grashof.problems.files.problem_schema import BoxTable
 from grashof.problems.files.tables import Table
@@ -90,8 +94,23 @@ def _piece(found: re.Match[str], names: Mapping[str, str]) -> str:
     return f":py:obj:`~{names[name]}`" if name in names else f"``{name}``"
 
 
+def constant_text(name: str) -> list[str]:
+    """The comment ``#:`` above a constant or type, by its full name, wherever it is defined."""
+    package, _, short = name.rpartition(".")
+    source = inspect.getsource(import_module(package))
+    homes = [
+        node.module
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.ImportFrom) and any(alias.name == short for alias in node.names)
+    ]
+    found = ModuleAnalyzer.for_module(homes[0] or package if homes else package).find_attr_docs()
+    return list(found.get(("", short), []))
+
+
 def _mark(names: Mapping[str, str]) -> Callable[..., None]:
-    def mark(_app: Sphinx, _what: str, _name: str, _obj: object, _options: object, lines: list[str]) -> None:
+    def mark(_app: Sphinx, what: str, name: str, _obj: object, _options: object, lines: list[str]) -> None:
+        if what == "data":  # its type's docstring otherwise
+            lines[:] = constant_text(name)
         lines[:] = [marked(line, names) for line in lines]
 
     return mark

@@ -23,10 +23,16 @@ class FourBar(Linkage):
 
     Parameters
     ----------
-    o2, o4 : array_like, shape (..., 2), length
-        Ground pivots of driver and output.
-    r2, r3, r4 : array_like, shape (...), length
-        Lengths O2A, AB, O4B.
+    o2 : array_like, shape (..., 2), length
+        Ground pivot of the driver.
+    o4 : array_like, shape (..., 2), length
+        Ground pivot of the output.
+    r2 : array_like, shape (...), length
+        Length O2A, of the driver.
+    r3 : array_like, shape (...), length
+        Length AB, of the coupler.
+    r4 : array_like, shape (...), length
+        Length O4B, of the output.
     coupler_point : array_like, shape (..., 2), length
         P in the coupler's frame: origin A, u along AB, v to its left.
     assembly : array_like, shape (...)

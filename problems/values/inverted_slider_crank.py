@@ -23,8 +23,10 @@ class InvertedSliderCrank(Linkage):
 
     Parameters
     ----------
-    o2, o4 : array_like, shape (..., 2), length
-        Ground pivots of driver and block.
+    o2 : array_like, shape (..., 2), length
+        Ground pivot of the driver.
+    o4 : array_like, shape (..., 2), length
+        Ground pivot of the block.
     r2 : array_like, shape (...), length
         Length O2A.
     offset : array_like, shape (...), length

@@ -28,7 +28,7 @@ class LinkageSpec(Displayed):
         Radius about O4 of what the output link drives, such as a horsehead: its stroke and torque
         factor are reported.
     dynamics : DynamicsSpec, optional
-        It need not have masses.
+        Masses, speed, gravity and what else acts; it need not have masses.
     pumping_unit : PumpingUnitSpec, optional
         Where the linkage is one; `output_arm` is then that of its horsehead.
     problem : Problem, optional

@@ -113,8 +113,10 @@ class Requirements(ReadOnly):
         Longest to shortest of r1..r4.
     coupler_arms : tuple of float, optional
         (lo, hi) for the distances A-P and B-P.
-    o2, o4, a, b : Box, optional
-        Where the ground pivots may lie; where A and B may be at every target.
+    o2, o4 : Box, optional
+        Where this ground pivot may lie.
+    a, b : Box, optional
+        Where this moving pivot may be at every target.
     offset : tuple of float, optional
         (lo, hi) for the signed offset of a slide: of its line from O2, of an inverted one from O4.
     slide_angle_deg : float, deg, optional
@@ -135,10 +137,12 @@ class Requirements(ReadOnly):
     stroke : tuple of float, optional
         (lo, hi) for the travel of a slider-crank's slide between its limit positions; over the task motion
         where the driver does not turn fully.
-    structural_error_max_deg, structural_error_rms_deg : tuple of float, deg, optional
-        (lo, hi) for the structural error of a function over its range, greatest and root mean square.
+    structural_error_max_deg : tuple of float, deg, optional
+        (lo, hi) for the greatest structural error of a function over its range.
+    structural_error_rms_deg : tuple of float, deg, optional
+        (lo, hi) for its root mean square.
     structural_error_max, structural_error_rms : tuple of float, optional
-        (lo, hi) for those of a function whose output is the travel of a slide.
+        (lo, hi) for the same of a function whose output is the travel of a slide.
     time_ratio : tuple of float, optional
         (lo, hi) for the time of the slow stroke of link 4 over that of the quick one, the driver turning
         steadily; of a driver that does not turn fully there is none.
@@ -149,7 +153,7 @@ class Requirements(ReadOnly):
     cylinder_force_max : tuple of float, N, optional
         (lo, hi) for its greatest force.
     a_on_body, b_on_body : Box, optional
-        Where A and B may sit on the body that is guided, in its frame: origin at P, turned with it.
+        Where this pivot may sit on the body that is guided, in its frame: origin at P, turned with it.
     keep_out : sequence of array_like, shape (M, 2), length
         Polygons; their boundary may be touched. Where two overlap or share a side they are one.
     keep_out_for : sequence of {"o2", "o4", "a", "b", "p", "links", "body"}

@@ -25,8 +25,10 @@ class SliderCrank(Linkage):
     ----------
     o2 : array_like, shape (..., 2), length
         Ground pivot of the driver.
-    r2, r3 : array_like, shape (...), length
-        Lengths O2A, AB.
+    r2 : array_like, shape (...), length
+        Length O2A, of the crank.
+    r3 : array_like, shape (...), length
+        Length AB, of the connecting rod.
     offset : array_like, shape (...), length
         Of the slide's line from O2, positive to the left of its direction.
     slide_angle : array_like, shape (...), rad
