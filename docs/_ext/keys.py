@@ -99,7 +99,8 @@ def keys_of(table: type[Table]) -> list[Key]:
 
 def _sources(table: type[Table]) -> Iterator[object]:
     """What describes the keys of a table: its own docstring first, then that of the value it makes."""
-    yield from (each for each in table.__mro__ if issubclass(each, Table) and each is not Table)
+    tables = (each for each in table.__mro__ if issubclass(each, Table) and each is not Table)
+    yield from (each for each in tables if each.__dict__.get("__doc__"))
     if task := getattr(table, "task", None):
         yield from (task.from_degrees, task)
     if issubclass(table, SearchOptions):
@@ -113,6 +114,12 @@ def _sources(table: type[Table]) -> Iterator[object]:
         yield from (getattr(made, "from_degrees", made), made)
 
 
+def _summary(table: type[Table]) -> str:
+    """What a table states: the first line of its own docstring, or of the value that it makes."""
+    own = table.__dict__.get("__doc__")
+    return summary_of(table if own else getattr(table, "task", _made(table)))
+
+
 def _key(name: str, given: FieldInfo, known: Described | None, table: type[Table]) -> Key:
     limited = LIMITS.get(name) if _made(table) is Requirements else None
     declared = _declared(table, name)
@@ -122,7 +129,7 @@ def _key(name: str, given: FieldInfo, known: Described | None, table: type[Table
     elif not text and table is WeightsTable:
         text = f"{GOALS[name].full}, the {'greater' if GOALS[name].better > 0 else 'smaller'} the better"
     elif not text and (inner := next(_tables_in(given.annotation), None)) is not None:
-        text = summary_of(_made(inner))
+        text = _summary(inner)
     words = _words(name, declared, known, limited)
     shape = _shape(given.annotation, given.metadata) or _loose(known)
     return Key(

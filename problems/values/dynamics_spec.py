@@ -69,11 +69,11 @@ class DynamicsSpec(Stated):
     loads : tuple of LoadSpec
         Forces and moments on the links.
     springs : tuple of SpringSpec
-        Between points of two links.
+        Straight ones, between points of two links.
     dampers : tuple of DamperSpec
-        Between points of two links.
+        Against the speed at which points of two links part.
     torsion_springs : tuple of TorsionSpringSpec
-        In joints.
+        About joints, between the two links there.
     counterweights : tuple of CounterweightSpec
         Point masses on the links, besides their own.
     friction : FrictionSpec, optional
