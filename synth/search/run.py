@@ -16,7 +16,7 @@ from grashof.synth.programme.start import Round, Start
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.journal import Journal, Unrecorded
 from grashof.synth.search.ledger import Ledger
-from grashof.synth.search.workers import CRASHED, Work, screen
+from grashof.synth.search.workers import CRASHED, Work, glance, screen
 
 _LOG = logging.getLogger(__name__)
 EXPECTED = 3  # rounds that most searches take: so many are begun ahead
@@ -114,6 +114,11 @@ class Run:
                 _LOG.warning("start %d ends the process that solves it, and is given up", number)
             elif _LOG.isEnabledFor(logging.DEBUG):
                 _LOG.debug("start %d: %s, %s", number, one.outcome, one.status)
+
+    def glanced(self, scaled: ScaledProblem) -> Round | None:
+        """What is found at once, before the first round."""
+        seed = self.search.seed
+        return self.step("glance", seed, scaled, lambda: glance(scaled, seed))
 
     def screened(self, scaled: ScaledProblem, number: int) -> Round | None:
         """One round of a search."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 from math import ceil
@@ -60,11 +61,11 @@ def search_designs(scaled: ScaledProblem, run: Run) -> Ledger:
     ledger = Ledger(scaled, run.search, finder.exhausted)
     _LOG.info("search begun: %s, %d targets", type(finder).__name__, len(scaled.targets))
     _begin_more(finder, ledger, run)
-    for number, found in enumerate(rounds(finder, partial(_timed_round, ledger, run)), start=1):
+    for number, found in enumerate(_rounds(finder, ledger, run), start=1):
         with run.timed("solving"):
             solve_round(found, ledger, run)
         _log(f"round {number}", len(found.starts), ledger)
-        if run.ended():
+        if run.ended() and (ledger.best or found.size):
             ledger.complete = ledger.ended
             break
         if ledger.ended:
@@ -112,6 +113,15 @@ def _log(what: str, starts: int, ledger: Ledger) -> None:
     error = "" if ledger.scaled.exact else f", least error {ledger.least:.3g} sizes"
     told = what, starts, ledger.solved, ledger.starts, len(ledger.best), error
     _LOG.info("%s: %d starts; %d of %d solves, %d designs%s", *told)
+
+
+def _rounds(finder: Finder, ledger: Ledger, run: Run) -> Iterator[Round]:
+    """What is found at once, where a finder has that, and the rounds."""
+    with run.timed("screening"):
+        glance = run.glanced(ledger.scaled)
+    if glance is not None:
+        yield glance
+    yield from rounds(finder, partial(_timed_round, ledger, run))
 
 
 def _timed_round(ledger: Ledger, run: Run, number: int) -> Round | None:

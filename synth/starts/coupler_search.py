@@ -13,7 +13,7 @@ from grashof.problems.values.checks import counted
 from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
-from grashof.synth.programme.start import Start
+from grashof.synth.programme.start import Round, Start
 from grashof.synth.starts.every_target import fitted_to_all
 from grashof.synth.starts.loop_search import draw, fitting, improve, place
 from grashof.synth.starts.sampled_dyads import fixed_pivots
@@ -59,6 +59,10 @@ class CouplerSearch:
                 f"{task.kind}.{task.target}s has {counted(count, f'distinct {task.target}')}; "
                 f"it must have three or more{'' if task.only_points else free}"
             )
+
+    def glance(self, _rng: np.random.Generator) -> Round | None:
+        """None: a round takes little time."""
+        return None
 
     def degenerate(self) -> str:
         """Why a single position needs no linkage; empty for others."""

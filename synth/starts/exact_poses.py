@@ -25,7 +25,7 @@ from grashof.synth.programme.start import Round, Start
 from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.starts.dyad_pairs import near_misses, screen
 from grashof.synth.starts.parallelograms import parallelogram_obstacle, parallelogram_starts, parallelograms
-from grashof.synth.starts.sampled_dyads import fixed_pivots, joined, sampled_dyads
+from grashof.synth.starts.sampled_dyads import SAMPLES, fixed_pivots, joined, sampled_dyads
 from grashof.synth.starts.selection import feasible_starts, mended_starts, merits, relaxed_starts, starts_of
 from grashof.synth.theory.burmester import (
     Displacements,
@@ -38,6 +38,8 @@ from grashof.synth.theory.five_poses import five_pose_dyads, five_pose_guides
 
 LINES, CELL = 800, 0.01  # of the traced curves, in sizes
 PAIRS, SAMPLED_PAIRS, NEAR_PAIRS = 1_000_000, 200_000, 150_000  # judged
+GLANCE_LINES, GLANCE_SAMPLES, GLANCE_PAIRS = 100, 400, 10_000  # of a first glance, a twentieth of the time
+GLANCE_STARTS = 2
 SUBSETS = 6  # fives of many poses that are tried
 NEARLY, EXACT = 1e-4, 1e-9  # radius error in sizes: before and after polishing
 NOT_TURNED = 1e-9  # of unit rotations
@@ -82,6 +84,10 @@ class WholePoses:
                 f"motion.poses[{i}] and motion.poses[{j}] are equal; "
                 "they must be distinct, or requirements.exact = false"
             )
+
+    def glance(self, _rng: np.random.Generator) -> Round | None:
+        """None: there is one round, and it takes little time."""
+        return None
 
     def degenerate(self) -> str:
         """Why a pure rotation needs no linkage; empty for other poses."""
@@ -134,10 +140,10 @@ class DyadPairs(WholePoses, ABC):
     def dyads(self, rng: np.random.Generator) -> Dyads:
         """Dyads that meet the poses."""
 
-    def pairs(self, dyads: Dyads) -> Screened:
-        """Pairs that meet all requirements but, perhaps, the user's own constraints."""
+    def pairs(self, dyads: Dyads, most: int | None = None) -> Screened:
+        """Pairs that meet all requirements but, perhaps, the user's own constraints; of so many at most."""
         scaled = self.scaled
-        most = SAMPLED_PAIRS if len(scaled.targets) < 4 else PAIRS
+        most = most or (SAMPLED_PAIRS if len(scaled.targets) < 4 else PAIRS)
         return fully_screened(scaled, screen(self.motion, scaled.targets[0], dyads, scaled.wanted, most))
 
     def near_pairs(self, dyads: Dyads) -> Screened:
@@ -167,6 +173,14 @@ class FewPoses(DyadPairs):
         """Two to four whole poses, all to be met."""
         return scaled.motion is not None and len(scaled.targets) < 5
 
+    def glance(self, rng: np.random.Generator) -> Round | None:
+        """The best of far fewer dyads."""
+        if translate(self.motion):
+            return None
+        pairs = self.pairs(self.dyads(rng, GLANCE_LINES, GLANCE_SAMPLES), GLANCE_PAIRS)
+        starts = feasible_starts(self.scaled, pairs[pairs.feasible], GLANCE_STARTS)
+        return Round(starts[:GLANCE_STARTS], {}, size=0)
+
     def round(self, number: int, enough: int, rng: np.random.Generator, _size: int, /) -> Round | None:
         """A single round; of two translated poses parallelogram linkages alternate with the others."""
         if number:
@@ -183,15 +197,15 @@ class FewPoses(DyadPairs):
         alternating = [start for both in zip_longest(sideways, starts) for start in both if start]
         return Round(alternating, {"feasible finds": len(feasible), "exact dyads": 0})
 
-    def dyads(self, rng: np.random.Generator) -> Dyads:
+    def dyads(self, rng: np.random.Generator, lines: int = LINES, samples: int = SAMPLES) -> Dyads:
         """Dyads all along the curves of four poses; random ones of fewer."""
         scaled, wanted = self.scaled, self.scaled.wanted
         if len(scaled.targets) < 4:
-            return sampled_dyads(self.motion, scaled.targets[0], wanted, rng)
+            return sampled_dyads(self.motion, scaled.targets[0], wanted, rng, samples)
         longest = max(limits[1] for limits in wanted.link_lengths)
         _, arm = wanted.coupler_arms or (0.0, np.inf)
         reach = min(1.0 + 1.2 * (arm + longest), 200.0)
-        return trace_four_pose_curves(self.motion, reach, LINES, CELL, phase=float(rng.uniform(0.1, 0.9)))
+        return trace_four_pose_curves(self.motion, reach, lines, CELL, phase=float(rng.uniform(0.1, 0.9)))
 
     def obstacle(self, rng: np.random.Generator, _counts: Mapping[str, int], /) -> str:
         """That a fixed ground pivot is not a centre point of four poses; empty where it may be one."""

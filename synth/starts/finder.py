@@ -63,6 +63,9 @@ class Finder(Protocol):
     def rounds_a_pass(self) -> int:
         """After so many rounds they may begin again, with other random numbers."""
 
+    def glance(self, rng: np.random.Generator) -> Round | None:
+        """A few starts found at once, where the first round takes long; None elsewhere."""
+
     def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
         """One round of starts for `enough` designs, which depends on no other one; None after the last.
 

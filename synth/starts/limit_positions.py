@@ -75,6 +75,10 @@ class LimitPositions:
         """One, and some more where places decide that the families do not know of."""
         return 1 + (_ROUNDS if self.elsewhere else 0)
 
+    def glance(self, _rng: np.random.Generator) -> Round | None:
+        """None: a round takes little time."""
+        return None
+
     def refuse(self) -> None:
         """What cannot be is refused where the problem is stated."""
 

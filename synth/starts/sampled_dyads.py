@@ -18,15 +18,19 @@ SAMPLES = 4000
 
 
 def sampled_dyads(
-    motion: Displacements, body: complex, wanted: Requirements, rng: np.random.Generator
+    motion: Displacements,
+    body: complex,
+    wanted: Requirements,
+    rng: np.random.Generator,
+    samples: int = SAMPLES,
 ) -> Dyads:
     """Random dyads of two or three poses: half of them by the joint, half by the pivot.
 
     `body` is the guided point at the first pose, sizes.
     """
     longest = max(limits[1] for limits in wanted.link_lengths)
-    moving = body + arms(wanted.coupler_arms, SAMPLES, rng)
-    ground = np.concatenate([ground_pivots(box, longest, SAMPLES, rng) for box in (wanted.o2, wanted.o4)])
+    moving = body + arms(wanted.coupler_arms, samples, rng)
+    ground = np.concatenate([ground_pivots(box, longest, samples, rng) for box in (wanted.o2, wanted.o4)])
     if len(motion.shift) == 3:
         halves = circle_dyads(motion, moving), circle_dyads_of_ground(motion, ground)
     else:

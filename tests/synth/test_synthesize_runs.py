@@ -25,6 +25,7 @@ from grashof.synth.results.trade_offs import Chosen
 from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.searches import Run
 from grashof.synth.search.workers import solved_there
+from grashof.synth.starts.exact_poses import FewPoses
 
 pytestmark = pytest.mark.usefixtures("small_search")
 
@@ -153,7 +154,7 @@ def test_what_was_seen_of_a_stopped_search_is_of_use(luggage: Problem, tmp_path:
 def test_enough_is_enough(luggage: Problem) -> None:
     seen: list[Progress] = []
     synthesize(luggage, enough=8, progress=seen.append)
-    assert [step.solved for step in seen] == [2, 8, 16]  # a batch is no greater than enough
+    assert [step.solved for step in seen] == [2, 10, 18]  # a batch is no greater than enough
     assert seen[1].verified < 8 <= seen[2].verified
     assert seen[0].starts == luggage.search.starts > 16
 
@@ -196,20 +197,37 @@ def test_the_problems_own_search_counts_unless_overridden(luggage: Problem) -> N
 
 def test_stop_ends_the_search_between_batches(luggage: Problem) -> None:
     executor = Inline()
-    result = synthesize(luggage, stop=lambda: executor.jobs > 0, executor=executor)
-    assert executor.jobs == 16
+    result = synthesize(luggage, stop=lambda: executor.jobs > 2, executor=executor)
+    assert executor.jobs == 18
     assert not result.complete
-    assert 1 <= len(result) <= 16
+    assert 1 <= len(result) <= 18
 
 
 def test_stopped_before_anything_was_found(luggage: Problem) -> None:
+    """What a glance found is tried, and no more where that is a design."""
+    executor = Inline()
+    result = synthesize(luggage, stop=lambda: True, executor=executor)
+    assert executor.jobs == 2
+    assert 1 <= len(result) <= 2
+    assert not result.complete
+    assert result.ended == "the search ended after 2 of 200 solves: it was stopped"
+
+
+def test_stopped_after_a_glance_in_vain(luggage: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
     """What the screening found is tried, and no more."""
+    monkeypatch.setattr(import_module("grashof.synth.starts.exact_poses"), "GLANCE_PAIRS", 1)
     executor = Inline()
     result = synthesize(luggage, stop=lambda: True, executor=executor)
     assert executor.jobs == 8
     assert 1 <= len(result) <= 8
     assert not result.complete
-    assert result.ended == "the search ended after 8 of 200 solves: it was stopped"
+
+
+def test_a_glance_takes_nothing_from_the_list(luggage: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
+    with_glance = {each.id for each in synthesize(luggage).candidates}
+    monkeypatch.setattr(FewPoses, "glance", lambda *_: None)
+    without = {each.id for each in synthesize(luggage).candidates}
+    assert without <= with_glance
 
 
 def test_stopped_with_nothing(luggage: Problem) -> None:
@@ -223,7 +241,7 @@ def test_a_time_limit_ends_the_search(luggage: Problem) -> None:
     executor = Inline()
     result = synthesize(luggage, time_limit=1e-6, executor=executor)
     assert not result.complete
-    assert executor.jobs == 8
+    assert executor.jobs == 2
     assert synthesize(luggage, starts=3, time_limit=1000).complete
 
 
