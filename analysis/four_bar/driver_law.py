@@ -147,6 +147,31 @@ class DriverLaw:
         return _trapezoid(self.motor.ramp) if self.motor.profile == "trapezoid" else _CYCLOID
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class SteadyDrivers:
+    """Drivers of a batch of linkages, each at a steady speed; its places are driver angles.
+
+    Parameters
+    ----------
+    start : ndarray, shape (...), rad
+        Where each is at first.
+    omega2 : ndarray, shape (...), rad/s
+    """
+
+    start: FloatArray
+    omega2: FloatArray
+
+    def at_place(self, place: FloatArray) -> DriverMotion:
+        """As `DriverLaw.at_place`."""
+        still = np.zeros(place.shape)
+        return DriverMotion(place, self.omega2 + still, still, still)
+
+    def time_at(self, theta2: npt.ArrayLike) -> FloatArray:
+        """As `DriverLaw.time_at`."""
+        way = np.asarray(theta2, dtype=np.float64) - self.start
+        return np.asarray(way / np.where(self.omega2, self.omega2, np.nan))
+
+
 def _trapezoid(ramp: float) -> _Shape:
     """Speed rising evenly, even, falling evenly."""
     most = 1 / (1 - ramp)

@@ -13,7 +13,7 @@ from grashof.analysis.cylinder.lengths import CylinderFigures, cylinder_figures
 from grashof.analysis.cylinder.travel import Travel, travel
 from grashof.analysis.forces.stated import BeyondLoadError, stated_loads, stated_masses
 from grashof.analysis.four_bar.kinematics import Kinematics, solve_kinematics
-from grashof.analysis.judge.over_task import as_used, driver_law, motion_ends, sampled
+from grashof.analysis.judge.sampled_motion import as_used, driver_law, motion_ends, sampled
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import Cylinder, CylinderSpec, DeadPositionWarning, Linkage, Problem, Task

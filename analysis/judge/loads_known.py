@@ -9,7 +9,7 @@ import numpy as np
 from grashof.analysis.forces.stated import TRAVEL_ROUNDING
 from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.four_bar.slide import slide_travel
-from grashof.analysis.judge.over_task import as_used, joins, motion_ends, sampled
+from grashof.analysis.judge.sampled_motion import as_used, joins, motion_ends, sampled
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import Linkage, Problem

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields
 from functools import cached_property, partial
 from operator import attrgetter
@@ -14,7 +14,9 @@ from grashof.analysis.cylinder.lengths import CylinderFigures
 from grashof.analysis.four_bar.position import Position, solve_position
 from grashof.analysis.four_bar.stroke import output_stroke
 from grashof.analysis.judge.driven import cylinder_force_peak, figures_of
-from grashof.analysis.judge.over_task import OverTask, motion_ends, over_task, torque_peak
+from grashof.analysis.judge.over_task import OverTask, over_task
+from grashof.analysis.judge.sampled_motion import motion_ends
+from grashof.analysis.judge.task_peaks import task_peaks
 from grashof.analysis.judge.tolerance import robustness
 from grashof.analysis.judge.verdict import Verdict
 from grashof.problems import Cylinder, FourBar, Linkage, Problem, SliderCrank
@@ -43,6 +45,7 @@ class Values(Mapping[str, float]):
     def __init__(self, linkage: Linkage, verdict: Verdict, problem: Problem) -> None:
         self.linkage, self.verdict, self.problem = linkage, verdict, problem
         self._known: dict[str, float] = {}
+        self._peaks: FloatArray | None = None
 
     def __getitem__(self, key: str) -> float:
         if key not in self._known:
@@ -82,7 +85,7 @@ class Values(Mapping[str, float]):
     @cached_property
     def over_task(self) -> OverTask:
         """Figures of the motion from the first target to the last."""
-        return over_task(self.linkage, self.problem, self.verdict)
+        return over_task(self.linkage, self.problem, self.verdict, self._peaks)
 
     @cached_property
     def made(self) -> Mapping[str, float]:
@@ -105,6 +108,15 @@ class Values(Mapping[str, float]):
         if not self.verdict.full_rotation or not self.problem.task.has_position.all():
             return np.nan, np.nan
         return curve_distances(self.linkage, self.problem.task.positions, self.verdict.direction)
+
+
+def find_peaks(designs: Sequence[Values]) -> None:
+    """Find the greatest speeds and loads of designs of a problem at once, for when they are asked for."""
+    wanted = [each for each in designs if each._peaks is None and "over_task" not in vars(each)]
+    if wanted:
+        linkages, verdicts = zip(*((each.linkage, each.verdict) for each in wanted), strict=True)
+        for each, row in zip(wanted, task_peaks(linkages, wanted[0].problem, verdicts), strict=True):
+            each._peaks = row
 
 
 def _angle_error(number: Callable[[FloatArray], float], values: Values) -> float:
@@ -169,6 +181,14 @@ def _cylinder_column(name: str, values: Values) -> float:
     return np.nan if cylinder is None else cylinder.columns[name]
 
 
+def _torque_peak(values: Values) -> float:
+    """That of `over_task`, without the rest of it."""
+    if values._peaks is None:
+        design = [values.linkage], values.problem, [values.verdict]
+        return float(task_peaks(*design, torque_alone=True)[0, 3])
+    return float(values._peaks[3])
+
+
 def _omega2(values: Values) -> float:
     return 1.0 if values.problem.dynamics is None else values.problem.dynamics.omega2
 
@@ -204,7 +224,7 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     **{(key := f"transmission_min_{over}"): attrgetter(f"verdict.{key}") for over in ("task", "cycle")},
     "size": attrgetter("verdict.size"),
     **{field.name: attrgetter(f"over_task.{field.name}") for field in fields(OverTask)},
-    "torque_peak": lambda values: torque_peak(values.linkage, values.problem, values.verdict),
+    "torque_peak": _torque_peak,
     "driver_rotation": lambda values: float(np.ptp(values.verdict.theta2)),
     "driver_sense": attrgetter("verdict.direction"),
     "output_swing": _output_swing,

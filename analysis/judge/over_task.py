@@ -3,31 +3,19 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 
 from grashof.analysis.curves.fit import coupler_fit_r2
-from grashof.analysis.forces.dynamics import inverse_dynamics
-from grashof.analysis.forces.joints import Joint
-from grashof.analysis.forces.stated import BeyondLoadError, stated_loads, stated_masses
 from grashof.analysis.four_bar.driver_law import DriverLaw
-from grashof.analysis.four_bar.kinematics import solve_kinematics
 from grashof.analysis.four_bar.means import mean_in_time
-from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.judge.sampled_motion import as_used, driver_law, motion_ends
+from grashof.analysis.judge.task_peaks import load_curves, task_peaks
 from grashof.analysis.judge.verdict import Verdict
-from grashof.analysis.numerics.peaks import peaks
-from grashof.problems import DeadPositionWarning, DynamicsSpec, Linkage, Problem, Task
-from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.problems import DeadPositionWarning, DynamicsSpec, Linkage, Problem
+from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.dynamics_spec import metres
-from grashof.problems.values.motor import MotorSpec
-
-_SAMPLES = 361
-_NEAR = np.logspace(-8, -2, 31)  # rad, about the positions that come closest to a dead one
-
-Curves = Callable[[FloatArray], FloatArray]
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +51,9 @@ class OverTask:
 _NONE = OverTask(np.nan, np.nan, np.nan, np.nan)
 
 
-def over_task(linkage: Linkage, problem: Problem, verdict: Verdict) -> OverTask:
+def over_task(
+    linkage: Linkage, problem: Problem, verdict: Verdict, greatest: FloatArray | None = None
+) -> OverTask:
     """Figures of a single linkage over the motion from the first target to the last.
 
     Parameters
@@ -74,6 +64,8 @@ def over_task(linkage: Linkage, problem: Problem, verdict: Verdict) -> OverTask:
         Its task; its dynamics give the driver's speed (else 1 rad/s) and the masses.
     verdict : Verdict
         Of `verify`: the driver angle at every target.
+    greatest : ndarray, shape (5,), optional
+        Its row of `task_peaks`, where that is known.
 
     Returns
     -------
@@ -95,114 +87,21 @@ def over_task(linkage: Linkage, problem: Problem, verdict: Verdict) -> OverTask:
     >>> round(found.omega4_max, 6), round(found.coupler_fit_r2, 6), round(found.torque_peak, 3)
     (1.260659, 0.999996, 2.757)
     """
-    linkage, spec = as_used(linkage, verdict), problem.dynamics
-    start, end = motion_ends(problem.task, verdict)
-    theta2 = sampled(linkage, start, end)
-    if not joins(linkage, verdict, theta2):
+    known = task_peaks([linkage], problem, [verdict])[0] if greatest is None else greatest
+    omega4, speed, acceleration, torque, force = known.tolist()
+    if np.isnan(omega4):
         return _NONE
-    forces: tuple[float, ...] = ()
+    linkage, ends = as_used(linkage, verdict), motion_ends(problem.task, verdict)
+    fit, rms = float(coupler_fit_r2(linkage, *ends)), torque
+    if problem.dynamics is not None and np.isfinite(torque):
+        rms = _torque_rms(linkage, problem.dynamics, metres(problem.length_unit), driver_law(problem, *ends))
+    return OverTask(omega4, speed, acceleration, fit, torque, rms, force)
+
+
+def _torque_rms(linkage: Linkage, spec: DynamicsSpec, metre: float, law: DriverLaw) -> float:
+    """Root mean square of the torque over time, N m."""
+    curves = load_curves(linkage, spec, metre, law)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeadPositionWarning)
-        law = driver_law(problem, start, end)
-        omega4, speed, acceleration = peaks(_speeds(linkage, law), law.stretches(theta2))[0]
-        if spec is not None:
-            with suppress(BeyondLoadError):  # a defect by itself
-                forces = _forces(linkage, problem, spec, law, theta2)
-    fit = float(coupler_fit_r2(linkage, start, end))
-    return OverTask(float(omega4), float(speed), float(acceleration), fit, *forces)
-
-
-def _forces(
-    linkage: Linkage, problem: Problem, spec: DynamicsSpec, law: DriverLaw, theta2: FloatArray
-) -> tuple[float, float, float]:
-    """Peak and root mean square of the torque, N m, and the greatest joint force, N."""
-    loaded, square = _loaded(linkage, spec, metres(problem.length_unit), law), np.inf
-    peak, force = peaks(loaded, law.stretches(theta2))[0]
-    if np.isfinite(peak):
-        mean, _ = mean_in_time(linkage, law, lambda place: loaded(place)[0] ** 2, panels=8)
-        square = float(mean)
-    return float(peak), float(np.sqrt(square)), float(force)
-
-
-def torque_peak(linkage: Linkage, problem: Problem, verdict: Verdict) -> float:
-    """The drive torque's greatest magnitude as `over_task` has it, N m; NaN without dynamics."""
-    if problem.dynamics is None:
-        return np.nan
-    linkage = as_used(linkage, verdict)
-    ends = motion_ends(problem.task, verdict)
-    theta2, law = sampled(linkage, *ends), driver_law(problem, *ends)
-    if not joins(linkage, verdict, theta2):
-        return np.nan
-    loaded = _loaded(linkage, problem.dynamics, metres(problem.length_unit), law)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeadPositionWarning)
-        with suppress(BeyondLoadError):
-            return float(peaks(lambda place: loaded(place)[:1], law.stretches(theta2))[0][0])
-    return np.nan
-
-
-def as_used(linkage: Linkage, verdict: Verdict) -> Linkage:
-    """The linkage on the assembly on which it meets the first target."""
-    used = np.asarray(verdict.assembly[0], dtype=np.float64)
-    return linkage if used == linkage.assembly else linkage.changed(assembly=used)
-
-
-def joins(linkage: Linkage, verdict: Verdict, theta2: FloatArray) -> bool:
-    """Whether a motion joins the targets; at its very ends rounding may open the loop."""
-    return verdict.branch_ok and not np.isnan(solve_position(linkage, theta2[1:-1]).theta3).any()
-
-
-def motion_ends(task: Task, verdict: Verdict) -> tuple[float, float]:
-    """Driver angles at which the motion from the first target to the last begins and ends, rad."""
-    low, high = float(verdict.theta2.min()), float(verdict.theta2.max())
-    before, after = task.beyond
-    start, end = (low, high) if verdict.direction > 0 else (high, low)
-    start, end = start - verdict.direction * before, end + verdict.direction * after
-    if task.closed:
-        end = start + verdict.direction * TURN
-    return start, end
-
-
-def driver_law(problem: Problem, start: float, end: float) -> DriverLaw:
-    """How the driver of a design goes from one angle to the other: as the problem's dynamics have it."""
-    spec, rotation = problem.dynamics, end - start
-    omega2 = np.copysign(1.0 if spec is None else spec.omega2, rotation)
-    motor = spec.motor if spec is not None and rotation else None
-    return DriverLaw(start, rotation, float(omega2), motor or MotorSpec())
-
-
-def _speeds(linkage: Linkage, law: DriverLaw) -> Curves:
-    """|omega4|, speed and acceleration of P, each a row, over places of the law."""
-
-    def curves(place: FloatArray) -> FloatArray:
-        state = solve_kinematics(linkage, *law.at_place(place))
-        return np.stack([np.abs(state.omega4), state.p.speed, state.p.acceleration_magnitude])
-
-    return curves
-
-
-def _loaded(linkage: Linkage, spec: DynamicsSpec, metre: float, law: DriverLaw) -> Curves:
-    """|torque| in N m and the greatest joint force in N, each a row, over places of the law."""
-    masses = stated_masses(linkage, spec, metre)
-    loads = stated_loads(spec, metre, lambda state: law.time_at(state.theta2))
-
-    def curves(place: FloatArray) -> FloatArray:
-        found = inverse_dynamics(solve_kinematics(linkage, *law.at_place(place)), masses, loads)
-        force = np.max([found.joint_force(joint) for joint in Joint], axis=0)
-        return np.stack([metre**2 * np.abs(found.torque), metre * force])
-
-    return curves
-
-
-def sampled(linkage: Linkage, start: float, end: float) -> FloatArray:
-    """Driver angles from the lower end to the upper, close where a dead position is near."""
-    low, high = min(start, end), max(start, end)
-    spread = low + (high - low) * (1 - np.cos(np.linspace(0, np.pi, _SAMPLES))) / 2
-    spread[[0, -1]] = low, high
-    theta1 = float(linkage.theta1)
-    # With O2A along the ground line the diagonal A-O4 is shortest or longest.
-    turning = theta1 + np.pi * np.arange(
-        np.ceil((low - theta1) / np.pi), np.floor((high - theta1) / np.pi) + 1
-    )
-    near = (turning[:, None] + np.concatenate([-_NEAR, [0.0], _NEAR])).ravel()
-    return np.unique(np.concatenate([spread, near[(near > low) & (near < high)]]))
+        mean, _ = mean_in_time(linkage, law, lambda place: curves(place)[0] ** 2, panels=8)
+    return float(np.sqrt(mean))

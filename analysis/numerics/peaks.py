@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.arrays import FloatArray, IntArray
 
 _MOST = 3
 _POINTS = 17
@@ -21,14 +21,15 @@ def peaks(curves: Curves, stretches: Sequence[FloatArray]) -> tuple[FloatArray, 
     Parameters
     ----------
     curves : callable
-        From places, shape (N,), to values, shape (R, N). NaN counts as infinite.
-    stretches : sequence of ndarray, shape (N,)
+        From places, shape (..., N), to values, shape (R, ..., N). NaN counts as infinite.
+    stretches : sequence of ndarray, shape (..., N)
         Ascending places at which the curves are sampled, for each interval between whose ends they are
-        searched. A peak must not be narrower than the samples are apart.
+        searched. A peak must not be narrower than the samples are apart. A row with fewer samples than
+        others repeats its last one.
 
     Returns
     -------
-    values, places : ndarray, shape (R,)
+    values, places : ndarray, shape (R, ...)
         Infinite values where the first sample is.
 
     Notes
@@ -44,8 +45,9 @@ def peaks(curves: Curves, stretches: Sequence[FloatArray]) -> tuple[FloatArray, 
     """
 
     def each_its_own(places: FloatArray) -> FloatArray:
-        values = curves(places.ravel())
-        return own(_infinite_if_none(values).reshape(len(values), *places.shape))
+        beside = np.moveaxis(places, 0, -2)
+        values = _infinite_if_none(curves(beside.reshape(*beside.shape[:-2], -1)))
+        return own(np.moveaxis(values.reshape(len(values), *beside.shape), -2, 1))
 
     found = [greatest(each_its_own, at) for at in stretches]
     values, places = (np.stack(each) for each in zip(*found, strict=True))
@@ -61,10 +63,10 @@ def greatest(
     Parameters
     ----------
     curves : callable
-        From places to values of the R curves, shape (R, N): from places that are the same for all, shape
-        (1, N), or each curve's own, shape (R, N). See `own`.
-    places : ndarray, shape (N,)
-        Ascending: dense samples from end to end.
+        From places to values of the R curves, shape (R, ..., N): from places that are the same for all,
+        shape (1, ..., N), or each curve's own, shape (R, ..., N). See `own`.
+    places : ndarray, shape (..., N)
+        Ascending: dense samples from end to end. Repeated ones count once.
     most : int
         So many of the highest samples that no neighbour exceeds are looked at more closely,
     rounds : int
@@ -72,7 +74,7 @@ def greatest(
 
     Returns
     -------
-    values, places : ndarray, shape (R,)
+    values, places : ndarray, shape (R, ...)
 
     Examples
     --------
@@ -83,26 +85,31 @@ def greatest(
     ([1.0, 5.0], [1.570796, 2.0])
     """
     values = curves(places[None])
-    padded = np.pad(values, ((0, 0), (1, 1)), constant_values=-np.inf)
-    summit = np.where((values >= padded[:, :-2]) & (values >= padded[:, 2:]), values, -np.inf)
-    top = np.argsort(-summit, axis=1, kind="stable")[:, :most]
-    low, high = places[np.maximum(top - 1, 0)], places[np.minimum(top + 1, len(places) - 1)]
-    at, heights = [places[top]], [np.take_along_axis(values, top, axis=1)]
+    padded = np.pad(values, [(0, 0)] * (values.ndim - 1) + [(1, 1)], constant_values=-np.inf)
+    summit = (values >= padded[..., :-2]) & (values >= padded[..., 2:])
+    summit[..., 1:] &= places[..., 1:] > places[..., :-1]
+    top = np.argsort(-np.where(summit, values, -np.inf), axis=-1, kind="stable")[..., :most]
+    at, heights = [_taken(places, top)], [_taken(values, top)]
+    low, high = (_taken(places, np.clip(top + k, 0, places.shape[-1] - 1)) for k in (-1, 1))
     for _ in range(rounds):
         near = low[..., None] + (high - low)[..., None] * np.linspace(0, 1, _POINTS)
         near[..., -1] = high  # and not beyond it by rounding
-        here = curves(near.reshape(len(near), -1)).reshape(near.shape)
-        peak = here.argmax(axis=2)[..., None]
-        at.append(np.take_along_axis(near, peak, axis=2)[..., 0])
-        heights.append(np.take_along_axis(here, peak, axis=2)[..., 0])
-        low = np.take_along_axis(near, np.maximum(peak - 1, 0), axis=2)[..., 0]
-        high = np.take_along_axis(near, np.minimum(peak + 1, _POINTS - 1), axis=2)[..., 0]
-    beside = [np.take_along_axis(here, np.clip(peak + k, 0, _POINTS - 1), axis=2)[..., 0] for k in (-1, 0, 1)]
+        here = curves(near.reshape(*top.shape[:-1], -1)).reshape(near.shape)
+        peak = here.argmax(axis=-1)[..., None]
+        at.append(_taken(near, peak)[..., 0])
+        heights.append(_taken(here, peak)[..., 0])
+        low, high = (_taken(near, np.clip(peak + k, 0, _POINTS - 1))[..., 0] for k in (-1, 1))
+    beside = [_taken(here, np.clip(peak + k, 0, _POINTS - 1))[..., 0] for k in (-1, 0, 1)]
     at.append(np.clip(vertex(at[-1], near[..., 1] - near[..., 0], *beside), near[..., 0], near[..., -1]))
     heights.append(curves(at[-1]))
-    every, where = np.concatenate(heights, axis=1), np.concatenate(at, axis=1)
-    best = every.argmax(axis=1)[:, None]
-    return np.take_along_axis(every, best, axis=1)[:, 0], np.take_along_axis(where, best, axis=1)[:, 0]
+    every, where = np.concatenate(heights, axis=-1), np.concatenate(at, axis=-1)
+    best = every.argmax(axis=-1)[..., None]
+    return _taken(every, best)[..., 0], _taken(where, best)[..., 0]
+
+
+def _taken(values: FloatArray, index: IntArray) -> FloatArray:
+    """Entries along the last axis."""
+    return np.take_along_axis(np.broadcast_to(values, (*index.shape[:-1], values.shape[-1])), index, axis=-1)
 
 
 def own(values: FloatArray) -> FloatArray:

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import fields
 from typing import Any
 
 import pandas as pd
 
+from grashof.analysis.judge.measures import find_peaks
+from grashof.analysis.judge.over_task import OverTask
 from grashof.problems import Problem
 from grashof.problems.values.quantities import Quantity, Unit
 from grashof.problems.values.requirements import QUANTITIES
@@ -76,6 +79,8 @@ def to_frame(
     Of some `quantities` alone the other columns stay empty; nothing is measured for them.
     """
     keys = {each.key for each in quantities}
+    if not keys.isdisjoint(field.name for field in fields(OverTask)):
+        find_peaks([candidate.values for candidate in candidates])
     ranked = keys.issuperset(goal.key for goal in pareto_goals(problem))
     fronts = pareto_optimal(problem, candidates) if ranked else [False] * len(candidates)
     own = any(candidate.own_objective is not None for candidate in candidates)

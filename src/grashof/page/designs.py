@@ -19,7 +19,7 @@ from grashof.analysis import (
     stated_masses,
 )
 from grashof.analysis.four_bar.mobility import range_index
-from grashof.analysis.judge.over_task import driver_law, motion_ends
+from grashof.analysis.judge.sampled_motion import driver_law, motion_ends
 from grashof.page.render import compact
 from grashof.problems import Cylinder, DynamicsSpec, FunctionTask, Linkage, Problem
 from grashof.problems.values.arrays import TURN, FloatArray

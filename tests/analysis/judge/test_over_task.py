@@ -22,8 +22,9 @@ from grashof.analysis import (
     stated_masses,
     verify,
 )
-from grashof.analysis.judge.over_task import motion_ends, torque_peak
+from grashof.analysis.judge.over_task import torque_peak
 from grashof.analysis.judge.planted import planted_motion
+from grashof.analysis.judge.sampled_motion import motion_ends
 from grashof.problems import DynamicsSpec, FourBar, PathTask, Problem, Requirements, load
 from grashof.problems.values.arrays import FloatArray
 

@@ -13,7 +13,8 @@ from grashof.analysis import (
     stated_masses,
     verify,
 )
-from grashof.analysis.judge.over_task import motion_ends, torque_peak
+from grashof.analysis.judge.over_task import torque_peak
+from grashof.analysis.judge.sampled_motion import motion_ends
 from grashof.problems import DynamicsSpec, InvertedSliderCrank, PathTask, Problem, Requirements, SliderCrank
 from grashof.problems.values.acting import FrictionSpec, LoadSpec
 from grashof.problems.values.linkage import Linkage
