@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from io import BytesIO
 from pathlib import Path
 from textwrap import wrap
 from typing import Any
@@ -123,10 +124,17 @@ def shortened(title: str) -> str:
 
 def save(figure: Figure, paths: Iterable[Path]) -> None:
     """Write a figure to each path, in the format of its ending; the same figure gives the same bytes."""
+    for path in paths:
+        path.write_bytes(drawn(figure, path.suffix))
+
+
+def drawn(figure: Figure, ending: str) -> bytes:
+    """A figure as a file with an ending such as `.svg`."""
+    dated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
+    file = BytesIO()
     with rc_context(STYLE), missing_glyphs_unwarned():
-        for path in paths:
-            dated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
-            figure.savefig(path, dpi=130, metadata=dated.get(path.suffix, {"Software": None}))
+        figure.savefig(file, format=ending[1:], dpi=130, metadata=dated.get(ending, {"Software": None}))
+    return file.getvalue()
 
 
 def _heading(problem: Problem, candidate: Candidate, rank: int) -> str:

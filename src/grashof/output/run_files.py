@@ -16,6 +16,7 @@ import numpy as np
 from grashof.analysis import solve_position
 from grashof.analysis.cylinder.lengths import cylinder_state
 from grashof.analysis.judge.driven import cylinder_forces
+from grashof.output.drawing import Drawings
 from grashof.output.ending import Exit, Interruption
 from grashof.output.folder import PAGE, RECORD, replacing_own_files
 from grashof.problems import Problem
@@ -40,6 +41,7 @@ def write_run(
     drawings: int,
     stop: Interruption | None = None,
     problem_text: str = "",
+    made: Drawings | None = None,
 ) -> list[str]:
     """Write all files of a run, the lists first: a drawing that fails does not cost them.
 
@@ -55,6 +57,8 @@ def write_run(
         Asked before every drawing; the others are left out once it is asked for.
     problem_text : str
         The problem file, for the page.
+    made : Drawings, optional
+        What makes them.
 
     Returns
     -------
@@ -69,6 +73,8 @@ def write_run(
     from grashof.page import search_page  # only a run needs the templates
 
     stop = Interruption() if stop is None else stop
+    made = Drawings() if made is None else made
+    made.begin(result.problem, result.candidates[:drawings])
     frame = result.to_frame()
     with replacing_own_files(folder) as fresh:
         if result.candidates:
@@ -82,7 +88,7 @@ def write_run(
         files = _write_record(fresh, result, settings, drawings, stop)
     if drawings and result.candidates and not stop():
         with replacing_own_files(folder, keep=files) as fresh:
-            _draw(fresh, result, drawings, stop)
+            _draw(fresh, made, min(drawings, len(result)), stop)
             files = _write_record(fresh, result, settings, drawings, stop, files)
     return files
 
@@ -92,15 +98,12 @@ def left_out(result: Result, drawings: int, files: Iterable[str]) -> int:
     return min(drawings, len(result)) - sum(name.endswith(".png") for name in files)
 
 
-def _draw(folder: Path, result: Result, drawings: int, stop: Interruption) -> None:
-    from grashof.figures.files import draw_design, save  # matplotlib takes half a second to import
-
-    for rank, candidate in enumerate(result.candidates[:drawings], start=1):
+def _draw(folder: Path, made: Drawings, count: int, stop: Interruption) -> None:
+    for rank in range(1, count + 1):
         if stop():
             return
-        stem = folder / f"design-{rank:02d}"
-        figure = draw_design(result.problem, candidate, rank)
-        save(figure, [stem.with_suffix(".png"), stem.with_suffix(".svg")])
+        for ending, file in made.files(rank).items():
+            (folder / f"design-{rank:02d}{ending}").write_bytes(file)
 
 
 def _write_record(
