@@ -89,8 +89,9 @@ def greatest(
     summit = (values >= padded[..., :-2]) & (values >= padded[..., 2:])
     summit[..., 1:] &= places[..., 1:] > places[..., :-1]
     top = np.argsort(-np.where(summit, values, -np.inf), axis=-1, kind="stable")[..., :most]
-    at, heights = [_taken(places, top)], [_taken(values, top)]
-    low, high = (_taken(places, np.clip(top + k, 0, places.shape[-1] - 1)) for k in (-1, 1))
+    all_places = np.broadcast_to(places, values.shape)
+    at, heights = [_taken(all_places, top)], [_taken(values, top)]
+    low, high = (_taken(all_places, np.clip(top + k, 0, places.shape[-1] - 1)) for k in (-1, 1))
     for _ in range(rounds):
         near = low[..., None] + (high - low)[..., None] * np.linspace(0, 1, _POINTS)
         near[..., -1] = high  # and not beyond it by rounding
@@ -109,7 +110,7 @@ def greatest(
 
 def _taken(values: FloatArray, index: IntArray) -> FloatArray:
     """Entries along the last axis."""
-    return np.take_along_axis(np.broadcast_to(values, (*index.shape[:-1], values.shape[-1])), index, axis=-1)
+    return np.take_along_axis(values, index, axis=-1)
 
 
 def own(values: FloatArray) -> FloatArray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 import traceback
@@ -472,6 +473,7 @@ def main() -> None:
     """Entry point of the `grashof` command."""
     # Drawings go to files: a backend meant for windows, or a misspelt one, must not stand in the way.
     os.environ["MPLBACKEND"] = "agg"
+    gc.set_threshold(50_000)  # what is loaded stays: to look through it often takes time
     app(prog_name="grashof")
 
 

@@ -6,7 +6,6 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from grashof.output.drawing import Drawings, drawings
 from grashof.output.ending import Exit, Interruption, interruptible
 from grashof.output.streams import say
 from grashof.problems import Problem, ProblemError, load_linkage_spec
@@ -78,7 +77,7 @@ def _solve(problem: Problem, text: str, options: Options, folder: Path) -> Exit:
     search = replace(search, enough=max(search.enough, options.top or 0))
     top = options.top or max(TOP, search.enough)
     _begin_record(folder, resume=options.resume)
-    with interruptible() as interrupted, drawings(options.drawings, options.workers) as made:
+    with interruptible() as interrupted:
         wanted, beginning = ends_with_enough(problem), finder_of(problem).beginning
         with (
             cluster(options.scheduler, options.workers) as (executor, workers),
@@ -99,7 +98,7 @@ def _solve(problem: Problem, text: str, options: Options, folder: Path) -> Exit:
         dask = None if options.scheduler is None else "Dask"  # not where: that names machines
         run = {"workers": workers, "scheduler": dask, "time_limit": options.time_limit, "top": top}
         settings = {**asdict(search), **run}
-        return _deliver(found, text, settings, folder, options.drawings, made, interrupted)
+        return _deliver(found, text, settings, folder, options.drawings, interrupted)
 
 
 def _deliver(
@@ -107,8 +106,7 @@ def _deliver(
     text: str,
     settings: dict[str, Any],
     folder: Path,
-    wanted: int,
-    made: Drawings,
+    drawings: int,
     interrupted: Interruption,
 ) -> Exit:
     """Write what a search found, and print the list."""
@@ -120,9 +118,9 @@ def _deliver(
         say(found.ended, err=True)
     result = found.top(settings["top"])
     if result.candidates or result.complete:  # an interrupted search with nothing replaces nothing
-        files = write_run(folder, result, settings, wanted, stop=interrupted, problem_text=text, made=made)
+        files = write_run(folder, result, settings, drawings, stop=interrupted, problem_text=text)
         _report(result.note, files, folder)
-        if left := left_out(result, wanted, files):
+        if left := left_out(result, drawings, files):
             signal = "SIGTERM" if interrupted.code is Exit.TERMINATED else "Ctrl-C"
             say(f"drawings are left out: {signal} came before {left} of them were made", err=True)
     else:

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import fields
-from typing import Any
-
-import pandas as pd
+from typing import TYPE_CHECKING, Any
 
 from grashof.analysis.judge.measures import find_peaks
 from grashof.analysis.judge.over_task import OverTask
@@ -15,6 +13,9 @@ from grashof.problems.values.quantities import Quantity, Unit
 from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.ranking import pareto_goals, pareto_optimal
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 LISTED = tuple(quantity for quantity in QUANTITIES.values() if quantity.listed)
 # Columns that are not quantities and their names in words, by the quantity that follows them.
@@ -78,6 +79,8 @@ def to_frame(
 
     Of some `quantities` alone the other columns stay empty; nothing is measured for them.
     """
+    import pandas as pd  # takes longer than the search of many a problem
+
     keys = {each.key for each in quantities}
     if not keys.isdisjoint(field.name for field in fields(OverTask)):
         find_peaks([candidate.values for candidate in candidates])

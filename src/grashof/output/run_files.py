@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import platform
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, replace
 from importlib.metadata import version
 from pathlib import Path
@@ -16,7 +16,7 @@ import numpy as np
 from grashof.analysis import solve_position
 from grashof.analysis.cylinder.lengths import cylinder_state
 from grashof.analysis.judge.driven import cylinder_forces
-from grashof.output.drawing import Drawings
+from grashof.output.drawing import Files, drawings_of
 from grashof.output.ending import Exit, Interruption
 from grashof.output.folder import PAGE, RECORD, replacing_own_files
 from grashof.problems import Problem
@@ -41,7 +41,6 @@ def write_run(
     drawings: int,
     stop: Interruption | None = None,
     problem_text: str = "",
-    made: Drawings | None = None,
 ) -> list[str]:
     """Write all files of a run, the lists first: a drawing that fails does not cost them.
 
@@ -57,8 +56,6 @@ def write_run(
         Asked before every drawing; the others are left out once it is asked for.
     problem_text : str
         The problem file, for the page.
-    made : Drawings, optional
-        What makes them.
 
     Returns
     -------
@@ -73,24 +70,29 @@ def write_run(
     from grashof.page import search_page  # only a run needs the templates
 
     stop = Interruption() if stop is None else stop
-    made = Drawings() if made is None else made
-    made.begin(result.problem, result.candidates[:drawings])
-    frame = result.to_frame()
-    with replacing_own_files(folder) as fresh:
-        if result.candidates:
-            write_csv(fresh / "candidates.csv", frame)
-            write_json(fresh / "candidates.json", _designs(result, frame))
-        if result.nearest:
-            misses = ["; ".join(str(d) for d in candidate.verdict.defects) for candidate in result.nearest]
-            frame = to_frame(result.problem, result.nearest).assign(misses=misses)
-            write_csv(fresh / "nearest.csv", frame)
-        write_page(fresh / PAGE, search_page(result, frame, _about(settings), problem_text))
-        files = _write_record(fresh, result, settings, drawings, stop)
-    if drawings and result.candidates and not stop():
-        with replacing_own_files(folder, keep=files) as fresh:
-            _draw(fresh, made, min(drawings, len(result)), stop)
-            files = _write_record(fresh, result, settings, drawings, stop, files)
+    with drawings_of(result.problem, result.candidates[:drawings]) as drawn:
+        with replacing_own_files(folder) as fresh:
+            frame = _write_lists(fresh, result)
+            write_page(fresh / PAGE, search_page(result, frame, _about(settings), problem_text))
+            files = _write_record(fresh, result, settings, drawings, stop)
+        if drawings and result.candidates and not stop():
+            with replacing_own_files(folder, keep=files) as fresh:
+                _draw(fresh, drawn, stop)
+                files = _write_record(fresh, result, settings, drawings, stop, files)
     return files
+
+
+def _write_lists(folder: Path, result: Result) -> pd.DataFrame:
+    """Write the designs, or the nearest misses, which it returns as a table."""
+    frame = result.to_frame()
+    if result.candidates:
+        write_csv(folder / "candidates.csv", frame)
+        write_json(folder / "candidates.json", _designs(result, frame))
+    if result.nearest:
+        misses = ["; ".join(str(each) for each in candidate.verdict.defects) for candidate in result.nearest]
+        frame = to_frame(result.problem, result.nearest).assign(misses=misses)
+        write_csv(folder / "nearest.csv", frame)
+    return frame
 
 
 def left_out(result: Result, drawings: int, files: Iterable[str]) -> int:
@@ -98,12 +100,12 @@ def left_out(result: Result, drawings: int, files: Iterable[str]) -> int:
     return min(drawings, len(result)) - sum(name.endswith(".png") for name in files)
 
 
-def _draw(folder: Path, made: Drawings, count: int, stop: Interruption) -> None:
-    for rank in range(1, count + 1):
+def _draw(folder: Path, drawn: Iterator[Files], stop: Interruption) -> None:
+    for rank, files in enumerate(drawn, start=1):
+        for ending, file in files.items():
+            (folder / f"design-{rank:02d}{ending}").write_bytes(file)
         if stop():
             return
-        for ending, file in made.files(rank).items():
-            (folder / f"design-{rank:02d}{ending}").write_bytes(file)
 
 
 def _write_record(
