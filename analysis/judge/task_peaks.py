@@ -59,8 +59,9 @@ def task_peaks(
     >>> from grashof.analysis.judge.planted import planted_motion
     >>> from grashof.analysis.judge.verify import verify
     >>> task, linkage = planted_motion(np.random.default_rng(0), poses=4)
-    >>> verdict = verify(linkage, task)
-    >>> task_peaks([linkage, linkage], Problem(task=task), [verdict, verdict])[:, 0].round(6).tolist()
+    >>> problem = Problem(task=task)
+    >>> verdict = verify(linkage, task, problem.requirements)
+    >>> task_peaks([linkage, linkage], problem, [verdict, verdict])[:, 0].round(6).tolist()
     [1.260659, 1.260659]
     """
     found = np.full((len(linkages), 5), np.nan)

@@ -22,6 +22,7 @@ from grashof.synth.starts.finder import Finder, asked_first, finder_for, rounds
 from grashof.synth.theory.stopping import Stopped
 
 _LOG = logging.getLogger(__name__)
+MANY = 64  # starts; of fewer none is spent on a first glance
 FEW = 8  # exact designs: with fewer, zones are filled from those of least squares, too
 CONTINUED = 3  # times at most that the solve of the least error goes on
 
@@ -116,9 +117,11 @@ def _log(what: str, starts: int, ledger: Ledger) -> None:
 
 
 def _rounds(finder: Finder, ledger: Ledger, run: Run) -> Iterator[Round]:
-    """What is found at once, where a finder has that, and the rounds."""
-    with run.timed("screening"):
-        glance = run.glanced(ledger.scaled)
+    """What is found at once, where a finder has that and starts are not few, and the rounds."""
+    glance = None
+    if ledger.starts >= MANY:
+        with run.timed("screening"):
+            glance = run.glanced(ledger.scaled)
     if glance is not None:
         yield glance
     yield from rounds(finder, partial(_timed_round, ledger, run))

@@ -22,7 +22,7 @@ from grashof.analysis import (
     stated_masses,
     verify,
 )
-from grashof.analysis.judge.over_task import torque_peak
+from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.planted import planted_motion
 from grashof.analysis.judge.sampled_motion import motion_ends
 from grashof.problems import DynamicsSpec, FourBar, PathTask, Problem, Requirements, load
@@ -91,7 +91,7 @@ def test_figures_are_those_of_dense_samples_and_no_less(seed: int) -> None:
         if name != "torque_rms":
             assert getattr(found, name) >= value * (1 - 1e-12), name
     assert found.coupler_fit_r2 == coupler_fit_r2(linkage, start, end)
-    assert torque_peak(linkage, problem, verdict) == pytest.approx(found.torque_peak, rel=1e-12)
+    assert Values(linkage, verdict, problem)["torque_peak"] == pytest.approx(found.torque_peak, rel=1e-12)
 
 
 def zoomed(curve: Callable[[FloatArray], FloatArray], low: float, high: float) -> float:
@@ -193,7 +193,9 @@ def test_the_motion_is_on_the_assembly_that_meets_the_targets() -> None:
     found, expected = over_task(CRANK_ROCKER, problem, other), over_task(mirrored, problem, verdict)
     for name in (*KINEMATICS, *DYNAMICS):
         assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-9), name
-    assert torque_peak(CRANK_ROCKER, problem, other) == pytest.approx(expected.torque_peak, rel=1e-9)
+    assert Values(CRANK_ROCKER, other, problem)["torque_peak"] == pytest.approx(
+        expected.torque_peak, rel=1e-9
+    )
 
 
 def test_no_motion_no_figures() -> None:
@@ -201,7 +203,7 @@ def test_no_motion_no_figures() -> None:
     problem, verdict = judged(CRANK_ROCKER, [0.3, 1.0, 2.5])
     found = over_task(CRANK_ROCKER, problem, replace(verdict, branch_ok=False))
     assert np.isnan([getattr(found, name) for name in (*KINEMATICS, *DYNAMICS)]).all()
-    assert np.isnan(torque_peak(CRANK_ROCKER, problem, replace(verdict, branch_ok=False)))
+    assert np.isnan(Values(CRANK_ROCKER, replace(verdict, branch_ok=False), problem)["torque_peak"])
 
 
 @pytest.mark.filterwarnings("error")
@@ -215,7 +217,7 @@ def test_in_a_dead_position_rates_and_torque_are_infinite() -> None:
     infinite = ("omega4_max", "point_speed_max", "point_acceleration_max", *DYNAMICS)
     assert np.isinf([getattr(found, name) for name in infinite]).all()
     assert np.isfinite(found.coupler_fit_r2)
-    assert np.isinf(torque_peak(rocker, problem, verdict))
+    assert np.isinf(Values(rocker, verdict, problem)["torque_peak"])
     # A point on the crank does not mind.
     on_crank = FourBar(o2=(0, 0), o4=(4, 0), r2=4, r3=1, r4=3)
     found = over_task(on_crank, replace(problem, dynamics=None), verdict)

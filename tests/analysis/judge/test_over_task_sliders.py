@@ -13,7 +13,7 @@ from grashof.analysis import (
     stated_masses,
     verify,
 )
-from grashof.analysis.judge.over_task import torque_peak
+from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.sampled_motion import motion_ends
 from grashof.problems import DynamicsSpec, InvertedSliderCrank, PathTask, Problem, Requirements, SliderCrank
 from grashof.problems.values.acting import FrictionSpec, LoadSpec
@@ -56,7 +56,7 @@ def test_figures_are_those_of_dense_samples(linkage: Linkage, sense: int, metre:
     assert found.torque_peak == pytest.approx(np.abs(torque).max(), rel=1e-6)
     assert found.torque_rms == pytest.approx(np.sqrt((torque**2).mean()), rel=1e-3)
     assert found.joint_force_peak == pytest.approx(force, rel=1e-6)
-    assert torque_peak(own, problem, verdict) == found.torque_peak
+    assert Values(own, verdict, problem)["torque_peak"] == found.torque_peak
     if metre != 1:  # the same machine in another unit
         whole = over_task(linkage, metric(problem, linkage, sense), verify(linkage, *asked(linkage, sense)))
         assert found.torque_peak == pytest.approx(whole.torque_peak, rel=1e-8)

@@ -91,3 +91,16 @@ def test_values_of_curves_at_their_own_places() -> None:
     table = np.arange(18.0).reshape(3, 3, 2)
     np.testing.assert_array_equal(own(table), [[0, 1], [8, 9], [16, 17]])
     np.testing.assert_array_equal(own(table[:, :1]), table[:, 0])
+
+
+def test_rows_that_repeat_their_last_place_are_as_without() -> None:
+    """Three maxima, the last end among them, which must not take the place of the others."""
+
+    def curves(x: Floats) -> Floats:
+        return np.stack([np.sin(3 * x) + x, np.cos(5 * x)])
+
+    short, long = np.linspace(0, 4, 40), np.linspace(0, 5, 55)
+    padded = np.stack([np.pad(short, (0, 15), mode="edge"), long])
+    values, places = peaks(curves, [padded])
+    for row, each in enumerate((short, long)):
+        np.testing.assert_array_equal((values[:, row], places[:, row]), peaks(curves, [each]))

@@ -1,0 +1,106 @@
+"""Greatest speeds and loads of many designs at once are those of each alone."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from grashof.analysis import verify
+from grashof.analysis.forces.joints import Joint, joint_motion
+from grashof.analysis.four_bar.kinematics import solve_kinematics
+from grashof.analysis.judge.planted import random_full_crank, random_slider_crank
+from grashof.analysis.judge.sampled_motion import as_used, driver_law, motion_ends
+from grashof.analysis.judge.task_peaks import load_curves, task_peaks
+from grashof.analysis.judge.verdict import Verdict
+from grashof.problems import DynamicsSpec, Linkage, PathTask, Problem, Requirements
+from grashof.problems.values.acting import LoadSpec
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.motor import MotorSpec
+
+HEAVY = DynamicsSpec(speed_rpm=40, mass_per_length=2.0, payload=3.0, gravity=(0.0, -9.81))
+SOME = 8
+
+
+@pytest.fixture(scope="module")
+def designs() -> list[tuple[Linkage, Verdict]]:
+    """Linkages of two kinds, each judged by points of a part of its own curve."""
+    rng = np.random.default_rng(17)
+    found = []
+    for make in (random_full_crank, random_slider_crank) * SOME:
+        linkage = make(rng)
+        turned = rng.uniform(-3, 3) + np.linspace(0, rng.uniform(1, 5), 4)
+        task = PathTask(points=solve_kinematics(linkage, turned).p.position)
+        found.append((linkage, verify(linkage, task, Requirements())))
+    assert sum(verdict.branch_ok for _, verdict in found) > SOME
+    return found
+
+
+def problem_with(dynamics: DynamicsSpec | None, mechanism: str = "four-bar") -> Problem:
+    task = PathTask(points=[(0, 0), (1, 0), (2, 1), (3, 3)])
+    return Problem(task=task, length_unit="m", dynamics=dynamics, mechanism=mechanism)
+
+
+def together(designs: list[tuple[Linkage, Verdict]], problem: Problem) -> FloatArray:
+    return task_peaks([linkage for linkage, _ in designs], problem, [verdict for _, verdict in designs])
+
+
+def each_alone(designs: list[tuple[Linkage, Verdict]], problem: Problem) -> FloatArray:
+    return np.concatenate([together([design], problem) for design in designs])
+
+
+@pytest.mark.parametrize(
+    "dynamics",
+    [
+        None,
+        HEAVY,
+        replace(HEAVY, motor=MotorSpec(profile="cycloid")),
+        replace(HEAVY, loads=(LoadSpec(3, values=((0, 5, 1), (180, -5, 2), (360, 5, 1)), over="theta2"),)),
+        replace(HEAVY, loads=(LoadSpec(3, values=((0, 5, 1), (1, -5, 2), (9, 5, 1)), over="time"),)),
+    ],
+    ids=["none", "masses", "motor", "over theta2", "over time"],
+)
+def test_many_at_once_are_as_each_alone(
+    designs: list[tuple[Linkage, Verdict]], dynamics: DynamicsSpec | None
+) -> None:
+    """To the last digit: what a design is told to have must not depend on its list."""
+    problem = problem_with(dynamics)
+    found = together(designs, problem)
+    np.testing.assert_array_equal(found, each_alone(designs, problem))
+    assert np.isfinite(found[:, 1]).sum() > SOME
+    assert np.isnan(found[:, 3:]).all() == (dynamics is None)
+
+
+def test_they_are_no_lower_than_dense_samples(designs: list[tuple[Linkage, Verdict]]) -> None:
+    problem = problem_with(HEAVY)
+    for (linkage, verdict), found in zip(designs, together(designs, problem), strict=True):
+        if np.isfinite(found).all():
+            ends = motion_ends(problem.task, verdict)
+            curves = load_curves(as_used(linkage, verdict), HEAVY, 1.0, driver_law(problem, *ends))
+            dense = curves(np.linspace(*ends, 50_001)).max(axis=1)
+            np.testing.assert_allclose(found[3:], dense, rtol=1e-6)
+            assert (found[3:] >= dense * (1 - 1e-12)).all()
+
+
+def test_the_torque_alone_is_that_with_the_rest(designs: list[tuple[Linkage, Verdict]]) -> None:
+    problem, (linkages, verdicts) = problem_with(HEAVY), zip(*designs, strict=True)
+    alone = task_peaks(linkages, problem, verdicts, torque_alone=True)
+    np.testing.assert_array_equal(alone[:, 3], together(designs, problem)[:, 3])
+    assert np.isnan(alone[:, [0, 1, 2, 4]]).all()
+
+
+def test_a_slide_beyond_its_load_costs_the_others_nothing(designs: list[tuple[Linkage, Verdict]]) -> None:
+    sliding = [design for design in designs if design[0].MECHANISM == "slider-crank" and design[1].branch_ok]
+    travels = []
+    for linkage, verdict in sliding:
+        ends = motion_ends(problem_with(None).task, verdict)
+        state = solve_kinematics(as_used(linkage, verdict), np.linspace(*ends, 181))
+        travels.append(np.abs(joint_motion(state, Joint.O4)[0]).max())
+    reach = float(np.median(travels)) * 1.001
+    over_travel = LoadSpec(4, values=((-reach, 1.0, 0.0), (reach, 4.0, 0.0)), over="travel")
+    problem = problem_with(replace(HEAVY, loads=(over_travel,)), "slider-crank")
+    found = together(sliding, problem)
+    np.testing.assert_array_equal(found, each_alone(sliding, problem))
+    beyond = np.array(travels) > reach
+    assert 0 < beyond.sum() < len(beyond)
+    np.testing.assert_array_equal(np.isnan(found[:, 3:]).all(axis=1), beyond)
+    assert np.isfinite(found[:, :3]).all()
