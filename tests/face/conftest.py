@@ -11,6 +11,7 @@ import pytest
 from playwright.sync_api import Browser, sync_playwright
 from typer.testing import CliRunner
 
+import grashof.output.drawing as grashof_drawing
 from grashof import load, synthesize
 from grashof.cli import app
 from grashof.problems import problem_text
@@ -29,8 +30,9 @@ def _no_figures_left() -> Iterator[None]:
 
 @pytest.fixture
 def grashof(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Grashof:
-    """The command, run in an empty folder."""
+    """The command, run in an empty folder, all of it in this process."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(grashof_drawing, "_may_be_copied", lambda: False)
     runner = CliRunner()
     return lambda *arguments: runner.invoke(app, [str(argument) for argument in arguments])
 

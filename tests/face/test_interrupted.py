@@ -81,7 +81,7 @@ def test_a_drawing_that_fails_does_not_cost_the_lists(
     def fail(*_: object) -> None:
         raise error
 
-    monkeypatch.setattr(grashof_draw, "save", fail)
+    monkeypatch.setattr(grashof_draw, "drawn", fail)
     assert grashof("solve", "luggage", "--starts", "4").exit_code == code
     folder = tmp_path / "luggage-designs"
     names = {"candidates.csv", "candidates.json", "report.html", "run.json"}
