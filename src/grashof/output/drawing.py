@@ -78,5 +78,6 @@ def _received(pipe: Connection, problem: Problem, candidates: Sequence[Candidate
 def _send(pipe: Connection, problem: Problem, candidates: Sequence[Candidate]) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # which reaches every process of a terminal
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    for files in _made(problem, candidates):
-        pipe.send(files)
+    with suppress(ConnectionError):
+        for files in _made(problem, candidates):
+            pipe.send(files)
