@@ -40,6 +40,7 @@ PACKAGES = (
     Package("grashof.survey", "Reports of a linkage"),
     Package("grashof.sweep", "Sweeps"),
     Package("grashof.workshop", "Plates, drawings, workbooks"),
+    Package("grashof.models", "Models for other programs"),
     Package("grashof.live", "The live page"),
 )
 

@@ -425,6 +425,25 @@ def export(
         Path | None, typer.Option(help="Drawing of the parts to cut, and how they stack.", show_default=False)
     ] = None,
     svg: Annotated[Path | None, typer.Option(help="The same drawing.", show_default=False)] = None,
+    step: Annotated[
+        Path | None, typer.Option(help="The parts as solids, assembled.", show_default=False)
+    ] = None,
+    stl: Annotated[Path | None, typer.Option(help="The same as flats.", show_default=False)] = None,
+    mujoco: Annotated[
+        Path | None, typer.Option(help="Model for MuJoCo, an .xml file.", show_default=False)
+    ] = None,
+    geogebra: Annotated[
+        Path | None, typer.Option(help="Worksheet for GeoGebra, a .ggb file.", show_default=False)
+    ] = None,
+    solidworks: Annotated[
+        Path | None, typer.Option(help="Equations for SolidWorks, a .txt file.", show_default=False)
+    ] = None,
+    freecad: Annotated[
+        Path | None, typer.Option(help="Table for FreeCAD, a .csv file.", show_default=False)
+    ] = None,
+    linkage2: Annotated[
+        Path | None, typer.Option(help="Document of the program Linkage.", show_default=False)
+    ] = None,
     xlsx: Annotated[
         Path | None,
         typer.Option(help="Excel workbook: the list, and a sheet for each design.", show_default=False),
@@ -452,14 +471,17 @@ def export(
         ),
     ] = None,
 ) -> None:
-    """Write the parts of LINKAGE for the workshop: plates to cut, stacked so that nothing collides.
+    """Write the parts of LINKAGE for the workshop, plates stacked so that nothing collides, or models of it.
 
     Exit code 0: done; 2: bad input; 3: environment error.
     """
     from grashof.workshop.export import Making, export_files, plan_lines
     from grashof.workshop.plates import PlateSizes
 
-    given = {"dxf": dxf, "svg": svg, "xlsx": xlsx}
+    given = {
+        "dxf": dxf, "svg": svg, "step": step, "stl": stl, "mujoco": mujoco, "geogebra": geogebra,
+        "solidworks": solidworks, "freecad": freecad, "linkage2": linkage2, "xlsx": xlsx,
+    }  # fmt: skip
     files = {kind: path for kind, path in given.items() if path is not None}
     with _errors_told():
         making = Making(PlateSizes(width, hole, thickness, clearance), scale, mm_per_unit, theta2_deg)

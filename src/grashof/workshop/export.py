@@ -1,11 +1,13 @@
-"""What `grashof export` writes: DXF and SVG of the parts, and an Excel workbook."""
+"""What `grashof export` writes: the parts, models for other programs, and an Excel workbook."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from grashof.models import Model, freecad, geogebra, linkage2, mjcf, solidworks
 from grashof.problems import LinkageSpec, ProblemError, load_linkage_spec
 from grashof.problems.files.linkage_file import load_design
 from grashof.problems.values.checks import finite_number, positive_number
@@ -17,8 +19,42 @@ from grashof.workshop.files import write_whole
 from grashof.workshop.plan import Plan, plan_parts
 from grashof.workshop.plates import PlateSizes
 from grashof.workshop.sheet import sheet
+from grashof.workshop.solids import step, stl
 from grashof.workshop.svg import svg
 from grashof.workshop.workbook import listed_candidates, workbook
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """A file that can be written of a linkage; `xlsx`, of a whole list, is none of them.
+
+    Parameters
+    ----------
+    ending : str
+    parts : callable, optional
+        Its content from the plan of the parts and a heading.
+    model : callable, optional
+        Or from the linkage as a model.
+    """
+
+    ending: str
+    parts: Callable[[Plan, str], str | bytes] | None = None
+    model: Callable[[Model], str | bytes] | None = None
+
+
+# By the options of the command.
+FORMATS = {
+    "dxf": Format(".dxf", parts=lambda plan, heading: dxf(sheet(plan, heading))),
+    "svg": Format(".svg", parts=lambda plan, heading: svg(sheet(plan, heading))),
+    "step": Format(".step", parts=lambda plan, _: step(plan)),
+    "stl": Format(".stl", parts=lambda plan, _: stl(plan)),
+    "mujoco": Format(".xml", model=mjcf),
+    "geogebra": Format(".ggb", model=geogebra),
+    "solidworks": Format(".txt", model=solidworks),
+    "freecad": Format(".csv", model=freecad),
+    "linkage2": Format(".linkage2", model=linkage2),
+}
+WORKBOOK = "xlsx"
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +87,7 @@ def export_files(linkage: str, making: Making, files: dict[str, Path]) -> Plan |
         As for `load_linkage`; for a workbook alone also ``DIR/candidates.json#1,3,5``.
     making : Making
     files : dict of str to Path
-        By kind: dxf, svg, xlsx.
+        By the names of `FORMATS`, and xlsx.
 
     Returns
     -------
@@ -66,25 +102,30 @@ def export_files(linkage: str, making: Making, files: dict[str, Path]) -> Plan |
         The disk is full or the folder is lost.
     """
     if not files:
-        raise ProblemError("nothing to write; give --dxf FILE, --svg FILE, --xlsx FILE, or several")
+        options = ", ".join(f"--{name}" for name in (*FORMATS, WORKBOOK))
+        raise ProblemError(f"nothing to write; give a FILE for one or several of {options}")
     for kind, path in files.items():
         _refuse_path(kind, path)
     chosen, listed = _chosen(linkage)
-    drawn = [kind for kind in files if kind != "xlsx"]
-    if drawn and len(chosen) > 1:
-        raise ProblemError(f"--{drawn[0]} takes one design; {linkage} names {len(chosen)}")
-    contents: dict[str, bytes] = {}
-    made = None
-    if drawn:
-        made = _plan(chosen[0], making)
-        drawing = sheet(made, _heading(chosen[0], making))
-        writers = {"dxf": dxf, "svg": svg}
-        contents = {kind: writers[kind](drawing).encode("utf-8") for kind in drawn}
-    if "xlsx" in files:
+    single = [kind for kind in files if kind != WORKBOOK]
+    if single and len(chosen) > 1:
+        raise ProblemError(f"--{single[0]} takes one design; {linkage} names {len(chosen)}")
+    made, contents = None, dict[str, str | bytes]()
+    for kind in single:
+        if (of_parts := FORMATS[kind].parts) is not None:
+            made = made or _plan(chosen[0], making)
+            contents[kind] = of_parts(made, _heading(chosen[0], making))
+        elif (of_model := FORMATS[kind].model) is not None:
+            contents[kind] = of_model(Model.of(chosen[0]))
+    if WORKBOOK in files:
         designs = [one for one in chosen if isinstance(one, ListedDesign)]
-        contents["xlsx"] = workbook(chosen, listed_candidates(listed, designs) if listed else None)
-    write_whole({files[kind]: content for kind, content in contents.items()})
+        contents[WORKBOOK] = workbook(chosen, listed_candidates(listed, designs) if listed else None)
+    write_whole({files[kind]: _bytes(content) for kind, content in contents.items()})
     return made
+
+
+def _bytes(content: str | bytes) -> bytes:
+    return content.encode("utf-8") if isinstance(content, str) else content
 
 
 def plan_lines(plan: Plan) -> list[str]:
@@ -96,8 +137,9 @@ def plan_lines(plan: Plan) -> list[str]:
 
 
 def _refuse_path(kind: str, path: Path) -> None:
-    if path.suffix.lower() != f".{kind}":
-        raise ProblemError(f"--{kind} {path}: the file name must end in .{kind}")
+    ending = FORMATS[kind].ending if kind in FORMATS else f".{kind}"
+    if path.suffix.lower() != ending:
+        raise ProblemError(f"--{kind} {path}: the file name must end in {ending}")
     try:
         taken, there = path.is_dir(), path.parent.is_dir()
     except OSError as error:  # a name too long

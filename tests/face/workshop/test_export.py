@@ -11,11 +11,14 @@ from typing import Any
 import ezdxf
 import numpy as np
 import pytest
+from typer.main import get_command
 
+from grashof.cli import app
 from grashof.output.run_files import write_run
 from grashof.problems import FourBar, ProblemError
 from grashof.synth import Result
 from grashof.workshop import Plan, PlateSizes, plan_parts
+from grashof.workshop.export import FORMATS, WORKBOOK
 
 Grashof = Callable[..., Any]
 PLAIN = "o4 = [100, 0]\nr2 = 30\nr3 = 90\nr4 = 80\n"
@@ -52,6 +55,40 @@ def test_all_three_at_once(grashof: Grashof, tmp_path: Path) -> None:
     assert (tmp_path / "jack.svg").read_bytes() == first.replace(b"scale 1:20", b"scale 0.05")
 
 
+def test_every_format_has_an_option_and_is_written(grashof: Grashof, tmp_path: Path) -> None:
+    options = {parameter.name for parameter in get_command(app).commands["export"].params}  # type: ignore[attr-defined]
+    assert {*FORMATS, WORKBOOK} <= options
+    files = {name: f"jack{each.ending}" for name, each in FORMATS.items()}
+    given = [word for name, file in files.items() for word in (f"--{name}", file)]
+    done = grashof("export", "pumpjack", "--scale", "1:20", *given)
+    assert done.exit_code == 0, done.stderr
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(files.values())
+    assert all((tmp_path / file).stat().st_size > 100 for file in files.values())
+
+
+def test_models_need_no_plan(grashof: Grashof, tmp_path: Path) -> None:
+    """A linkage in no unit, too short for its plates, has a model."""
+    (tmp_path / "short.toml").write_text(PLAIN.replace("r2 = 30", "r2 = 3"))
+    done = grashof("export", "short.toml", "--mujoco", "short.xml", "--geogebra", "short.ggb")
+    assert (done.exit_code, done.stdout) == (0, ""), done.stderr
+    assert grashof("export", "short.toml", "--mujoco", "short.xml", "--step", "short.step").exit_code == 2
+
+
+def test_a_format_that_cannot_tell_a_linkage_says_so(grashof: Grashof, tmp_path: Path) -> None:
+    done = grashof("export", "crank-shaper", "--mujoco", "a.xml", "--linkage2", "a.linkage2")
+    assert done.exit_code == 2
+    why = "--linkage2 is for a four-bar or a slider-crank; Linkage has no block that swings about a pivot"
+    assert done.stderr == f"grashof: {why}\n"
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(("option", "ending"), [("mujoco", ".xml"), ("freecad", ".csv"), ("step", ".step")])
+def test_a_wrong_ending_is_refused(grashof: Grashof, option: str, ending: str) -> None:
+    done = grashof("export", "pumpjack", f"--{option}", "jack.dat")
+    assert done.exit_code == 2
+    assert done.stderr == f"grashof: --{option} jack.dat: the file name must end in {ending}\n"
+
+
 def test_a_design_stands_at_its_first_target(grashof: Grashof, few: Result, tmp_path: Path) -> None:
     write_run(tmp_path / "d", few, {}, drawings=0)
     done = grashof("export", "d/candidates.json#1", "--dxf", "one.dxf", "--scale", "1:50")
@@ -73,7 +110,7 @@ def test_a_design_stands_at_its_first_target(grashof: Grashof, few: Result, tmp_
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        ("", "nothing to write; give --dxf FILE, --svg FILE, --xlsx FILE, or several"),
+        ("", "nothing to write; give a FILE for one or several of --dxf, --svg, --step,"),
         ("--dxf a.dwg", "--dxf a.dwg: the file name must end in .dxf"),
         ("--svg .", "--svg .: the file name must end in .svg"),
         (f"--svg {'x' * 300}.svg", "File name too long"),

@@ -1,0 +1,92 @@
+"""A linkage as a document of the program Linkage by David Rector (.linkage2)."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from typing import cast
+
+import numpy as np
+
+from grashof.analysis import solve_position
+from grashof.analysis.four_bar.slide import slide_travel
+from grashof.models.model import Model
+from grashof.problems import InvertedSliderCrank, ProblemError, SliderCrank
+from grashof.problems.values.arrays import FloatArray
+
+_UNITS = {"mm": "Millimeters", "in": "Inches"}  # what the program shows
+_GUIDE = "guide start", "guide end"
+_LONGER = 0.1  # share of the travel that a guide is longer at each end
+_RPM = 15.0  # as the program has it
+
+
+def linkage2(model: Model) -> str:
+    """A document with the linkage where its motion begins, from where the program goes on.
+
+    Places are in mm, as the program counts. The driver turns at the speed of the file, or at 15 rpm.
+
+    Parameters
+    ----------
+    model : Model
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    ProblemError
+        An inverted slider-crank: the program has no block that swings about a pivot.
+
+    Examples
+    --------
+    >>> from grashof.problems import load_linkage_spec
+    >>> linkage2(Model.of(load_linkage_spec("pumpjack"))).count("<Link ")
+    3
+    """
+    linkage, at = model.linkage, model.first
+    if isinstance(linkage, InvertedSliderCrank):
+        raise ProblemError(
+            "--linkage2 is for a four-bar or a slider-crank; Linkage has no block that swings about a pivot"
+        )
+    fixed = {name: getattr(linkage, name) for name in linkage.GROUND}
+    links = {link.name: list(link.points) for link in linkage.LINKS[1:] if len(link.points) > 1}
+    if isinstance(linkage, SliderCrank):
+        fixed |= dict(zip(_GUIDE, _guide(model), strict=True))
+        links["guide"] = list(_GUIDE)
+    places = fixed | {name: getattr(at, name) for name in linkage.MOVING}
+    root = ET.Element("linkage2")
+    shown = {"units": _UNITS.get(model.spec.length_unit, _UNITS["mm"])}
+    ET.SubElement(root, "program", zoom="1", xoffset="0", yoffset="0", scalefactor="1", **shown)
+    ids = {name: str(number) for number, name in enumerate(places)}
+    for name, place in places.items():
+        x, y = (1000 * model.metre * place).tolist()
+        connector = ET.SubElement(root, "connector", id=ids[name], name=name.upper(), x=repr(x), y=repr(y))
+        connector.attrib |= {"anchor": "true"} if name in fixed else {}
+        connector.attrib |= {"input": "true", "rpm": repr(_rpm(model))} if name == "o2" else {}
+        connector.attrib |= {"draw": "true"} if name == "p" else {}
+        if name == "b" and isinstance(linkage, SliderCrank):
+            connector.set("slider", "true")
+            for end in _GUIDE:
+                ET.SubElement(connector, "slidelimit", id=ids[end])
+    for number, (name, joined) in enumerate(links.items()):
+        link = ET.SubElement(root, "Link", id=str(number), name=name)
+        for point in joined:
+            ET.SubElement(link, "connector", id=ids[point])
+    ET.indent(root, "\t")
+    return ET.tostring(root, encoding="unicode") + "\n"
+
+
+def _rpm(model: Model) -> float:
+    dynamics = model.spec.dynamics
+    return _RPM if dynamics is None else float(abs(dynamics.speed_rpm))
+
+
+def _guide(model: Model) -> FloatArray:
+    """Ends of a guide that is somewhat longer than the way of B, shape (2, 2)."""
+    state = solve_position(model.linkage, np.linspace(model.low, model.high, 721))
+    travel = slide_travel(model.linkage, state)
+    low, high = float(np.nanmin(travel)), float(np.nanmax(travel))
+    ends = np.array([low, high]) + _LONGER * (high - low) * np.array([-1, 1])
+    angle = float(cast(SliderCrank, model.linkage).slide_angle)
+    along = np.array([np.cos(angle), np.sin(angle)])
+    return model.first.b + np.outer(ends - slide_travel(model.linkage, model.first), along)

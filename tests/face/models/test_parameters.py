@@ -1,0 +1,41 @@
+"""Parameters read back give the linkage."""
+
+import csv
+import re
+from io import StringIO
+
+import numpy as np
+import pytest
+
+from grashof.models import Model, freecad, solidworks
+from grashof.models.parameters import rows
+
+ROW = re.compile(r'"(\w+)" = (-?\d[\d.e+-]*?)(mm|cm|m|in|ft|deg|)')
+
+
+def expected(model: Model) -> dict[str, float]:
+    at, stated = model.first, model.linkage.columns
+    angles = np.degrees([model.start, at.theta3, at.theta4]).tolist()
+    kept = {name: value for name, value in stated.items() if name not in ("assembly", "body_angle_deg")}
+    return kept | dict(zip(("theta2_deg", "theta3_deg", "theta4_deg"), angles, strict=True))
+
+
+def test_solidworks_equations(model: Model) -> None:
+    lines = solidworks(model).splitlines()
+    matches = [ROW.fullmatch(line) for line in lines]
+    assert None not in matches
+    found = {match[1]: float(match[2]) for match in matches if match}
+    assert found == pytest.approx(expected(model), rel=1e-14)
+    for match in matches:
+        assert match is not None
+        assert match[3] == ("deg" if match[1].endswith("_deg") else model.spec.length_unit)
+
+
+def test_a_freecad_table(model: Model) -> None:
+    read = list(csv.reader(StringIO(freecad(model)), delimiter="\t"))
+    assert [row[0] for row in read] == [row.name for row in rows(model)]
+    found = {name: float(content.removeprefix("=").split()[0]) for name, content in read}
+    assert found == pytest.approx(expected(model), rel=1e-14)
+    for name, content in read:
+        unit = "deg" if name.endswith("_deg") else model.spec.length_unit
+        assert content.removeprefix("=").split()[1:] == ([unit] if unit else [])
