@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
 from pathlib import Path
 
-from grashof.problems.files.toml_file import file_text
+from grashof.problems.files.spreadsheet import rows_of
 from grashof.problems.values.checks import bounded, noted, refuse
 from grashof.problems.values.errors import ProblemError, shown
 
@@ -32,7 +31,7 @@ def number_table(path: Path, kinds: Sequence[Sequence[Names]]) -> list[list[floa
     ProblemError
         It cannot be read, has other columns, or what is no number; a line each.
     """
-    lines = [line for line in csv.reader(file_text(path, "a CSV file").splitlines()) if any(line)]
+    lines = rows_of(path.name, path.parent)
     given = [name.strip().casefold() for name in lines[0]] if lines else []
     if not any(_named(given, kind) for kind in kinds):
         wanted = " or ".join(",".join(names[-1] for names in kind) for kind in kinds)

@@ -14,6 +14,7 @@ from pydantic import AfterValidator, Discriminator, Tag, ValidationInfo, create_
 from pydantic_core import PydanticCustomError
 
 from grashof.problems.files.dynamics_schema import MachineTables
+from grashof.problems.files.named_files import with_files
 from grashof.problems.files.tables import (
     LIST,
     NUMBER,
@@ -74,6 +75,7 @@ def problem_from(document: dict[str, Any], name: str, folder: Path | None = None
     grashof.problems.values.errors.ProblemError: motion.pose is unknown; did you mean poses?
     motion.poses is missing
     """
+    document = with_files(document, folder)
     wrong: list[str] = []
     with noted(wrong):
         return stated(ProblemFile, document, folder).problem(name)
@@ -98,6 +100,10 @@ def _ill_matched(document: dict[str, Any]) -> Iterator[str]:
 
 Corners = Annotated[
     list[Annotated[list[float], listed("a corner [x, y]")]], listed("a list of corners [x, y]")
+]
+Drawn = Annotated[
+    list[Annotated[list[float], listed("a corner [x, y]")]],
+    listed("a list of corners [x, y], or a .dxf or .svg file"),
 ]
 Pair = Annotated[list[float], listed("[lo, hi]")]
 
@@ -140,10 +146,10 @@ Angles = Annotated[list[float], listed("a list of angles")]
 class MotionTable(TargetsTable):
     task = MotionTask
     plain, fewest, besides = [0.0, 0.0], 2, {"angle_length": 1.0}
-    poses: Annotated[list[Any], listed("a list of poses [x, y, angle in degrees]")]
+    poses: Annotated[list[Any], listed("a list of poses [x, y, angle in degrees], or a .csv or .xlsx file")]
     weights: Annotated[list[float], listed("a list of numbers")] | None = None
     angle_length: float | None = None
-    body: Corners | None = None
+    body: Drawn | None = None
     within: Zone | None = None
     angle_within_deg: Zone | None = None
     timing_deg: Angles | None = None
@@ -154,7 +160,8 @@ class PathTable(TargetsTable):
     task = PathTask
     plain, fewest = [0.0], 3
     points: Annotated[
-        list[Annotated[list[float], listed("a point [x, y]")]], listed("a list of points [x, y]")
+        list[Annotated[list[float], listed("a point [x, y]")]],
+        listed("a list of points [x, y], or a .csv or .xlsx file"),
     ]
     timing_deg: Angles | None = None
     closed: bool = False
@@ -205,7 +212,9 @@ class FunctionTable(Table):
         return FunctionTask.from_degrees(**dict(self))
 
 
-Outlines = Annotated[list[Corners], listed("a list of outlines, each a list of corners [x, y]")]
+Outlines = Annotated[
+    list[Corners], listed("a list of outlines, each a list of corners [x, y], or a .dxf or .svg file")
+]
 
 
 class SceneTable(Table):
@@ -260,7 +269,9 @@ Place = Annotated[
 ]
 
 
-Areas = Annotated[list[Corners], listed("a list of polygons, each a list of corners [x, y]")]
+Areas = Annotated[
+    list[Corners], listed("a list of polygons, each a list of corners [x, y], or a .dxf or .svg file")
+]
 Parts = Annotated[list[str], listed(f"a list of {', '.join(MAY_KEEP_OUT[:-1])} and {MAY_KEEP_OUT[-1]}")]
 _BY_KIND = {Kind.BETWEEN: Pair, Kind.INSIDE: Place, Kind.ON_BODY: Place, Kind.WORD: str}
 _MODES: dict[str, Any] = {

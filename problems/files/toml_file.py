@@ -64,17 +64,23 @@ def exists(text: str) -> bool:
 
 def file_text(path: Path, wanted: str, hint: str = "") -> str:
     """Text of a file that a user named; `ProblemError` states why it cannot be read, a hint what is meant."""
+    try:
+        # utf-8-sig: editors on Windows put a byte order mark first, which TOML does not know.
+        return file_bytes(path, wanted, hint).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise ProblemError(f"{path}: is not UTF-8 text, at byte {error.start}") from None
+
+
+def file_bytes(path: Path, wanted: str, hint: str = "") -> bytes:
+    """Content of a file that a user named, likewise."""
     if os.path.isdir(path):  # noqa: PTH112
         raise ProblemError(f"{path}: is a folder; it must be {wanted}")
     try:
-        # utf-8-sig: editors on Windows put a byte order mark first, which TOML does not know.
-        return path.read_bytes().decode("utf-8-sig")
+        return path.read_bytes()
     except FileNotFoundError:
         raise ProblemError(f"{path}: there is no such file{hint and '; '}{hint}") from None
     except OSError as error:
         raise ProblemError(f"{path}: cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError as error:
-        raise ProblemError(f"{path}: is not UTF-8 text, at byte {error.start}") from None
     except ValueError as error:  # no name of a file, such as one with a null character
         raise ProblemError(f"{str(path)!r}: cannot be read: {error}") from None
 

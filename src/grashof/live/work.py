@@ -237,7 +237,7 @@ def _dxf(folder: Path, result: Result, text: str, design: Candidate | None) -> t
 
 def _outline(job: Job, _stop: object, tell: Callable[[Line], object]) -> None:
     """The lines of a DXF drawing, to be seen behind the task."""
-    from grashof.workshop.dxf_reading import dxf_polylines
+    from grashof.problems.files.dxf_lines import dxf_polylines
 
     lines = dxf_polylines(job.options["text"])
     tell(_line("outline", polylines=[line.tolist() for line in lines]))

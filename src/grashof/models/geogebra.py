@@ -13,7 +13,7 @@ from grashof.models.model import Model
 from grashof.problems import FourBar, InvertedSliderCrank, Linkage, SliderCrank
 
 _DATE = (1980, 1, 1, 0, 0, 0)  # the same linkage gives the same bytes
-_WINDOW = (1000, 700)  # pixels
+_WINDOW = (600, 450)  # pixels
 _COLOURS = {"driver": (78, 120, 168), "coupler": (242, 142, 43), "output": (89, 161, 79)}
 _GREY = 120, 120, 120
 

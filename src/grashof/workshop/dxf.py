@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from grashof.problems import ProblemError
+from grashof.problems.files.dxf_lines import ezdxf_installed
 from grashof.workshop.sheet import CUT, ENGRAVE, NOTES, PINS, Circle, Outline, Sheet, Text
 
 if TYPE_CHECKING:
@@ -64,17 +64,6 @@ def _add(space: Modelspace, shape: Outline | Circle | Text) -> None:
         text = space.add_text(shape.words, height=shape.height, rotation=rotation, dxfattribs=style)
         place = TextEntityAlignment.MIDDLE_CENTER if shape.centred else TextEntityAlignment.LEFT
         text.set_placement((shape.x, shape.y), align=place)
-
-
-def ezdxf_installed() -> ModuleType:
-    """The library that reads and writes DXF; `ProblemError` where it is not installed."""
-    try:
-        import ezdxf
-    except ModuleNotFoundError:
-        raise ProblemError(
-            "DXF needs ezdxf: pip install 'grashof[export]' (in a clone '.[export]')"
-        ) from None
-    return ezdxf
 
 
 @contextmanager

@@ -54,7 +54,10 @@ PATHS = [
     ('kind = "path"\n[paht]\npoints = [[1, 2]]', "paht is unknown; did you mean path?"),
     (LINE + "timing = [0, 1, 2]", "path.timing is unknown; did you mean timing_deg?"),
     (LINE + "poses = 3", "path.poses is unknown; did you mean motion.poses?"),
-    ('kind = "path"\n[path]\npoints = 5', "path.points is 5; it must be a list of points [x, y]"),
+    (
+        'kind = "path"\n[path]\npoints = 5',
+        "path.points is 5; it must be a list of points [x, y], or a .csv or .xlsx file",
+    ),
     ('kind = "path"\n[path]\npoints = [5]', "path.points[0] is 5; it must be a point [x, y]"),
     (
         'kind = "path"\n[path]\npoints = [[1, 2], [3, "4"]]',

@@ -31,11 +31,12 @@ STRUCTURE = [
     (f"kind = 3\n[motion]\n{POSES}", "kind is 3; it must be a string"),
     ("title = 3\n" + HEAD, "title is 3; it must be a string"),
     (HEAD + "angle_length = '1'", "motion.angle_length is '1'; it must be a number"),
-    (HEAD + "body = 5", "motion.body is 5; it must be a list of corners [x, y]"),
+    (HEAD + "body = 5", "motion.body is 5; it must be a list of corners [x, y], or a .dxf or .svg file"),
     (HEAD + "body = [5]", "motion.body[0] is 5; it must be a corner [x, y]"),
     (
         HEAD + "[scene]\noutlines = 5",
-        "scene.outlines is 5; it must be a list of outlines, each a list of corners [x, y]",
+        "scene.outlines is 5; it must be a list of outlines, each a list of corners [x, y], "
+        "or a .dxf or .svg file",
     ),
     (HEAD + "[[requirements]]\norder = true", "requirements is [{'order': True}]; it must be a table"),
     (HEAD + "[requirements]\norder = 'yes'", "requirements.order is 'yes'; it must be true or false"),
@@ -83,7 +84,7 @@ def test_wrong_structure(text: str, expected: str) -> None:
 
 
 POSES_TEXT = [
-    ("5", "motion.poses is 5; it must be a list of poses [x, y, angle in degrees]"),
+    ("5", "motion.poses is 5; it must be a list of poses [x, y, angle in degrees], or a .csv or .xlsx file"),
     ("[]", "motion.poses has 0 poses; it must have two or more"),
     ("[[1, 2, 3]]", "motion.poses has 1 pose; it must have two or more"),
     ("[[1, 2, 3], 5]", "motion.poses[1] is 5; it must be a pose [x, y, angle in degrees]"),

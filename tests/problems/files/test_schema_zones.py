@@ -39,7 +39,7 @@ KEEP_OUT = {
     ),
     "[[0, 0]]": "[0][0] is 0; it must be a corner [x, y]\n"
     "requirements.keep_out[0][1] is 0; it must be a corner [x, y]",
-    "3": " is 3; it must be a list of polygons, each a list of corners [x, y]",
+    "3": " is 3; it must be a list of polygons, each a list of corners [x, y], or a .dxf or .svg file",
 }
 
 
