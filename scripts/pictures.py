@@ -1,4 +1,4 @@
-"""Make the pictures of the README and the docs: `python scripts/pictures.py`.
+"""Make the pictures of the pages: `python scripts/pictures.py`.
 
 Writes into the folder given as the first argument, or into `docs`; a minute at most.
 """

@@ -1,4 +1,4 @@
-"""Make the picture of the page in the README: solve the luggage problem and take a screenshot.
+"""Make the picture of the page for the documentation: solve the luggage problem and take a screenshot.
 
 Needs Chromium and the package playwright (`pip install '.[test]'`).
 """

@@ -1,4 +1,4 @@
-"""The documentation has the quantities, columns and requirements that are declared, and paths that exist."""
+"""The documentation has the requirements that are declared, and links and paths that lead somewhere."""
 
 import re
 from dataclasses import fields
@@ -9,31 +9,11 @@ import pytest
 from grashof.problems import Requirements
 from grashof.problems.values.quantities import Unit
 from grashof.problems.values.requirements import LIMITS
-from grashof.synth.designs.table import COLUMNS, LISTED
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-# Columns by name, with the unit of their row.
-ROWS = {
-    name: unit.strip()
-    for names, unit in re.findall(r"^\| (`[^|]+) \|([^|]*)\|[^|]+\|$", README, re.MULTILINE)
-    for name in re.findall(r"`(\w+)`", names)
-}
-REQUIREMENTS = README.split("\n[requirements]\n")[1].split("\n[objective]\n")[0]
-
-
-@pytest.mark.parametrize("name", COLUMNS)
-def test_every_column_has_a_row(name: str) -> None:
-    assert name in ROWS
-
-
-def test_no_row_is_of_a_column_that_is_gone() -> None:
-    assert set(ROWS) == set(COLUMNS)
-
-
-@pytest.mark.parametrize("quantity", LISTED, ids=lambda each: each.key)
-def test_rows_state_the_unit(quantity) -> None:  # type: ignore[no-untyped-def]
-    assert ROWS[quantity.column] == quantity.unit
+PROBLEM = (ROOT / "docs" / "howto" / "problem-file.md").read_text(encoding="utf-8")
+REQUIREMENTS = PROBLEM.split("\n[requirements]\n")[1].split("\n[objective]\n")[0]
 
 
 @pytest.mark.parametrize("name", [field.name for field in fields(Requirements)])
@@ -58,6 +38,20 @@ def test_the_readme_links_the_pages_for_those_who_change_the_code() -> None:
         assert f"`{page}`" in README
 
 
-def test_the_batch_script_is_the_one_in_the_readme() -> None:
+def test_the_readme_is_a_screen_or_two() -> None:
+    assert len(README.splitlines()) <= 80
+
+
+@pytest.mark.parametrize(
+    "page", sorted(ROOT.glob("docs/**/*.md")) + [ROOT / "README.md"], ids=lambda page: page.stem
+)
+def test_links_between_pages_lead_somewhere(page: Path) -> None:
+    linked = re.findall(r"\]\((?!https?:)([^)#]+)[^)]*\)", page.read_text(encoding="utf-8"))
+    built = ("examples/", "generated/")  # when the pages are built
+    assert [name for name in linked if not name.startswith(built) and not (page.parent / name).exists()] == []
+
+
+def test_the_batch_script_is_the_one_on_its_page() -> None:
     script = (ROOT / "docs" / "shards.sh").read_text(encoding="utf-8")
-    assert f"```sh\n{script}```" in (ROOT / "README.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "howto" / "long-searches.md").read_text(encoding="utf-8")
+    assert f"```sh\n{script}```" in page

@@ -120,7 +120,7 @@ class Result(Displayed):
         return len(self.candidates)
 
     def to_frame(self) -> pd.DataFrame:
-        """One verified design a row, best first; columns as the README lists them."""
+        """One verified design a row, best first; columns as `docs/reference/columns.md` lists them."""
         from grashof.synth.designs.table import to_frame  # pandas takes half a second to import
 
         return to_frame(self.problem, self.candidates)

@@ -111,7 +111,7 @@ def test_benchmark_of_the_analysis_agrees_with_the_plain_form(
 
 
 @pytest.mark.slow
-def test_pictures_of_the_readme_are_made(
+def test_pictures_of_the_pages_are_made(
     script: Script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pictures = script("pictures")
@@ -119,8 +119,8 @@ def test_pictures_of_the_readme_are_made(
     monkeypatch.setattr(pictures, "draw_motion", lambda design, problem, **_: a_moment(design, problem))
     assert pictures.main(["made"]) == 0
     made = {path.name for path in (tmp_path / "made").iterdir()}
-    readme = (SCRIPTS.parent / "README.md").read_text(encoding="utf-8")
-    shown = set(re.findall(r"\]\(docs/([\w.-]+)\)", readme))
+    pages = [path.read_text(encoding="utf-8") for path in (SCRIPTS.parent / "docs").glob("*/*.md")]
+    shown = {name for page in pages for name in re.findall(r"\]\(\.\./([\w.-]+)\)", page)}
     assert {"luggage.png", "luggage.gif", "design-space.png"} < made <= shown
     assert (SCRIPTS.parent / "docs" / "luggage.gif").stat().st_size < 600_000
 

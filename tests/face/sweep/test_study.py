@@ -80,9 +80,9 @@ def test_all_that_is_wrong_is_stated(write: Write, text: str, lines: list[str]) 
         assert words in line
 
 
-def test_the_studies_of_the_readme(write: Write) -> None:
+def test_the_studies_of_the_documentation(write: Write) -> None:
     root = Path(__file__).parents[3]
-    section = (root / "README.md").read_text(encoding="utf-8").split("\n## Sweeps\n")[1].split("\n## ")[0]
+    section = (root / "docs" / "howto" / "sweeps.md").read_text(encoding="utf-8")
     first, whole = re.findall(r"^```toml\n(.*?)^```", section, re.MULTILINE | re.DOTALL)
     assert (root / "docs" / "longer-links.toml").read_text(encoding="utf-8").endswith(first)
     assert len(combinations(load_study(write(first)))) == 25

@@ -129,7 +129,7 @@ def test_an_own_constraint_is_eased_by_what_the_only_linkage_needs(five: Any) ->
 
 
 LUGGAGE: dict[str, tuple[dict[str, Any], str, float]] = {
-    # The best that there is was measured with other means (README): 13.44 deg over the turn.
+    # The best that there is was measured with other means: 13.44 deg over the turn.
     "transmission": ({"transmission_min_deg": 16}, "transmission_min_deg", np.radians(16 - 13.4412)),
     "length": ({"transmission_min_deg": 13.4, "link_length": (0.3, 4.8)}, "link_length", 0.2 / np.sqrt(32)),
 }
