@@ -47,8 +47,8 @@ def areas_of(name: str, folder: Path, length_unit: str) -> list[list[list[float]
     grid = _ENDS_MEET * size
     closed = [line for line in lines if _meets(line, grid)]
     rest = [line for line in lines if not _meets(line, grid)]
-    apart = [shapely.set_precision(shapely.linestrings(line), grid) for line in rest]
-    merged = shapely.get_parts(shapely.line_merge(shapely.multilinestrings(apart))) if apart else []
+    apart: Any = [shapely.set_precision(shapely.linestrings(line), grid) for line in rest]
+    merged: Any = shapely.get_parts(shapely.line_merge(shapely.multilinestrings(apart))) if apart else []
     chained = [np.asarray(shapely.get_coordinates(part)) for part in merged]
     if left := [line for line in chained if not _meets(line, grid)]:
         (x, y), more = left[0][0].tolist(), len(left) - 1
@@ -87,7 +87,7 @@ def _lines(name: str, folder: Path, length_unit: str) -> tuple[list[FloatArray],
 def _svg_drawing(content: bytes, group: str) -> tuple[list[FloatArray], float | None]:
     """Lines of an SVG with y upwards, in mm (and a mm in metres) where its size is stated so."""
     try:
-        import svgelements
+        import svgelements  # type: ignore[import-untyped]
     except ModuleNotFoundError:
         raise ProblemError(
             "SVG needs svgelements: pip install 'grashof[export]' (in a clone '.[export]')"

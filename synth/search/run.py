@@ -118,7 +118,7 @@ class Run:
     def glanced(self, scaled: ScaledProblem) -> Round | None:
         """What is found at once, before the first round."""
         seed = self.search.seed
-        return self.step("glance", seed, scaled, lambda: glance(scaled, seed))
+        return self.step("glance", (seed,), scaled, lambda: glance(scaled, seed))
 
     def screened(self, scaled: ScaledProblem, number: int) -> Round | None:
         """One round of a search."""

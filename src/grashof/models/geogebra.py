@@ -10,6 +10,7 @@ import numpy as np
 
 from grashof.analysis import solve_position
 from grashof.models.model import Model
+from grashof.models.xml import add
 from grashof.problems import FourBar, InvertedSliderCrank, Linkage, SliderCrank
 
 _DATE = (1980, 1, 1, 0, 0, 0)  # the same linkage gives the same bytes
@@ -82,7 +83,7 @@ def worksheet(model: Model) -> str:
     linkage = model.linkage
     root = ET.Element("geogebra", format="5.0", version="5.0.600.0", app="classic", platform="d")
     root.append(_view(model))
-    made = ET.SubElement(root, "construction", title=model.spec.title or model.spec.name, author="", date="")
+    made = add(root, "construction", title=model.spec.title or model.spec.name, author="", date="")
     _angle(made, model)
     for name, value in _numbers(linkage).items():
         _number(made, name, repr(value))
@@ -95,12 +96,10 @@ def worksheet(model: Model) -> str:
     for link in linkage.LINKS[1:]:
         for one, other in link.lines:
             _segment(made, link.name, one.upper(), other.upper())
-    locus = ET.SubElement(made, "command", name="Locus")
-    ET.SubElement(locus, "input", a0="P", a1="t")
-    ET.SubElement(locus, "output", a0="path")
-    ET.SubElement(
-        ET.SubElement(made, "element", type="locus", label="path"), "show", object="true", label="false"
-    )
+    locus = add(made, "command", name="Locus")
+    add(locus, "input", a0="P", a1="t")
+    add(locus, "output", a0="path")
+    add(add(made, "element", type="locus", label="path"), "show", object="true", label="false")
     ET.indent(root)
     return '<?xml version="1.0" encoding="utf-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
 
@@ -118,10 +117,10 @@ def _angle(made: ET.Element, model: Model) -> None:
     element = _number(made, "t", repr(model.start), shown=True)
     low, high = repr(model.low), repr(model.high)
     slider = {"width": "300", "x": "30", "y": "40", "fixed": "true", "horizontal": "true"}
-    ET.SubElement(element, "slider", min=low, max=high, absoluteScreenLocation="true", **slider)
+    add(element, "slider", min=low, max=high, absoluteScreenLocation="true", **slider)
     to_and_fro, onward = "0", "1"
     step = repr((model.high - model.low) / 360)
-    ET.SubElement(
+    add(
         element,
         "animation",
         step=step,
@@ -129,35 +128,35 @@ def _angle(made: ET.Element, model: Model) -> None:
         type=onward if model.turns else to_and_fro,
         playing="false",
     )
-    ET.SubElement(element, "caption", val="driver angle, rad")
+    add(element, "caption", val="driver angle, rad")
 
 
 def _number(made: ET.Element, name: str, formula: str, *, shown: bool = False) -> ET.Element:
-    ET.SubElement(made, "expression", label=name, exp=formula)
-    element = ET.SubElement(made, "element", type="numeric", label=name)
-    ET.SubElement(element, "show", object=str(shown).lower(), label=str(shown).lower())
+    add(made, "expression", label=name, exp=formula)
+    element = add(made, "element", type="numeric", label=name)
+    add(element, "show", object=str(shown).lower(), label=str(shown).lower())
     return element
 
 
 def _point(made: ET.Element, name: str, formula: str, *, fixed: bool = False) -> None:
-    ET.SubElement(made, "expression", label=name, exp=formula, type="point")
-    element = ET.SubElement(made, "element", type="point", label=name)
-    ET.SubElement(element, "show", object="true", label="true")
-    ET.SubElement(element, "pointSize", val="4")
+    add(made, "expression", label=name, exp=formula, type="point")
+    element = add(made, "element", type="point", label=name)
+    add(element, "show", object="true", label="true")
+    add(element, "pointSize", val="4")
     if fixed:
-        ET.SubElement(element, "fixed", val="true")
+        add(element, "fixed", val="true")
 
 
 def _segment(made: ET.Element, link: str, one: str, other: str) -> None:
     name = f"{link}_{{{one}{other}}}"
-    command = ET.SubElement(made, "command", name="Segment")
-    ET.SubElement(command, "input", a0=one, a1=other)
-    ET.SubElement(command, "output", a0=name)
-    element = ET.SubElement(made, "element", type="segment", label=name)
-    ET.SubElement(element, "show", object="true", label="false")
+    command = add(made, "command", name="Segment")
+    add(command, "input", a0=one, a1=other)
+    add(command, "output", a0=name)
+    element = add(made, "element", type="segment", label=name)
+    add(element, "show", object="true", label="false")
     r, g, b = map(str, _COLOURS.get(link, _GREY))
-    ET.SubElement(element, "objColor", r=r, g=g, b=b, alpha="0.0")
-    ET.SubElement(element, "lineStyle", thickness="7", type="0")
+    add(element, "objColor", r=r, g=g, b=b, alpha="0.0")
+    add(element, "lineStyle", thickness="7", type="0")
 
 
 def _view(model: Model) -> ET.Element:
@@ -171,7 +170,7 @@ def _view(model: Model) -> ET.Element:
     scale = 0.8 * min(width / (high[0] - low[0]), height / (high[1] - low[1]))
     x, y = width / 2 - scale * (low[0] + high[0]) / 2, height / 2 + scale * (low[1] + high[1]) / 2
     view = ET.Element("euclidianView")
-    ET.SubElement(view, "size", width=str(width), height=str(height))
+    add(view, "size", width=str(width), height=str(height))
     place = {"xZero": repr(float(x)), "yZero": repr(float(y))}
-    ET.SubElement(view, "coordSystem", **place, scale=repr(float(scale)), yscale=repr(float(scale)))
+    add(view, "coordSystem", **place, scale=repr(float(scale)), yscale=repr(float(scale)))
     return view

@@ -10,6 +10,7 @@ import numpy as np
 from grashof.analysis import solve_position
 from grashof.analysis.four_bar.slide import slide_travel
 from grashof.models.model import Model
+from grashof.models.xml import add
 from grashof.problems import InvertedSliderCrank, ProblemError, SliderCrank
 from grashof.problems.values.arrays import FloatArray
 
@@ -56,22 +57,22 @@ def linkage2(model: Model) -> str:
     places = fixed | {name: getattr(at, name) for name in linkage.MOVING}
     root = ET.Element("linkage2")
     shown = {"units": _UNITS.get(model.spec.length_unit, _UNITS["mm"])}
-    ET.SubElement(root, "program", zoom="1", xoffset="0", yoffset="0", scalefactor="1", **shown)
+    add(root, "program", zoom="1", xoffset="0", yoffset="0", scalefactor="1", **shown)
     ids = {name: str(number) for number, name in enumerate(places)}
     for name, place in places.items():
         x, y = (1000 * model.metre * place).tolist()
-        connector = ET.SubElement(root, "connector", id=ids[name], name=name.upper(), x=repr(x), y=repr(y))
+        connector = add(root, "connector", id=ids[name], name=name.upper(), x=repr(x), y=repr(y))
         connector.attrib |= {"anchor": "true"} if name in fixed else {}
         connector.attrib |= {"input": "true", "rpm": repr(_rpm(model))} if name == "o2" else {}
         connector.attrib |= {"draw": "true"} if name == "p" else {}
         if name == "b" and isinstance(linkage, SliderCrank):
             connector.set("slider", "true")
             for end in _GUIDE:
-                ET.SubElement(connector, "slidelimit", id=ids[end])
+                add(connector, "slidelimit", id=ids[end])
     for number, (name, joined) in enumerate(links.items()):
-        link = ET.SubElement(root, "Link", id=str(number), name=name)
+        link = add(root, "Link", id=str(number), name=name)
         for point in joined:
-            ET.SubElement(link, "connector", id=ids[point])
+            add(link, "connector", id=ids[point])
     ET.indent(root, "\t")
     return ET.tostring(root, encoding="unicode") + "\n"
 

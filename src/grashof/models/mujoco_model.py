@@ -11,6 +11,7 @@ import numpy as np
 
 from grashof.analysis.four_bar.slide import slide_travel
 from grashof.models.model import Model
+from grashof.models.xml import add
 from grashof.problems import FourBar, InvertedSliderCrank, Linkage, SliderCrank
 from grashof.problems.values.arrays import FloatArray
 
@@ -72,27 +73,27 @@ def mjcf(model: Model) -> str:
     """
     root = ET.Element("mujoco", model=model.spec.name)
     root.append(ET.Comment(" made by Grashof; m, kg, rad "))
-    ET.SubElement(root, "compiler", angle="radian", autolimits="true")
+    add(root, "compiler", angle="radian", autolimits="true")
     turn = 2 * np.pi / abs(model.omega2)
     gravity = model.spec.dynamics.gravity if model.spec.dynamics is not None else (0.0, 0.0)
     option = {"timestep": _number(turn / STEPS), "gravity": _numbers((*gravity, 0.0))}
-    ET.SubElement(root, "option", **option, integrator="implicitfast")
+    add(root, "option", **option, integrator="implicitfast")
     size = float(model.linkage.lengths.max()) * model.metre
-    world = ET.SubElement(root, "worldbody")
-    ET.SubElement(world, "light", pos=_numbers((0, 0, 5 * size)), dir="0 0 -1", directional="true")
+    world = add(root, "worldbody")
+    add(world, "light", pos=_numbers((0, 0, 5 * size)), dir="0 0 -1", directional="true")
     trees, loop = _TREES[type(model.linkage)](model)
     for link in trees:
         _add(world, link, model, size)
     names = {link.number: link.name for link in model.linkage.LINKS}
-    closed = ET.SubElement(root, "equality")
+    closed = add(root, "equality")
     stiff = {"solref": _numbers((2 * turn / STEPS, 1)), "solimp": "0.9999 0.9999 0.001 0.5 2"}
     ends = {"body1": names[loop.one], "body2": names[loop.other]}
-    ET.SubElement(closed, "connect", **ends, anchor=_numbers((*loop.anchor * model.metre, 0)), **stiff)
+    add(closed, "connect", **ends, anchor=_numbers((*loop.anchor * model.metre, 0)), **stiff)
     gain = _gain(model, float(np.hypot(*gravity)))
     drive = {"gainprm": _number(gain), "biasprm": _numbers((gain * model.omega2, 0, -gain))}
-    actuators = ET.SubElement(root, "actuator")
+    actuators = add(root, "actuator")
     actuators.append(ET.Comment(" steady; what the control gives is added to the speed, rad/s "))
-    ET.SubElement(actuators, "general", name="drive", joint="O2", biastype="affine", **drive)
+    add(actuators, "general", name="drive", joint="O2", biastype="affine", **drive)
     ET.indent(root)
     return ET.tostring(root, encoding="unicode") + "\n"
 
@@ -101,18 +102,16 @@ def _add(parent: ET.Element, link: _Link, model: Model, size: float) -> None:
     """Add a link, and those that hang on it."""
     metre, name = model.metre, model.linkage.LINKS[link.number - 1].name
     place = {"pos": _numbers((*link.place * metre, 0)), "euler": _numbers((0, 0, link.angle))}
-    body = ET.SubElement(parent, "body", name=name, **place)
+    body = add(parent, "body", name=name, **place)
     joint = link.joint
     ref = joint.value * (1 if joint.type == "hinge" else metre)
-    ET.SubElement(
-        body, "joint", name=joint.name, type=joint.type, axis=_numbers(joint.axis), ref=_number(ref)
-    )
+    add(body, "joint", name=joint.name, type=joint.type, axis=_numbers(joint.axis), ref=_number(ref))
     mass = model.masses.of(link.number)
     least = _LIGHT * max(float(model.masses.of(number).mass) for number in (2, 3, 4))
     inertia = _number(max(float(mass.inertia) * metre**2, least * (_THICK * size) ** 2))
     weight = _number(max(float(mass.mass), least))
     centre = _numbers((*mass.centre * metre, 0))
-    ET.SubElement(body, "inertial", pos=centre, mass=weight, diaginertia=" ".join([inertia] * 3))
+    add(body, "inertial", pos=centre, mass=weight, diaginertia=" ".join([inertia] * 3))
     look = {"rgba": _COLOURS[link.number - 2], "contype": "0", "conaffinity": "0"}
     thick = _number(_THICK * size)
     points = {"": np.zeros(2)} | link.points
@@ -120,11 +119,11 @@ def _add(parent: ET.Element, link: _Link, model: Model, size: float) -> None:
         if np.hypot(*(one - other)) * metre <= _THICK * size:  # too short to be drawn
             continue
         ends = _numbers((*one * metre, 0, *other * metre, 0))
-        ET.SubElement(body, "geom", type="capsule", fromto=ends, size=thick, **look)
+        add(body, "geom", type="capsule", fromto=ends, size=thick, **look)
     if len(points) == 1:
-        ET.SubElement(body, "geom", type="box", size=" ".join([_number(2 * _THICK * size)] * 3), **look)
+        add(body, "geom", type="box", size=" ".join([_number(2 * _THICK * size)] * 3), **look)
     for point, at in link.points.items():
-        ET.SubElement(body, "site", name=point, pos=_numbers((*at * metre, 0)), size=thick)
+        add(body, "site", name=point, pos=_numbers((*at * metre, 0)), size=thick)
     for child in link.children:
         _add(body, child, model, size)
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import csv
+import math
 from io import StringIO
 from typing import NamedTuple
-
-import numpy as np
 
 from grashof.models.model import Model
 
@@ -33,8 +32,8 @@ def rows(model: Model) -> list[Row]:
         for name, value in linkage.columns.items()
         if name not in ("assembly", "body_angle_deg")
     ]
-    angles = {"theta2": model.start, "theta3": model.first.theta3, "theta4": model.first.theta4}
-    return found + [Row(f"{name}_deg", float(np.degrees(angle)), "deg") for name, angle in angles.items()]
+    angles = {"theta2": model.start, "theta3": float(model.first.theta3), "theta4": float(model.first.theta4)}
+    return found + [Row(f"{name}_deg", math.degrees(angle), "deg") for name, angle in angles.items()]
 
 
 def solidworks(model: Model) -> str:
