@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from grashof.problems.files.dxf_lines import dxf_drawing
+from grashof.problems.files.dxf_lines import MOST_POINTS, dxf_drawing
 from grashof.problems.files.toml_file import file_bytes
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.dynamics_spec import METRES
@@ -20,9 +20,10 @@ from grashof.problems.values.errors import ProblemError
 ENDINGS = (".dxf", ".svg")
 FLAT = 1e-3  # share of a drawing's size by which a polyline may miss a curve
 _ENDS_MEET = 1e-6  # likewise, of what is one place
-_CURVE = 33  # points of a curve in SVG, of which those are kept that it takes
+_CURVE = 129  # points of a curve in SVG, of which those are kept that it takes
+_KEPT = 0.8  # of that, what leaving points out may take; the rest is between the points
 _MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72, "pc": 25.4 / 6, "Q": 0.25}
-_WIDTH = re.compile(r"\s*([\d.eE+-]+)\s*(mm|cm|in|pt|pc|Q)\s*")
+_WIDTH = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(mm|cm|in|pt|pc|Q)\s*")
 
 
 def areas_of(name: str, folder: Path, length_unit: str) -> list[list[list[float]]]:
@@ -55,6 +56,10 @@ def areas_of(name: str, folder: Path, length_unit: str) -> list[list[list[float]
         others = f", and {more} more" if more else ""
         where = f"the line that begins at ({x:.6g}, {y:.6g})"
         raise ProblemError(f"{name}: {where} is open{others}; it must be closed")
+    for line in [*closed, *chained]:
+        if len(line) < 4 or not shapely.Polygon(line).area:
+            x, y = line[0].tolist()
+            raise ProblemError(f"{name}: the line that begins at ({x:.6g}, {y:.6g}) encloses nothing")
     return [line[:-1].tolist() for line in [*closed, *chained]]
 
 
@@ -102,15 +107,20 @@ def _svg_drawing(content: bytes, group: str) -> tuple[list[FloatArray], float | 
     shapes = [each for each in drawing.elements() if isinstance(each, svgelements.Shape)]
     if group:
         shapes = [each for each in _inside(drawing, group) if isinstance(each, svgelements.Shape)]
+    if width and not (float(width[1]) > 0 and float(drawing.width) > 0):
+        raise ProblemError(f"the drawing has the width {width[0]!r}; it must be positive")
     scale = float(width[1]) * _MILLIMETRES[width[2]] / float(drawing.width) if width else 1.0
-    lines = [
-        scale * line * np.array([1, -1]) for shape in shapes for line in _polylines(svgelements.Path(shape))
-    ]
+    # Not Path(shape): that leaves out the transform of a rectangle or an ellipse that is turned.
+    paths = [svgelements.Path(*shape.segments(transformed=True)) for shape in shapes]
+    lines = [scale * line * np.array([1, -1]) for path in paths for line in _polylines(path)]
     if not lines:
         raise ProblemError(f"the drawing has no lines{f' in the group {group!r}' if group else ''}")
     if not all(np.isfinite(line).all() for line in lines):
         raise ProblemError("the drawing has places that are no finite numbers")
-    return _simplified(lines), 1e-3 if width else None
+    lines = _simplified(lines)
+    if (count := sum(map(len, lines))) > MOST_POINTS:
+        raise ProblemError(f"the drawing has {count} points; it must have at most {MOST_POINTS}")
+    return lines, 1e-3 if width else None
 
 
 def _inside(drawing: Any, group: str) -> list[Any]:
@@ -148,6 +158,6 @@ def _simplified(lines: list[FloatArray]) -> list[FloatArray]:
     if not size or not math.isfinite(size):
         raise ProblemError("the drawing has no size")
     return [
-        np.asarray(shapely.get_coordinates(shapely.simplify(shapely.linestrings(line), FLAT * size)))
+        np.asarray(shapely.get_coordinates(shapely.simplify(shapely.linestrings(line), _KEPT * FLAT * size)))
         for line in lines
     ]

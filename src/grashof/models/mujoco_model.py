@@ -17,6 +17,7 @@ from grashof.problems.values.arrays import FloatArray
 
 STEPS = 50_000  # in a turn of the driver: the loop then stays closed to a millionth of a radian
 _LIGHT = 1e-4  # share of the heaviest link: what a link without mass has, as MuJoCo wants some
+_LEAST = 1e-14  # kg, kg m^2: MuJoCo refuses less than 1e-15
 _STIFF = 30.0  # of the drive: its gain over what inertia and weight ask of it
 _THICK = 0.02  # of bars, as a share of the longest link
 _COLOURS = ("0.30 0.47 0.66 1", "0.95 0.56 0.17 1", "0.35 0.63 0.31 1")
@@ -108,8 +109,8 @@ def _add(parent: ET.Element, link: _Link, model: Model, size: float) -> None:
     add(body, "joint", name=joint.name, type=joint.type, axis=_numbers(joint.axis), ref=_number(ref))
     mass = model.masses.of(link.number)
     least = _LIGHT * max(float(model.masses.of(number).mass) for number in (2, 3, 4))
-    inertia = _number(max(float(mass.inertia) * metre**2, least * (_THICK * size) ** 2))
-    weight = _number(max(float(mass.mass), least))
+    inertia = _number(max(float(mass.inertia) * metre**2, least * (_THICK * size) ** 2, _LEAST))
+    weight = _number(max(float(mass.mass), least, _LEAST))
     centre = _numbers((*mass.centre * metre, 0))
     add(body, "inertial", pos=centre, mass=weight, diaginertia=" ".join([inertia] * 3))
     look = {"rgba": _COLOURS[link.number - 2], "contype": "0", "conaffinity": "0"}

@@ -8,6 +8,7 @@ from grashof.analysis import full_rotation, solve_kinematics, solve_position
 from grashof.analysis.forces.energy import energies
 from grashof.analysis.four_bar.slide import slide_travel
 from grashof.models import Model, mjcf
+from grashof.problems import LinkageSpec, SliderCrank
 
 AGREES = 1e-5  # rad, or the same share of the longest link
 
@@ -76,3 +77,12 @@ def names(made: mujoco.MjModel) -> list[str]:
 
 def test_all_kinds_are_among_them(model: Model) -> None:
     assert model.turns == bool(full_rotation(model.linkage))
+
+
+def test_a_watchmakers_linkage_is_not_too_light() -> None:
+    """A slider of a hundredth of a gram of bars, in mm: MuJoCo refuses an inertia below 1e-15."""
+    tiny = SliderCrank(
+        o2=(0, 0), r2=0.3, r3=1, offset=0.1, slide_angle=0, coupler_point=(0.5, 0.1), assembly=1
+    )
+    made, _ = opened(Model.of(LinkageSpec(tiny, "tiny", length_unit="mm")))
+    assert made.body_inertia[1:].min() > 1e-15

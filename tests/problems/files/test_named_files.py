@@ -13,6 +13,7 @@ import pytest
 import shapely
 
 from grashof.problems import MotionTask, PathTask, Problem, ProblemError, Task, load
+from grashof.problems.files.drawing_files import areas_of
 
 POSES = "x,y,angle_deg\n0,0,10\n1,,\n"
 MOTION = 'kind = "motion"\nlength_unit = "mm"\n[motion]\nposes = "{}"\n'
@@ -214,3 +215,42 @@ def test_a_body_is_one_area(tmp_path: Path) -> None:
     assert refused(tmp_path, text, body__svg=two) == [
         "task.toml: motion.body: body.svg: has 2 closed lines; a body must be one"
     ]
+
+
+def svg_areas(folder: Path, body: str, width: str = "100mm") -> list[list[list[float]]]:
+    head = f'xmlns="http://www.w3.org/2000/svg" width="{width}" height="100mm" viewBox="0 0 100 100"'
+    (folder / "a.svg").write_text(f"<svg {head}>{body}</svg>")
+    return areas_of("a.svg", folder, "mm")
+
+
+def test_a_turned_rectangle_of_an_svg(tmp_path: Path) -> None:
+    turned = '<g transform="translate(5 5) rotate(90)"><rect width="10" height="20"/></g>'
+    area = shapely.Polygon(svg_areas(tmp_path, turned)[0])
+    assert area.symmetric_difference(shapely.box(-15, -15, 5, -5)).area == pytest.approx(0, abs=1e-9)
+
+
+def test_a_long_arc_of_an_svg_is_kept_to_a_thousandth(tmp_path: Path) -> None:
+    arc = '<path d="M 90 50 A 40 40 0 1 1 90 49.9 Z"/>'
+    points = np.array(svg_areas(tmp_path, arc)[0]) * [1, -1] - 50
+    between = (points + np.roll(points, -1, axis=0)) / 2
+    assert 40 - np.hypot(*between.T).min() <= 1e-3 * 80
+
+
+@pytest.mark.parametrize(
+    ("body", "width", "said"),
+    [
+        ('<rect width="9" height="9"/>', "0mm", "it must be positive"),
+        ('<rect width="9" height="9"/>', "-5mm", "it must be positive"),
+        ('<path d="M0 0 L10 0 Z"/>', "9mm", "encloses nothing"),
+        (
+            "<path d='M0 0" + "".join(f"L{i % 100} {i * 7 % 97}" for i in range(20_001)) + "Z'/>",
+            "9mm",
+            "at most",
+        ),
+    ],
+    ids=["no-width", "negative", "no-area", "too-many"],
+)
+def test_a_bad_svg_is_refused_in_a_line(tmp_path: Path, body: str, width: str, said: str) -> None:
+    with pytest.raises(ProblemError, match=said) as caught:
+        svg_areas(tmp_path, body, width)
+    assert "\n" not in str(caught.value)
