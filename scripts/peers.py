@@ -14,7 +14,7 @@ from time import process_time
 from typing import Any
 
 import numpy as np
-from scipy.optimize import Bounds, differential_evolution, least_squares
+from scipy.optimize import Bounds, OptimizeResult, differential_evolution, least_squares
 
 from grashof import synthesize
 from grashof.problems import FourBar, Linkage, MotionTask, Problem
@@ -147,11 +147,16 @@ def scipy_least_squares(problem: Problem, seed: int, budget: float, found: Found
 def scipy_differential_evolution(problem: Problem, seed: int, budget: float, found: Found) -> None:
     """Population 15 times the unknowns, best1bin, polished; again with other seeds."""
     rng, task, over = np.random.default_rng(seed), Formulation.of(problem), _clock(budget)
+
+    def in_time(intermediate_result: OptimizeResult) -> None:
+        if over():
+            raise StopIteration(intermediate_result.nit)
+
     while not over():
         sign, way_round = rng.choice([-1.0, 1.0], 2)
         solved = differential_evolution(
             task.cost, Bounds(task.low, task.high), args=(sign, way_round), rng=rng, maxiter=1000,
-            callback=lambda _x, convergence: over(),  # noqa: ARG005
+            callback=in_time,
         )  # fmt: skip
         found(task.linkage(solved.x, sign))
 
