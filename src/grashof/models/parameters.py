@@ -42,8 +42,8 @@ def solidworks(model: Model) -> str:
     Examples
     --------
     >>> from grashof.problems import load_linkage_spec
-    >>> solidworks(Model.of(load_linkage_spec("engine"))).splitlines()[2]
-    '"r2" = 0.04m'
+    >>> solidworks(Model.of(load_linkage_spec("engine"))).splitlines()[0]
+    '"r2" = 40mm'
     """
     units = {unit: unit for unit in SOLIDWORKS_UNITS} | {"deg": "deg"}
     return "".join(
