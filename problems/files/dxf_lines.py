@@ -12,7 +12,9 @@ from grashof.problems.values.errors import ProblemError
 
 MOST_POINTS = 20_000
 FLAT = 1e-3  # share of the drawing's size by which a polyline may miss a curve
-_METRES = {1: 0.0254, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1.0}  # by $INSUNITS
+# By $INSUNITS: in, ft, mm, cm, m, yd, micrometre, dm.
+_METRES = {1: 0.0254, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1.0, 10: 0.9144, 13: 1e-6, 14: 0.1}
+_NAMES = "in, ft, yd, mm, cm, dm, m and micrometres"
 _DRAWN = frozenset({"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE"})
 
 
@@ -70,7 +72,10 @@ def dxf_drawing(content: bytes, layer: str = "") -> tuple[list[FloatArray], floa
         raise ProblemError(f"the drawing has {count} points; it must have at most {MOST_POINTS}")
     if not all(np.isfinite(each).all() for each in found):
         raise ProblemError("the drawing has places that are no finite numbers")
-    return found, _METRES.get(document.header.get("$INSUNITS", 0))
+    unit = document.header.get("$INSUNITS", 0)
+    if unit and unit not in _METRES:
+        raise ProblemError(f"the drawing is in unit {unit} of DXF; it must be one of {_NAMES}, or none")
+    return found, _METRES.get(unit)
 
 
 def ezdxf_installed() -> ModuleType:
