@@ -68,6 +68,8 @@ def run(peer: str, problem: Problem, seed: int, budget: float) -> dict[str, Any]
         PEERS[peer](problem, seed, budget, lambda linkage: found.append((process_time() - begun, linkage)))
     except (NotImplementedError, ModuleNotFoundError) as error:
         return {"left_out": type(error).__name__}
+    except RuntimeError as error:  # a package's own word for nothing found
+        print(f"{peer}: {error}")
     spent, wall = process_time() - begun, perf_counter() - wall
     errors = [judged(problem, linkage) for _, linkage in found]
     good = [
