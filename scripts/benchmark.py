@@ -14,6 +14,7 @@ import argparse
 import json
 import os
 import platform
+import signal
 from collections.abc import Sequence
 from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, version
@@ -26,15 +27,19 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):  # before NumPy is load
     os.environ[name] = "1"
 
 import numpy as np  # noqa: E402
+from limited_tasks import problem_of  # noqa: E402
 from peers import PEERS  # noqa: E402
 
 from grashof import load  # noqa: E402
 from grashof.analysis import verify  # noqa: E402
 from grashof.analysis.judge.planted import planted_motion, planted_path  # noqa: E402
-from grashof.problems import Linkage, Problem, Requirements, Rotatability  # noqa: E402
+from grashof.problems import FunctionTask, Linkage, Problem, Requirements, Rotatability  # noqa: E402
 from grashof.synth.theory.distinct import pick_apart, signature  # noqa: E402
 
 NEAR, EXACT, APART = 1.01, 1e-6, 0.05
+PACKAGES = ("grashof", "scipy", "pymoo", "fourbarhinge", "pylinkage")
+OVERTIME = 3.0  # budgets after which a package is stopped in the middle of a call
+LIMITED = Path(__file__).parents[1] / "tests" / "data" / "limited.json"
 
 
 def tasks() -> dict[str, Problem]:
@@ -47,29 +52,41 @@ def tasks() -> dict[str, Problem]:
         task=poses, requirements=Requirements(rotatability=Rotatability.ANY)
     )
     found["nine planted points"] = Problem(task=points)
+    limited = {each["name"]: each["toml"] for each in json.loads(LIMITED.read_text())["tasks"]}
+    for name, of in (("knee, limited", "knee"), ("leg, limited", "leg_tight"), ("moon, limited", "shb_moon")):
+        found[name] = problem_of(limited[of], name)
+    found |= {name: load(name) for name in ("function-five-pairs", "function-sin", "function-log10")}
     return {name: replace(each, dynamics=None) for name, each in found.items()}
 
 
 def judged(problem: Problem, linkage: Linkage) -> float:
-    """The error of a linkage that meets all requirements, length; infinite of others.
+    """The error of a linkage that meets all requirements, length or rad; infinite of others.
 
-    Exactness is asked for afterwards: least squares counts here as what it is.
+    Exactness is asked for afterwards: least squares counts here as what it is. Of a function whose greatest
+    error is to be least it is that one over the whole range, not at the pairs alone.
     """
-    wanted = replace(problem.requirements, exact=False)
-    verdict = verify(linkage, problem.task, wanted)
-    return float(np.sqrt(verdict.square / len(problem.task))) if verdict.ok else np.inf
+    task, wanted = problem.task, replace(problem.requirements, exact=False)
+    verdict = verify(linkage, task, wanted)
+    if not verdict.ok:
+        return np.inf
+    if isinstance(task, FunctionTask) and task.norm == "max" and not is_exact(problem):
+        return verdict.structural_error_max
+    return float(np.sqrt(verdict.square / len(task)))
 
 
 def run(peer: str, problem: Problem, seed: int, budget: float) -> dict[str, Any]:
     """What a package finds, and when."""
     found: list[tuple[float, Linkage]] = []
     begun, wall = process_time(), perf_counter()
+    signal.setitimer(signal.ITIMER_PROF, OVERTIME * budget)
     try:
         PEERS[peer](problem, seed, budget, lambda linkage: found.append((process_time() - begun, linkage)))
     except (NotImplementedError, ModuleNotFoundError) as error:
         return {"left_out": type(error).__name__}
-    except RuntimeError as error:  # a package's own word for nothing found
+    except (RuntimeError, ValueError, TimeoutError) as error:  # a package's own word for nothing found
         print(f"{peer}: {error}")
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
     spent, wall = process_time() - begun, perf_counter() - wall
     errors = [judged(problem, linkage) for _, linkage in found]
     good = [
@@ -85,6 +102,10 @@ def run(peer: str, problem: Problem, seed: int, budget: float) -> dict[str, Any]
         "processor": spent, "wall": wall, "times": [round(time, 4) for time, _ in found], "errors": errors,
         "returned": len(found), "usable": sum(map(bool, np.isfinite(errors))), "distinct": apart,
     }  # fmt: skip
+
+
+def _stop(*_: object) -> None:
+    raise TimeoutError(f"stopped after {OVERTIME:g} times its budget")
 
 
 def is_exact(problem: Problem) -> bool:
@@ -179,6 +200,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--packages", nargs="*", choices=list(PEERS), help="all by default")
     given = parser.parse_args(arguments)
     given.out.mkdir(exist_ok=True)
+    signal.signal(signal.SIGPROF, _stop)
     file = given.out / "runs.json"
     runs: dict[str, Any] = json.loads(file.read_text()) if file.exists() else {}
     problems = {name: each for name, each in tasks().items() if given.tasks is None or name in given.tasks}
@@ -192,7 +214,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 if key not in runs:
                     runs[key] = run(peer, problem, seed, given.budget)
                     file.write_text(json.dumps(runs))
-    versions = ", ".join(f"{name} {_version(name)}" for name in ("grashof", "scipy", "pymoo", "fourbarhinge"))
+    versions = ", ".join(f"{name} {_version(name)}" for name in PACKAGES)
     said = f"{platform.processor() or platform.machine()}, Python {platform.python_version()}; {versions}\n\n"
     said += table(runs, problems)
     (given.out / "table.md").write_text(said)

@@ -1,114 +1,51 @@
 """What a user would take instead of Grashof: general solvers on the usual formulation, and other packages.
 
-Unknowns are O2, O4, r2, r3, r4, the coupler point, the body's angle and the driver angle at every target; the
-error is that of the targets, at rounding where they are met. Each yields linkages as it finds them, for
-`benchmark.py`, which judges them. Each is used as its documentation recommends.
+Each tells of linkages as it finds them, for `benchmark.py`, which judges them, and goes on with other starts
+until its time is over. Each is used as its documentation recommends; what it cannot express is left out.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
 from importlib import import_module
 from time import process_time
 from typing import Any
 
 import numpy as np
-from scipy.optimize import Bounds, OptimizeResult, differential_evolution, least_squares
+from formulations import Choice, Formulation, formulated
+from scipy.optimize import Bounds, OptimizeResult, differential_evolution, least_squares, minimize
 
 from grashof import synthesize
-from grashof.problems import FourBar, Linkage, MotionTask, Problem
+from grashof.problems import FourBar, FunctionTask, Linkage, MotionTask, PathTask, Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.search.run import Progress
 
-APART = 100.0  # weight of what the driver lacks to turn fully
+WEIGHT, MARGIN = 100.0, 1e-4  # of limits as penalties, which give way a little
 Found = Callable[[Linkage], None]
 
 
-@dataclass(frozen=True, slots=True)
-class Formulation:
-    """A task as residuals over a box.
+def penalised(x: FloatArray, task: Formulation, choice: Choice, weight: float = WEIGHT) -> FloatArray:
+    """The residuals and, weighted, what the limits lack."""
+    lack = np.maximum(task.limits(x, choice) + MARGIN, 0)
+    return np.concatenate([task.residuals(x, choice) / task.scale, weight * lack])
 
-    Parameters
-    ----------
-    problem : Problem
-        Of a four-bar, poses or points, timed or not.
-    low, high : ndarray, shape (10 + N,) or (11,)
-        Bounds of o2, o4, r2, r3, r4, u, v, body angle, driver angles (of a timed task the first alone).
-    """
 
-    problem: Problem
-    low: FloatArray
-    high: FloatArray
+def cost(x: FloatArray, task: Formulation, choice: Choice) -> float:
+    """The sum of squares, or the greatest error, and the penalties."""
+    if not task.minimax:
+        return float((penalised(x, task, choice) ** 2).sum())
+    lack = np.maximum(task.limits(x, choice) + MARGIN, 0)
+    return float(np.abs(task.residuals(x, choice)).max() / task.scale + WEIGHT * lack.sum())
 
-    @classmethod
-    def of(cls, problem: Problem, reach: float = 3.0) -> Formulation:
-        """Pivots within so many sizes of the task, links as the requirements have them."""
-        task, wanted = problem.task, problem.requirements
-        size, middle = task.size, task.positions.mean(axis=0)
-        least, most = wanted.link_length or (0.01 * size, 20 * size)
-        arm = (wanted.coupler_arms or (0, 30 * size))[1]
-        most, arm = min(most, 20 * size), min(arm, 20 * size)
-        angles = 1 if task.timing is not None else len(task)
-        place = [*(middle - reach * size), *(middle - reach * size)]
-        low = [*place, least, least, least, -arm, -arm, -np.pi, *[-2 * np.pi] * angles]
-        place = [*(middle + reach * size), *(middle + reach * size)]
-        high = [*place, most, most, most, arm, arm, np.pi, *[2 * np.pi] * angles]
-        for pivot, columns in (("o2", slice(0, 2)), ("o4", slice(2, 4))):
-            box = getattr(wanted, pivot)
-            for side, axis in zip(range(columns.start, columns.stop), ("x", "y"), strict=True):
-                if box is not None and getattr(box, axis) is not None:
-                    low[side], high[side] = getattr(box, axis)
-        return cls(problem, np.array(low, dtype=float), np.array(high, dtype=float))
 
-    def start(self, rng: np.random.Generator) -> FloatArray:
-        """A random point of the box, the driver angles in order."""
-        x = rng.uniform(self.low, self.high)
-        way = rng.choice([-1, 1]) * np.linspace(0, rng.uniform(0.3, 2 * np.pi), len(x) - 10)
-        x[10:] = np.clip(rng.uniform(-np.pi, np.pi) + way, self.low[10:], self.high[10:])
-        return x
-
-    def residuals(self, x: FloatArray, sign: float, way_round: float = 1.0) -> FloatArray:
-        """Of positions, of what cannot be assembled, and of angles times the task's length."""
-        task = self.problem.task
-        o2, o4, (r2, r3, r4), (u, v), body = x[:2], x[2:4], x[4:7], x[7:9], x[9]
-        theta2 = x[10:] if task.timing is None else x[10] + way_round * task.timing
-        a = o2 + r2 * np.stack([np.cos(theta2), np.sin(theta2)], axis=-1)
-        way = o4 - a
-        d = np.hypot(*way.T) + 1e-12
-        along = (r3**2 - r4**2 + d**2) / (2 * d)
-        square = r3**2 - along**2
-        beside = sign * np.sqrt(np.maximum(square, 0))
-        unit = way / d[:, None]
-        b = a + along[:, None] * unit + beside[:, None] * np.stack([-unit[:, 1], unit[:, 0]], axis=-1)
-        theta3 = np.arctan2(b[:, 1] - a[:, 1], b[:, 0] - a[:, 0])
-        cosine, sine = np.cos(theta3), np.sin(theta3)
-        p = a + np.stack([u * cosine - v * sine, u * sine + v * cosine], axis=-1)
-        torn = np.sqrt(np.maximum(-square, 0))  # it cannot be assembled
-        errors = [p - task.positions, np.stack([torn, torn], axis=-1)]
-        if isinstance(task, MotionTask):
-            turn = theta3 + body - task.angles
-            errors.append(2 * task.angle_length * np.sin(turn / 2)[:, None])
-        return np.concatenate([each.ravel() for each in errors])
-
-    def cost(self, x: FloatArray, sign: float, way_round: float) -> float:
-        """The sum of squares, and what the driver lacks to turn fully, squared."""
-        r1 = float(np.hypot(*(x[2:4] - x[:2])))
-        lengths = np.array([r1, *x[4:7]])
-        lack = max(0.0, 2 * (lengths.min() + lengths.max()) - lengths.sum())
-        lack += (
-            max(0.0, min(r1, x[4]) - lengths.min())
-            if self.problem.requirements.rotatability != "any"
-            else 0.0
-        )
-        return float((self.residuals(x, sign, way_round) ** 2).sum() + APART * lack**2)
-
-    def linkage(self, x: FloatArray, sign: float) -> FourBar:
-        """The linkage of some unknowns."""
-        return FourBar(
-            o2=x[:2], o4=x[2:4], r2=x[4], r3=x[5], r4=x[6], coupler_point=x[7:9],
-            assembly=np.sign(sign), body_angle=x[9],
-        )  # fmt: skip
+def starts(
+    task: Formulation, seed: int, budget: float
+) -> Iterator[tuple[np.random.Generator, Choice, FloatArray]]:
+    """Random starts until the time is over."""
+    rng, over = np.random.default_rng(seed), _clock(budget)
+    while not over():
+        choice = Choice.drawn(rng)
+        yield rng, choice, task.start(rng, choice)
 
 
 def grashof(problem: Problem, seed: int, budget: float, found: Found) -> None:
@@ -128,59 +65,82 @@ def grashof(problem: Problem, seed: int, budget: float, found: Found) -> None:
 
 
 def scipy_least_squares(problem: Problem, seed: int, budget: float, found: Found) -> None:
-    """Trust-region reflective from random starts, on either assembly."""
-    rng, task, over = np.random.default_rng(seed), Formulation.of(problem), _clock(budget)
-    while not over():
-        sign, way_round = rng.choice([-1.0, 1.0], 2)
-        x = task.start(rng)
+    """Trust-region reflective from random starts, by turns with the limits as penalties and without them."""
+    task = formulated(problem)
+    for number, (_, choice, x) in enumerate(starts(task, seed, budget)):
+        given = task, choice, WEIGHT * (number % 2)
         solved = least_squares(
-            task.residuals,
-            x,
-            bounds=(task.low, task.high),
-            args=(sign, way_round),
-            x_scale="jac",
-            max_nfev=400,
+            penalised, x, bounds=(task.low, task.high), args=given, x_scale="jac", max_nfev=400
         )
-        found(task.linkage(solved.x, sign))
+        found(task.linkage(solved.x, choice))
+
+
+def scipy_slsqp(problem: Problem, seed: int, budget: float, found: Found) -> None:
+    """SLSQP from random starts over a box of one, limits as constraints, a greatest error as an unknown."""
+    task = formulated(problem)
+    span, extra = task.high - task.low, int(task.minimax)
+
+    def x_of(y: FloatArray) -> FloatArray:
+        x: FloatArray = task.low + span * y[extra:]
+        return x
+
+    def objective(y: FloatArray, choice: Choice) -> float:
+        if task.minimax:
+            return float(y[0])
+        return float(((task.residuals(x_of(y), choice) / task.scale) ** 2).sum())
+
+    def kept(y: FloatArray, choice: Choice) -> FloatArray:
+        limits = -task.limits(x_of(y), choice) - 1e-5
+        if not task.minimax:
+            return limits
+        errors = task.residuals(x_of(y), choice)
+        return np.concatenate([limits, y[0] - errors, y[0] + errors])
+
+    for _, choice, x in starts(task, seed, budget):
+        worst = [float(np.abs(task.residuals(x, choice)).max())] * extra
+        solved = minimize(
+            objective, np.array([*worst, *(x - task.low) / span]), args=(choice,), method="SLSQP",
+            bounds=Bounds(np.zeros(len(x) + extra), np.array([10.0] * extra + [1.0] * len(x))),
+            constraints={"type": "ineq", "fun": kept, "args": (choice,)},
+            options={"maxiter": 300, "ftol": 1e-14},
+        )  # fmt: skip
+        found(task.linkage(x_of(solved.x), choice))
 
 
 def scipy_differential_evolution(problem: Problem, seed: int, budget: float, found: Found) -> None:
     """Population 15 times the unknowns, best1bin, polished; again with other seeds."""
-    rng, task, over = np.random.default_rng(seed), Formulation.of(problem), _clock(budget)
+    task, over = formulated(problem), _clock(budget)
 
     def in_time(intermediate_result: OptimizeResult) -> None:
         if over():
             raise StopIteration(intermediate_result.nit)
 
-    while not over():
-        sign, way_round = rng.choice([-1.0, 1.0], 2)
+    for rng, choice, _ in starts(task, seed, budget):
         solved = differential_evolution(
-            task.cost, Bounds(task.low, task.high), args=(sign, way_round), rng=rng, maxiter=1000,
-            callback=in_time,
-        )  # fmt: skip
-        found(task.linkage(solved.x, sign))
+            cost, Bounds(task.low, task.high), args=(task, choice), rng=rng, maxiter=1000, callback=in_time
+        )
+        found(task.linkage(solved.x, choice))
 
 
 def _pymoo(
     make: Callable[[FloatArray], Any], problem: Problem, seed: int, budget: float, found: Found
 ) -> None:
     base: Any = import_module("pymoo.core.problem").ElementwiseProblem
-    minimize = import_module("pymoo.optimize").minimize
+    minimized = import_module("pymoo.optimize").minimize
+    task = formulated(problem)
 
-    rng, task, over = np.random.default_rng(seed), Formulation.of(problem), _clock(budget)
-    while not over():
-        sign, way_round = rng.choice([-1.0, 1.0], 2)
+    class Linkages(base):  # type: ignore[misc]
+        def __init__(self, choice: Choice) -> None:
+            super().__init__(n_var=len(task.low), n_obj=1, xl=task.low, xu=task.high)
+            self.choice = choice
 
-        class Linkages(base):  # type: ignore[misc]
-            def __init__(self) -> None:
-                super().__init__(n_var=len(task.low), n_obj=1, xl=task.low, xu=task.high)
+        def _evaluate(self, x: FloatArray, out: dict[str, float], *_: Any, **__: Any) -> None:
+            out["F"] = cost(x, task, self.choice)
 
-            def _evaluate(self, x: FloatArray, out: dict[str, float], *_: Any, **__: Any) -> None:
-                out["F"] = task.cost(x, sign, way_round)  # noqa: B023
-
-        solved = minimize(Linkages(), make(task.start(rng)), ("n_gen", 400), seed=int(rng.integers(1 << 30)))
+    for rng, choice, x in starts(task, seed, budget):
+        solved = minimized(Linkages(choice), make(x), ("n_gen", 400), seed=int(rng.integers(1 << 30)))
         if solved.X is not None:
-            found(task.linkage(np.asarray(solved.X), sign))
+            found(task.linkage(np.asarray(solved.X), choice))
 
 
 def pymoo_de(problem: Problem, seed: int, budget: float, found: Found) -> None:
@@ -201,15 +161,16 @@ def fourbarhinge(problem: Problem, seed: int, budget: float, found: Found) -> No
     """Path and motion synthesis of fourbarhinge, which needs known driver angles for a timed path."""
     package = import_module("fourbarhinge")
 
-    task, over = problem.task, _clock(budget)
-    least, most = problem.requirements.link_length or (0.01 * task.size, 20 * task.size)
-    bounds = package.LinkBounds(min_length=least, max_length=most, min_transmission_angle=1e-3)
+    task, wanted, over = problem.task, problem.requirements, _clock(budget)
+    least, most = wanted.link_length or (0.01 * task.size, 20 * task.size)
+    transmission = max(np.radians(wanted.transmission_min_deg), 1e-3)
+    bounds = package.LinkBounds(min_length=least, max_length=most, min_transmission_angle=transmission)
     if isinstance(task, MotionTask):
         arm = task.size * np.stack([np.cos(task.angles), np.sin(task.angles)], axis=-1)
         solved = package.CouplerMotionSynthesis(task.positions, task.positions + arm, bounds).solve()
         found(_of_fourbarhinge(solved.params, solved.branch))
         return
-    if task.timing is not None:
+    if not isinstance(task, PathTask) or task.timing is not None:
         raise NotImplementedError
     while not over():
         solved = package.CouplerPathSynthesis(task.positions, bounds).solve(n_starts=20, seed=seed)
@@ -230,6 +191,49 @@ def _of_fourbarhinge(params: dict[str, float], branch: int) -> FourBar:
     return one
 
 
+def pylinkage(problem: Problem, seed: int, budget: float, found: Found) -> None:
+    """Path, motion and function synthesis of pylinkage; a function from random first angles."""
+    package = import_module("pylinkage.synthesis")
+    task = problem.task
+    full = problem.requirements.rotatability != "any"
+    if isinstance(task, FunctionTask):
+        rng, over = np.random.default_rng(seed), _clock(budget)
+        while not over():
+            choice, (first, zero) = Choice.drawn(rng), rng.uniform(-np.pi, np.pi, 2)
+            pairs = np.stack([first + choice.way * task.inputs, zero + choice.turning * task.outputs], -1)
+            solved = package.function_generation([*map(tuple, pairs.tolist())], require_grashof=full)
+            for each in solved.raw_solutions:
+                found(_of_pylinkage(each))
+        return
+    if isinstance(task, MotionTask):
+        poses = [package.Pose(*pose) for pose in np.c_[task.positions, task.angles].tolist()]
+        solved = package.motion_generation(poses, max_solutions=None, require_grashof=full)
+        for each in solved.raw_solutions:
+            found(_of_pylinkage(each, task))
+        return
+    if task.timing is not None or not isinstance(task, PathTask):
+        raise NotImplementedError
+    points = [*map(tuple, task.positions.tolist())]
+    for each in package.path_generation(points, require_grashof=full).raw_solutions:
+        found(_of_pylinkage(each))
+
+
+def _of_pylinkage(solved: Any, task: MotionTask | None = None) -> FourBar:
+    o2, o4, a, b = map(
+        np.array,
+        (solved.ground_pivot_a, solved.ground_pivot_d, solved.crank_pivot_b, solved.coupler_pivot_c),
+    )
+    p = task.positions[0] if task is not None else np.array(solved.coupler_point or a)
+    along = (b - a) / np.hypot(*(b - a))
+    beside = np.array([-along[1], along[0]])
+    turned = (b[0] - a[0]) * (o4[1] - a[1]) - (b[1] - a[1]) * (o4[0] - a[0])
+    return FourBar(
+        o2=o2, o4=o4, r2=solved.crank_length, r3=solved.coupler_length, r4=solved.rocker_length,
+        coupler_point=((p - a) @ along, (p - a) @ beside), assembly=-1.0 if turned > 0 else 1.0,
+        body_angle=0.0 if task is None else float(task.angles[0] - np.arctan2(along[1], along[0])),
+    )  # fmt: skip
+
+
 def _clock(budget: float) -> Callable[[], bool]:
     end = process_time() + budget
     return lambda: process_time() > end
@@ -238,8 +242,10 @@ def _clock(budget: float) -> Callable[[], bool]:
 PEERS: dict[str, Callable[[Problem, int, float, Found], None]] = {
     "Grashof": grashof,
     "scipy least_squares": scipy_least_squares,
+    "scipy SLSQP": scipy_slsqp,
     "scipy differential_evolution": scipy_differential_evolution,
     "pymoo DE": pymoo_de,
     "pymoo CMA-ES": pymoo_cmaes,
     "fourbarhinge": fourbarhinge,
+    "pylinkage": pylinkage,
 }

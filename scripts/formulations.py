@@ -1,0 +1,224 @@
+"""Tasks as a user of a general solver writes them down: unknowns in a box, residuals, and limits.
+
+Of points and poses the unknowns are O2, O4, r2, r3, r4, the coupler point, the body's angle and the driver
+angle at every target; of a function r2, r3, r4 over the ground, and where driver and output begin. What is a
+choice, such as the assembly, is drawn at random for every start. A limit holds where it is not positive.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol, cast
+
+import numpy as np
+
+from grashof.problems import FourBar, FunctionTask, Linkage, MotionTask, PathTask, Problem, Requirements
+from grashof.problems.values.arrays import FloatArray
+
+TURN = 2 * np.pi
+STEP = 1e-3  # rad, between two targets
+
+
+class Choice(NamedTuple):
+    """What a start decides: each 1 or -1."""
+
+    assembly: float
+    way: float
+    "Of the driver."
+    turning: float
+    "1 where link 2 is the shortest of a linkage that turns fully, -1 where the ground is."
+
+    @classmethod
+    def drawn(cls, rng: np.random.Generator) -> Choice:
+        """Any."""
+        return cls(*rng.choice([-1.0, 1.0], 3))
+
+
+class Formulation(Protocol):
+    """Unknowns x of shape (M,) between low and high."""
+
+    low: FloatArray
+    high: FloatArray
+    scale: float
+    "That residuals are divided by."
+    minimax: bool
+    "Whether the greatest residual is made least instead of the sum of squares."
+
+    def start(self, rng: np.random.Generator, choice: Choice) -> FloatArray:
+        """A random point of the box."""
+
+    def residuals(self, x: FloatArray, choice: Choice) -> FloatArray:
+        """Errors of the targets."""
+
+    def limits(self, x: FloatArray, choice: Choice) -> FloatArray:
+        """What must not be positive, without unit."""
+
+    def linkage(self, x: FloatArray, choice: Choice) -> Linkage:
+        """The linkage of some unknowns."""
+
+
+def formulated(problem: Problem) -> Formulation:
+    """The formulation of a four-bar's task."""
+    if isinstance(problem.task, FunctionTask):
+        return FunctionFormulation.of(problem.task, problem.requirements)
+    return CouplerFormulation.of(cast(MotionTask | PathTask, problem.task), problem.requirements)
+
+
+@dataclass(frozen=True, slots=True)
+class CouplerFormulation:
+    """Points or poses: o2, o4, r2, r3, r4, u, v, body angle, and driver angles or, if timed, the first."""
+
+    task: MotionTask | PathTask
+    wanted: Requirements
+    low: FloatArray
+    high: FloatArray
+    scale: float
+    minimax: bool = False
+
+    @classmethod
+    def of(cls, task: MotionTask | PathTask, wanted: Requirements, reach: float = 3.0) -> CouplerFormulation:
+        """Pivots within so many sizes of the task, links as the requirements have them."""
+        size, middle = task.size, task.positions.mean(axis=0)
+        least, most = wanted.link_length or (0.01 * size, 20 * size)
+        arm = (wanted.coupler_arms or (0, np.inf))[1]
+        most, arm = min(most, 20 * size), min(arm, 20 * size)
+        angles = 1 if task.timing is not None else len(task)
+        place = [*(middle - reach * size), *(middle - reach * size)]
+        low = [*place, least, least, least, -arm, -arm, -np.pi, *[-TURN] * angles]
+        place = [*(middle + reach * size), *(middle + reach * size)]
+        high = [*place, most, most, most, arm, arm, np.pi, *[TURN] * angles]
+        for pivot, columns in (("o2", slice(0, 2)), ("o4", slice(2, 4))):
+            box = getattr(wanted, pivot)
+            for side, axis in zip(range(columns.start, columns.stop), ("x", "y"), strict=True):
+                if box is not None and np.isfinite(getattr(box, axis)).all():
+                    low[side], high[side] = getattr(box, axis)
+        return cls(task, wanted, np.array(low, dtype=float), np.array(high, dtype=float), size)
+
+    def start(self, rng: np.random.Generator, choice: Choice) -> FloatArray:
+        """A random point of the box, the driver angles in order."""
+        x = rng.uniform(self.low, self.high)
+        way = choice.way * np.linspace(0, rng.uniform(0.3, TURN), len(x) - 10)
+        x[10:] = np.clip(rng.uniform(-np.pi, np.pi) + way, self.low[10:], self.high[10:])
+        return x
+
+    def driver(self, x: FloatArray, choice: Choice) -> FloatArray:
+        """The driver angle at each target, rad."""
+        if self.task.timing is None:
+            return x[10:]
+        driver: FloatArray = x[10] + choice.way * self.task.timing
+        return driver
+
+    def residuals(self, x: FloatArray, choice: Choice) -> FloatArray:
+        """Of positions, and of angles times the task's length."""
+        o2, (r2, r3, r4), (u, v), body = x[:2], x[4:7], x[7:9], x[9]
+        theta2 = self.driver(x, choice)
+        a = o2 + r2 * np.stack([np.cos(theta2), np.sin(theta2)], axis=-1)
+        way = x[2:4] - a
+        d = np.hypot(*way.T) + 1e-12
+        along = (r3**2 - r4**2 + d**2) / (2 * d)
+        beside = choice.assembly * np.sqrt(np.maximum(r3**2 - along**2, 0))
+        unit = way / d[:, None]
+        ab = along[:, None] * unit + beside[:, None] * np.stack([-unit[:, 1], unit[:, 0]], axis=-1)
+        theta3 = np.arctan2(ab[:, 1], ab[:, 0])
+        cosine, sine = np.cos(theta3), np.sin(theta3)
+        p = a + np.stack([u * cosine - v * sine, u * sine + v * cosine], axis=-1)
+        errors = [p - self.task.positions]
+        if isinstance(self.task, MotionTask):
+            turn = theta3 + body - self.task.angles
+            errors.append(2 * self.task.angle_length * np.sin(turn / 2)[:, None])
+        return np.concatenate([each.ravel() for each in errors])
+
+    def limits(self, x: FloatArray, choice: Choice) -> FloatArray:
+        """Assembly and transmission at the targets or over the cycle, full rotation, order, arms."""
+        (r2, r3, r4), (u, v) = x[4:7], x[7:9]
+        r1 = float(np.hypot(*(x[2:4] - x[:2])))
+        theta2 = self.driver(x, choice)
+        a = x[:2] + r2 * np.stack([np.cos(theta2), np.sin(theta2)], axis=-1)
+        square = ((x[2:4] - a) ** 2).sum(axis=-1)
+        turns = self.wanted.rotatability != "any"
+        if turns and self.wanted.transmission_over == "cycle":
+            square = np.array([(r1 - r2) ** 2, (r1 + r2) ** 2])
+        found = [_transmission(square, r3, r4, self.wanted)]
+        if turns:
+            crank = self.wanted.rotatability == "crank-rocker" or choice.turning > 0
+            found.append(_turning(*((r2, r1) if crank else (r1, r2)), r3, r4) / self.scale)
+        if self.task.timing is None:
+            steps = choice.way * np.diff(theta2)
+            found += [STEP - steps, np.array([steps.sum() + STEP - TURN])]
+        if self.wanted.coupler_arms is not None:
+            arms = np.array([np.hypot(u, v), np.hypot(u - r3, v)])
+            low, high = self.wanted.coupler_arms
+            found += [(low - arms) / self.scale, (arms - high) / self.scale]
+        return np.concatenate(found)
+
+    def linkage(self, x: FloatArray, choice: Choice) -> FourBar:
+        """The linkage of some unknowns."""
+        return FourBar(
+            o2=x[:2], o4=x[2:4], r2=x[4], r3=x[5], r4=x[6], coupler_point=x[7:9],
+            assembly=choice.assembly, body_angle=x[9],
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class FunctionFormulation:
+    """A function: r2, r3, r4 over a ground of 1, the first angles of driver and output."""
+
+    task: FunctionTask
+    wanted: Requirements
+    low: FloatArray
+    high: FloatArray
+    minimax: bool
+    scale: float = 1.0
+
+    @classmethod
+    def of(cls, task: FunctionTask, wanted: Requirements) -> FunctionFormulation:
+        """Links up to the ratio that is allowed."""
+        ratio = min(wanted.link_ratio_max, 20.0)
+        low, high = [1 / ratio] * 3 + [-np.pi] * 2, [ratio] * 3 + [np.pi] * 2
+        minimax = task.norm == "max" and not wanted.is_exact(task)
+        return cls(task, wanted, np.array(low), np.array(high), minimax)
+
+    def start(self, rng: np.random.Generator, choice: Choice) -> FloatArray:
+        """A random point of the box, lengths alike on a logarithmic scale."""
+        del choice
+        x = rng.uniform(self.low, self.high)
+        x[:3] = np.exp(rng.uniform(np.log(self.low[:3]), np.log(self.high[:3])))
+        return x
+
+    def residuals(self, x: FloatArray, choice: Choice) -> FloatArray:
+        """Of the output angle at every pair, rad."""
+        r2, r3, r4 = x[:3]
+        theta2 = x[3] + choice.way * self.task.inputs
+        a = r2 * np.exp(1j * theta2)
+        d = np.abs(a - 1) + 1e-12
+        along = (r4**2 - r3**2 + d**2) / (2 * d)
+        beside = -choice.assembly * np.sqrt(np.maximum(r4**2 - along**2, 0))
+        theta4 = np.angle((a - 1) / d * (along + 1j * beside))
+        sense = choice.turning if self.task.sense == "either" else 1.0
+        found: FloatArray = 2 * np.sin((theta4 - x[4] - choice.way * sense * self.task.outputs) / 2)
+        return found
+
+    def limits(self, x: FloatArray, choice: Choice) -> FloatArray:
+        """Assembly and transmission at the pairs, the ratio of the links."""
+        r2, r3, r4 = x[:3]
+        square = np.abs(r2 * np.exp(1j * (x[3] + choice.way * self.task.inputs)) - 1) ** 2
+        links = np.array([1.0, r2, r3, r4])
+        ratio = links.max() / links.min() / self.wanted.link_ratio_max - 1
+        return np.append(_transmission(square, r3, r4, self.wanted), ratio)
+
+    def linkage(self, x: FloatArray, choice: Choice) -> FourBar:
+        """The linkage of some unknowns."""
+        return FourBar(o2=(0, 0), o4=(1, 0), r2=x[0], r3=x[1], r4=x[2], assembly=choice.assembly)
+
+
+def _transmission(square: FloatArray, r3: float, r4: float, wanted: Requirements) -> FloatArray:
+    """What the transmission angle lacks where A and O4 are so far apart, squared; assembly at least."""
+    cosine = (r3**2 + r4**2 - square) / (2 * r3 * r4)
+    most: float = np.cos(np.radians(wanted.transmission_min_deg))
+    return np.concatenate([cosine - most, -cosine - most])
+
+
+def _turning(shortest: float, *others: float) -> FloatArray:
+    """What the shortest link with each other is longer than the two that are left (Grashof)."""
+    total = sum(others)
+    return np.array([shortest + 2 * each - total for each in others])
