@@ -8,11 +8,11 @@ choice, such as the assembly, is drawn at random for every start. A limit holds 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol, cast
+from typing import NamedTuple, cast
 
 import numpy as np
 
-from grashof.problems import FourBar, FunctionTask, Linkage, MotionTask, PathTask, Problem, Requirements
+from grashof.problems import FourBar, FunctionTask, MotionTask, PathTask, Problem, Requirements
 from grashof.problems.values.arrays import FloatArray
 
 TURN = 2 * np.pi
@@ -34,29 +34,6 @@ class Choice(NamedTuple):
         return cls(*rng.choice([-1.0, 1.0], 3))
 
 
-class Formulation(Protocol):
-    """Unknowns x of shape (M,) between low and high."""
-
-    low: FloatArray
-    high: FloatArray
-    scale: float
-    "That residuals are divided by."
-    minimax: bool
-    "Whether the greatest residual is made least instead of the sum of squares."
-
-    def start(self, rng: np.random.Generator, choice: Choice) -> FloatArray:
-        """A random point of the box."""
-
-    def residuals(self, x: FloatArray, choice: Choice) -> FloatArray:
-        """Errors of the targets."""
-
-    def limits(self, x: FloatArray, choice: Choice) -> FloatArray:
-        """What must not be positive, without unit."""
-
-    def linkage(self, x: FloatArray, choice: Choice) -> Linkage:
-        """The linkage of some unknowns."""
-
-
 def formulated(problem: Problem) -> Formulation:
     """The formulation of a four-bar's task."""
     if isinstance(problem.task, FunctionTask):
@@ -73,7 +50,9 @@ class CouplerFormulation:
     low: FloatArray
     high: FloatArray
     scale: float
+    "That residuals are divided by."
     minimax: bool = False
+    "Whether the greatest residual is made least instead of the sum of squares."
 
     @classmethod
     def of(cls, task: MotionTask | PathTask, wanted: Requirements, reach: float = 3.0) -> CouplerFormulation:
@@ -209,6 +188,9 @@ class FunctionFormulation:
     def linkage(self, x: FloatArray, choice: Choice) -> FourBar:
         """The linkage of some unknowns."""
         return FourBar(o2=(0, 0), o4=(1, 0), r2=x[0], r3=x[1], r4=x[2], assembly=choice.assembly)
+
+
+Formulation = CouplerFormulation | FunctionFormulation
 
 
 def _transmission(square: FloatArray, r3: float, r4: float, wanted: Requirements) -> FloatArray:

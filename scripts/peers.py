@@ -7,13 +7,21 @@ until its time is over. Each is used as its documentation recommends; what it ca
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from importlib import import_module
 from time import process_time
 from typing import Any
 
 import numpy as np
 from formulations import Choice, Formulation, formulated
-from scipy.optimize import Bounds, OptimizeResult, differential_evolution, least_squares, minimize
+from scipy.optimize import (
+    Bounds,
+    NonlinearConstraint,
+    OptimizeResult,
+    differential_evolution,
+    least_squares,
+    minimize,
+)
 
 from grashof import synthesize
 from grashof.problems import FourBar, FunctionTask, Linkage, MotionTask, PathTask, Problem
@@ -99,9 +107,9 @@ def scipy_slsqp(problem: Problem, seed: int, budget: float, found: Found) -> Non
     for _, choice, x in starts(task, seed, budget):
         worst = [float(np.abs(task.residuals(x, choice)).max())] * extra
         solved = minimize(
-            objective, np.array([*worst, *(x - task.low) / span]), args=(choice,), method="SLSQP",
+            partial(objective, choice=choice), np.array([*worst, *(x - task.low) / span]), method="SLSQP",
             bounds=Bounds(np.zeros(len(x) + extra), np.array([10.0] * extra + [1.0] * len(x))),
-            constraints={"type": "ineq", "fun": kept, "args": (choice,)},
+            constraints=NonlinearConstraint(partial(kept, choice=choice), 0, np.inf),
             options={"maxiter": 300, "ftol": 1e-14},
         )  # fmt: skip
         found(task.linkage(x_of(solved.x), choice))
