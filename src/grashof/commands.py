@@ -12,6 +12,7 @@ from grashof.problems import Problem, ProblemError, load_linkage_spec
 from grashof.problems.values.checks import counted
 
 if TYPE_CHECKING:
+    from grashof.output.drawing import Drawer
     from grashof.synth import Result
 
 TOP = 50  # families in a list by default
@@ -66,6 +67,7 @@ def solve(problem: Problem, text: str, options: Options) -> Exit:
 
 def _solve(problem: Problem, text: str, options: Options, folder: Path) -> Exit:
     from grashof.output.cluster import cluster
+    from grashof.output.drawing import drawer
     from grashof.output.folder import SEARCH
     from grashof.output.terminal import search_progress
     from grashof.synth import synthesize
@@ -77,7 +79,7 @@ def _solve(problem: Problem, text: str, options: Options, folder: Path) -> Exit:
     search = replace(search, enough=max(search.enough, options.top or 0))
     top = options.top or max(TOP, search.enough)
     _begin_record(folder, resume=options.resume)
-    with interruptible() as interrupted:
+    with drawer(options.drawings) as drawing, interruptible() as interrupted:
         wanted, beginning = ends_with_enough(problem), finder_of(problem).beginning
         with (
             cluster(options.scheduler, options.workers) as (executor, workers),
@@ -98,7 +100,7 @@ def _solve(problem: Problem, text: str, options: Options, folder: Path) -> Exit:
         dask = None if options.scheduler is None else "Dask"  # not where: that names machines
         run = {"workers": workers, "scheduler": dask, "time_limit": options.time_limit, "top": top}
         settings = {**asdict(search), **run}
-        return _deliver(found, text, settings, folder, options.drawings, interrupted)
+        return _deliver(found, text, settings, folder, options.drawings, interrupted, drawing)
 
 
 def _deliver(
@@ -108,6 +110,7 @@ def _deliver(
     folder: Path,
     drawings: int,
     interrupted: Interruption,
+    drawing: Drawer | None = None,
 ) -> Exit:
     """Write what a search found, and print the list."""
     from grashof.output.folder import PAGE
@@ -118,7 +121,7 @@ def _deliver(
         say(found.ended, err=True)
     result = found.top(settings["top"])
     if result.candidates or result.complete:  # an interrupted search with nothing replaces nothing
-        files = write_run(folder, result, settings, drawings, stop=interrupted, problem_text=text)
+        files = write_run(folder, result, settings, drawings, interrupted, text, drawing)
         _report(result.note, files, folder)
         if left := left_out(result, drawings, files):
             signal = "SIGTERM" if interrupted.code is Exit.TERMINATED else "Ctrl-C"

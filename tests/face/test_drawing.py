@@ -5,11 +5,13 @@ import signal
 import sys
 import threading
 from collections.abc import Iterator
+from dataclasses import fields
+from multiprocessing import active_children
 
 import pytest
 
 import grashof.output.drawing as grashof_drawing
-from grashof.output.drawing import FORMATS, Files, drawings_of
+from grashof.output.drawing import FORMATS, Files, drawer
 from grashof.synth import Result
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="a process is copied on Linux alone")
@@ -18,11 +20,11 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="a process is co
 def test_a_copy_draws_the_same(few: Result, monkeypatch: pytest.MonkeyPatch) -> None:
     given = few.problem, few.candidates[:2]
     monkeypatch.setattr(grashof_drawing, "_may_be_copied", lambda: False)
-    with drawings_of(*given) as drawn:
-        here = list(drawn)
+    with drawer(2) as here_too:
+        here = list(here_too.begin(*given))
     monkeypatch.setattr(grashof_drawing, "_may_be_copied", lambda: True)
-    with drawings_of(*given) as drawn:
-        beside = list(drawn)
+    with drawer(2) as ready:
+        beside = list(ready.begin(*given))
     assert beside == here
     assert [set(files) for files in here] == [set(FORMATS)] * 2
     assert here[0] != here[1]
@@ -33,9 +35,30 @@ def test_what_a_lost_copy_owes_is_drawn_here(few: Result, monkeypatch: pytest.Mo
         os.kill(os.getpid(), signal.SIGKILL)
 
     monkeypatch.setattr(grashof_drawing, "_may_be_copied", lambda: True)
-    monkeypatch.setattr(grashof_drawing, "_send", none)
-    with drawings_of(few.problem, few.candidates[:2]) as drawn:
+    monkeypatch.setattr(grashof_drawing, "_draw", none)
+    with drawer(2) as ready:
+        drawn = ready.begin(few.problem, few.candidates[:2])
         assert [set(files) for files in drawn] == [set(FORMATS)] * 2
+
+
+def test_what_cannot_be_sent_is_drawn_here(few: Result, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(grashof_drawing, "_may_be_copied", lambda: True)
+    monkeypatch.setattr(grashof_drawing, "_received", pytest.fail)
+    unnamed = few.problem.__class__.__new__(type("Local", (few.problem.__class__,), {}))
+    for field in fields(few.problem):
+        object.__setattr__(unnamed, field.name, getattr(few.problem, field.name))
+    with drawer(1) as ready:
+        assert [set(files) for files in ready.begin(unnamed, few.candidates[:1])] == [set(FORMATS)]
+
+
+def test_nothing_to_draw_makes_no_copy(few: Result, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(grashof_drawing, "_may_be_copied", lambda: True)
+    with drawer(0) as ready:
+        assert active_children() == []
+        assert list(ready.begin(few.problem, ())) == []
+    with drawer(3) as ready:  # and one that was ready for nothing ends
+        assert len(active_children()) == 1
+    assert active_children() == []
 
 
 def test_a_copy_ends_with_its_list(few: Result, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -44,11 +67,9 @@ def test_a_copy_ends_with_its_list(few: Result, monkeypatch: pytest.MonkeyPatch)
     def first(drawn: Iterator[Files]) -> Files:
         return next(drawn)
 
-    from multiprocessing import active_children
-
-    with drawings_of(few.problem, few.candidates[:3]) as drawn:
+    with drawer(3) as ready:
         assert len(active_children()) == 1
-        first(drawn)
+        first(ready.begin(few.problem, few.candidates[:3]))
     assert active_children() == []
 
 

@@ -1,4 +1,4 @@
-"""Drawings of designs, made beside the lists where a core is free: matplotlib takes its time."""
+"""Drawings of designs, made in a copy of the process where a core is free: matplotlib takes its time."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
+from pickle import PicklingError
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -20,30 +21,49 @@ Files = dict[str, bytes]
 
 FORMATS = (".png", ".svg")
 _MOST = 20.0  # s, for a drawing that takes less than one: more, and something is wrong beside
+_UNSENDABLE = (PicklingError, AttributeError, TypeError)  # what pickle says of a function without a name
 
 
-@contextmanager
-def drawings_of(problem: Problem, candidates: Sequence[Candidate]) -> Iterator[Iterator[Files]]:
-    """Drawings of some designs one after the other, by the endings of their files.
-
-    A copy of this process makes them from now on where there can be one, and else this process, each
-    when it is asked for.
+class Drawer:
+    """Draws designs in a copy of this process, or where there is none in this one.
 
     Parameters
     ----------
-    problem : Problem
-    candidates : sequence of Candidate
+    copy : Connection, optional
+        To the copy.
     """
-    if not candidates or not _may_be_copied():
-        yield _made(problem, candidates)
+
+    def __init__(self, copy: Connection | None = None) -> None:
+        self._copy = copy
+
+    def begin(self, problem: Problem, candidates: Sequence[Candidate]) -> Iterator[Files]:
+        """Begin to draw designs, once; they come one after the other, by the endings of their files."""
+        if self._copy is None or not candidates:
+            return _made(problem, candidates)
+        with suppress(ConnectionError):
+            try:
+                self._copy.send((problem, tuple(candidates)))
+            except _UNSENDABLE:
+                return _made(problem, candidates)
+        return _received(self._copy, problem, candidates)
+
+
+@contextmanager
+def drawer(most: int) -> Iterator[Drawer]:
+    """One who draws so many designs at most, and until there are any gets ready beside this process.
+
+    The copy is made here, where it may be: with a single thread and a second core.
+    """
+    if not most or not _may_be_copied():
+        yield Drawer()
         return
     context = get_context("fork")
-    ours, theirs = context.Pipe(duplex=False)
-    beside = context.Process(target=_send, args=(theirs, problem, candidates), daemon=True)
+    ours, theirs = context.Pipe()
+    beside = context.Process(target=_draw, args=(theirs, ours), daemon=True)
     beside.start()
     theirs.close()
     try:
-        yield _received(ours, problem, candidates)
+        yield Drawer(ours)
     finally:
         beside.kill()
         beside.join()
@@ -75,9 +95,25 @@ def _received(pipe: Connection, problem: Problem, candidates: Sequence[Candidate
     yield from _made(problem, candidates, done)
 
 
-def _send(pipe: Connection, problem: Problem, candidates: Sequence[Candidate]) -> None:
+def _draw(pipe: Connection, other: Connection) -> None:
+    """The copy's work; it ends with the process that made it, which then holds the other end no more."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # which reaches every process of a terminal
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    with suppress(ConnectionError):
+    other.close()
+    _get_ready()
+    with suppress(EOFError, ConnectionError):
+        problem, candidates = pipe.recv()
         for files in _made(problem, candidates):
             pipe.send(files)
+
+
+def _get_ready() -> None:
+    """Import what draws, and have it load its fonts."""
+    from matplotlib.figure import Figure
+
+    from grashof.figures.files import drawn
+
+    figure = Figure(figsize=(1, 1))
+    figure.add_subplot().set_title("1")
+    for ending in FORMATS:
+        drawn(figure, ending)

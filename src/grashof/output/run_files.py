@@ -6,6 +6,7 @@ import json
 import os
 import platform
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import nullcontext
 from dataclasses import asdict, replace
 from importlib.metadata import version
 from pathlib import Path
@@ -16,7 +17,7 @@ import numpy as np
 from grashof.analysis import solve_position
 from grashof.analysis.cylinder.lengths import cylinder_state
 from grashof.analysis.judge.driven import cylinder_forces
-from grashof.output.drawing import Files, drawings_of
+from grashof.output.drawing import Drawer, Files, drawer
 from grashof.output.ending import Exit, Interruption
 from grashof.output.folder import PAGE, RECORD, replacing_own_files
 from grashof.problems import Problem
@@ -41,6 +42,7 @@ def write_run(
     drawings: int,
     stop: Interruption | None = None,
     problem_text: str = "",
+    drawing: Drawer | None = None,
 ) -> list[str]:
     """Write all files of a run, the lists first: a drawing that fails does not cost them.
 
@@ -56,6 +58,8 @@ def write_run(
         Asked before every drawing; the others are left out once it is asked for.
     problem_text : str
         The problem file, for the page.
+    drawing : Drawer, optional
+        Who draws, if somebody is ready.
 
     Returns
     -------
@@ -70,7 +74,9 @@ def write_run(
     from grashof.page import search_page  # only a run needs the templates
 
     stop = Interruption() if stop is None else stop
-    with drawings_of(result.problem, result.candidates[:drawings]) as drawn:
+    best = result.candidates[:drawings]
+    with drawer(len(best)) if drawing is None else nullcontext(drawing) as ready:
+        drawn = ready.begin(result.problem, best)
         with replacing_own_files(folder) as fresh:
             frame = _write_lists(fresh, result)
             write_page(fresh / PAGE, search_page(result, frame, _about(settings), problem_text))
