@@ -11,6 +11,7 @@ from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 
 _SAMPLES = 361
+_ROUNDS = 2  # at this sampling a parabola is then right to rounding
 
 
 def reach_box(linkage: Linkage, start: float, end: float) -> FloatArray:
@@ -48,7 +49,7 @@ def reach_box(linkage: Linkage, start: float, end: float) -> FloatArray:
         closed = np.isfinite(own(np.broadcast_to(state.theta3, (len(both), *state.theta3.shape))))
         return np.where(closed, both, -np.inf)
 
-    furthest = greatest(tracks, np.linspace(0, 1, _SAMPLES), most=2)[0].reshape(2, -1, 2)
+    furthest = greatest(tracks, np.linspace(0, 1, _SAMPLES), most=2, rounds=_ROUNDS)[0].reshape(2, -1, 2)
     corners = np.stack([getattr(linkage, pivot) for pivot in linkage.GROUND])
     most, least = np.where(np.isfinite(furthest), furthest, -np.inf)
     return np.stack([np.min([*corners, *-least], axis=0), np.max([*corners, *most], axis=0)])

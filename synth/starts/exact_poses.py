@@ -14,7 +14,6 @@ from itertools import zip_longest
 from typing import ClassVar
 
 import numpy as np
-import scipy
 
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import ComplexArray
@@ -26,7 +25,14 @@ from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.starts.dyad_pairs import near_misses, screen
 from grashof.synth.starts.parallelograms import parallelogram_obstacle, parallelogram_starts, parallelograms
 from grashof.synth.starts.sampled_dyads import SAMPLES, fixed_pivots, joined, sampled_dyads
-from grashof.synth.starts.selection import feasible_starts, mended_starts, merits, relaxed_starts, starts_of
+from grashof.synth.starts.selection import (
+    FEW,
+    feasible_starts,
+    mended_starts,
+    merits,
+    relaxed_starts,
+    starts_of,
+)
 from grashof.synth.theory.burmester import (
     Displacements,
     Dyads,
@@ -279,7 +285,7 @@ def translate(motion: Displacements) -> bool:
 def first_equal(positions: ComplexArray, rotations: ComplexArray) -> tuple[int, int] | None:
     """The first of some poses that a later one is equal to, and the first of those; None where all differ.
 
-    A tree finds those that may be, in place of all pairs.
+    A tree finds those that may be, in place of all pairs, where there are many.
 
     Parameters
     ----------
@@ -287,8 +293,14 @@ def first_equal(positions: ComplexArray, rotations: ComplexArray) -> tuple[int, 
     rotations : ndarray of complex, shape (n,)
         Of absolute value 1.
     """
+    if len(positions) <= FEW:
+        moved = sum(np.abs(each[:, None] - each) for each in (positions, rotations))
+        equal = np.argwhere(np.triu(moved < EQUAL, k=1))
+        return (int(equal[0, 0]), int(equal[0, 1])) if len(equal) else None
+    from scipy.spatial import cKDTree  # takes longer to import than many a search
+
     numbers = np.stack([positions.real, positions.imag, rotations.real, rotations.imag], axis=1)
-    tree = scipy.spatial.cKDTree(numbers)
+    tree = cKDTree(numbers)
     for begin in range(0, len(numbers), AT_ONCE):
         some = numbers[begin : begin + AT_ONCE]
         apart = np.asarray(tree.query(some, k=2, distance_upper_bound=2 * EQUAL)[0])[:, 1]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import scipy
 
 from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.requirements import QUANTITIES
@@ -20,6 +19,7 @@ POOL = 6000  # linkages among which starts are picked
 PEAKS, PEAK_SPACING = 8, 0.25
 SPACINGS = (0.5, 0.35, 0.25, 0.18, 0.12, 0.08, 0.06, 0.04, 0.03, 0.02, 0.015)
 MISSES, MISS_SPACING = 40, 0.05  # starts from near misses, the nearest first
+FEW = 512  # points all pairs of which are compared
 OTHERS = 10.0  # weight of what else is missed, where one requirement may be
 NEARLY = 0.1  # linkages that violate no more are also spread over, for variety
 
@@ -111,11 +111,16 @@ def _spread(
 def to_nearest(coordinates: FloatArray) -> FloatArray:
     """How far points (n, C) are from the nearest others, by the coordinate that differs most; up to 1.
 
-    A tree holds them, in place of all pairs.
+    A tree holds them, in place of all pairs, where there are many.
     """
-    if len(coordinates) < 2:
-        return np.ones(len(coordinates))
-    apart = np.asarray(scipy.spatial.cKDTree(coordinates).query(coordinates, k=2, p=np.inf)[0])[:, 1]
+    if len(coordinates) <= FEW:
+        pairs = np.abs(coordinates[:, None] - coordinates).max(axis=-1, initial=0.0)
+        np.fill_diagonal(pairs, np.inf)
+        apart = pairs.min(axis=-1, initial=np.inf)
+    else:
+        from scipy.spatial import cKDTree  # takes longer to import than many a search
+
+        apart = np.asarray(cKDTree(coordinates).query(coordinates, k=2, p=np.inf)[0])[:, 1]
     nearest: FloatArray = np.minimum(apart, 1.0)
     return nearest
 

@@ -71,12 +71,12 @@ def write_run(
     OSError
         The disk is full or the folder is lost; it then holds what it held before, or the lists alone.
     """
-    from grashof.page import search_page  # only a run needs the templates
-
     stop = Interruption() if stop is None else stop
     best = result.candidates[:drawings]
     with drawer(len(best)) if drawing is None else nullcontext(drawing) as ready:
         drawn = ready.begin(result.problem, best)
+        from grashof.page import search_page  # only a run needs the templates, while designs are drawn
+
         with replacing_own_files(folder) as fresh:
             frame = _write_lists(fresh, result)
             write_page(fresh / PAGE, search_page(result, frame, _about(settings), problem_text))
