@@ -5,7 +5,8 @@
 One after another in one process, single-threaded. Of every run: processor time to the first design that the
 judge accepts within 1 % of the least error that any run found (of exact tasks: to rounding), how many
 distinct ones there are, and which share of all that was returned is accepted. Writes `runs.json`, `table.md`
-and `profile.png`, the performance profiles of Dolan and More (2002). A run that is in `runs.json` is kept.
+and `profile.png`, the performance profiles of Dolan and More (2002). A run that is in `runs.json` is kept, so
+that some packages can have more seeds than others.
 """
 
 from __future__ import annotations
@@ -168,19 +169,21 @@ def draw_profile(runs: dict[str, Any], problems: dict[str, Problem], path: Path)
     cases = sorted({tuple(key.split("|")[::2]) for key in runs})
     times = {
         peer: np.array([
-            reached(problems[task], one, best_of(runs, task))
-            if "errors" in (one := runs.get(f"{task}|{peer}|{seed}", {})) else np.inf
+            np.nan if (one := runs.get(f"{task}|{peer}|{seed}")) is None
+            else reached(problems[task], one, best_of(runs, task)) if "errors" in one else np.inf
             for task, seed in cases
         ])
         for peer in PEERS
     }  # fmt: skip
-    fastest = np.min(list(times.values()), axis=0)
-    solved = np.isfinite(fastest)
+    fastest = np.nanmin(list(times.values()), axis=0)
     figure = Figure(figsize=(7, 4.4), layout="constrained")
     axes = figure.add_subplot()
     factors = np.logspace(0, 4, 400)
     for peer, each in times.items():
-        ratio = each[solved] / fastest[solved]
+        done = np.isfinite(fastest) & ~np.isnan(each)
+        if not done.any():
+            continue
+        ratio = each[done] / fastest[done]
         axes.step(factors, [(ratio <= factor).mean() for factor in factors], where="post", label=peer)
     axes.set(
         xscale="log", xlabel="times the processor time of the fastest", ylabel="share of runs", ylim=(0, 1.02)
