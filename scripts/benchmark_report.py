@@ -13,7 +13,8 @@ from tempfile import TemporaryDirectory
 from time import perf_counter
 
 from grashof import load, synthesize
-from grashof.page import search_page
+from grashof.page.search import search_page
+from grashof.synth.designs.table import rows_of
 
 RECORD = {"versions": {"grashof": ""}, "settings": {}}
 
@@ -33,9 +34,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         path = Path(folder) / "report.html"
         for _ in range(chosen.runs):
             begun = perf_counter()
-            frame = result.to_frame()
+            rows = rows_of(result.problem, result.candidates)
             figured = perf_counter()
-            path.write_text(search_page(result, frame, RECORD), encoding="utf-8")
+            path.write_text(search_page(result, rows, RECORD), encoding="utf-8")
             times.append((figured - begun, perf_counter() - figured))
         size = path.stat().st_size
     figures, page = (median(each) for each in zip(*times, strict=True))

@@ -205,13 +205,21 @@ def pylinkage(problem: Problem, seed: int, budget: float, found: Found) -> None:
     task = problem.task
     full = problem.requirements.rotatability != "any"
     if isinstance(task, FunctionTask):
-        rng, over = np.random.default_rng(seed), _clock(budget)
-        while not over():
-            choice, (first, zero) = Choice.drawn(rng), rng.uniform(-np.pi, np.pi, 2)
-            pairs = np.stack([first + choice.way * task.inputs, zero + choice.turning * task.outputs], -1)
+        least = np.inf
+        for _, choice, x in starts(formulation := formulated(problem), seed, budget):
+            first, zero = x[3:]
+            pairs = np.stack([first + choice.way * task.inputs, zero + choice.way * task.outputs], -1)
             solved = package.function_generation([*map(tuple, pairs.tolist())], require_grashof=full)
-            for each in solved.raw_solutions:
-                found(_of_pylinkage(each))
+            for made in map(_of_pylinkage, solved.raw_solutions):
+                lengths = np.array([made.r2, made.r3, made.r4]) / np.hypot(*(made.o4 - made.o2))
+                known = (
+                    np.array([*lengths, first, zero]),
+                    Choice(float(made.assembly), choice.way, 1.0),
+                )
+                error = float(np.abs(formulation.residuals(*known)).max())
+                if error < least:  # of so many the best ones
+                    least = error
+                    found(made)
         return
     if isinstance(task, MotionTask):
         poses = [package.Pose(*pose) for pose in np.c_[task.positions, task.angles].tolist()]

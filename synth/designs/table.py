@@ -72,32 +72,48 @@ NAMES: dict[str, str] = {
 }
 
 
-def to_frame(
+Row = dict[str, Any]
+"A design by column, None or NaN where something is not known."
+
+
+def rows_of(
     problem: Problem, candidates: Sequence[Candidate], quantities: Sequence[Quantity] = LISTED
-) -> pd.DataFrame:
-    """Candidates as rows, in the order given, with the columns `COLUMNS`.
+) -> list[Row]:
+    """Candidates as rows, in the order given, each with the columns `COLUMNS`.
 
     Of some `quantities` alone the other columns stay empty; nothing is measured for them.
     """
-    import pandas as pd  # takes longer than the search of many a problem
-
     keys = {each.key for each in quantities}
     if not keys.isdisjoint(field.name for field in fields(OverTask)):
         find_peaks([candidate.values for candidate in candidates])
     ranked = keys.issuperset(goal.key for goal in pareto_goals(problem))
     fronts = pareto_optimal(problem, candidates) if ranked else [False] * len(candidates)
     own = any(candidate.own_objective is not None for candidate in candidates)
-    rows = [
+    empty = dict.fromkeys([*COLUMNS, *([OWN.column] if own else [])])
+    return [
         {
+            **empty,
             "rank": rank,
             "pareto": bool(front),
             **facts(candidate),
             **{each.column: candidate.values[each.key] * each.unit.shown for each in quantities},
-            OWN.column: candidate.own_objective,
+            **({OWN.column: candidate.own_objective} if own else {}),
         }
         for rank, (candidate, front) in enumerate(zip(candidates, fronts, strict=True), start=1)
     ]
-    return pd.DataFrame(rows, columns=[*COLUMNS, *([OWN.column] if own else [])])
+
+
+def to_frame(problem: Problem, candidates: Sequence[Candidate]) -> pd.DataFrame:
+    """The rows of candidates as a table."""
+    import pandas as pd  # takes longer than the search of many a problem
+
+    rows = rows_of(problem, candidates)
+    return pd.DataFrame(rows) if rows else pd.DataFrame(columns=[*COLUMNS])
+
+
+def known(value: Any) -> bool:
+    """Whether a row has this; what is infinite is known."""
+    return value is not None and value == value
 
 
 def facts(candidate: Candidate) -> dict[str, Any]:

@@ -21,7 +21,7 @@ from grashof.problems.files.problem_schema import problem_from
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.mechanisms import DIMENSIONS
 from grashof.synth import Candidate, Progress, Result, synthesize, track
-from grashof.synth.designs.table import LISTED, to_frame
+from grashof.synth.designs.table import LISTED, rows_of
 from grashof.wording.problem import summary
 
 TOP = 50  # families in a list, as `grashof solve` has them
@@ -165,8 +165,8 @@ def _list_line(
     misses = {key: "; ".join(map(str, one.verdict.defects)) for key, one in drawn.items()}
     listing = Result(problem, tuple(drawn.values())) if result is None else result
     told = AT_ONCE if phase == "track" else LISTED
-    frame = to_frame(problem, list(drawn.values()), told)
-    data = search_data(problem, list(drawn.values()), frame, found=result is None or bool(result.candidates))
+    rows = rows_of(problem, list(drawn.values()), told)
+    data = search_data(problem, list(drawn.values()), rows, found=result is None or bool(result.candidates))
     for key, design in zip(drawn, data["designs"], strict=True):
         design |= {"key": key, "misses": misses[key]}
     return _line(

@@ -45,7 +45,7 @@ def write_report(folder: Path, report: LinkageReport, *, pictures: bool = False)
     """
     from grashof.figures.files import save
     from grashof.figures.survey_plots import plots, section_pictures  # matplotlib takes a while to import
-    from grashof.page import analysis_page
+    from grashof.page.analysis import analysis_page
 
     about = {
         "versions": {"python": platform.python_version(), **{name: version(name) for name in _PACKAGES}},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 import platform
@@ -26,7 +27,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import no_formula
 from grashof.problems.values.quantities import Needs, Over
 from grashof.synth import Candidate, Result
-from grashof.synth.designs.table import LISTED, facts, to_frame
+from grashof.synth.designs.table import LISTED, Row, facts, known, rows_of
 from grashof.synth.search.story import Ending, now
 
 if TYPE_CHECKING:
@@ -75,11 +76,11 @@ def write_run(
     best = result.candidates[:drawings]
     with drawer(len(best)) if drawing is None else nullcontext(drawing) as ready:
         drawn = ready.begin(result.problem, best)
-        from grashof.page import search_page  # only a run needs the templates, while designs are drawn
+        from grashof.page.search import search_page  # only a run needs the templates, while designs are drawn
 
         with replacing_own_files(folder) as fresh:
-            frame = _write_lists(fresh, result)
-            write_page(fresh / PAGE, search_page(result, frame, _about(settings), problem_text))
+            rows = _write_lists(fresh, result)
+            write_page(fresh / PAGE, search_page(result, rows, _about(settings), problem_text))
             files = _write_record(fresh, result, settings, drawings, stop)
         if drawings and result.candidates and not stop():
             with replacing_own_files(folder, keep=files) as fresh:
@@ -88,17 +89,18 @@ def write_run(
     return files
 
 
-def _write_lists(folder: Path, result: Result) -> pd.DataFrame:
-    """Write the designs, or the nearest misses, which it returns as a table."""
-    frame = result.to_frame()
+def _write_lists(folder: Path, result: Result) -> list[Row]:
+    """Write the designs, or the nearest misses, whose rows it returns."""
+    rows = rows_of(result.problem, result.candidates)
     if result.candidates:
-        write_csv(folder / "candidates.csv", frame)
-        write_json(folder / "candidates.json", _designs(result, frame))
+        write_rows(folder / "candidates.csv", rows)
+        write_json(folder / "candidates.json", _designs(result, rows))
     if result.nearest:
-        misses = ["; ".join(str(each) for each in candidate.verdict.defects) for candidate in result.nearest]
-        frame = to_frame(result.problem, result.nearest).assign(misses=misses)
-        write_csv(folder / "nearest.csv", frame)
-    return frame
+        rows = rows_of(result.problem, result.nearest)
+        for row, candidate in zip(rows, result.nearest, strict=True):
+            row["misses"] = "; ".join(str(each) for each in candidate.verdict.defects)
+        write_rows(folder / "nearest.csv", rows)
+    return rows
 
 
 def left_out(result: Result, drawings: int, files: Iterable[str]) -> int:
@@ -129,7 +131,7 @@ def _write_record(
     return files
 
 
-def _designs(result: Result, frame: pd.DataFrame) -> dict[str, Any]:
+def _designs(result: Result, rows: Sequence[Row]) -> dict[str, Any]:
     problem = result.problem
     keys = _written(problem)
     return {
@@ -141,10 +143,8 @@ def _designs(result: Result, frame: pd.DataFrame) -> dict[str, Any]:
         "angle_unit": "rad",
         **({} if problem.dynamics is None else {"dynamics": problem.dynamics.tables["dynamics"]}),
         "designs": [
-            {"rank": rank, **_design(candidate, keys), "pareto": bool(best)}
-            for rank, (candidate, best) in enumerate(
-                zip(result.candidates, frame["pareto"], strict=True), start=1
-            )
+            {"rank": row["rank"], **_design(candidate, keys), "pareto": row["pareto"]}
+            for candidate, row in zip(result.candidates, rows, strict=True)
         ],
     }
 
@@ -247,6 +247,20 @@ def _record(
 
 # What ended solves that would otherwise have gone on.
 _GUARDS = ("Maximum_Iterations_Exceeded", "Maximum_WallTime_Exceeded")
+
+
+def write_rows(path: Path, rows: Sequence[Row]) -> None:
+    """Rows as `write_csv` has them, without pandas, which takes long to import."""
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(map(_plain, rows[0]))
+        writer.writerows([_cell(value) for value in row.values()] for row in rows)
+
+
+def _cell(value: Any) -> Any:
+    if not known(value):
+        return ""
+    return float(value) if isinstance(value, float) else _plain(value)
 
 
 def write_csv(path: Path, frame: pd.DataFrame) -> None:

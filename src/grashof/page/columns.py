@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from grashof.problems import Problem
+from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.mechanisms import DIMENSIONS, NOISE
 from grashof.problems.values.quantities import Needs, Quantity, Unit
-from grashof.synth.designs.table import LISTED, NAMES, OWN
+from grashof.synth.designs.table import LISTED, NAMES, OWN, Row, known
 from grashof.wording.problem import error_meaning
 
 ROUNDING = "≈ 0"  # in place of an error that is rounding
@@ -62,23 +63,23 @@ class Column:
         return f"{number:z.{self.decimals}f}" if self.decimals >= 0 else f"{number:.3e}"
 
 
-def columns_of(problem: Problem, frame: pd.DataFrame) -> list[Column]:
+def columns_of(problem: Problem, rows: Sequence[Row]) -> list[Column]:
     """Every quantity that is known of some of these designs, those of the table first.
 
     Without the transmission angle over the task where that is a whole turn, or else the one over the turn
     where no driver turns fully.
     """
-    whole, turns = problem.task.closed, frame["full_rotation"].any()
+    whole, turns = problem.task.closed, any(row["full_rotation"] for row in rows)
     left_out = "transmission_min_task" if whole else "" if turns else "transmission_min_cycle"
-    known = [
+    shown = [
         each
         for each in (*LISTED, OWN)
-        if each.key != left_out and each.column in frame and not frame[each.column].isna().all()
+        if each.key != left_out and any(known(row.get(each.column)) for row in rows)
     ]
     # In the table first what any design has, then what takes masses or tolerances, then the lengths.
     stated = Needs.DYNAMICS, Needs.MANUFACTURING
-    known.sort(key=lambda each: (not each.digits, not each.better, each.needs in stated))
-    lengths, longest = length_decimals(frame), float(frame["size"].max())
+    shown.sort(key=lambda each: (not each.digits, not each.better, each.needs in stated))
+    lengths, longest = length_decimals(rows), _longest(rows)
     return [
         Column(
             each.column,
@@ -87,16 +88,16 @@ def columns_of(problem: Problem, frame: pd.DataFrame) -> list[Column]:
             lengths
             if _is_length(each) and lengths is not None
             else _decimals(
-                frame[each.column],
+                _known_of(rows, each.column),
                 each.digits,
-                NOISE * longest if each.key in DIMENSIONS else noise_of(each, frame),
+                NOISE * longest if each.key in DIMENSIONS else noise_of(each, rows),
             ),
-            noise_of(each, frame),
+            noise_of(each, rows),
             each.better,
             error_meaning(problem) if each.key == "error" else each.about,
             listed=each.digits > 0,
         )
-        for each in known
+        for each in shown
     ]
 
 
@@ -127,43 +128,38 @@ class Figure:
     noise: float = 0.0
 
 
-def figures_of(frame: pd.DataFrame, length_unit: str) -> list[Figure]:
+def figures_of(rows: Sequence[Row], length_unit: str) -> list[Figure]:
     """Every column of candidates.csv that is filled, in its order."""
-    known = {each.column: each for each in (*LISTED, OWN)}
-    lengths = length_decimals(frame)
+    lengths = length_decimals(rows)
     figures = [Figure("family", NAMES["family"], about="the best of the designs that are alike")]
-    for key, each in known.items():
+    for key, each in ((each.column, each) for each in (*LISTED, OWN)):
         angle = each.unit is Unit.ANGLE and not each.deviates
         decimals = lengths if _is_length(each) else _ANGLE_DECIMALS if angle else None
-        noise = noise_of(each, frame) if key in frame else 0.0
+        noise = noise_of(each, rows)
         unit = each.unit.of(length_unit)
         figures.append(Figure(key, NAMES[key], unit, each.about, decimals, noise))
     by_key = {figure.key: figure for figure in figures}
     return [
-        by_key.get(str(key)) or Figure(str(key), NAMES[str(key)])
-        for key in frame
-        if not frame[key].isna().all()
+        by_key.get(key) or Figure(key, NAMES[key]) for key in rows[0] if any(known(row[key]) for row in rows)
     ]
 
 
-def length_decimals(frame: pd.DataFrame) -> int | None:
+def length_decimals(rows: Sequence[Row]) -> int | None:
     """Decimals of all lengths of some designs; None where they are very long or short."""
-    columns = [each.column for each in LISTED if _is_length(each) and each.column in frame]
-    values = frame[columns].to_numpy(dtype=float)
-    known = np.abs(values[np.isfinite(values)])
-    if not known.size or not known.max():
+    values = np.concatenate([_known_of(rows, each.column) for each in LISTED if _is_length(each)])
+    if not np.any(values[np.isfinite(values)]):
         return None
-    decimals = _decimals(pd.Series(known), _LENGTH_DIGITS, 0.0)
+    decimals = _decimals(values, _LENGTH_DIGITS, 0.0)
     return decimals if decimals >= 0 else None
 
 
-def noise_of(quantity: Quantity, frame: pd.DataFrame) -> float:
+def noise_of(quantity: Quantity, rows: Sequence[Row]) -> float:
     """Size up to which an error of some designs is rounding, as files have it; 0 of what is no error."""
     if not quantity.deviates:
         return 0.0
     if quantity.unit is Unit.ANGLE:
         return NOISE * Unit.ANGLE.shown
-    return float((NOISE * float(frame["size"].max())) ** quantity.unit.lengths)
+    return float((NOISE * _longest(rows)) ** quantity.unit.lengths)
 
 
 def _is_length(quantity: Quantity) -> bool:
@@ -171,10 +167,19 @@ def _is_length(quantity: Quantity) -> bool:
     return quantity.unit is Unit.LENGTH and not quantity.deviates
 
 
-def _decimals(values: pd.Series[Any], digits: int, noise: float) -> int:
+def _known_of(rows: Sequence[Row], column: str) -> FloatArray:
+    return np.array([float(row[column]) for row in rows if known(row.get(column))])
+
+
+def _longest(rows: Sequence[Row]) -> float:
+    """The greatest size of some designs."""
+    return float(_known_of(rows, "size").max(initial=0.0))
+
+
+def _decimals(values: FloatArray, digits: int, noise: float) -> int:
     """How many decimals show so many digits of the largest of some values; -1 where that is no help."""
-    known = values[np.isfinite(values)].abs()
-    if not (known > noise).any():
+    finite = np.abs(values[np.isfinite(values)])
+    if not (finite > noise).any():
         return 0
-    power = math.floor(math.log10(known.max()))
+    power = math.floor(math.log10(finite.max()))
     return max(digits - 1 - power, 0) if -3 <= power <= 6 else -1

@@ -7,7 +7,6 @@ from dataclasses import asdict
 from typing import Any, NamedTuple
 
 import numpy as np
-import pandas as pd
 
 from grashof.analysis import (
     driver_ranges,
@@ -27,6 +26,7 @@ from grashof.problems.values.dynamics_spec import metres
 from grashof.problems.values.mechanisms import KINDS
 from grashof.study.sweep import INSET, dead_positions_unwarned, driver_angles
 from grashof.synth import Candidate
+from grashof.synth.designs.table import Row
 
 STEPS = 180
 
@@ -108,7 +108,7 @@ def linkage_data(linkage: Linkage) -> dict[str, Any]:
     return {"mechanism": linkage.MECHANISM, **linkage.stated}
 
 
-def designs_of(problem: Problem, designs: Sequence[Candidate], frame: pd.DataFrame) -> list[dict[str, Any]]:
+def designs_of(problem: Problem, designs: Sequence[Candidate], rows: Sequence[Row]) -> list[dict[str, Any]]:
     """Designs as JSON, their values in full precision.
 
     Parameters
@@ -116,15 +116,14 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], frame: pd.DataFra
     problem : Problem
     designs : sequence of Candidate
         Linkages that can be assembled.
-    frame : DataFrame
-        Their rows, as `to_frame` makes them.
+    rows : sequence of dict
+        Theirs, as `rows_of` makes them.
     """
     linkages = [each.linkage.changed(assembly=each.verdict.assembly[0]) for each in designs]
     travels = [
         driver_travel(linkage, each.verdict.theta2) for linkage, each in zip(linkages, designs, strict=True)
     ]
     torques = _torques(problem, designs, linkages, travels)
-    rows = frame.to_dict("records")
     return [
         {
             "id": design.id,
@@ -137,7 +136,7 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], frame: pd.DataFra
             "torque": torque,
             **_cylinder(design),
             **_function(problem, linkage, design),
-            "figures": {str(key): _plain(value) for key, value in figures.items()},
+            "figures": {key: _plain(value) for key, value in figures.items()},
         }
         for design, linkage, travel, torque, figures in zip(
             designs, linkages, travels, torques, rows, strict=True

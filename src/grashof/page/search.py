@@ -8,7 +8,6 @@ from dataclasses import asdict
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from grashof.page.columns import Column, columns_of, figures_of
 from grashof.page.designs import designs_of, driver_travel, legend
@@ -17,6 +16,7 @@ from grashof.page.scene import scene_of
 from grashof.problems import Problem
 from grashof.problems.values.checks import counted
 from grashof.synth import Candidate, Result
+from grashof.synth.designs.table import Row
 from grashof.synth.results.explain import note_parts
 from grashof.synth.search.tally import DISTINCT, Tally
 from grashof.wording.problem import goals, summary
@@ -27,14 +27,14 @@ _SCRIPTS = (
 )  # fmt: skip
 
 
-def search_page(result: Result, frame: pd.DataFrame, record: Mapping[str, Any], text: str = "") -> str:
+def search_page(result: Result, rows: Sequence[Row], record: Mapping[str, Any], text: str = "") -> str:
     """The page of a search as HTML; of its closest misses, called so, where it found no design.
 
     Parameters
     ----------
     result : Result
-    frame : DataFrame
-        Rows of its candidates, or of its nearest with the column "misses" where it has none.
+    rows : sequence of dict
+        Of its candidates, or of its nearest with "misses" where it has none, as `rows_of` makes them.
     record : mapping
         "versions" and "settings" of the run.
     text : str
@@ -49,9 +49,9 @@ def search_page(result: Result, frame: pd.DataFrame, record: Mapping[str, Any], 
     listing = result.candidates or result.nearest
     moving = [not np.isnan(driver_travel(each.linkage, each.verdict.theta2).low) for each in listing]
     designs = [each for each, moves in zip(listing, moving, strict=True) if moves]
-    frame = frame[moving] if designs else frame.iloc[:0]
+    rows = [row for row, moves in zip(rows, moving, strict=True) if moves]
     note, ways = note_parts(result.note)
-    data = search_data(problem, designs, frame, found=bool(result.candidates))
+    data = search_data(problem, designs, rows, found=bool(result.candidates))
     columns = [Column(**each) for each in data["columns"]]
     return render(
         "search.html",
@@ -66,10 +66,10 @@ def search_page(result: Result, frame: pd.DataFrame, record: Mapping[str, Any], 
         ways=ways,
         goals=goals(problem).replace("mu", "μ"),
         columns=columns,
-        rows=(rows := _rows(frame, columns)),
-        alike=any(row["alike"] for row in rows),
-        best_at=any(row["best_at"] for row in rows),
-        classes=sorted(set(frame["grashof_class"])) if designs else [],
+        rows=(told := _rows(rows, columns)),
+        alike=any(row["alike"] for row in told),
+        best_at=any(row["best_at"] for row in told),
+        classes=sorted({row["grashof_class"] for row in rows}),
         mechanisms=(kinds := list(dict.fromkeys(each.linkage.MECHANISM for each in designs))),
         links=legend(kinds or problem.mechanism, (each.verdict.cylinder for each in designs)),
         counts=_counts(result.tally),
@@ -81,7 +81,7 @@ def search_page(result: Result, frame: pd.DataFrame, record: Mapping[str, Any], 
 
 
 def search_data(
-    problem: Problem, designs: Sequence[Candidate], frame: pd.DataFrame, *, found: bool
+    problem: Problem, designs: Sequence[Candidate], rows: Sequence[Row], *, found: bool
 ) -> dict[str, Any]:
     """What the scripts have of a search: the scene, its designs, and what is told of them.
 
@@ -90,20 +90,20 @@ def search_data(
     problem : Problem
     designs : sequence of Candidate
         Linkages that can be assembled.
-    frame : DataFrame
-        Their rows, as `to_frame` makes them.
+    rows : sequence of dict
+        Theirs, as `rows_of` makes them.
     found : bool
         They are designs, not closest misses.
     """
-    axes = columns_of(problem, frame) if designs else []
+    axes = columns_of(problem, rows) if designs else []
     return {
         "name": problem.name,
         "found": found,
         "scene": scene_of(problem),
         "columns": [asdict(each) for each in axes if each.listed],
         "axes": [asdict(each) for each in axes],
-        "values": [asdict(each) for each in figures_of(frame, problem.length_unit)] if designs else [],
-        "designs": designs_of(problem, designs, frame),
+        "values": [asdict(each) for each in figures_of(rows, problem.length_unit)] if designs else [],
+        "designs": designs_of(problem, designs, rows),
         "torqueUnit": "N m",
     }
 
@@ -122,23 +122,23 @@ def headline(result: Result) -> str:
     return f"{counted(verified, 'distinct verified design')}{shown}{cut}."
 
 
-def _rows(frame: pd.DataFrame, columns: list[Column]) -> list[dict[str, Any]]:
+def _rows(rows: Sequence[Row], columns: list[Column]) -> list[dict[str, Any]]:
     """The table as text, a row for each design; `alike` are the others of its family."""
-    families = Counter(frame["family"])
+    families = Counter(row["family"] for row in rows)
     return [
         {
             "rank": row["rank"],
             "id": row["id"],
             "alike": families[row["family"]] - 1,
             "first": row["id"] == row["family"],
-            "best_at": "" if pd.isna(row["best_at"]) else row["best_at"],
+            "best_at": row["best_at"] or "",
             "pareto": bool(row["pareto"]),
             "mechanism": row["mechanism"],
             "kind": row["grashof_class"],
             "misses": row.get("misses", ""),
             "cells": [column.text(row[column.key]) for column in columns],
         }
-        for row in frame.to_dict("records")
+        for row in rows
     ]
 
 

@@ -87,7 +87,7 @@ def _told(result: Result, most: int) -> dict[str, Any]:
     """What the table, the plot and the page need of a result."""
     from grashof.page.designs import designs_of
     from grashof.synth.designs.ranking import pareto_optimal
-    from grashof.synth.designs.table import to_frame
+    from grashof.synth.designs.table import rows_of
 
     status = CUT if not result.complete else OK if result.candidates else NONE
     told = {**_empty(status), "found": len(result), "note": result.note}
@@ -96,12 +96,16 @@ def _told(result: Result, most: int) -> dict[str, Any]:
         return told
     problem = result.problem
     decides = decides_of(problem)
-    frame = to_frame(problem, listed).assign(pareto=pareto_optimal(problem, result.candidates)[:most])
-    rows = [{str(key): _plain(value) for key, value in row.items()} for row in frame.to_dict("records")]
+    fronts = pareto_optimal(problem, result.candidates)
+    known = [
+        {**row, "pareto": bool(front)}
+        for row, front in zip(rows_of(problem, listed), fronts[: len(listed)], strict=True)
+    ]
+    rows = [{key: _plain(value) for key, value in row.items()} for row in known]
     if decides["column"] == OBJECTIVE:
         for row, candidate in zip(rows, listed, strict=True):
             row[OBJECTIVE] = _plain(candidate.objective(problem))
-    drawing = designs_of(problem, listed[:1], frame.iloc[:1])[0]
+    drawing = designs_of(problem, listed[:1], known[:1])[0]
     return {**told, "decides": decides, "designs": rows, "drawing": {key: drawing[key] for key in _DRAWN}}
 
 

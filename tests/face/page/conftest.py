@@ -13,10 +13,12 @@ import pytest
 from playwright.sync_api import Browser, Page
 
 from grashof import load, synthesize
-from grashof.page import analysis_page, search_page
+from grashof.page.analysis import analysis_page
+from grashof.page.search import search_page
 from grashof.problems import FourBar, LinkageSpec, load_linkage_spec
 from grashof.survey import Fact, LinkageReport, Plot, Section, report_on
 from grashof.synth import Result
+from grashof.synth.designs.table import rows_of
 
 Open = Callable[..., Page]
 RECORD: dict[str, Any] = {"versions": {"grashof": "0"}, "settings": {"seed": 0}}
@@ -127,15 +129,16 @@ def folder(
     """The pages of searches, with families and without, in vain, and of analyses of several linkages."""
     path = tmp_path_factory.mktemp("pages")
     named = replace(few, problem=replace(few.problem, title=TITLE))
-    frame = few.to_frame()
+    rows = rows_of(few.problem, few.candidates)
+    missing = [rows[0] | {"misses": MISSES}]
     missed = replace(few, candidates=(), nearest=few.candidates[:1], note=f"no design: {MISSES}")
     pages = {
-        "search": search_page(named, frame, RECORD, "kind"),
-        "alike": search_page(alike, alike.to_frame(), RECORD),
-        "inexact": search_page(inexact, inexact.to_frame(), RECORD),
-        "missed": search_page(missed, frame.iloc[:1].assign(misses=MISSES), RECORD),
-        "relaxed": search_page(replace(missed, note=WAYS), frame.iloc[:1].assign(misses=MISSES), RECORD),
-        "nothing": search_page(replace(missed, nearest=()), frame.iloc[:0], RECORD),
+        "search": search_page(named, rows, RECORD, "kind"),
+        "alike": search_page(alike, rows_of(alike.problem, alike.candidates), RECORD),
+        "inexact": search_page(inexact, rows_of(inexact.problem, inexact.candidates), RECORD),
+        "missed": search_page(missed, missing, RECORD),
+        "relaxed": search_page(replace(missed, note=WAYS), missing, RECORD),
+        "nothing": search_page(replace(missed, nearest=()), [], RECORD),
         "rocker": analysis_page(report_on(LinkageSpec(ROCKER, "rocker", title=TITLE)), RECORD),
         "swift": analysis_page(report_on(LinkageSpec(NEARLY_DEAD, "swift")), RECORD),
         "sections": analysis_page(told, RECORD),

@@ -18,12 +18,14 @@ import grashof.figures.parts
 from grashof.analysis import Loads, driver_ranges, solve_kinematics, solve_position, virtual_work_torque
 from grashof.analysis.forces.stated import stated_masses
 from grashof.output.run_files import write_run
-from grashof.page import analysis_page, search_page
+from grashof.page.analysis import analysis_page
 from grashof.page.columns import Column
 from grashof.page.designs import Travel, driver_travel
+from grashof.page.search import search_page
 from grashof.problems import FourBar, LinkageSpec, PathTask, Problem, load, load_linkage_spec
 from grashof.survey import report_on
 from grashof.synth import Result
+from grashof.synth.designs.table import rows_of
 from grashof.synth.search.tally import DISTINCT, Tally
 
 HOSTILE = "</script><script>alert(1)</script><!-- & \u2028 ' \" {{ 7*7 }}"
@@ -58,7 +60,7 @@ class Parts(HTMLParser):
 
 
 def page_of(result: Result, text: str = "") -> str:
-    return search_page(result, result.to_frame(), RECORD, text)
+    return search_page(result, rows_of(result.problem, result.candidates), RECORD, text)
 
 
 @pytest.fixture(scope="module")
@@ -168,8 +170,8 @@ def test_travel_holds_the_targets() -> None:
 
 def test_an_empty_list_shows_the_closest_miss_as_one(few: Result) -> None:
     missed = replace(few, candidates=(), nearest=few.candidates[:1], note="nothing fits")
-    frame = few.to_frame().iloc[:1].assign(misses="r3: r3 is 9, it must be from 1 to 8")
-    parts = Parts(search_page(missed, frame, RECORD))
+    row = rows_of(few.problem, few.candidates)[0] | {"misses": "r3: r3 is 9, it must be from 1 to 8"}
+    parts = Parts(search_page(missed, [row], RECORD))
     assert "No design found." in parts.text
     assert "Nothing fits." in parts.text
     assert "Not a design: it misses" in parts.text

@@ -17,7 +17,8 @@ from grashof.analysis.cylinder.lengths import cylinder_state
 from grashof.analysis.four_bar.position import places
 from grashof.analysis.four_bar.slide import slide_travel
 from grashof.analysis.four_bar.transmission import quality
-from grashof.page import analysis_page, designs
+from grashof.page import designs
+from grashof.page.analysis import analysis_page
 from grashof.page.designs import linkage_data
 from grashof.problems import Cylinder, FourBar, InvertedSliderCrank, Linkage, LinkageSpec, SliderCrank
 from grashof.problems.values.arrays import FloatArray

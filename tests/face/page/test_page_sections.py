@@ -15,7 +15,7 @@ import pytest
 
 import grashof.page
 from grashof.figures.section_plots import PENS
-from grashof.page import analysis_page
+from grashof.page.analysis import analysis_page
 from grashof.page.plot_data import Columns
 from grashof.problems import load_linkage_spec
 from grashof.survey import LinkageReport, Plot, Section, report_on
