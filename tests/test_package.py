@@ -134,6 +134,24 @@ def test_a_worker_process_loads_only_what_it_solves_with() -> None:
     assert not loaded & {"matplotlib", "pandas", "pydantic", "rich", "shapely"}
 
 
+def test_a_run_loads_neither_pandas_nor_trees(tmp_path: Path) -> None:
+    arguments = [
+        "grashof",
+        "solve",
+        "luggage",
+        "--starts",
+        "4",
+        "--drawings",
+        "0",
+        "--out",
+        str(tmp_path / "run"),
+    ]
+    run = "from contextlib import suppress\nfrom grashof.cli import main\nwith suppress(SystemExit):\n    main()"
+    loaded = modules_after(f"import sys\nsys.argv = {arguments}\n{run}")
+    assert (tmp_path / "run" / "candidates.csv").stat().st_size > 1000
+    assert not loaded & {"matplotlib", "pandas", "scipy.linalg", "scipy.optimize", "scipy.spatial"}
+
+
 def test_the_public_verbs() -> None:
     import grashof
 

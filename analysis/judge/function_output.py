@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,6 +19,8 @@ from grashof.problems.values.arrays import TURN, FloatArray
 
 _STARTS = 720  # driver angles at the first pair that are tried, over what the driver can reach
 _VALLEYS = 5
+_NEAR = 17  # places about the lowest ones of valleys, ever closer
+_CLOSE = 1e-10  # rad, between starts: no closer
 _SAMPLES = 97  # of the range, where the greatest error decides
 _DENSE = 721
 _GAUSS = 12  # points between two samples of the quadrature
@@ -148,8 +151,7 @@ def begins(
         found += search.valleys(direction)
     found = sorted(one for one in found if np.isfinite(one[0]))[: 1 if theta2_start is not None else _VALLEYS]
     if theta2_start is None:
-        step = TURN / _STARTS
-        found = [search.refined(direction, start, step) for _, direction, start in found]
+        found = search.bottoms(found)
     if not found:
         return None
     least = min(value for value, _, _ in found)
@@ -219,21 +221,27 @@ class _Search:
         # A range that is as long as the linkage's own leaves one place; rounding must not lose it.
         return [(min(a, b), max(a, b)) for a, b in ends if b - a >= -1e-9]
 
-    def refined(self, direction: int, start: float, step: float) -> tuple[float, int, float]:
-        """The bottom of the valley about a start."""
-        from scipy.optimize import minimize_scalar  # here: few problems need it
+    def bottoms(self, valleys: Sequence[tuple[float, int, float]]) -> list[tuple[float, int, float]]:
+        """The same, with their bottoms in place of the starts within them."""
+        found = []
+        for direction in dict.fromkeys(direction for _, direction, _ in valleys):
+            starts = np.array([start for _, way, start in valleys if way == direction])
+            for at in self._narrowed(starts, direction).tolist():
+                bottom = self._newton(at, direction) if self.squares else at
+                found.append((self.value(bottom, direction), direction, bottom))
+        return found
 
-        most = 1e3 * self.task.output_unit
-        found = minimize_scalar(
-            lambda at: min(self.value(at, direction), most),
-            bounds=(start - step, start + step),
-            method="bounded",
-            options={"xatol": 1e-10},
-        )
-        at = float(found.x) if found.fun <= self.value(start, direction) else start
-        if self.squares:
-            at = self._newton(at, direction)
-        return self.value(at, direction), direction, at
+    def _narrowed(self, starts: FloatArray, direction: int) -> FloatArray:
+        """The lowest places within a step of some starts, which need not be smooth there, shape (S,)."""
+        at, span = starts, TURN / _STARTS
+        share = np.linspace(-1, 1, _NEAR)
+        while span > _CLOSE:
+            near = at[:, None] + span * share  # its middle is the lowest so far
+            values = self.values(near.ravel(), direction).reshape(near.shape)
+            lowest = np.where(values.min(axis=1) < values[:, _NEAR // 2], values.argmin(axis=1), _NEAR // 2)
+            at = np.take_along_axis(near, lowest[:, None], axis=1)[:, 0]
+            span *= 2 / (_NEAR - 1)
+        return at
 
     def _newton(self, at: float, direction: int) -> float:
         """Gauss-Newton: squares alone give half of the digits."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from time import perf_counter
 
@@ -96,22 +96,24 @@ def function_list(
     begun, aims = perf_counter(), FunctionAims.of(problem)
     judged = _Judged(problem, tuple(constraints), objective)
     rng = np.random.default_rng(np.random.SeedSequence(search.seed))
-    seconds = {"screening": 0.0, "solving": 0.0}
+    seconds = {"solving": 0.0, "judging": 0.0}
     least, ended = np.nan, ""
     with stopping(asked):
         if not aims.obstacle:
+            found: Iterable[FoundFunction]
             if aims.exact:
                 found = exact_functions(aims, rng, max(search.enough, 8) + 10, search.effort)
             else:
-                found = list(optimal_functions(aims, rng, search.effort, _levels(problem)))
-            seconds["screening"] = perf_counter() - begun
-            for number, one in enumerate(found):
+                found = optimal_functions(aims, rng, search.effort, _levels(problem))
+            for one in found:
+                since = perf_counter()
                 judged.take(aims, one)
-                if progress is not None and number % 8 == 0:
-                    progress(_progress(judged, search, len(found)))
+                if progress is not None:
+                    progress(_progress(judged, search))
+                seconds["judging"] += perf_counter() - since
                 if overdue():
                     break
-        seconds["solving"] = perf_counter() - begun - seconds["screening"]
+        seconds["solving"] = perf_counter() - begun - seconds["judging"]
         complete = not asked_to_stop()
     if not aims.exact and judged.good:
         least = min(one.error(problem) for one in judged.good)
@@ -121,7 +123,7 @@ def function_list(
         designs = designs[: search.enough]
         ended = "" if len(designs) >= search.enough else _exhausted(aims)
     if progress is not None:
-        progress(_progress(judged, search, len(judged.good) + len(judged.bad)))
+        progress(_progress(judged, search))
     judged.tally.totals[DISTINCT] = len(designs)
     note, nearest = ("", ()) if designs else _why_none(aims, judged, complete)
     _LOG.info(
@@ -169,9 +171,9 @@ def _named(one: Candidate, problem: Problem, least: float) -> Candidate:
     return replace(one, best_at=LOCAL)
 
 
-def _progress(judged: _Judged, search: Search, total: int) -> Progress:
+def _progress(judged: _Judged, search: Search) -> Progress:
     count = len(judged.good) + len(judged.bad)
-    return Progress(count, max(total, count), search.enough, tuple(judged.good))
+    return Progress(count, None, search.enough, tuple(judged.good))
 
 
 def _exhausted(aims: FunctionAims) -> str:

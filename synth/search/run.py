@@ -29,8 +29,10 @@ class Progress:
 
     Parameters
     ----------
-    solved, starts : int
-        Solves done, and most that there can be.
+    solved : int
+        Solves done.
+    starts : int, optional
+        Most that there can be, if that is known.
     enough : int
         How many distinct verified designs are enough.
     designs : tuple of Candidate
@@ -40,7 +42,7 @@ class Progress:
     """
 
     solved: int
-    starts: int
+    starts: int | None
     enough: int
     designs: tuple[Candidate, ...] = field(default=(), repr=False)
 

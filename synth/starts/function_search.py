@@ -23,6 +23,7 @@ PULLS = (0.1, 1.0)  # rad, or shares of the travel: what a missed limit counts a
 NUDGE = 1e-4  # rad, of transmission angles
 BASINS, TRIED, SHORT = 9, 30, 5  # starts that are refined to the end, and those tried in few steps
 WORSE = 10.0  # times the least error: a sense of output and driver in which no choice is offered
+FIRST = 3  # starts after which a design is told of
 HOPELESS = 50.0  # times the least error: no further
 LEAST, LOCAL = "least error", "least error nearby"
 CELL, NEAR = 0.04, 0.02  # of optima, and of exact designs: closer ones are alike
@@ -323,19 +324,38 @@ class _Optima:
         return Aim(wanted, self.limits.of, greatest=greatest, held=self.first is not None, band=most)
 
     def optima(self, starts: Generators, *, few: bool) -> Iterator[Optimum]:
-        """The best distinct optima from starts that come best first; of `few` only the most promising."""
+        """The best distinct optima from starts that come best first; of `few` only the most promising.
+
+        Where all are asked for, the best of the first starts comes before the others are tried.
+        """
         aim, share = self.aim(), 3 if few else 1
-        tried = [refined(aim, starts[k : k + 1], SHORT) for k in range(min(TRIED // share, len(starts)))]
-        worth = np.array([one.error + 10 * one.missed for one in tried])
+        tried: list[Optimum] = []
+        shown = None
+        for k in range(min(TRIED // share, len(starts))):
+            tried.append(refined(aim, starts[k : k + 1], SHORT))
+            if len(tried) == FIRST and not few:
+                begun = min(tried, key=_worth)
+                shown = begun, self._finished(aim, begun)
+                if shown[1].missed <= ROUNDING:
+                    yield shown[1]
+        worth = np.array([_worth(one) for one in tried])
         hopeful = [tried[k] for k in _apart(tried, worth) if worth[k] <= HOPELESS * worth.min() + MET]
-        ends = [refined(aim, one.made) for one in hopeful[: BASINS // share]]
-        if aim.greatest:
-            dense = self.aims.dense(self.sense)
-            ends = [refined(with_extremes(aim, one.made, *dense), one.made) for one in ends]
+        ends = [
+            shown[1] if shown is not None and one is shown[0] else self._finished(aim, one)
+            for one in hopeful[: BASINS // share]
+        ]
         good = [one for one in ends if one.missed <= ROUNDING]
         for k in _apart(good, np.array([one.error for one in good])):
-            yield good[k]
+            if shown is None or good[k] is not shown[1]:
+                yield good[k]
             yield from self._farther_inside(good[k])
+
+    def _finished(self, aim: Aim, begun: Optimum) -> Optimum:
+        """What a few steps began to its end, with all extremes of its error."""
+        end = refined(aim, begun.made)
+        if not aim.greatest:
+            return end
+        return refined(with_extremes(aim, end.made, *self.aims.dense(self.sense)), end.made)
 
     def _farther_inside(self, best: Optimum) -> Iterator[Optimum]:
         """The same with a little more transmission, where its limit is met at one end of the range.
@@ -352,6 +372,11 @@ class _Optima:
         found = refined(aim, made)
         if found.missed <= ROUNDING:
             yield found
+
+
+def _worth(one: Optimum) -> float:
+    """Its error and what it misses, less is better."""
+    return one.error + 10 * one.missed
 
 
 def _apart(some: list[Optimum], worth: FloatArray) -> list[int]:

@@ -9,11 +9,12 @@ from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 import pytest
 
 from grashof.analysis import verify
-from grashof.output.run_files import write_run
+from grashof.output.run_files import write_csv, write_rows, write_run
 from grashof.problems import (
     FourBar,
     Requirements,
@@ -21,9 +22,27 @@ from grashof.problems import (
     problem_text,
 )
 from grashof.synth import Result
+from grashof.synth.designs.table import rows_of
 
 Grashof = Callable[..., Any]
 QUICK = ("--top", "6", "--starts", "16", "--drawings", "2")
+
+
+def test_lists_are_written_as_pandas_writes_them(few: Result, alike: Result, tmp_path: Path) -> None:
+    here, there = tmp_path / "here.csv", tmp_path / "there.csv"
+    for result in (few, alike):
+        write_rows(here, rows_of(result.problem, result.candidates))
+        write_csv(there, result.to_frame())
+        assert here.read_bytes() == there.read_bytes()
+    texts = ["=1+1", 'a "b", c', "two\nlines", "-x", "ü", "", "plain"]
+    numbers = [1.0, 0.1 + 0.2, 1e-300, -1e22, np.inf, np.nan, np.float64(2.5)]
+    rows = [
+        {"text": text, "@key": number, "known": number > 1, "none": None, "count": number and 3}
+        for text, number in zip(texts, numbers, strict=True)
+    ]
+    write_rows(here, rows)
+    write_csv(there, pd.DataFrame(rows))
+    assert here.read_bytes() == there.read_bytes()
 
 
 def test_solve_writes_a_verified_list(grashof: Grashof, tmp_path: Path) -> None:

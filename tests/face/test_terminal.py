@@ -196,6 +196,12 @@ def test_the_summary_tells_the_effort() -> None:
     assert summary(replace(problem, search=Search(effort=2.5)))[-1].endswith(", effort 2.5")
 
 
+def test_progress_of_a_search_without_a_known_end(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
+    with search_progress("mine", wanted=False) as show:
+        show(Progress(solved=3, starts=None, enough=50, designs=few.candidates[:2]))
+    assert capsys.readouterr().err == "mine: 2 designs verified\n"
+
+
 def test_progress_lines(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
     with search_progress("mine") as show:
         show(Progress(solved=16, starts=78, enough=50, designs=few.candidates[:1] * 9))

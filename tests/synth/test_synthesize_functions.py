@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from grashof import load
+from grashof.analysis import verify
 from grashof.analysis.judge.planted import planted_function
 from grashof.problems import Box, FourBar, FunctionTask, Objective, Problem, Requirements, SliderCrank
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth import synthesize
+from grashof.synth.search.run import Progress
 
 DEG = float(np.degrees(1.0))
 # Greatest structural error over the range, deg; link ratio up to 10, better of both senses. Ipopt from 12
@@ -175,6 +177,19 @@ def test_error_factor_lets_the_objective_decide() -> None:
 def test_the_same_seed_gives_the_same_list() -> None:
     lists = [synthesize(load("function-five-pairs")).to_frame() for _ in range(2)]
     assert lists[0].equals(lists[1])
+
+
+def test_designs_are_told_of_as_they_are_found() -> None:
+    told: list[Progress] = []
+    problem = load("function-sin")
+    found = synthesize(problem, progress=told.append)
+    counts = [(step.solved, step.verified) for step in told]
+    assert counts == sorted(counts)
+    assert counts[0] == (1, 1)
+    assert len(counts) == counts[-1][0] + 1 > 8
+    first = told[0].designs[0]
+    assert verify(first.linkage, problem.task, problem.requirements).ok
+    assert first.error(problem) < 1.01 * found.best.error(problem)
 
 
 def test_own_constraints_and_objective_are_kept() -> None:

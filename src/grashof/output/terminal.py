@@ -73,7 +73,7 @@ def search_progress(
 
         def show(step: Progress) -> None:
             total = step.enough if wanted else step.starts
-            done = min(step.verified, total) if wanted else step.solved
+            done = min(step.verified, step.enough) if wanted else step.solved
             bar.update(task, completed=done, total=total, step=_step(step, wanted))
 
         yield show
@@ -81,7 +81,7 @@ def search_progress(
 
 def _step(step: Progress, wanted: bool) -> str:
     verified = f"{counted(step.verified, 'design')} verified{f' ({step.enough} wanted)' if wanted else ''}"
-    return f"{verified}, {step.solved} of {step.starts} starts solved"
+    return verified if step.starts is None else f"{verified}, {step.solved} of {step.starts} starts solved"
 
 
 def print_table(result: Result, verified: int | None = None) -> None:

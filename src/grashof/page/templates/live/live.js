@@ -127,7 +127,10 @@ class Live {
 
   received(line, version) {
     if (line.kind === "error") this.refused(line.lines);
-    else if (line.kind === "progress") this.tell(`searching: ${line.solved} of ${line.starts} starts, ${line.verified} designs`);
+    else if (line.kind === "progress") {
+      const solved = line.starts === null ? "" : `${line.solved} of ${line.starts} starts, `;
+      this.tell(`searching: ${solved}${line.verified} designs`);
+    }
     else if (line.kind === "done") this.took = line.seconds;
     else if (line.kind === "list") this.list(line, version);
   }
