@@ -146,7 +146,7 @@ def test_a_run_loads_neither_pandas_nor_trees(tmp_path: Path) -> None:
         "--out",
         str(tmp_path / "run"),
     ]
-    run = "from contextlib import suppress\nfrom grashof.cli import main\nwith suppress(SystemExit):\n    main()"
+    run = "import contextlib, grashof.cli\nwith contextlib.suppress(SystemExit):\n    grashof.cli.main()"
     loaded = modules_after(f"import sys\nsys.argv = {arguments}\n{run}")
     assert (tmp_path / "run" / "candidates.csv").stat().st_size > 1000
     assert not loaded & {"matplotlib", "pandas", "scipy.linalg", "scipy.optimize", "scipy.spatial"}

@@ -102,7 +102,8 @@ def fit_title(axes: Axes, text: str) -> None:
     room = (2 * min(middle, 1 - middle) - 0.02) * figure.bbox.width
     with missing_glyphs_unwarned():
         lines = [_wrapped(axes, part, room) for part in text.split("\n")]
-        taken = axes.set_title("\n".join(lines), parse_math=False).get_window_extent()
+        # With its place given matplotlib does not look for what it might strike, which takes long.
+        taken = axes.set_title("\n".join(lines), y=1.0, parse_math=False).get_window_extent()
     if figure.get_layout_engine() is None:
         top = 1 - (taken.height + 0.17 * figure.dpi) / figure.bbox.height
         axes.set_position((place.x0, place.y0, place.width, min(place.height, top - place.y0)))
