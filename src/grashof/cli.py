@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import gc
 import os
 import sys
@@ -496,6 +497,7 @@ def main() -> None:
     # Drawings go to files: a backend meant for windows, or a misspelt one, must not stand in the way.
     os.environ["MPLBACKEND"] = "agg"
     gc.set_threshold(50_000)  # what is loaded stays: to look through it often takes time
+    atexit.register(gc.freeze)  # and at the end a seventh of a second
     app(prog_name="grashof")
 
 
