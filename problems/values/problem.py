@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -305,20 +305,8 @@ class Problem(ReadOnly):
 
     def states(self, needs: Needs) -> bool:
         """Whether it states what a quantity needs to have a value."""
-        stated = {
-            Needs.DYNAMICS: self.dynamics is not None,
-            Needs.MANUFACTURING: self.manufacturing is not None,
-            Needs.CLOSED: self.task.closed,
-            Needs.LEAST_SQUARES: not self.requirements.is_exact(self.task),
-            Needs.ANGLES: bool(self.task.has_angle.any()),
-            Needs.CYLINDER: self.driver is not None,
-            Needs.LOADED_CYLINDER: self.driver is not None and self.dynamics is not None,
-        }
-        if isinstance(self.task, FunctionTask):
-            stated |= {Needs.ROTATION: not self.task.travels, Needs.TRAVEL: self.task.travels}
-        else:
-            stated |= dict.fromkeys((Needs.OUTPUTS, Needs.ROTATION, Needs.TRAVEL), False)
-        return stated.get(needs, True)
+        stated = _STATED.get(needs)
+        return stated is None or stated(self)
 
     @property
     def _unloaded(self) -> str:
@@ -461,3 +449,18 @@ class Problem(ReadOnly):
         if spec.friction is not None:
             torque += max(spec.friction.moment) + max(spec.friction.viscous) * spec.omega2
         return torque or 1.0
+
+
+# Whether a problem states what quantities need to have a value; any problem what is not here.
+_STATED: dict[Needs, Callable[[Problem], bool]] = {
+    Needs.DYNAMICS: lambda problem: problem.dynamics is not None,
+    Needs.MANUFACTURING: lambda problem: problem.manufacturing is not None,
+    Needs.CLOSED: lambda problem: problem.task.closed,
+    Needs.LEAST_SQUARES: lambda problem: not problem.requirements.is_exact(problem.task),
+    Needs.ANGLES: lambda problem: bool(problem.task.has_angle.any()),
+    Needs.CYLINDER: lambda problem: problem.driver is not None,
+    Needs.LOADED_CYLINDER: lambda problem: problem.driver is not None and problem.dynamics is not None,
+    Needs.OUTPUTS: lambda problem: isinstance(problem.task, FunctionTask),
+    Needs.ROTATION: lambda problem: isinstance(problem.task, FunctionTask) and not problem.task.travels,
+    Needs.TRAVEL: lambda problem: isinstance(problem.task, FunctionTask) and problem.task.travels,
+}
