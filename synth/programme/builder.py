@@ -152,10 +152,11 @@ class Programme:
         """What the solver takes for a start."""
         given = [value(scaled, start) for value in self.parameters]
         low, high = self._unknown_limits(scaled, start)
-        rows = [(count, limits(scaled, start)) for count, limits in self.rows]
-        lbg, ubg = (
-            np.concatenate([np.broadcast_to(sides[side], count) for count, sides in rows]) for side in (0, 1)
-        )
+        lbg, ubg = np.empty((2, sum(count for count, _ in self.rows)))
+        end = 0
+        for count, limits in self.rows:
+            begin, end = end, end + count
+            lbg[begin:end], ubg[begin:end] = limits(scaled, start)
         guess = np.concatenate([np.ravel(each.guess(scaled, start)) for each in self.unknowns])
         return {
             "x0": np.clip(guess, low, np.maximum(low, high)),
@@ -167,11 +168,9 @@ class Programme:
         }
 
     def _unknown_limits(self, scaled: ScaledProblem, start: Start) -> tuple[FloatArray, FloatArray]:
-        sides: list[list[FloatArray]] = [[], []]
-        for each in self.unknowns:
-            for side, limit in zip(sides, each.limits(scaled, start), strict=True):
-                side.append(np.broadcast_to(limit, each.symbol.numel()))
-        low, high = (np.concatenate(side) for side in sides)
+        low, high = np.empty((2, self.solver.size1_in("x0")))
+        for each, column in zip(self.unknowns, self.places.values(), strict=True):
+            low[column], high[column] = each.limits(scaled, start)
         for place, limits in self.bounds:
             least, most = limits(scaled, start)
             low[place], high[place] = max(low[place], least), min(high[place], most)
