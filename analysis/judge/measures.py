@@ -12,7 +12,7 @@ import numpy as np
 from grashof.analysis.curves.curve_distance import curve_distances
 from grashof.analysis.cylinder.lengths import CylinderFigures
 from grashof.analysis.four_bar.position import Position, solve_position
-from grashof.analysis.four_bar.stroke import output_stroke
+from grashof.analysis.four_bar.stroke import OutputStroke, output_stroke
 from grashof.analysis.judge.driven import cylinder_force_peak, figures_of
 from grashof.analysis.judge.over_task import OverTask, over_task
 from grashof.analysis.judge.sampled_motion import motion_ends
@@ -83,6 +83,11 @@ class Values(Mapping[str, float]):
         return ends
 
     @cached_property
+    def stroke(self) -> OutputStroke:
+        """Where link 4 turns back, and how fast its strokes are."""
+        return output_stroke(self.linkage)
+
+    @cached_property
     def over_task(self) -> OverTask:
         """Figures of the motion from the first target to the last."""
         return over_task(self.linkage, self.problem, self.verdict, self._peaks)
@@ -147,16 +152,16 @@ def _output_swing(values: Values) -> float:
     """Between limit positions; over the task motion where the driver does not turn fully."""
     linkage = values.linkage
     if values.verdict.full_rotation:
-        swing = float(output_stroke(linkage).swing)
+        swing = float(values.stroke.swing)
         return TURN if np.isnan(swing) else swing
-    limits = output_stroke(linkage).theta2
+    limits = values.stroke.theta2
     theta4 = solve_position(linkage, _with(limits, values), values.verdict.assembly[0]).theta4
     return float(np.ptp(np.unwrap(theta4)))
 
 
 def _stroke(values: Values) -> float:
     """Of the slider, likewise."""
-    limits = output_stroke(values.linkage)
+    limits = values.stroke
     if values.verdict.full_rotation:
         return float(limits.chord)
     b = solve_position(values.linkage, _with(limits.theta2, values), values.verdict.assembly[0]).b
@@ -229,7 +234,7 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     "driver_sense": attrgetter("verdict.direction"),
     "output_swing": _output_swing,
     "stroke": _stroke,
-    "time_ratio": lambda values: float(output_stroke(values.linkage).time_ratio),
+    "time_ratio": lambda values: float(values.stroke.time_ratio),
     "mechanical_advantage": lambda values: _omega2(values) / values["omega4_max"],
     "mechanical_advantage_min": _signed_advantage,
     "hausdorff": lambda values: values.curve_distances[0],

@@ -92,12 +92,15 @@ def integrate(curve: Curve, edges: npt.ArrayLike, narrowest: float = 1e-14) -> P
     """
     edges = np.asarray(edges, dtype=np.float64)
     least, spent = narrowest * float(np.abs(edges[-1] - edges[0])), 0
-    rough = _Pieces.over(curve, edges[:-1], edges[1:])
+    low, high, count = edges[:-1], edges[1:], len(edges) - 1
+    parts_low, parts_high = _split(low, high)  # with the whole panels in one call of the curve
+    both = _Pieces.over(curve, np.append(low, parts_low), np.append(high, parts_high))
+    rough, ahead = both[:count], both[count:]
     done, error = rough[:0], np.zeros(rough.part.shape[:-1])
     before = np.full(rough.part.shape, np.inf)
     while rough.low.size:
-        ends = np.stack([rough.low, rough.low + _SPLIT * (rough.high - rough.low), rough.high], axis=1)
-        parts = _Pieces.over(curve, ends[:, :2].ravel(), ends[:, 1:].ravel())
+        parts = ahead if ahead.low.size else _Pieces.over(curve, *_split(rough.low, rough.high))
+        ahead = ahead[:0]
         spent += parts.low.size * len(NODES)
         change, narrow = np.abs(_paired(parts.part) - rough.part), rough.width <= least
         unsettled = change > _SETTLED * (done.size.sum(axis=-1) + parts.size.sum(axis=-1))[..., None]
@@ -193,6 +196,12 @@ class _Pieces:
         beside = np.maximum(np.concatenate([none, jump], -1), np.concatenate([jump, none], -1))
         hidden = beside * _GAP * self.width > _SETTLED * self.size.sum(axis=-1, keepdims=True)
         return np.asarray(hidden.reshape(-1, len(self.low)).any(axis=0) & (self.width > narrowest))
+
+
+def _split(low: FloatArray, high: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Ends of both parts of each panel."""
+    ends = np.stack([low, low + _SPLIT * (high - low), high], axis=1)
+    return ends[:, :2].ravel(), ends[:, 1:].ravel()
 
 
 def _paired(halves: FloatArray) -> FloatArray:
