@@ -18,6 +18,7 @@ from grashof.analysis.curves.interpolation import NewtonPolynomial, newton_inter
 from grashof.analysis.curves.line_and_circle import BestCircle, BestLine, best_circle, best_line, circularity
 from grashof.analysis.curves.path_fits import FittedPath, PathFit
 from grashof.analysis.curves.straightness import straightest_half_turn, straightness
+from grashof.analysis.cylinder.lengths import CylinderState, cylinder_state
 from grashof.analysis.forces.balancing import (
     ForceBalance,
     TorqueBalance,
@@ -101,6 +102,7 @@ from grashof.analysis.four_bar.transmission import (
     worst_transmission_cycle,
 )
 from grashof.analysis.judge.design import Constraint, Design
+from grashof.analysis.judge.driven import cylinder_forces
 from grashof.analysis.judge.function_output import FunctionCurves, function_curves
 from grashof.analysis.judge.made_moves import MadeMoves, made_moves, output_sensitivity
 from grashof.analysis.judge.over_task import OverTask, over_task
@@ -123,6 +125,7 @@ __all__ = [
     "Centrodes",
     "Constraint",
     "CouplerCircles",
+    "CylinderState",
     "Defect",
     "Design",
     "Deviation",
@@ -200,6 +203,8 @@ __all__ = [
     "curvature",
     "curve_distances",
     "cusps",
+    "cylinder_forces",
+    "cylinder_state",
     "dead_ends",
     "double_points",
     "driver_angle",

@@ -36,7 +36,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             begun = perf_counter()
             rows = rows_of(result.problem, result.candidates)
             figured = perf_counter()
-            path.write_text(search_page(result, rows, RECORD), encoding="utf-8")
+            path.write_text(search_page(result, RECORD, rows=rows), encoding="utf-8")
             times.append((figured - begun, perf_counter() - figured))
         size = path.stat().st_size
     figures, page = (median(each) for each in zip(*times, strict=True))

@@ -111,16 +111,33 @@ def cylinder_force_peak(linkage: Linkage, problem: Problem, verdict: Verdict) ->
     return np.nan
 
 
-def cylinder_forces(linkage: Linkage, problem: Problem, verdict: Verdict) -> FloatArray:
-    """Force of the cylinder at every target, N, shape (N,), positive where it pushes.
+def cylinder_forces(
+    linkage: Linkage, problem: Problem, verdict: Verdict, theta2: FloatArray | None = None
+) -> FloatArray:
+    """Force of the cylinder that drives a linkage.
 
-    NaN as in `cylinder_force_peak`.
+    Parameters
+    ----------
+    linkage : Linkage
+    problem : Problem
+        Its dynamics give masses, loads and the driver's speed.
+    verdict : Verdict
+        Of `verify`, with the cylinder.
+    theta2 : ndarray, shape (N,), rad, optional
+        Driver angles of the task motion; by default those at the targets.
+
+    Returns
+    -------
+    ndarray, shape (N,), N
+        Positive where it pushes; NaN without dynamics or cylinder, and where the motion is torn or a dead
+        position asks for more than any force.
+
+    Notes
+    -----
+    Of the inverse dynamics' drive torque T the force is T omega2 / (dL / dt), by virtual power (Norton,
+    *Design of Machinery*, ch. 10).
     """
-    return forces_at(linkage, problem, verdict, verdict.theta2)
-
-
-def forces_at(linkage: Linkage, problem: Problem, verdict: Verdict, theta2: FloatArray) -> FloatArray:
-    """The same at driver angles of the task motion, shape (N,)."""
+    theta2 = verdict.theta2 if theta2 is None else theta2
     if problem.dynamics is None or verdict.cylinder is None or not verdict.branch_ok:
         return np.full(len(theta2), np.nan)
     law = driver_law(problem, *motion_ends(problem.task, verdict))

@@ -32,6 +32,7 @@ PACKAGES = (
     Package("grashof", "What most programs need"),
     Package("grashof.problems", "Tasks, requirements, linkages, files"),
     Package("grashof.synth", "Searches and their results"),
+    Package("grashof.synth.theory", "Dyads and cognates by theory"),
     Package("grashof.synth.shards", "Searches in parts"),
     Package("grashof.synth.merging", "Parts of a search made one list"),
     Package("grashof.analysis", "Motion, forces, the judge"),

@@ -17,7 +17,7 @@ import numpy as np
 from grashof import load, synthesize
 from grashof.analysis import solve_position
 from grashof.figures import plot_task
-from grashof.synth.theory.burmester import Displacements, radius_error, trace_four_pose_curves
+from grashof.synth.theory import Displacements, radius_error, trace_four_pose_curves
 
 problem = load("luggage")
 task = problem.task

@@ -17,9 +17,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from grashof import load, plot_linkage, synthesize
-from grashof.analysis import solve_position
-from grashof.analysis.cylinder.lengths import cylinder_state
-from grashof.analysis.judge.driven import forces_at
+from grashof.analysis import cylinder_forces, cylinder_state, solve_position
 
 problem = load("lifting-arm")
 problem = replace(problem, driver=replace(problem.driver, on=("output",)))
@@ -43,7 +41,7 @@ assert (table["cylinder_angle_min_deg"] >= 25).all()
 
 theta2 = np.linspace(best.verdict.theta2[0], best.verdict.theta2[-1], 181)
 length = cylinder_state(best.verdict.cylinder, best.linkage, solve_position(best.linkage, theta2)).length
-force = forces_at(best.linkage, problem, best.verdict, theta2)
+force = cylinder_forces(best.linkage, problem, best.verdict, theta2)
 figure, ax = plt.subplots()
 ax.fill_between(length, force, alpha=0.2)
 ax.plot(length, force)

@@ -18,7 +18,7 @@ import numpy as np
 from grashof import load, plot_linkage, synthesize
 from grashof.analysis import solve_position, straightest_half_turn, straightness
 from grashof.problems import FourBar
-from grashof.synth.theory.cognates import cognate_points
+from grashof.synth.theory import cognate_points
 
 hoeken = FourBar(o2=(0, 0), o4=(100, 0), r2=50, r3=125, r4=125, coupler_point=(250, 0))
 start, line = straightest_half_turn(hoeken)

@@ -103,6 +103,14 @@ def rows_of(
     ]
 
 
+def rows_of_nearest(problem: Problem, nearest: Sequence[Candidate]) -> list[Row]:
+    """Closest misses as rows, with what they miss in a last column."""
+    rows = rows_of(problem, nearest)
+    for row, candidate in zip(rows, nearest, strict=True):
+        row["misses"] = "; ".join(str(each) for each in candidate.verdict.defects)
+    return rows
+
+
 def to_frame(problem: Problem, candidates: Sequence[Candidate]) -> pd.DataFrame:
     """The rows of candidates as a table."""
     import pandas as pd  # takes longer than the search of many a problem

@@ -27,7 +27,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import no_formula
 from grashof.problems.values.quantities import Needs, Over
 from grashof.synth import Candidate, Result
-from grashof.synth.designs.table import LISTED, Row, facts, known, rows_of
+from grashof.synth.designs.table import LISTED, Row, facts, known, rows_of, rows_of_nearest
 from grashof.synth.search.story import Ending, now
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def write_run(
 
         with replacing_own_files(folder) as fresh:
             rows = _write_lists(fresh, result)
-            write_page(fresh / PAGE, search_page(result, rows, _about(settings), problem_text))
+            write_page(fresh / PAGE, search_page(result, _about(settings), problem_text, rows=rows))
             files = _write_record(fresh, result, settings, drawings, stop)
         if drawings and result.candidates and not stop():
             with replacing_own_files(folder, keep=files) as fresh:
@@ -96,9 +96,7 @@ def _write_lists(folder: Path, result: Result) -> list[Row]:
         write_rows(folder / "candidates.csv", rows)
         write_json(folder / "candidates.json", _designs(result, rows))
     if result.nearest:
-        rows = rows_of(result.problem, result.nearest)
-        for row, candidate in zip(rows, result.nearest, strict=True):
-            row["misses"] = "; ".join(str(each) for each in candidate.verdict.defects)
+        rows = rows_of_nearest(result.problem, result.nearest)
         write_rows(folder / "nearest.csv", rows)
     return rows
 

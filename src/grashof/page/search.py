@@ -16,7 +16,7 @@ from grashof.page.scene import scene_of
 from grashof.problems import Problem
 from grashof.problems.values.checks import counted
 from grashof.synth import Candidate, Result
-from grashof.synth.designs.table import Row
+from grashof.synth.designs.table import Row, rows_of, rows_of_nearest
 from grashof.synth.results.explain import note_parts
 from grashof.synth.search.tally import DISTINCT, Tally
 from grashof.wording.problem import goals, summary
@@ -27,18 +27,20 @@ _SCRIPTS = (
 )  # fmt: skip
 
 
-def search_page(result: Result, rows: Sequence[Row], record: Mapping[str, Any], text: str = "") -> str:
+def search_page(
+    result: Result, record: Mapping[str, Any], text: str = "", *, rows: Sequence[Row] | None = None
+) -> str:
     """The page of a search as HTML; of its closest misses, called so, where it found no design.
 
     Parameters
     ----------
     result : Result
-    rows : sequence of dict
-        Of its candidates, or of its nearest with "misses" where it has none, as `rows_of` makes them.
     record : mapping
         "versions" and "settings" of the run.
     text : str
         The problem file.
+    rows : sequence of dict, optional
+        Of its candidates or, where it has none, of its nearest, where they are known.
 
     Returns
     -------
@@ -47,6 +49,8 @@ def search_page(result: Result, rows: Sequence[Row], record: Mapping[str, Any], 
     """
     problem = result.problem
     listing = result.candidates or result.nearest
+    if rows is None:
+        rows = rows_of(problem, listing) if result.candidates else rows_of_nearest(problem, listing)
     moving = [not np.isnan(driver_travel(each.linkage, each.verdict.theta2).low) for each in listing]
     designs = [each for each, moves in zip(listing, moving, strict=True) if moves]
     rows = [row for row, moves in zip(rows, moving, strict=True) if moves]

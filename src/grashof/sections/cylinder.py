@@ -9,7 +9,7 @@ import pandas as pd
 
 from grashof.analysis import Verdict, solve_position, verify
 from grashof.analysis.cylinder.lengths import cylinder_state
-from grashof.analysis.judge.driven import cylinder_force_peak, figures_of, forces_at
+from grashof.analysis.judge.driven import cylinder_force_peak, cylinder_forces, figures_of
 from grashof.analysis.judge.sampled_motion import motion_ends
 from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
@@ -65,7 +65,7 @@ def _columns(study: LinkageStudy, problem: Problem, verdict: Verdict, theta2: Fl
         "pivot_y": found.pivot[:, 1],
     }
     if problem.dynamics is not None:
-        columns["force"] = forces_at(study.linkage, problem, verdict, theta2)
+        columns["force"] = cylinder_forces(study.linkage, problem, verdict, theta2)
     return columns
 
 

@@ -133,12 +133,12 @@ def folder(
     missing = [rows[0] | {"misses": MISSES}]
     missed = replace(few, candidates=(), nearest=few.candidates[:1], note=f"no design: {MISSES}")
     pages = {
-        "search": search_page(named, rows, RECORD, "kind"),
-        "alike": search_page(alike, rows_of(alike.problem, alike.candidates), RECORD),
-        "inexact": search_page(inexact, rows_of(inexact.problem, inexact.candidates), RECORD),
-        "missed": search_page(missed, missing, RECORD),
-        "relaxed": search_page(replace(missed, note=WAYS), missing, RECORD),
-        "nothing": search_page(replace(missed, nearest=()), [], RECORD),
+        "search": search_page(named, RECORD, "kind", rows=rows),
+        "alike": search_page(alike, RECORD),
+        "inexact": search_page(inexact, RECORD),
+        "missed": search_page(missed, RECORD, rows=missing),
+        "relaxed": search_page(replace(missed, note=WAYS), RECORD, rows=missing),
+        "nothing": search_page(replace(missed, nearest=()), RECORD),
         "rocker": analysis_page(report_on(LinkageSpec(ROCKER, "rocker", title=TITLE)), RECORD),
         "swift": analysis_page(report_on(LinkageSpec(NEARLY_DEAD, "swift")), RECORD),
         "sections": analysis_page(told, RECORD),

@@ -60,7 +60,7 @@ class Parts(HTMLParser):
 
 
 def page_of(result: Result, text: str = "") -> str:
-    return search_page(result, rows_of(result.problem, result.candidates), RECORD, text)
+    return search_page(result, RECORD, text)
 
 
 @pytest.fixture(scope="module")
@@ -171,7 +171,7 @@ def test_travel_holds_the_targets() -> None:
 def test_an_empty_list_shows_the_closest_miss_as_one(few: Result) -> None:
     missed = replace(few, candidates=(), nearest=few.candidates[:1], note="nothing fits")
     row = rows_of(few.problem, few.candidates)[0] | {"misses": "r3: r3 is 9, it must be from 1 to 8"}
-    parts = Parts(search_page(missed, [row], RECORD))
+    parts = Parts(search_page(missed, RECORD, rows=[row]))
     assert "No design found." in parts.text
     assert "Nothing fits." in parts.text
     assert "Not a design: it misses" in parts.text
