@@ -31,7 +31,7 @@ import numpy as np  # noqa: E402
 from limited_tasks import problem_of  # noqa: E402
 from peers import PEERS  # noqa: E402
 
-from grashof import load  # noqa: E402
+from grashof import load, synthesize  # noqa: E402
 from grashof.analysis import verify  # noqa: E402
 from grashof.analysis.judge.planted import planted_motion, planted_path  # noqa: E402
 from grashof.problems import FunctionTask, Linkage, Problem, Requirements, Rotatability  # noqa: E402
@@ -155,6 +155,17 @@ def table(runs: dict[str, Any], problems: dict[str, Problem]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def stages(problems: dict[str, Problem]) -> str:
+    """Where Grashof's time goes, wall seconds of the first seed."""
+    seconds = {task: synthesize(problem, seed=0).seconds for task, problem in problems.items()}
+    names = list(dict.fromkeys(name for each in seconds.values() for name in each))
+    lines = [f"| task | {' | '.join(names)} |", "|---" * (len(names) + 1) + "|"]
+    for task, each in seconds.items():
+        cells = (f"{each[name]:.2f}" if name in each else "" for name in names)
+        lines.append(f"| {task} | {' | '.join(cells)} |")
+    return "\n".join(lines) + "\n"
+
+
 def best_of(runs: dict[str, Any], task: str) -> float:
     """The least error that any run has of a task."""
     every = [min(one["errors"], default=np.inf) for key, one in runs.items()
@@ -220,6 +231,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     versions = ", ".join(f"{name} {_version(name)}" for name in PACKAGES)
     said = f"{platform.processor() or platform.machine()}, Python {platform.python_version()}; {versions}\n\n"
     said += table(runs, problems)
+    if "Grashof" in peers:
+        said += f"\nStages of Grashof, s\n\n{stages(problems)}"
     (given.out / "table.md").write_text(said)
     draw_profile(runs, problems, given.out / "profile.png")
     print(said)

@@ -1,19 +1,24 @@
-"""Measure kinematics and dynamics against a plain closed form written out in NumPy.
+"""Measure kinematics and dynamics against a plain closed form in NumPy, pylinkage and MuJoCo.
 
-Prints one line a case: the median over repetitions, on this machine. Run it on a quiet one.
+Prints one line a case: the median over repetitions, on this machine. Run it on a quiet one. The two packages
+come with `pip install '.[bench]'`; one that is not there is left out.
 """
 
 import argparse
 import sys
 from collections.abc import Callable, Sequence
+from importlib import import_module
 from statistics import median
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis import Loads, inverse_dynamics, solve_kinematics, uniform_bars
-from grashof.problems import FourBar
+from grashof.analysis import Loads, inverse_dynamics, solve_kinematics, solve_position, uniform_bars
+from grashof.models import Model, mjcf
+from grashof.problems import DynamicsSpec, FourBar, LinkageSpec
+from grashof.problems.values.arrays import TURN
 
 NORTON = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80, coupler_point=(60, 20))
 Array = npt.NDArray[np.float64]
@@ -89,6 +94,58 @@ def many_linkages(count: int, angles: int, seed: int) -> None:
     print(f"{count} linkages at {angles} angles: {seconds:.2f} s, {each:.0f} ns each")
 
 
+def against_pylinkage(count: int, runs: int) -> None:
+    """The same turn by pylinkage's compiled solver: joints alone, and with rates and accelerations."""
+    conversion: Any = import_module("pylinkage.synthesis.conversion")
+    r1, r2, r3, r4 = map(float, NORTON.lengths)
+    made = conversion.fourbar_from_lengths(r2, r3, r4, r1, iterations=count)
+    made.set_input_velocity(made._cranks[0], omega=2.0)
+    made.compile()
+    path = made.step_fast(count)  # compiles
+    made.step_fast_with_kinematics(2)
+    columns = [each.__class__.__name__ for each in made.components]
+    crank = columns.index("Crank")
+    a, b = path[:, crank], path[:, len(columns) - 1]
+    theta2 = np.arctan2(a[:, 1], a[:, 0])
+    apart = np.abs(solve_position(NORTON, theta2).b - b).max()
+    joints, rates, ours = taking_turns(
+        runs,
+        lambda: made.step_fast(count),
+        lambda: made.step_fast_with_kinematics(count),
+        lambda: (state := solve_kinematics(NORTON, theta2, 2.0), state.a, state.b),
+    )
+    print(
+        f"{count} angles, pylinkage with numba: {joints * 1e3:.1f} ms for joints, {rates * 1e3:.1f} ms with "
+        f"velocities and accelerations, against {ours * 1e3:.1f} ms; B differs by {apart / r1:.0e} of r1"
+    )
+
+
+def against_mujoco(count: int, runs: int) -> None:
+    """So many steps of MuJoCo with the model that `grashof export` writes, against inverse dynamics."""
+    mujoco: Any = import_module("mujoco")
+    spec = DynamicsSpec(mass_per_length=2.0, gravity=(0, -9.81), speed_rpm=60 / np.pi)
+    model = Model.of(LinkageSpec(NORTON, "norton", length_unit="mm", dynamics=spec))
+    made = mujoco.MjModel.from_xml_string(mjcf(model))
+    data = mujoco.MjData(made)
+    theta2 = np.linspace(0, TURN, count)
+    masses, loads = uniform_bars(NORTON, 2.0), Loads(gravity=(0, -9810))
+    worst = 0.0
+    for _ in range(200):
+        mujoco.mj_step(made, data, max(1, count // 2000))
+        at = solve_kinematics(NORTON, float(data.qpos[0]))
+        off = float(data.qpos[0] + data.qpos[1] - at.theta3)
+        worst = max(worst, abs((off + np.pi) % TURN - np.pi))
+    steps, ours = taking_turns(
+        runs,
+        lambda: mujoco.mj_step(made, data, count),
+        lambda: inverse_dynamics(solve_kinematics(NORTON, theta2, 2.0), masses, loads),
+    )
+    print(
+        f"{count} steps of MuJoCo: {steps * 1e3:.0f} ms, {steps / ours:.0f} times kinematics and inverse "
+        f"dynamics at as many angles ({ours * 1e3:.0f} ms); its coupler angle differs by {worst:.0e} rad"
+    )
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run all measurements."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -99,6 +156,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     options = parser.parse_args(argv)
     many_angles(options.angles, options.runs)
     many_linkages(options.linkages, 64, options.seed)
+    for against in (against_pylinkage, against_mujoco):
+        try:
+            against(options.angles, options.runs)
+        except ModuleNotFoundError as missing:
+            print(f"{missing.name} is not installed")
     return 0
 
 
