@@ -23,7 +23,7 @@ PULLS = (0.1, 1.0)  # rad, or shares of the travel: what a missed limit counts a
 NUDGE = 1e-4  # rad, of transmission angles
 BASINS, TRIED, SHORT = 9, 30, 5  # starts that are refined to the end, and those tried in few steps
 WORSE = 10.0  # times the least error: a sense of output and driver in which no choice is offered
-FIRST = 3  # starts after which a design is told of
+FIRST, SPARSE, GLANCED = 3, 16, 12  # of a glance: starts tried, one of so many fitted, in so many steps
 HOPELESS = 50.0  # times the least error: no further
 LEAST, LOCAL = "least error", "least error nearby"
 CELL, NEAR = 0.04, 0.02  # of optima, and of exact designs: closer ones are alike
@@ -274,6 +274,8 @@ def optimal_functions(
                 continue
             limits = replace(aims.limits_of(driver), transmission=transmission)
             search = _Optima(aims, limits, sense, first)
+            if not number and not way:
+                yield from (FoundFunction(one.made, driver, one.steps, words) for one in search.glance())
             starts = search.starts(rng, effort if not number else min(1.0, effort))
             for optimum in search.optima(starts, few=bool(number)):
                 better.setdefault((way, driver), []).append(optimum.made)
@@ -324,31 +326,35 @@ class _Optima:
         return Aim(wanted, self.limits.of, greatest=greatest, held=self.first is not None, band=most)
 
     def optima(self, starts: Generators, *, few: bool) -> Iterator[Optimum]:
-        """The best distinct optima from starts that come best first; of `few` only the most promising.
-
-        Where all are asked for, the best of the first starts comes before the others are tried.
-        """
+        """The best distinct optima from starts that come best first; of `few` only the most promising."""
         aim, share = self.aim(), 3 if few else 1
-        tried: list[Optimum] = []
-        shown = None
-        for k in range(min(TRIED // share, len(starts))):
-            tried.append(refined(aim, starts[k : k + 1], SHORT))
-            if len(tried) == FIRST and not few:
-                begun = min(tried, key=_worth)
-                shown = begun, self._finished(aim, begun)
-                if shown[1].missed <= ROUNDING:
-                    yield shown[1]
+        tried = self._tried(aim, starts, TRIED // share)
         worth = np.array([_worth(one) for one in tried])
         hopeful = [tried[k] for k in _apart(tried, worth) if worth[k] <= HOPELESS * worth.min() + MET]
-        ends = [
-            shown[1] if shown is not None and one is shown[0] else self._finished(aim, one)
-            for one in hopeful[: BASINS // share]
-        ]
+        ends = [self._finished(aim, one) for one in hopeful[: BASINS // share]]
         good = [one for one in ends if one.missed <= ROUNDING]
         for k in _apart(good, np.array([one.error for one in good])):
-            if shown is None or good[k] is not shown[1]:
-                yield good[k]
+            yield good[k]
             yield from self._farther_inside(good[k])
+
+    def glance(self) -> Iterator[Optimum]:
+        """One that is good, from few starts: most often there is one, before the search has begun."""
+        rng, aim = np.random.default_rng(0), self.aim()
+        starts = function_starts(self.aims.kind, aim.wanted, rng, self.first)[::SPARSE]
+        made, square = fitted(
+            aim.wanted, starts, self.limits.of, pull=PULLS[0], held=self.first is not None, steps=GLANCED
+        )
+        best = made[best_apart(made, square, CELL)]
+        if not len(best):
+            return
+        end = self._finished(aim, min(self._tried(aim, best, FIRST), key=_worth))
+        if end.missed <= ROUNDING:
+            yield end
+
+    @staticmethod
+    def _tried(aim: Aim, starts: Generators, most: int) -> list[Optimum]:
+        """A few steps from each of the first starts."""
+        return [refined(aim, starts[k : k + 1], SHORT) for k in range(min(most, len(starts)))]
 
     def _finished(self, aim: Aim, begun: Optimum) -> Optimum:
         """What a few steps began to its end, with all extremes of its error."""

@@ -55,7 +55,13 @@ class Wanted:
 
 
 def fitted(
-    wanted: Wanted, starts: Generators, limits: Limits | None = None, *, pull: float = 1.0, held: bool = False
+    wanted: Wanted,
+    starts: Generators,
+    limits: Limits | None = None,
+    *,
+    pull: float = 1.0,
+    held: bool = False,
+    steps: int = STEPS,
 ) -> tuple[Generators, FloatArray]:
     """The best of many starts moved to least squares, best first.
 
@@ -70,6 +76,8 @@ def fitted(
         In rad, or in units of the travel.
     held : bool
         The first driver angle stays.
+    steps : int
+        At most so many.
 
     Returns
     -------
@@ -89,7 +97,7 @@ def fitted(
     made, square = made[np.isfinite(square)], square[np.isfinite(square)]
     damping = np.full(len(made), 1e-3)
     done: BoolArray = np.zeros(len(made), dtype=bool)
-    for step in range(STEPS):
+    for step in range(steps):
         made, square, damping, done = _fewer(step, made, square, damping, done)
         active = np.flatnonzero(~done)
         if not active.size:
