@@ -24,6 +24,7 @@ NUDGE = 1e-4  # rad, of transmission angles
 BASINS, TRIED, SHORT = 9, 30, 5  # starts that are refined to the end, and those tried in few steps
 WORSE = 10.0  # times the least error: a sense of output and driver in which no choice is offered
 FIRST, SPARSE, GLANCED = 3, 16, 12  # of a glance: starts tried, one of so many fitted, in so many steps
+BEST = 2  # of the ends at a transmission angle that a choice is offered at
 HOPELESS = 50.0  # times the least error: no further
 LEAST, LOCAL = "least error", "least error nearby"
 CELL, NEAR = 0.04, 0.02  # of optima, and of exact designs: closer ones are alike
@@ -326,12 +327,16 @@ class _Optima:
         return Aim(wanted, self.limits.of, greatest=greatest, held=self.first is not None, band=most)
 
     def optima(self, starts: Generators, *, few: bool) -> Iterator[Optimum]:
-        """The best distinct optima from starts that come best first; of `few` only the most promising."""
-        aim, share = self.aim(), 3 if few else 1
-        tried = self._tried(aim, starts, TRIED // share)
+        """The best distinct optima from starts that come best first; of `few` only the best ones."""
+        aim = self.aim()
+        tried = self._tried(aim, starts, TRIED)
         worth = np.array([_worth(one) for one in tried])
         hopeful = [tried[k] for k in _apart(tried, worth) if worth[k] <= HOPELESS * worth.min() + MET]
-        ends = [self._finished(aim, one) for one in hopeful[: BASINS // share]]
+        ends = [refined(aim, one.made) for one in hopeful[:BASINS]]
+        if few:
+            ends = sorted(ends, key=_worth)[:BEST]
+        if aim.greatest:
+            ends = [self._with_extremes(aim, one) for one in ends]
         good = [one for one in ends if one.missed <= ROUNDING]
         for k in _apart(good, np.array([one.error for one in good])):
             yield good[k]
@@ -347,7 +352,9 @@ class _Optima:
         best = made[best_apart(made, square, CELL)]
         if not len(best):
             return
-        end = self._finished(aim, min(self._tried(aim, best, FIRST), key=_worth))
+        end = refined(aim, min(self._tried(aim, best, FIRST), key=_worth).made)
+        if aim.greatest:
+            end = self._with_extremes(aim, end)
         if end.missed <= ROUNDING:
             yield end
 
@@ -356,11 +363,8 @@ class _Optima:
         """A few steps from each of the first starts."""
         return [refined(aim, starts[k : k + 1], SHORT) for k in range(min(most, len(starts)))]
 
-    def _finished(self, aim: Aim, begun: Optimum) -> Optimum:
-        """What a few steps began to its end, with all extremes of its error."""
-        end = refined(aim, begun.made)
-        if not aim.greatest:
-            return end
+    def _with_extremes(self, aim: Aim, end: Optimum) -> Optimum:
+        """The same with all extremes of its error in view."""
         return refined(with_extremes(aim, end.made, *self.aims.dense(self.sense)), end.made)
 
     def _farther_inside(self, best: Optimum) -> Iterator[Optimum]:
