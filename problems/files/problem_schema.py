@@ -10,7 +10,15 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
-from pydantic import AfterValidator, Discriminator, Tag, ValidationInfo, create_model, field_validator
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Discriminator,
+    Tag,
+    ValidationInfo,
+    create_model,
+    field_validator,
+)
 from pydantic_core import PydanticCustomError
 
 from grashof.problems.files.dynamics_schema import MachineTables
@@ -269,9 +277,21 @@ Place = Annotated[
 ]
 
 
-Areas = Annotated[
-    list[Corners], listed("a list of polygons, each a list of corners [x, y], or a .dxf or .svg file")
-]
+_AREAS = "a list of polygons, each a list of corners [x, y], or a .dxf or .svg file"
+
+
+def _several(given: Any) -> Any:
+    """Polygons; a single one, which is no list of them, is refused in one line."""
+    if isinstance(given, list) and given and all(_is_corner(each) for each in given):
+        raise PydanticCustomError(WRONG, "a list of polygons, such as [[[0, 0], [1, 0], [1, 1]]]")
+    return given
+
+
+def _is_corner(given: Any) -> bool:
+    return isinstance(given, list) and len(given) == 2 and all(isinstance(x, int | float) for x in given)
+
+
+Areas = Annotated[list[Corners], listed(_AREAS), BeforeValidator(_several)]
 Parts = Annotated[list[str], listed(f"a list of {', '.join(MAY_KEEP_OUT[:-1])} and {MAY_KEEP_OUT[-1]}")]
 _BY_KIND = {Kind.BETWEEN: Pair, Kind.INSIDE: Place, Kind.ON_BODY: Place, Kind.WORD: str}
 _MODES: dict[str, Any] = {

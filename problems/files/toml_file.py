@@ -91,4 +91,5 @@ def document_of(text: str, file_name: str) -> dict[str, Any]:
         return tomllib.loads(text)
     # Besides its own error: an integer of thousands of digits, lists nested a thousand deep.
     except (ValueError, RecursionError) as error:
-        raise ProblemError(f"{file_name}: is not TOML: {error}") from None
+        why = str(error).replace("Cannot overwrite a value", "a key or table is given twice")
+        raise ProblemError(f"{file_name}: is not TOML: {why}") from None

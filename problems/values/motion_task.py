@@ -49,7 +49,8 @@ class MotionTask(Task):
     angle_length : float, length, optional
         Length that one radian of orientation error counts as; the size of the task by default.
     body : array_like, shape (M, 2), length, optional
-        Outline carried, in the body's frame (origin at the pose). Drawn only.
+        Outline carried, in the body's frame (origin at the pose). Drawn, and kept
+        out of areas where `keep_out_for` names it.
     within : float or array_like, shape (N,), length, optional
         How far each position may be missed; the objective then decides.
     angle_within : float or array_like, shape (N,), rad, optional

@@ -40,6 +40,8 @@ def conclude(scaled: ScaledProblem, ledgers: list[Ledger], run: Run, asked: Aski
         starts_crashed=tuple(run.crashed),
     )
     ended, seconds = why_ended(scaled, ledger), run.times
+    if ended and designs and not chosen.designs:
+        ended += "; those listed were found in looking for what stands in the way"
     why = f"; {ended}" if ended else ""
     _LOG.info("ended after %.1f s, %s: %d designs%s", seconds["total"], story.ending, len(designs), why)
     return Result(

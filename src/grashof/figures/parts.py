@@ -251,7 +251,7 @@ def draw_scene(axes: Axes, problem: Problem) -> None:
         label = "scene" if index == 0 else None
         axes.plot(*outline.T, color=SCENE, linewidth=3, solid_joinstyle="miter", label=label, zorder=1)
     wanted = problem.requirements
-    names = ", ".join(name if name == "links" else name.upper() for name in wanted.keep_out_for)
+    names = ", ".join(name if name in ("links", "body") else name.upper() for name in wanted.keep_out_for)
     for index, corners in enumerate(wanted.keep_out):
         label = f"kept out: {names}" if index == 0 else None
         axes.fill(

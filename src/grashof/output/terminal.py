@@ -20,7 +20,7 @@ from grashof.problems import FunctionTask, Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.problems.values.mechanisms import LENGTHS, having, without_noise
-from grashof.problems.values.quantities import Needs, Over, Quantity, Unit
+from grashof.problems.values.quantities import Over, Quantity, Unit
 from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth import Candidate, Progress, Result
 from grashof.synth.designs.ranking import pareto_optimal
@@ -242,7 +242,7 @@ def _cell(quantity: Quantity, candidate: Candidate, digits: int) -> str:
     if candidate.linkage.MECHANISM not in quantity.kinds:
         return "-"
     value = candidate.values[quantity.key] * quantity.unit.shown
-    if quantity.unit is Unit.ANGLE and quantity.needs is not Needs.OUTPUTS:
+    if quantity.unit is Unit.ANGLE and not quantity.deviates:
         return f"{value:.1f}"
     if quantity.unit is Unit.LENGTH and quantity.key != "error":
         value = without_noise(value, candidate.linkage)

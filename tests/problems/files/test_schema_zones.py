@@ -37,8 +37,9 @@ KEEP_OUT = {
         "[0] has 2 distinct corners; it must have three or more\n"
         "requirements.keep_out[2] has no area: its corners lie on a straight line"
     ),
-    "[[0, 0]]": "[0][0] is 0; it must be a corner [x, y]\n"
-    "requirements.keep_out[0][1] is 0; it must be a corner [x, y]",
+    "[[0, 0], [2, 0], [1, 1]]": (
+        " is [[0, 0], [2, 0], [1, 1]]; it must be a list of polygons, such as [[[0, 0], [1, 0], [1, 1]]]"
+    ),
     "3": " is 3; it must be a list of polygons, each a list of corners [x, y], or a .dxf or .svg file",
 }
 
