@@ -72,6 +72,8 @@ def load_linkage_spec(linkage: str | os.PathLike[str]) -> LinkageSpec:
     if mark and file.endswith(".json"):
         return _candidate(Path(file), which)[0]
     table, row = (file, which) if mark and file.endswith(".csv") else (text, "1")
+    if Path(table).name == "nearest.csv":
+        raise ProblemError(f"{text}: is a table of misses; a linkage file with their dimensions can be read")
     if table.endswith(".csv"):
         raise ProblemError(f"{text}: is a table; name the design as {table.removesuffix('.csv')}.json#{row}")
     if text.endswith(".json"):

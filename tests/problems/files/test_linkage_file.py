@@ -141,6 +141,7 @@ def test_a_name_that_is_none() -> None:
         ),
         ("chair", "the catalogue has crank-shaper, engine, lufkin-c912d, luggage-report, pumpjack"),
         ("d/candidates.csv#3", "is a table; name the design as d/candidates.json#3$"),
+        ("d/nearest.csv#1", "is a table of misses; a linkage file with their dimensions can be read$"),
         ("candidates.csv", "is a table; name the design as candidates.json#1$"),
         ("", "neither a linkage of the catalogue nor a file"),
         ("no/such.toml", "there is no such file"),
