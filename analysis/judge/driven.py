@@ -134,8 +134,8 @@ def cylinder_forces(
 
     Notes
     -----
-    Of the inverse dynamics' drive torque T the force is T omega2 / (dL / dt), by virtual power (Norton,
-    *Design of Machinery*, ch. 10).
+    By virtual work, F dL/dtheta2 = T of the inverse dynamics (Norton, *Design of Machinery*, sec. 11.10);
+    see `cylinder_force` for friction.
     """
     theta2 = verdict.theta2 if theta2 is None else theta2
     if problem.dynamics is None or verdict.cylinder is None or not verdict.branch_ok:
