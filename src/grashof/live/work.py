@@ -6,6 +6,7 @@ import json
 import pickle
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter
@@ -30,6 +31,7 @@ TRACKED = 10  # designs that follow the hand
 # What of a design is known at once; other figures take longer than to follow it.
 _FOLLOWED = ("error", "transmission_min_task", "transmission_min_cycle", "size", *DIMENSIONS)
 AT_ONCE = tuple(each for each in LISTED if each.key in _FOLLOWED)
+ABSENT = 100  # designs of lists before that are known when they come back
 SHARE = 0.2  # of the time of a search that telling of it may take
 SAME = 1e-6  # of all that states them: two designs are one
 
@@ -41,12 +43,15 @@ class Shown:
     Parameters
     ----------
     designs : dict of int to Candidate
+    absent : dict of int to Candidate
+        Of lists before, not in this one; a search that goes on may find them again.
     result : Result, optional
         Of a search that is done.
     next_key : int
     """
 
     designs: Mapping[int, Candidate] = field(default_factory=dict)
+    absent: Mapping[int, Candidate] = field(default_factory=dict)
     result: Result | None = None
     next_key: int = 1
 
@@ -60,17 +65,24 @@ class Shown:
         return pickle.dumps(self)
 
     def matched(self, found: Sequence[Candidate], result: Result | None = None) -> Shown:
-        """A new list, in which those that are known keep their keys."""
-        known = {key: _numbers(design) for key, design in self.designs.items()}
+        """A new list; designs that are known keep their keys, a search that is done forgets the others."""
+        known = {**self.designs, **self.absent}
+        stated = {key: _numbers(design) for key, design in known.items()}
         designs: dict[int, Candidate] = {}
         key = self.next_key
         for design in found:
             numbers = _numbers(design)
-            same = (k for k, other in known.items() if k not in designs and _alike(numbers, other))
+            same = (k for k, other in stated.items() if k not in designs and _alike(numbers, other))
             kept = next(same, None)
             designs[key if kept is None else kept] = design
             key += kept is None
-        return Shown(designs, result, key)
+        absent = {} if result is not None else {k: design for k, design in known.items() if k not in designs}
+        return Shown(designs, dict(islice(absent.items(), ABSENT)), result, key)
+
+    def following(self, designs: Mapping[int, Candidate]) -> Shown:
+        """Of the list only those that are followed, as they are now."""
+        others = {key: design for key, design in self.designs.items() if key not in designs}
+        return replace(self, designs=designs, absent={**others, **self.absent}, result=None)
 
 
 def _numbers(design: Candidate) -> np.ndarray[Any, np.dtype[np.float64]]:
@@ -124,8 +136,7 @@ def _track(job: Job, _stop: object, tell: Callable[[Line], object]) -> None:
         if not design.verdict.ok
     }
     # A lost one stays as it last was, and may come back from there.
-    following = replace(shown, designs={**kept, **there}, result=None)
-    tell(_list_line("track", problem, there, following, lost=lost))
+    tell(_list_line("track", problem, there, shown.following({**kept, **there}), lost=lost))
 
 
 def _search(job: Job, stop: Callable[[], bool], tell: Callable[[Line], object]) -> None:
@@ -148,8 +159,9 @@ def _search(job: Job, stop: Callable[[], bool], tell: Callable[[Line], object]) 
     if stop():
         return
     shown = shown.matched(result.candidates, result)
-    designs = shown.designs or shown.matched(result.nearest).designs
-    tell(_list_line("found", problem, designs, shown, result))
+    misses = shown.matched(() if shown.designs else result.nearest)
+    shown = replace(shown, next_key=misses.next_key)
+    tell(_list_line("found", problem, shown.designs or misses.designs, shown, result))
 
 
 def _list_line(

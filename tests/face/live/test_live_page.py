@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import tomllib
@@ -11,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, Page, Route
 
 from grashof import load, synthesize, track
 from grashof.analysis import solve_kinematics
@@ -310,16 +311,29 @@ def test_a_drawing_and_a_photo_lie_behind_scaled_by_two_points(page: Page, tmp_p
     page.wait_for_function("() => document.querySelector('[data-notice]').textContent.includes('not a DXF')")
 
 
+def hold_searches(route: Route, waiting: list[Route]) -> None:
+    """Searches wait until they are let go."""
+    if route.request.post_data_json["what"] == "search":
+        waiting.append(route)
+    else:
+        route.continue_()
+
+
 @pytest.mark.slow
 def test_designs_are_compared_and_lost_ones_fade_with_what_they_miss(page: Page) -> None:
     for row in (0, 2):
         page.locator(".listing tbody input").nth(row).check()
     assert page.locator("#compare article").count() == 2
-    keys = state(page)["compared"]
+    compared = state(page)["compared"]
+    waiting: list[Route] = []
+    page.route("**/ask", lambda route: hold_searches(route, waiting))
     page.locator("[data-handle='target-1']").focus()
     page.keyboard.press("ArrowUp")
-    shown(page, "s.listed.version === s.version && s.listed.phase === 'track'")
-    assert state(page)["compared"] == keys
+    found = shown(page, "s.listed.version === s.version && s.busy === 'search'")
+    assert found["listed"]["phase"] == "track"
+    assert found["compared"] == compared
+    waiting[0].continue_()
+    page.unroute("**/ask")
     searched(page)
     page.locator("[data-handle='target-3']").focus()
     page.keyboard.press("ArrowUp")
@@ -330,6 +344,42 @@ def test_designs_are_compared_and_lost_ones_fade_with_what_they_miss(page: Page)
             break
     assert found["lost"]
     assert found["lost"][0]["why"]
+
+
+def test_what_a_search_has_not_found_yet_comes_back(page: Page) -> None:
+    """While it goes on, the chosen and compared designs may be missing; its end decides."""
+    for row in (0, 2):
+        page.locator(".listing tbody input").nth(row).check()
+    page.locator(".listing tbody tr").nth(2).click()
+    before = state(page)
+    lists: list[Any] = []
+
+    def first_of_two(route: Route) -> None:
+        """The list of a search that has found a design so far, and then no more."""
+        if route.request.post_data_json["what"] == "search":
+            lines = [json.loads(line) for line in route.fetch().text().splitlines()]
+            lists.extend(line for line in lines if line["kind"] == "list")
+            short = {**lists[-1], "phase": "searching", "designs": lists[-1]["designs"][1:2]}
+            route.fulfill(body=json.dumps(short) + "\n")
+        else:
+            route.continue_()
+
+    def ask_for(transmission: str) -> None:
+        limit = page.locator("input[type=number][data-limit=transmission_min_deg]")
+        limit.fill(transmission)
+        limit.press("Enter")
+
+    page.route("**/ask", first_of_two)
+    ask_for("15.001")
+    partial = shown(page, "s.listed.version === s.version && s.listed.phase === 'searching'")
+    assert keys(partial) == keys(before)[1:2] == [partial["chosen"]]
+    assert page.locator("#compare article").count() == 0
+    page.unroute("**/ask")
+    ask_for("15")
+    found = searched(page)
+    assert keys(found) == keys(before)
+    assert (found["chosen"], found["compared"]) == (before["chosen"], before["compared"])
+    assert page.locator("#compare article").count() == 2
 
 
 def solver_pids(server: int) -> list[int]:

@@ -4,10 +4,10 @@ const OTHERS = 10; // designs whose paths are drawn beside the chosen one
 const AGAIN = 2000; // ms after which a server that does not answer is asked again
 
 class Live {
-  transport; root; version; lost; transmission; velocity; torque; columns;
+  transport; root; version; lost; preferred; transmission; velocity; torque; columns;
 
   constructor(root, transport) {
-    Object.assign(this, { root, transport, designs: [], chosen: null, version: 0, listed: null, busy: null, lost: [] });
+    Object.assign(this, { root, transport, designs: [], chosen: null, preferred: null, version: 0, listed: null, busy: null, lost: [] });
     Object.assign(this, { trackDue: false, searchDue: false, published: null, columns: [], compared: [], timer: null });
     this.task = new Task({ onChange: (what) => this.changed(what) });
     this.stage = new Stage($("#stage", root), {}, {
@@ -21,7 +21,7 @@ class Live {
     this.stage.behind = this.backdrop;
     this.form = new Form($(".asked", root), this.task, { onFocusTarget: (k) => this.handles.toggleLock(k) });
     this.listing = new Listing($(".answer", root), {
-      onPick: (key) => this.choose(key),
+      onPick: (key) => this.pick(key),
       onCompare: (key, wanted) => this.compare(key, wanted),
     });
     const turnTo = (degrees) => this.turnTo(degrees / DEG);
@@ -48,7 +48,8 @@ class Live {
   // Nothing of the last task stays.
   forget() {
     this.player.pause();
-    Object.assign(this, { designs: [], chosen: null, followed: null, lost: [], compared: [], listed: null });
+    Object.assign(this, { designs: [], chosen: null, preferred: null, followed: null });
+    Object.assign(this, { lost: [], compared: [], listed: null });
     Object.assign(this.stage, { view: null, design: null, together: [] });
     this.listing.clear();
     this.showComparison();
@@ -158,10 +159,19 @@ class Live {
       ...line.asked.map((words) => Object.assign(document.createElement("li"), { textContent: words })),
     );
     this.headline(line);
-    const kept = this.designs.some(({ key }) => key === this.chosen);
-    if (this.designs.length) this.choose(kept ? this.chosen : this.designs[0].key, { first });
+    // A design that a search has not found yet may come back until it is done.
+    const kept = [this.preferred, this.chosen].find((key) => this.has(key));
+    if (this.designs.length) this.choose(kept ?? this.designs[0].key, { first });
     else this.showNone();
+    if (phase === "found") {
+      this.preferred = this.chosen;
+      this.compared = this.compared.filter((key) => this.has(key));
+    }
     this.showComparison();
+  }
+
+  has(key) {
+    return this.designs.some((design) => design.key === key);
   }
 
   headline({ phase, designs, lost, headline, found }) {
@@ -182,6 +192,12 @@ class Live {
 
   get design() {
     return this.designs.find(({ key }) => key === this.chosen);
+  }
+
+  // As a hand does: the design stays the chosen one in the lists to come.
+  pick(key) {
+    this.preferred = key;
+    this.choose(key);
   }
 
   choose(key, { first = false } = {}) {
@@ -255,8 +271,7 @@ class Live {
   }
 
   showComparison() {
-    const known = this.compared.filter((key) => this.designs.some((design) => design.key === key));
-    this.compared = known;
+    const known = this.compared.filter((key) => this.has(key));
     this.listing.markCompared(known);
     if (!known.length && !this.comparison) return;
     const { scene } = this.stage;
@@ -264,7 +279,7 @@ class Live {
       scene,
       designs: this.designs,
       columns: this.columns,
-      onPick: (index) => this.choose(this.designs[index].key),
+      onPick: (index) => this.pick(this.designs[index].key),
       onChange: (index, wanted) => this.compare(this.designs[index].key, wanted),
     });
     const indexes = known.map((key) => this.designs.findIndex((design) => design.key === key));
