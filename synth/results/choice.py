@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged_in_time
 from grashof.synth.designs.ranking import ranked
-from grashof.synth.designs.zones import shares
 from grashof.synth.programme.merit import same_error
 from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.results.larger_zones import nearest_zones
 from grashof.synth.results.trade_offs import Chosen, seeds_of, started_at, trade_offs
-from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.ledger import EXACT_ERROR, Ledger
 from grashof.synth.search.run import Run
 from grashof.synth.search.searches import error_of_use
@@ -57,13 +55,10 @@ def _best_within_bounds(
     for one in attempts:
         good += one.verified[:1]
         good += [each for each in judged_in_time(scaled, one.cognates, most) if each.verdict.ok]
-    if not good and scaled.zones is not None and not run.ended():  # how large the zones would have to be
-        relaxed = [replace(start, relaxed=("within",)) for start in starts]
-        lack = min((max(shares(problem, one.verdict)) for one in again), default=1.0)
-        larger = replace(scaled, zones=scaled.zones * max(1.0, lack / 2))
-        made = run.solve(larger, relaxed, ledger.solved + solved) + [Attempt("", one) for one in again]
-        good = [candidate for one in made for candidate in one.verified[:1]]
-        attempts, solved = made + attempts, solved + len(starts)
+    if not good and scaled.zones is not None:
+        near, more = nearest_zones(scaled, starts, again, ledger.solved + solved, run)
+        good = [candidate for one in near for candidate in one.verified[:1]]
+        attempts, solved = near + attempts, solved + more
     return Chosen(ranked(problem, good), [one for one in attempts if not one.verified], solved)
 
 

@@ -13,7 +13,50 @@ from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.zones import MISSED, shares
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.start import Start
 from grashof.synth.results.relaxed_limits import Relaxation
+from grashof.synth.results.trade_offs import started_at
+from grashof.synth.search.attempt import Attempt
+from grashof.synth.search.run import Run
+
+HALF = 0.5  # of the enlargement needed at first: near it the sum of the misses is made small
+CLOSER = (0.8, 0.95)  # of the enlargement needed so far: the shares that are tried, the first and the last
+
+
+def nearest_zones(
+    scaled: ScaledProblem, starts: Sequence[Start], known: Sequence[Candidate], first: int, run: Run
+) -> tuple[list[Attempt], int]:
+    """Designs for which zones need little enlargement, with those `known`, and the number of starts solved.
+
+    Zones become smaller as long as a design is found for them, by less where none is.
+    """
+    problem, zones = scaled.problem, scaled.zones
+    made, solved = [Attempt("", one) for one in known], 0
+
+    def tried(share: float, begun: Sequence[Start], need: FloatArray) -> Candidate | None:
+        nonlocal made, solved
+        larger = replace(scaled, zones=zones * np.maximum(1.0, share * need)[:, None])
+        attempts = run.solve(larger, list(begun), first + solved)
+        made, solved = attempts + made, solved + len(attempts)
+        found = _missing_zones(problem, [one.candidate for one in made if one.candidate is not None])
+        return found[0] if found else None
+
+    if zones is None or not starts or run.ended():
+        return made, solved
+    need = min((_need(problem, one) for one in known), key=np.max, default=np.ones(2))
+    nearest = tried(HALF, [replace(start, relaxed=("within",)) for start in starts], need)
+    share, last = CLOSER
+    while nearest is not None and share <= last and not run.ended():
+        need = _need(problem, nearest)
+        if need.max() <= 1:
+            break
+        like = starts[0]
+        here = started_at(scaled, nearest, like.objective, most_error=like.most_error, zoned=True)
+        nearest = tried(share, [*starts, here], need) or nearest
+        if _need(problem, nearest).max() > (1 + share) / 2 * need.max():
+            share = float(np.sqrt(share))
+    return made, solved
 
 
 def wider(
@@ -26,8 +69,7 @@ def wider(
     """
     if problem.zones is None:
         return []
-    near = [one for one in known if {defect.requirement for defect in one.verdict.defects} <= MISSED]
-    for one in sorted(near, key=lambda one: (max(shares(problem, one.verdict)), one.id)):
+    for one in _missing_zones(problem, known):
         asked, words = _enlarged(problem, shares(problem, one.verdict))
         if verify(
             one.linkage,
@@ -41,6 +83,18 @@ def wider(
             own = tuple(constraints)
             return [Relaxation("within", words, asked.requirements, own, one, miss, words.count(" and ") + 1)]
     return []
+
+
+def _missing_zones(problem: Problem, known: Sequence[Candidate]) -> list[Candidate]:
+    """Those that miss nothing but their zones, the nearest first."""
+    near = [one for one in known if {defect.requirement for defect in one.verdict.defects} <= MISSED]
+    return sorted(near, key=lambda one: (max(shares(problem, one.verdict)), one.id))
+
+
+def _need(problem: Problem, one: Candidate) -> FloatArray:
+    """How many times as large as they are zones of positions and of angles would have to be."""
+    need = np.array(shares(problem, one.verdict))
+    return need if len(problem.task.stated_zones) == 2 else np.full(2, need.max())
 
 
 def _enlarged(problem: Problem, times: tuple[float, float]) -> tuple[Problem, str]:

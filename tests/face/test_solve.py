@@ -128,12 +128,19 @@ def test_output_folder_that_cannot_be_written(grashof: Grashof, tmp_path: Path) 
     assert (tmp_path / "taken").read_text() == "a file"
 
 
-def test_a_tilde_is_a_name(grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+def test_a_tilde_is_a_name(
+    grashof: Grashof,
+    tmp_path: Path,
+    tmp_path_factory: pytest.TempPathFactory,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    home = tmp_path_factory.mktemp("home")  # others, as Matplotlib, may keep files there
+    monkeypatch.setenv("HOME", str(home))
     assert grashof("solve", "luggage", "--out", "~", "--starts", "2", "--drawings", "1").exit_code == 0
     names = {"candidates.csv", "candidates.json", "report.html", "run.json", "design-01.png", "design-01.svg"}
     assert {path.name for path in (tmp_path / "~").iterdir()} == names
     assert [path.name for path in tmp_path.iterdir()] == ["~"]
+    assert not {path.name for path in home.rglob("*")} & names
 
 
 def test_foreign_files_are_refused_before_solving(grashof: Grashof, tmp_path: Path) -> None:
