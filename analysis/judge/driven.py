@@ -136,6 +136,23 @@ def cylinder_forces(
     -----
     By virtual work, F dL/dtheta2 = T of the inverse dynamics (Norton, *Design of Machinery*, sec. 11.10);
     see `cylinder_force` for friction.
+
+    Examples
+    --------
+    A jack turns the crank of a parallelogram that lifts 100 kg without tilting it; slowly, it pushes with
+    2 m g cos(theta2) / cos(theta2 / 2), as its length is 2 sin(theta2 / 2):
+
+    >>> from grashof.analysis import verify
+    >>> from grashof.problems import Cylinder, DynamicsSpec, FourBar, MotionTask, Problem
+    >>> linkage = FourBar(o2=(0, 0), o4=(1, 0), r2=2, r3=1, r4=2, coupler_point=(0.5, 0))
+    >>> theta2 = np.radians([30, 60])
+    >>> lifted = np.stack([0.5 + 2 * np.cos(theta2), 2 * np.sin(theta2)], axis=1)
+    >>> slow = DynamicsSpec(payload=100, gravity=(0, -9.81), speed_rpm=1e-4)
+    >>> problem = Problem(task=MotionTask(lifted, [0, 0]), dynamics=slow, length_unit="m")
+    >>> jack = Cylinder("driver", base=(1, 0), point=(1, 0))
+    >>> verdict = verify(linkage, problem.task, problem.requirements, problem=problem, cylinder=jack)
+    >>> cylinder_forces(linkage, problem, verdict).round(1).tolist()
+    [1759.1, 1132.8]
     """
     theta2 = verdict.theta2 if theta2 is None else theta2
     if problem.dynamics is None or verdict.cylinder is None or not verdict.branch_ok:
