@@ -1,4 +1,9 @@
-"""What searches cost, in Ipopt's solves and iterations on fixed seeds: it does not depend on the machine."""
+"""What searches cost, in Ipopt's solves and iterations on fixed seeds: hardly a matter of the machine.
+
+Processors round differently, and a solve that wanders may then take 250 iterations instead of 90. So
+iterations are counted up to a hundred a solve and added up over three seeds; BLAS kernels for Nehalem,
+Haswell and Skylake-X then differ by a fifth at most: the figures below lie between them.
+"""
 
 from __future__ import annotations
 
@@ -14,10 +19,12 @@ from grashof.synth import synthesize
 from grashof.synth.programme import exchange
 
 MORE, LESS = 1.25, 0.6  # times the figures below
+SEEDS = range(3)
+COUNTED = 100  # iterations of a solve at most
 
 
 class Effort(NamedTuple):
-    """Of a search: Ipopt's solves and iterations, and the designs found."""
+    """Of the searches of all seeds: Ipopt's solves, iterations that count, and designs found."""
 
     solves: int
     iterations: int
@@ -26,14 +33,14 @@ class Effort(NamedTuple):
 
 # Measured; update a figure where a search has become cheaper, and say why where it has become dearer.
 EXPECTED = {
-    "luggage": Effort(32, 314, 24),
-    "luggage through zones": Effort(44, 1376, 25),
-    "luggage by a slider-crank": Effort(32, 624, 26),
-    "path-8-points": Effort(27, 2094, 11),
-    "path-vertical-line": Effort(32, 493, 42),
-    "path-18-timed": Effort(17, 631, 12),
-    "path-ellipse": Effort(34, 1778, 15),
-    "path-ellipse through zones": Effort(26, 1821, 16),
+    "luggage": Effort(96, 943, 72),
+    "luggage through zones": Effort(133, 3500, 75),
+    "luggage by a slider-crank": Effort(96, 1905, 79),
+    "path-8-points": Effort(69, 4650, 29),
+    "path-vertical-line": Effort(96, 1605, 126),
+    "path-18-timed": Effort(51, 1420, 38),
+    "path-ellipse": Effort(102, 5000, 49),
+    "path-ellipse through zones": Effort(74, 4510, 43),
 }
 
 
@@ -56,12 +63,12 @@ def effort_of(problem: Problem, monkeypatch: pytest.MonkeyPatch) -> Effort:
 
     def counted(*given: Any) -> Any:
         solved = solve(*given)
-        spent.append(solved.iterations)
+        spent.append(min(solved.iterations, COUNTED))
         return solved
 
     monkeypatch.setattr(exchange, "solve", counted)
-    found = synthesize(problem, seed=0, starts=48, enough=24, effort=0.2)
-    return Effort(len(spent), sum(spent), len(found))
+    designs = sum(len(synthesize(problem, seed=seed, starts=48, enough=24, effort=0.2)) for seed in SEEDS)
+    return Effort(len(spent), sum(spent), designs)
 
 
 @pytest.mark.parametrize("name", EXPECTED)
