@@ -29,10 +29,12 @@ SMALL: dict[str, dict[str, Any]] = {
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Of a test marked `quick` all cases but those named are slow; a name that no case has is an error."""
+    """Studies are slow; of a test marked `quick` all cases are but those named, which must be cases of it."""
     known: dict[str, set[str]] = {}
     named: dict[str, set[str]] = {}
     for item in items:
+        if item.get_closest_marker("study"):
+            item.add_marker(pytest.mark.slow)
         test, _, case = item.nodeid.removesuffix("]").partition("[")
         for mark in item.iter_markers("quick"):
             known.setdefault(test, set()).add(case)

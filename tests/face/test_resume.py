@@ -71,7 +71,7 @@ def killed_and_resumed(folder: Path, moments: list[float]) -> bytes:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("moments", [2, 20])
+@pytest.mark.parametrize("moments", [2, pytest.param(20, marks=pytest.mark.study)])
 def test_a_run_that_was_killed_goes_on_to_the_same_list(tmp_path: Path, moments: int) -> None:
     whole, killed = tmp_path / "whole", tmp_path / "killed"
     whole.mkdir()

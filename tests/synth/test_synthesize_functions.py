@@ -65,7 +65,7 @@ def greatest_error(
         ("log10", 2),
         ("sin", 0),
         *(
-            pytest.param(name, column, marks=pytest.mark.slow)
+            pytest.param(name, column, marks=pytest.mark.study)
             for name in REFERENCES
             for column in range(3)
             if (name, column) not in (("log10", 2), ("sin", 0))
@@ -257,9 +257,9 @@ def block_error(linkage: Any, start: float, sense: int, turned: FloatArray) -> F
     [
         ("slider-crank", "log10"),
         ("inverted-slider-crank", "sqrt"),
-        *(pytest.param("slider-crank", each, marks=pytest.mark.slow) for each in SLIDES if each != "log10"),
+        *(pytest.param("slider-crank", each, marks=pytest.mark.study) for each in SLIDES if each != "log10"),
         *(
-            pytest.param("inverted-slider-crank", each, marks=pytest.mark.slow)
+            pytest.param("inverted-slider-crank", each, marks=pytest.mark.study)
             for each in BLOCKS
             if each != "sqrt"
         ),

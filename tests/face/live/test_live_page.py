@@ -92,7 +92,7 @@ def drag(page: Page, handle: str, by: tuple[float, float], steps: int = 5) -> No
     page.mouse.up()
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_forty_moves_show_what_the_library_gives(page: Page) -> None:
     """Each followed list is `track` of the last one, and in the end the list is that of a search."""
     page.evaluate(
@@ -435,7 +435,9 @@ def test_the_velocity_of_p_is_that_of_the_analysis(page: Page, kind: str) -> Non
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["function-log10", "quick-return-slide", "lifting-arm"])
+@pytest.mark.parametrize(
+    "name", ["function-log10", "quick-return-slide", pytest.param("lifting-arm", marks=pytest.mark.study)]
+)
 def test_tasks_without_points_and_with_cylinders_are_searched(page: Page, name: str) -> None:
     page.locator("[data-menu=open] summary").click()
     page.locator("[name=catalogue]").select_option(name)

@@ -267,7 +267,9 @@ def check(spec: LinkageSpec) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("tens", range(20))
+@pytest.mark.parametrize(
+    "tens", [*range(4), *(pytest.param(tens, marks=pytest.mark.study) for tens in range(4, 20))]
+)
 def test_every_figure_of_two_hundred_linkages(tens: int) -> None:
     for seed in range(10 * tens, 10 * tens + 10):
         check(random_spec(seed))

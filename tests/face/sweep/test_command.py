@@ -120,7 +120,7 @@ def ended_after(running: subprocess.Popen[str], steps: int, number: signal.Signa
 
 
 @posix
-@pytest.mark.slow
+@pytest.mark.study
 def test_two_hundred_tasks_interrupted_in_every_way(write: Write, tmp_path: Path) -> None:
     study, out = write(MANY), tmp_path / "out"
     ways: list[tuple[signal.Signals, bool, int]] = [

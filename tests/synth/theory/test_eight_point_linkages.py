@@ -170,7 +170,9 @@ def test_of_558_paths_548_arrive_and_the_planted_slider_crank_is_found(benchmark
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", range(3))
+@pytest.mark.parametrize(
+    "number", [2, *(pytest.param(number, marks=pytest.mark.study) for number in range(2))]
+)
 def test_the_planted_inverted_slider_crank_is_found(benchmark, number):
     kind = "inverted-slider-crank"
     points, _ = benchmark.planted_points(kind, np.random.default_rng([8, number]))

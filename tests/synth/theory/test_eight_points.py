@@ -111,7 +111,7 @@ def test_loops_from_one_solution_lead_to_known_ones(family):
     assert all(near(every, invariant).any() for invariant in family.invariants(found))
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_other_points_have_as_many_slider_cranks():
     rng = np.random.default_rng(11)
     displacements, first = general_problem(SLIDER_CRANKS, rng)

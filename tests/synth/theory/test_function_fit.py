@@ -34,7 +34,7 @@ def test_planted_functions_are_found(mechanism: str, pairs: int, full: bool) -> 
     assert sum(solved(rng, pairs, mechanism, full=full) for _ in range(8)) == 8
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @EVERY
 @pytest.mark.parametrize("full", [False, True])
 @pytest.mark.parametrize("pairs", [6, 8, 12, 24])
