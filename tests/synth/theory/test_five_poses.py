@@ -89,7 +89,7 @@ def missing(found: Dyads, moving: ComplexArray, ground: ComplexArray, wanted: Bo
     gap = np.abs(found.moving[:, None] - moving[..., None])
     gap += np.abs(found.ground[:, None] - ground[..., None])
     nearest = np.where(np.isnan(gap), np.inf, gap).min(axis=-1)
-    return np.asarray((nearest / scale)[wanted])
+    return np.asarray(nearest[wanted] / scale[wanted])  # what is not may be infinite
 
 
 @pytest.mark.parametrize(("seed", "turn"), [(1, np.pi), (2, 0.4)])
