@@ -29,7 +29,7 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):  # before NumPy is load
 
 import numpy as np  # noqa: E402
 from limited_tasks import problem_of  # noqa: E402
-from peers import PEERS  # noqa: E402
+from peers import PEERS, LeftOutError  # noqa: E402
 
 from grashof import load, synthesize  # noqa: E402
 from grashof.analysis import verify  # noqa: E402
@@ -82,8 +82,8 @@ def run(peer: str, problem: Problem, seed: int, budget: float) -> dict[str, Any]
     signal.setitimer(signal.ITIMER_PROF, OVERTIME * budget)
     try:
         PEERS[peer](problem, seed, budget, lambda linkage: found.append((process_time() - begun, linkage)))
-    except (NotImplementedError, ModuleNotFoundError) as error:
-        return {"left_out": type(error).__name__}
+    except (LeftOutError, ModuleNotFoundError) as error:
+        return {"left_out": str(error)}
     except (RuntimeError, ValueError, TimeoutError) as error:  # a package's own word for nothing found
         print(f"{peer}: {error}")
     finally:

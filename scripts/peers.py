@@ -32,6 +32,10 @@ WEIGHT, MARGIN = 100.0, 1e-4  # of limits as penalties, which give way a little
 Found = Callable[[Linkage], None]
 
 
+class LeftOutError(Exception):
+    """A task that a package cannot express."""
+
+
 def penalised(x: FloatArray, task: Formulation, choice: Choice, weight: float = WEIGHT) -> FloatArray:
     """The residuals and, weighted, what the limits lack."""
     lack = np.maximum(task.limits(x, choice) + MARGIN, 0)
@@ -179,7 +183,7 @@ def fourbarhinge(problem: Problem, seed: int, budget: float, found: Found) -> No
         found(_of_fourbarhinge(solved.params, solved.branch))
         return
     if not isinstance(task, PathTask) or task.timing is not None:
-        raise NotImplementedError
+        raise LeftOutError("paths without timing alone")
     while not over():
         solved = package.CouplerPathSynthesis(task.positions, bounds).solve(n_starts=20, seed=seed)
         found(_of_fourbarhinge(solved.params, solved.branch))
@@ -228,7 +232,7 @@ def pylinkage(problem: Problem, seed: int, budget: float, found: Found) -> None:
             found(_of_pylinkage(each, task))
         return
     if task.timing is not None or not isinstance(task, PathTask):
-        raise NotImplementedError
+        raise LeftOutError("paths without timing alone")
     points = [*map(tuple, task.positions.tolist())]
     for each in package.path_generation(points, require_grashof=full).raw_solutions:
         found(_of_pylinkage(each))

@@ -104,7 +104,7 @@ def fit_polynomial(parameter: npt.ArrayLike, values: npt.ArrayLike, degree: int)
     --------
     >>> t = np.linspace(0, 2, 9)
     >>> fit = fit_polynomial(t, np.stack([1 + t, t**2], axis=-1), degree=2)
-    >>> np.abs(fit.powers).round(12).tolist(), round(fit.r2, 12)
+    >>> (fit.powers.round(12) + 0.0).tolist(), round(fit.r2, 12)
     ([[1.0, 0.0], [1.0, 0.0], [0.0, 1.0]], 1.0)
     """
     t, y = samples(parameter, values)

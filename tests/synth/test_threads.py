@@ -162,7 +162,7 @@ SCRIPTS = {"at once": AT_ONCE, "as executor": AS_EXECUTOR, "async": ASYNC, "own 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "how", ["as executor", "async", "own functions", pytest.param("at once", marks=pytest.mark.study)]
+    "how", [pytest.param(how, marks=pytest.mark.study) if how == "at once" else how for how in SCRIPTS]
 )
 def test_threads_give_the_serial_lists(how: str, tmp_path: Path) -> None:
     (tmp_path / "threads.py").write_text(SEARCHES + SCRIPTS[how], encoding="utf-8")

@@ -22,9 +22,7 @@ def crossings(theta2: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Pairs of parameters at which the polygon z crosses itself, shape (K, 2)."""
     start, side = z[:-1], np.diff(z)
     i, j = np.triu_indices(len(side), k=2)
-    if np.isclose(
-        z[0], z[-1], rtol=0, atol=1e-9
-    ):  # the end of a closed curve is no crossing of its beginning
+    if np.isclose(z[0], z[-1], rtol=0, atol=1e-9):  # a closed curve: its ends meet, they do not cross
         apart = j - i < len(side) - 1
         i, j = i[apart], j[apart]
     across = (side[i].conj() * side[j]).imag
