@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, fields
 from itertools import chain
 from pathlib import Path
 
-import numpy as np
-
 from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.toml_file import file_text
 from grashof.problems.values.checks import located, plain_text
-from grashof.synth.designs.judging import alike, judged_again
 from grashof.synth.results.conclusion import conclude, needless
 from grashof.synth.results.mixed import one_list
 from grashof.synth.results.result import Result
@@ -32,6 +28,7 @@ from grashof.synth.search.journal import (
 )
 from grashof.synth.search.ledger import Chunk, Ledger
 from grashof.synth.search.plain import restored
+from grashof.synth.search.recorded_designs import agrees, is_whole_chunk
 from grashof.synth.search.run import Progress, Run
 from grashof.synth.search.searches import finished, found_few
 from grashof.synth.search.workers import working
@@ -39,7 +36,6 @@ from grashof.synth.shards import PROBLEM, SHARDS, Plan, Shard
 from grashof.synth.theory.stopping import stopping
 
 NAMED = 12  # shards that a message names
-_COGNATE = re.compile("(d[0-9a-f]{7})?")  # id of the design that another one is a cognate of
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +113,9 @@ class Shards:
                 try:
                     if step["step"] != name:
                         raise ValueError(name)
-                    chunk = _checked(restored(step["result"], ledger.scaled.problem), ledger.scaled.problem)
+                    chunk = restored(step["result"], ledger.scaled.problem)
+                    if not isinstance(chunk, Chunk) or not is_whole_chunk(ledger.scaled, chunk):
+                        raise ValueError(name)
                 except (ValueError, KeyError, TypeError):
                     raise _damaged(self.folder / SHARDS / shard.folder) from None
                 yield ledger, chunk
@@ -204,36 +202,11 @@ def _of_shard(own: Path) -> tuple[Problem, str, Search]:
     return problem_of(text, str(path), name), text, search
 
 
-def _checked(chunk: object, problem: Problem) -> Chunk:
-    """A chunk of which all is as a search leaves it, but what the judge alone knows.
-
-    Raises
-    ------
-    ValueError
-        It is not.
-    """
-    if not isinstance(chunk, Chunk) or min(chunk.solved, chunk.size, *chunk.tally.recorded.values(), 0) < 0:
-        raise ValueError(type(chunk).__name__)
-    if not all(one.verdict.ok for one in chunk.designs):
-        raise ValueError("a design with defects")
-    for one in (*chunk.designs, *(miss.candidate for miss in chunk.misses)):
-        if one is None or one.own_objective is not None or f"{one.best_at}{one.family}":
-            raise ValueError("a design of no chunk")
-        if not _COGNATE.fullmatch(one.cognate_of):
-            raise ValueError(one.cognate_of)
-        verdict, targets = one.verdict, len(problem.task)
-        each = verdict.theta2, verdict.assembly, verdict.position_error, verdict.angle_error
-        if any(np.shape(array) != (targets,) or array.dtype.kind not in "if" for array in each):
-            raise ValueError("a verdict on another task")
-    return chunk
-
-
 def _refuse_unverified(folder: Path, ledger: Ledger) -> None:
     """Judge once more what may be listed, or the misses where nothing may be: a file may say anything."""
     misses = [one.candidate for one in ledger.rejected if one.candidate is not None]
     for one in ledger.best or misses:
-        verdict = judged_again(ledger.scaled, one).verdict
-        if not alike(verdict, one.verdict, ledger.scaled.problem.task.size):
+        if not agrees(ledger.scaled, one):
             raise _damaged(folder / SHARDS)
 
 

@@ -9,6 +9,7 @@ from typing import Any
 from grashof.problems import Search
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.search.ledger import Chunk, Ledger
+from grashof.synth.search.recorded_designs import is_true_chunk
 from grashof.synth.search.rounds import solve_round
 from grashof.synth.search.run import Run
 from grashof.synth.search.workers import CrashError, Here, Work, screen
@@ -74,7 +75,8 @@ def chunks(scaled: ScaledProblem, run: Run, numbers: Sequence[int], starts: int)
             anew = run.work.begin(chunk, scaled, first, *rest)  # at the beginning, or after a loss
             for each in later if anew else later[-1:]:
                 run.work.begin(chunk, scaled, each, *rest)
-        yield run.step(CHUNK, (number, *rest), scaled, partial(_made, run.work, scaled, number, *rest))
+        make = partial(_made, run.work, scaled, number, *rest)
+        yield run.step(CHUNK, (number, *rest), scaled, make, partial(is_true_chunk, scaled))
 
 
 def begin_chunks(scaled: ScaledProblem, run: Run, numbers: Sequence[int], starts: int) -> None:

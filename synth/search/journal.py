@@ -45,8 +45,10 @@ class Journal(Protocol):
     def taken(self) -> int:
         """How many steps were taken from the record."""
 
-    def done(self, kind: str, of: Any, problem: Problem, do: Callable[[], T], /) -> T:
-        """The result of the next step: as recorded, else done now.
+    def done(
+        self, kind: str, of: Any, problem: Problem, do: Callable[[], T], holds: Callable[[object], bool], /
+    ) -> T:
+        """The result of the next step: as recorded, where that holds, else done now.
 
         Parameters
         ----------
@@ -58,6 +60,8 @@ class Journal(Protocol):
             That its designs are for.
         do : callable
             Does it.
+        holds : callable
+            Whether a recorded result is true; what is not is done again.
         """
 
     def close(self) -> None:
@@ -69,7 +73,15 @@ class Unrecorded:
 
     recorded, resumed, taken = False, 0, 0
 
-    def done(self, _kind: str, _of: Any, _problem: Problem, do: Callable[[], T], /) -> T:
+    def done(
+        self,
+        _kind: str,
+        _of: Any,
+        _problem: Problem,
+        do: Callable[[], T],
+        _holds: Callable[[object], bool],
+        /,
+    ) -> T:
         """The result of a step."""
         return do()
 
@@ -111,12 +123,14 @@ class Recorded:
             self.begin()
             self._unread.extend(_files(folder))
 
-    def done(self, kind: str, of: Any, problem: Problem, do: Callable[[], T], /) -> T:
+    def done(
+        self, kind: str, of: Any, problem: Problem, do: Callable[[], T], holds: Callable[[object], bool], /
+    ) -> T:
         """The result of the next step: as recorded, else done now and recorded."""
         if not self._open:
             return do()
         name = step_name(kind, of)
-        found = self._next(name, problem)
+        found = self._next(name, problem, holds)
         if found is not None:
             known: T = found[0]
             return known
@@ -159,7 +173,7 @@ class Recorded:
         self._open = False
         remove_record(self._folder)
 
-    def _next(self, name: str, problem: Problem) -> tuple[Any] | None:
+    def _next(self, name: str, problem: Problem, holds: Callable[[object], bool]) -> tuple[Any] | None:
         while not self._recorded and self._unread:
             path = self._unread.popleft()
             self._recorded.extend(_steps(path))
@@ -168,14 +182,14 @@ class Recorded:
             return None
         step = self._recorded.popleft()
         try:
-            if step["step"] == name:
-                known = (restored(step["result"], problem),)
+            known = (restored(step["result"], problem),) if step["step"] == name else None
+            if known is not None and holds(known[0]):
                 self._read.append(step)
                 self.taken += 1
                 if not self.recorded:
                     _LOG.info("resumed from a record of %d steps", self.taken)
                 return known
-        except (ValueError, KeyError, TypeError):  # what is damaged is done again
+        except (ValueError, KeyError, TypeError):  # damaged
             pass
         _LOG.info("resumed from a record of %d steps; what follows in it is done again", self.taken)
         self._forget()

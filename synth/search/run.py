@@ -6,6 +6,7 @@ import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from time import perf_counter
 from typing import Any, TypeVar
 
@@ -16,6 +17,7 @@ from grashof.synth.programme.start import Round, Start
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.journal import Journal, Unrecorded
 from grashof.synth.search.ledger import Ledger
+from grashof.synth.search.recorded_designs import Holds, are_attempts, is_round
 from grashof.synth.search.workers import CRASHED, Work, glance, screen
 
 _LOG = logging.getLogger(__name__)
@@ -105,7 +107,8 @@ class Run:
         if not starts:
             return []
         of = (first, *starts)
-        made = self.step("solve", of, scaled, lambda: self.work.attempts(scaled, starts, first))
+        holds = partial(are_attempts, scaled, starts)
+        made = self.step("solve", of, scaled, lambda: self.work.attempts(scaled, starts, first), holds)
         self._log(made, first)
         return made
 
@@ -120,7 +123,7 @@ class Run:
     def glanced(self, scaled: ScaledProblem) -> Round | None:
         """What is found at once, before the first round."""
         seed = self.search.seed
-        return self.step("glance", (seed,), scaled, lambda: glance(scaled, seed))
+        return self.step("glance", (seed,), scaled, lambda: glance(scaled, seed), is_round)
 
     def screened(self, scaled: ScaledProblem, number: int) -> Round | None:
         """One round of a search."""
@@ -128,11 +131,13 @@ class Run:
         if not self.journal.recorded:
             for later in range(number + 1, min(number + self.work.width, EXPECTED)):
                 self.work.begin(screen, scaled, 0, later, *which[1:])
-        return self.step("screen", which, scaled, lambda: self.work.made(screen, scaled, 0, *which))
+        return self.step("screen", which, scaled, lambda: self.work.made(screen, scaled, 0, *which), is_round)
 
-    def step(self, kind: str, of: tuple[Any, ...], scaled: ScaledProblem, do: Callable[[], T]) -> T:
-        """The result of a step of the search, as recorded or done now."""
-        return self.journal.done(kind, of, scaled.problem, lambda: self.whole(do()))
+    def step(
+        self, kind: str, of: tuple[Any, ...], scaled: ScaledProblem, do: Callable[[], T], holds: Holds
+    ) -> T:
+        """The result of a step of the search, as recorded where that holds, or done now."""
+        return self.journal.done(kind, of, scaled.problem, lambda: self.whole(do()), holds)
 
     def begin(self, scaled: ScaledProblem, starts: list[Start]) -> None:
         """Begin solves that may be wanted, where that costs no time."""

@@ -1,7 +1,9 @@
 """Records of searches: wherever a search ended, it goes on to the same list."""
 
 import json
+import shutil
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -61,10 +63,20 @@ def test_a_search_that_was_killed_goes_on_to_the_same_list(
     assert not folder.exists()
 
 
-def recorded(folder: Path) -> Path:
-    """The record of a search that was stopped after a few solves."""
+@pytest.fixture(scope="module")
+def fitted(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+    """The record of a search that was stopped, and the list of the whole search."""
     problem, options = KINDS["poses fitted"]
-    synthesize(problem, **options, record=folder, stop=lambda: len(list(folder.glob("0*.json"))) > 1)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(journal_module, "EVERY", 0.0)
+        folder = recorded(tmp_path_factory.mktemp("record") / "search", files=4)
+    return folder, table(synthesize(problem, **options))
+
+
+def recorded(folder: Path, files: int = 2) -> Path:
+    """The record of a search that was stopped after a few steps, a file each."""
+    problem, options = KINDS["poses fitted"]
+    synthesize(problem, **options, record=folder, stop=lambda: len(list(folder.glob("0*.json"))) >= files)
     return folder
 
 
@@ -78,15 +90,46 @@ def test_a_search_that_was_stopped_goes_on_to_the_same_list(tmp_path: Path, stop
     assert table(synthesize(problem, **options, record=tmp_path / "search")) == table(whole)
 
 
-@pytest.mark.parametrize("damage", ["truncated", "other", "empty"])
-def test_what_is_damaged_is_done_again(tmp_path: Path, damage: str) -> None:
+def longer(value: Any, inside: bool = False) -> Any:
+    """The same record with every linkage a hundredth larger."""
+    if isinstance(value, dict):
+        return {key: longer(each, inside or key == "FourBar") for key, each in value.items()}
+    if isinstance(value, list):
+        return [longer(each, inside) for each in value]
+    return value * 1.01 if inside and isinstance(value, float) else value
+
+
+def tampered(text: str, change: Callable[[Any], Any]) -> str:
+    """A file of a record whose results are changed, with a sum that is right."""
+    steps = json.loads(text)["steps"]
+    changed = [{"step": step["step"], "result": change(step["result"])} for step in steps]
+    return json.dumps(journal_module.content_of(changed))
+
+
+DAMAGES: dict[str, Callable[[str], str]] = {
+    "truncated": lambda text: text[: len(text) // 2],
+    "other": lambda text: json.dumps({"steps": [{"step": 1}]}),
+    "empty": lambda text: "",
+    "linkages that miss": lambda text: tampered(text, longer),
+    "a word for a result": lambda text: tampered(text, lambda _: "verified"),
+    "fewer attempts": lambda text: tampered(text, lambda _: {"list": []}),
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_what_is_damaged_or_untrue_is_done_again(
+    tmp_path: Path, damage: str, fitted: tuple[Path, str]
+) -> None:
     problem, options = KINDS["poses fitted"]
-    folder = recorded(tmp_path / "search")
-    first = min(folder.glob("0*.json"))
-    text = first.read_text(encoding="utf-8")
-    harmed = {"truncated": text[: len(text) // 2], "other": json.dumps({"steps": [{"step": 1}]}), "empty": ""}
-    first.write_text(harmed[damage], encoding="utf-8")
-    assert table(synthesize(problem, **options, record=folder)) == table(synthesize(problem, **options))
+    record, whole = fitted
+    folder = tmp_path / "search"
+    shutil.copytree(record, folder)
+    for path in folder.glob("0*.json"):
+        path.write_text(DAMAGES[damage](path.read_text(encoding="utf-8")), encoding="utf-8")
+    found = synthesize(problem, **options, record=folder)
+    assert table(found) == whole
+    assert found.story is not None
+    assert found.story.steps_recorded <= 2  # no design came of the glance and the first screening
 
 
 def test_the_record_of_another_search_is_refused(tmp_path: Path) -> None:
