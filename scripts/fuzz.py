@@ -40,7 +40,7 @@ from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.linkage_spec import ListedDesign
 from grashof.survey import report_on
 from grashof.synth import Result
-from grashof.synth.starts.finder import finder_of
+from grashof.synth.starts.finder import refuse_unsearchable
 from grashof.wording.problem import summary
 from grashof.workshop.plan import plan_parts
 from grashof.workshop.plates import PlateSizes
@@ -148,7 +148,7 @@ def _examine_problem(problem: Problem, folder: Path, figures: Counter[str], work
             raise BrokenError(WRONG, "what is written of the problem reads back as another one")
         summary(problem)
         try:
-            finder_of(problem).refuse()
+            refuse_unsearchable(problem)
         except ProblemError as error:
             _refuse_unclear(error)
             return

@@ -205,7 +205,7 @@ def solve_shard(
     plan, own = Plan.of(problem, search), folder / SHARDS / shard.folder
     numbers = plan.numbers(shard)
     head = head_of(problem, search, name=problem.name, shard=str(shard))
-    journal = Recorded(own, head)  # refuses another search
+    journal = Recorded(own, head, needed=True)  # refuses another search
     own.mkdir(parents=True, exist_ok=True)
     write_whole(own / PROBLEM, problem_toml(problem) if text is None else text)
     journal.begin()

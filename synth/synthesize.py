@@ -44,6 +44,7 @@ def synthesize(
     progress: Callable[[Progress], object] | None = None,
     stop: Callable[[], bool] | None = None,
     record: Path | None = None,
+    keep_record: bool = False,
 ) -> Result:
     """Find, verify and rank linkages for a problem.
 
@@ -72,8 +73,10 @@ def synthesize(
         Asked often; the search ends soon after it returns True.
     record : Path, optional
         Folder in which a search of more than two seconds is recorded as it goes; it goes on from the
-        record of the same search, and removes it at its end unless it was stopped. Not with
-        constraints or an objective of your own.
+        record of the same search, and removes it at its end unless it was stopped. A disk that is full
+        ends the record, not the search. Not with constraints or an objective of your own.
+    keep_record : bool
+        Leave the record of a whole search, too, until its list is safe.
 
     Returns
     -------
@@ -114,7 +117,7 @@ def synthesize(
     if finder_for(kinds[0]).degenerate():
         return needless(kinds[0], asked)
     found: list[Result] = []
-    with journal_of(record, problem, search) as journal, working(workers, executor) as work:
+    with journal_of(record, problem, search, keep=keep_record) as journal, working(workers, executor) as work:
         run = Run(search, work, asked, journal, progress)
         for number, scaled in enumerate(kinds, start=1):
             part = asked.part(number, len(kinds))

@@ -228,12 +228,12 @@ def sweep(
 def check(problem: ProblemArgument) -> None:
     """Read PROBLEM and print what will be required of a design, without solving."""
     from grashof.output.terminal import folded
-    from grashof.synth.starts.finder import finder_of
+    from grashof.synth.starts.finder import refuse_unsearchable
     from grashof.wording.problem import summary
 
     with _errors_told():
         loaded = load(problem)
-        finder_of(loaded).refuse()
+        refuse_unsearchable(loaded)
         for line in folded(summary(loaded)):
             say(line)
 

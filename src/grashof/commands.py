@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from grashof.output.ending import Exit, Interruption, interruptible
 from grashof.output.streams import say
-from grashof.problems import Problem, ProblemError, load_linkage_spec
+from grashof.problems import Problem, ProblemError, Search, load_linkage_spec
 from grashof.problems.values.checks import counted
 
 if TYPE_CHECKING:
     from grashof.output.drawing import Drawer
     from grashof.synth import Result
+    from grashof.synth.results.so_far import SoFar
+    from grashof.synth.search.run import Progress
 
 TOP = 50  # families in a list by default
 
@@ -66,41 +71,95 @@ def solve(problem: Problem, text: str, options: Options) -> Exit:
 
 
 def _solve(problem: Problem, text: str, options: Options, folder: Path) -> Exit:
-    from grashof.output.cluster import cluster
     from grashof.output.drawing import drawer
     from grashof.output.folder import SEARCH
+    from grashof.synth.results.so_far import SoFar
+    from grashof.synth.search.journal import remove_record
+    from grashof.synth.search.story import Ending
+
+    given = {name: getattr(options, name) for name in ("starts", "seed", "effort")}
+    search = replace(problem.search, **{name: value for name, value in given.items() if value is not None})
+    search = replace(search, enough=max(search.enough, options.top or 0))
+    dask = None if options.scheduler is None else "Dask"  # not where: that names machines
+    settings = {
+        **asdict(search),
+        "workers": options.workers,
+        "scheduler": dask,
+        "time_limit": options.time_limit,
+        "top": options.top or max(TOP, search.enough),
+    }
+    record = folder / SEARCH
+    _begin_record(folder, resume=options.resume)
+    with (
+        drawer(options.drawings) as drawing,
+        interruptible() as interrupted,
+        _pointing_to(record),
+    ):
+        deliver = partial(_deliver, text=text, settings=settings, folder=folder, drawings=options.drawings,
+                          interrupted=interrupted, drawing=drawing)  # fmt: skip
+        so_far = SoFar(problem)
+        try:
+            found = _found(problem, options, settings, search, record, interrupted, so_far)
+        except Exception:  # it is reported after the list
+            if (verified := so_far.result()).candidates:
+                deliver(verified)
+            raise
+        code = deliver(found)
+        if found.story is not None and found.story.ending is Ending.COMPLETE:
+            remove_record(record)
+        return code
+
+
+def _found(
+    problem: Problem,
+    options: Options,
+    settings: dict[str, Any],
+    search: Search,
+    record: Path,
+    interrupted: Interruption,
+    so_far: SoFar,
+) -> Result:
+    """What the search comes to; `settings` gets the number of workers that a scheduler has."""
+    from grashof.output.cluster import cluster
     from grashof.output.terminal import search_progress
     from grashof.synth import synthesize
     from grashof.synth.starts.finder import finder_of
     from grashof.wording.problem import ends_with_enough
 
-    given = {name: getattr(options, name) for name in ("starts", "seed", "effort")}
-    search = replace(problem.search, **{name: value for name, value in given.items() if value is not None})
-    search = replace(search, enough=max(search.enough, options.top or 0))
-    top = options.top or max(TOP, search.enough)
-    _begin_record(folder, resume=options.resume)
-    with drawer(options.drawings) as drawing, interruptible() as interrupted:
-        wanted, beginning = ends_with_enough(problem), finder_of(problem).beginning
-        with (
-            cluster(options.scheduler, options.workers) as (executor, workers),
-            search_progress(problem.name, beginning, wanted=wanted) as progress,
-        ):
-            found = synthesize(
-                problem,
-                **asdict(search),
-                workers=workers,
-                executor=executor,
-                time_limit=options.time_limit,
-                progress=progress,
-                stop=interrupted,
-                record=folder / SEARCH,
-            )
-        if (folder / SEARCH).exists():
-            say(f"{folder / SEARCH}: the search so far; --resume goes on with it", err=True)
-        dask = None if options.scheduler is None else "Dask"  # not where: that names machines
-        run = {"workers": workers, "scheduler": dask, "time_limit": options.time_limit, "top": top}
-        settings = {**asdict(search), **run}
-        return _deliver(found, text, settings, folder, options.drawings, interrupted, drawing)
+    wanted, beginning = ends_with_enough(problem), finder_of(problem).beginning
+    with (
+        cluster(options.scheduler, options.workers) as (executor, workers),
+        search_progress(problem.name, beginning, wanted=wanted) as show,
+    ):
+
+        def progress(step: Progress) -> None:
+            so_far.note(step)
+            show(step)
+
+        settings["workers"] = workers
+        return synthesize(
+            problem,
+            **asdict(search),
+            workers=workers,
+            executor=executor,
+            time_limit=options.time_limit,
+            progress=progress,
+            stop=interrupted,
+            record=record,
+            keep_record=True,
+        )
+
+
+@contextmanager
+def _pointing_to(record: Path) -> Iterator[None]:
+    """State at the end where the search so far is, if it is not whole or its lists could not be written."""
+    from grashof.synth.search.journal import HEAD
+
+    try:
+        yield
+    finally:
+        if (record / HEAD).exists():
+            say(f"{record}: the search so far; --resume goes on with it", err=True)
 
 
 def _deliver(
@@ -117,21 +176,24 @@ def _deliver(
     from grashof.output.run_files import left_out, write_run
     from grashof.output.terminal import print_table
 
+    if found.story is not None and found.story.record_lost:
+        say(f"{found.story.record_lost}; the search went on without its record", err=True)
     if found.ended:
         say(found.ended, err=True)
     result = found.top(settings["top"])
-    if result.candidates or result.complete:  # an interrupted search with nothing replaces nothing
+    if not (result.candidates or result.complete):  # an interrupted search replaces nothing
+        say(result.note, err=True)
+        return interrupted.code if interrupted() else Exit.NO_DESIGN
+    try:
         files = write_run(folder, result, settings, drawings, interrupted, text, drawing)
         _report(result.note, files, folder)
         if left := left_out(result, drawings, files):
             signal = "SIGTERM" if interrupted.code is Exit.TERMINATED else "Ctrl-C"
             say(f"drawings are left out: {signal} came before {left} of them were made", err=True)
-    else:
-        say(result.note, err=True)
-    if result.candidates:
-        print_table(result, len(found))
-    if result.candidates or result.complete:
-        _point_to(folder / PAGE)
+    finally:  # whatever the disk does
+        if result.candidates:
+            print_table(result, len(found))
+    _point_to(folder / PAGE)
     if interrupted():
         return interrupted.code
     return Exit.OK if result.candidates else Exit.NO_DESIGN

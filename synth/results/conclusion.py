@@ -36,6 +36,7 @@ def conclude(scaled: ScaledProblem, ledgers: list[Ledger], run: Run, asked: Aski
         ending=asked.ending,
         resumed=run.journal.resumed,
         steps_recorded=run.journal.taken,
+        record_lost=run.journal.lost,
         processes_lost=run.work.lost,
         starts_crashed=tuple(run.crashed),
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -32,8 +32,8 @@ def one_list(problem: Problem, found: Sequence[Result]) -> Result:
     if len(problem.mechanism) == 1 and found:
         return found[0]
     least = float(np.min([one.least_error for one in found], initial=np.inf, where=_known(found)))
-    designs = [each for one in found for each in _kept(problem, one, least)]
-    chosen = listed(problem, [replace(each, problem=problem) for each in designs])
+    designs = [replace(each, problem=problem) for one in found for each in one.candidates]
+    chosen = listed(problem, within_factor(problem, designs, least / problem.task.size))
     tally = Tally()
     for one in found:
         tally.update(one.tally)
@@ -56,13 +56,11 @@ def _known(found: Sequence[Result]) -> list[bool]:
     return [not np.isnan(one.least_error) for one in found]
 
 
-def _kept(problem: Problem, one: Result, least: float) -> Iterator[Candidate]:
-    """Designs whose error is allowed, as that of the least one of all kinds has it."""
-    factor, size = problem.requirements.error_factor, problem.task.size
-    most = np.inf if factor is None else factor * max(least, same_error(problem) * size) / size
-    for candidate in one.candidates:
-        if candidate.error(one.problem) <= most * (1 + 1e-9):
-            yield candidate
+def within_factor(problem: Problem, designs: Sequence[Candidate], least: float) -> list[Candidate]:
+    """Designs whose error ``error_factor`` allows, by the least error of all, sizes."""
+    factor = problem.requirements.error_factor
+    most = np.inf if factor is None else factor * max(least, same_error(problem))
+    return [each for each in designs if each.error(problem) <= most * (1 + 1e-9)]
 
 
 def _by_kind(found: Sequence[Result], name: str) -> str:

@@ -9,7 +9,7 @@ from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.values.checks import finite_number, whole_number
 from grashof.problems.values.errors import wrong_value
 from grashof.synth.search.story import Asking
-from grashof.synth.starts.finder import finder_of
+from grashof.synth.starts.finder import refuse_unsearchable
 
 
 def search_of(problem: Problem, workers: int, **given: float | None) -> Search:
@@ -25,7 +25,7 @@ def search_of(problem: Problem, workers: int, **given: float | None) -> Search:
     options = {name: number for name, number in given.items() if number is not None}
     search = replace(problem.search, **options)  # type: ignore[arg-type]  # checked there
     whole_number(workers, 1, "workers")
-    finder_of(problem).refuse()
+    refuse_unsearchable(problem)
     return search
 
 

@@ -45,6 +45,10 @@ class Journal(Protocol):
     def taken(self) -> int:
         """How many steps were taken from the record."""
 
+    @property
+    def lost(self) -> str:
+        """Why the record ended before the search; empty where it did not."""
+
     def done(
         self, kind: str, of: Any, problem: Problem, do: Callable[[], T], holds: Callable[[object], bool], /
     ) -> T:
@@ -71,7 +75,7 @@ class Journal(Protocol):
 class Unrecorded:
     """No journal: every step is done."""
 
-    recorded, resumed, taken = False, 0, 0
+    recorded, resumed, taken, lost = False, 0, 0, ""
 
     def done(
         self,
@@ -103,15 +107,21 @@ class Recorded:
         Goes on from the record in it, if there is one; made with the first file.
     head : mapping
         Of which search (see `head_of`).
+    needed : bool
+        Whether a file that cannot be written ends the search; else it ends the record alone, and `lost`
+        says why.
 
     Raises
     ------
     ProblemError
         The record is of another search, or of another version of a package.
+    OSError
+        It cannot be written, where it is needed.
     """
 
-    def __init__(self, folder: Path, head: Mapping[str, Any]) -> None:
-        self._folder, self._head = folder, head
+    def __init__(self, folder: Path, head: Mapping[str, Any], *, needed: bool) -> None:
+        self._folder, self._head, self._needed = folder, head, needed
+        self.lost = ""
         self._recorded, self._read = deque[dict[str, Any]](), list[dict[str, Any]]()  # of one file
         self._unread, self._fresh = deque[Path](), list[dict[str, Any]]()
         self._written, self._since, self._open = 0, monotonic(), True
@@ -120,8 +130,9 @@ class Recorded:
             refuse_other(folder, self._head)
             count = read_head(folder).get(RESUMED)
             self.resumed = count + 1 if isinstance(count, int) else 1
-            self.begin()
             self._unread.extend(_files(folder))
+            with self._kept():
+                self.begin()
 
     def done(
         self, kind: str, of: Any, problem: Problem, do: Callable[[], T], holds: Callable[[object], bool], /
@@ -166,7 +177,8 @@ class Recorded:
     def finish(self) -> None:
         """State in the head that the search is whole, and keep the record; nothing more is recorded."""
         self.close()
-        write_whole(self._folder / HEAD, {**self._head, RESUMED: self.resumed, WHOLE: True})
+        with self._kept():
+            write_whole(self._folder / HEAD, {**self._head, RESUMED: self.resumed, WHOLE: True})
 
     def remove(self) -> None:
         """Delete the record, and its folder if nothing else is in it; nothing more is recorded."""
@@ -210,26 +222,43 @@ class Recorded:
         return self._folder / f"{self._written:06}.json"
 
     def _write(self) -> None:
-        if not (self._folder / HEAD).exists():
-            self.begin()
-        self._written += 1
-        write_whole(self._path, content_of(self._fresh))
+        with self._kept():
+            if not (self._folder / HEAD).exists():
+                self.begin()
+            self._written += 1
+            write_whole(self._path, content_of(self._fresh))
         self._fresh, self._since = [], monotonic()
+
+    @contextmanager
+    def _kept(self) -> Iterator[None]:
+        """End the record, not the search, where the disk takes no more."""
+        try:
+            yield
+        except OSError as error:
+            if self._needed:
+                raise
+            self.lost, self._open = f"{error.filename or self._folder}: {error.strerror}", False
+            _LOG.warning("%s; the search goes on without a record", self.lost)
 
 
 @contextmanager
-def journal_of(folder: Path | None, problem: Problem, search: Search) -> Iterator[Journal]:
-    """The journal of a search in a folder; the record goes once the search is whole.
+def journal_of(
+    folder: Path | None, problem: Problem, search: Search, *, keep: bool = False
+) -> Iterator[Journal]:
+    """The journal of a search in a folder.
 
-    It stays where the search was stopped, or failed.
+    The record of a search that was stopped, or failed, stays; that of a whole one goes, or stays marked as
+    whole where it is to be kept.
     """
     if folder is None:
         yield Unrecorded()
         return
-    journal = Recorded(folder, head_of(problem, search))
+    journal = Recorded(folder, head_of(problem, search), needed=False)
     try:
         yield journal
-        if journal.is_open:
+        if keep and journal.is_open and (folder / HEAD).exists():
+            journal.finish()
+        elif journal.is_open or (journal.lost and not keep):
             journal.remove()
     finally:
         journal.close()

@@ -20,6 +20,7 @@ class Ending(StrEnum):
     STOPPED = "stopped"
     INTERRUPTED = "interrupted"
     TERMINATED = "terminated"
+    FAILED = "failed"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,6 +36,8 @@ class Story:
         How often it was gone on with from its record.
     steps_recorded : int
         Screenings, solves and chunks taken from the record.
+    record_lost : str
+        Why the record ended before the search; empty where it did not.
     processes_lost : int
         How often a process was lost and replaced.
     starts_crashed : tuple of int
@@ -49,6 +52,7 @@ class Story:
     ending: Ending
     resumed: int = 0
     steps_recorded: int = 0
+    record_lost: str = ""
     processes_lost: int = 0
     starts_crashed: tuple[int, ...] = ()
     drawings_left_out: int = 0

@@ -54,10 +54,14 @@ class CouplerSearch:
         """Raise `ProblemError` for fewer than three distinct targets."""
         task, count = self.scaled.problem.task, len(search_targets(self.scaled).points)
         if count < 3:
-            free = " where parts are left free, the driver is timed or requirements.exact is false"
+            where = " where parts are left free, the driver is timed or requirements.exact is false"
+            if self.scaled.kind is not FOUR_BAR:
+                where = f" for {self.scaled.problem.mechanism[0]}s"
+            if task.only_points:
+                where = ""
             raise ProblemError(
                 f"{task.kind}.{task.target}s has {counted(count, f'distinct {task.target}')}; "
-                f"it must have three or more{'' if task.only_points else free}"
+                f"it must have three or more{where}"
             )
 
     def glance(self, _rng: np.random.Generator) -> Round | None:

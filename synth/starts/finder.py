@@ -8,7 +8,8 @@ from typing import Protocol
 
 import numpy as np
 
-from grashof.problems import Problem
+from grashof.problems import Problem, ProblemError
+from grashof.problems.values.checks import located
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Round, Start
@@ -112,6 +113,15 @@ class Begins(Protocol):
 
     def refuse(self) -> None:
         """Raise `ProblemError` for targets that cannot be searched for."""
+
+
+def refuse_unsearchable(problem: Problem) -> None:
+    """Raise `ProblemError` unless the targets can be searched for with every kind of linkage asked for."""
+    for kind in problem.mechanism:
+        try:
+            finder_of(problem.for_kind(kind)).refuse()
+        except ProblemError as error:
+            raise error if len(problem.mechanism) == 1 else located(error, f"mechanism {kind}") from None
 
 
 def finder_of(problem: Problem) -> Begins:

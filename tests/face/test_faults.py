@@ -13,10 +13,13 @@ import pytest
 from matplotlib.animation import FuncAnimation
 
 from grashof.cli import main
+from grashof.output import run_files
 from grashof.output.analysis_files import write_report
 from grashof.output.streams import say
-from grashof.problems import load_linkage_spec
+from grashof.problems import SolverError, load_linkage_spec
 from grashof.survey import report_on
+from grashof.synth.search import journal
+from grashof.synth.starts import coupler_search, precision_points
 
 Grashof = Callable[..., Any]
 FULL = OSError(28, "No space left on device")
@@ -152,3 +155,107 @@ def test_a_line_that_stdout_cannot_take_is_an_error(monkeypatch: pytest.MonkeyPa
         say("progress", err=True)
         with pytest.raises(OSError, match="standard output: No space left on device"):
             say("a result")
+
+
+@pytest.fixture
+def recorded(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every step of a search goes into its record at once."""
+    monkeypatch.setattr(journal, "EVERY", 0.0)
+
+
+@pytest.mark.usefixtures("recorded")
+def test_a_full_disk_costs_neither_the_table_nor_the_search(
+    grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> None:
+        raise FULL
+
+    with monkeypatch.context() as patch:
+        patch.setattr(run_files, "write_json", fail)
+        done = grashof("solve", "luggage", *QUICK)
+    assert done.exit_code == 3
+    assert "No space left on device" in done.stderr
+    assert "search so far; --resume goes on with it" in done.stderr
+    assert "distinct verified" in done.stdout
+    folder = tmp_path / "luggage-designs"
+    assert [path.name for path in folder.iterdir()] == ["search"]
+    again = grashof("solve", "luggage", *QUICK, "--resume")
+    assert (again.exit_code, again.stdout) == (0, done.stdout)
+    assert json.loads((folder / "run.json").read_text())["run"]["steps_recorded"] > 0
+    assert not (folder / "search").exists()
+
+
+@pytest.mark.usefixtures("recorded")
+def test_a_record_that_cannot_be_written_ends_the_record_alone(
+    grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(path: Path, _: object) -> None:
+        raise OSError(28, "No space left on device", str(path))
+
+    whole = grashof("solve", "luggage", *QUICK)
+    monkeypatch.setattr(journal, "write_whole", fail)
+    done = grashof("solve", "luggage", *QUICK)
+    assert (done.exit_code, done.stdout) == (0, whole.stdout)
+    assert done.stderr.count("No space left on device; the search went on without its record") == 1
+    folder = tmp_path / "luggage-designs"
+    assert "No space left on device" in json.loads((folder / "run.json").read_text())["run"]["record_lost"]
+    assert not (folder / "search").exists()
+
+
+@pytest.mark.usefixtures("recorded")
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (IndexError("7 is out of bounds"), "grashof: unexpected error: IndexError: 7 is out of bounds"),
+        (SolverError("the scheduler was lost"), "grashof: the scheduler was lost"),
+    ],
+)
+def test_a_kind_that_fails_costs_no_design_of_another(
+    grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: Exception, said: str
+) -> None:
+    def fail(*_: object) -> None:
+        raise error
+
+    (tmp_path / "line.toml").write_text(LINE, encoding="utf-8")
+    monkeypatch.setattr(coupler_search, "search", fail)
+    monkeypatch.setattr(precision_points, "search", fail)
+    done = grashof("solve", "line.toml", *QUICK)
+    assert done.exit_code == 3
+    assert said in done.stderr
+    assert "the search failed; listed is what was verified until then" in done.stderr
+    assert "search so far; --resume goes on with it" in done.stderr
+    designs = json.loads((tmp_path / "line-designs" / "candidates.json").read_text())["designs"]
+    assert {each["mechanism"] for each in designs} == {"four-bar"}
+    assert json.loads((tmp_path / "line-designs" / "run.json").read_text())["run"]["ending"] == "failed"
+
+
+LINE = """kind = "motion"
+mechanism = ["four-bar", "slider-crank"]
+[motion]
+poses = [[0, 0, 0], [3, 1, 40], [5, 4, 70]]
+"""
+
+
+@pytest.mark.parametrize(
+    ("kinds", "poses", "said"),
+    [
+        (
+            '["four-bar", "slider-crank"]',
+            "[0, 0, 0], [3, 1, 40]",
+            "mechanism slider-crank: motion.poses",
+        ),
+        ('"inverted-slider-crank"', "[0, 0, 0], [3, 1, 40]", "three or more for inverted-slider-cranks"),
+        (
+            '["slider-crank", "four-bar"]',
+            "[0, 0, 0], { x = 3, y = 1 }",
+            "mechanism slider-crank: motion.poses",
+        ),
+    ],
+)
+@pytest.mark.parametrize("command", ["check", "solve"])
+def test_what_cannot_be_searched_with_a_kind_is_refused_before_all(
+    grashof: Grashof, tmp_path: Path, command: str, kinds: str, poses: str, said: str
+) -> None:
+    text = f'kind = "motion"\nmechanism = {kinds}\n[motion]\nposes = [{poses}]\n'
+    (tmp_path / "two.toml").write_text(text, encoding="utf-8")
+    told(grashof(command, "two.toml"), 2, said)
