@@ -29,7 +29,7 @@ class SoFar:
     def note(self, step: Progress) -> None:
         """Keep the designs of one report."""
         if step.designs:
-            self._designs[step.designs[0].problem.mechanism] = step.designs
+            self._designs[tuple(step.designs[0].problem.mechanism)] = step.designs
 
     def result(self) -> Result:
         """The list of those that meet the problem as it is stated, each judged again."""
