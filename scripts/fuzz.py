@@ -38,6 +38,7 @@ from grashof.problems.files.linkage_file import load_design
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.linkage_spec import ListedDesign
+from grashof.study.asked import ON_REQUEST, Asked
 from grashof.survey import report_on
 from grashof.synth import Result
 from grashof.synth.starts.finder import refuse_unsearchable
@@ -52,6 +53,14 @@ LOADING, WORKING = 5, 180  # s, after which it counts as a hang
 MOST_TARGETS = 100  # of a task that is searched: the time grows with them
 LONGEST = 1500  # characters of a line of an error, beside the name of the file
 TRACEBACK, HANG, WRONG, UNCLEAR = "tracebacks", "hangs", "wrong designs", "unclear messages"
+# All that an analysis can be asked for; what does not go together, or not with every kind, by itself.
+ASKED = (
+    Asked(tolerance=0.01, sections=ON_REQUEST, at_deg=(0.0, 90.0)),
+    Asked(balance=True, seconds=0.2),
+    Asked(flywheel=0.1),
+    Asked(release_deg=20.0, seconds=0.2),
+    Asked(dwell_deg=2.0),
+)
 FINDINGS = (TRACEBACK, HANG, WRONG, UNCLEAR)
 COUNTED = ("files", "refused", "accepted", "searched", "designs judged", "reports", *FINDINGS)
 
@@ -192,14 +201,15 @@ def _examine_linkage(
             svg(sheet(plan_parts(spec.linkage, PlateSizes(), 50.0 / float(spec.linkage.lengths.min()))))
         except ProblemError as error:
             _refuse_unclear(error)
-        try:
-            report = report_on(spec)
-        except ProblemError as error:
-            _refuse_unclear(error)
-            return
-        if work():
-            with tempfile.TemporaryDirectory(dir=folder) as out:
-                write_report(Path(out), report)
+        for asked in ASKED:
+            try:
+                report = report_on(spec, asked)
+            except ProblemError as error:
+                _refuse_unclear(error)
+                continue
+            if asked is ASKED[0]:
+                with tempfile.TemporaryDirectory(dir=folder) as out:
+                    write_report(Path(out), report)
 
 
 @contextmanager

@@ -251,13 +251,32 @@ _PROBLEMS = (
     f"{_SEARCH}",
     f'kind = "motion"\n{_HEAD}[motion]\nposes = [[0, 0, 10], [30, 10, 10], [60, 5, 10]]\n{_SEARCH}',
 )
-_LINKAGES = (
+
+
+def _acting(changes: dict[str, str]) -> str:
+    """`_ACTING` on a linkage with a slide: bars of a density, loads over the travel, no pin in the slide."""
+    text = _ACTING
+    for old, new in changes.items():
+        text = text.replace(old, new)
+    return text
+
+
+_ON_SLIDE = {'"theta4"': '"travel"', "[180, 3": "[9, 3", "[[0, 1, 2]": "[[-9, 1, 2]", "05, 0.1]": "05, 0]"}
+_SLIDER_CRANK = (
     f'mechanism = "slider-crank"\n{_HEAD}o2 = [1, 2]\nr2 = 1\nr3 = 3\noffset = -0.5\nslide_angle_deg = 30\n'
-    f"coupler_point = [1, 1]\nassembly = -1\nbody_angle_deg = 30\n{_SLIDING}",
-    f'mechanism = "inverted-slider-crank"\n{_HEAD}o2 = [1, 2]\nr1 = 4\nground_angle_deg = 200\nr2 = 1\n'
-    "offset = -0.5\ncoupler_point = [1, 1]\nassembly = -1\nbody_angle_deg = 30\noutput_arm = 2\n",
-    f'length_unit = "m"\no4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n{_OTHERWISE}',
-    f'length_unit = "m"\no4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n{_ACTING}',
+    "coupler_point = [1, 1]\nassembly = -1\nbody_angle_deg = 30\n"
+)
+_INVERTED = f'mechanism = "inverted-slider-crank"\n{_HEAD}o2 = [1, 2]\nr2 = 1\noffset = -0.5\n'
+_FOUR_BAR = 'length_unit = "m"\no4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n'
+_LINKAGES = (
+    *(_SLIDER_CRANK + acting for acting in (_SLIDING, _OTHERWISE, _acting(_ON_SLIDE))),
+    f"{_INVERTED}r1 = 4\nground_angle_deg = 200\n"
+    "coupler_point = [1, 1]\nassembly = -1\nbody_angle_deg = 30\noutput_arm = 2\n",
+    *(
+        f"{_INVERTED}o4 = [5, 2]\n{acting}"
+        for acting in (_SLIDING, _OTHERWISE, _acting({"[4, 3]": "[2, 3]", "0.05, 0.1]": "0, 0.1]"}))
+    ),
+    *(_FOUR_BAR + acting for acting in (_OTHERWISE, _ACTING)),
     f"{_HEAD}r1 = 4\nground_angle_deg = 20\nr2 = 1\nr3 = 4\nr4 = 3\ncoupler_point = [2, 1]\nassembly = -1\n"
     "body_angle_deg = 30\noutput_arm = 5\n[dynamics]\nspeed_rpm = -20\ngravity = [0, -9.81]\n"
     "mass_per_length = 3\npayload = 2\n"

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable, Iterator
 from io import BytesIO
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 
+from grashof.problems.files.foreign import Budget, finite, read_by_others
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.checks import GREATEST
 from grashof.problems.values.errors import ProblemError
 
 MOST_POINTS = 20_000
@@ -15,6 +20,11 @@ FLAT = 1e-3  # share of the drawing's size by which a polyline may miss a curve
 # By $INSUNITS: in, ft, mm, cm, m, yd, micrometre, dm.
 _METRES = {1: 0.0254, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1.0, 10: 0.9144, 13: 1e-6, 14: 0.1}
 _NAMES = "in, ft, yd, mm, cm, dm, m and micrometres"
+_MOST_ENTITIES = 20_000  # of the file, unseen ones among them
+_ENTITY = re.compile(rb"^[ \t]*0[ \t]*\r?$", re.MULTILINE)
+_PLACES = ("points", "vertices", "control_points", "fit_points", "knots", "weights")
+_TURNS = ("start_param", "end_param", "start_angle", "end_angle")
+_MOST_DEGREES, _MOST_DEGREE = 1e6, 11  # of an arc, and of a spline
 _DRAWN = frozenset({"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE"})
 
 
@@ -42,40 +52,66 @@ def dxf_polylines(text: str) -> list[FloatArray]:
 
 def dxf_drawing(content: bytes, layer: str = "") -> tuple[list[FloatArray], float | None]:
     """The same of a layer, or of all, and the drawing's unit in metres, None where it states none."""
-    ezdxf = ezdxf_installed()
+    ezdxf_installed()
     from ezdxf import recover
     from ezdxf.bbox import extents
-    from ezdxf.disassemble import recursive_decompose
     from ezdxf.path import make_path
 
-    try:
+    if len(_ENTITY.findall(content)) > _MOST_ENTITIES:
+        raise ProblemError(f"the drawing has more than {_MOST_ENTITIES} entities; it must have at most that")
+    with read_by_others("a DXF file"):
         document, _ = recover.read(BytesIO(content))
-    except (ezdxf.DXFError, OSError, ValueError, LookupError) as error:
-        raise ProblemError(f"the drawing is not a DXF file: {error}") from None
-    entities = list(recursive_decompose(document.modelspace()))
-    if layer:
-        entities = [each for each in entities if each.dxf.get("layer", "0").casefold() == layer.casefold()]
-    box = extents(entities, fast=True)
-    size = max(box.size.x, box.size.y) if box.has_data else 0.0
-    found: list[FloatArray] = []
-    for entity in entities:
-        if entity.dxftype() not in _DRAWN:
-            continue
-        points = [(each.x, each.y) for each in make_path(entity).flattening(FLAT * size or 1.0)]
-        if len(points) > 1:
-            found.append(np.array(points, dtype=float))
-    count = sum(map(len, found))
+        every = _drawn(document.modelspace(), Budget(MOST_POINTS, "entities", "blocks"))
+        entities = [
+            each for each in every if not layer or each.dxf.get("layer", "0").casefold() == layer.casefold()
+        ]
+        if not all(_is_sound(each) for each in entities):
+            raise ProblemError("the drawing has numbers that are not finite or beyond 1e20")
+        box = extents(entities, fast=True)
+        size = max(box.size.x, box.size.y) if box.has_data else 0.0
+        found, budget = list[FloatArray](), Budget(MOST_POINTS, "points", "")
+        for entity in entities:
+            points = []
+            for each in make_path(entity).flattening(FLAT * size or 1.0):
+                budget.spend()
+                points.append((each.x, each.y))
+            if len(points) > 1:
+                found.append(np.array(points, dtype=float))
+        unit = document.header.get("$INSUNITS", 0)
     if not found:
         where = f"on the layer {layer!r}" if layer else "in its model space"
         raise ProblemError(f"the drawing has no lines {where}")
-    if count > MOST_POINTS:
-        raise ProblemError(f"the drawing has {count} points; it must have at most {MOST_POINTS}")
     if not all(np.isfinite(each).all() for each in found):
-        raise ProblemError("the drawing has places that are no finite numbers")
-    unit = document.header.get("$INSUNITS", 0)
+        raise ProblemError("the drawing has places that are not finite numbers")
     if unit and unit not in _METRES:
         raise ProblemError(f"the drawing is in unit {unit} of DXF; it must be one of {_NAMES}, or none")
     return found, _METRES.get(unit)
+
+
+def _drawn(entities: Iterable[Any], budget: Budget, depth: int = 0) -> Iterator[Any]:
+    """Lines and curves, with those of blocks one by one: a few bytes may stand for millions."""
+    budget.enter(depth)
+    for entity in entities:
+        budget.spend()
+        if entity.dxftype() == "INSERT":
+            budget.spend(entity.mcount)
+            inside = entity.multi_insert() if entity.mcount > 1 else entity.virtual_entities()
+            yield from _drawn(inside, budget, depth + 1)
+        elif entity.dxftype() in _DRAWN:
+            yield entity
+
+
+def _is_sound(entity: Any) -> bool:
+    """Whether all numbers of an entity are finite, and those that cost time are small."""
+    given = entity.dxf.all_existing_dxf_attribs()
+    places = [
+        getattr(entity, name, ())
+        for name in ("points", "vertices", "control_points", "fit_points", "knots", "weights")
+    ]
+    turns = [given.get(name, 0.0) for name in ("start_param", "end_param", "start_angle", "end_angle")]
+    return (
+        finite([*given.values(), *places], GREATEST) and finite(turns, 1e6) and given.get("degree", 3) <= 11
+    )
 
 
 def ezdxf_installed() -> ModuleType:

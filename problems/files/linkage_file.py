@@ -12,7 +12,14 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.files.problem_file import catalogue, problem_of
-from grashof.problems.files.toml_file import Catalogue, document_of, exists, file_text, looks_like_path
+from grashof.problems.files.toml_file import (
+    MOST_BYTES_MADE,
+    Catalogue,
+    document_of,
+    exists,
+    file_text,
+    looks_like_path,
+)
 from grashof.problems.values.checks import (
     GREATEST,
     finite_number,
@@ -175,7 +182,7 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
     if exists(str(path)) and not (path.is_file() or path.is_dir()):  # a pipe or a device may never end
         raise ProblemError(f"{path}: is not an ordinary file; it must be a list of designs")
     try:
-        content = json.loads(file_text(path, "a list of designs"))
+        content = json.loads(file_text(path, "a list of designs", most=MOST_BYTES_MADE))
         designs = {_rank(design["rank"]): design for design in content["designs"]}
         ranks = {
             str(name): rank for rank, design in designs.items() for name in (rank, design.get("id", rank))

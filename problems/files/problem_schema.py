@@ -25,6 +25,7 @@ from grashof.problems.files.dynamics_schema import MachineTables
 from grashof.problems.files.named_files import with_files
 from grashof.problems.files.tables import (
     LIST,
+    MOST_TARGETS,
     NUMBER,
     TABLE,
     WORD,
@@ -148,13 +149,15 @@ class TargetsTable(Table):
         return self.task.from_degrees(**dict(self))
 
 
-Angles = Annotated[list[float], listed("a list of angles")]
+Angles = Annotated[list[float], listed("a list of angles", MOST_TARGETS)]
 
 
 class MotionTable(TargetsTable):
     task = MotionTask
     plain, fewest, besides = [0.0, 0.0], 2, {"angle_length": 1.0}
-    poses: Annotated[list[Any], listed("a list of poses [x, y, angle in degrees], or a .csv or .xlsx file")]
+    poses: Annotated[
+        list[Any], listed("a list of poses [x, y, angle in degrees], or a .csv or .xlsx file", MOST_TARGETS)
+    ]
     weights: Annotated[list[float], listed("a list of numbers")] | None = None
     angle_length: float | None = None
     body: Drawn | None = None
@@ -169,7 +172,7 @@ class PathTable(TargetsTable):
     plain, fewest = [0.0], 3
     points: Annotated[
         list[Annotated[list[float], listed("a point [x, y]")]],
-        listed("a list of points [x, y], or a .csv or .xlsx file"),
+        listed("a list of points [x, y], or a .csv or .xlsx file", MOST_TARGETS),
     ]
     timing_deg: Angles | None = None
     closed: bool = False
@@ -197,7 +200,7 @@ class StrokeTable(Table):
 class FunctionTable(Table):
     input_deg: Angles | None = None
     output_deg: Angles | None = None
-    output: Annotated[list[float], listed("a list of lengths")] | None = None
+    output: Annotated[list[float], listed("a list of lengths", MOST_TARGETS)] | None = None
     law: str | None = None
     x: Pair | None = None
     exponent: float | None = None
@@ -205,7 +208,7 @@ class FunctionTable(Table):
     output_range_deg: float | None = None
     output_range: float | None = None
     pairs: int | None = None
-    sampled: Annotated[list[float], listed("a list of numbers")] | None = None
+    sampled: Annotated[list[float], listed("a list of numbers", MOST_TARGETS)] | None = None
     sense: str = "given"
     norm: str = "rms"
 

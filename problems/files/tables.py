@@ -110,14 +110,20 @@ def _plain(text: str, key: ValidationInfo) -> str:
 Text: TypeAlias = Annotated[str, AfterValidator(_plain)]
 
 
-def listed(wanted: str) -> BeforeValidator:
-    """Validator that refuses what is not a list, with what it must be."""
-    return BeforeValidator(partial(_listed, wanted=wanted))
+MOST_TARGETS = 10_000  # of a task
+_MOST_ENTRIES = 20_000  # of any list, such as the corners of a drawing
 
 
-def _listed(value: object, *, wanted: str) -> object:
+def listed(wanted: str, most: int = _MOST_ENTRIES) -> BeforeValidator:
+    """Validator that refuses what is not a list, or too long a one, with what it must be."""
+    return BeforeValidator(partial(_listed, wanted=wanted, most=most))
+
+
+def _listed(value: object, *, wanted: str, most: int) -> object:
     if not isinstance(value, list):
         raise PydanticCustomError(WRONG, wanted)
+    if len(value) > most:
+        raise PydanticCustomError(WRONG, f"a list of at most {most} entries")
     return value
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import stat
 import tomllib
 from dataclasses import dataclass
 from importlib import resources
@@ -12,6 +13,9 @@ from typing import Any
 
 from grashof.problems.values.checks import near_miss
 from grashof.problems.values.errors import ProblemError
+
+MOST_BYTES = 4 * 2**20  # of files that people write or draw
+MOST_BYTES_MADE = 256 * 2**20  # of those that this program writes
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,27 +66,35 @@ def exists(text: str) -> bool:
     return bool(text) and os.path.exists(text)  # noqa: PTH110
 
 
-def file_text(path: Path, wanted: str, hint: str = "") -> str:
+def file_text(path: Path, wanted: str, hint: str = "", most: int = MOST_BYTES) -> str:
     """Text of a file that a user named; `ProblemError` states why it cannot be read, a hint what is meant."""
     try:
         # utf-8-sig: editors on Windows put a byte order mark first, which TOML does not know.
-        return file_bytes(path, wanted, hint).decode("utf-8-sig")
+        return file_bytes(path, wanted, hint, most).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise ProblemError(f"{path}: is not UTF-8 text, at byte {error.start}") from None
 
 
-def file_bytes(path: Path, wanted: str, hint: str = "") -> bytes:
-    """Content of a file that a user named, likewise."""
-    if os.path.isdir(path):  # noqa: PTH112
-        raise ProblemError(f"{path}: is a folder; it must be {wanted}")
+def file_bytes(path: Path, wanted: str, hint: str = "", most: int = MOST_BYTES) -> bytes:
+    """Content of a plain file that a user named, of so many bytes at most, likewise."""
+    content = b""
     try:
-        return path.read_bytes()
+        mode = path.stat().st_mode
+        if stat.S_ISREG(mode):  # reading a pipe or a device may never end
+            with path.open("rb") as file:
+                content = file.read(most + 1)
     except FileNotFoundError:
         raise ProblemError(f"{path}: there is no such file{hint and '; '}{hint}") from None
     except OSError as error:
         raise ProblemError(f"{path}: cannot be read: {error.strerror}") from None
     except ValueError as error:  # no name of a file, such as one with a null character
         raise ProblemError(f"{str(path)!r}: cannot be read: {error}") from None
+    if not stat.S_ISREG(mode):
+        found = "a folder" if stat.S_ISDIR(mode) else "not a plain file"
+        raise ProblemError(f"{path}: is {found}; it must be {wanted}")
+    if len(content) > most:
+        raise ProblemError(f"{path}: has more than {most} bytes; {wanted} must have at most that")
+    return content
 
 
 def document_of(text: str, file_name: str) -> dict[str, Any]:

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from grashof.analysis import Kinematics, PointMotion, system_centre
+from grashof.analysis.forces.bars import bars_of
 from grashof.problems.values.arrays import FloatArray
 from grashof.study.history import History
 from grashof.study.kinds import halfway
@@ -42,17 +43,14 @@ def mass_table(study: LinkageStudy) -> pd.DataFrame:
     masses, given = study.masses, study.spec.dynamics
     if masses is None or given is None or not masses.total > 0:
         return pd.DataFrame()
-    rows: list[dict[str, object]] = []
+    rows, bars = list[dict[str, object]](), bars_of(study.linkage)
     for link in study.linkage.LINKS[1:]:
         body = masses.of(link.number)
         u, v = body.centre.tolist()
         row: dict[str, object] = {"link": f"{link.number}, {link.name}"}
-        if given.density is not None and given.section is not None:
-            length, area = (
-                float(getattr(study.linkage, f"r{link.number}")),
-                given.section.areas[link.number - 2],
-            )
-            row |= {"density": given.density, "volume_m3": area * length * study.metre**3}
+        if given.density is not None and given.section is not None and link.number in bars:
+            volume = given.section.areas[link.number - 2] * float(bars[link.number].reach)
+            row |= {"density": given.density, "volume_m3": volume * study.metre**3}
         rows.append(
             row | {"mass": float(body.mass), "centre_u": u, "centre_v": v, "inertia": float(body.inertia)}
         )

@@ -13,9 +13,7 @@ from grashof.problems.files.problem_schema import problem_from
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.checks import noted, refused
 from grashof.sweep.keys import assigned, key_parts
-from grashof.sweep.study import Source, Study
-
-MOST = 100_000  # combinations
+from grashof.sweep.study import MOST_COMBINATIONS, Source, Study
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,8 +50,10 @@ def combinations(study: Study) -> tuple[Combination, ...]:
         What is wrong in every combination alike: then it is the study that is wrong, or the base problem.
     """
     count = len(study.sources) * prod(len(study.vary[keys[0]]) for keys in study.axes)
-    if count > MOST:
-        raise ProblemError(f"{study.name}: has {count} combinations; it must have at most {MOST}")
+    if count > MOST_COMBINATIONS:
+        raise ProblemError(
+            f"{study.name}: has {count} combinations; it must have at most {MOST_COMBINATIONS}"
+        )
     found = tuple(_combined(study, source, values) for source in study.sources for values in _varied(study))
     always = [line for line in found[0].wrong if all(line in one.wrong for one in found)]
     if always and all(one.wrong for one in found):

@@ -29,6 +29,7 @@ from grashof.problems.values.problem import Search
 from grashof.sweep.keys import key_parts, overlap
 from grashof.sweep.target_table import NAME, target_rows
 
+MOST_COMBINATIONS = 100_000
 _RANGE = ("from", "to", "steps")
 _RANGE_SHAPE = "a list of values or { from = a, to = b, steps = n }"
 _SIGNIFICANT = 12  # digits of the values of a range: 0.1 + 0.2 is 0.3
@@ -271,7 +272,7 @@ def _values(given: Any, where: str = "vary") -> list[Any]:
     if not isinstance(given, dict) or set(given) != set(_RANGE):
         raise wrong_value(where, given, _RANGE_SHAPE)
     low, high = (finite_number(given[word], f"{where}.{word}") for word in _RANGE[:2])
-    steps = whole_number(given["steps"], 2, f"{where}.steps")
+    steps = whole_number(given["steps"], 2, f"{where}.steps", MOST_COMBINATIONS)
     evenly = [float(f"{low + (high - low) * k / (steps - 1):.{_SIGNIFICANT}g}") for k in range(steps)]
     whole = all(isinstance(given[word], int) for word in _RANGE[:2])
     if whole and all(value.is_integer() for value in evenly):

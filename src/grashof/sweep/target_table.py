@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 import tomllib
@@ -12,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from grashof.problems import ProblemError
-from grashof.problems.files.toml_file import file_text
+from grashof.problems.files.spreadsheet import csv_rows
 from grashof.problems.values.checks import located, noted, refuse
 from grashof.sweep.keys import assigned, key_parts
 
@@ -44,8 +43,8 @@ def target_rows(path: Path, base: Mapping[str, Any]) -> list[tuple[dict[str, Any
     ProblemError
         All that is wrong with the table, a line each.
     """
-    lines = list(csv.reader(file_text(path, "a CSV of points or poses").splitlines()))
-    header = [cell.strip() for cell in lines[0]] if lines else []
+    lines = csv_rows(path, "a CSV of points or poses")
+    header = lines[0] if lines else []
     kind = base.get("kind")
     if kind not in _LAYOUTS:
         raise ProblemError(f'{path}: the problem that it is laid over has no kind = "path" or "motion"')
