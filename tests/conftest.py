@@ -12,8 +12,10 @@ import pytest
 from hypothesis import settings
 
 # The same examples each time, and no limit of time: machines differ, and are busy.
-settings.register_profile("here", derandomize=True, deadline=None)
-settings.load_profile("here")
+# `HYPOTHESIS_PROFILE=thorough pytest` tries several times as many, and others each time.
+settings.register_profile("here", derandomize=True, deadline=None, max_examples=25)
+settings.register_profile("thorough", deadline=None, max_examples=200)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "here"))
 
 # How finely curves are traced, how many pairs are judged, rounds gone through, starts solved.
 SMALL: dict[str, dict[str, Any]] = {
@@ -29,7 +31,7 @@ SMALL: dict[str, dict[str, Any]] = {
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Studies are slow; of a test marked `quick` all cases are but those named, which must be cases of it."""
+    """Studies are slow; of a test marked `quick` all cases but those that it names are studies."""
     known: dict[str, set[str]] = {}
     named: dict[str, set[str]] = {}
     for item in items:
@@ -39,8 +41,9 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         for mark in item.iter_markers("quick"):
             known.setdefault(test, set()).add(case)
             named[test] = set(mark.args)
-            if case and case not in mark.args:
+            if case and case not in mark.args:  # it repeats what those do
                 item.add_marker(pytest.mark.slow)
+                item.add_marker(pytest.mark.study)
     for test, cases in known.items():
         if len(cases) > 1 and not named[test] <= cases:  # not where one case alone is collected
             raise pytest.UsageError(f"{test}: no cases {named[test] - cases}, which `quick` names")

@@ -20,6 +20,7 @@ def pages() -> list[str]:
     return sorted(path.relative_to(DOCS).as_posix() for path in found if path.parent.name != "tutorials")
 
 
+@pytest.mark.quick("howto/export.md", "howto/notebook.md")
 @pytest.mark.parametrize(
     "page",
     [

@@ -49,6 +49,10 @@ def __getattr__(name: str) -> Any:
     raise AttributeError(f"module 'grashof' has no attribute {name!r}")
 
 
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
+
+
 def _html(value: Any) -> str:
     """What a notebook shows of a value; loaded on first use, too."""
     html: str = import_module("grashof.notebook").html(value)

@@ -159,7 +159,7 @@ def solve(
     """Find designs for PROBLEM; write the ranked list, a page, drawings and the record of the run.
 
     Exit code 0: at least one verified design; 1: none; 2: bad input; 3: environment error;
-    130: interrupted (Ctrl-C); 143: terminated (SIGTERM). With --shard, 0: it is done; 1: not yet.
+    130: interrupted (Ctrl-C); 143: terminated (SIGTERM, SIGHUP). With --shard, 0: it is done; 1: not yet.
     """
     with _errors_told():
         loaded, text = load_with_text(problem)
@@ -194,7 +194,7 @@ def merge(
     """Make the list of a search from the shards in DIR; write it there, as solve does.
 
     Exit code 0: at least one verified design; 1: none; 2: bad input, or shards are missing;
-    3: environment error; 130: interrupted (Ctrl-C); 143: terminated (SIGTERM).
+    3: environment error; 130: interrupted (Ctrl-C); 143: terminated (SIGTERM, SIGHUP).
     """
     with _errors_told():
         raise typer.Exit(commands.merge(folder, partial=partial, top=top, drawings=drawings, workers=workers))
@@ -216,7 +216,7 @@ def sweep(
     """Solve every combination of STUDY; write a table, a plot, a page and the record of the sweep.
 
     Exit code 0: at least one verified design; 1: none; 2: bad input; 3: environment error;
-    130: interrupted (Ctrl-C); 143: terminated (SIGTERM).
+    130: interrupted (Ctrl-C); 143: terminated (SIGTERM, SIGHUP).
     """
     from grashof.sweep.command import run
 
@@ -535,4 +535,5 @@ def _errors_told() -> Iterator[None]:
         say(f"grashof: {error}", err=True)
         raise typer.Exit(Exit.SURROUNDINGS) from None
     except KeyboardInterrupt:
+        say("grashof: interrupted", err=True)
         raise typer.Exit(Exit.INTERRUPTED) from None

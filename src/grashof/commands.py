@@ -188,8 +188,7 @@ def _deliver(
         files = write_run(folder, result, settings, drawings, interrupted, text, drawing)
         _report(result.note, files, folder)
         if left := left_out(result, drawings, files):
-            signal = "SIGTERM" if interrupted.code is Exit.TERMINATED else "Ctrl-C"
-            say(f"drawings are left out: {signal} came before {left} of them were made", err=True)
+            say(f"drawings are left out: {interrupted.by} came before {left} of them were made", err=True)
     finally:  # whatever the disk does
         if result.candidates:
             print_table(result, len(found))

@@ -143,14 +143,19 @@ def driven(plane: Plane, point: ComplexArray, base: ComplexArray) -> Driven:
     length, speed = np.abs(out), np.abs(way)
     with np.errstate(invalid="ignore", divide="ignore"):
         change = (out.real * way.real + out.imag * way.imag) / length
-        levers = np.nan_to_num(change / speed)
+        levers = finite_or(change / speed, 0.0)
         force = np.zeros(len(point))
         if plane.power is not None:
-            force = np.nan_to_num(np.abs(plane.power / change), nan=np.inf).max(axis=1)
+            force = finite_or(np.abs(plane.power / change), np.inf).max(axis=1)
     sign = np.where(levers.sum(axis=1) < 0, -1.0, 1.0)
     levers = sign[:, None] * levers
     first, last = length[:, 0], length[:, -1]
     closed = np.minimum(first, last)
     with np.errstate(invalid="ignore", divide="ignore"):
-        ratio = np.nan_to_num(np.maximum(first, last) / closed, nan=np.inf)
+        ratio = finite_or(np.maximum(first, last) / closed, np.inf)
     return Driven(levers, levers.min(axis=1), closed, ratio, force)
+
+
+def finite_or(values: FloatArray, otherwise: float) -> FloatArray:
+    """Values, and something else where they are not finite."""
+    return np.where(np.isfinite(values), values, otherwise)

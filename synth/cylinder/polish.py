@@ -178,5 +178,5 @@ class _Scale:
             rows += [np.log(room.closed[1]) - closed] if np.isfinite(room.closed[1]) else []
             rows += [np.log(room.force) - np.log(found.force + 1e-300)] if np.isfinite(room.force) else []
         rows.append(1 - (np.abs(points - room.middle) / room.reach) ** 2)
-        limits = np.nan_to_num(np.stack(rows, axis=1), posinf=50.0, neginf=-50.0)
-        return np.nan_to_num(found.levers), limits
+        limits = np.stack(rows, axis=1)
+        return found.levers, np.clip(np.where(np.isnan(limits), 0.0, limits), -50.0, 50.0)

@@ -20,6 +20,7 @@ _HOPELESS = -0.5  # merit so far below zero is not mended
 _POLISHED, _AGAIN = 8, 3
 # Cylinders polished to the end, and how often linear programmes follow quadratic ones.
 _FINISHED, _TURNS = 2, 2
+_GAIN = 1e-9  # of the sine of the lever angle, below which a programme more is not worth it
 COARSE, FINE = 4, 2  # every so many samples are enough to compare, and to polish
 _OVER = 0.15  # of their box: so far beyond it bases are drawn, and put back on its sides, where the best are
 _MORE = 4  # times the samples, where a first search came near but found none
@@ -95,8 +96,18 @@ def _finished(plane: Plane, room: Room, first: Pivots) -> list[Pivots]:
     found = [by_linear(plane, room, first)]
     for _ in range(_TURNS):
         found.append(by_quadratic(plane, room, found[-1]))
+        if not _gains(plane, room, found):
+            break
         found.append(by_linear(plane, room, found[-1]))
+        if not _gains(plane, room, found):
+            break
     return found
+
+
+def _gains(plane: Plane, room: Room, found: list[Pivots]) -> bool:
+    """Whether the last cylinder is better than the one before."""
+    before, last = _judged(plane, room, found[-2:])[2]
+    return bool(last > before + _GAIN)
 
 
 def _best_of(plane: Plane, room: Room, tried: list[Pivots], count: int) -> list[Pivots]:

@@ -6,12 +6,15 @@ import csv
 import json
 from collections.abc import Callable
 from pathlib import Path
+from shutil import copytree
 from typing import Any
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from typer.testing import CliRunner
 
+from grashof.cli import app
 from grashof.figures import plot_linkage
 from grashof.figures.animation import animate
 from grashof.problems import ProblemError, load_linkage_spec
@@ -19,10 +22,17 @@ from grashof.problems import ProblemError, load_linkage_spec
 Grashof = Callable[..., Any]
 
 
+@pytest.fixture(scope="module")
+def searched(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("searched") / "out"
+    options = ("--starts", "12", "--out", str(folder), "--top", "2")
+    assert CliRunner().invoke(app, ["solve", "lifting-arm", *options]).exit_code == 0
+    return folder
+
+
 @pytest.fixture
-def solved(grashof: Grashof, tmp_path: Path) -> Path:
-    assert grashof("solve", "lifting-arm", "--starts", "12", "--out", "out", "--top", "2").exit_code == 0
-    return tmp_path / "out"
+def solved(searched: Path, tmp_path: Path) -> Path:
+    return copytree(searched, tmp_path / "out")
 
 
 def test_check_says_it(grashof: Grashof) -> None:

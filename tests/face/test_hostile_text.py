@@ -112,6 +112,7 @@ def test_a_run(result: Result, tmp_path: Path) -> None:
     assert_plain_page((tmp_path / "out" / "report.html").read_text(encoding="utf-8"), 2)
 
 
+@pytest.mark.quick("mm;=1+1", "@SUM(A1)", "=1+1")
 def test_an_analysis(spec: LinkageSpec, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("grashof.figures.survey_plots.plots", lambda _: [])  # they have a test of their own
     write_report(tmp_path / "out", report_on(spec))
@@ -120,6 +121,7 @@ def test_an_analysis(spec: LinkageSpec, tmp_path: Path, monkeypatch: pytest.Monk
     assert_plain_page((tmp_path / "out" / "analysis.html").read_text(encoding="utf-8"), 2)
 
 
+@pytest.mark.quick('";=1+1', "]]>--><![CDATA[", "=1+1")
 def test_sections_of_an_analysis(
     spec: LinkageSpec, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -17,6 +17,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import grashof.figures.files as grashof_draw
+from grashof.output.ending import Exit, interruptible
 from grashof.problems import (
     Problem,
     problem_text,
@@ -146,3 +147,33 @@ def test_interrupt_writes_what_was_verified(tmp_path: Path) -> None:
     assert record["complete"] is False
     assert record["run"]["ending"] == "interrupted"
     assert "drawings are left out" not in said  # none were asked for
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="no terminals that hang up")
+def test_a_terminal_that_hangs_up_asks_for_the_end_unless_that_is_ignored() -> None:
+    with interruptible() as asked:
+        os.kill(os.getpid(), signal.SIGHUP)
+        assert (asked(), asked.code, asked.by) == (True, Exit.TERMINATED, "SIGHUP")
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does
+    try:
+        with interruptible() as asked:
+            os.kill(os.getpid(), signal.SIGHUP)
+            assert not asked()
+    finally:
+        signal.signal(signal.SIGHUP, before)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
+def test_ctrl_c_while_the_program_is_loaded_is_one_line() -> None:
+    # The import of the command line stands for any moment of loading: it sends the signal itself.
+    program = (
+        "import os, signal, sys\n"
+        "class Loading:\n"
+        "    def find_spec(self, name, *_):\n"
+        "        if name == 'numpy': os.kill(os.getpid(), signal.SIGINT)\n"
+        "sys.meta_path.insert(0, Loading())\n"
+        "sys.argv = ['grashof', 'problems']\n"
+        "from grashof.__main__ import main; main()"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "grashof: interrupted\n")

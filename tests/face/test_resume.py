@@ -89,6 +89,7 @@ def test_a_run_that_was_killed_goes_on_to_the_same_list(tmp_path: Path, moments:
 SIGNALS = [(signal.SIGINT, 130, "Ctrl-C", "interrupted"), (signal.SIGTERM, 143, "SIGTERM", "terminated")]
 
 
+@pytest.mark.quick("15-143-SIGTERM-terminated")
 @pytest.mark.parametrize(("number", "code", "name", "ending"), SIGNALS)
 def test_a_signal_ends_the_search_and_writes_what_it_has(
     tmp_path: Path, number: int, code: int, name: str, ending: str

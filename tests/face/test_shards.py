@@ -128,6 +128,7 @@ def test_a_full_disk_costs_no_shard(grashof: Grashof, tmp_path: Path) -> None:
     assert grashof("merge", "out", "--drawings", "0").exit_code == 0
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
 def test_a_terminated_shard_goes_on_with_the_same_command(tmp_path: Path) -> None:
     program = "from grashof.cli import main; main()"

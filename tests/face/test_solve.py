@@ -207,6 +207,7 @@ def test_the_record_tells_the_least_error_and_the_bound(grashof: Grashof, tmp_pa
     assert (exact["least_error"], exact["most_error"], exact["settings"]["effort"]) == (None, None, 1.0)
 
 
+@pytest.mark.slow
 def test_zones_that_are_too_small_say_how_large_would_do(
     grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

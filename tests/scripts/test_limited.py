@@ -67,6 +67,7 @@ def test_it_finds_poses_as_well_as_the_planted_linkage_does(independent: ModuleT
     assert found.error <= np.sqrt(planted.square / 6)
 
 
+@pytest.mark.slow
 def test_a_limit_that_cuts_the_planted_linkage_off_is_active(
     independent: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -69,6 +69,7 @@ def test_benchmark_measures(
     assert "five poses, 100 random sets" in said
 
 
+@pytest.mark.slow
 def test_own_task_holds_its_own_constraints(tmp_path: Path) -> None:
     """In a process of its own, as a user runs it."""
     said = run("own_task.py", "mine.csv", cwd=tmp_path)

@@ -40,6 +40,7 @@ def result(problem: Problem) -> Result:
     return synthesize(problem, enough=5, starts=16)
 
 
+@pytest.mark.slow
 def test_every_design_has_a_cylinder_within_its_limits(problem: Problem, result: Result) -> None:
     assert len(result) >= 5
     frame = result.to_frame()
@@ -53,6 +54,7 @@ def test_every_design_has_a_cylinder_within_its_limits(problem: Problem, result:
     assert problem.driver is not None
 
 
+@pytest.mark.slow
 def test_the_judge_needs_the_linkage_and_the_pivots_alone(problem: Problem, result: Result) -> None:
     for each in result.candidates[:3]:
         stated = Cylinder(**each.verdict.cylinder.stated)  # type: ignore[union-attr]
@@ -88,6 +90,7 @@ def test_a_cylinder_that_is_missing_or_beyond_its_limits_is_a_defect(
     assert missed(good, replace(problem, driver=replace(problem.driver, on=other))) == {"driver.cylinder.on"}
 
 
+@pytest.mark.slow
 def test_limits_of_angle_and_force_are_kept(problem: Problem, result: Result) -> None:
     least, most = 40.0, 2750.0
     wanted = replace(problem.requirements, cylinder_angle_min_deg=least, cylinder_force_max=(0.0, most))
@@ -137,6 +140,7 @@ ENGINE = SliderCrank((0, 0), 1, 3, 0.4, 0.3, (1.5, 0.7))
 SHAPER = InvertedSliderCrank((0, 0), (3, 0.4), 1.2, 0.3, (1.5, 0.7))
 
 
+@pytest.mark.quick("linkage0")
 @pytest.mark.parametrize("linkage", [ENGINE, SHAPER])
 def test_slider_kinds_are_driven_and_judged_from_the_pivots_alone(linkage: Linkage) -> None:
     spec = CylinderSpec(base=Box((-6, 6), (-6, 0)))

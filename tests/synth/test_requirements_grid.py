@@ -146,13 +146,37 @@ def stated(of: Pool, name: str) -> bool:
     return bool(np.isfinite(of.ends(name)).all())
 
 
+# Those whose searches take longer than half a second.
+HEAVY = {
+    "a",
+    "frechet",
+    "hausdorff",
+    "joint_force_peak",
+    "mechanical_advantage_min",
+    "omega4_max",
+    "output_swing_deg",
+    "point_acceleration_max",
+    "point_speed_max",
+    "r2",
+    "share_within_made",
+    "size",
+    "time_ratio",
+    "torque_peak",
+    "torque_rms",
+    "transmission_min_deg",
+    "worst_move",
+}
+
+
 def is_steered(name: str) -> bool:
     """Whether the search knows what a field limits; the others are for the judge alone."""
     quantity = LIMITS[name].quantity
     return not STEERED.isdisjoint({quantity.key, FREE.meant(quantity).key})
 
 
-@pytest.mark.quick(*(f"{kind}-{name}" for kind in ("poses met", "closed points") for name in LIMITS))
+@pytest.mark.quick(
+    *(f"{kind}-{name}" for kind in ("poses met", "closed points") for name in LIMITS if name not in HEAVY)
+)
 @pytest.mark.parametrize("name", LIMITS)
 @pytest.mark.parametrize("kind", TASKS)
 def test_what_is_missed_is_named_and_what_is_asked_is_kept(kind: str, name: str) -> None:

@@ -7,6 +7,7 @@ import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from shutil import copytree
 from typing import Any
 
 import numpy as np
@@ -62,8 +63,22 @@ def divided(kind: str, folder: Path, of: int, **more: Any) -> list[Made]:
     return [solve_shard(problem, Shard(n, of), folder, **options, **more) for n in range(of, 0, -1)]
 
 
+@pytest.fixture(scope="module")
+def searched(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[Made]]:
+    """A folder with the whole search of "poses" in one shard, and what was made there."""
+    folder = tmp_path_factory.mktemp("searched")
+    return folder, divided("poses", folder, 1)
+
+
+@pytest.fixture
+def shard(searched: tuple[Path, list[Made]], tmp_path: Path) -> Path:
+    """A copy of it."""
+    copytree(searched[0], tmp_path, dirs_exist_ok=True)
+    return tmp_path
+
+
+@pytest.mark.quick("zones", "poses")
 @pytest.mark.usefixtures("small_search")
-@pytest.mark.quick("poses", "three kinds", "zones", "degenerate")
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_list_does_not_depend_on_the_number_of_shards(kind: str, tmp_path: Path) -> None:
     merged = []
@@ -93,6 +108,7 @@ def test_all_chunks_are_made_and_nothing_ends_them_early(tmp_path: Path) -> None
     assert len(merge_shards(tmp_path)) == made.designs
 
 
+@pytest.mark.slow
 def test_a_shard_that_was_killed_goes_on(
     tmp_path: Path, mortal: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -129,6 +145,7 @@ def test_a_shard_that_was_stopped_is_not_whole(tmp_path: Path) -> None:
     assert solve_shard(problem, Shard(1, 1), tmp_path, **options).whole
 
 
+@pytest.mark.slow
 def test_processes_change_no_byte(tmp_path: Path) -> None:
     divided("poses", tmp_path / "alone", 1)
     divided("poses", tmp_path / "two", 1, workers=2)
@@ -182,8 +199,10 @@ def test_shards_of_other_searches_are_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("damage", ["truncated", "another figure", "a verdict that is wrong"])
-def test_what_is_damaged_is_not_merged_and_done_again(damage: str, tmp_path: Path) -> None:
-    (made,) = divided("poses", tmp_path, 1)
+@pytest.mark.usefixtures("shard")
+def test_what_is_damaged_is_not_merged_and_done_again(
+    damage: str, searched: tuple[Path, list[Made]], tmp_path: Path
+) -> None:
     whole = table(merge_shards(tmp_path))
     path = tmp_path / SHARDS / Shard(1, 1).folder / "000001.json"
     text = path.read_text(encoding="utf-8")
@@ -201,7 +220,7 @@ def test_what_is_damaged_is_not_merged_and_done_again(damage: str, tmp_path: Pat
         merge_shards(tmp_path)
     if damage == "a verdict that is wrong":  # noticed by the judge alone
         path.unlink()
-    assert divided("poses", tmp_path, 1) == [made]
+    assert divided("poses", tmp_path, 1) == searched[1]
     assert table(merge_shards(tmp_path)) == whole
 
 
@@ -225,8 +244,8 @@ def verdict(chunk: dict[str, Any]) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.usefixtures("shard")
 def test_shards_of_another_kind_of_processor_are_merged(tmp_path: Path) -> None:
-    divided("poses", tmp_path, 1)
 
     def rounded_otherwise(chunk: dict[str, Any]) -> None:
         judged = verdict(chunk)
@@ -255,15 +274,15 @@ CHANGES: dict[str, Callable[[dict[str, Any]], object]] = {
 
 @pytest.mark.quick("no tally", "a formula")
 @pytest.mark.parametrize("change", CHANGES)
+@pytest.mark.usefixtures("shard")
 def test_a_chunk_that_no_search_leaves_is_damaged(change: str, tmp_path: Path) -> None:
-    divided("poses", tmp_path, 1)
     tampered(tmp_path, CHANGES[change])
     with pytest.raises(ProblemError, match=r"is damaged; delete it, and run the shard again"):
         merge_shards(tmp_path)
 
 
+@pytest.mark.usefixtures("shard")
 def test_misses_are_judged_again_where_they_may_be_listed(tmp_path: Path) -> None:
-    divided("poses", tmp_path, 1)
 
     def missing(chunk: dict[str, Any]) -> None:
         if chunk["designs"]:
@@ -288,10 +307,10 @@ def test_misses_are_judged_again_where_they_may_be_listed(tmp_path: Path) -> Non
         ({"effort": 1}, r"a search with effort 1; here it is 1\.0$"),
     ],
 )
+@pytest.mark.usefixtures("shard")
 def test_a_head_that_no_search_wrote_is_refused_in_a_line(
     change: dict[str, Any], said: str, tmp_path: Path
 ) -> None:
-    divided("poses", tmp_path, 1)
     head = tmp_path / SHARDS / Shard(1, 1).folder / "search.json"
     head.write_text(json.dumps(json.loads(head.read_text(encoding="utf-8")) | change), encoding="utf-8")
     with pytest.raises(ProblemError, match=said) as refused:
@@ -302,8 +321,8 @@ def test_a_head_that_no_search_wrote_is_refused_in_a_line(
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no pipes in folders")
 @pytest.mark.parametrize("name", ["search.json", "problem.toml", "000001.json"])
+@pytest.mark.usefixtures("shard")
 def test_a_pipe_in_the_place_of_a_file_is_not_waited_for(name: str, tmp_path: Path) -> None:
-    divided("poses", tmp_path, 1)
     path = tmp_path / SHARDS / Shard(1, 1).folder / name
     path.unlink()
     os.mkfifo(path)

@@ -59,6 +59,7 @@ def greatest_error(
     return min(float(np.ptp(rotated - way * wanted)) / 2 for way in (1, -1))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "column"),
     [
@@ -85,7 +86,7 @@ def test_reference_optima_are_reached(name: str, column: int) -> None:
     assert best.linkage.lengths.max() / best.linkage.lengths.min() <= 10 + 1e-6
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.parametrize(
     ("law", "options", "reference"),
     [
@@ -104,6 +105,7 @@ def test_full_crank_references_are_reached(law: str, options: dict[str, Any], re
     assert best.verdict.structural_error_max * DEG <= 1.005 * reference
 
 
+@pytest.mark.slow
 def test_least_squares_of_the_references() -> None:
     """rms over the range; at 61 even samples 0.00455 deg with a link ratio of 50."""
     task = FunctionTask.from_degrees(
@@ -113,6 +115,7 @@ def test_least_squares_of_the_references() -> None:
     assert best.verdict.structural_error_rms * DEG < 0.00455
 
 
+@pytest.mark.quick("5", "4")
 @pytest.mark.parametrize("pairs", [3, 4, 5])
 def test_exact_pairs_of_a_planted_function(pairs: int) -> None:
     rng = np.random.default_rng(pairs)
@@ -154,6 +157,7 @@ def test_boxes_lengths_and_senses_are_kept() -> None:
         assert each.linkage.lengths.max() <= 800 + 1e-6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("sense", "direction"), [("ccw", 1), ("cw", -1)])
 def test_a_given_start_angle_is_kept(sense: str, direction: int) -> None:
     """The mirror image of a linkage turns its driver clockwise."""
@@ -179,6 +183,7 @@ def test_the_same_seed_gives_the_same_list() -> None:
     assert lists[0].equals(lists[1])
 
 
+@pytest.mark.slow
 def test_designs_are_told_of_as_they_are_found() -> None:
     told: list[Progress] = []
     problem = load("function-sin")
@@ -252,6 +257,7 @@ def block_error(linkage: Any, start: float, sense: int, turned: FloatArray) -> F
     return turn
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("mechanism", "name"),
     [
@@ -289,6 +295,9 @@ def test_reference_optima_of_slides_are_reached(mechanism: str, name: str) -> No
     assert best.linkage.lengths.max() / best.linkage.lengths.min() <= 20 + 1e-6
 
 
+@pytest.mark.quick(
+    "4-inverted-slider-crank", "5-slider-crank", "5-inverted-slider-crank", "3-inverted-slider-crank"
+)
 @pytest.mark.parametrize("mechanism", ["slider-crank", "inverted-slider-crank"])
 @pytest.mark.parametrize("pairs", [3, 4, 5])
 def test_exact_pairs_of_a_planted_slide(mechanism: str, pairs: int) -> None:
@@ -306,6 +315,7 @@ def test_exact_pairs_of_a_planted_slide(mechanism: str, pairs: int) -> None:
             assert len(result) > 3
 
 
+@pytest.mark.quick("cw-slider-crank")
 @pytest.mark.parametrize("mechanism", ["slider-crank", "inverted-slider-crank"])
 @pytest.mark.parametrize("sense", ["ccw", "cw"])
 def test_limits_of_slides_are_kept(mechanism: str, sense: str) -> None:
@@ -365,6 +375,7 @@ def test_slides_of_any_size(size: float) -> None:
     )
 
 
+@pytest.mark.slow
 def test_kinds_whose_output_turns_share_a_list() -> None:
     task = FunctionTask.from_degrees(
         law="sqrt", x=(1, 4), input_range_deg=90, output_range_deg=90, sense="either", norm="max"
@@ -380,6 +391,7 @@ def test_kinds_whose_output_turns_share_a_list() -> None:
     assert errors[0] * DEG < 0.0017
 
 
+@pytest.mark.quick("inverted-slider-crank-1-ccw")
 @pytest.mark.parametrize(("direction", "sense"), [(1, "ccw"), (-1, "cw")])
 @pytest.mark.parametrize("mechanism", ["slider-crank", "inverted-slider-crank"])
 def test_a_given_start_angle_of_slides_is_kept(mechanism: str, sense: str, direction: int) -> None:

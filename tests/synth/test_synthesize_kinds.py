@@ -131,6 +131,7 @@ def test_mixed_lists_have_one_ranking() -> None:
     assert {each.id for each in alone.candidates} <= {each.id for each in found.candidates}
 
 
+@pytest.mark.slow
 def test_a_shorter_list_has_an_equal_share_of_each_kind() -> None:
     task = MotionTask.from_degrees([[0, 0, 0], [60, 90, 15], [180, 140, 40]])
     whole = synthesize(Problem(task=task, mechanism=["slider-crank", "four-bar", "inverted-slider-crank"]))
@@ -155,6 +156,7 @@ def test_of_inverted_slider_cranks_without_offset_the_smallest_come_first() -> N
     assert best.verdict.size < 0.97 * min(each.verdict.size for each in found)
 
 
+@pytest.mark.slow
 def test_a_kind_that_cannot_do_it_is_left_out() -> None:
     """The luggage poses turn back to equal angles: their slider dyads lie at infinity."""
     problem = load("luggage")

@@ -216,6 +216,7 @@ def test_workers_change_no_byte(tmp_path: Path, other_process: Executor) -> None
     assert csv_of(synthesize(problem, **(few | {"seed": 4})), tmp_path) != alone
 
 
+@pytest.mark.slow
 def test_an_impossible_path_says_what_stands_in_the_way(relaxing_only: Callable[..., None]) -> None:
     relaxing_only("o2")
     far = Box((1000, 1001), (1000, 1001))

@@ -170,6 +170,7 @@ def test_poses_with_free_parts_are_met_exactly(mix: str) -> None:
         assert steps.sum() <= 2 * np.pi + 1e-9
 
 
+@pytest.mark.slow
 def test_more_freedom_is_never_worse() -> None:
     """Three poses leave more room for transmission than four of which they are three."""
     rows = [[0.0, 0, 0], [2, 1, 20], [3, 3, 50], [2.5, 4, 80]]

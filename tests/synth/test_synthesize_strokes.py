@@ -45,6 +45,7 @@ def test_the_published_quick_return_is_first_then_a_family_to_choose_from() -> N
     assert (frame["grashof_class"] == "crank-rocker").all()
 
 
+@pytest.mark.quick("30-1.0-wanted0", "100-1.0-wanted9", "20-1.2-wanted3", "80-1.1-wanted8")
 @pytest.mark.parametrize(
     ("swing", "ratio", "wanted"),
     [
@@ -146,6 +147,7 @@ def test_a_stroke_that_no_crank_rocker_does_well_is_listed_and_advised() -> None
     assert found(40, 1.1).note == ""
 
 
+@pytest.mark.slow
 def test_the_list_does_not_depend_on_workers() -> None:
     problem = load("quick-return")
     alone, together = synthesize(problem), synthesize(problem, workers=2)

@@ -54,6 +54,7 @@ def test_lost_designs_keep_their_place_and_say_what_they_miss(luggage) -> None: 
     assert all(design.verdict.defects and design.problem is limited for design in after)
 
 
+@pytest.mark.slow
 def test_trade_offs_of_least_squares_stay_apart() -> None:
     problem = load("path-gait")
     designs = synthesize(problem).candidates

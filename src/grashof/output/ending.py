@@ -1,4 +1,4 @@
-"""How a command ends: its exit codes, and what Ctrl-C and SIGTERM do."""
+"""How a command ends: its exit codes, and what Ctrl-C, SIGTERM and SIGHUP do."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from enum import IntEnum
 from types import FrameType
+
+_SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
 
 class Exit(IntEnum):
@@ -21,10 +23,10 @@ class Exit(IntEnum):
 
 
 class Interruption:
-    """Whether the user, or the system, has asked the program to end, and its exit code then."""
+    """Whether the user, or the system, has asked the program to end, by what, and its exit code then."""
 
     def __init__(self) -> None:
-        self.code = Exit.OK
+        self.code, self.by = Exit.OK, ""
 
     def __call__(self) -> bool:
         """Whether it was asked for."""
@@ -33,12 +35,17 @@ class Interruption:
 
 @contextmanager
 def interruptible() -> Iterator[Interruption]:
-    """Turn the first Ctrl-C or SIGTERM into a request to end soon; the second one ends at once."""
+    """Turn the first Ctrl-C, SIGTERM or SIGHUP into a request to end soon; the second one ends at once.
+
+    A signal that is ignored stays so, such as SIGHUP under nohup.
+    """
     asked = Interruption()
-    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    handlers = {number: signal.getsignal(number) for number in _SIGNALS}
+    before = {number: handler for number, handler in handlers.items() if handler is not signal.SIG_IGN}
 
     def ask(number: int, _frame: FrameType | None) -> None:
         asked.code = Exit.INTERRUPTED if number == signal.SIGINT else Exit.TERMINATED
+        asked.by = "Ctrl-C" if number == signal.SIGINT else signal.Signals(number).name
         restore()
 
     def restore() -> None:

@@ -22,7 +22,7 @@ from grashof.analysis import (
 from grashof.analysis.loops.four_bar import FOUR_BAR_CLASSES
 from grashof.problems import FourBar
 
-CHECKED = settings(max_examples=40)
+CHECKED = settings(max_examples=25)
 JACK = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
 Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
 

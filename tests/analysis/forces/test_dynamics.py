@@ -32,7 +32,7 @@ from grashof.analysis import (
 )
 from grashof.problems import DeadPositionWarning, FourBar, ProblemError
 
-CHECKED = settings(max_examples=40)
+CHECKED = settings(max_examples=25)
 TURN = 2 * np.pi
 Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
 JACK = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762, coupler_point=(1.7, 0.7))

@@ -213,6 +213,7 @@ def random_masses(rng: np.random.Generator, linkage: FourBar) -> Masses:
     return Masses(links[0], links[1] + plate, links[2]).with_payload(2.0, linkage.coupler_point)
 
 
+@pytest.mark.quick("non-Grashof", "crank-rocker")
 @pytest.mark.parametrize("kind", FOUR_BAR_CLASSES)
 @given(data=st.data())
 @settings(max_examples=12)

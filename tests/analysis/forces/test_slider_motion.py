@@ -43,6 +43,7 @@ def lossless(spec: DynamicsSpec) -> DynamicsSpec:
     return replace(spec, loads=(), dampers=(), friction=None)
 
 
+@pytest.mark.quick("InvertedSliderCrank--40.0-2.0-0.3")
 @pytest.mark.parametrize(("omega2", "lasts", "margin"), [(40.0, 2.0, 0.2), (-40.0, 2.0, 0.3)])
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_released_linkage_keeps_its_energy_for_ten_turns(
@@ -60,6 +61,7 @@ def test_a_released_linkage_keeps_its_energy_for_ten_turns(
         assert np.ptp(free.energy) < 1e-11 * np.abs(free.energy).max()
 
 
+@pytest.mark.quick("SliderCrank")
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_torque_of_a_released_linkage_is_none(
     kind: type[Linkage], slider_loads: Specs, made: Maker

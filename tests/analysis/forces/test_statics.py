@@ -29,7 +29,7 @@ from grashof.analysis import (
 from grashof.analysis.loops.four_bar import FOUR_BAR_CLASSES
 from grashof.problems import FourBar
 
-CHECKED = settings(max_examples=40)
+CHECKED = settings(max_examples=25)
 TURN = 2 * np.pi
 JACK = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762, coupler_point=(1.7, 0.7))
 ROCKER = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3, coupler_point=(1, 1), assembly=-1)

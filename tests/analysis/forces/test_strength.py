@@ -230,6 +230,7 @@ def dense(
     return {key: float(value) for key, value in found.items()}
 
 
+@pytest.mark.quick("6", "4")
 @pytest.mark.parametrize("seed", range(8))
 def test_peaks_are_those_of_a_dense_search(seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -309,6 +310,7 @@ def test_the_worst_bar_is_told_without_sections_too() -> None:
     assert (summary.worst_bar.part, summary.worst_bar.key) == ("link 2", "stress")
 
 
+@pytest.mark.quick("2.0-linkage1", "-2.0-linkage0", "0.0-linkage2")
 @pytest.mark.parametrize(
     "linkage",
     [

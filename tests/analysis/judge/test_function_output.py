@@ -55,6 +55,7 @@ def test_planted_functions_are_accepted(pairs: int, direction: int) -> None:
             assert abs(np.exp(1j * (verdict.theta2[0] - direction * start)) - 1) < 1e-6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("norm", ["rms", "max"])
 def test_structural_error_is_that_of_dense_continuation(norm: str) -> None:
     rng = np.random.default_rng(11)
@@ -179,6 +180,12 @@ def test_planted_functions_of_slides_are_accepted(mechanism: str, pairs: int, di
             assert abs(np.exp(1j * (verdict.theta2[0] - direction * start)) - 1) < 1e-6
 
 
+@pytest.mark.quick(
+    "1e-06-rms-slider-crank",
+    "1.0-max-slider-crank",
+    "100000.0-rms-inverted-slider-crank",
+    "1.0-max-inverted-slider-crank",
+)
 @SLIDING
 @pytest.mark.parametrize("norm", ["rms", "max"])
 @pytest.mark.parametrize("size", [1e-6, 1.0, 1e5])

@@ -42,6 +42,7 @@ def test_rows_that_end_too_early_are_a_defect(mechanism: str) -> None:
             assert found or np.isfinite(Values(linkage, judged, problem)["torque_peak"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mechanism", SLIDING)
 def test_a_search_lists_designs_whose_loads_are_known(mechanism: str) -> None:
     task = PathTask([[0, 0], [60, 90], [180, 140], [300, 90], [340, 0]])

@@ -15,7 +15,7 @@ from grashof.analysis.judge.task_motion import Targets
 from grashof.analysis.loops.four_bar import FOUR_BAR_CLASSES
 from grashof.problems import FourBar, MotionTask
 
-CHECKED = settings(max_examples=40)
+CHECKED = settings(max_examples=25)
 Brute = Callable[..., tuple[npt.NDArray[np.complex128], ...]]
 Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
 Kinds = list[str]

@@ -92,6 +92,7 @@ def test_positions_are_those_of_the_loop_equations(linkages, second_opinion, kin
     check()
 
 
+@pytest.mark.quick("crank-rocker", "double-rocker", "inverted slider-rocker", "slider-crank")
 @pytest.mark.parametrize("kind", CLASSES)
 def test_rates_are_the_derivatives_of_positions(linkages, second_opinion, kind) -> None:
     @few
@@ -162,6 +163,7 @@ def test_points_move_as_their_places_do(linkages, kind) -> None:
     check()
 
 
+@pytest.mark.quick("double-crank", "non-Grashof", "Whitworth", "slider-rocker")
 @pytest.mark.parametrize("kind", CLASSES)
 def test_the_loop_closes_within_the_ranges_alone(linkages, second_opinion, kind) -> None:
     @fewer
@@ -190,6 +192,7 @@ def test_the_loop_closes_within_the_ranges_alone(linkages, second_opinion, kind)
     check()
 
 
+@pytest.mark.quick("crank-rocker", "non-Grashof", "crank-shaper", "slider-crank")
 @pytest.mark.parametrize("kind", CLASSES)
 def test_circuits_are_what_a_continued_motion_joins(linkages, second_opinion, kind) -> None:
     """Newton's method, led along the driver, stays on one branch between dead positions."""
@@ -212,6 +215,7 @@ def test_circuits_are_what_a_continued_motion_joins(linkages, second_opinion, ki
     check()
 
 
+@pytest.mark.quick("crank-rocker", "non-Grashof", "Whitworth", "slider-rocker")
 @pytest.mark.parametrize("kind", CLASSES)
 def test_the_worst_transmission_is_that_of_dense_positions(linkages, second_opinion, kind) -> None:
     @fewer

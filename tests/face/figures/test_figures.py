@@ -207,6 +207,7 @@ def test_names_and_numbers_stand_apart(few: Result) -> None:
         assert not any(one.overlaps(other) for one, other in combinations(boxes, 2))
 
 
+@pytest.mark.slow
 def test_names_stand_off_the_lines() -> None:
     """At every tenth degree of the pumpjack no letter lies on a bar, and few on the path of P."""
     jack = load_linkage_spec("pumpjack")

@@ -123,6 +123,7 @@ def test_without_a_design_the_closest_misses_are_listed_with_what_to_relax(clien
     assert "transmission_min_deg" in last["note"]
 
 
+@pytest.mark.quick("designs", "list")
 @pytest.mark.parametrize("wanted", ["problem", "list", "designs", "report", "dxf"])
 def test_files_are_those_of_the_command_line(client: Client, wanted: str) -> None:
     found = client.ask("search", page="saving")
@@ -158,7 +159,7 @@ def test_a_dxf_drawing_comes_back_as_polylines(client: Client) -> None:
     (lines, _) = client.ask("outline", text=text.getvalue())
     assert lines["polylines"] == [[[1.0, 2.0], [3.0, 4.0]]]
     (error, _) = client.ask("outline", text="no drawing")
-    assert error["lines"][0].startswith("the drawing is not a DXF file")
+    assert error["lines"][0].startswith("is not a DXF file")
 
 
 # ------------------------------------------------------------------------------------- what is refused

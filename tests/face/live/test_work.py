@@ -55,6 +55,7 @@ def test_few_that_are_absent_are_kept(result: Result) -> None:
     assert len(shown.absent) == ABSENT
 
 
+@pytest.mark.slow
 def test_designs_that_are_not_followed_keep_their_keys_too(document: dict[str, Any]) -> None:
     (*_, found), shown = told(Job("search", document, "luggage"))
     assert len(keys(found)) > TRACKED
@@ -64,6 +65,7 @@ def test_designs_that_are_not_followed_keep_their_keys_too(document: dict[str, A
     assert keys(again) == keys(found)
 
 
+@pytest.mark.slow
 def test_the_keys_of_misses_are_not_those_of_designs_to_come(document: dict[str, Any]) -> None:
     limits = {**document.get("requirements", {}), "transmission_min_deg": 60}
     (*_, found), shown = told(Job("search", {**document, "requirements": limits}, "luggage"))

@@ -127,6 +127,7 @@ def test_what_is_refused(sections: Sections, spec: LinkageSpec, asked: dict[str,
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.slow
 def test_options_of_the_command(grashof: Callable[..., Any], tmp_path: Path) -> None:
     options = ("--release", "100", "--release-rpm", "-2", "--seconds", "0.5", "--dwell-deg", "1")
     options = (*options, "--balance", "--flywheel", "0.05", "--tolerance", "0.01")

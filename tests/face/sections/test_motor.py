@@ -35,6 +35,7 @@ def test_no_motor_no_section(sections: Sections) -> None:
     assert "motor" not in sections(replace(JACK, dynamics=DynamicsSpec(motor=GEAR)))
 
 
+@pytest.mark.quick("20.0-constant", "-20.0-trapezoid")
 @pytest.mark.parametrize("profile", ["constant", "cycloid", "trapezoid"])
 @pytest.mark.parametrize("speed", [20.0, -20.0])
 def test_the_motor_gives_what_the_drive_and_its_rotor_take(

@@ -37,6 +37,16 @@ DYNAMICS = {
 }  # fmt: skip
 
 
+@pytest.mark.quick(
+    "crank-rocker-none",
+    "two ranges-none",
+    "kite-none",
+    "huge-payload alone",
+    "minute-none",
+    "change point-payload alone",
+    "one range-clockwise, a link without mass",
+    "P in A-none",
+)
 @pytest.mark.parametrize("dynamics", DYNAMICS)
 @pytest.mark.parametrize("name", LINKAGES)
 def test_all_is_finite_or_empty_and_nothing_warns(sections: Any, name: str, dynamics: str) -> None:

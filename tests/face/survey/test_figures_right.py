@@ -266,7 +266,7 @@ def check(spec: LinkageSpec) -> None:
         np.testing.assert_allclose(met, [place, place], atol=1e-10 * found["size"])
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.parametrize(
     "tens", [*range(4), *(pytest.param(tens, marks=pytest.mark.study) for tens in range(4, 20))]
 )
@@ -275,6 +275,7 @@ def test_every_figure_of_two_hundred_linkages(tens: int) -> None:
         check(random_spec(seed))
 
 
+@pytest.mark.quick("2")
 @pytest.mark.parametrize("seed", [0, 1, 2])
 def test_every_figure_of_a_few(seed: int) -> None:
     check(random_spec(seed))
@@ -286,6 +287,7 @@ def issued() -> LinkageSpec:
     return LinkageSpec(linkage, "nearly dead", length_unit="m", dynamics=dynamics)
 
 
+@pytest.mark.slow
 def test_torque_near_a_change_point_by_adaptive_quadrature() -> None:
     spec, found = issued(), facts(issued())
     assert found["torque_rms"] == pytest.approx(6919.2, abs=0.05)

@@ -119,8 +119,8 @@ def ended_after(running: subprocess.Popen[str], steps: int, number: signal.Signa
     return running.returncode
 
 
-@posix
 @pytest.mark.study
+@posix
 def test_two_hundred_tasks_interrupted_in_every_way(write: Write, tmp_path: Path) -> None:
     study, out = write(MANY), tmp_path / "out"
     ways: list[tuple[signal.Signals, bool, int]] = [

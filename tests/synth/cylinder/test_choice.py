@@ -60,6 +60,7 @@ def test_on_link_2_the_worst_angle_is_90_deg_less_half_the_range() -> None:
         assert found.ratio <= 1.6
 
 
+@pytest.mark.slow
 def test_some_link_has_a_cylinder_of_30_deg_or_more() -> None:
     rng = np.random.default_rng(2)
     angles = []
@@ -122,7 +123,7 @@ def searched(moved: Moved, spec: CylinderSpec, on: str, reach: float, middle: fl
     return float(np.degrees(np.arcsin(min(-best.fun, 1.0)))) if best.fun < 0 else 0.0
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.parametrize("seed", range(6))
 def test_an_independent_search_of_great_effort_finds_no_better_one(seed: int) -> None:
     moved = drawn(np.random.default_rng(100 + seed))

@@ -173,7 +173,7 @@ def searched(way: Travel, spec: CylinderSpec, on: str, seed: int) -> float:
     return float(np.degrees(cylinder_figures(Cylinder(on, base, (q.real, q.imag)), way).angle_min))
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("seed", range(12))
 def test_an_independent_search_of_great_effort_finds_no_better_one(kind: type[Linkage], seed: int) -> None:

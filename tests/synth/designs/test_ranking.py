@@ -127,7 +127,7 @@ figures = st.tuples(
 )
 
 
-@settings(max_examples=60)
+@settings(max_examples=25)
 @given(st.lists(figures, min_size=2, max_size=8), st.permutations(range(8)), st.booleans())
 def test_the_order_is_total_and_no_odd_design_leads_where_another_is_near(
     rows: list[tuple[float, float, float, float]], shuffled: list[int], exact: bool

@@ -195,6 +195,15 @@ def judged(problem: Problem, linkage: Linkage, theta2: FloatArray) -> FloatArray
     return torque
 
 
+@pytest.mark.quick(
+    "masses",
+    "weightless",
+    "bars",
+    "inverted-slider-crank masses",
+    "slider-crank bars",
+    "inverted-slider-crank loaded",
+    "slider-crank loaded",
+)
 @pytest.mark.parametrize(
     ("mechanism", "given"),
     [
@@ -236,6 +245,7 @@ def lightest(driven: Problem) -> Result:
     return synthesize(driven, starts=16, enough=16)
 
 
+@pytest.mark.slow
 def test_the_list_begins_with_the_smallest_torque(lightest: Result, driven: Problem) -> None:
     peaks = [each.values["torque_peak"] for each in lightest.candidates]
     assert peaks == sorted(peaks)
@@ -276,7 +286,7 @@ def test_the_programme_agrees_with_the_judge(driven: Problem) -> None:
         assert made.values["torque_peak"] * (1 - GRID_ERROR) < peak < made.values["torque_peak"] * (1 + 1e-6)
 
 
-@pytest.mark.quick("0.3")
+@pytest.mark.slow
 @pytest.mark.parametrize("weight", [0.3, 3.0])
 def test_a_weight_beside_the_transmission(driven: Problem, lightest: Result, weight: float) -> None:
     both = replace(driven, objective=Objective(transmission=1, torque=weight))
@@ -297,7 +307,7 @@ def test_backwards_the_torque_is_the_same(driven: Problem, lightest: Result) -> 
     assert best.values["torque_peak"] == pytest.approx(lightest.best.values["torque_peak"], rel=GRID_ERROR)
 
 
-@pytest.mark.quick("True")
+@pytest.mark.slow
 @pytest.mark.parametrize("closed", [False, True])
 def test_paths(closed: bool) -> None:
     task, _ = planted_path(np.random.default_rng(4), points=5)
@@ -316,6 +326,7 @@ def test_paths(closed: bool) -> None:
         )
 
 
+@pytest.mark.quick("point_acceleration_max-slider-crank")
 @pytest.mark.parametrize("mechanism", SLIDING)
 @pytest.mark.parametrize("key", ["torque_peak", "joint_force_peak", "point_acceleration_max"])
 def test_slider_kinds(mechanism: str, key: str) -> None:
@@ -337,6 +348,7 @@ def test_slider_kinds(mechanism: str, key: str) -> None:
     assert near
 
 
+@pytest.mark.quick("slider-crank")
 @pytest.mark.parametrize("mechanism", SLIDING)
 def test_limits_of_slider_kinds(mechanism: str) -> None:
     """A limit below what any design has by default is kept."""

@@ -9,7 +9,7 @@ from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, MotionTask, Requirements
 from grashof.synth.programme.frame import Frame
 
-bounded = settings(max_examples=60)
+bounded = settings(max_examples=25)
 point = st.tuples(st.floats(-50, 50), st.floats(-50, 50))
 
 

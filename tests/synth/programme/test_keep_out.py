@@ -76,6 +76,7 @@ def test_without_the_area_the_best_pivots_lie_in_it() -> None:
     assert deeper_than(AS_GIVEN, pivots, 0.1).any()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("small_search")
 def test_no_crank_turns_fully_outside_a_floor_that_goes_on_and_the_note_says_so(
     relaxing_only: Callable[..., None],
@@ -104,6 +105,7 @@ def test_behind_a_floor_that_ends_at_9_a_crank_turns_fully(
         assert candidate.linkage.o2[0] >= 9 - 1e-7
 
 
+@pytest.mark.quick("names0")
 @pytest.mark.usefixtures("small_search")
 @pytest.mark.parametrize("names", [("a", "b", "p"), ("links",)])
 def test_moving_parts_pass_beside_a_post(names: tuple[str, ...]) -> None:

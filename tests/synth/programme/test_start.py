@@ -13,7 +13,7 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Start
 
-bounded = settings(max_examples=80)
+bounded = settings(max_examples=25)
 angle = st.floats(-3, 3)
 
 

@@ -56,6 +56,7 @@ def test_more_poses_than_there_are_exact_ones_for() -> None:
     assert squares == sorted(squares)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("goal", ["compactness", "torque"])
 def test_a_goal_that_least_squares_or_a_loose_requirement_would_not_have(goal: str) -> None:
     problem = load("luggage")

@@ -62,7 +62,7 @@ def test_zones_that_are_named_are_little_larger_than_need_be() -> None:
     assert any(verify(one.linkage, larger, limits).ok for one in result.nearest)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_each_zone_is_named_with_its_own_figure() -> None:
     each = task(within=1e-3, angle_within_deg=[1, 1, 1, 1, 1, 2])
     result = synthesize(Problem(task=each, requirements=LOOSE), effort=0.2)
@@ -83,6 +83,7 @@ def test_each_zone_is_named_with_its_own_figure() -> None:
     assert verify(result.nearest[0].linkage, larger, LOOSE).ok
 
 
+@pytest.mark.slow
 def test_a_larger_tolerance_is_named(relaxing_only: Callable[..., None]) -> None:
     relaxing_only()
     wanted = Requirements(exact=True, tolerance=1e-4)
@@ -94,7 +95,7 @@ def test_a_larger_tolerance_is_named(relaxing_only: Callable[..., None]) -> None
     assert len(synthesize(Problem(task=task(), requirements=loose), effort=0.2)) > 0
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_zones_beyond_all_reason_still_leave_the_objective_a_good_design() -> None:
     for zone in (1e3, 1e19):
         for goal, least in ((Objective(), 0.9), (Objective(0, 1), -2.0)):

@@ -174,7 +174,7 @@ def test_either_of_two_contradictory_limits_would_do_for_least_squares(
     assert found["link_length"].words.startswith("link_length up to 39")
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_neither_workers_nor_repetition_change_an_explanation(
     other_process: Executor, relaxing_only: Callable[..., None]
 ) -> None:

@@ -17,7 +17,7 @@ from grashof.synth.designs.ranking import pareto_optimal, ranked
 from grashof.synth.programme.merit import weigh
 
 Designs = tuple[Candidate, ...]
-bounded = settings(max_examples=60)
+bounded = settings(max_examples=25)
 
 
 def with_figures(candidate: Candidate, error: float, transmission: float, size: float) -> Candidate:

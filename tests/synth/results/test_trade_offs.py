@@ -41,6 +41,7 @@ def mu_of(candidate: Candidate) -> float:
     return float(np.degrees(candidate.verdict.transmission_min_cycle))
 
 
+@pytest.mark.slow
 def test_more_error_buys_transmission_and_size(dshape: Result) -> None:
     """What a search of its own found for 1.2 and twice the least error of 0.6763: 65.2 deg, 277 mm."""
     error = errors_of(dshape)
@@ -132,6 +133,7 @@ def test_a_wide_tolerance_works_as_zones(least_error: Search) -> None:
     assert mu_of(result.best) > mu_of(by_error) + 1
 
 
+@pytest.mark.slow
 def test_more_effort_is_never_worse_and_less_is_quick(least_error: Search) -> None:
     problem = Problem(task=MotionTask.from_degrees(POSES))
     little, usual, much = (least_error(problem, effort=effort) for effort in (0.2, 1, 1.3))
@@ -157,7 +159,7 @@ def test_least_squares_that_meets_every_target_says_what_would_find_more() -> No
     )
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_workers_change_nothing_of_a_list_to_choose_from(other_process: Executor) -> None:
     problem = problem_of(stated("knee"), "here", "knee")
     one, two = (synthesize(problem, effort=0.2, executor=executor) for executor in (None, other_process))

@@ -39,8 +39,8 @@ def table(result: Result) -> str:
     return result.to_frame().to_csv() + result.note + result.ended
 
 
+@pytest.mark.quick("poses fitted", "points met")
 @pytest.mark.usefixtures("small_search")
-@pytest.mark.quick("poses", "poses fitted", "points met")
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_search_that_was_killed_goes_on_to_the_same_list(
     kind: str, tmp_path: Path, mortal: Any, caplog: pytest.LogCaptureFixture

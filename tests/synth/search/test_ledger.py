@@ -42,6 +42,7 @@ def filled(scaled: ScaledProblem, attempts: list[Attempt]) -> Ledger:
     return ledger
 
 
+@pytest.mark.slow
 def test_the_best_stay_of_very_many(
     scaled: ScaledProblem, attempts: list[Attempt], monkeypatch: pytest.MonkeyPatch
 ) -> None:

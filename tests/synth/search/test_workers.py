@@ -63,6 +63,7 @@ def nap(_scaled: ScaledProblem, seconds: float) -> float:
     return seconds
 
 
+@pytest.mark.slow
 def test_what_ends_its_process_is_given_up_and_the_next_is_not(processes: Processes) -> None:
     scaled = ScaledProblem.of(load("luggage"))
     assert processes.begin(crash, scaled, 7)  # else it is done here as long as they begin
@@ -73,6 +74,7 @@ def test_what_ends_its_process_is_given_up_and_the_next_is_not(processes: Proces
     assert processes.lost == 2
 
 
+@pytest.mark.slow
 def test_what_a_lost_process_did_is_done_again(processes: Processes) -> None:
     scaled = ScaledProblem.of(load("luggage"))
     naps = (0.5, 2.5, 0.1)

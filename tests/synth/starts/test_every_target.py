@@ -61,6 +61,7 @@ def test_a_task_in_any_order_is_met(path: bool) -> None:
     assert error < 1e-12 * len(target.points)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_it_comes_as_low_as_steps_in_all_angles_at_once(path: bool) -> None:
     """On average: where points have to share driver angles, the valleys found may be others."""

@@ -90,6 +90,7 @@ def test_oversteps_are_what_a_second_computation_says() -> None:
     assert np.radians(80) > LEAST_TRANSMISSION
 
 
+@pytest.mark.slow
 def test_an_optimum_whose_transmission_is_active_at_an_end_is_verified(least_error: Search) -> None:
     """Five conveyor poses: the judge has the ends of the motion where the poses are nearest."""
     known = next(task for task in KNOWN if task["name"] == "conv")
@@ -205,7 +206,7 @@ def least(result: Result) -> Candidate:
     return min(result.candidates, key=lambda c: c.verdict.square)
 
 
-@pytest.mark.quick("timed-transmission_min_deg", "poses-o2", "closed-cycle")
+@pytest.mark.quick("timed-transmission_min_deg")
 @pytest.mark.parametrize(
     ("kind", "limit"), [(kind, limit) for kind, limits in GRID.items() for limit in limits]
 )

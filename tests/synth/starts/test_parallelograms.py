@@ -154,6 +154,7 @@ def test_a_hint_names_what_the_geometry_asks_for(relaxing_only: Callable[..., No
     assert "coupler_arms from 2.828 instead of 3" in result.note
 
 
+@pytest.mark.slow
 def test_a_full_crank_is_told_what_would_do(relaxing_only: Callable[..., None]) -> None:
     relaxing_only("rotatability")
     result = synthesize(Problem(task=on_circle([10, 40, 60, 80])))
@@ -182,6 +183,7 @@ def test_a_straight_line_is_told(relaxing_only: Callable[..., None]) -> None:
     assert "along a straight line" in result.note
 
 
+@pytest.mark.slow
 def test_more_than_half_a_turn_holds_a_change_point(relaxing_only: Callable[..., None]) -> None:
     relaxing_only()
     result = synthesize(problem(on_circle([10, 100, 200, 260])))

@@ -30,7 +30,7 @@ exact_poses = st.lists(st.tuples(coordinate, coordinate, angle), min_size=4, max
         for q in poses[:i]
     )
 )
-bounded = settings(max_examples=100)
+bounded = settings(max_examples=25)
 
 
 def displacements(poses: list[tuple[float, float, float]]) -> Displacements:
@@ -157,7 +157,7 @@ def test_seen_from_the_body_circle_and_centre_points_change_places(
         assert np.abs(again - point).min() < 1e-5 * (1 + abs(point))
 
 
-@settings(max_examples=40)
+@settings(max_examples=25)
 @given(st.integers(0, 10_000))
 def test_polish_makes_dyads_exact_with_a_small_step(seed: int) -> None:
     rng = np.random.default_rng(seed)

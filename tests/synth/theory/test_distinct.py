@@ -11,7 +11,7 @@ from grashof.problems import FourBar
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.theory.distinct import DISTINCT, apart, pick_apart, signature
 
-bounded = settings(max_examples=50)
+bounded = settings(max_examples=25)
 number = st.floats(-10, 10).filter(lambda value: value == 0 or abs(value) > 1e-3)
 signatures = arrays(np.float64, st.tuples(st.integers(2, 12), st.just(9)), elements=number).filter(
     lambda rows: bool((np.abs(rows).max(axis=1) > 0.1).all())

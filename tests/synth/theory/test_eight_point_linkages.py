@@ -118,6 +118,7 @@ def test_all_slider_cranks_are_distinct(planted):
     assert apart.min() > 1e-6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("factor", "mirrored", "back"), [(25.4 * np.exp(1j), False, True), (1e-3, True, False)]
 )
@@ -142,6 +143,7 @@ def test_inverted_slider_cranks_pass_all_points(benchmark):
     assert_inverted_ones_pass(through, points)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "points",
     [
@@ -158,7 +160,7 @@ def test_points_of_infinitely_many_or_no_linkages_give_a_list_that_is_right(poin
         assert_slider_cranks_pass(through, points)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.parametrize("number", range(20))
 def test_of_558_paths_548_arrive_and_the_planted_slider_crank_is_found(benchmark, number):
     kind = "slider-crank"

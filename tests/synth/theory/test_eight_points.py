@@ -99,6 +99,7 @@ def test_inverted_slider_cranks_share_no_pivot():
         assert (apart + np.eye(len(apart))).min() > 1e-5
 
 
+@pytest.mark.slow
 @KINDS
 def test_loops_from_one_solution_lead_to_known_ones(family):
     displacements, solutions = family.known()

@@ -126,6 +126,7 @@ def test_worst_cosine_is_that_of_dense_samples(mechanism: str) -> None:
         assert abs(generator_of(linkage, start, 1.0).worst_cosine(span)[0] - dense.max()) < 1e-6
 
 
+@pytest.mark.quick("inverted-slider-crank")
 @EVERY
 def test_all_planted_linkages_of_a_few_pairs_are_found(mechanism: str) -> None:
     rng, kind = np.random.default_rng(4), KINDS[mechanism].generators
@@ -136,6 +137,7 @@ def test_all_planted_linkages_of_a_few_pairs_are_found(mechanism: str) -> None:
     assert set(np.bincount(which).tolist()) <= ({1} if kind.EXACT == 4 else {1, 3})
 
 
+@pytest.mark.study
 @EVERY
 @pytest.mark.parametrize("count", [50, pytest.param(1000, marks=pytest.mark.slow)])
 def test_a_pair_less_is_always_met_where_a_linkage_meets_them(mechanism: str, count: int) -> None:

@@ -75,6 +75,7 @@ def test_the_optimum_is_symmetric_about_a_swing_that_equals_the_lag(lag, beside)
     assert equal > more
 
 
+@pytest.mark.slow
 def test_a_time_ratio_of_one_and_a_half_leaves_32_deg() -> None:
     assert max(optimum(swing, 1.5)[1] for swing in range(2, 178, 2)) == pytest.approx(31.861, abs=1e-3)
 
@@ -190,6 +191,7 @@ def random_crank_rockers(count, seed):
     return np.stack([np.ones(count), r2, r3, r4], axis=-1)[usable]
 
 
+@pytest.mark.slow
 def test_no_random_crank_rocker_beats_the_optimum_for_its_own_swing_and_ratio() -> None:
     for lengths in random_crank_rockers(6000, seed=1)[:150]:
         linkage = linkage_of(lengths)
@@ -217,6 +219,7 @@ def test_no_random_slide_beats_the_optimum(ratio, seed) -> None:
         assert members.transmission[members.usable].max(initial=0.0) <= best + 1e-12
 
 
+@pytest.mark.slow
 @given(st.floats(5, 170), st.floats(1.0, 3.0), st.integers(0, 2**32 - 1))
 def test_no_random_member_beats_the_optimum(swing_deg, ratio, seed) -> None:
     swing = np.radians(swing_deg)

@@ -60,6 +60,7 @@ def test_known_solutions_are_1442_distinct_ones():
     assert len(distinct(solutions)) == len(solutions) == TRIPLETS
 
 
+@pytest.mark.slow
 def test_loops_from_one_solution_lead_to_known_ones():
     displacements, solutions = known()
     found = collect(displacements, solutions[:1], np.random.default_rng(5), most=8)
@@ -81,6 +82,7 @@ def planted():
     return task, linkage, linkages_through(task.points @ [1, 1j], np.random.default_rng(1))
 
 
+@pytest.mark.slow
 def test_planted_linkage_is_among_all_of_them(planted):
     _, linkage, found = planted
     o2, o4 = linkage.o2 @ [1, 1j], linkage.o4 @ [1, 1j]
@@ -91,6 +93,7 @@ def test_planted_linkage_is_among_all_of_them(planted):
     assert gap.min() < 1e-6
 
 
+@pytest.mark.study
 def test_all_linkages_keep_their_lengths_at_every_point(planted):
     task, _, found = planted
     points = task.points @ [1, 1j]

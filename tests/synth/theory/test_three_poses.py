@@ -14,7 +14,7 @@ from grashof.synth.theory.three_poses import (
     circle_dyads_of_ground,
 )
 
-bounded = settings(max_examples=100)
+bounded = settings(max_examples=25)
 seeds = st.integers(0, 100_000)
 
 
