@@ -4,8 +4,6 @@ import logging
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from grashof.problems.values.display import Displayed
-
 if TYPE_CHECKING:
     from grashof.figures import (
         animate,
@@ -51,12 +49,3 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     return sorted({*globals(), *__all__})
-
-
-def _html(value: Any) -> str:
-    """What a notebook shows of a value; loaded on first use, too."""
-    html: str = import_module("grashof.notebook").html(value)
-    return html
-
-
-Displayed.register(_html)
