@@ -198,14 +198,6 @@ def _omega2(values: Values) -> float:
     return 1.0 if values.problem.dynamics is None else values.problem.dynamics.omega2
 
 
-def _signed_advantage(values: Values) -> float:
-    """With the sign of omega2 / omega4 where it is least."""
-    theta2 = np.linspace(*motion_ends(values.problem.task, values.verdict), 721)
-    theta4 = np.unwrap(solve_position(values.linkage, theta2, values.verdict.assembly[0]).theta4)
-    rate = np.nan_to_num(np.diff(theta4) / np.diff(theta2))
-    return float(np.sign(rate[np.abs(rate).argmax()])) * values["mechanical_advantage"]
-
-
 # Of every quantity that is one number.
 MEASURES: dict[str, Callable[[Values], float]] = {
     **{name: partial(_column, name) for row in PARAMETERS if row.paired for name in row.columns},
@@ -236,7 +228,7 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     "stroke": _stroke,
     "time_ratio": lambda values: float(values.stroke.time_ratio),
     "mechanical_advantage": lambda values: _omega2(values) / values["omega4_max"],
-    "mechanical_advantage_min": _signed_advantage,
+    "mechanical_advantage_min": lambda values: values["mechanical_advantage"],
     "hausdorff": lambda values: values.curve_distances[0],
     "frechet": lambda values: values.curve_distances[1],
     **{name: partial(_cylinder_column, name) for name in Cylinder.COLUMNS},

@@ -410,7 +410,7 @@ _ADVANTAGE = Quantity(
     "mechanical advantage",
     Unit.RATIO,
     Over.TASK,
-    about="omega2 / omega4 where it is least over the task motion, with its sign",
+    about="|omega2 / omega4| where it is least over the task motion",
     full="least mechanical advantage",
     kinds=TURNING,
 )

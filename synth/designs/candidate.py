@@ -36,7 +36,10 @@ class Candidate(Displayed):
     cognate_of : str
         Id of the design whose coupler curve this one traces too; empty for the others.
     best_at : str
-        What a design of a least-squares list was made for, such as "least error"; empty for the others.
+        What a design of a list is best at, such as "least error", or "objective" where it does not come
+        first; empty for the others.
+    caution : str
+        Why a design comes last in a list though it does all that is asked, such as its size; else empty.
     family : str
         Id of the best design of those like it; empty before designs are sorted into families.
     own_objective : float, optional
@@ -52,6 +55,7 @@ class Candidate(Displayed):
     iterations: int
     cognate_of: str = ""
     best_at: str = ""
+    caution: str = ""
     family: str = ""
     own_objective: float | None = None
     values: Values = field(default=None, compare=False)  # type: ignore[assignment]  # kept by `replace`

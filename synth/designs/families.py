@@ -7,33 +7,86 @@ from dataclasses import replace
 
 import numpy as np
 
+from grashof.analysis import solve_position
 from grashof.problems import FourBar, Linkage, Problem, Task
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.caution import caution
 from grashof.synth.designs.ranking import ranked
 from grashof.synth.theory.cognates import same_curve
 from grashof.synth.theory.distinct import MIRRORED, apart, signature
 from grashof.synth.theory.symmetry import middle_of, symmetries
 
 ALIKE = 0.05  # share of the largest number of two designs by which they differ at most
+# Of the size of the task, between joints: near one another, and as good as in one place; deg.
+AKIN, SHARED, SAME_ANGLE = 0.25, 0.05, 3.0
+OBJECTIVE = "objective"
 
 
 def listed(problem: Problem, candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
-    """Distinct designs with their families: the best of each, best first, then all others, best first."""
-    best_first = ranked(problem, candidates)
+    """Distinct designs with their families: the best of each, best first, then all others, best first.
+
+    Designs with a `caution` come after all others; the best one by the objective says so where it is among
+    them.
+    """
+    best_first = [replace(each, caution=caution(problem, each)) for each in ranked(problem, candidates)]
     if not best_first:
         return ()
-    middle, first = middle_of(problem.task), np.arange(len(best_first))
-    for kind in dict.fromkeys(type(candidate.linkage) for candidate in best_first):
-        mine = [k for k, candidate in enumerate(best_first) if type(candidate.linkage) is kind]
-        signatures = np.array([signature(best_first[k].linkage, middle) for k in mine])
-        first[mine] = np.array(mine)[best_alike(problem.task, signatures, kind)]
+    if best_first[0].caution and problem.by_objective:
+        best_first[0] = replace(best_first[0], best_at=best_first[0].best_at or OBJECTIVE)
+    best_first.sort(key=lambda each: bool(each.caution))
+    first = best_related(problem, best_first)
     named = [
         replace(candidate, family=best_first[best].id)
         for candidate, best in zip(best_first, first.tolist(), strict=True)
     ]
     heads = first == np.arange(len(named))
-    return tuple(named[i] for i in np.argsort(~heads, kind="stable"))
+    doubted = np.array([bool(each.caution) for each in named])
+    return tuple(named[i] for i in np.lexsort((np.arange(len(named)), ~heads, doubted)))
+
+
+def best_related(problem: Problem, best_first: Sequence[Candidate]) -> IntArray:
+    """Which design is the best of the family of each, shape (n,): it is like it or akin to it.
+
+    Like it are those of `best_alike`. Akin are four-bars whose pivots and moving joints at the first target
+    are near those of the other, in sizes of the task, also with driver and output exchanged; and those that
+    share one of its dyads and its transmission angle, which that dyad then decides.
+    """
+    middle, first = middle_of(problem.task), np.arange(len(best_first))
+    for kind in dict.fromkeys(type(candidate.linkage) for candidate in best_first):
+        mine = np.array([k for k, candidate in enumerate(best_first) if type(candidate.linkage) is kind])
+        signatures = np.array([signature(best_first[k].linkage, middle) for k in mine])
+        alike = best_alike(problem.task, signatures, kind)
+        if kind is FourBar and problem.task.limits_size:
+            heads = np.flatnonzero(alike == np.arange(len(mine)))
+            akin = _akin([best_first[k] for k in mine[heads]], problem.task.size)
+            alike = heads[akin][np.searchsorted(heads, alike)]
+        first[mine] = mine[alike]
+    return first
+
+
+def _akin(heads: Sequence[Candidate], size: float) -> IntArray:
+    """Which of some designs, best first, is the first that each one is akin to, shape (n,)."""
+    dyads = np.array([_dyads(each) for each in heads]) / size
+    mu = np.degrees([each.verdict.transmission_min_task for each in heads])
+    best = np.arange(len(heads))
+    left = best.copy()
+    while left.size:
+        one, left = left[0], left[1:]
+        apart_by = np.abs(dyads[left, None] - np.stack([dyads[one], dyads[one][::-1]])).max(axis=-1)
+        near = (apart_by.max(axis=-1) < AKIN).any(axis=-1)
+        shared = (apart_by.min(axis=-1) < SHARED).any(axis=-1) & (np.abs(mu[left] - mu[one]) < SAME_ANGLE)
+        best[left[near | shared]] = one
+        left = left[best[left] != one]
+    return best
+
+
+def _dyads(candidate: Candidate) -> FloatArray:
+    """Ground pivot and moving joint at the first target, of the driver and of the output, shape (2, 4)."""
+    linkage, verdict = candidate.linkage, candidate.verdict
+    at = solve_position(linkage, verdict.theta2[:1], int(verdict.assembly[0]))
+    ends = (getattr(linkage, name) for name in linkage.GROUND)
+    return np.array([[*pivot, *joint[0]] for pivot, joint in zip(ends, (at.a, at.b), strict=True)])
 
 
 def best_alike(task: Task, signatures: FloatArray, kind: type[Linkage] = FourBar) -> IntArray:

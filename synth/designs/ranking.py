@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from grashof.analysis import Design, Verdict
+from grashof.analysis import Design
 from grashof.analysis.judge.limits import SLACK
 from grashof.problems import Problem
 from grashof.problems.values.arrays import BoolArray, FloatArray
+from grashof.problems.values.problem import SMALLEST
 from grashof.problems.values.quantities import Quantity
 from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth.designs.candidate import Candidate
@@ -18,43 +19,34 @@ from grashof.synth.programme.merit import same_error
 from grashof.synth.theory.distinct import DISTINCT, pick_apart, signature
 
 BLOCK = 256  # designs compared with all others at once
-DIGITS = 9  # decimals of errors (in sizes) and objectives that count; the others are rounding noise
-
-
-# Nobody would build what is greater (in sizes of the task), turns its driver by less, or comes
-# closer to a dead position (rad).
-MOST_SIZE, LEAST_TURN, LEAST_TRANSMISSION = 10.0, float(np.radians(5)), float(np.radians(0.1))
-
-
-# It is ranked as if its error were so many times as great, and its objective worse by this share.
-WORSE_ERROR, WORSE_OBJECTIVE = 1.02, 0.01
-
-
-def impractical(problem: Problem, verdict: Verdict) -> bool:
-    """Whether nobody would build it: far too large, a driver that hardly turns, or a dead position met."""
-    return bool(
-        (problem.task.limits_size and verdict.size > MOST_SIZE * problem.task.size)
-        or np.ptp(verdict.theta2) < LEAST_TURN
-        or verdict.transmission_min_task < LEAST_TRANSMISSION
-    )
+# Digits that count, the others being rounding noise: of errors in sizes and of sizes, of objectives (a right
+# angle is 1, so that the last one is 1e-6 deg), and of what an engineer tells apart.
+DIGITS, _OBJECTIVE, _SHOWN = 9, 8, 6
+DEGREES = 1e-6  # up to which transmission angles count as equal
 
 
 def ranking_key(problem: Problem, candidate: Candidate) -> tuple[float, ...]:
     """What designs are sorted by, best first: the one place that decides which of two is better.
 
-    The error, none up to `same_error`; the objective; what people build; the smaller size; and
-    the dimensions, so that no two designs tie. What nobody would build (`impractical`) counts
-    with 1.02 times its least-squares error and an objective 1 % worse.
+    The error, none up to `same_error`; the objective; the mechanical advantage where the transmission angle
+    is the greatest there is, as it always is at a slide through O4; the smaller size; and the dimensions,
+    so that no two designs tie. What differs by rounding alone ties: two processors rank alike.
     """
-    avoided = impractical(problem, candidate.verdict)
     error, objective = candidate.error(problem), candidate.objective(problem)
-    if avoided:
-        objective -= WORSE_OBJECTIVE * abs(objective)
-        error *= 1.0 if problem.by_objective else WORSE_ERROR
     bounded = problem.by_objective and not problem.requirements.is_exact(problem.task)
     counted_error = 0.0 if bounded or error <= same_error(problem) * (1 + SLACK) else round(error, DIGITS)
-    numbers = signature(candidate.linkage).tolist()
-    return (counted_error, -round(objective, DIGITS), float(avoided), candidate.verdict.size, *numbers)
+    upright = np.degrees(candidate.verdict.transmission_min_task) > 90 - DEGREES
+    if upright and problem.objective == SMALLEST:  # which only leads the search
+        objective = 1.0
+    advantage = _rounded(candidate.values["mechanical_advantage"], _SHOWN) if upright else 0.0
+    numbers = [_rounded(float(number), _SHOWN) for number in signature(candidate.linkage)]
+    size = _rounded(candidate.verdict.size, DIGITS)
+    return (counted_error, -round(objective, _OBJECTIVE), -np.nan_to_num(advantage), size, *numbers)
+
+
+def _rounded(value: float, digits: int) -> float:
+    """A value to so many significant digits."""
+    return float(f"{value:.{digits}g}")
 
 
 def ranked(

@@ -42,6 +42,7 @@ _BEFORE = {
         "start": "start of the search",
         "iterations": "iterations from that start",
         "best_at": "best at",
+        "caution": "caution",
     },
 }
 # What those of them are that their words do not tell.
@@ -56,7 +57,8 @@ ABOUT = {
     "cognate_of": "id of the design that has the same coupler curve",
     "start": "which one it came from",
     "iterations": "that Ipopt needed",
-    "best_at": "what a design of a least-squares list offers, such as the least error",
+    "best_at": "what a design offers, such as the least error; `objective` where that comes later",
+    "caution": "why a design comes after all others, such as its size; empty for those that do not",
 }
 # Columns without a meaning for a task stay empty.
 COLUMNS = tuple(name for quantity in LISTED for name in (*_BEFORE.get(quantity.key, ()), quantity.column))
@@ -134,6 +136,7 @@ def facts(candidate: Candidate) -> dict[str, Any]:
         "family": candidate.family or candidate.id,
         "cognate_of": candidate.cognate_of or None,
         "best_at": candidate.best_at or None,
+        "caution": candidate.caution or None,
         "grashof_class": str(verdict.grashof_class),
         "direction": verdict.direction,
         "assembly": int(candidate.linkage.assembly),

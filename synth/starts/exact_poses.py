@@ -40,6 +40,7 @@ from grashof.synth.theory.burmester import (
     radius_error,
     trace_four_pose_curves,
 )
+from grashof.synth.theory.distinct import best_first
 from grashof.synth.theory.five_poses import five_pose_dyads, five_pose_guides
 
 LINES, CELL = 800, 0.01  # of the traced curves, in sizes
@@ -242,7 +243,7 @@ class ManyPoses(DyadPairs):
             return None
         dyads = self.dyads(rng)
         pairs = self.pairs(dyads)
-        starts = starts_of(self.scaled, pairs, np.argsort(-merits(self.scaled, pairs), kind="stable"))
+        starts = starts_of(self.scaled, pairs, best_first(merits(self.scaled, pairs)))
         counts = {"feasible finds": int(pairs.feasible.sum()), "exact dyads": len(dyads)}
         return Round([replace(start, settled=True) for start in starts], counts)
 

@@ -13,7 +13,7 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS, Many, Screened
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.user_functions import own_merit
-from grashof.synth.theory.distinct import pick_apart, signature
+from grashof.synth.theory.distinct import best_first, pick_apart, signature
 
 POOL = 6000  # linkages among which starts are picked
 PEAKS, PEAK_SPACING = 8, 0.25
@@ -133,7 +133,7 @@ def _distinct_starts(scaled: ScaledProblem, linkages: Screened, merit: FloatArra
 
 def _pool(merit: FloatArray) -> IntArray:
     """At most `POOL` indices: the best half of them, and evenly many of the rest, best first."""
-    order = np.argsort(-merit, kind="stable")
+    order = best_first(merit)
     if len(order) <= POOL:
         return order
     top, rest = order[: POOL // 2], order[POOL // 2 :]

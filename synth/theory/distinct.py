@@ -41,6 +41,9 @@ def signature(linkage: Linkage, origin: FloatArray | None = None) -> FloatArray:
 MIRRORED = {FourBar: (8,), SliderCrank: (6, 8), InvertedSliderCrank: (6, 8)}
 
 
+EQUAL = 1e-9  # of the scale, below which merits tie
+
+
 def apart(one: FloatArray, others: FloatArray) -> FloatArray:
     """Largest difference between signatures as a share of their largest absolute value.
 
@@ -77,9 +80,29 @@ def pick_apart(signatures: FloatArray, merit: FloatArray, least: float, most: in
     -------
     ndarray of int, shape (k,)
     """
-    left = np.argsort(-merit, kind="stable")
+    left = best_first(merit)
     picked: list[int] = []
     while left.size and len(picked) < most:
         picked.append(int(left[0]))
         left = left[apart(signatures[left[0]], signatures[left]) > least]
     return np.array(picked, dtype=np.int64)
+
+
+def best_first(merit: FloatArray) -> IntArray:
+    """Indices by merit, the greatest first; what differs by rounding alone stays in its order, shape (n,).
+
+    Merits tie that are no further apart than `EQUAL` of the largest finite one, one after the other.
+
+    Examples
+    --------
+    >>> best_first(np.array([0.5, 1.0 - 1e-12, 1.0, 2.0])).tolist()
+    [3, 1, 2, 0]
+    """
+    order = np.argsort(-merit, kind="stable")
+    sorted_merit = np.nan_to_num(-merit[order], nan=np.inf)
+    scale = np.abs(merit[np.isfinite(merit)]).max(initial=0.0)
+    with np.errstate(invalid="ignore"):  # differences of infinite ones
+        step = np.diff(sorted_merit, prepend=sorted_merit[:1]) > EQUAL * scale
+    rank = np.empty(len(merit), dtype=np.int64)
+    rank[order] = np.cumsum(step)
+    return np.argsort(rank, kind="stable")

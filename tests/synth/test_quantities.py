@@ -180,9 +180,8 @@ def test_the_mechanical_advantage_is_omega2_over_omega4() -> None:
         values = Values(linkage, verdict, Problem(task=task))
         motion = np.linspace(verdict.theta2.min(), verdict.theta2.max(), 4001)
         ratio = 1 / solve_kinematics(linkage, motion, 1.0).omega4
-        least = ratio[np.abs(ratio).argmin()]
-        assert values["mechanical_advantage"] == pytest.approx(abs(least), rel=1e-5)
-        assert values["mechanical_advantage_min"] == pytest.approx(least, rel=1e-5)
+        for key in ("mechanical_advantage", "mechanical_advantage_min"):  # as a goal, and as the column
+            assert values[key] == pytest.approx(np.abs(ratio).min(), rel=1e-5)
 
 
 @pytest.mark.quick("poses met")

@@ -27,6 +27,7 @@ from grashof.synth.designs.ranking import pareto_optimal
 from grashof.wording.problem import error_meaning, goals
 
 _ROWS = 12
+CAUTION = "caution"
 _PIPED_WIDTH = 140
 _WIDE = 100  # columns; narrower terminals get fewer digits
 _UNBOUNDED = 1000
@@ -97,6 +98,9 @@ def print_table(result: Result, verified: int | None = None) -> None:
         say(line)
     for line in _fitting(result, console().width):
         say(line)
+    doubted = [f"{row['#'].rstrip(' *')}: {row[CAUTION]}" for row in best_rows(result) if row.get(CAUTION)]
+    for line in folded([f"last, since {'; '.join(doubted)}"] if doubted else []):
+        say(line)
 
 
 def folded(lines: Sequence[str]) -> list[str]:
@@ -135,6 +139,7 @@ def best_rows(result: Result, digits: int = 4) -> list[dict[str, str]]:
         *([] if set(having("o4")) & set(result.problem.mechanism) else ["O4"]),
         *([] if any(len(families[k]) > 1 for k in shown) else ["like this"]),
         *([] if any(families[k][0].best_at for k in shown) else ["best at"]),
+        *([] if any(families[k][0].caution for k in shown) else [CAUTION]),
     ]
     rows = [
         {
@@ -142,6 +147,7 @@ def best_rows(result: Result, digits: int = 4) -> list[dict[str, str]]:
             **_cells(result.problem, families[k][0], digits),
             "like this": str(len(families[k]) - 1 or ""),
             "best at": families[k][0].best_at,
+            CAUTION: families[k][0].caution,
         }
         for k in shown
     ]
@@ -170,13 +176,14 @@ def _decided_by(problem: Problem) -> list[Quantity]:
 def _table(result: Result, digits: int, left_out: Sequence[str]) -> Table:
     rows, counted_in = best_rows(result, digits), units(result.problem)
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
-    names = [name for name in rows[0] if name not in left_out]
+    names = [name for name in rows[0] if name not in (*left_out, CAUTION)]  # that is told below the table
     for name in names:
         title = name.replace(" ", "\n") if name in _TWO_LINES or digits < 4 or "size" in left_out else name
         unit = f"\n{counted_in[name]}" if name in counted_in else ""
         table.add_column(f"{title}{unit}", justify=_JUSTIFY.get(name, "right"), no_wrap=True)
-    for row in rows:
-        table.add_row(*(row[name] for name in names))
+    for row, after in zip(rows, [*rows[1:], {}], strict=True):
+        last = not row.get(CAUTION) and bool(after.get(CAUTION))
+        table.add_row(*(row[name] for name in names), end_section=last)
     return table
 
 

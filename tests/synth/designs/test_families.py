@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 from grashof import synthesize
-from grashof.analysis import verify
+from grashof.analysis import solve_position, verify
 from grashof.analysis.judge.planted import random_full_crank
-from grashof.problems import FourBar, MotionTask, Objective, PathTask, Problem, Requirements, load
+from grashof.problems import Box, FourBar, MotionTask, Objective, PathTask, Problem, Requirements, load
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth import Candidate, Result
+from grashof.synth.designs.caution import caution
 from grashof.synth.designs.families import best_alike, listed
 from grashof.synth.designs.ranking import ranked
 from grashof.synth.theory.cognates import assembly_of, cognate_points, position_of
@@ -60,15 +61,63 @@ def test_nothing_is_chained_on() -> None:
 def test_families_are_those_of_brute_force(luggage_result: Result, luggage: Problem) -> None:
     """Of the luggage problem, which has no symmetry: each design with the first that is near enough."""
     middle = np.mean(luggage.task.positions, axis=0)
-    best: list[Candidate] = []
-    for candidate in ranked(luggage, luggage_result.candidates):
+    ordered = sorted(
+        ranked(luggage, luggage_result.candidates), key=lambda each: bool(caution(luggage, each))
+    )
+    like: list[Candidate] = []
+    akin: list[Candidate] = []
+    family: dict[str, str] = {}
+    for candidate in ordered:
         mine = signature(candidate.linkage, middle)
-        near = [each for each in best if share_apart(mine, signature(each.linkage, middle)) < 0.05]
-        best += [] if near else [candidate]
-        assert candidate.family == (near[0] if near else candidate).id
-    assert [family[0].id for family in luggage_result.families] == [each.id for each in best]
-    assert 1 < len(best) < len(luggage_result)
+        near = [each for each in like if share_apart(mine, signature(each.linkage, middle)) < 0.05]
+        if near:
+            family[candidate.id] = family[near[0].id]
+            continue
+        like.append(candidate)
+        kin = [each for each in akin if are_akin(each, candidate, luggage.task.size)]
+        akin += [] if kin else [candidate]
+        family[candidate.id] = (kin[0] if kin else candidate).id
+    assert {each.id: each.family for each in luggage_result.candidates} == family
+    assert 1 < len(akin) < len(like) < len(luggage_result)
     assert sum(map(len, luggage_result.families)) == len(luggage_result)
+
+
+def are_akin(one: Candidate, other: Candidate, size: float) -> bool:
+    """Both dyads in nearly the same place, by driver or output; or one dyad in common, and the angle."""
+
+    def dyads(each: Candidate) -> list[list[float]]:
+        at = solve_position(each.linkage, each.verdict.theta2[0], each.verdict.assembly[0])
+        assert isinstance(each.linkage, FourBar)
+        return [[*each.linkage.o2, *at.a], [*each.linkage.o4, *at.b]]
+
+    mu = [np.degrees(each.verdict.transmission_min_task) for each in (one, other)]
+    first, second = dyads(one)
+    for exchanged in (dyads(other), dyads(other)[::-1]):
+        off = [
+            np.abs(np.subtract(*pair)).max() / size for pair in zip((first, second), exchanged, strict=True)
+        ]
+        if max(off) < 0.25 or (min(off) < 0.05 and abs(mu[0] - mu[1]) < 3):
+            return True
+    return False
+
+
+def test_a_dyad_in_common_is_a_family_where_the_transmission_angle_is(luggage: Problem) -> None:
+    """Hinges of a hood: the first six rows shared O4, B and mu (the angle is that of their output dyad)."""
+    task = MotionTask.from_degrees([[0, 0, 0], [-20, 60, 20], [-60, 130, 55]])
+    pivots = Box((-150, 250), (-200, -60))
+    wanted = Requirements(
+        rotatability="any",
+        o2=pivots,
+        o4=pivots,
+        link_length=(60, 350),
+        coupler_arms=(30, 300),
+        transmission_min_deg=25,
+    )
+    rows = [
+        family[0] for family in synthesize(Problem(task=task, requirements=wanted), starts=60).families[:6]
+    ]
+    for k, one in enumerate(rows):
+        assert not any(are_akin(one, other, task.size) for other in rows[:k])
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -86,13 +135,16 @@ def test_cognates_of_a_path_are_alike(seed: int) -> None:
 
 def test_the_best_of_each_family_comes_first_then_the_others(luggage_result: Result) -> None:
     families = luggage_result.families
-    heads = [family[0] for family in families]
-    assert [each.family for each in heads] == [each.id for each in heads]
-    others = luggage_result.candidates[len(heads) :]
-    assert list(luggage_result.candidates[: len(heads)]) == heads
-    assert others == tuple(
-        c for c in ranked(luggage_result.problem, luggage_result.candidates) if c in others
-    )
+    heads = {family[0].id for family in families}
+    sound = [each for each in luggage_result.candidates if not each.caution]
+    assert sound == list(luggage_result.candidates[: len(sound)])
+    for some in (sound, luggage_result.candidates[len(sound) :]):
+        first = [each for each in some if each.id in heads]
+        assert list(some[: len(first)]) == first
+        for part in (first, some[len(first) :]):
+            assert list(part) == [
+                c for c in ranked(luggage_result.problem, luggage_result.candidates) if c in part
+            ]
     for family in families:
         assert {each.family for each in family} == {family[0].id}
 

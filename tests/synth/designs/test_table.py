@@ -21,7 +21,7 @@ p_v, body_angle_deg, theta2_start_deg, theta2_end_deg, error, error_max, error_r
 angle_error_max_deg, angle_error_rms_deg, transmission_min_task_deg, transmission_min_cycle_deg, circuit_ok,
 branch_ok, order_ok, full_rotation, omega4_max, point_speed_max, point_acceleration_max, torque_peak,
 torque_rms, joint_force_peak, coupler_fit_r2, size, pareto, cognate_of, start, iterations, best_at,
-hausdorff, frechet, move_r1, move_r2, move_r3, move_r4, move_u, move_v, worst_move,
+caution, hausdorff, frechet, move_r1, move_r2, move_r3, move_r4, move_u, move_v, worst_move,
 share_within_linear, share_within_made, offset, slide_angle_deg, move_offset, cylinder_on, cylinder_base_x,
 cylinder_base_y, cylinder_u, cylinder_v, cylinder_closed, cylinder_stroke, cylinder_angle_min_deg,
 cylinder_force_max
@@ -34,7 +34,8 @@ OF_FUNCTIONS = [
     *(f"structural_error_{name}" for name in ("max", "rms")),  # of slides
 ]
 WITHOUT_MEANING = [
-    "error", "cognate_of", "best_at", "hausdorff", "frechet", *FIRST[-21:], "stroke", *OF_FUNCTIONS,
+    "error", "cognate_of", "best_at", "caution", "hausdorff", "frechet", *FIRST[-21:], "stroke",
+    *OF_FUNCTIONS,
 ]  # fmt: skip
 
 
@@ -50,8 +51,10 @@ def test_columns_are_the_contract(frame: pd.DataFrame) -> None:
 def test_one_row_a_design_best_first(frame: pd.DataFrame, luggage_result: Result) -> None:
     assert frame["rank"].tolist() == list(range(1, len(luggage_result) + 1))
     assert frame["id"].tolist() == [candidate.id for candidate in luggage_result.candidates]
-    best, others = frame[frame["family"] == frame["id"]], frame[frame["family"] != frame["id"]]
+    sound, heads = frame["caution"].isna(), frame["family"] == frame["id"]
+    best, others = frame[heads & sound], frame[~heads & sound]
     assert best["rank"].tolist() == list(range(1, len(best) + 1))
+    assert frame["rank"][~sound].min() > frame["rank"][sound].max()
     assert len(others) > 1
     assert set(others["family"]) <= set(best["id"])
     for rows in (best, others):
@@ -108,7 +111,7 @@ def test_pareto_marks(frame: pd.DataFrame) -> None:
 
 
 def test_what_has_no_meaning_stays_empty(frame: pd.DataFrame) -> None:
-    assert frame[WITHOUT_MEANING].isna().all(axis=None)
+    assert frame[[name for name in WITHOUT_MEANING if name != "caution"]].isna().all(axis=None)
     assert frame.drop(columns=WITHOUT_MEANING).notna().all(axis=None)
 
 
@@ -129,7 +132,9 @@ def test_csv_keeps_every_digit(frame: pd.DataFrame, luggage_result: Result, tmp_
     assert list(rows[0]) == COLUMNS
     for name in COLUMNS:
         written, held = [row[name] for row in rows], frame[name].tolist()
-        if name in WITHOUT_MEANING:
+        if name == "caution":
+            assert written == [each.caution for each in luggage_result.candidates]
+        elif name in WITHOUT_MEANING:
             assert set(written) == {""}
         elif isinstance(held[0], float):
             assert [float(value) for value in written] == held

@@ -9,7 +9,7 @@ from hypothesis.extra.numpy import arrays
 
 from grashof.problems import FourBar
 from grashof.problems.values.arrays import FloatArray
-from grashof.synth.theory.distinct import DISTINCT, apart, pick_apart, signature
+from grashof.synth.theory.distinct import DISTINCT, apart, best_first, pick_apart, signature
 
 bounded = settings(max_examples=25)
 number = st.floats(-10, 10).filter(lambda value: value == 0 or abs(value) > 1e-3)
@@ -48,12 +48,13 @@ def test_picked_are_apart_best_first_and_nobody_else_fits(
 ) -> None:
     merit = np.array([random.uniform(0, 1) for _ in rows])
     picked = pick_apart(rows, merit, least, len(rows)).tolist()
-    assert picked[0] == int(np.argmax(merit))
-    assert [merit[i] for i in picked] == sorted((merit[i] for i in picked), reverse=True)
+    tie = 1e-9 * len(rows)
+    assert merit[picked[0]] >= merit.max() - tie
+    assert (np.diff(merit[picked]) <= tie).all()
     for k, i in enumerate(picked):
         assert all(share_apart(rows[i], rows[j]) > least for j in picked[:k])
     for i in set(range(len(rows))) - set(picked):
-        better = [j for j in picked if merit[j] >= merit[i]]
+        better = [j for j in picked if merit[j] >= merit[i] - tie]
         assert any(share_apart(rows[i], rows[j]) <= least * (1 + 1e-12) for j in better)
 
 
@@ -62,3 +63,13 @@ def test_no_more_than_asked_for_and_of_equals_the_first() -> None:
     assert pick_apart(rows, np.zeros(9), 0.01, 4).tolist() == [0, 1, 2, 3]
     assert pick_apart(rows[[2, 2, 2]], np.zeros(3), 0.01, 9).tolist() == [0]
     assert pick_apart(rows[:0], np.zeros(0), 0.01, 4).tolist() == []
+
+
+def test_rounding_changes_no_order() -> None:
+    """Merits as two processors have them: ties to 1e-12 in another order each time."""
+    rng = np.random.default_rng(2)
+    merit = np.repeat(rng.uniform(0, 2, 40), 3)
+    orders = {tuple(best_first(merit + 1e-12 * rng.standard_normal(merit.shape)).tolist()) for _ in range(20)}
+    assert len(orders) == 1
+    assert best_first(np.array([np.inf, 1.0, -np.inf, 2.0])).tolist() == [0, 3, 1, 2]
+    assert best_first(np.array([])).tolist() == []

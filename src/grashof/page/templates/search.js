@@ -197,7 +197,7 @@ class SearchPage {
   listedCsv() {
     const rows = this.table.listed().map((index) => this.designs[index].figures);
     const known = ({ key }) => rows.some((row) => row[key] !== null);
-    const others = ["best_at", "mechanism", "grashof_class", "misses"];
+    const others = ["best_at", "caution", "mechanism", "grashof_class", "misses"];
     const named = ["rank", "id", ...others].map((key) => this.values.find((each) => each.key === key));
     const [rank, id, ...words] = named.filter((each) => each && (each.key === "rank" || known(each)));
     const columns = [rank, id, ...this.columns, ...words];
