@@ -1,4 +1,4 @@
-"""The command line: solve, merge, sweep, check, problems, linkages, analyse, live, animate, export."""
+"""The command line: solve, merge, sweep, check, judge, problems, linkages, analyse, live, animate, export."""
 
 from __future__ import annotations
 
@@ -228,6 +228,7 @@ def sweep(
 def check(problem: ProblemArgument) -> None:
     """Read PROBLEM and print what will be required of a design, without solving."""
     from grashof.output.terminal import folded
+    from grashof.synth.results.advice import advice
     from grashof.synth.starts.finder import refuse_unsearchable
     from grashof.wording.problem import summary
 
@@ -236,6 +237,19 @@ def check(problem: ProblemArgument) -> None:
         refuse_unsearchable(loaded)
         for line in folded(summary(loaded)):
             say(line)
+        for line in folded([f"note: {told}"] if (told := advice(loaded)) else []):
+            say(line)
+
+
+@app.command()
+def judge(linkage: LinkageArgument, problem: ProblemArgument) -> None:
+    """Print whether LINKAGE, your own, does what PROBLEM asks for, what it misses, and its figures.
+
+    By the judge of every search, from the linkage alone. Exit code 0: it does; 1: it does not; 2: bad input;
+    3: environment error.
+    """
+    with _errors_told():
+        raise typer.Exit(commands.judge(linkage, problem))
 
 
 @app.command()

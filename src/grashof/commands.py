@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from grashof.output.ending import Exit, Interruption, interruptible
 from grashof.output.streams import say
-from grashof.problems import Problem, ProblemError, Search, load_linkage_spec
+from grashof.problems import Problem, ProblemError, Search, load, load_linkage_spec
 from grashof.problems.values.checks import counted
 
 if TYPE_CHECKING:
@@ -320,3 +320,14 @@ def _report(note: str, files: list[str], folder: Path) -> None:
 
 def _point_to(page: Path) -> None:
     say(f"Open {page} in a browser to look at it.", err=True)
+
+
+def judge(linkage: str, problem: str) -> Exit:
+    """Print the verdict on a linkage that is not out of a search."""
+    from grashof.wording.verdict import judged_for, verdict_lines
+
+    spec = load_linkage_spec(linkage)
+    judged = judged_for(load(problem), spec)
+    for line in verdict_lines(judged, spec.name):
+        say(line)
+    return Exit.OK if judged.verdict.ok else Exit.NO_DESIGN

@@ -23,7 +23,8 @@ def caution(problem: Problem, candidate: Candidate) -> str:
     if candidate.own_objective is not None or problem.objective not in (Objective(), SMALLEST):
         return ""
     wanted, verdict, found = problem.requirements, candidate.verdict, list[str]()
-    if problem.task.limits_size and wanted.size is None and verdict.size > MOST_SIZE * problem.task.size:
+    sized = problem.task.kind in ("motion", "path") and wanted.size is None
+    if sized and verdict.size > MOST_SIZE * problem.task.size:
         found.append(f"{verdict.size / problem.task.size:.1f} times the size of the task")
     turned = float(np.ptp(verdict.theta2))
     chosen = wanted.driver_rotation_deg is not None or problem.task.is_timed

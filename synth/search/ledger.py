@@ -192,7 +192,8 @@ class Ledger:
         """Why the search ended; for exact designs, only where there are fewer than enough."""
         solves = f"{self.solved} of {counted(self.starts, 'solve')}"
         if not self.complete:
-            return f"the search ended after {solves}: it was stopped"
+            none = "" if self.best else "; no design came up so far"
+            return f"the search ended after {solves}: it was stopped{none}"
         if self.scaled.exact:
             reason = self._no_use or self.exhausted
             return "" if self._enough else f"the search ended after {solves}: {reason}"

@@ -51,8 +51,13 @@ class CouplerSearch:
         return self.scaled.kind is FOUR_BAR and not given and not fixed_pivots(wanted)
 
     def refuse(self) -> None:
-        """Raise `ProblemError` for fewer than three distinct targets."""
+        """Raise `ProblemError` for fewer than three distinct targets, or timed angles without places."""
         task, count = self.scaled.problem.task, len(search_targets(self.scaled).points)
+        if task.is_timed and (placed := int(task.has_position.sum())) < 2:
+            raise ProblemError(
+                f"{task.kind}.{task.target}s has {counted(placed, 'place')}; it must have x and y in two or "
+                "more: coupler angles alone are not searched for"
+            )
         if count < 3:
             where = " where parts are left free, the driver is timed or requirements.exact is false"
             if self.scaled.kind is not FOUR_BAR:
@@ -70,7 +75,7 @@ class CouplerSearch:
 
     def degenerate(self) -> str:
         """Why a single position needs no linkage; empty for others."""
-        placed = self.scaled.targets[self.scaled.weights > 0]
+        placed = self.scaled.targets[self.scaled.problem.task.has_position]
         if np.abs(placed - placed[0]).max() > 0:
             return ""
         x, y = self.scaled.frame.outward(placed[0])

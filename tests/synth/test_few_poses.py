@@ -6,6 +6,8 @@ import pytest
 
 from grashof import synthesize
 from grashof.problems import MotionTask, Problem, ProblemError, Requirements
+from grashof.problems.files.problem_schema import problem_from
+from grashof.synth.starts.finder import refuse_unsearchable
 
 A, B = [0, 0, 0], [3, 1, 60]
 
@@ -43,3 +45,18 @@ def test_p_keeps_out_where_squares_are_made_least(part: str) -> None:
     wanted = Requirements(exact=False, keep_out=(area,), keep_out_for=(part,))  # type: ignore[arg-type]
     result = synthesize(Problem(task=task, requirements=wanted), enough=1, starts=16)
     assert result.best.verdict.ok
+
+
+def test_coupler_angles_alone_are_refused_and_not_called_a_rotation() -> None:
+    """Only the first one has a place, and the driver is timed: no single pivot does that job."""
+    poses = [
+        {"x": 0, "y": 0, "angle": 30.4},
+        *({"angle": a} for a in (22.9, 18.3, 16.0, 15.5, 16.6, 19.5, 24.6)),
+    ]
+    task = {"poses": poses, "timing_deg": [25.0 * k for k in range(8)], "angle_length": 1.0}
+    document = {"kind": "motion", "motion": task, "requirements": {"exact": False, "rotatability": "any"}}
+    problem = problem_from(document, "angles")
+    with pytest.raises(
+        ProblemError, match="has 1 place; it must have x and y in two or more: coupler angles"
+    ):
+        refuse_unsearchable(problem)
