@@ -10,6 +10,7 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.cylinder.planes import Driven, Plane, driven
 from grashof.synth.cylinder.polish import Pivots, by_linear, by_quadratic
 from grashof.synth.cylinder.room import Room
+from grashof.synth.theory.stopping import overdue
 
 _SAMPLES, _PARENTS, _CHILDREN, _ROUNDS = 6000, 48, 24, 24
 _FIRST, _NARROWER = 0.25, 0.78  # share of the room that a step spans, and by how much it shrinks each round
@@ -69,11 +70,11 @@ def _searched(
     if merit[0] < _HOPELESS:
         return None, False
     tried = [(complex(points[k]), complex(bases[k])) for k in _distinct(room, points, bases, _POLISHED)]
-    tried += [by_quadratic(coarse, room, pair) for pair in tried]
+    tried += [by_quadratic(coarse, room, pair) for pair in tried if not overdue()]
     for _ in range(_AGAIN):  # it may go on from where it stopped
-        tried += [by_quadratic(fine, room, pair) for pair in _best_of(fine, room, tried, 2)]
+        tried += [by_quadratic(fine, room, pair) for pair in _best_of(fine, room, tried, 2) if not overdue()]
     for pair in _best_of(plane, room, tried, _FINISHED):  # between all samples
-        tried += _finished(plane, room, pair)
+        tried += [] if overdue() else _finished(plane, room, pair)
     points, bases, least = _judged(plane, room, tried)
     first = int(least.argmax())
     if least[first] <= 0:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from time import perf_counter
 
@@ -27,7 +28,7 @@ from grashof.synth.starts.function_search import (
     exact_functions,
     optimal_functions,
 )
-from grashof.synth.theory.stopping import asked_to_stop, overdue, stopping
+from grashof.synth.theory.stopping import Stopped, overdue, stopping
 
 _LOG = logging.getLogger(__name__)
 FINE = tuple(np.arange(5.0, 86.0, 5.0).tolist())  # deg of transmission, where an error is allowed
@@ -98,7 +99,7 @@ def function_list(
     rng = np.random.default_rng(np.random.SeedSequence(search.seed))
     seconds = {"solving": 0.0, "judging": 0.0}
     least, ended = np.nan, ""
-    with stopping(asked):
+    with stopping(asked), suppress(Stopped):  # what was found until then is listed
         if not aims.obstacle:
             found: Iterable[FoundFunction]
             if aims.exact:
@@ -113,8 +114,8 @@ def function_list(
                 seconds["judging"] += perf_counter() - since
                 if overdue():
                     break
-        seconds["solving"] = perf_counter() - begun - seconds["judging"]
-        complete = not asked_to_stop()
+    seconds["solving"] = perf_counter() - begun - seconds["judging"]
+    complete = not asked()
     if not aims.exact and judged.good:
         least = min(one.error(problem) for one in judged.good)
         judged.good = [_named(one, problem, least) for one in _within(judged, least)]

@@ -14,6 +14,7 @@ from grashof.synth.programme.screening import GROUPS, Many, Screened
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.user_functions import own_merit
 from grashof.synth.theory.distinct import best_first, pick_apart, signature
+from grashof.synth.theory.stopping import leave_off
 
 POOL = 6000  # linkages among which starts are picked
 PEAKS, PEAK_SPACING = 8, 0.25
@@ -37,7 +38,7 @@ def feasible_starts(scaled: ScaledProblem, linkages: Screened, enough: int) -> l
     linkages, merit = linkages[pool], every[pool]
     signatures = _signatures(scaled, linkages)
     spacing = PEAK_SPACING if scaled.exact else MISS_SPACING
-    free = starts_of(scaled, linkages, pick_apart(signatures, merit, spacing, PEAKS))
+    free = starts_of(scaled, linkages, pick_apart(signatures, merit, spacing, PEAKS, leave_off))
     if not scaled.exact:  # what counts is the error, and a neighbourhood would only keep it large
         return free
     return free + _spread(scaled, linkages, merit, signatures, enough)
@@ -98,7 +99,7 @@ def _spread(
     wanted = enough + (2 * enough + 4) // 5
     picked = np.zeros(0, dtype=np.int64)
     for spacing in SPACINGS:
-        picked = pick_apart(signatures, merit, spacing, wanted)
+        picked = pick_apart(signatures, merit, spacing, wanted, leave_off)
         if len(picked) == wanted:
             break
     points = linkages.points[picked]
@@ -127,7 +128,7 @@ def to_nearest(coordinates: FloatArray) -> FloatArray:
 
 def _distinct_starts(scaled: ScaledProblem, linkages: Screened, merit: FloatArray, most: int) -> list[Start]:
     best = _pool(merit)
-    apart = pick_apart(_signatures(scaled, linkages[best]), merit[best], MISS_SPACING, most)
+    apart = pick_apart(_signatures(scaled, linkages[best]), merit[best], MISS_SPACING, most, leave_off)
     return starts_of(scaled, linkages, best[apart])
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from grashof.problems import FourBar, InvertedSliderCrank, Linkage, SliderCrank
@@ -63,7 +65,13 @@ def apart(one: FloatArray, others: FloatArray) -> FloatArray:
     return difference
 
 
-def pick_apart(signatures: FloatArray, merit: FloatArray, least: float, most: int) -> IntArray:
+def pick_apart(
+    signatures: FloatArray,
+    merit: FloatArray,
+    least: float,
+    most: int,
+    between: Callable[[], None] = lambda: None,
+) -> IntArray:
     """Indices of the best entries that are pairwise more than `least` apart, best first.
 
     Parameters
@@ -75,6 +83,8 @@ def pick_apart(signatures: FloatArray, merit: FloatArray, least: float, most: in
         See `apart`.
     most : int
         Stop after so many.
+    between : callable
+        Called before each is picked; it may raise, such as `leave_off`.
 
     Returns
     -------
@@ -82,9 +92,13 @@ def pick_apart(signatures: FloatArray, merit: FloatArray, least: float, most: in
     """
     left = best_first(merit)
     picked: list[int] = []
+    largest = np.abs(signatures).max(axis=1)
     while left.size and len(picked) < most:
-        picked.append(int(left[0]))
-        left = left[apart(signatures[left[0]], signatures[left]) > least]
+        between()
+        one = left[0]
+        picked.append(int(one))
+        differ = np.abs(signatures[left] - signatures[one]).max(axis=1)
+        left = left[differ > least * np.maximum(largest[left], largest[one])]
     return np.array(picked, dtype=np.int64)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 from grashof.synth.theory.function_output import Generators
+from grashof.synth.theory.stopping import leave_off
 
 Limits = Callable[[Generators], tuple[FloatArray, FloatArray]]
 
@@ -98,6 +99,7 @@ def fitted(
     damping = np.full(len(made), 1e-3)
     done: BoolArray = np.zeros(len(made), dtype=bool)
     for step in range(steps):
+        leave_off()
         made, square, damping, done = _fewer(step, made, square, damping, done)
         active = np.flatnonzero(~done)
         if not active.size:

@@ -9,6 +9,7 @@ import numpy as np
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.theory.function_fit import Limits, Wanted
 from grashof.synth.theory.function_output import Generators
+from grashof.synth.theory.stopping import leave_off
 
 STEPS = 60
 CORRECTIONS = 2  # of a step
@@ -118,6 +119,7 @@ def refined(aim: Aim, start: Generators, steps: int = STEPS) -> Optimum:
     flat = 0
     taken = 0
     while taken < steps and linear.finite:
+        leave_off()
         taken += 1
         moved, hoped = linear.step(radius)
         there, fresh = linear.best_along(made, moved)

@@ -9,7 +9,8 @@ import pytest
 
 from grashof import load, synthesize
 from grashof.analysis.judge.planted import planted_motion, planted_path
-from grashof.problems import MotionTask, PathTask, Problem, Requirements
+from grashof.problems import FunctionTask, MotionTask, PathTask, Problem, Requirements
+from grashof.synth import Progress
 
 LIMIT, SOON = 1.0, 2.0  # s: after the limit, on a quiet machine
 NOISE = 0.005  # of the size
@@ -71,3 +72,40 @@ def test_a_search_ends_soon_after_its_time_limit(task: str) -> None:
     result = synthesize(problem, time_limit=LIMIT)
     assert perf_counter() - begun < LIMIT + SOON
     assert len(result) or "stopped" in result.note or result.complete
+
+
+class Polled:
+    """A search's `stop`: counts how often it is asked."""
+
+    def __init__(self) -> None:
+        self.times = 0
+
+    def __call__(self) -> bool:
+        self.times += 1
+        return False
+
+
+def test_picking_many_starts_asks_whether_to_stop() -> None:
+    """2000 designs wanted: they were picked for 6.6 s on end."""
+    few, many = Polled(), Polled()
+    for stop, enough in ((few, 4), (many, 300)):
+        synthesize(load("luggage"), starts=4, enough=enough, stop=stop)
+    assert many.times > few.times + 250
+
+
+def test_fitting_functions_asks_whether_to_stop() -> None:
+    """15 pairs and the greatest error: 5.7 s went by between two questions."""
+    task = FunctionTask.from_degrees(
+        law="power", exponent=2.3, x=[0.1, 1], input_range_deg=150, output_range=70, pairs=6, norm="max"
+    )
+    polled = Polled()
+    synthesize(Problem(task=task, mechanism="slider-crank"), stop=lambda: polled() or polled.times > 300)
+    assert polled.times > 300  # long before its end
+
+
+def test_a_stopped_search_for_functions_lists_what_it_has() -> None:
+    told: list[Progress] = []
+    part = synthesize(load("function-log10"), stop=lambda: bool(told), progress=told.append)
+    assert not part.complete
+    assert len(part) >= 1
+    assert part.ended == "the search ended before it was done: it was stopped"

@@ -54,7 +54,7 @@ if __name__ == "__main__":
 """
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_a_cluster_that_loses_a_worker_gives_the_same_list(tmp_path: Path) -> None:
     pytest.importorskip("distributed")
     (tmp_path / "cluster.py").write_text(SCRIPT, encoding="utf-8")
