@@ -51,7 +51,7 @@ class Run:
         begun, wall = process_time(), perf_counter()
         result = synthesize(problem, seed=seed, **wanted)
         processor, wall = process_time() - begun, perf_counter() - wall
-        square = result.best.verdict.square if len(result) else np.inf
+        square = min((each.verdict.square for each in result.candidates), default=np.inf)
         return cls(float(np.sqrt(square / len(problem.task))), processor, wall)
 
 

@@ -66,7 +66,7 @@ def noisy(poses: int, count: int) -> None:
         scaled, verdict = ScaledProblem.of(problem), verify(linkage, task, problem.requirements)
         polished = attempt(scaled, Start.of_linkage(scaled, linkage, verdict), 0).candidate
         theirs = [found.square for found in (verdict, polished and polished.verdict) if found and found.ok]
-        ours = result.best.verdict.square if len(result) else np.inf
+        ours = min((each.verdict.square for each in result.candidates), default=np.inf)
         good += ours <= min(theirs, default=np.inf) * (1 + 1e-6)
     print(
         f"noisy, {poses} poses: no worse than the planted linkage polished in {good} of {count}, "
@@ -127,7 +127,7 @@ def three_poses(count: int, samples: int) -> None:
         begun = perf_counter()
         result = synthesize(Problem(task=task, requirements=wanted))
         seconds.append(perf_counter() - begun)
-        ours = result.best.verdict.transmission_min_cycle if len(result) else 0.0
+        ours = max((each.verdict.transmission_min_cycle for each in result.candidates), default=0.0)
         theirs = float(random_three_pose_linkages(task, samples, rng).max())
         behind += ours < theirs - 1e-9
         gain.append(np.degrees(ours - theirs))

@@ -19,7 +19,7 @@ from grashof.synth.theory.symmetry import middle_of, symmetries
 
 ALIKE = 0.05  # share of the largest number of two designs by which they differ at most
 # Of the size of the task, between joints: near one another, and as good as in one place; deg.
-AKIN, SHARED, SAME_ANGLE = 0.25, 0.05, 3.0
+AKIN, SHARED, SAME_ANGLE = 0.15, 0.03, 1.0
 OBJECTIVE = "objective"
 
 
@@ -32,7 +32,7 @@ def listed(problem: Problem, candidates: Sequence[Candidate]) -> tuple[Candidate
     best_first = [replace(each, caution=caution(problem, each)) for each in ranked(problem, candidates)]
     if not best_first:
         return ()
-    if best_first[0].caution and problem.by_objective:
+    if best_first[0].caution and problem.by_objective and not all(each.caution for each in best_first):
         best_first[0] = replace(best_first[0], best_at=best_first[0].best_at or OBJECTIVE)
     best_first.sort(key=lambda each: bool(each.caution))
     first = best_related(problem, best_first)

@@ -9,8 +9,8 @@ import numpy as np
 from grashof.analysis import Verdict
 from grashof.problems import Objective, Rotatability
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.designs.families import listed
 from grashof.synth.designs.judging import judged_again
+from grashof.synth.designs.ranking import ranked
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.user_functions import relaxed_by_own
 from grashof.synth.results.larger_zones import up, wider
@@ -125,7 +125,7 @@ def _by_least_squares(scaled: ScaledProblem, run: Run) -> list[_Near]:
     search = replace(run.search, effort=NEAR_EFFORT, enough=min(run.search.enough, NEAR))
     alone = replace(run, search=search, progress=None, seconds=dict(run.seconds))
     found = search_designs(scaled.of_problem(problem), alone).best
-    return [_Near(one.verdict, judged_again(scaled, one)) for one in listed(problem, found)[:SHOWN]]
+    return [_Near(one.verdict, judged_again(scaled, one)) for one in ranked(problem, found)[:SHOWN]]
 
 
 def _may_be_near(scaled: ScaledProblem) -> bool:

@@ -43,7 +43,7 @@ def signature(linkage: Linkage, origin: FloatArray | None = None) -> FloatArray:
 MIRRORED = {FourBar: (8,), SliderCrank: (6, 8), InvertedSliderCrank: (6, 8)}
 
 
-EQUAL = 1e-9  # of the scale, below which merits tie
+EQUAL = 1e-9  # share of merits by which those differ at most that tie
 
 
 def apart(one: FloatArray, others: FloatArray) -> FloatArray:
@@ -105,7 +105,7 @@ def pick_apart(
 def best_first(merit: FloatArray) -> IntArray:
     """Indices by merit, the greatest first; what differs by rounding alone stays in its order, shape (n,).
 
-    Merits tie that are no further apart than `EQUAL` of the largest finite one, one after the other.
+    Merits tie that are no further apart than `EQUAL` of themselves, one after the other.
 
     Examples
     --------
@@ -113,10 +113,9 @@ def best_first(merit: FloatArray) -> IntArray:
     [3, 1, 2, 0]
     """
     order = np.argsort(-merit, kind="stable")
-    sorted_merit = np.nan_to_num(-merit[order], nan=np.inf)
-    scale = np.abs(merit[np.isfinite(merit)]).max(initial=0.0)
-    with np.errstate(invalid="ignore"):  # differences of infinite ones
-        step = np.diff(sorted_merit, prepend=sorted_merit[:1]) > EQUAL * scale
+    value = merit[order]
+    with np.errstate(invalid="ignore"):  # differences of infinite ones, and what is not a number
+        step = ~(np.abs(np.diff(value)) <= EQUAL * np.abs(value[1:])) & (value[1:] != value[:-1])
     rank = np.empty(len(merit), dtype=np.int64)
-    rank[order] = np.cumsum(step)
+    rank[order] = np.concatenate([[0], np.cumsum(step)])[: len(order)]
     return np.argsort(rank, kind="stable")

@@ -99,7 +99,7 @@ def print_table(result: Result, verified: int | None = None) -> None:
     for line in _fitting(result, console().width):
         say(line)
     doubted = [f"{row['#'].rstrip(' *')}: {row[CAUTION]}" for row in best_rows(result) if row.get(CAUTION)]
-    for line in folded([f"last, since {'; '.join(doubted)}"] if doubted else []):
+    for line in folded([f"caution: {'; '.join(doubted)}"] if doubted else []):
         say(line)
 
 

@@ -96,7 +96,7 @@ def are_akin(one: Candidate, other: Candidate, size: float) -> bool:
         off = [
             np.abs(np.subtract(*pair)).max() / size for pair in zip((first, second), exchanged, strict=True)
         ]
-        if max(off) < 0.25 or (min(off) < 0.05 and abs(mu[0] - mu[1]) < 3):
+        if max(off) < 0.15 or (min(off) < 0.03 and abs(mu[0] - mu[1]) < 1):
             return True
     return False
 

@@ -248,7 +248,9 @@ def lightest(driven: Problem) -> Result:
 @pytest.mark.slow
 def test_the_list_begins_with_the_smallest_torque(lightest: Result, driven: Problem) -> None:
     peaks = [each.values["torque_peak"] for each in lightest.candidates]
-    assert peaks == sorted(peaks)
+    heads = len(lightest.families)
+    assert peaks[:heads] == sorted(peaks[:heads])
+    assert peaks[heads:] == sorted(peaks[heads:])
     assert peaks == [over_task(c.linkage, driven, c.verdict).torque_peak for c in lightest.candidates]
     for candidate in lightest.candidates:
         assert candidate.score(driven) == pytest.approx(

@@ -73,3 +73,5 @@ def test_rounding_changes_no_order() -> None:
     assert len(orders) == 1
     assert best_first(np.array([np.inf, 1.0, -np.inf, 2.0])).tolist() == [0, 3, 1, 2]
     assert best_first(np.array([])).tolist() == []
+    tiny = np.array([-3e-7, -1e-7, -2e-7, -1e12])  # errors: one that is huge does not make the others equal
+    assert best_first(tiny).tolist() == [1, 2, 0, 3]
