@@ -254,6 +254,12 @@ class BoxTable(Table):
     x: Pair | None = None
     y: Pair | None = None
 
+    @field_validator("x", "y", mode="before")
+    @classmethod
+    def _line(cls, given: Any) -> Any:
+        """A number alone is a side of no width."""
+        return [given, given] if tag(given) == NUMBER else given
+
     def value(self) -> Box:
         sides: dict[str, Any] = {axis: getattr(self, axis) for axis in self.model_fields_set}
         return Box(**sides)

@@ -448,3 +448,15 @@ def test_a_cylinder_drives_every_kind_but_no_strokes() -> None:
     assert message(f"{stroke}{driven}") == (
         "driver.cylinder does not go with stroke, whose driver turns all round"
     )
+
+
+def test_a_number_for_a_side_is_a_line() -> None:
+    def wanted(side: object) -> Requirements:
+        motion = {"poses": [[0, 0, 0], [3, 1, 40], [5, 4, 90]]}
+        document = {"kind": "motion", "motion": motion, "requirements": {"o4": {"x": side}}}
+        return problem_from(document, "line").requirements
+
+    assert wanted(5) == wanted([5, 5]) == wanted(5.0)
+    assert wanted(5).o4 == Box(x=(5, 5))
+    with pytest.raises(ProblemError, match=r"requirements\.o4\.x is true; it must be \[lo, hi\]"):
+        wanted(True)

@@ -58,7 +58,7 @@ STRUCTURE = [
         "requirements.o2 is [1, 2, 3]; it must be [x, y] or { x = [lo, hi], y = [lo, hi] }",
     ),
     (HEAD + "[requirements]\no2 = [1, true]", "requirements.o2[1] is true; it must be a number"),
-    (HEAD + "[requirements]\no2 = { x = 5 }", "requirements.o2.x is 5; it must be [lo, hi]"),
+    (HEAD + "[requirements]\no2 = { x = '5' }", "requirements.o2.x is '5'; it must be [lo, hi]"),
     (HEAD + "[requirements]\no2 = { x = [1, {}] }", "requirements.o2.x[1] is a table; it must be a number"),
     (
         HEAD + "[objective]\nmaximise = 3",
