@@ -104,14 +104,10 @@ def _drawn(entities: Iterable[Any], budget: Budget, depth: int = 0) -> Iterator[
 def _is_sound(entity: Any) -> bool:
     """Whether all numbers of an entity are finite, and those that cost time are small."""
     given = entity.dxf.all_existing_dxf_attribs()
-    places = [
-        getattr(entity, name, ())
-        for name in ("points", "vertices", "control_points", "fit_points", "knots", "weights")
-    ]
-    turns = [given.get(name, 0.0) for name in ("start_param", "end_param", "start_angle", "end_angle")]
-    return (
-        finite([*given.values(), *places], GREATEST) and finite(turns, 1e6) and given.get("degree", 3) <= 11
-    )
+    places = [getattr(entity, name, ()) for name in _PLACES]
+    turns = [given.get(name, 0.0) for name in _TURNS]
+    small = finite(turns, _MOST_DEGREES) and given.get("degree", 3) <= _MOST_DEGREE
+    return small and finite([*given.values(), *places], GREATEST)
 
 
 def ezdxf_installed() -> ModuleType:

@@ -10,12 +10,11 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from grashof.problems.files.dxf_lines import FLAT, MOST_POINTS
 from grashof.problems.files.foreign import Budget, read_by_others
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.errors import ProblemError
 
-MOST_POINTS = 20_000
-FLAT = 1e-3  # share of the drawing's size by which a polyline may miss a curve
 _CURVE = 129  # points of a curve, of which those are kept that it takes
 _KEPT = 0.8  # of that, what leaving points out may take; the rest is between the points
 _MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72, "pc": 25.4 / 6, "Q": 0.25}

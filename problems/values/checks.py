@@ -208,10 +208,11 @@ def task_size(points: FloatArray, where: str) -> float:
 
 def whole_number(value: int, low: int, where: str, most: int | None = None) -> int:
     """`value` as an int; refused when out of bounds, not whole, or of more digits than floats have."""
+    wanted = f"a whole number from {low}{'' if most is None else f' to {most}'}"
     if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < low:
-        raise wrong_value(where, value, f"a whole number from {low}{f' to {most}' if most else ''}")
+        raise wrong_value(where, value, wanted)
     if most is not None and value > most:
-        raise wrong_value(where, value, f"a whole number from {low} to {most}")
+        raise wrong_value(where, value, wanted)
     if int(value) >= 10**DIGITS:  # of a hexadecimal one Python does not even write thousands
         raise wrong_value(where, value, f"a whole number from {low}, of up to {DIGITS} digits")
     return int(value)

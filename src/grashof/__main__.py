@@ -11,7 +11,9 @@ _INTERRUPTED = 128 + signal.SIGINT
 
 def main() -> None:
     """Entry point of the `grashof` command."""
-    before = signal.signal(signal.SIGINT, _leave)
+    before = signal.getsignal(signal.SIGINT)
+    if before is not signal.SIG_IGN:  # as of jobs in the background
+        signal.signal(signal.SIGINT, _leave)
     from grashof.cli import main as command
 
     signal.signal(signal.SIGINT, before)

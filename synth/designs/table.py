@@ -57,7 +57,8 @@ ABOUT = {
     "cognate_of": "id of the design that has the same coupler curve",
     "start": "which one it came from",
     "iterations": "that Ipopt needed",
-    "best_at": "what a design offers, such as the least error; `objective` where that comes later",
+    "best_at": "what a design is best at, such as the least error; `objective` for the best one by the "
+    "objective where it does not come first",
     "caution": "why a design comes after all others, such as its size; empty for those that do not",
 }
 # Columns without a meaning for a task stay empty.
