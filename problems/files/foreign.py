@@ -43,7 +43,7 @@ class Budget:
     ----------
     most : int
     part, level : str
-        One of them, and one of those that may contain others: "entity", "block".
+        What they are, and what of them may contain others, in the plural: "entities", "blocks".
     """
 
     def __init__(self, most: int, part: str, level: str) -> None:
