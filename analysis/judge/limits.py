@@ -9,7 +9,7 @@ import numpy as np
 from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.verdict import Defect
 from grashof.problems import Problem, ProblemError, Requirements
-from grashof.problems.values.arrays import Limits
+from grashof.problems.values.arrays import Limits, turned_from
 from grashof.problems.values.quantities import Kind, Limit, Needs, Over, Quantity, Unit
 
 # Limits are inclusive; rounding may carry a design this far past them (sizes, rad or ratio).
@@ -47,8 +47,6 @@ def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
             continue
         if verdict.cylinder is None and limit.quantity.needs in _OF_CYLINDERS:
             continue  # that there is none is a defect by itself
-        if limit.quantity.key in values.problem.task.without:  # the usual limit of what is not asked for
-            continue
         quantity, ranges = wanted.meant(limit.quantity), wanted.ranges(name)
         for part, numbers in values.parts(quantity.key).items():
             if part in limited:  # r1 and link_length: its own limits take their place
@@ -67,7 +65,7 @@ def _miss(value: float, allowed: Limits, limit: Limit, problem: Problem) -> floa
     if np.isnan(value):  # a target at which the linkage cannot be assembled is a defect by itself
         return 0.0 if limit.quantity.over is Over.TARGETS else np.inf
     if limit.kind is Kind.EQUAL:
-        return float(np.abs(np.angle(np.exp(1j * (value - low)))))
+        return abs(float(turned_from(value, low, problem.period(limit.quantity.key))))
     miss = max(low - value, value - high)
     if limit.quantity.unit is Unit.ANGLE:
         return miss

@@ -16,6 +16,18 @@ Limits: TypeAlias = tuple[float, float]
 TURN = 2 * np.pi  # rad
 
 
+def turned_from(angle: npt.ArrayLike, other: npt.ArrayLike, period: float = TURN) -> FloatArray:
+    """From another angle to an angle, within half a period either way, rad.
+
+    Examples
+    --------
+    >>> np.degrees(turned_from(np.radians([350, 190]), 0.0, np.pi)).round(9).tolist()
+    [-10.0, 10.0]
+    """
+    apart = np.subtract(angle, other, dtype=np.float64) + period / 2
+    return np.asarray(apart % period - period / 2)
+
+
 def frozen_array(values: npt.ArrayLike) -> FloatArray:
     """Read-only float64 copy of `values` (a NumPy scalar where they have no shape)."""
     array = np.array(values, dtype=np.float64)

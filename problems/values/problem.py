@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.checks import (
     counted,
     noted,
@@ -302,6 +302,10 @@ class Problem(ReadOnly):
                 if not getattr(wanted, name)
             ]
         return wrong
+
+    def period(self, key: str) -> float:
+        """See `Requirements.period`; functions and strokes give a slide its sense."""
+        return self.requirements.period(key) if self.task.has_position.any() else TURN
 
     def states(self, needs: Needs) -> bool:
         """Whether it states what a quantity needs to have a value."""

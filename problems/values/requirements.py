@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from grashof.problems.values.arrays import FloatArray, Limits
+from grashof.problems.values.arrays import TURN, FloatArray, Limits
 from grashof.problems.values.box import ANYWHERE, Box
 from grashof.problems.values.checks import GREATEST, finite_number, limits, number_within
 from grashof.problems.values.errors import wrong_value
@@ -120,7 +120,8 @@ class Requirements(ReadOnly):
     offset : tuple of float, optional
         (lo, hi) for the signed offset of a slide: of its line from O2, of an inverted one from O4.
     slide_angle_deg : float, deg, optional
-        Direction of the slide of a slider-crank.
+        Direction of the slide of a slider-crank. For poses and paths 180 deg more is the same line, unless
+        `offset` is limited; the offset of a listed design counts from the direction that is listed.
     ground_angle_deg : float, deg, optional
         Direction O2->O4.
     theta2_start_deg : float, deg, optional
@@ -391,6 +392,18 @@ class Requirements(ReadOnly):
         """The quantity itself; of the transmission angle, the one over the motion that is required."""
         over = quantity.key == "transmission"
         return MEASURED[f"transmission_min_{self.transmission_over}"] if over else quantity
+
+    def period(self, key: str) -> float:
+        """By how much the angles of a quantity differ that count as one, rad.
+
+        A slide without a limit of its offset is a line, which has no sense.
+
+        Examples
+        --------
+        >>> np.degrees([Requirements(offset=offset).period("slide_angle") for offset in (None, (0, 5))])
+        array([180., 360.])
+        """
+        return np.pi if key == "slide_angle" and self.offset is None else TURN
 
     def ranges(self, name: str) -> dict[str, Limits]:
         """What a field allows (see `Limit.ranges`); empty where it limits nothing."""

@@ -43,8 +43,12 @@ def require_limits(build: Builder, form: Form, x: Unknowns, places: Places) -> N
         value, angle = ca.SX(part.of(design)), LIMITS[name].kind is Kind.EQUAL
         allowed = _angle(name, part) if angle else _range(name, part)
         leaf = value.is_scalar() and value.is_leaf() and part.per is None and not part.squared
-        if leaf:
-            build.bound(value, allowed if angle else _inset(allowed), gives=(name, part.name))
+        if angle and name != "theta2_start_deg":  # that one is bounded among the unknowns
+            (unknown,) = ca.symvar(value)
+            ahead = float(ca.evalf(ca.substitute(value, unknown, 0)))
+            build.bound(unknown, _less(allowed, ahead), gives=(name, part.name))
+        elif leaf:
+            build.bound(value, _inset(allowed), gives=(name, part.name))
         if leaf or angle:
             build.require_if_given_up((name, part.name), *_rows(build, design, part, value, allowed))
         else:
@@ -65,11 +69,20 @@ def _range(name: str, part: Part) -> Fill:
 
 def _angle(name: str, part: Part) -> Fill:
     def limits(scaled: ScaledProblem, start: Start) -> Limits:
-        now = start.theta1 if name == "ground_angle_deg" else start.theta2[start.visit.index(0)]
-        angle = lifted(range_of(scaled.wanted, name, part)[0], now)
+        now = {
+            "ground_angle_deg": start.theta1,
+            "slide_angle_deg": start.theta1 - np.pi / 2,
+            "theta2_start_deg": start.theta2[start.visit.index(0)],
+        }[name]
+        period = scaled.wanted.period(LIMITS[name].quantity.key)
+        angle = lifted(range_of(scaled.wanted, name, part)[0], now, period)
         return angle, angle
 
     return limits
+
+
+def _less(allowed: Fill, by: float) -> Fill:
+    return lambda scaled, start: np.subtract(allowed(scaled, start), by)
 
 
 def _inset(allowed: Fill) -> Fill:

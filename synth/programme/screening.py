@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from grashof.problems import Requirements, Rotatability, TransmissionOver
-from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, turned_from
+from grashof.problems.values.quantities import Kind as Limited
 from grashof.problems.values.requirements import LIMITS
 from grashof.synth.programme.formulas import Part, View, parts_of, range_of
 from grashof.synth.programme.kind import Kind, as_vector
@@ -203,14 +204,14 @@ def _oversteps(view: Many, wanted: Requirements, dyad: int | None) -> Iterator[t
     missed: dict[str, FloatArray] = {}
     for name, part in parts_of(wanted.limited, view.kind.formulas):
         if part.dyad == dyad:
-            missed[name] = missed.get(name, 0.0) + _overstep(view, part, *range_of(wanted, name, part))
+            missed[name] = missed.get(name, 0.0) + _overstep(view, name, part, wanted)
     yield from ((name, amount.max(axis=1)) for name, amount in missed.items())
 
 
-def _overstep(view: View, part: Part, low: float, high: float) -> FloatArray:
-    value = part.of(view)
-    if low == high and part.axis == "":  # an angle
-        amount: FloatArray = np.abs(np.angle(np.exp(1j * (value - low))))
+def _overstep(view: View, name: str, part: Part, wanted: Requirements) -> FloatArray:
+    value, (low, high) = part.of(view), range_of(wanted, name, part)
+    if LIMITS[name].kind is Limited.EQUAL:
+        amount: FloatArray = np.abs(turned_from(value, low, wanted.period(LIMITS[name].quantity.key)))
     elif part.per is not None:
         amount = np.maximum(value / high - part.per(view), 0.0)
     else:

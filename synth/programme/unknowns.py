@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 
 from grashof.problems import Rotatability
-from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
+from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, Limits, turned_from
 from grashof.synth.programme.builder import Builder, Fill, always
 from grashof.synth.programme.kind import Kind
 from grashof.synth.programme.scaled_problem import ScaledProblem
@@ -169,9 +169,9 @@ def near(limits: Limits) -> Limits:
     return max(limits[0], -FAR), min(limits[1], FAR)
 
 
-def lifted(required: float, start: float) -> float:
-    """A required angle moved by whole turns to be nearest to that of a start; rad."""
-    return start + float((required - start + np.pi) % (2 * np.pi) - np.pi)
+def lifted(required: float, start: float, period: float = TURN) -> float:
+    """A required angle moved by whole periods to be nearest to that of a start; rad."""
+    return start + float(turned_from(required, start, period))
 
 
 def interleaved(points: ComplexArray | complex) -> FloatArray:

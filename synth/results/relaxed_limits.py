@@ -11,7 +11,7 @@ import numpy as np
 from grashof.analysis import Defect, verify
 from grashof.analysis.judge.design import Constraint, Design, name_of
 from grashof.problems import Box, FourBar, Problem, Requirements, Rotatability
-from grashof.problems.values.arrays import Limits
+from grashof.problems.values.arrays import Limits, turned_from
 from grashof.problems.values.quantities import Kind
 from grashof.problems.values.requirements import LIMITS
 from grashof.synth.designs.candidate import Candidate
@@ -185,7 +185,8 @@ def _eased(
     elif kind is Kind.WORD:
         yield {key: LIMITS[key].widest}, f'{key} "{LIMITS[key].widest}" instead of "{asked}"'
     elif kind is Kind.EQUAL:
-        angle = float(f"{found[0] + 360 * round((asked - found[0]) / 360):.12g}")
+        off = turned_from(np.radians(found[0] - asked), 0.0, problem.period(LIMITS[key].quantity.key))
+        angle = float(f"{asked + np.degrees(off):.12g}")
         yield {key: angle}, f"{key} {angle:.12g} instead of {asked:g}"
     else:
         value = max(_rounded(found[0], asked), 0.0)
