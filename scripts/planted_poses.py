@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import product
 from time import perf_counter
@@ -21,7 +22,8 @@ import numpy as np
 from grashof import synthesize
 from grashof.analysis import solve_position, verify
 from grashof.analysis.judge.planted import planted_motion
-from grashof.problems import Box, Linkage, MotionTask, Problem, ProblemError, Requirements
+from grashof.problems import Box, Linkage, MotionTask, Problem, ProblemError, Requirements, SliderCrank
+from grashof.synth.designs.candidate import Candidate
 
 KINDS = ("four-bar", "slider-crank", "inverted-slider-crank")
 DIRECTION = {"four-bar": "ground_angle_deg", "slider-crank": "slide_angle_deg",
@@ -84,11 +86,13 @@ def limits(cell: Cell, linkage: Linkage, rng: np.random.Generator) -> dict[str, 
     """What the cell states of the planted linkage, as `Requirements` takes it."""
     found: dict[str, Any] = {}
     if "direction" in cell.stated:
-        theta = linkage.slide_angle if cell.mechanism == "slider-crank" else linkage.theta1  # type: ignore[attr-defined]
-        turn = 180 * int(rng.integers(2)) if cell.mechanism == "slider-crank" else 0  # the same line
-        found[DIRECTION[cell.mechanism]] = float(np.degrees(theta)) + turn
+        if isinstance(linkage, SliderCrank):  # 180 deg more is the same line
+            angle = float(np.degrees(linkage.slide_angle)) + 180 * int(rng.integers(2))
+        else:
+            angle = float(np.degrees(linkage.theta1))
+        found[DIRECTION[cell.mechanism]] = angle
     if cell.stated in ("o2", "both pivots"):
-        found["o2"] = point(linkage.o2)  # type: ignore[attr-defined]
+        found["o2"] = point(linkage.o2)
     if cell.stated in ("other pivot", "both pivots"):
         found["o4"] = point(linkage.o4)  # type: ignore[attr-defined]
     if "brackets" in cell.stated:
@@ -125,10 +129,9 @@ def run(cell: Cell, count: int, seed: int, limit: float) -> Iterator[tuple[bool,
     for number in range(count):
         problem, _ = planted(cell, np.random.default_rng([seed, number]))
         since = perf_counter()
-        try:
+        designs: Sequence[Candidate] = []
+        with suppress(ProblemError):  # refused
             designs = synthesize(problem, enough=1, time_limit=limit).candidates
-        except ProblemError:  # refused
-            designs = []
         seconds = perf_counter() - since
         yield any(missed(problem, one.linkage, one.verdict.theta2) < ROUGH for one in designs), seconds
 
