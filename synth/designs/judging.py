@@ -9,13 +9,11 @@ from typing import Any
 import numpy as np
 
 from grashof.analysis import Verdict, verify
-from grashof.problems import Cylinder, FourBar, Linkage, ProblemError
+from grashof.problems import Cylinder, Linkage, ProblemError
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.driving import cylinder_for
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import Configurations, dyad_violations, judge, met
-from grashof.synth.theory.cognates import assembly_of, cognate_points, position_of
 from grashof.synth.theory.stopping import overdue
 
 ROUNDING = 1e-6  # share, rad, sizes: how far verdicts of two processors may differ
@@ -136,32 +134,3 @@ def alike(one: Verdict, other: Verdict, size: float) -> bool:
 def _valued(scaled: ScaledProblem, candidate: Candidate) -> Candidate:
     """The same with what the user's own objective makes of it, where there is one."""
     return candidate if scaled.own_objective is None else candidate.valued(scaled.own_objective)
-
-
-def verified_cognates(scaled: ScaledProblem, candidate: Candidate) -> tuple[Candidate, ...]:
-    """The cognates of a design without defects."""
-    if not isinstance(candidate.linkage, FourBar):
-        return ()
-    position = position_of(candidate.linkage, float(candidate.verdict.theta2[0]))
-    came_from = {"start": candidate.start, "iterations": candidate.iterations}
-    found = []
-    for cognate in cognate_points(position, scaled.timed):
-        if overdue():
-            break
-        points = (cognate - scaled.frame.origin) / scaled.frame.scale
-        if np.isfinite(points).all() and _worth_judging(scaled, points):
-            other = judged(scaled, points, assembly_of(points), 0.0, **came_from)
-            if other is not None and other.verdict.ok:
-                found.append(replace(other, cognate_of=candidate.id))
-    return tuple(found)
-
-
-def _worth_judging(scaled: ScaledProblem, points: ComplexArray) -> bool:
-    """Whether lengths, pivots and rotatability of a linkage are as required: cheap to know beforehand."""
-    o2, o4, a, b, p = points[:, None]
-    one, none = np.zeros((1, 1), dtype=np.int64), np.zeros(1)
-    theta2 = np.angle(a - o2)[:, None]
-    places = Configurations(o2, o4, a[:, None], b[:, None], one, theta2, none + 1)
-    violations = dyad_violations("o2", o2, a[:, None], p, scaled.wanted)
-    violations += dyad_violations("o4", o4, b[:, None], p, scaled.wanted)
-    return bool(met(judge(places, p, none, violations, scaled.wanted).violations)[0])

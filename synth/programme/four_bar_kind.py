@@ -15,6 +15,7 @@ from grashof.synth.programme.formulas import View
 from grashof.synth.programme.instant import FourBarInstant
 from grashof.synth.programme.kind import Closed, Kind, LoopOf, Shapes, as_vector
 from grashof.synth.theory.closure import FourBarClosure
+from grashof.synth.theory.cognates import cognate_points, driven_at_o4
 from grashof.synth.theory.function_four_bar import FourBars
 
 
@@ -108,6 +109,12 @@ class FourBarKind(Kind):
         self, _pivots: Mapping[str, complex], _turned: complex, _found: Mapping[str, float]
     ) -> dict[str, complex]:
         return {}
+
+    def alike(self, points: ComplexArray, *, timed: bool, body: bool) -> list[ComplexArray]:
+        return [
+            *([] if timed else [driven_at_o4(points)]),
+            *([] if body else cognate_points(points, timed)),
+        ]
 
 
 def _full_crank_lengths(proportions: FloatArray, longer_driver: BoolArray, margin: float) -> Shapes:

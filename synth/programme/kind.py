@@ -157,6 +157,13 @@ class Kind(ABC):
     ) -> dict[str, complex]:
         """O4 and B where its programme has no unknowns for them, from those `found` and e3."""
 
+    def alike(self, points: ComplexArray, *, timed: bool, body: bool) -> list[ComplexArray]:
+        """Other linkages of the kind, each (5,), that lead P along the same curve, or the body as this does.
+
+        From points (5,) at one position; `timed` leaves those in which P follows the driver as before.
+        """
+        return []
+
     def named(self, lengths: Iterable[Any], theta1: Any) -> dict[str, Any]:
         """What a `Design` has of r1, r2, r3, r4, or the offset there, and of the ground's direction."""
         names, every = self.linkage.LENGTHS, dict(zip(_LENGTHS, lengths, strict=True))

@@ -16,6 +16,7 @@ from grashof.synth.programme.frame import Frame
 from grashof.synth.programme.kind import Closed, Kind, LoopOf, Shapes, both_ways, by_two
 from grashof.synth.programme.slider_instants import SliderCrankInstant
 from grashof.synth.theory.closure import SliderCrankClosure
+from grashof.synth.theory.cognates import slider_crank_cognate
 from grashof.synth.theory.function_slider_crank import SliderCranks
 
 
@@ -117,3 +118,6 @@ class SliderCrankKind(Kind):
     ) -> dict[str, complex]:
         along = -1j * np.exp(1j * found["theta1"])
         return {"o4": complex(pivots["b"] + abs(pivots["b"] - pivots["a"]) * along)}
+
+    def alike(self, points: ComplexArray, *, timed: bool, body: bool) -> list[ComplexArray]:
+        return [] if timed or body else [slider_crank_cognate(points)]

@@ -53,8 +53,7 @@ def _best_within_bounds(
     again = judged_in_time(scaled, found, most)
     good = [one for one in again if one.verdict.ok]
     for one in attempts:
-        good += one.verified[:1]
-        good += [each for each in judged_in_time(scaled, one.cognates, most) if each.verdict.ok]
+        good += one.verified
     if not good and scaled.zones is not None:
         near, more = nearest_zones(scaled, starts, again, ledger.solved + solved, run)
         good = [candidate for one in near for candidate in one.verified[:1]]

@@ -10,17 +10,19 @@ import numpy as np
 from grashof.problems import Objective, Problem
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.ranking import distinct, pareto_optimal, ranked
-from grashof.synth.programme.merit import same_error
+from grashof.synth.programme.merit import SAME_ERROR, same_error
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.results.stand_in import StandIn, on_all_targets
 from grashof.synth.search.attempt import Attempt
-from grashof.synth.search.ledger import Ledger
+from grashof.synth.search.ledger import EXACT_ERROR, Ledger
 from grashof.synth.search.run import Run
+from grashof.synth.starts.coupler_search import leaves_freedom
 
 FACTORS = (1.02, 1.2, 1.5, 2.0)  # times the least error: so much is offered for other virtues
 GOALS = {"mu": Objective(), "size": Objective(transmission=0.0, compactness=1.0)}
 SEEDS = 4  # designs that are begun from, for each goal
+MET = 1e-10  # sizes: rounding
 APART = 0.05  # share: seeds that are closer are one
 SLACK = 1e-6  # share of the error: rounding
 ALIKE = 5  # decimals up to which mirror images have the same transmission and size
@@ -46,9 +48,15 @@ class Chosen:
 def trade_offs(scaled: ScaledProblem, ledger: Ledger, run: Run) -> Chosen:
     """Beside the least error: within some times of it the best transmission and the smallest size.
 
-    Of all designs those that no other one beats in every goal, up to twice the least error.
+    Of all designs those that no other one beats in every goal, up to twice the least error. Where every
+    target is met there is nothing to trade: all such designs, with what freedom the targets leave made use
+    of, and brought back onto them.
     """
     problem = scaled.problem
+    exact = ledger.least <= EXACT_ERROR and same_error(problem) <= SAME_ERROR
+    if exact and not leaves_freedom(scaled):
+        met = [one for one in ledger.verified if _error(problem, one) <= max(ledger.least, MET)]
+        return Chosen(ranked(problem, met), [], 0)
     least = max(ledger.least, _exact(problem))
     seeds = seeds_of(problem, ledger.verified, FACTORS[-1] * least, SEEDS)
     stand_in = StandIn.of(scaled, seeds[0], ledger.least) if seeds else StandIn(scaled)
@@ -74,10 +82,19 @@ def trade_offs(scaled: ScaledProblem, ledger: Ledger, run: Run) -> Chosen:
             every = (*good, *latest.get(goal, ()))
             latest[goal] = _best_at(stand_in, goal, every, factor, most) or latest.get(goal, [])
             found += good if stand_in.is_itself else latest[goal]
-    if not stand_in.is_itself:
+    if exact:
+        back = run.solve(scaled, [_settled(scaled, one) for one in found], ledger.solved + len(attempts))
+        attempts += back
+        found = [each for one in back for each in one.verified]
+    elif not stand_in.is_itself:
         found = on_all_targets(scaled, found, FACTORS[-1] * least)
     designs = _worth_choosing(problem, [*ledger.verified, *found], least)
     return Chosen(designs, [one for one in attempts if not one.verified], len(attempts))
+
+
+def _settled(scaled: ScaledProblem, candidate: Candidate) -> Start:
+    """A start at a design that is nearly exact: it is brought onto the targets, not solved."""
+    return replace(Start.of_linkage(scaled, candidate.linkage, candidate.verdict), settled=True)
 
 
 def _exact(problem: Problem) -> float:

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.requirements import LIMITS
+from grashof.synth.designs.alike import verified_alike
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.designs.judging import judged, verified_cognates
+from grashof.synth.designs.judging import judged
 from grashof.synth.designs.polishing import polished_solve, polished_start
 from grashof.synth.designs.zones import MISSED, shares
 from grashof.synth.programme.exchange import SOLVED, begun_from, solve_by_exchange
@@ -54,7 +55,7 @@ class Attempt:
     candidate : Candidate or None
         The design, judged, defects or not; None when the numbers make no linkage.
     cognates : tuple of Candidate
-        For a path: other linkages with the same coupler curve, without defects.
+        Other linkages that lead the coupler point, or the body, alike, without defects.
     """
 
     status: str
@@ -77,7 +78,7 @@ class Attempt:
 
 
 def attempt(scaled: ScaledProblem, start: Start, number: int, *, cognates: bool = True) -> Attempt:
-    """Solve from a start, polish the design, verify it, and its cognates where they are designs, too.
+    """Solve from a start, polish the design, verify it, and linkages that move alike where that is of use.
 
     `number` is that of the start.
     """
@@ -93,7 +94,7 @@ def attempt(scaled: ScaledProblem, start: Start, number: int, *, cognates: bool 
     if done is None or (may_move and not done.verified):
         done = _solved(scaled, start, number)
     if cognates and done.verified and finder.cognates:
-        done = replace(done, cognates=verified_cognates(scaled, done.verified[0]))
+        done = replace(done, cognates=verified_alike(scaled, done.verified[0], start.most_error))
     return done
 
 

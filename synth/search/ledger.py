@@ -185,7 +185,7 @@ class Ledger:
             return self._enough or bool(self._no_use)
         share = min(1.0, self.search.effort)
         agreed, many = self._came_up >= ceil(AGREEING * share), max(1, round(MOST_ROUNDS * share))
-        return agreed or self.least <= EXACT_ERROR or len(self._errors) >= many or bool(self._no_use)
+        return agreed or len(self._errors) >= many or bool(self._no_use)
 
     @property
     def why(self) -> str:

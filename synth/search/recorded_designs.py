@@ -31,7 +31,7 @@ def are_attempts(scaled: ScaledProblem, starts: Sequence[Start], result: object)
     return all(
         isinstance(one, Attempt)
         and (one.candidate is None or _is_true(scaled, one.candidate, start.most_error))
-        and all(each.verdict.ok and _is_true(scaled, each) for each in one.cognates)
+        and all(each.verdict.ok and _is_true(scaled, each, start.most_error) for each in one.cognates)
         for one, start in zip(result, starts, strict=True)
     )
 

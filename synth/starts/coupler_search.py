@@ -16,7 +16,6 @@ from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.starts.every_target import fitted_to_all
 from grashof.synth.starts.loop_search import draw, fitting, improve, place
-from grashof.synth.starts.sampled_dyads import fixed_pivots
 from grashof.synth.starts.search_targets import judged, search_targets
 from grashof.synth.starts.selection import relaxed_starts
 from grashof.synth.starts.thinning import refined, thinned
@@ -38,17 +37,11 @@ class CouplerSearch:
     scaled: ScaledProblem
 
     beginning: ClassVar[str] = "searching"
+    cognates: ClassVar[bool] = True
     freedom: ClassVar[bool] = True
     patience: ClassVar[float] = np.inf
     rounds_a_pass: ClassVar[int] = 1
     exhausted: ClassVar[str] = "there are no other starts"
-
-    @property
-    def cognates(self) -> bool:
-        """They trace the same path; not where angles of the body, or a pivot or start angle, are given."""
-        wanted = self.scaled.wanted
-        given = self.scaled.has_angles or wanted.theta2_start_deg is not None
-        return self.scaled.kind is FOUR_BAR and not given and not fixed_pivots(wanted)
 
     def refuse(self) -> None:
         """Raise `ProblemError` for fewer than three distinct targets, or timed angles without places."""
@@ -124,12 +117,16 @@ def search(
 
 
 def has_family(scaled: ScaledProblem) -> bool:
-    """Whether exact designs have freedom left: more unknowns than equations."""
+    """Whether designs that are to meet all targets have freedom left."""
+    return bool(scaled.exact) and leaves_freedom(scaled)
+
+
+def leaves_freedom(scaled: ScaledProblem) -> bool:
+    """Whether designs that meet all targets have more unknowns than equations."""
     target = search_targets(scaled)
     unknowns = target.unknowns + 6 + target.has_angles - (target.wanted.order and not target.timed)
     equations = 2 * np.count_nonzero(target.weights) + np.count_nonzero(target.turn_weights)
-    equations += _equalities(scaled.wanted)
-    return bool(scaled.exact and unknowns > equations)
+    return bool(unknowns > equations + _equalities(scaled.wanted))
 
 
 def _equalities(wanted: Requirements) -> int:

@@ -44,7 +44,7 @@ class Finder(Protocol):
 
     @property
     def cognates(self) -> bool:
-        """Whether cognates of a design are designs, too."""
+        """Whether linkages that move as a design does are looked at, too: no start leads to each of them."""
 
     @property
     def exhausted(self) -> str:

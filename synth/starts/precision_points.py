@@ -23,7 +23,7 @@ from grashof.synth.starts.coupler_search import CouplerSearch, has_family, searc
 from grashof.synth.starts.loop_search import Placed
 from grashof.synth.starts.search_targets import judged, search_targets
 from grashof.synth.starts.selection import feasible_starts, mended_starts, starts_of
-from grashof.synth.theory.cognates import cognate_points
+from grashof.synth.theory.cognates import cognate_points, driven_at_o4
 from grashof.synth.theory.eight_point_linkages import Through, slider_cranks_through
 from grashof.synth.theory.nine_points import coupler_turns, linkages_through
 
@@ -151,10 +151,9 @@ def _usable(linkages: Screened) -> BoolArray:
 
 def _driven_from_both_sides(linkages: ComplexArray) -> ComplexArray:
     """Linkages (n, 5) and their cognates, each driven from either side; (6 n, 5)."""
-    swap = [1, 0, 3, 2, 4]
     cognates = cognate_points(linkages.T, timed=False)
     one_side = [linkages.T, *cognates[:2]]
-    other_side = [linkages.T[swap], *cognates[2:]]
+    other_side = [driven_at_o4(linkages.T), *cognates[2:]]
     return np.stack([one_side, other_side]).transpose(3, 1, 0, 2).reshape(-1, 5)
 
 

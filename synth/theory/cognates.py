@@ -1,4 +1,4 @@
-"""Roberts-Chebyshev cognates: the two other four-bars that trace the same coupler curve."""
+"""Linkages that move alike: Roberts-Chebyshev cognates, and a linkage driven at its other ground pivot."""
 
 from __future__ import annotations
 
@@ -6,8 +6,6 @@ from typing import TypeAlias
 
 import numpy as np
 
-from grashof.analysis import solve_position
-from grashof.problems import FourBar
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 
 
@@ -40,9 +38,49 @@ def cognate_points(points: ComplexArray, timed: bool) -> list[ComplexArray]:
         return [np.array(right)]
     # About O2: A' moves parallel to A-P, the link at O6 turns with link 4.
     left = (o2, o6, o2 + p - a, o6 + k * (b - o4), p)
-    both = [right, left]
-    swapped = [(second, first, at_second, at_first, p) for first, second, at_first, at_second, p in both]
-    return [np.array(cognate) for cognate in (*both, *swapped)]
+    both = [np.array(right), np.array(left)]
+    return [*both, *(driven_at_o4(cognate) for cognate in both)]
+
+
+def driven_at_o4(points: ComplexArray) -> ComplexArray:
+    """The same four-bar, its other link at ground driving.
+
+    Parameters
+    ----------
+    points : ndarray of complex, shape (5, ...)
+        O2, O4, and A, B, P at one position.
+
+    Returns
+    -------
+    ndarray of complex, shape (5, ...)
+    """
+    swapped: ComplexArray = points[[1, 0, 3, 2, 4]]
+    return swapped
+
+
+def slider_crank_cognate(points: ComplexArray) -> ComplexArray:
+    """The other slider-crank whose coupler point traces the same curve; its crank turns as the coupler does.
+
+    Parameters
+    ----------
+    points : ndarray of complex, shape (5,)
+        O2, a point on the slide's line ahead of B, and A, B, P at one position.
+
+    Returns
+    -------
+    ndarray of complex, shape (5,)
+
+    Notes
+    -----
+    With k = (P - A) / (B - A) its A' completes the parallelogram O2-A-P, and its B' = O2 + k (B - O2) runs
+    along the slide's line, turned and scaled by k about O2 (E. A. Dijksman, *Motion Geometry of Mechanisms*,
+    1976).
+    """
+    o2, ahead, a, b, p = points
+    k = (p - a) / (b - a)
+    a2, b2 = o2 + p - a, o2 + k * (b - o2)
+    along = k * (ahead - b)
+    return np.array([o2, b2 + along * abs(b2 - a2) / abs(along), a2, b2, p])
 
 
 def same_curve(signature: FloatArray, timed: bool) -> FloatArray:
@@ -94,16 +132,3 @@ def _driven_at_o4(linkage: _Linkage) -> _Linkage:
     """The same linkage, its other link at ground driving."""
     o2, o4, r2, r3, r4, k = linkage
     return o4, o2, r4, r3, r2, 1 - k
-
-
-def assembly_of(points: ComplexArray) -> int:
-    """Sign of sin(theta4 - theta3) in the position that O2, O4, A, B stand in."""
-    _, o4, a, b, _ = points
-    return 1 if ((b - a).conjugate() * (b - o4)).imag >= 0 else -1
-
-
-def position_of(linkage: FourBar, theta2: float) -> ComplexArray:
-    """O2, O4, A, B, P of a linkage at a driver angle, shape (5,)."""
-    state = solve_position(linkage, theta2)
-    pairs = (linkage.o2, linkage.o4, state.a, state.b, state.p)
-    return np.array([complex(*pair) for pair in pairs])

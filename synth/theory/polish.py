@@ -89,11 +89,14 @@ def polish_path(
         theta2[:1] if wish.timed else theta2,
     ])  # fmt: skip
     gaps = theta2 - theta2[0]
+    worst = np.inf
     for step in range(STEPS + MORE):
+        before = worst
         _, residual, jacobian = _linearised(unknowns, gaps, assembly, wish)
         if not (np.isfinite(residual).all() and np.isfinite(jacobian).all()):
             break
-        if step >= STEPS and np.abs(residual).max(initial=0.0) < DONE:
+        worst = np.abs(residual).max(initial=0.0)
+        if step >= STEPS and before < DONE:  # and one step more, which leads to rounding
             break
         if wish.timed or len(theta2) <= MANY:
             jacobian = jacobian if wish.timed else _spread(jacobian, wish)

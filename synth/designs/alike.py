@@ -1,0 +1,57 @@
+"""Designs that do a task as another one does it: driven from its other side, or its cognates."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from grashof.problems.values.arrays import ComplexArray
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.judging import ROUNDING, judged
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.screening import Configurations, Screened, judge, violations_apart
+from grashof.synth.programme.start import Start
+from grashof.synth.theory.stopping import overdue
+
+
+def verified_alike(
+    scaled: ScaledProblem, candidate: Candidate, most_error: float = np.inf
+) -> tuple[Candidate, ...]:
+    """Other linkages that lead the coupler point, or the body, as a verified design does; verified, too."""
+    start = Start.of_linkage(scaled, candidate.linkage, candidate.verdict)
+    came_from: dict[str, Any] = {"start": candidate.start, "iterations": candidate.iterations}
+    body, found = scaled.has_angles, list[Candidate]()
+    for points in scaled.kind.alike(start.points, timed=scaled.timed, body=body):
+        if overdue():
+            break
+        with np.errstate(divide="ignore", invalid="ignore"):
+            turned = np.angle((start.b - start.a) / (points[3] - points[2]))
+        if not np.isfinite([*points, turned]).all():
+            continue
+        at_once = _at_once(scaled, points)
+        if at_once.feasible[0]:
+            angle = start.body_angle + turned if body else 0.0
+            other = judged(
+                scaled, points, int(at_once.assembly[0]), float(angle), most_error=most_error, **came_from
+            )
+            if other is not None and other.verdict.ok and _as_near(scaled, other, candidate):
+                found.append(replace(other, cognate_of=candidate.id))
+    return tuple(found)
+
+
+def _as_near(scaled: ScaledProblem, other: Candidate, candidate: Candidate) -> bool:
+    """Whether a design is as near to the targets: the cognate of a slider-crank may need both assemblies."""
+    allowed = np.sqrt(candidate.verdict.square) * (1 + ROUNDING) + ROUNDING * scaled.problem.task.size
+    return bool(np.sqrt(other.verdict.square) <= allowed)
+
+
+def _at_once(scaled: ScaledProblem, points: ComplexArray) -> Screened:
+    """A linkage, screened where it stands: lengths, pivots, rotatability, which are cheap to know."""
+    o2, o4, a, b, p = points[:, None]
+    one, none = np.zeros((1, 1), dtype=np.int64), np.zeros(1)
+    theta2 = np.angle(a - o2)[:, None]
+    places = Configurations(o2, o4, a[:, None], b[:, None], one, theta2, none + 1, scaled.kind)
+    violations = violations_apart(places, p, p[:, None], scaled.wanted)
+    return judge(places, p, none, violations, scaled.wanted)
