@@ -10,10 +10,10 @@ import numpy as np
 
 from grashof.problems import ProblemError, Requirements
 from grashof.problems.values.checks import counted
-from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Round, Start
+from grashof.synth.starts.closed_loop import SearchTargets
 from grashof.synth.starts.every_target import fitted_to_all
 from grashof.synth.starts.loop_search import draw, fitting, improve, place
 from grashof.synth.starts.search_targets import judged, search_targets
@@ -27,6 +27,9 @@ TIMED = (600, ((60, 6), (20, 60)))
 FEW_POINTS = 48  # of a longer path decide which linkages are worth the rest
 EXACT = 1e-16  # sizes squared: such an error is left to the solver
 FOUND = 1e-5  # sizes: rms error of a start for an exact task
+PLACED = 3  # targets with places, which fix where a linkage stands
+ANCHORS = 6  # choices of others in a round where there are fewer
+AROUND, LATER = 0.7, (0.2, 1.5)  # where they are: sizes, and rad after the last target
 NEAR = 20  # linkages near the requirements are enough
 
 
@@ -44,22 +47,19 @@ class CouplerSearch:
     exhausted: ClassVar[str] = "there are no other starts"
 
     def refuse(self) -> None:
-        """Raise `ProblemError` for fewer than three distinct targets, or timed angles without places."""
+        """Raise `ProblemError` for too few distinct targets, or timed angles without places."""
         task, count = self.scaled.problem.task, len(search_targets(self.scaled).points)
         if task.is_timed and (placed := int(task.has_position.sum())) < 2:
             raise ProblemError(
                 f"{task.kind}.{task.target}s has {counted(placed, 'place')}; it must have x and y in two or "
                 "more: coupler angles alone are not searched for"
             )
-        if count < 3:
-            where = " where parts are left free, the driver is timed or requirements.exact is false"
-            if self.scaled.kind is not FOUR_BAR:
-                where = f" for {self.scaled.problem.mechanism[0]}s"
-            if task.only_points:
-                where = ""
+        many = task.only_points or not self.scaled.exact
+        if count < (3 if many else 2):
+            where = " where requirements.exact is false" if many and not task.only_points else ""
             raise ProblemError(
                 f"{task.kind}.{task.target}s has {counted(count, f'distinct {task.target}')}; "
-                f"it must have three or more{where}"
+                f"it must have {'three' if many else 'two'} or more{where}"
             )
 
     def glance(self, _rng: np.random.Generator) -> Round | None:
@@ -95,25 +95,58 @@ def search(
     target = search_targets(scaled)
     if not to_boxes:
         target = replace(target, wanted=replace(target.wanted, o2=None, o4=None))
+    lacking = PLACED - np.count_nonzero(target.weights)
+    if lacking <= 0:
+        return _searched(scaled, target, target, enough, rng)
+    anchored = [_anchored(target, lacking, rng) for _ in range(ANCHORS)]
+    return Screened.joined([_searched(scaled, target, each, enough, rng, ANCHORS) for each in anchored])
+
+
+def _searched(
+    scaled: ScaledProblem,
+    target: SearchTargets,
+    anchored: SearchTargets,
+    enough: int,
+    rng: np.random.Generator,
+    parts: int = 1,
+) -> Screened:
+    """Linkages that pass all of `anchored`, judged at the targets; so many parts make a round."""
     effort = FAMILY if has_family(scaled) else TIMED if target.timed else ISOLATED
     draws, (*stages, (keep, steps)) = effort
-    some, index = thinned(target, FEW_POINTS)
-    batch = draw(some, draws, rng)
+    some, index = thinned(anchored, FEW_POINTS)
+    batch = draw(some, draws // parts, rng)
     with np.errstate(all="ignore"):
         error = place(some, batch).error
         for keep_now, steps_now in stages:
-            best = np.argsort(error, kind="stable")[:keep_now]
-            batch, error = improve(fitting(some), batch[best], steps_now, EXACT, until=min(enough, keep_now))
-        batch = refined(target, index, batch[np.argsort(error, kind="stable")[:keep]])
-        if len(index) < len(target.points) and not target.timed:
-            batch = fitted_to_all(target, batch, steps)
+            best = np.argsort(error, kind="stable")[: keep_now // parts]
+            until = min(enough, keep_now // parts)
+            batch, error = improve(fitting(some), batch[best], steps_now, EXACT, until)
+        batch = refined(anchored, index, batch[np.argsort(error, kind="stable")[: keep // parts]])
+        if len(index) < len(anchored.points) and not target.timed:
+            batch = fitted_to_all(anchored, batch, steps)
         else:
-            batch, _ = improve(fitting(target), batch, steps, EXACT, until=min(enough, keep))
-        placed = place(target, batch)
+            batch, _ = improve(fitting(anchored), batch, steps, EXACT, until=min(enough, keep))
+        placed = place(anchored, batch).at_first(len(target.points))
     sound = np.isfinite(placed.error)
     if scaled.exact:
         sound &= placed.error <= len(target.points) * FOUND**2
     return judged(scaled, target, placed[sound], batch.direction[sound])
+
+
+def _anchored(target: SearchTargets, count: int, rng: np.random.Generator) -> SearchTargets:
+    """Some targets and, after them, points at random that P passes, too: these fix where a linkage stands."""
+    middle = (target.weights * target.points).sum() / max(target.weights.sum(), 1e-300)
+    points = middle + AROUND * (rng.normal(size=count) + 1j * rng.normal(size=count))
+    later = target.timing[-1] + np.cumsum(rng.uniform(*LATER, count)) if target.timed else np.zeros(count)
+    ones, none = np.ones(count), np.zeros(count)
+    return replace(
+        target,
+        points=np.concatenate([target.points, points]),
+        weights=np.concatenate([target.weights, ones]),
+        turns=np.concatenate([target.turns, none]),
+        turn_weights=np.concatenate([target.turn_weights, none]),
+        timing=np.concatenate([target.timing, later]),
+    )
 
 
 def has_family(scaled: ScaledProblem) -> bool:

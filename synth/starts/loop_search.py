@@ -66,6 +66,11 @@ class Placed:
     def __getitem__(self, index: BoolArray | IntArray) -> Placed:
         return Placed(*(getattr(self, name)[index] for name in self.__slots__))
 
+    def at_first(self, count: int) -> Placed:
+        """The same where they pass the first so many points alone."""
+        passed = {name: getattr(self, name)[:, :count] for name in ("a", "b", "p", "theta2")}
+        return replace(self, **passed)
+
 
 def draw(target: SearchTargets, count: int, rng: np.random.Generator, astray: float = 0.0) -> Batch:
     """Random linkages, feasible by construction; gaps between driver angles follow the points.

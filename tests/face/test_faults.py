@@ -237,25 +237,27 @@ poses = [[0, 0, 0], [3, 1, 40], [5, 4, 70]]
 
 
 @pytest.mark.parametrize(
-    ("kinds", "poses", "said"),
+    ("kinds", "poses", "exact", "said"),
     [
         (
-            '["four-bar", "slider-crank"]',
-            "[0, 0, 0], [3, 1, 40]",
-            "mechanism slider-crank: motion.poses",
-        ),
-        ('"inverted-slider-crank"', "[0, 0, 0], [3, 1, 40]", "three or more for inverted-slider-cranks"),
-        (
             '["slider-crank", "four-bar"]',
-            "[0, 0, 0], { x = 3, y = 1 }",
-            "mechanism slider-crank: motion.poses",
+            "[0, 0, 0], [3, 1, 40], [0, 0, 0], [5, 4, 70]",
+            "true",
+            "mechanism four-bar: motion.poses[0] and motion.poses[2] are equal",
+        ),
+        (
+            '"inverted-slider-crank"',
+            "[0, 0, 0], [3, 1, 40]",
+            "false",
+            "three or more where requirements.exact",
         ),
     ],
 )
 @pytest.mark.parametrize("command", ["check", "solve"])
 def test_what_cannot_be_searched_with_a_kind_is_refused_before_all(
-    grashof: Grashof, tmp_path: Path, command: str, kinds: str, poses: str, said: str
+    grashof: Grashof, tmp_path: Path, command: str, kinds: str, poses: str, exact: str, said: str
 ) -> None:
     text = f'kind = "motion"\nmechanism = {kinds}\n[motion]\nposes = [{poses}]\n'
+    text += f"[requirements]\nexact = {exact}\n"
     (tmp_path / "two.toml").write_text(text, encoding="utf-8")
     told(grashof(command, "two.toml"), 2, said)

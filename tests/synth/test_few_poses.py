@@ -2,9 +2,11 @@
 
 from typing import Any
 
+import numpy as np
 import pytest
 
 from grashof import synthesize
+from grashof.analysis import solve_position
 from grashof.problems import MotionTask, Problem, ProblemError, Requirements
 from grashof.problems.files.problem_schema import problem_from
 from grashof.synth.starts.finder import refuse_unsearchable
@@ -12,13 +14,35 @@ from grashof.synth.starts.finder import refuse_unsearchable
 A, B = [0, 0, 0], [3, 1, 60]
 
 
-@pytest.mark.parametrize(
-    ("poses", "exact"), [([A, B], False), ([A, B, A], False), ([A, {"x": 3, "y": 1}], True)]
-)
-def test_two_distinct_poses_are_met_whole_and_exactly(poses: Any, exact: bool) -> None:
-    problem = Problem(task=MotionTask.from_degrees(poses), requirements=Requirements(exact=exact))
+@pytest.mark.parametrize("poses", [[A, B], [A, B, A]])
+def test_two_distinct_poses_are_met_exactly(poses: Any) -> None:
+    problem = Problem(task=MotionTask.from_degrees(poses), requirements=Requirements(exact=False))
     with pytest.raises(ProblemError, match=r"motion.poses has 2 distinct poses; it must have three or more"):
         synthesize(problem)
+
+
+TWO = {
+    "whole": [A, B],
+    "a free angle": [A, {"x": 3, "y": 1}],
+    "a free place": [A, {"angle": 60}, B],
+    "back again": [A, {"x": 3, "y": 1}, A],
+}
+
+
+@pytest.mark.parametrize("kind", ["four-bar", "slider-crank", "inverted-slider-crank"])
+@pytest.mark.parametrize("poses", TWO.values(), ids=TWO)
+def test_two_places_leave_linkages_to_choose_from(kind: str, poses: Any) -> None:
+    """Each stands at its poses, by its own numbers, and the list does not repeat one of them."""
+    task = MotionTask.from_degrees(poses)
+    found = synthesize(Problem(task=task, mechanism=kind), enough=8).candidates
+    assert len(found) >= 8
+    assert len({each.family for each in found}) >= 4
+    for each in found:
+        state = solve_position(each.linkage, each.verdict.theta2)
+        off = np.hypot(*(state.p - task.positions).T)[task.has_position]
+        turned = (state.theta3 + each.linkage.body_angle - task.angles)[task.has_angle]
+        assert off.max() < 1e-9
+        assert np.abs(np.angle(np.exp(1j * turned))).max() < 1e-9
 
 
 @pytest.mark.parametrize(
