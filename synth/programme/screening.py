@@ -17,6 +17,7 @@ from grashof.synth.programme.kind import Kind, as_vector
 from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.vector import Vector
 
+ROUNDING = 1e-10  # sizes, rad: by so much no limit is overstepped
 # The requirements that can stand in the way, named by their fields.
 GROUPS = ("order", "same_branch", "rotatability", *LIMITS, "constraints", "keep_out", "within")
 
@@ -217,7 +218,7 @@ def _overstep(view: View, name: str, part: Part, wanted: Requirements) -> FloatA
     else:
         value = np.sqrt(value) if part.squared else value
         amount = np.maximum(np.maximum(low - value, value - high), 0.0)
-    return amount
+    return np.where(amount > ROUNDING, amount, 0.0)
 
 
 def judge(

@@ -17,7 +17,7 @@ from grashof.synth.starts.closed_loop import SearchTargets
 from grashof.synth.starts.every_target import fitted_to_all
 from grashof.synth.starts.loop_search import draw, fitting, improve, place
 from grashof.synth.starts.search_targets import judged, search_targets
-from grashof.synth.starts.selection import relaxed_starts
+from grashof.synth.starts.selection import feasible_starts, mended_starts, relaxed_starts
 from grashof.synth.starts.thinning import refined, thinned
 
 # Draws, and how many of the best go on for how many steps: few solutions, or a whole family.
@@ -88,6 +88,18 @@ class CouplerSearch:
         return ""
 
 
+def searched_round(scaled: ScaledProblem, enough: int, rng: np.random.Generator) -> Round:
+    """The starts of one round of the search for what is to be met."""
+    linkages = search(scaled, enough, rng)
+    feasible = linkages[linkages.feasible]
+    starts = feasible_starts(scaled, feasible, enough)
+    if len(starts) < enough:
+        starts += mended_starts(scaled, linkages, enough)
+    settled = not has_family(scaled)  # without freedom the linkage is the design already
+    starts = [replace(start, settled=settled) for start in starts]
+    return Round(starts, {"feasible finds": len(feasible)})
+
+
 def search(
     scaled: ScaledProblem, enough: int, rng: np.random.Generator, *, to_boxes: bool = True
 ) -> Screened:
@@ -95,7 +107,7 @@ def search(
     target = search_targets(scaled)
     if not to_boxes:
         target = replace(target, wanted=replace(target.wanted, o2=None, o4=None))
-    lacking = PLACED - np.count_nonzero(target.weights)
+    lacking = PLACED - int(np.count_nonzero(target.weights))
     if lacking <= 0:
         return _searched(scaled, target, target, enough, rng)
     anchored = [_anchored(target, lacking, rng) for _ in range(ANCHORS)]

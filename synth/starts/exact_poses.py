@@ -22,9 +22,17 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.programme.whole_screening import fully_screened
+from grashof.synth.starts.coupler_search import searched_round
 from grashof.synth.starts.dyad_pairs import near_misses, screen
 from grashof.synth.starts.parallelograms import parallelogram_obstacle, parallelogram_starts, parallelograms
-from grashof.synth.starts.sampled_dyads import SAMPLES, fixed_pivots, joined, sampled_dyads
+from grashof.synth.starts.sampled_dyads import (
+    SAMPLES,
+    fixed_pivots,
+    joined,
+    sampled_dyads,
+    stated_dyads,
+    with_stated_joints,
+)
 from grashof.synth.starts.selection import (
     FEW,
     feasible_starts,
@@ -47,6 +55,7 @@ LINES, CELL = 800, 0.01  # of the traced curves, in sizes
 PAIRS, SAMPLED_PAIRS, NEAR_PAIRS = 1_000_000, 200_000, 150_000  # judged
 GLANCE_LINES, GLANCE_SAMPLES, GLANCE_PAIRS = 100, 400, 10_000  # of a first glance, a twentieth of the time
 GLANCE_STARTS = 2
+SEARCHES = 3  # rounds of the search for points after that of sampled dyads
 SUBSETS = 6  # fives of many poses that are tried
 NEARLY, EXACT = 1e-4, 1e-9  # radius error in sizes: before and after polishing
 NOT_TURNED = 1e-9  # of unit rotations
@@ -189,9 +198,13 @@ class FewPoses(DyadPairs):
         return Round(starts[:GLANCE_STARTS], {}, size=0)
 
     def round(self, number: int, enough: int, rng: np.random.Generator, _size: int, /) -> Round | None:
-        """A single round; of two translated poses parallelogram linkages alternate with the others."""
+        """A round of dyads; where these are samples, of two or three poses, the search for points goes on.
+
+        Of two translated poses parallelogram linkages alternate with the others.
+        """
         if number:
-            return None
+            last = SEARCHES if len(self.scaled.targets) < 4 else 0
+            return searched_round(self.scaled, enough, rng) if number <= last else None
         scaled = self.scaled
         sideways = parallelogram_starts(scaled, enough, rng) if translate(self.motion) else []
         dyads = self.dyads(rng)
@@ -208,11 +221,13 @@ class FewPoses(DyadPairs):
         """Dyads all along the curves of four poses; random ones of fewer."""
         scaled, wanted = self.scaled, self.scaled.wanted
         if len(scaled.targets) < 4:
-            return sampled_dyads(self.motion, scaled.targets[0], wanted, rng, samples)
+            return with_stated_joints(scaled, sampled_dyads(scaled, self.motion, rng, samples))
         longest = max(limits[1] for limits in wanted.link_lengths)
         _, arm = wanted.coupler_arms or (0.0, np.inf)
         reach = min(1.0 + 1.2 * (arm + longest), 200.0)
-        return trace_four_pose_curves(self.motion, reach, lines, CELL, phase=float(rng.uniform(0.1, 0.9)))
+        phase = float(rng.uniform(0.1, 0.9))
+        traced = trace_four_pose_curves(self.motion, reach, lines, CELL, phase=phase)
+        return with_stated_joints(scaled, joined(stated_dyads(scaled, self.motion), traced))
 
     def obstacle(self, rng: np.random.Generator, _counts: Mapping[str, int], /) -> str:
         """That a fixed ground pivot is not a centre point of four poses; empty where it may be one."""

@@ -19,10 +19,10 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Round
 from grashof.synth.starts.closed_loop import SearchTargets
-from grashof.synth.starts.coupler_search import CouplerSearch, has_family, search
+from grashof.synth.starts.coupler_search import CouplerSearch, searched_round
 from grashof.synth.starts.loop_search import Placed
 from grashof.synth.starts.search_targets import judged, search_targets
-from grashof.synth.starts.selection import feasible_starts, mended_starts, starts_of
+from grashof.synth.starts.selection import starts_of
 from grashof.synth.theory.cognates import cognate_points, driven_at_o4
 from grashof.synth.theory.eight_point_linkages import Through, slider_cranks_through
 from grashof.synth.theory.nine_points import coupler_turns, linkages_through
@@ -45,17 +45,7 @@ class PrecisionPoints(CouplerSearch):
 
     def round(self, _number: int, enough: int, rng: np.random.Generator, _size: int, /) -> Round | None:
         """A round of the search."""
-        return self._searched(enough, rng)
-
-    def _searched(self, enough: int, rng: np.random.Generator) -> Round:
-        linkages = search(self.scaled, enough, rng)
-        feasible = linkages[linkages.feasible]
-        starts = feasible_starts(self.scaled, feasible, enough)
-        if len(starts) < enough:
-            starts += mended_starts(self.scaled, linkages, enough)
-        settled = not has_family(self.scaled)  # without freedom the linkage is the design already
-        starts = [replace(start, settled=settled) for start in starts]
-        return Round(starts, {"feasible finds": len(feasible)})
+        return searched_round(self.scaled, enough, rng)
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +83,7 @@ class EveryLinkage(PrecisionPoints, ABC):
         These are not computed again, however large the round.
         """
         if number < self.rounds_a_pass - 1:
-            return self._searched(enough, rng)
+            return searched_round(self.scaled, enough, rng)
         return self._all_linkages(rng) if number < self.rounds_a_pass and size == 1 else None
 
     @abstractmethod

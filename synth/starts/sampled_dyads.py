@@ -1,12 +1,13 @@
-"""Random dyads of two and three poses, and random places for their pivots."""
+"""Dyads of whole poses: random ones of two and three, those of stated places of four, and random places."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from grashof.problems import Box, Requirements
-from grashof.problems.values.arrays import ComplexArray, Limits
-from grashof.synth.theory.burmester import Displacements, Dyads
+from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.theory.burmester import Displacements, Dyads, radius_error
 from grashof.synth.theory.three_poses import (
     bisector_dyads,
     bisector_dyads_of_ground,
@@ -15,31 +16,100 @@ from grashof.synth.theory.three_poses import (
 )
 
 SAMPLES = 4000
+ON_CURVE = 1e-9  # radius error in sizes
 
 
 def sampled_dyads(
-    motion: Displacements,
-    body: complex,
-    wanted: Requirements,
-    rng: np.random.Generator,
-    samples: int = SAMPLES,
+    scaled: ScaledProblem, motion: Displacements, rng: np.random.Generator, samples: int = SAMPLES
 ) -> Dyads:
-    """Random dyads of two or three poses: half of them by the joint, half by the pivot.
-
-    `body` is the guided point at the first pose, sizes.
-    """
+    """Random dyads of two or three poses: half of them by the joint, half by the pivot."""
+    wanted = scaled.wanted
     longest = max(limits[1] for limits in wanted.link_lengths)
-    moving = body + arms(wanted.coupler_arms, samples, rng)
+    moving = _moving_joints(scaled, longest, samples, rng)
     ground = np.concatenate([ground_pivots(box, longest, samples, rng) for box in (wanted.o2, wanted.o4)])
     if len(motion.shift) == 3:
         halves = circle_dyads(motion, moving), circle_dyads_of_ground(motion, ground)
     else:
+        offset = _along_ground(motion, moving, rng.normal(0, min(longest, 3.0), len(moving)), wanted)
         halves = (
-            bisector_dyads(motion, moving, rng.normal(0, min(longest, 3.0), len(moving))),
+            bisector_dyads(motion, moving, offset),
             bisector_dyads_of_ground(motion, ground, rng.normal(0, min(longest, 3.0), len(ground))),
         )
     both = joined(*halves)
     return both[np.isfinite(both.moving) & np.isfinite(both.ground)]
+
+
+def _along_ground(
+    motion: Displacements, moving: ComplexArray, offset: FloatArray, wanted: Requirements
+) -> FloatArray:
+    """Offsets of dyads of two poses, for grounds of the stated direction.
+
+    Each of the second half has its pivot in that direction from the pivot of its like in the first half.
+    """
+    if wanted.ground_angle_deg is None:
+        return offset
+    half, along = len(moving) // 2, np.exp(-1j * np.radians(wanted.ground_angle_deg))
+    middle = bisector_dyads(motion, moving, np.zeros_like(offset)).ground
+    across = bisector_dyads(motion, moving, np.ones_like(offset)).ground - middle
+    first, second = slice(0, half), slice(half, 2 * half)
+    apart = (middle + across * offset)[first] - middle[second]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        offset[second] = (apart * along).imag / (across[second] * along).imag
+    return offset
+
+
+def stated_dyads(scaled: ScaledProblem, motion: Displacements) -> Dyads:
+    """Dyads of four poses with a ground pivot, or a joint on the body, in a stated place on its curve."""
+    wanted, three = scaled.wanted, Displacements(motion.rotation[:3], motion.shift[:3])
+    ground = np.array(list(fixed_pivots(wanted).values()), dtype=np.complex128)
+    moving = [
+        _on_body(scaled, np.array([complex(box.x[0], box.y[0])]))
+        for box in (wanted.a_on_body, wanted.b_on_body)
+        if box is not None and is_point(box)
+    ]
+    of_joints = circle_dyads(three, np.concatenate(moving)) if moving else Dyads(ground[:0], ground[:0])
+    both = joined(circle_dyads_of_ground(three, ground), of_joints)
+    both = both[np.isfinite(both.moving) & np.isfinite(both.ground)]
+    return both[radius_error(motion, both) < ON_CURVE]
+
+
+def with_stated_joints(scaled: ScaledProblem, dyads: Dyads) -> Dyads:
+    """Those of some dyads whose joint may be A or B, as far as their places on the body are limited."""
+    boxes = scaled.wanted.a_on_body, scaled.wanted.b_on_body
+    places = (dyads.moving - scaled.targets[0]) * np.exp(-1j * scaled.turns[0])
+    inside = [
+        np.ones(len(dyads), dtype=bool)
+        if box is None
+        else (np.abs(places.real - np.clip(places.real, *box.x)) < ON_CURVE)
+        & (np.abs(places.imag - np.clip(places.imag, *box.y)) < ON_CURVE)
+        for box in boxes
+    ]
+    return dyads[inside[0] | inside[1]]
+
+
+def _moving_joints(
+    scaled: ScaledProblem, longest: float, samples: int, rng: np.random.Generator
+) -> ComplexArray:
+    """Random joints at the first pose: in their boxes on the body, or about the guided point."""
+    wanted = scaled.wanted
+    boxes = wanted.a_on_body, wanted.b_on_body
+    if boxes == (None, None):
+        about: ComplexArray = scaled.targets[0] + arms(wanted.coupler_arms, samples, rng)
+        return about
+    half = samples // 2
+    each = [
+        scaled.targets[0] + arms(wanted.coupler_arms, half, rng)
+        if box is None
+        else _on_body(scaled, ground_pivots(box, longest, half, rng))
+        for box in boxes
+    ]
+    return np.concatenate(each)
+
+
+def _on_body(scaled: ScaledProblem, places: ComplexArray) -> ComplexArray:
+    """Where places on the body, from the guided point, are at the first pose."""
+    at_first: ComplexArray = scaled.targets[0] + places * np.exp(1j * scaled.turns[0])
+    return at_first
 
 
 def arms(limits: Limits | None, count: int, rng: np.random.Generator) -> ComplexArray:
@@ -69,8 +139,13 @@ def fixed_pivots(wanted: Requirements) -> dict[str, complex]:
     return {
         name: complex(box.x[0], box.y[0])
         for name, box in (("O2", wanted.o2), ("O4", wanted.o4))
-        if box is not None and box.x[0] == box.x[1] and box.y[0] == box.y[1]
+        if box is not None and is_point(box)
     }
+
+
+def is_point(box: Box) -> bool:
+    """Whether a box has no width."""
+    return box.x[0] == box.x[1] and box.y[0] == box.y[1]
 
 
 def joined(first: Dyads, second: Dyads) -> Dyads:

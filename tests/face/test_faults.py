@@ -19,7 +19,7 @@ from grashof.output.streams import say
 from grashof.problems import SolverError, load_linkage_spec
 from grashof.survey import report_on
 from grashof.synth.search import journal
-from grashof.synth.starts import coupler_search, precision_points
+from grashof.synth.starts import coupler_search
 
 Grashof = Callable[..., Any]
 FULL = OSError(28, "No space left on device")
@@ -218,7 +218,6 @@ def test_a_kind_that_fails_costs_no_design_of_another(
 
     (tmp_path / "line.toml").write_text(LINE, encoding="utf-8")
     monkeypatch.setattr(coupler_search, "search", fail)
-    monkeypatch.setattr(precision_points, "search", fail)
     done = grashof("solve", "line.toml", *QUICK)
     assert done.exit_code == 3
     assert said in done.stderr
