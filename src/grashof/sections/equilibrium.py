@@ -44,8 +44,8 @@ def _rows(study: LinkageStudy, found: Equilibria) -> pd.DataFrame:
         "p_x": state.p[:, 0],
         "p_y": state.p[:, 1],
         "stable": found.stiffness > 0,
-        "stiffness": found.stiffness * study.metre**2,
-        "inertia": found.inertia * study.metre**2,
+        "stiffness_nm_per_rad": found.stiffness * study.metre**2,
+        "inertia_kg_m2": found.inertia * study.metre**2,
         "frequency_hz": frequency,
         "period_s": period,
     })  # fmt: skip

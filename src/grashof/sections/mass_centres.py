@@ -36,7 +36,7 @@ def mass_centres(study: LinkageStudy) -> Section:
 
 
 def mass_table(study: LinkageStudy) -> pd.DataFrame:
-    """Mass of each link, its centre in its frame, inertia about that; mass of all. Empty without masses.
+    """Mass of each link, kg, its centre in its frame, inertia about that; mass of all. Empty without masses.
 
     Of bars of stated density and section also their volume, m^3.
     """
@@ -52,7 +52,9 @@ def mass_table(study: LinkageStudy) -> pd.DataFrame:
             volume = given.section.areas[link.number - 2] * float(bars[link.number].reach)
             row |= {"density": given.density, "volume_m3": volume * study.metre**3}
         rows.append(
-            row | {"mass": float(body.mass), "centre_u": u, "centre_v": v, "inertia": float(body.inertia)}
+            row
+            | {"mass": float(body.mass), "centre_u": u, "centre_v": v}
+            | {"inertia_kg_m2": float(body.inertia) * study.metre**2}
         )
     return pd.DataFrame([*rows, {"link": "all", "mass": float(masses.total)}])
 

@@ -39,7 +39,11 @@ def motor(study: LinkageStudy) -> Section | None:
         curves(columns, "motor-torque", "torque of the motor", "N m", {"torque": "motor_torque"}),
         curves(columns, "motor-power", "power of the motor", "W", {"power": "motor_power"}),
         curves(
-            columns, "motor-inertia", "inertia of the linkage at the motor", "kg m²", {"inertia": "inertia"}
+            columns,
+            "motor-inertia",
+            "inertia of the linkage at the motor",
+            "kg m²",
+            {"inertia": "inertia_kg_m2"},
         ),
     )
     facts = tuple(_facts(study, masses, loads, spec)) if study.sweep.turns else ()
@@ -57,7 +61,7 @@ def _columns(state: Kinematics, masses: Masses, loads: Loads, spec: MotorSpec, j
         "motor_rpm": speed * _RPM + np.zeros(state.shape),
         "motor_torque": torque,
         "motor_power": torque * speed,
-        "inertia": inertia + np.zeros(state.shape),
+        "inertia_kg_m2": inertia + np.zeros(state.shape),
     }
 
 

@@ -81,12 +81,23 @@ def _motion(study: LinkageStudy, masses: Masses, release_deg: float) -> FreeResp
         raise ProblemError(f"release: {error}") from None
 
 
+def _way(found: FreeResponse) -> float:
+    """All that the driver turns, either way, rad: in a step in which it turns back, as if evenly slowed."""
+    speed, step = found.state.omega2, np.diff(found.time)
+    before, after = speed[:-1], speed[1:]
+    back = before * after < 0
+    turned = np.abs(np.diff(found.state.theta2))
+    turned[back] = ((before**2 + after**2) / (2 * np.abs(after - before)))[back] * step[back]
+    return float(turned.sum())
+
+
 def _facts(study: LinkageStudy, found: FreeResponse, parts: Energies) -> Iterator[Fact]:
     state, loads = found.state, study.loads
     yield Fact("release_ending", "free motion ended because", str(found.ending))
     yield Fact("release_seconds", "free motion lasted", found.end, "s")
     turned = float(np.degrees(state.theta2[-1] - state.theta2[0]))
-    yield Fact("release_turned_deg", "driver turned by", turned, "deg")
+    yield Fact("release_turned_deg", "driver turned by, from beginning to end", turned, "deg")
+    yield Fact("release_way_deg", "driver turned, to and fro together", float(np.degrees(_way(found))), "deg")
     kinetic = float(parts.kinetic.sum(axis=0).max())
     change = found.energy - found.energy[0]
     rubs = any(loads.friction.each(name).any() for name in ("viscous", "coulomb", "radius"))

@@ -25,7 +25,7 @@ from grashof.analysis import (
 )
 from grashof.analysis.four_bar.means import mean_in_time
 from grashof.analysis.numerics.quadrature import held
-from grashof.problems import AssemblyError, FourBar, LinkageSpec, ProblemError
+from grashof.problems import FourBar, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.mechanisms import FOUR_BAR, SLIDER_CRANK
 from grashof.study.kinds import LIMIT_POSITIONS, SHARES, turning
@@ -98,12 +98,6 @@ def _stroke_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame) -> Ite
             for link, angle in ((n, angles[n]) for n in (2, *turning(type(linkage))) if n in angles):
                 label = f"{moved} turns back, {words}: theta{link}"
                 yield Fact(f"toggle_{name}_theta{link}_deg", label, float(np.degrees(angle)), "deg")
-    if spec.output_arm is not None:
-        try:
-            factor = spec.output_arm * float(np.abs(solve_kinematics(linkage, 0.0).omega4))
-        except AssemblyError:
-            return
-        yield Fact("torque_factor_at_0_deg", "torque factor of the output arm at theta2 = 0", factor, unit)
 
 
 def _slide_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame, chord: float) -> Iterator[Fact]:

@@ -86,9 +86,9 @@ def test_the_inertia_at_the_motor_is_that_of_the_torque(sections: Sections) -> N
         inverse_dynamics(solve_kinematics(JACK.linkage, theta2, 2.0, alpha), study.masses).torque
         for alpha in (0.0, 9.0)
     )
-    np.testing.assert_allclose(table["inertia"], (fast - slow) / 9 / 30**2, rtol=1e-9)
+    np.testing.assert_allclose(table["inertia_kg_m2"], (fast - slow) / 9 / 30**2, rtol=1e-9)
     given = facts(found)
-    assert given["motor_load_inertia_largest"] >= table["inertia"].max()
+    assert given["motor_load_inertia_largest"] >= table["inertia_kg_m2"].max()
     assert given["motor_inertia_ratio"] == pytest.approx(given["motor_load_inertia_largest"] / 0.05)
 
 

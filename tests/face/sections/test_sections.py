@@ -82,7 +82,7 @@ def test_tables_of_masses(sections: Any) -> None:
     table = sections("pumpjack")["mass-centres"].tables["masses"].set_index("link")
     assert table["mass"].tolist() == pytest.approx([372.4656, 1176.8328, 957.311268, 2506.609668])
     assert table.loc["3, coupler", ["centre_u", "centre_v"]].tolist() == [3.7719 / 2, 0]
-    assert table.loc["4, output", "inertia"] == pytest.approx(741.513342879474)
+    assert table.loc["4, output", "inertia_kg_m2"] == pytest.approx(741.513342879474)
     loaded = LinkageSpec(
         FourBar((0, 0), (4, 0), 1, 4, 3, (2, 1)), "x", length_unit="m", dynamics=DynamicsSpec(payload=5.0)
     )
