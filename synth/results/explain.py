@@ -76,7 +76,8 @@ def _explained(scaled: ScaledProblem, ledger: Ledger, rejected: list[Attempt], r
     rng = np.random.default_rng(np.random.SeedSequence(run.search.seed, spawn_key=(0,)))
     known = [one.candidate for one in rejected if one.candidate is not None]
     ways = relaxations(scaled, known, rng, run) + wider(scaled.problem, scaled.constraints, known)
-    near = [] if run.ended() else _by_least_squares(scaled, run)
+    squares = None if run.ended() or not _may_be_near(scaled) else _least_squares(scaled, run)
+    near = [] if squares is None else _nearest(scaled, squares)
     designs = tuple(one.candidate for one in near if one.candidate.verdict.ok)
     if designs:
         return Explanation("", designs=designs)
@@ -94,6 +95,15 @@ def _explained(scaled: ScaledProblem, ledger: Ledger, rejected: list[Attempt], r
     if near:
         note = f"no design: {why or 'exact: none'}; {_comes_within(scaled, near[0])}, with exact = false"
         return Explanation(note, tuple(one.candidate for one in near))
+    if squares is not None and not run.ended():
+        missed = [one.candidate for one in squares.rejected if one.candidate is not None]
+        loose = [
+            (each, _near(scaled, each.candidate)) for each in relaxations(squares.scaled, missed, rng, run)
+        ]
+        each_alone = [f"{each.words} ({_comes_within(scaled, one)})" for each, one in loose[:ALTERNATIVES]]
+        if loose:
+            note = _ways_note(why, each_alone, "with exact = false ")
+            return Explanation(note, tuple(one.candidate for _, one in loose))
     relaxed = finder.relaxed(rng) + relaxed_by_own(scaled, ledger.latest)
     nearest = () if run.ended() else closest_misses(run.solve(scaled, relaxed, len(rejected)))
     nearest = nearest or closest_misses(rejected)
@@ -114,18 +124,24 @@ def closest_misses(attempts: list[Attempt]) -> tuple[Candidate, ...]:
     return tuple(candidate for _, _, candidate in sorted(found, key=lambda item: item[:2]))
 
 
-def _by_least_squares(scaled: ScaledProblem, run: Run) -> list[_Near]:
-    """For targets to be met exactly: designs that come as near as they can, the nearest first."""
-    if not _may_be_near(scaled):
-        return []
+def _least_squares(scaled: ScaledProblem, run: Run) -> Ledger:
+    """For targets to be met exactly: the search for designs that come as near as they can."""
     wanted = replace(scaled.problem.requirements, exact=False)
     # Zones apart, an objective is of no effect there.
     objective = scaled.problem.objective if scaled.bounded else Objective()
     problem = replace(scaled.problem, requirements=wanted, objective=objective)
     search = replace(run.search, effort=NEAR_EFFORT, enough=min(run.search.enough, NEAR))
     alone = replace(run, search=search, progress=None, seconds=dict(run.seconds))
-    found = search_designs(scaled.of_problem(problem), alone).best
-    return [_Near(one.verdict, judged_again(scaled, one)) for one in ranked(problem, found)[:SHOWN]]
+    return search_designs(scaled.of_problem(problem), alone)
+
+
+def _nearest(scaled: ScaledProblem, squares: Ledger) -> list[_Near]:
+    """What least squares came to, the nearest first."""
+    return [_near(scaled, one) for one in ranked(squares.scaled.problem, squares.best)[:SHOWN]]
+
+
+def _near(scaled: ScaledProblem, by_squares: Candidate) -> _Near:
+    return _Near(by_squares.verdict, judged_again(scaled, by_squares))
 
 
 def _may_be_near(scaled: ScaledProblem) -> bool:
@@ -140,10 +156,10 @@ def _miss(near: _Near, size: float) -> float:
     return max(verdict.error_max / size, float(turned))
 
 
-def _ways_note(why: str, words: list[str]) -> str:
-    """The note that names single requirements."""
+def _ways_note(why: str, words: list[str], given: str = "") -> str:
+    """The note that names single requirements, of which each would do beside what is `given`."""
     reason = f"no design: {why}" if why else "no design meets all requirements"
-    alone = f"{'this' if len(words) == 1 else 'each of these'}{_WOULD}"
+    alone = f"{given}{'this' if len(words) == 1 else 'each of these'}{_WOULD}"
     return f"{reason}; {alone}: {_BETWEEN.join(words)}"
 
 

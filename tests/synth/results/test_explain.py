@@ -11,6 +11,7 @@ from grashof import load, synthesize
 from grashof.analysis import verify
 from grashof.problems import Box, MotionTask, Objective, PathTask, Problem, Requirements
 from grashof.synth import Result
+from grashof.synth.results.explain import note_parts
 
 pytestmark = pytest.mark.usefixtures("small_search")
 
@@ -78,6 +79,29 @@ def test_where_least_squares_finds_nothing_either_it_is_not_promised() -> None:
     assert "exact" not in result.note
     assert result.note.startswith("no design meets all requirements; each of these alone would do: ")
     assert "r1 up to 60 instead of 50" in result.note
+
+
+@pytest.mark.slow
+def test_what_least_squares_lacks_is_named_where_no_single_requirement_does() -> None:
+    """A tray through four poses under tight limits: of each way that the note names there is a design."""
+    tray = MotionTask.from_degrees([[0, 0, 0], [60, 90, 15], [180, 140, 40], [300, 90, 70]])
+    frame = Box((0, 30), (-60, -20))
+    wanted = Requirements(
+        rotatability="crank-rocker", o2=frame, o4=frame, link_length=(30, 120), transmission_min_deg=40,
+        transmission_over="cycle",
+    )  # fmt: skip
+    result = synthesize(Problem(task=tray, requirements=wanted, length_unit="mm"))
+    said, ways = note_parts(result.note)
+    assert said == "no design meets all requirements; with exact = false each of these alone would do"
+    assert len(ways) >= 2
+    way = next(each for each in ways if each.startswith("transmission_min_deg"))
+    found = re.match(
+        r"transmission_min_deg (\S+) instead of 40 \(the closest design comes within (\S+) mm", way
+    )
+    assert found is not None
+    loose = replace(wanted, exact=False, transmission_min_deg=float(found[1]))
+    nearest = (verify(one.linkage, tray, loose) for one in result.nearest)
+    assert any(each.ok and each.error_max <= float(found[2]) for each in nearest)
 
 
 def test_areas_that_cover_everything_are_named(relaxing_only: Callable[..., None]) -> None:
