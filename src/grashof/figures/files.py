@@ -146,7 +146,8 @@ def _heading(problem: Problem, candidate: Candidate, rank: int) -> str:
     task, cycle = np.degrees([verdict.transmission_min_task, verdict.transmission_min_cycle])
     over = [f"{task:.1f} deg over the task"] if not problem.task.closed else []
     over += [f"{cycle:.1f} deg over the turn"] if verdict.full_rotation else []
-    fit = "" if problem.requirements.is_exact(problem.task) else f", rms error {verdict.error_rms:.3g}"
+    exact = problem.requirements.is_exact(problem.task)
+    fit = "" if exact else f", error rms {candidate.values['error']:.3g}"  # as the list has it
     if isinstance(problem.task, FunctionTask):
         worst = problem.task.shown(verdict.structural_error_max, problem.length_unit)
         fit = f", structural error {worst}"

@@ -220,9 +220,9 @@ def plot_design_space(
     (x_values, x_label), (y_values, y_label) = _along(result, x), _along(result, y)
     front = pareto_optimal(problem, candidates)
     ax = new_axes(ax)
-    error = "structural_error_max" if problem.task.has_output.any() else "error_rms"
+    error = "structural_error_max" if problem.task.has_output.any() else "error"
     third = "torque_peak" if problem.dynamics is not None else error
-    if third == "error_rms" and problem.requirements.is_exact(problem.task):
+    if third == "error" and problem.requirements.is_exact(problem.task):
         ax.scatter(x_values, y_values, color=COUPLER, label="design", zorder=3)
     else:
         values, label = _along(result, third)

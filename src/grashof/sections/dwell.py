@@ -11,6 +11,7 @@ from grashof.problems import AssemblyError
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.checks import number_within
 from grashof.study.columns import curves, over_driver
+from grashof.study.quantities import counted_on, counted_with
 from grashof.study.section import Fact, Section
 from grashof.study.study import LinkageStudy
 from grashof.study.sweep import INSET
@@ -24,8 +25,10 @@ def dwell_section(study: LinkageStudy) -> Section | None:
     found = []
     for low, high in study.sweep.ranges:
         found.append(_rest(study, band, low, high))
-    facts = tuple(fact for number, rest in enumerate(found, start=1) for fact in _facts(study, rest, number))
-    columns = over_driver(study, lambda state: {"theta4_deg": np.degrees(np.unwrap(state.theta4))})
+    columns = over_driver(study, lambda state: {"theta4_deg": counted_on(np.degrees(state.theta4), 360.0)})
+    swing = float(np.nanmin(columns["theta4_deg"])), float(np.nanmax(columns["theta4_deg"]))
+    numbered = enumerate(found, start=1)
+    facts = tuple(fact for number, rest in numbered for fact in _facts(study, rest, number, swing))
     at = columns["theta2_deg"]
     dwelling = np.zeros(at.shape, dtype=bool)
     for rest in found:
@@ -50,16 +53,18 @@ def _rest(study: LinkageStudy, band: float, low: float, high: float) -> Dwell:
         return dwell(study.linkage, theta4, band, low + INSET, high - INSET, TURN)
 
 
-def _facts(study: LinkageStudy, rest: Dwell, number: int) -> Iterator[Fact]:
+def _facts(study: LinkageStudy, rest: Dwell, number: int, swing: tuple[float, float]) -> Iterator[Fact]:
     many = len(study.sweep.ranges) > 1
     mark, where = (f"_{number}", f", range {number}") if many else ("", "")
     what = f"dwell of theta4 within {study.asked.dwell_deg:g} deg{where}"
     yield Fact(f"dwell{mark}_deg", f"{what}: turn of the driver", float(np.degrees(rest.duration)), "deg")
     for name, angle in (("from", rest.start), ("to", rest.end)):
         yield Fact(f"dwell{mark}_{name}_deg", f"{what}: {name} theta2", float(np.degrees(angle)), "deg")
+    middle = float(np.degrees(rest.low + rest.high)) / 2
+    turned = counted_with(middle, [swing], 360.0) - middle
     for name, angle in (("low", rest.low), ("high", rest.high)):
         label = f"{what}: theta4, {name} end of the band"
-        yield Fact(f"dwell{mark}_{name}_theta4_deg", label, float(np.degrees(angle)), "deg")
+        yield Fact(f"dwell{mark}_{name}_theta4_deg", label, float(np.degrees(angle)) + turned, "deg")
     if study.sweep.speed_rpm != 0:
         seconds = float(np.degrees(rest.duration)) / 6 / abs(study.sweep.speed_rpm)
         yield Fact(f"dwell{mark}_seconds", f"{what}: time at the driver's speed", seconds, "s")

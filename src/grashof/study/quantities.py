@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from operator import attrgetter
@@ -184,15 +184,23 @@ def table_of(quantities: list[Quantity], states: list[Kinematics]) -> pd.DataFra
         for quantity in quantities:
             values = np.asarray(quantity.of(state), dtype=np.float64)
             if quantity.period is not None:
-                values = _counted_on(values, quantity.period)
+                values = counted_on(values, quantity.period)
             columns[quantity.key] = np.where(np.isfinite(values), values, np.nan)
         parts.append(pd.DataFrame(columns))
     return pd.concat(parts, ignore_index=True)
 
 
-def _counted_on(values: FloatArray, period: float) -> FloatArray:
+def counted_on(values: FloatArray, period: float) -> FloatArray:
+    """Angles along a motion without jumps, the least of them within half a period of zero."""
     known = np.isfinite(values)
     values = values.copy()
     values[known] = np.unwrap(values[known], period=period)
-    least = np.min(values[known], initial=np.inf)  # unwrapped so that the least lies in half a period of 0
+    least = np.min(values[known], initial=np.inf)
     return values - period * np.floor((least + period / 2) / period) if known.any() else values
+
+
+def counted_with(angle: float, swings: Iterable[tuple[float, float]], period: float) -> float:
+    """An angle with the whole periods that bring it into the swing, from least to largest, that it is of."""
+    middles = [(low + high) / 2 for low, high in swings]
+    near = [angle + period * round((middle - angle) / period) for middle in middles]
+    return min(near, key=lambda each: min(abs(each - middle) for middle in middles), default=angle)

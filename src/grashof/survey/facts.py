@@ -29,7 +29,7 @@ from grashof.problems import FourBar, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.mechanisms import FOUR_BAR, SLIDER_CRANK
 from grashof.study.kinds import LIMIT_POSITIONS, SHARES, turning
-from grashof.study.quantities import dynamic_quantities
+from grashof.study.quantities import counted_with, dynamic_quantities
 from grashof.study.section import Fact
 from grashof.study.study import LinkageStudy
 from grashof.study.sweep import Sweep
@@ -96,8 +96,11 @@ def _stroke_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame) -> Ite
         if np.isfinite(stroke.theta4[index]):
             angles = {2: stroke.theta2[index], 4: stroke.theta4[index]}
             for link, angle in ((n, angles[n]) for n in (2, *turning(type(linkage))) if n in angles):
-                label = f"{moved} turns back, {words}: theta{link}"
-                yield Fact(f"toggle_{name}_theta{link}_deg", label, float(np.degrees(angle)), "deg")
+                label, found = f"{moved} turns back, {words}: theta{link}", float(np.degrees(angle))
+                if link == 4:  # as the extremes count it
+                    swings = extremes[extremes["quantity"] == "theta4_deg"]
+                    found = counted_with(found, zip(swings["min"], swings["max"], strict=True), 360.0)
+                yield Fact(f"toggle_{name}_theta{link}_deg", label, found, "deg")
 
 
 def _slide_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame, chord: float) -> Iterator[Fact]:

@@ -9,11 +9,12 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 
+from grashof import synthesize
 from grashof.analysis import solve_position, verify
 from grashof.analysis.judge.planted import planted_path, random_full_crank
 from grashof.figures import draw_design, save
 from grashof.figures.parts import DRIVER, PATH, TARGET
-from grashof.problems import FourBar, PathTask, Problem, load
+from grashof.problems import FourBar, MotionTask, PathTask, Problem, load
 from grashof.problems.files.published import published
 from grashof.synth import Candidate
 
@@ -87,8 +88,14 @@ def test_an_open_path_shows_the_part_used() -> None:
 def test_least_squares_tells_its_error_in_the_heading(tmp_path: Path) -> None:
     problem, design = load("path-18-timed"), published("path-18-timed")[0]
     axes = drawn(design.linkage, problem)
-    assert "rms error 0.0225" in axes.get_title()
+    assert "error rms 0.0225" in axes.get_title()
     save(axes.figure, [tmp_path / "path.png", tmp_path / "path.svg"])  # type: ignore[arg-type]
     assert {path.suffix for path in tmp_path.iterdir()} == {".png", ".svg"}
+    poses = MotionTask.from_degrees([[0, 0, 0], [2, 1, 20], [3, 3, 50], [3, 4, 40], [2, 5, 90], [0, 5, 95]])
+    result = synthesize(Problem(task=poses), starts=8, effort=0.2)
+    (heading,) = (axes.get_title() for axes in draw_design(result.problem, result.best, 1).axes)
+    error = result.best.error(result.problem) * poses.size  # of places and angles, as the list has it
+    assert abs(error / result.best.verdict.error_rms - 1) > 0.01
+    assert f"error rms {error:.3g}" in heading
     exact, linkage = planted(5)
     assert "rms" not in drawn(linkage, exact).get_title()

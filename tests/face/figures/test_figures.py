@@ -243,7 +243,7 @@ def test_without_dynamics_the_colour_tells_nothing_or_the_error(few: Result) -> 
     assert len(ax.figure.axes) == 1
     loose = replace(plain, requirements=replace(plain.requirements, exact=False))
     ax = plot_design_space(replace(few, problem=loose), ax=axes())
-    assert ax.figure.axes[1].get_ylabel() == "position error rms (m)"
+    assert ax.figure.axes[1].get_ylabel() == "error rms (m)"
     with pytest.raises(NoSolutionError, match="too narrow"):
         plot_design_space(replace(few, candidates=(), note="too narrow"))
     assert plt.get_fignums() == []
