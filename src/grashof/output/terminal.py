@@ -27,6 +27,7 @@ from grashof.synth.designs.ranking import pareto_optimal
 from grashof.wording.problem import error_meaning, goals
 
 _ROWS = 12
+_ROUNDING = 1e-9  # sizes
 CAUTION = "caution"
 _PIPED_WIDTH = 140
 _WIDE = 100  # columns; narrower terminals get fewer digits
@@ -233,14 +234,15 @@ def _cells(problem: Problem, candidate: Candidate, digits: int) -> dict[str, str
     linkage = candidate.linkage
     return {
         **{each.short: _cell(each, candidate, digits) for each in _decided_by(problem)},
-        **{name: _place(getattr(linkage, name.lower(), None)) for name in ("O2", "O4")},
+        **{name: _place(getattr(linkage, name.lower(), None), problem.task.size) for name in ("O2", "O4")},
         "mechanism": linkage.MECHANISM,
         "class": str(candidate.verdict.grashof_class),
     }
 
 
-def _place(place: FloatArray | None) -> str:
-    return "-" if place is None else f"{place[0]:.3g}, {place[1]:.3g}"
+def _place(place: FloatArray | None, size: float) -> str:
+    """A place to three digits; what is rounding beside the size of the task is zero."""
+    return "-" if place is None else ", ".join(f"{x if abs(x) > _ROUNDING * size else 0:.3g}" for x in place)
 
 
 def _cell(quantity: Quantity, candidate: Candidate, digits: int) -> str:
