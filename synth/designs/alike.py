@@ -11,9 +11,21 @@ from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import ROUNDING, judged
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import Configurations, Screened, judge, violations_apart
+from grashof.synth.programme.screening import (
+    GROUPS,
+    Configurations,
+    Screened,
+    judge,
+    met,
+    violations_apart,
+)
 from grashof.synth.programme.start import Start
 from grashof.synth.theory.stopping import overdue
+
+# What one position does not know of.
+_OF_MOTION = [
+    GROUPS.index(name) for name in ("driver_sense", "driver_rotation_deg", "output_swing_deg", "stroke")
+]
 
 
 def verified_alike(
@@ -31,7 +43,7 @@ def verified_alike(
         if not np.isfinite([*points, turned]).all():
             continue
         at_once = _at_once(scaled, points)
-        if at_once.feasible[0]:
+        if met(np.delete(at_once.violations, _OF_MOTION, axis=1))[0]:
             angle = start.body_angle + turned if body else 0.0
             other = judged(
                 scaled, points, int(at_once.assembly[0]), float(angle), most_error=most_error, **came_from

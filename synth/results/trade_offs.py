@@ -83,7 +83,8 @@ def trade_offs(scaled: ScaledProblem, ledger: Ledger, run: Run) -> Chosen:
             latest[goal] = _best_at(stand_in, goal, every, factor, most) or latest.get(goal, [])
             found += good if stand_in.is_itself else latest[goal]
     if exact:
-        back = run.solve(scaled, [_settled(scaled, one) for one in found], ledger.solved + len(attempts))
+        begun_again = [] if run.ended() else [_settled(scaled, one) for one in found]
+        back = run.solve(scaled, begun_again, ledger.solved + len(attempts))
         attempts += back
         found = [each for one in back for each in one.verified]
     elif not stand_in.is_itself:

@@ -99,3 +99,18 @@ def test_a_slider_crank_and_its_cognate_are_both_listed() -> None:
     assert max(each.verdict.error_max for each in found) < ROUNDING * task.size
     cranks = sorted(float(each.linkage.r2) for each in found)  # type: ignore[attr-defined]
     np.testing.assert_allclose(cranks, [1, np.hypot(1.2, 0.8)], rtol=1e-8)  # the cognate's turns with A-P
+
+
+def test_limits_of_the_motion_are_judged_over_it() -> None:
+    """A sense and a rotation of the driver leave the linkage driven from its other side in the list."""
+    task, linkage = planted_motion(np.random.default_rng([0, 6, False]), 6)
+    wanted = [each for each in alike(task, linkage) if verify(each, task, Requirements()).ok]
+    assert len(wanted) == 2
+    verdicts = [verify(each, task, Requirements()) for each in wanted]
+    turned = [float(np.degrees(np.ptp(each.theta2))) for each in verdicts]
+    senses = {each.direction for each in verdicts}
+    limits = Requirements(
+        driver_rotation_deg=(min(turned) - 1, max(turned) + 1),
+        driver_sense="either" if len(senses) > 1 else {1: "ccw", -1: "cw"}[senses.pop()],
+    )
+    assert len(synthesize(Problem(task=task, requirements=limits)).candidates) == 2
