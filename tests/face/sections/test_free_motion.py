@@ -52,7 +52,7 @@ def test_the_way_of_a_swinging_driver_is_told_beside_its_net_turn(sections: Sect
     time = np.linspace(0, table["time"].iloc[-1], 400_001)
     speed = np.abs(CubicSpline(table["time"], table["omega2"])(time))
     way = float(np.degrees(np.trapezoid(speed, time)))
-    assert given["release_way_deg"] == pytest.approx(way, rel=1e-4)
+    assert given["release_way_deg"] == pytest.approx(way, rel=1e-7)
     net = table["theta2_deg"].iloc[-1] - table["theta2_deg"].iloc[0]
     assert given["release_turned_deg"] == pytest.approx(net)
     assert way > abs(net) + 90
