@@ -95,19 +95,25 @@ def _explained(scaled: ScaledProblem, ledger: Ledger, rejected: list[Attempt], r
     if near:
         note = f"no design: {why or 'exact: none'}; {_comes_within(scaled, near[0])}, with exact = false"
         return Explanation(note, tuple(one.candidate for one in near))
-    if squares is not None and not run.ended():
+    relaxed = finder.relaxed(rng) + relaxed_by_own(scaled, ledger.latest)
+    nearest = () if run.ended() else closest_misses(run.solve(scaled, relaxed, len(rejected)))
+    nearest = nearest or closest_misses(rejected)
+    if squares is not None and not _misses_one(nearest) and not run.ended():
         missed = [one.candidate for one in squares.rejected if one.candidate is not None]
         loose = [
             (each, _near(scaled, each.candidate)) for each in relaxations(squares.scaled, missed, rng, run)
         ]
-        each_alone = [f"{each.words} ({_comes_within(scaled, one)})" for each, one in loose[:ALTERNATIVES]]
-        if loose:
-            note = _ways_note(why, each_alone, "with exact = false ")
+        loose = [(each, one) for each, one in loose if _miss(one, scaled.problem.task.size) < 1]
+        named = [f"{each.words} ({_comes_within(scaled, one)})" for each, one in loose[:ALTERNATIVES]]
+        if named:
+            note = _ways_note(why, named, "with exact = false ")
             return Explanation(note, tuple(one.candidate for _, one in loose))
-    relaxed = finder.relaxed(rng) + relaxed_by_own(scaled, ledger.latest)
-    nearest = () if run.ended() else closest_misses(run.solve(scaled, relaxed, len(rejected)))
-    nearest = nearest or closest_misses(rejected)
     return Explanation(_none_note(scaled, nearest, why), nearest)
+
+
+def _misses_one(nearest: tuple[Candidate, ...]) -> bool:
+    """Whether the closest miss is of one requirement alone."""
+    return bool(nearest) and len({defect.requirement for defect in nearest[0].verdict.defects}) == 1
 
 
 def closest_misses(attempts: list[Attempt]) -> tuple[Candidate, ...]:
@@ -195,8 +201,7 @@ def _none_note(scaled: ScaledProblem, nearest: tuple[Candidate, ...], why: str) 
         return f"no design: {why}{'; least squares finds none either' if squares else ''}{closest}"
     if not nearest:
         return f"no design: the search found none{squares}, nor a near miss"
-    alone = len({defect.requirement for defect in nearest[0].verdict.defects}) == 1
-    return f"no design meets all requirements{'' if alone else ', nor all but one'}{closest}"
+    return f"no design meets all requirements{'' if _misses_one(nearest) else ', nor all but one'}{closest}"
 
 
 def _missed(scaled: ScaledProblem, candidate: Candidate) -> str:
