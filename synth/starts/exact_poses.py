@@ -160,6 +160,7 @@ class DyadPairs(WholePoses, ABC):
         """Pairs that meet all requirements but, perhaps, the user's own constraints; of so many at most."""
         scaled = self.scaled
         most = most or (SAMPLED_PAIRS if len(scaled.targets) < 4 else PAIRS)
+        dyads = with_stated_joints(scaled, dyads)
         return fully_screened(scaled, screen(self.motion, scaled.targets[0], dyads, scaled.wanted, most))
 
     def near_pairs(self, dyads: Dyads) -> Screened:
@@ -221,13 +222,13 @@ class FewPoses(DyadPairs):
         """Dyads all along the curves of four poses; random ones of fewer."""
         scaled, wanted = self.scaled, self.scaled.wanted
         if len(scaled.targets) < 4:
-            return with_stated_joints(scaled, sampled_dyads(scaled, self.motion, rng, samples))
+            return sampled_dyads(scaled, self.motion, rng, samples)
         longest = max(limits[1] for limits in wanted.link_lengths)
         _, arm = wanted.coupler_arms or (0.0, np.inf)
         reach = min(1.0 + 1.2 * (arm + longest), 200.0)
         phase = float(rng.uniform(0.1, 0.9))
         traced = trace_four_pose_curves(self.motion, reach, lines, CELL, phase=phase)
-        return with_stated_joints(scaled, joined(stated_dyads(scaled, self.motion), traced))
+        return joined(stated_dyads(scaled, self.motion), traced)
 
     def obstacle(self, rng: np.random.Generator, _counts: Mapping[str, int], /) -> str:
         """That a fixed ground pivot is not a centre point of four poses; empty where it may be one."""

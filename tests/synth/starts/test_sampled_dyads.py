@@ -68,3 +68,18 @@ def test_what_is_stated_is_met_by_theory_before_any_solve(stated: str, seed: int
         if np.nanmin(off) < 2e-3 * task.size:
             break
     assert np.nanmin(off) < 2e-3 * task.size
+
+
+def test_joints_that_no_dyad_has_leave_near_misses_and_a_true_reason() -> None:
+    """Far from the body there is no circle point; O2 beside its curve is as far away as without them."""
+    task, linkage = planted_motion(np.random.default_rng([0, 7]), 4)
+    far = Box((50 * task.size, 51 * task.size), (0.0, 1.0))
+    beside = {"o2": point(linkage.o2 + 0.3)}
+    plain, boxed = (
+        FewPoses(ScaledProblem.of(Problem(task=task, requirements=Requirements(**beside, **more))))
+        for more in ({}, {"a_on_body": far, "b_on_body": far})
+    )
+    reasons = [each.obstacle(np.random.default_rng(0), {}) for each in (plain, boxed)]
+    assert reasons[0] == reasons[1]
+    assert "inf" not in reasons[0]
+    assert len(boxed.near(np.random.default_rng(0))) > 100
