@@ -116,12 +116,14 @@ def passes_change_point(linkage: Linkage, start: float, end: float) -> bool:
     return bool((folded and (passed % 2 == 0).any()) or (stretched and (passed % 2 == 1).any()))
 
 
-def driver_ranges(linkage: Linkage) -> FloatArray:
+def driver_ranges(linkage: Linkage, transmission: float = 0.0) -> FloatArray:
     """Driver angles at which the linkage can be assembled.
 
     Parameters
     ----------
     linkage : Linkage
+    transmission : float, rad
+        Only angles at which min(mu, pi - mu) is at least this; below pi / 2.
 
     Returns
     -------
@@ -133,7 +135,8 @@ def driver_ranges(linkage: Linkage) -> FloatArray:
     -----
     With phi = theta2 - theta1, counted across the slide of a slider-crank, the loop closes where
     sin^2(phi/2) + a >= 0 and cos^2(phi/2) + b >= 0. Of a four-bar cos(phi) runs between
-    (r1^2 + r2^2 - (r3 +- r4)^2) / (2 r1 r2) (McCarthy & Soh, sec. 2.2.2).
+    (r1^2 + r2^2 - (r3 +- r4)^2) / (2 r1 r2) (McCarthy & Soh, sec. 2.2.2); with a limit of the transmission
+    angle mu the diagonal A-O4 takes the place of r3 +- r4 at which it is met.
 
     Examples
     --------
@@ -141,7 +144,7 @@ def driver_ranges(linkage: Linkage) -> FloatArray:
     >>> np.degrees(driver_ranges(triple_rocker)[0]).round(3).tolist()
     [-108.21, 108.21]
     """
-    a, more_a, b, more_b, assembled = kind_of(linkage).span(linkage)
+    a, more_a, b, more_b, assembled = kind_of(linkage).span(linkage, float(np.cos(transmission)))
     # Half-angle forms keep their digits near 0 and pi.
     half_stretched = np.arctan2(np.sqrt(np.maximum(more_b, 0)), np.sqrt(np.maximum(-b, 0)))
     half_folded = np.arctan2(np.sqrt(np.maximum(-a, 0)), np.sqrt(np.maximum(more_a, 0)))

@@ -10,11 +10,12 @@ import numpy as np
 from grashof.analysis.four_bar.mobility import driver_ranges, rotatability
 from grashof.analysis.four_bar.position import Position, solve_position
 from grashof.analysis.four_bar.slide import slide_travel
+from grashof.analysis.four_bar.transmission import worst_transmission
 from grashof.analysis.judge.task_motion import Targets, TaskMotion
 from grashof.analysis.judge.verdict import Verdict
 from grashof.analysis.loops.kinds import kind_of
 from grashof.analysis.numerics.peaks import peaks
-from grashof.problems import FunctionTask, Linkage, ProblemError, Requirements
+from grashof.problems import FunctionTask, Linkage, ProblemError, Requirements, TransmissionOver
 from grashof.problems.values.arrays import TURN, FloatArray
 
 _STARTS = 720  # driver angles at the first pair that are tried, over what the driver can reach
@@ -26,6 +27,7 @@ _DENSE = 721
 _GAUSS = 12  # points between two samples of the quadrature
 _SAME = 1 + 1e-9
 _NOTHING = 1e-12  # rad, or shares of the travel: starts whose errors differ by less are as good
+_ROUNDING = 1e-9  # rad, of driver ranges and transmission angles
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,6 +106,7 @@ def begins(
     exact: bool,
     theta2_start: float | None,
     directions: tuple[int, ...] = (1, -1),
+    transmission: float = 0.0,
 ) -> Beginning | None:
     """Where the driver of a single linkage begins so that it errs least.
 
@@ -117,6 +120,8 @@ def begins(
         Driver angle at the first pair, where it is given.
     directions : tuple of int
         Senses in which the driver may turn.
+    transmission : float, rad
+        Least min(mu, pi - mu) from the start on, unless the driver angle at the first pair is given.
 
     Returns
     -------
@@ -142,7 +147,7 @@ def begins(
         raise ProblemError(
             f"mechanism {linkage.MECHANISM} has no output that {way}; the function asks for one"
         )
-    search = _Search(linkage, task, exact or task.norm == "rms")
+    search = _Search(linkage, task, exact or task.norm == "rms", transmission)
     found: list[tuple[float, int, float]] = []
     for direction in directions:
         if theta2_start is not None:
@@ -167,6 +172,7 @@ class _Search:
     linkage: Linkage
     task: FunctionTask
     squares: bool
+    transmission: float
 
     @property
     def senses(self) -> tuple[int, ...]:
@@ -178,7 +184,10 @@ class _Search:
         return np.unique(np.concatenate([self.task.inputs, np.linspace(*self.task.span, _SAMPLES)]))
 
     def values(self, starts: FloatArray, direction: int) -> FloatArray:
-        """Root mean square, or greatest error, for driver angles at the first pair, shape (S,)."""
+        """Root mean square, or greatest error, for driver angles at the first pair, shape (S,).
+
+        Infinite where the motion misses the least transmission angle.
+        """
         turned, task = self.turned(), self.task
         state = solve_position(self.linkage, starts[:, None] + direction * turned)
         moved = _moved(self.linkage, task, state, direction, unwrapped=not self.squares)
@@ -194,6 +203,10 @@ class _Search:
             else:
                 value = np.ptp(off, axis=1) / 2
             best = np.fmin(best, np.nan_to_num(value, nan=np.inf))
+        if self.transmission > 0:
+            low, high = (starts + direction * end for end in task.span)
+            worst = worst_transmission(self.linkage, low, high)
+            best = np.where(worst >= self.transmission - _ROUNDING, best, np.inf)
         return best
 
     def value(self, start: float, direction: int) -> float:
@@ -213,13 +226,13 @@ class _Search:
     def _ranges(self, direction: int) -> list[tuple[float, float]]:
         """Where the driver may stand at the first pair."""
         low, high = self.task.span
-        if (rotatability(self.linkage) >= 0).all():
-            first = float(self.linkage.theta1)
-            return [(first, first + TURN)]
+        ranges = driver_ranges(self.linkage, self.transmission).tolist()
+        if (rotatability(self.linkage) >= 0).all() and ranges[0][1] - ranges[0][0] >= TURN:
+            return [(ranges[0][0], ranges[0][1])]
         back, on = (-low, high) if direction > 0 else (high, -low)
-        ends = [(float(a) + back, float(b) - on) for a, b in driver_ranges(self.linkage)]
+        ends = [(a + back, b - on) for a, b in ranges]
         # A range that is as long as the linkage's own leaves one place; rounding must not lose it.
-        return [(min(a, b), max(a, b)) for a, b in ends if b - a >= -1e-9]
+        return [(min(a, b), max(a, b)) for a, b in ends if b - a >= -_ROUNDING]
 
     def bottoms(self, valleys: Sequence[tuple[float, int, float]]) -> list[tuple[float, int, float]]:
         """The same, with their bottoms in place of the starts within them."""
@@ -359,9 +372,11 @@ def met_as_function(
     """
     exact = wanted.is_exact(task)
     start = None if wanted.theta2_start_deg is None else float(np.radians(wanted.theta2_start_deg))
-    allowed = {"ccw": (1,), "cw": (-1,)}.get(wanted.driver_sense, ())
-    begun = begins(linkage, task, exact, start, allowed) if allowed else None
-    begun = begun or begins(linkage, task, exact, start)
+    senses = {"ccw": (1,), "cw": (-1,)}.get(wanted.driver_sense, (1, -1))
+    least = np.radians(wanted.transmission_min_deg) if wanted.transmission_over is TransmissionOver.TASK else 0
+    # What misses a requirement is reported where it errs least.
+    begun = begins(linkage, task, exact, start, senses, float(least) if start is None else 0.0)
+    begun = begun or begins(linkage, task, exact, start, senses) or begins(linkage, task, exact, start)
     met = begun or Beginning(start or 0.0, 1)
     first = met.theta2 if start is not None else met.theta2 - TURN * np.round(met.theta2 / TURN)
     met = Beginning(float(first), met.direction)

@@ -111,17 +111,17 @@ class FourBarKind(Kind[FourBar]):
             ground[..., 0], ground[..., 1], linkage.r2, linkage.r3, linkage.r4, sign, rounding
         )
 
-    def span(self, linkage: FourBar) -> Span:
-        """4 r1 r2 a = (r1 - r2)^2 - (r3 - r4)^2, 4 r1 r2 b = (r3 + r4)^2 - (r1 + r2)^2."""
+    def span(self, linkage: FourBar, cosine: float = 1.0) -> Span:
+        """4 r1 r2 a = (r1 - r2)^2 - least^2, 4 r1 r2 b = most^2 - (r1 + r2)^2: least and most diagonals.
+
+        They are r3 -+ r4 where they may be in line, otherwise third sides of the triangle A-B-O4.
+        """
         r1, r2, r3, r4 = np.moveaxis(linkage.lengths, -1, 0)
-        most, least, longest, shortest = r3 + r4, r3 - r4, r1 + r2, r1 - r2
-        return Span(
-            shortest**2 - least**2,
-            longest**2 - least**2,
-            most**2 - longest**2,
-            most**2 - shortest**2,
-            (most >= np.abs(shortest)) & (np.abs(least) <= longest),
-        )
+        bent = 2 * r3 * r4 * (1 - cosine)
+        least, most = (r3 - r4) ** 2 + bent, (r3 + r4) ** 2 - bent
+        longest, shortest = (r1 + r2) ** 2, (r1 - r2) ** 2
+        more_a, more_b = longest - least, most - shortest
+        return Span(shortest - least, more_a, most - longest, more_b, (more_a >= 0) & (more_b >= 0))
 
     def shares(self, linkage: FourBar) -> FloatArray:
         """(r3 + r4 - r1 - r2) and (|r1 - r2| - |r3 - r4|), as shares of r1 + r2 + r3 + r4."""

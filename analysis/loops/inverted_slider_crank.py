@@ -98,9 +98,10 @@ class InvertedSliderCrankKind(Kind[InvertedSliderCrank]):
         rounding = 8 * EPS * (reach + linkage.r2 + np.abs(linkage.offset))
         return InvertedSides(ground[..., 0], ground[..., 1], linkage.r2, linkage.offset, sign, rounding)
 
-    def span(self, linkage: InvertedSliderCrank) -> Span:
-        """4 r1 r2 a = (r1 - r2)^2 - offset^2; nothing limits the diagonal where it is longest."""
+    def span(self, linkage: InvertedSliderCrank, cosine: float = 1.0) -> Span:
+        """4 r1 r2 a = (r1 - r2)^2 - (offset / cosine)^2; nothing limits the diagonal where it is longest."""
         least, most, away = self._diagonals(linkage)
+        away = away / cosine
         a, more_a = (least - away) * (least + away), (most - away) * (most + away)
         endless = np.full_like(a, np.inf)
         return Span(a, more_a, endless, endless, away <= most)

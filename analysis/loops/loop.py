@@ -114,8 +114,8 @@ class Kind(ABC, Generic[L_contra]):
         """The sides of a linkage's loop on an assembly."""
 
     @abstractmethod
-    def span(self, linkage: L_contra) -> Span:
-        """Where its loop closes."""
+    def span(self, linkage: L_contra, cosine: float = 1.0) -> Span:
+        """Where its loop closes with a transmission angle whose cosine is in size at most this one."""
 
     @abstractmethod
     def shares(self, linkage: L_contra) -> FloatArray:

@@ -96,9 +96,9 @@ class SliderCrankKind(Kind[SliderCrank]):
         rounding = 8 * EPS * (linkage.r2 + linkage.r3 + np.abs(linkage.offset))
         return SliderCrankSides(ex, ey, linkage.offset, linkage.r2, linkage.r3, sign, rounding)
 
-    def span(self, linkage: SliderCrank) -> Span:
-        """2 r2 a = r3 + offset - r2, 2 r2 b = r3 - offset - r2: h = offset - r2 cos(phi) within +-r3."""
-        r2, r3, offset = linkage.r2, linkage.r3, linkage.offset
+    def span(self, linkage: SliderCrank, cosine: float = 1.0) -> Span:
+        """2 r2 a = r3 + offset - r2, 2 r2 b = r3 - offset - r2: h = offset - r2 cos(phi) within +-r3 cosine."""
+        r2, r3, offset = linkage.r2, linkage.r3 * cosine, linkage.offset
         low, high = offset - r2, offset + r2
         return Span(r3 + low, r3 + high, r3 - high, r3 - low, (r3 >= low) & (r3 >= -high))
 

@@ -20,7 +20,6 @@ GRID = 220  # start angles of driver and output each, of three pairs
 CURVE = 2000  # output angles at a fifth place, of four pairs
 CRANKS = 8000  # random full cranks, from which least squares begins besides
 PULLS = (0.1, 1.0)  # rad, or shares of the travel: what a missed limit counts as in least squares
-NUDGE = 1e-4  # rad, of transmission angles
 BASINS, TRIED, SHORT = 9, 30, 5  # starts that are refined to the end, and those tried in few steps
 WORSE = 10.0  # times the least error: a sense of output and driver in which no choice is offered
 FIRST, SPARSE, GLANCED = 3, 16, 12  # of a glance: starts tried, one of so many fitted, in so many steps
@@ -340,7 +339,6 @@ class _Optima:
         good = [one for one in ends if one.missed <= ROUNDING]
         for k in _apart(good, np.array([one.error for one in good])):
             yield good[k]
-            yield from self._farther_inside(good[k])
 
     def glance(self) -> Iterator[Optimum]:
         """One that is good, from few starts: most often there is one, before the search has begun."""
@@ -366,22 +364,6 @@ class _Optima:
     def _with_extremes(self, aim: Aim, end: Optimum) -> Optimum:
         """The same with all extremes of its error in view."""
         return refined(with_extremes(aim, end.made, *self.aims.dense(self.sense)), end.made)
-
-    def _farther_inside(self, best: Optimum) -> Iterator[Optimum]:
-        """The same with a little more transmission, where its limit is met at one end of the range.
-
-        The judge takes the start at which the error is least, which may be a little beyond that limit.
-        """
-        limits, made = self.limits, best.made
-        if self.first is not None or made.worst_cosine(limits.span)[0] < limits.most_cosine - NUDGE:
-            return
-        inner = replace(self, limits=replace(limits, transmission=limits.transmission + NUDGE))
-        aim = inner.aim()
-        if aim.greatest:
-            aim = with_extremes(aim, made, *self.aims.dense(self.sense))
-        found = refined(aim, made)
-        if found.missed <= ROUNDING:
-            yield found
 
 
 def _worth(one: Optimum) -> float:
