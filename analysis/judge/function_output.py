@@ -22,7 +22,7 @@ _STARTS = 720  # driver angles at the first pair that are tried, over what the d
 _VALLEYS = 5
 _NEAR = 17  # places about the lowest ones of valleys, ever closer
 _CLOSE = 1e-10  # rad, between starts: no closer
-_SAMPLES = 97  # of the range, where the greatest error decides
+_SAMPLES, _FINE = 97, 385  # of the range, where the greatest error decides: in valleys, and at their bottoms
 _DENSE = 721
 _GAUSS = 12  # points between two samples of the quadrature
 _SAME = 1 + 1e-9
@@ -178,17 +178,13 @@ class _Search:
     def senses(self) -> tuple[int, ...]:
         return (1, -1) if self.task.sense == "either" else (1,)
 
-    def turned(self) -> FloatArray:
-        if self.squares:
-            return self.task.inputs
-        return np.unique(np.concatenate([self.task.inputs, np.linspace(*self.task.span, _SAMPLES)]))
-
-    def values(self, starts: FloatArray, direction: int) -> FloatArray:
+    def values(self, starts: FloatArray, direction: int, samples: int = _FINE) -> FloatArray:
         """Root mean square, or greatest error, for driver angles at the first pair, shape (S,).
 
         Infinite where the motion misses the least transmission angle.
         """
-        turned, task = self.turned(), self.task
+        task = self.task
+        turned = task.inputs if self.squares else np.linspace(*task.span, samples)
         state = solve_position(self.linkage, starts[:, None] + direction * turned)
         moved = _moved(self.linkage, task, state, direction, unwrapped=not self.squares)
         wanted = task.outputs if self.squares else task.output(turned)
@@ -201,7 +197,7 @@ class _Search:
                 off = off - (off @ share)[:, None]
                 value = np.sqrt(off**2 @ share)
             else:
-                value = np.ptp(off, axis=1) / 2
+                value = (_crest(off) + _crest(-off)) / 2
             best = np.fmin(best, np.nan_to_num(value, nan=np.inf))
         if self.transmission > 0:
             low, high = (starts + direction * end for end in task.span)
@@ -217,7 +213,7 @@ class _Search:
         found = []
         for low, high in self._ranges(direction):
             starts = np.linspace(low, high, max(8, int(np.ceil(_STARTS * (high - low) / TURN))) + 1)
-            value = self.values(starts, direction)
+            value = self.values(starts, direction, _SAMPLES)
             padded = np.pad(value, 1, constant_values=np.inf)
             lowest = np.flatnonzero((value <= padded[:-2]) & (value <= padded[2:]) & np.isfinite(value))
             found += [(float(value[k]), direction, float(starts[k])) for k in lowest]
@@ -279,6 +275,16 @@ class _Search:
                 break
             at = moved
         return at
+
+
+def _crest(samples: FloatArray) -> FloatArray:
+    """The greatest of even samples (last axis), or of the parabolas through three that have a crest."""
+    before, here, after = samples[..., :-2], samples[..., 1:-1], samples[..., 2:]
+    crest = (here >= before) & (here >= after)
+    bend = np.where(crest, 2 * here - before - after, 0.0)
+    rise = np.divide((after - before) ** 2, 8 * bend, out=np.zeros_like(bend), where=bend > 0)
+    found: FloatArray = np.maximum(samples.max(axis=-1), (here + rise).max(axis=-1))
+    return found
 
 
 def _from_first(task: FunctionTask, outputs: FloatArray) -> FloatArray:
@@ -373,9 +379,10 @@ def met_as_function(
     exact = wanted.is_exact(task)
     start = None if wanted.theta2_start_deg is None else float(np.radians(wanted.theta2_start_deg))
     senses = {"ccw": (1,), "cw": (-1,)}.get(wanted.driver_sense, (1, -1))
-    least = np.radians(wanted.transmission_min_deg) if wanted.transmission_over is TransmissionOver.TASK else 0
-    # What misses a requirement is reported where it errs least.
-    begun = begins(linkage, task, exact, start, senses, float(least) if start is None else 0.0)
+    limited = start is None and wanted.transmission_over is TransmissionOver.TASK
+    least = float(np.radians(wanted.transmission_min_deg)) if limited else 0.0
+    begun = begins(linkage, task, exact, start, senses, least)
+    # What misses a requirement from every start is reported where it errs least.
     begun = begun or begins(linkage, task, exact, start, senses) or begins(linkage, task, exact, start)
     met = begun or Beginning(start or 0.0, 1)
     first = met.theta2 if start is not None else met.theta2 - TURN * np.round(met.theta2 / TURN)

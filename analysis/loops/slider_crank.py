@@ -97,7 +97,7 @@ class SliderCrankKind(Kind[SliderCrank]):
         return SliderCrankSides(ex, ey, linkage.offset, linkage.r2, linkage.r3, sign, rounding)
 
     def span(self, linkage: SliderCrank, cosine: float = 1.0) -> Span:
-        """2 r2 a = r3 + offset - r2, 2 r2 b = r3 - offset - r2: h = offset - r2 cos(phi) within +-r3 cosine."""
+        """2 r2 a = r3 + offset - r2, 2 r2 b = r3 - offset - r2: h = offset - r2 cos(phi) within +-r3."""
         r2, r3, offset = linkage.r2, linkage.r3 * cosine, linkage.offset
         low, high = offset - r2, offset + r2
         return Span(r3 + low, r3 + high, r3 - high, r3 - low, (r3 >= low) & (r3 >= -high))

@@ -25,7 +25,7 @@ from grashof.synth.theory.function_output import Generators
 
 SAMPLES = 41  # Chebyshev-Lobatto points of the range, of the greatest error
 DENSE = 1201  # places among which its extremes are looked for
-INSIDE = 1e-7  # by so much limits are kept, so that rounding misses none
+INSIDE = 4e-8  # by so much limits are kept, so that rounding misses none
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,6 +29,7 @@ LEAST, LOCAL = "least error", "least error nearby"
 CELL, NEAR = 0.04, 0.02  # of optima, and of exact designs: closer ones are alike
 LEVELS = (10.0, 20.0, 30.0, 40.0, 50.0, 60.0)  # deg of transmission, that a choice is offered at
 MET = 1e-9  # rad, or shares of the travel: exact
+SETTLED = 8  # times that the best is refined once more
 ROUNDING = 2e-8  # of limits
 _ERRORS = tuple(f"{kind}_error_{name}" for kind in ("structural", "travel") for name in ("max", "rms"))
 ZOOMED, ZOOMS, ZOOM = 6, 3, 120  # exact designs about which others are tried, how often, and how many each
@@ -284,10 +285,16 @@ def optimal_functions(
                 if not number:
                     errors[way] = min(errors.get(way, np.inf), optimum.error)
                 yield FoundFunction(optimum.made, driver, optimum.steps, words)
+    last: list[tuple[float, int, _Optima, Optimum]] = []
     for way, (sense, driver, first) in enumerate(aims.ways()):  # what was found on the way may lead further
         made = aims.kind.joined(better.get((way, driver), []))
-        for optimum in _Optima(aims, aims.limits_of(driver), sense, first).optima(made, few=True):
+        search = _Optima(aims, aims.limits_of(driver), sense, first)
+        for optimum in search.optima(made, few=True):
+            last.append((optimum.error, driver, search, optimum))
             yield FoundFunction(optimum.made, driver, optimum.steps, LEAST)
+    for _, driver, search, optimum in sorted(last, key=lambda one: one[0])[:1]:
+        settled = search.settled(optimum)
+        yield FoundFunction(settled.made, driver, settled.steps, LEAST)
 
 
 @dataclass(frozen=True, slots=True)
@@ -360,6 +367,15 @@ class _Optima:
     def _tried(aim: Aim, starts: Generators, most: int) -> list[Optimum]:
         """A few steps from each of the first starts."""
         return [refined(aim, starts[k : k + 1], SHORT) for k in range(min(most, len(starts)))]
+
+    def settled(self, end: Optimum) -> Optimum:
+        """The same to all its digits: its valley is narrow, and its extremes move with it."""
+        for _ in range(SETTLED):
+            before, aim = end.error, self.aim()
+            end = self._with_extremes(aim, end) if aim.greatest else refined(aim, end.made)
+            if abs(end.error - before) <= MET * before or asked_to_stop():
+                break
+        return end
 
     def _with_extremes(self, aim: Aim, end: Optimum) -> Optimum:
         """The same with all extremes of its error in view."""

@@ -21,8 +21,9 @@ from grashof.analysis import (
     triple_rocker_kind,
 )
 from grashof.analysis.four_bar.mobility import range_index
+from grashof.analysis.four_bar.transmission import quality, transmission_angle
 from grashof.analysis.loops.four_bar import FOUR_BAR_CLASSES
-from grashof.problems import FourBar
+from grashof.problems import FourBar, InvertedSliderCrank, Linkage, SliderCrank
 
 CHECKED = settings(max_examples=25)
 MARCHED = settings(CHECKED, max_examples=8)
@@ -300,3 +301,31 @@ def _segments(positive: npt.NDArray[np.bool_]) -> npt.NDArray[np.int64]:
     """Number of the stretch of equal sign that each point of a closed track lies in."""
     changes = np.concatenate([[0], np.cumsum([one != other for one, other in pairwise(positive)])])
     return np.where(changes == changes[-1], 0, changes) if positive[0] == positive[-1] else changes
+
+
+@pytest.mark.parametrize(
+    "linkage",
+    [
+        FourBar((0, 0), (4, 0), 1, 3, 4),
+        FourBar((0, 0), (3, 1), 2, 3, 2.5, assembly=-1),
+        FourBar((0, 0), (4, 0), 2, 2, 3),
+        FourBar((0, 0), (1, 0.2), 2, 2.1, 1.9),
+        SliderCrank((0, 0), slide_angle=0.4, offset=0.3, r2=1, r3=2),
+        SliderCrank((0, 0), slide_angle=-1.0, offset=-0.8, r2=1, r3=1.1),
+        InvertedSliderCrank((0, 0), (2, 1), r2=1, offset=0.6),
+        InvertedSliderCrank((0, 0), (1, 0.5), r2=1.2, offset=-0.9),
+    ],
+)
+@pytest.mark.parametrize("least", [0.0, 5.0, 25.0, 50.0, 80.0])
+def test_ranges_in_which_a_transmission_angle_is_kept(linkage: Linkage, least: float) -> None:
+    limit = math.radians(least)
+    theta2 = np.linspace(-math.pi, math.pi, 3001)
+    kept = quality(transmission_angle(linkage, theta2)) >= max(limit, 1e-12)
+    inside = np.zeros(len(theta2), dtype=bool)
+    for low, high in driver_ranges(linkage, limit).tolist():
+        if not math.isnan(low):
+            inside |= (theta2 - low) % TURN <= high - low
+            assert high - low >= TURN or all(
+                abs(float(quality(transmission_angle(linkage, end))) - limit) < 1e-6 for end in (low, high)
+            )
+    np.testing.assert_array_equal(inside, kept)

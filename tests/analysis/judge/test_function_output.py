@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import minimize_scalar
 
 from grashof.analysis import function_curves, solve_position, verify
+from grashof.analysis.four_bar.transmission import worst_transmission
 from grashof.analysis.judge.planted import planted_function
 from grashof.problems import (
     FourBar,
@@ -82,6 +84,56 @@ def test_structural_error_is_that_of_dense_continuation(norm: str) -> None:
                     best = min(best, float(np.ptp(gap)) / 2)
         if norm == "max":
             assert verdict.structural_error_max <= best * 1.001
+
+
+@pytest.mark.parametrize("norm", ["rms", "max"])
+def test_a_function_begins_where_it_errs_least_among_the_starts_that_transmit(norm: str) -> None:
+    rng = np.random.default_rng(4)
+    limited = 0
+    for _ in range(5):
+        task, linkage, _ = planted_function(rng, 7)
+        task = FunctionTask(task.inputs, task.outputs * 1.1, norm=norm)
+        free = verify(linkage, task, Requirements(exact=False, transmission_min_deg=0))
+        least = np.degrees(free.transmission_min_task) + 2.0
+        wanted = Requirements(exact=False, tolerance=1.0, transmission_min_deg=least)
+        verdict = verify(linkage, task, wanted)
+        turned = task.inputs if norm == "rms" else np.linspace(0, task.inputs[-1], 301)
+        best = np.inf
+        for direction in (1, -1):
+            starts = np.linspace(-np.pi, np.pi, 4001)
+            ends = starts + direction * task.span[0], starts + direction * task.span[1]
+            starts = starts[worst_transmission(linkage, *ends) >= np.radians(least)]
+            theta4 = solve_position(linkage, starts[:, None] + direction * turned).theta4
+            off = direction * np.unwrap(theta4) - task.output(turned)
+            errors = np.std(off, axis=1) if norm == "rms" else np.ptp(off, axis=1) / 2
+            best = min(best, float(errors.min(initial=np.inf)))
+        if not np.isfinite(best):
+            continue
+        limited += 1
+        assert verdict.transmission_min_task >= np.radians(least) - 1e-8
+        found = np.sqrt(verdict.square / len(task)) if norm == "rms" else verdict.structural_error_max
+        assert (
+            0.9 * best <= found <= best * (1 + (1e-6 if norm == "rms" else 1e-3))
+        )  # of starts 0.09 deg apart
+    assert limited > 2
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_greatest_error_is_least_to_all_its_digits(seed: int) -> None:
+    """Samples pass by its extremes, so that those of a coarse grid have their least at another start."""
+    task, linkage, _ = planted_function(np.random.default_rng(seed), 6)
+    task = FunctionTask(task.inputs, task.outputs * 1.05, norm="max")
+    verdict = verify(linkage, task, Requirements(exact=False, transmission_min_deg=0))
+    turned = np.linspace(0, task.inputs[-1], 8001)
+    begun, direction = float(verdict.theta2[0]), verdict.direction
+
+    def error(start: float) -> float:
+        theta4 = solve_position(linkage, start + direction * turned).theta4
+        return float(np.ptp(direction * np.unwrap(theta4) - task.output(turned))) / 2
+
+    near = (begun - 0.01, begun + 0.01)
+    found = minimize_scalar(error, bounds=near, method="bounded", options={"xatol": 1e-12})
+    assert verdict.structural_error_max <= found.fun * (1 + 1e-6)
 
 
 def test_either_sense_of_the_output() -> None:
