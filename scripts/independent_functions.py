@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import product
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize
@@ -20,6 +21,7 @@ from grashof.synth import synthesize
 
 COARSE, MIDDLE, FINE = 25, 121, 721  # places of the range: from random starts, for the best, at the end
 RATIO, FAR = 10.0, 5.0
+TOWARD = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0])  # less error
 # Law, its range and exponent, rotation of driver and output, least transmission angle; deg.
 ASKED = (
     ("log10", (1.0, 2.0), None, 60.0, 90.0, 30.0),
@@ -73,11 +75,21 @@ class Generator:
             error = self.errors(x, places)
             return np.concatenate([x[5] - error, x[5] + error, self.kept(x)])
 
-        options = {"maxiter": steps, "ftol": 1e-15}
+        def error(x: FloatArray) -> float:
+            return float(x[5])
+
+        def change(_: FloatArray) -> FloatArray:
+            return TOWARD
+
+        def rows_change(x: FloatArray) -> FloatArray:
+            return slopes(rows, x)
+
+        limits: Any = {"type": "ineq", "fun": rows, "jac": rows_change}
+        least: Any = {"maxiter": steps, "ftol": 1e-15}
         made = minimize(
-            lambda x: x[5], unknowns, jac=lambda _: np.eye(6)[5], method="SLSQP", options=options,
+            error, unknowns, method="SLSQP", jac=change, options=least,
             bounds=[(-FAR, FAR)] * 3 + [(-10, 10)] * 2 + [(0, 10)],
-            constraints={"type": "ineq", "fun": rows, "jac": lambda x: slopes(rows, x)},
+            constraints=limits,
         )  # fmt: skip
         found: FloatArray = made.x
         return found

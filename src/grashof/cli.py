@@ -488,7 +488,7 @@ def export(
 ) -> None:
     """Write the parts of LINKAGE for the workshop, plates stacked so that nothing collides, or models of it.
 
-    Exit code 0: done; 2: bad input; 3: environment error.
+    Exit code 0: done; 2: bad input, or a format that cannot tell LINKAGE; 3: environment error.
     """
     from grashof.workshop.export import Making, export_files, plan_lines
     from grashof.workshop.plates import PlateSizes
@@ -500,10 +500,12 @@ def export(
     files = {kind: path for kind, path in given.items() if path is not None}
     with _errors_told():
         making = Making(PlateSizes(width, hole, thickness, clearance), scale, mm_per_unit, theta2_deg)
-        plan = export_files(linkage, making, files)
-        for line in plan_lines(plan) if plan else ():
+        exported = export_files(linkage, making, files)
+        for line in plan_lines(exported.plan) if exported.plan else ():
             say(line)
-        say(f"written: {', '.join(map(str, files.values()))}", err=True)
+        say(f"written: {', '.join(map(str, exported.written))}", err=True)
+        if exported.refused:
+            raise ProblemError("\n".join(exported.refused))
 
 
 def main() -> None:

@@ -24,6 +24,7 @@ from grashof.synth.starts.function_aims import FunctionAims
 from grashof.synth.starts.function_search import (
     LEAST,
     LOCAL,
+    MET,
     FoundFunction,
     exact_functions,
     optimal_functions,
@@ -167,7 +168,7 @@ def _within(judged: _Judged, least: float) -> list[Candidate]:
 
 def _named(one: Candidate, problem: Problem, least: float) -> Candidate:
     """The same, told what it is best at: only the best of all has the least error."""
-    if one.best_at != LEAST or one.error(problem) <= least * SAME:
+    if one.best_at != LEAST or one.error(problem) <= max(least * SAME, MET):
         return one
     return replace(one, best_at=LOCAL)
 

@@ -135,7 +135,7 @@ def test_each_design_is_drawn(folder: Path) -> None:
 def test_a_design_of_a_list_is_exported(folder: Path, tmp_path: Path, rank: int) -> None:
     files = {kind: tmp_path / f"design.{kind}" for kind in ("dxf", "svg", "xlsx")}
     making = Making(PlateSizes(), scale="100:1")
-    plan = export_files(f"{folder / 'candidates.json'}#{rank}", making, files)
+    plan = export_files(f"{folder / 'candidates.json'}#{rank}", making, files).plan
     assert plan is not None
     slots = [slot for part in plan.parts for slot in part.plate.slots]
     assert len(slots) == 1

@@ -78,8 +78,26 @@ class Making:
     theta2_deg: tuple[float, float] | None = None
 
 
-def export_files(linkage: str, making: Making, files: dict[str, Path]) -> Plan | None:
-    """Write what is asked for, all of it or nothing.
+@dataclass(frozen=True, slots=True)
+class Exported:
+    """What came of an export.
+
+    Parameters
+    ----------
+    plan : Plan or None
+        What is drawn, if anything is.
+    written : tuple of Path
+    refused : tuple of str
+        Why the other formats cannot tell this linkage, a line each.
+    """
+
+    plan: Plan | None
+    written: tuple[Path, ...]
+    refused: tuple[str, ...]
+
+
+def export_files(linkage: str, making: Making, files: dict[str, Path]) -> Exported:
+    """Write what is asked for; a format that cannot tell the linkage costs the others nothing.
 
     Parameters
     ----------
@@ -91,13 +109,12 @@ def export_files(linkage: str, making: Making, files: dict[str, Path]) -> Plan |
 
     Returns
     -------
-    Plan or None
-        What is drawn, if anything is.
+    Exported
 
     Raises
     ------
     ProblemError
-        Bad input, named.
+        Bad input, named, or no format can tell the linkage.
     OSError
         The disk is full or the folder is lost.
     """
@@ -110,18 +127,24 @@ def export_files(linkage: str, making: Making, files: dict[str, Path]) -> Plan |
     single = [kind for kind in files if kind != WORKBOOK]
     if single and len(chosen) > 1:
         raise ProblemError(f"--{single[0]} takes one design; {linkage} names {len(chosen)}")
-    made, contents = None, dict[str, str | bytes]()
-    for kind in single:
-        if (of_parts := FORMATS[kind].parts) is not None:
-            made = made or _plan(chosen[0], making)
-            contents[kind] = of_parts(made, _heading(chosen[0], making))
-        elif (of_model := FORMATS[kind].model) is not None:
-            contents[kind] = of_model(Model.of(chosen[0]))
-    if WORKBOOK in files:
-        designs = [one for one in chosen if isinstance(one, ListedDesign)]
-        contents[WORKBOOK] = workbook(chosen, listed_candidates(listed, designs) if listed else None)
+    made, contents, refused = None, dict[str, str | bytes](), list[str]()
+    for kind in files:
+        try:
+            if kind == WORKBOOK:
+                designs = [one for one in chosen if isinstance(one, ListedDesign)]
+                contents[kind] = workbook(chosen, listed_candidates(listed, designs) if listed else None)
+            elif (of_parts := FORMATS[kind].parts) is not None:
+                made = made or _plan(chosen[0], making)
+                contents[kind] = of_parts(made, _heading(chosen[0], making))
+            elif (of_model := FORMATS[kind].model) is not None:
+                contents[kind] = of_model(Model.of(chosen[0]))
+        except ProblemError as error:
+            refused.append(str(error))
+    refused = list(dict.fromkeys(refused))
+    if not contents:
+        raise ProblemError("\n".join(refused))
     write_whole({files[kind]: _bytes(content) for kind, content in contents.items()})
-    return made
+    return Exported(made, tuple(files[kind] for kind in contents), tuple(refused))
 
 
 def _bytes(content: str | bytes) -> bytes:

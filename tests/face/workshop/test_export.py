@@ -78,8 +78,10 @@ def test_a_format_that_cannot_tell_a_linkage_says_so(grashof: Grashof, tmp_path:
     done = grashof("export", "crank-shaper", "--mujoco", "a.xml", "--linkage2", "a.linkage2")
     assert done.exit_code == 2
     why = "--linkage2 is for a four-bar or a slider-crank; Linkage has no block that swings about a pivot"
-    assert done.stderr == f"grashof: {why}\n"
-    assert list(tmp_path.iterdir()) == []
+    assert done.stderr == f"written: a.xml\ngrashof: {why}\n"
+    assert [path.name for path in tmp_path.iterdir()] == ["a.xml"]
+    alone = grashof("export", "crank-shaper", "--linkage2", "a.linkage2")
+    assert (alone.exit_code, alone.stderr) == (2, f"grashof: {why}\n")
 
 
 @pytest.mark.parametrize(("option", "ending"), [("mujoco", ".xml"), ("freecad", ".csv"), ("step", ".step")])
