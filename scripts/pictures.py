@@ -9,6 +9,7 @@ from pathlib import Path
 
 from matplotlib import rc_context
 from matplotlib.figure import Figure
+from symbols_picture import symbols
 
 from grashof import load, plot_design_space, plot_kinematics, synthesize
 from grashof.figures import draw_design, draw_motion, save, save_animation
@@ -19,7 +20,7 @@ DOCS = Path(__file__).parents[1] / "docs"
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Solve the luggage problem, analyse the pumpjack, and picture both."""
+    """Solve the luggage problem, analyse the pumpjack, and picture both; and what symbols mean."""
     arguments = sys.argv[1:] if argv is None else argv
     folder = Path(arguments[0]) if arguments else DOCS
     folder.mkdir(parents=True, exist_ok=True)
@@ -34,6 +35,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         quantities = ("angular velocity", "speed")
         axes = speeds.subplots(len(quantities), sharex=True)
         plot_kinematics(load_linkage_spec("pumpjack"), quantities=quantities, ax=axes)
+        save(symbols(), [folder / "symbols.png"])
     save(space, [folder / "design-space.png"])
     save(speeds, [folder / "pumpjack-velocities.png"])
     return 0
