@@ -27,6 +27,7 @@ from grashof.analysis.four_bar.transmission import quality
 from grashof.problems import LinkageSpec, ProblemError
 from grashof.problems.values.checks import no_formula
 from grashof.problems.values.linkage_spec import ListedDesign
+from grashof.problems.values.requirements import QUANTITIES
 from grashof.workshop.sheet import printable
 
 if TYPE_CHECKING:
@@ -37,6 +38,8 @@ if TYPE_CHECKING:
 _EPOCH = datetime(2000, 1, 1)  # a spreadsheet's times have no zone
 _MODIFIED = re.compile(rb"(<dcterms:modified[^>]*>)[^<]*")
 _TRANSMISSION_COLUMN = 13
+_WIDEST = 40  # letters of a column
+_UNITS = {quantity.column: quantity.unit for quantity in QUANTITIES.values() if quantity.listed}
 
 
 def workbook(chosen: Sequence[LinkageSpec | ListedDesign], candidates: pd.DataFrame | None = None) -> bytes:
@@ -119,18 +122,38 @@ def _value(text: str) -> bool | int | float | str | None:
 
 
 def _list_sheet(page: Worksheet, frame: pd.DataFrame, unit: str) -> None:
-    from openpyxl.comments import Comment
+    """Names, units, then a row for each design; the row of units has the filters."""
+    from openpyxl.styles import Font, PatternFill
     from openpyxl.utils import get_column_letter
 
+    shade = PatternFill("solid", fgColor="E8EEF4")
     for column, name in enumerate(frame.columns, start=1):
+        values = frame[name].tolist()
+        shown = _number_format(values)
         _bold(_put(page, 1, column, name))
-        for row, value in enumerate(frame[name].tolist(), start=2):
-            _put(page, row, column, value)
-        page.column_dimensions[get_column_letter(column)].width = max(len(name), 8) + 3
-    note = f"Lengths in {unit or 'the unit of the problem'}; angles in degrees, where the name ends in _deg; "
-    note += "omega4_max in rad/s, speeds and accelerations of P in lengths over s and s2; N m and N"
-    page["A1"].comment = Comment(note, "Grashof", height=120, width=360)
-    page.freeze_panes = "C2"
+        _put(page, 2, column, _UNITS[name].of(unit) if name in _UNITS else "").font = Font(italic=True)
+        for row, value in enumerate(values, start=3):
+            cell = _put(page, row, column, value)
+            if isinstance(value, float):
+                cell.number_format = shown
+        for row in (1, 2):
+            page.cell(row, column).fill = shade
+        widest = max((len(value) for value in values if isinstance(value, str)), default=0)
+        page.column_dimensions[get_column_letter(column)].width = max(len(name), min(widest, _WIDEST), 8) + 3
+    page.freeze_panes = "C3"
+    page.auto_filter.ref = f"A2:{get_column_letter(len(frame.columns))}{len(frame) + 2}"
+
+
+def _number_format(values: Sequence[Any]) -> str:
+    """Six digits of the greatest of some numbers; by powers of ten where zeros would take their place."""
+    sizes = [abs(value) for value in values if isinstance(value, float) and np.isfinite(value)]
+    greatest = max(sizes, default=0.0)
+    if not greatest:
+        return "0"
+    if not 1e-3 <= greatest < 1e7:
+        return "0.00000E+00"
+    places = max(0, 5 - int(np.floor(np.log10(greatest))))
+    return f"0.{places * '0'}" if places else "0"
 
 
 def _linkage_sheet(page: Worksheet, one: LinkageSpec | ListedDesign) -> None:
@@ -138,7 +161,9 @@ def _linkage_sheet(page: Worksheet, one: LinkageSpec | ListedDesign) -> None:
     facts = _facts(spec)
     for row, (name, value, unit) in enumerate(facts, start=1):
         _bold(_put(page, row, 1, name))
-        _put(page, row, 2, value)
+        cell = _put(page, row, 2, value)
+        if isinstance(value, float):
+            cell.number_format = _number_format([value])
         _put(page, row, 3, unit)
     if isinstance(one, ListedDesign):
         _table(page, len(facts) + 2, 1, _targets(one))
@@ -221,9 +246,12 @@ def _table(page: Worksheet, row: int, column: int, lines: Sequence[Sequence[Any]
     """Lines of cells from a corner on, the first one a heading."""
     from openpyxl.utils import get_column_letter
 
+    shown = [_number_format(values) for values in zip(*lines[1:], strict=True)]
     for down, line in enumerate(lines):
         for right, value in enumerate(line):
             cell = _put(page, row + down, column + right, value)
+            if isinstance(value, float):
+                cell.number_format = shown[right]
             if not down:
                 _bold(cell)
                 width = max(12, len(str(value)) + 3)

@@ -49,7 +49,7 @@ def test_the_list_is_the_csv(designs: Path, grashof: Grashof) -> None:
     book = openpyxl.load_workbook("list.xlsx")
     assert book.sheetnames == ["candidates", "design 1", "design 3"]
     page = book["candidates"]
-    head, *rows = page.iter_rows(values_only=True)
+    head, units, *rows = page.iter_rows(values_only=True)
     with designs.with_name("candidates.csv").open(newline="") as file:
         names, *expected = csv.reader(file)
     assert list(head) == names
@@ -57,8 +57,17 @@ def test_the_list_is_the_csv(designs: Path, grashof: Grashof) -> None:
     for row, texts in zip(rows, expected, strict=True):
         for value, text in zip(row, texts, strict=True):
             assert same(value, text), (value, text)
-    assert page.freeze_panes == "C2"
-    assert "Lengths in m;" in page["A1"].comment.text
+    assert page.freeze_panes == "C3"
+    assert page.auto_filter.ref == f"A2:{page.cell(2, len(head)).column_letter}{len(rows) + 2}"
+    unit = dict(zip(head, units, strict=True))
+    assert (unit["r2"], unit["error_max"], unit["transmission_min_task_deg"]) == ("m", "m", "deg")
+    assert not unit["rank"]
+    shown = {name: page.cell(3, column).number_format for column, name in enumerate(head, start=1)}
+    assert (shown["r2"], shown["transmission_min_task_deg"], shown["rank"]) == (
+        "0.00000",
+        "0.0000",
+        "General",
+    )
     assert {"mechanism", "family", "best_at"} <= set(head)
     assert page.column_dimensions["E"].width > len("grashof_class")
 
@@ -126,7 +135,7 @@ def test_what_json_and_excel_cannot_hold() -> None:
     frame = pd.DataFrame({"rank": [1], "id": ["d1"], "omega4_max": [np.inf], "torque_peak": [np.nan]})
     spec = LinkageSpec(FourBar((0, 0), (4, 0), 1, 4, 3), "one")
     page = openpyxl.load_workbook(BytesIO(workbook([spec], frame)))["candidates"]
-    assert [cell.value for cell in page[2]] == [1, "d1", "inf", None]
+    assert [cell.value for cell in page[3]] == [1, "d1", "inf", None]
 
 
 def test_a_list_beside_that_is_not_its_own(designs: Path) -> None:
