@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from grashof.analysis import solve_position, verify
@@ -129,6 +130,20 @@ def test_each_design_is_drawn(folder: Path) -> None:
         text = (folder / f"design-{rank:02d}.svg").read_text(encoding="utf-8")
         assert f"{linkage.LINKS[-1].name} {'-'.join(linkage.LINKS[-1].labels)}" in text
         assert (folder / f"design-{rank:02d}.png").stat().st_size > 1000
+
+
+def test_the_objects_have_the_columns_of_the_table(folder: Path) -> None:
+    """All that some design has a value in, by its name without `_deg`, angles in radians."""
+    designs = json.loads((folder / "candidates.json").read_text())["designs"]
+    table = pd.read_csv(folder / "candidates.csv").dropna(axis="columns", how="all")
+    for name in table.columns.difference(["assembly"]):
+        for design, value in zip(designs, table[name].tolist(), strict=True):
+            found = design[name.removesuffix("_deg")]
+            if isinstance(value, float):
+                expected = np.radians(value) if name.endswith("_deg") else value
+                assert found == pytest.approx(expected, rel=1e-12) if np.isfinite(value) else found is None
+            else:
+                assert found == value
 
 
 @pytest.mark.parametrize("rank", [1, 3])

@@ -6,7 +6,7 @@ import csv
 import json
 import os
 import platform
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import asdict, replace
 from importlib.metadata import version
@@ -21,13 +21,11 @@ from grashof.analysis.judge.driven import cylinder_forces
 from grashof.output.drawing import Drawer, Files, drawer
 from grashof.output.ending import Exit, Interruption
 from grashof.output.folder import PAGE, RECORD, replacing_own_files
-from grashof.problems import Problem
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import no_formula
-from grashof.problems.values.quantities import Needs, Over
 from grashof.synth import Candidate, Result
-from grashof.synth.designs.table import LISTED, Row, facts, known, rows_of, rows_of_nearest
+from grashof.synth.designs.table import LISTED, OWN, Row, facts, known, rows_of, rows_of_nearest
 from grashof.synth.search.story import Ending, now
 
 if TYPE_CHECKING:
@@ -131,7 +129,7 @@ def _write_record(
 
 def _designs(result: Result, rows: Sequence[Row]) -> dict[str, Any]:
     problem = result.problem
-    keys = _written(problem)
+    keys, last = _written(rows), ("pareto", OWN.column)
     return {
         "grashof": version("grashof"),
         "problem": problem.name,
@@ -141,7 +139,7 @@ def _designs(result: Result, rows: Sequence[Row]) -> dict[str, Any]:
         "angle_unit": "rad",
         **({} if problem.dynamics is None else {"dynamics": problem.dynamics.tables["dynamics"]}),
         "designs": [
-            {"rank": row["rank"], **_design(candidate, keys), "pareto": row["pareto"]}
+            {"rank": row["rank"], **_design(candidate, keys), **{key: row[key] for key in last if key in row}}
             for candidate, row in zip(result.candidates, rows, strict=True)
         ],
     }
@@ -152,7 +150,7 @@ def _given(errors: FloatArray) -> list[float | None]:
     return [None if np.isnan(error) else float(error) for error in errors]
 
 
-def _design(candidate: Candidate, keys: Sequence[str]) -> dict[str, Any]:
+def _design(candidate: Candidate, keys: Mapping[str, str]) -> dict[str, Any]:
     verdict = candidate.verdict
     turned = verdict.angle_error
     output_error = {"output_error": verdict.output_error.tolist()} if verdict.output_error.size else {}
@@ -166,7 +164,7 @@ def _design(candidate: Candidate, keys: Sequence[str]) -> dict[str, Any]:
         **angle_error,
         **output_error,
         **_driven(candidate),
-        **{key: x if np.isfinite(x := candidate.values[key]) else None for key in keys},
+        **{name: x if np.isfinite(x := candidate.values[key]) else None for name, key in keys.items()},
     }
 
 
@@ -184,16 +182,10 @@ def _driven(candidate: Candidate) -> dict[str, Any]:
     return {"cylinder": stated if np.isnan(forces).all() else {**stated, "force": _given(forces)}}
 
 
-def _written(problem: Problem) -> list[str]:
-    """Keys of the quantities of each design besides its errors, where the problem states what they need."""
-    over, besides = (Over.TASK, Over.CYCLE), (Needs.MANUFACTURING, Needs.CYLINDER)
-    return [
-        each.key
-        for each in LISTED
-        if problem.states(each.needs)
-        and set(each.kinds) & set(problem.mechanism)
-        and (each.over in over or each.needs in besides)
-    ]
+def _written(rows: Sequence[Row]) -> dict[str, str]:
+    """Keys of the quantities that some design has, by their columns without the unit."""
+    columns = {each.column for row in rows for each in LISTED if known(row[each.column])}
+    return {each.column.removesuffix("_deg"): each.key for each in LISTED if each.column in columns}
 
 
 def _about(settings: dict[str, Any]) -> dict[str, Any]:
