@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from functools import partial
@@ -104,10 +104,8 @@ def _solve(problem: Problem, text: str, options: Options, folder: Path) -> Exit:
             if (verified := so_far.result()).candidates:
                 deliver(verified)
             raise
-        code = deliver(found)
-        if found.story is not None and found.story.ending is Ending.COMPLETE:
-            remove_record(record)
-        return code
+        whole = found.story is not None and found.story.ending is Ending.COMPLETE
+        return deliver(found, listed=partial(remove_record, record) if whole else None)
 
 
 def _found(
@@ -170,8 +168,9 @@ def _deliver(
     drawings: int,
     interrupted: Interruption,
     drawing: Drawer | None = None,
+    listed: Callable[[], None] | None = None,
 ) -> Exit:
-    """Write what a search found, and print the list."""
+    """Write what a search found, and print the list; `listed` is called in between, see `write_run`."""
     from grashof.output.folder import PAGE
     from grashof.output.run_files import left_out, write_run
     from grashof.output.terminal import print_table
@@ -185,7 +184,7 @@ def _deliver(
         say(result.note, err=True)
         return interrupted.code if interrupted() else Exit.NO_DESIGN
     try:
-        files = write_run(folder, result, settings, drawings, interrupted, text, drawing)
+        files = write_run(folder, result, settings, drawings, interrupted, text, drawing, listed)
         _report(result.note, files, folder)
         if left := left_out(result, drawings, files):
             say(f"drawings are left out: {interrupted.by} came before {left} of them were made", err=True)

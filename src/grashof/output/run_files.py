@@ -6,7 +6,7 @@ import csv
 import json
 import os
 import platform
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import asdict, replace
 from importlib.metadata import version
@@ -42,6 +42,7 @@ def write_run(
     stop: Interruption | None = None,
     problem_text: str = "",
     drawing: Drawer | None = None,
+    listed: Callable[[], None] | None = None,
 ) -> list[str]:
     """Write all files of a run, the lists first: a drawing that fails does not cost them.
 
@@ -59,6 +60,8 @@ def write_run(
         The problem file, for the page.
     drawing : Drawer, optional
         Who draws, if somebody is ready.
+    listed : callable, optional
+        Called once the lists are in the folder, before anything is drawn.
 
     Returns
     -------
@@ -80,6 +83,8 @@ def write_run(
             rows = _write_lists(fresh, result)
             write_page(fresh / PAGE, search_page(result, _about(settings), problem_text, rows=rows))
             files = _write_record(fresh, result, settings, drawings, stop)
+        if listed is not None:
+            listed()
         if drawings and result.candidates and not stop():
             with replacing_own_files(folder, keep=files) as fresh:
                 _draw(fresh, drawn, stop)
