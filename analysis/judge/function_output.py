@@ -1,49 +1,21 @@
-"""How a linkage generates a function: where its driver begins, and the structural error over the range."""
+"""How a linkage generates a function: the structural error over the range."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from grashof.analysis.four_bar.mobility import driver_ranges, rotatability
-from grashof.analysis.four_bar.position import Position, solve_position
-from grashof.analysis.four_bar.slide import slide_travel
-from grashof.analysis.four_bar.transmission import worst_transmission
+from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.judge.function_start import Beginning, begins, moved_output, way_of
 from grashof.analysis.judge.task_motion import Targets, TaskMotion
 from grashof.analysis.judge.verdict import Verdict
-from grashof.analysis.loops.kinds import kind_of
 from grashof.analysis.numerics.peaks import peaks
-from grashof.problems import FunctionTask, Linkage, ProblemError, Requirements, TransmissionOver
+from grashof.problems import FunctionTask, Linkage, Requirements, TransmissionOver
 from grashof.problems.values.arrays import TURN, FloatArray
 
-_STARTS = 720  # driver angles at the first pair that are tried, over what the driver can reach
-_VALLEYS = 5
-_NEAR = 17  # places about the lowest ones of valleys, ever closer
-_CLOSE = 1e-10  # rad, between starts: no closer
-_SAMPLES, _FINE = 97, 385  # of the range, where the greatest error decides: in valleys, and at their bottoms
 _DENSE = 721
 _GAUSS = 12  # points between two samples of the quadrature
-_SAME = 1 + 1e-9
-_NOTHING = 1e-12  # rad, or shares of the travel: starts whose errors differ by less are as good
-_ROUNDING = 1e-9  # rad, of driver ranges and transmission angles
-
-
-@dataclass(frozen=True, slots=True)
-class Beginning:
-    """Where the driver of a function generator begins.
-
-    Parameters
-    ----------
-    theta2 : float, rad
-        Driver angle at the first pair.
-    direction : int
-        Sense of the driver.
-    """
-
-    theta2: float
-    direction: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,216 +53,8 @@ def output_error(
     of the driver.
     """
     state = solve_position(linkage, begun.theta2 + begun.direction * turned)
-    found: FloatArray = _moved(linkage, task, state, begun.direction) - sense * task.output(turned)
+    found: FloatArray = moved_output(linkage, task, state, begun.direction) - sense * task.output(turned)
     return found
-
-
-def _moved(
-    linkage: Linkage, task: FunctionTask, state: Position, direction: int, *, unwrapped: bool = True
-) -> FloatArray:
-    """Output of a linkage in its positions: rotation in the sense of the driver, or travel of the slide."""
-    if task.travels:
-        return slide_travel(linkage, state)
-    moved: FloatArray = _way(task, direction) * (np.unwrap(state.theta4) if unwrapped else state.theta4)
-    return moved
-
-
-def _way(task: FunctionTask, direction: int) -> int:
-    """Sense in which an output counts: a rotation in that of the driver, a travel along the slide."""
-    return 1 if task.travels else direction
-
-
-def begins(
-    linkage: Linkage,
-    task: FunctionTask,
-    exact: bool,
-    theta2_start: float | None,
-    directions: tuple[int, ...] = (1, -1),
-    transmission: float = 0.0,
-) -> Beginning | None:
-    """Where the driver of a single linkage begins so that it errs least.
-
-    Parameters
-    ----------
-    linkage : Linkage
-    task : FunctionTask
-    exact : bool
-        Every pair is to be met: the errors at the pairs decide, whatever the norm.
-    theta2_start : float, rad, optional
-        Driver angle at the first pair, where it is given.
-    directions : tuple of int
-        Senses in which the driver may turn.
-    transmission : float, rad
-        Least min(mu, pi - mu) from the start on, unless the driver angle at the first pair is given.
-
-    Returns
-    -------
-    Beginning, or None where the linkage covers the range from no angle.
-
-    Raises
-    ------
-    ProblemError
-        A linkage whose output does not move as the task's does.
-
-    Examples
-    --------
-    >>> from grashof.problems import FourBar
-    >>> linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
-    >>> theta4 = solve_position(linkage, 0.7 + np.array([0, 0.4, 0.9, 1.5, 2.0])).theta4
-    >>> task = FunctionTask([0, 0.4, 0.9, 1.5, 2.0], theta4 - theta4[0])
-    >>> begun = begins(linkage, task, True, None)
-    >>> round(begun.theta2, 9), begun.direction
-    (0.7, 1)
-    """
-    if task.travels == hasattr(linkage, "o4"):
-        way = "slides" if task.travels else "turns"
-        raise ProblemError(
-            f"mechanism {linkage.MECHANISM} has no output that {way}; the function asks for one"
-        )
-    search = _Search(linkage, task, exact or task.norm == "rms", transmission)
-    found: list[tuple[float, int, float]] = []
-    for direction in directions:
-        if theta2_start is not None:
-            found.append((search.value(theta2_start, direction), direction, theta2_start))
-            continue
-        found += search.valleys(direction)
-    found = sorted(one for one in found if np.isfinite(one[0]))[: 1 if theta2_start is not None else _VALLEYS]
-    if theta2_start is None:
-        found = search.bottoms(found)
-    if not found:
-        return None
-    least = min(value for value, _, _ in found)
-    alike = least * _SAME + _NOTHING * task.output_unit
-    _, direction, start = next(one for one in found if one[0] <= alike)
-    return Beginning(start, direction)
-
-
-@dataclass(frozen=True, slots=True)
-class _Search:
-    """Least error over the driver angle at the first pair."""
-
-    linkage: Linkage
-    task: FunctionTask
-    squares: bool
-    transmission: float
-
-    @property
-    def senses(self) -> tuple[int, ...]:
-        return (1, -1) if self.task.sense == "either" else (1,)
-
-    def values(self, starts: FloatArray, direction: int, samples: int = _FINE) -> FloatArray:
-        """Root mean square, or greatest error, for driver angles at the first pair, shape (S,).
-
-        Infinite where the motion misses the least transmission angle.
-        """
-        task = self.task
-        turned = task.inputs if self.squares else np.linspace(*task.span, samples)
-        state = solve_position(self.linkage, starts[:, None] + direction * turned)
-        moved = _moved(self.linkage, task, state, direction, unwrapped=not self.squares)
-        wanted = task.outputs if self.squares else task.output(turned)
-        best = np.full(len(starts), np.inf)
-        for sense in self.senses:
-            off = moved - sense * wanted
-            if self.squares:
-                share = task.weights / task.weights.sum()
-                off = _from_first(task, off)
-                off = off - (off @ share)[:, None]
-                value = np.sqrt(off**2 @ share)
-            else:
-                value = (_crest(off) + _crest(-off)) / 2
-            best = np.fmin(best, np.nan_to_num(value, nan=np.inf))
-        if self.transmission > 0:
-            low, high = (starts + direction * end for end in task.span)
-            worst = worst_transmission(self.linkage, low, high)
-            best = np.where(worst >= self.transmission - _ROUNDING, best, np.inf)
-        return best
-
-    def value(self, start: float, direction: int) -> float:
-        return float(self.values(np.array([start]), direction)[0])
-
-    def valleys(self, direction: int) -> list[tuple[float, int, float]]:
-        """The lowest of their neighbours, over all that the driver can reach."""
-        found = []
-        for low, high in self._ranges(direction):
-            starts = np.linspace(low, high, max(8, int(np.ceil(_STARTS * (high - low) / TURN))) + 1)
-            value = self.values(starts, direction, _SAMPLES)
-            padded = np.pad(value, 1, constant_values=np.inf)
-            lowest = np.flatnonzero((value <= padded[:-2]) & (value <= padded[2:]) & np.isfinite(value))
-            found += [(float(value[k]), direction, float(starts[k])) for k in lowest]
-        return found
-
-    def _ranges(self, direction: int) -> list[tuple[float, float]]:
-        """Where the driver may stand at the first pair."""
-        low, high = self.task.span
-        ranges = driver_ranges(self.linkage, self.transmission).tolist()
-        if (rotatability(self.linkage) >= 0).all() and ranges[0][1] - ranges[0][0] >= TURN:
-            return [(ranges[0][0], ranges[0][1])]
-        back, on = (-low, high) if direction > 0 else (high, -low)
-        ends = [(a + back, b - on) for a, b in ranges]
-        # A range that is as long as the linkage's own leaves one place; rounding must not lose it.
-        return [(min(a, b), max(a, b)) for a, b in ends if b - a >= -_ROUNDING]
-
-    def bottoms(self, valleys: Sequence[tuple[float, int, float]]) -> list[tuple[float, int, float]]:
-        """The same, with their bottoms in place of the starts within them."""
-        found = []
-        for direction in dict.fromkeys(direction for _, direction, _ in valleys):
-            starts = np.array([start for _, way, start in valleys if way == direction])
-            for at in self._narrowed(starts, direction).tolist():
-                bottom = self._newton(at, direction) if self.squares else at
-                found.append((self.value(bottom, direction), direction, bottom))
-        return found
-
-    def _narrowed(self, starts: FloatArray, direction: int) -> FloatArray:
-        """The lowest places within a step of some starts, which need not be smooth there, shape (S,)."""
-        at, span = starts, TURN / _STARTS
-        share = np.linspace(-1, 1, _NEAR)
-        while span > _CLOSE:
-            near = at[:, None] + span * share  # its middle is the lowest so far
-            values = self.values(near.ravel(), direction).reshape(near.shape)
-            lowest = np.where(values.min(axis=1) < values[:, _NEAR // 2], values.argmin(axis=1), _NEAR // 2)
-            at = np.take_along_axis(near, lowest[:, None], axis=1)[:, 0]
-            span *= 2 / (_NEAR - 1)
-        return at
-
-    def _newton(self, at: float, direction: int) -> float:
-        """Gauss-Newton: squares alone give half of the digits."""
-        share = self.task.weights / self.task.weights.sum()
-        way = _way(self.task, direction)
-        for _ in range(6):
-            state = solve_position(self.linkage, at + direction * self.task.inputs)
-            rate = kind_of(self.linkage).output_rate(self.linkage, state.theta2, state.theta3, state.theta4)
-            if not np.isfinite(rate).all():  # a dead position
-                break
-            output = _moved(self.linkage, self.task, state, direction, unwrapped=False)
-            off = min(
-                (_from_first(self.task, output - sense * self.task.outputs) for sense in self.senses),
-                key=lambda each: float(np.nan_to_num(share @ (each - share @ each) ** 2, nan=np.inf)),
-            )
-            off, rate = off - share @ off, way * (rate - share @ rate)
-            curvature = float(share @ rate**2)
-            if not curvature > 0:
-                break
-            moved = at - float(share @ (off * rate)) / curvature
-            if not self.value(moved, direction) < self.value(at, direction):
-                break
-            at = moved
-        return at
-
-
-def _crest(samples: FloatArray) -> FloatArray:
-    """The greatest of even samples (last axis), or of the parabolas through three that have a crest."""
-    before, here, after = samples[..., :-2], samples[..., 1:-1], samples[..., 2:]
-    crest = (here >= before) & (here >= after)
-    bend = np.where(crest, 2 * here - before - after, 0.0)
-    rise = np.divide((after - before) ** 2, 8 * bend, out=np.zeros_like(bend), where=bend > 0)
-    found: FloatArray = np.maximum(samples.max(axis=-1), (here + rise).max(axis=-1))
-    return found
-
-
-def _from_first(task: FunctionTask, outputs: FloatArray) -> FloatArray:
-    """Differences from the first (last axis), of angles by whole turns moved into [-pi, pi)."""
-    off: FloatArray = outputs - outputs[..., :1]
-    return off if task.travels else (off + np.pi) % TURN - np.pi
 
 
 def structural_error(
@@ -358,7 +122,7 @@ def structural_error(
     square = float((half[:, None] * weights).ravel() @ (curves(inner)[0] - zero) ** 2) / float(np.ptp(coarse))
     above, below = high - zero, low + zero
     worst, at = (above, high_at) if above >= below else (below, low_at)
-    rms, way = float(np.sqrt(square)), _way(task, begun.direction)
+    rms, way = float(np.sqrt(square)), way_of(task, begun.direction)
     return StructuralError(at_pairs - zero, worst, rms, at, way * zero, sense)
 
 
@@ -438,7 +202,7 @@ def function_curves(
     turned = np.linspace(*task.span, count) if at is None else at
     every = np.unique(np.concatenate([dense, turned]))
     begun = Beginning(float(verdict.theta2[0]), verdict.direction)
-    way = _way(task, verdict.direction)
+    way = way_of(task, verdict.direction)
     off = output_error(linkage, task, begun, every, verdict.output_sense) - way * verdict.output_zero
     middle = 0.0 if task.travels else TURN * np.round(np.median(off) / TURN)
     error = off[np.searchsorted(every, turned)] - middle
