@@ -488,7 +488,7 @@ def export(
 ) -> None:
     """Write the parts of LINKAGE for the workshop, plates stacked so that nothing collides, or models of it.
 
-    Exit code 0: done; 2: bad input, or a format that cannot tell LINKAGE; 3: environment error.
+    Exit code 0: done; 2: bad input, or a format that cannot represent LINKAGE; 3: environment error.
     """
     from grashof.workshop.export import Making, export_files, plan_lines
     from grashof.workshop.plates import PlateSizes

@@ -119,7 +119,7 @@ def function_list(
     complete = not asked()
     if not aims.exact and judged.good:
         least = min(one.error(problem) for one in judged.good)
-        judged.good = [named(one, problem, least) for one in _within(judged, least)]
+        judged.good = [named(one, problem, least, aims.unit) for one in _within(judged, least)]
     designs = listed(problem, judged.good)
     if aims.exact:
         designs = designs[: search.enough]
@@ -166,9 +166,9 @@ def _within(judged: _Judged, least: float) -> list[Candidate]:
     return [one for one in judged.good if one.error(judged.problem) <= most]
 
 
-def named(one: Candidate, problem: Problem, least: float) -> Candidate:
-    """The same, told what it is best at: only the best of all has the least error."""
-    if one.best_at != LEAST or one.error(problem) <= max(least * SAME, MET):
+def named(one: Candidate, problem: Problem, least: float, unit: float) -> Candidate:
+    """The same, named by what it is best at: only the best of all has the least error, counted in `unit`."""
+    if one.best_at != LEAST or one.error(problem) <= max(least * SAME, MET * unit):
         return one
     return replace(one, best_at=LOCAL)
 

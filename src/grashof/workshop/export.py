@@ -88,7 +88,7 @@ class Exported:
         What is drawn, if anything is.
     written : tuple of Path
     refused : tuple of str
-        Why the other formats cannot tell this linkage, a line each.
+        Why the other formats cannot represent this linkage, a line each.
     """
 
     plan: Plan | None
@@ -97,7 +97,7 @@ class Exported:
 
 
 def export_files(linkage: str, making: Making, files: dict[str, Path]) -> Exported:
-    """Write what is asked for; a format that cannot tell the linkage costs the others nothing.
+    """Write what is asked for; a format that cannot represent the linkage costs the others nothing.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def export_files(linkage: str, making: Making, files: dict[str, Path]) -> Export
     Raises
     ------
     ProblemError
-        Bad input, named, or no format can tell the linkage.
+        Bad input, named, or no format can represent the linkage.
     OSError
         The disk is full or the folder is lost.
     """

@@ -112,9 +112,8 @@ def test_a_function_begins_where_it_errs_least_among_the_starts_that_transmit(no
         limited += 1
         assert verdict.transmission_min_task >= np.radians(least) - 1e-8
         found = np.sqrt(verdict.square / len(task)) if norm == "rms" else verdict.structural_error_max
-        assert (
-            0.9 * best <= found <= best * (1 + (1e-6 if norm == "rms" else 1e-3))
-        )  # of starts 0.09 deg apart
+        share = 1e-6 if norm == "rms" else 1e-3
+        assert 0.9 * best <= found <= best * (1 + share)  # the starts are 0.09 deg apart
     assert limited > 2
 
 

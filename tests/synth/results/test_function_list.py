@@ -21,7 +21,7 @@ def test_errors_of_rounding_are_all_the_least() -> None:
             linkage, replace(verdict, square=error**2 * len(task)), problem, 0, 0, best_at="least error"
         )
         assert abs(design.error(problem) - error) < 1e-12 * error
-        return named(design, problem, least).best_at
+        return named(design, problem, least, task.output_unit).best_at
 
     assert name(3e-16, 1e-16) == name(5e-10, 1e-16) == "least error"
     assert name(2e-4, 1.9e-4) == name(2e-9, 1e-16) == "least error nearby"
