@@ -49,7 +49,7 @@ from grashof.workshop.sheet import sheet
 from grashof.workshop.svg import svg
 from grashof.workshop.workbook import workbook
 
-LOADING, WORKING = 5, 180  # s, after which it counts as a hang
+LOADING, WORKING = 5, 180  # s of processor time, after which it counts as a hang
 MOST_TARGETS = 100  # of a task that is searched: the time grows with them
 LONGEST = 1500  # characters of a line of an error, beside the name of the file
 TRACEBACK, HANG, WRONG, UNCLEAR = "tracebacks", "hangs", "wrong designs", "unclear messages"
@@ -214,18 +214,18 @@ def _examine_linkage(
 
 @contextmanager
 def _limit(seconds: float) -> Iterator[None]:
-    """Interrupt what takes longer."""
+    """Interrupt what takes more processor time: a machine may be busy."""
 
     def stop(_signal: int, _frame: FrameType | None) -> None:
         raise TooLongError
 
-    before = signal.signal(signal.SIGALRM, stop)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
+    before = signal.signal(signal.SIGPROF, stop)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
     try:
         yield
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)
 
 
 def seeds() -> list[Seed]:

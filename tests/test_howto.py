@@ -20,7 +20,7 @@ def pages() -> list[str]:
     return sorted(path.relative_to(DOCS).as_posix() for path in found if path.parent.name != "tutorials")
 
 
-@pytest.mark.quick("howto/export.md", "howto/notebook.md")
+@pytest.mark.quick("howto/export.md")
 @pytest.mark.parametrize(
     "page",
     [
@@ -47,6 +47,7 @@ def test_the_python_of_a_page_runs(page: str, tmp_path: Path, monkeypatch: pytes
             assert (tmp_path / name).stat().st_size > 1000
 
 
+@pytest.mark.slow
 def test_own_constraint_of_the_page_is_kept(tmp_path: Path) -> None:
     first = BLOCK.findall((DOCS / "howto/own-constraint.md").read_text(encoding="utf-8"))[0]
     names: dict[str, object] = {}

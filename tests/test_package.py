@@ -75,6 +75,7 @@ def circle(arrows: dict[str, set[str]]) -> list[str]:
             del left[name]
 
 
+@pytest.mark.slow
 def test_no_module_imports_itself_by_way_of_others() -> None:
     arrows = {name: imported(name) - {name} for name in SOURCES}
     # A package takes names from its modules to pass them on.
@@ -97,11 +98,13 @@ def imports_of_rooms() -> dict[str, set[str]]:
     return arrows
 
 
+@pytest.mark.slow
 def test_no_room_imports_from_one_that_imports_from_it() -> None:
     layers = set(LAYERS)
     assert circle({name: others - layers for name, others in imports_of_rooms().items()}) == []
 
 
+@pytest.mark.slow
 def test_the_table_of_rooms_states_what_they_import() -> None:
     page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| `([\w/]+)` \|[^|]+\|([^|]*)\|([^|]*)\|$", page, re.MULTILINE)
@@ -127,6 +130,7 @@ def test_importing_grashof_loads_no_solver_and_no_plots() -> None:
     assert not loaded & {"casadi", "jinja2", "matplotlib", "pandas", "pydantic", "rich", "shapely"}
 
 
+@pytest.mark.slow
 def test_a_worker_process_loads_only_what_it_solves_with() -> None:
     loaded = modules_after("import grashof.synth.search.attempt")
     assert "casadi" in loaded
@@ -134,6 +138,7 @@ def test_a_worker_process_loads_only_what_it_solves_with() -> None:
     assert not loaded & {"matplotlib", "pandas", "pydantic", "rich", "shapely"}
 
 
+@pytest.mark.slow
 def test_a_run_loads_neither_pandas_nor_trees(tmp_path: Path) -> None:
     arguments = [
         "grashof",

@@ -83,6 +83,12 @@ class Path:
         """Time at which it ends."""
         return self.panels[-1].end
 
+    def fastest(self) -> float:
+        """The greatest speed, of either sign, at nine times of each panel."""
+        shares = np.linspace(0, 1, 9)
+        speeds = [panel.at(panel.start + panel.length * shares)[1] for panel in self.panels]
+        return float(np.abs(speeds).max())
+
     def at(self, time: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Place, speed and acceleration at times of the motion, shape (N,) each."""
         starts = np.array([panel.start for panel in self.panels])
@@ -103,6 +109,7 @@ def integrate_motion(
     speed: float,
     tolerance: float = 1e-12,
     events: Events | None = None,
+    fastest: float = 0.0,
 ) -> Path:
     """The motion from a place and a speed, until an event or an end of time.
 
@@ -119,6 +126,8 @@ def integrate_motion(
     events : callable, optional
         Of place and speed, shape (N,), to values of K events, shape (K, N). The motion ends where one
         falls below zero; one that is below it at the start counts once it has been above.
+    fastest : float, rad/s
+        The greatest speed before the start: `tolerance` is a share of it, too.
 
     Returns
     -------
@@ -147,7 +156,7 @@ def integrate_motion(
         raise SolverError("the motion could not be integrated: it has no acceleration at its start")
     length, panels, now = _first_length(span, speed, guess), list[Panel](), start
     armed = np.zeros(0, dtype=bool) if events is None else _values(events, place, speed) > 0
-    fastest, terms = abs(speed), np.array([guess])
+    fastest, terms = max(fastest, abs(speed)), np.array([guess])
     while now < end:
         length = min(length, end - now)
         panel, error, sweeps = _panel(acceleration, now, length, place, speed, terms)

@@ -13,7 +13,7 @@ import numpy as np
 from grashof.problems.files.foreign import Budget, finite, read_by_others
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import GREATEST
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.errors import ProblemError, shown
 
 MOST_POINTS = 20_000
 FLAT = 1e-3  # share of the drawing's size by which a polyline may miss a curve
@@ -79,7 +79,7 @@ def dxf_drawing(content: bytes, layer: str = "") -> tuple[list[FloatArray], floa
                 found.append(np.array(points, dtype=float))
         unit = document.header.get("$INSUNITS", 0)
     if not found:
-        where = f"on the layer {layer!r}" if layer else "in its model space"
+        where = f"on the layer {shown(layer)}" if layer else "in its model space"
         raise ProblemError(f"the drawing has no lines {where}")
     if not all(np.isfinite(each).all() for each in found):
         raise ProblemError("the drawing has places that are not finite numbers")

@@ -271,15 +271,19 @@ def _rows(name: str, info: ValidationInfo, kinds: Sequence[Sequence[Names]]) -> 
         raise located(error, str(info.field_name)) from None
 
 
+# More would take minutes to analyse; a table of values is one load.
+_MEMBERS = listed("a list of tables", 100)
+
+
 class MachineTables(Table):
     """What problem and linkage files have in common."""
 
     dynamics: DynamicsTable | None = None
-    loads: list[LoadTable] = Field(default=[])
-    springs: list[SpringTable] = Field(default=[])
-    dampers: list[DamperTable] = Field(default=[])
-    torsion_springs: list[TorsionSpringTable] = Field(default=[])
-    counterweights: list[CounterweightTable] = Field(default=[])
+    loads: Annotated[list[LoadTable], _MEMBERS] = Field(default=[])
+    springs: Annotated[list[SpringTable], _MEMBERS] = Field(default=[])
+    dampers: Annotated[list[DamperTable], _MEMBERS] = Field(default=[])
+    torsion_springs: Annotated[list[TorsionSpringTable], _MEMBERS] = Field(default=[])
+    counterweights: Annotated[list[CounterweightTable], _MEMBERS] = Field(default=[])
     friction: FrictionTable | None = None
     motor: MotorTable | None = None
     section: SectionTable | None = None

@@ -92,7 +92,7 @@ def load_linkage_spec(linkage: str | os.PathLike[str]) -> LinkageSpec:
             if text in catalogue():
                 raise ProblemError(_problem_given(text, text))
             raise ProblemError(
-                f"{text!r} is neither a linkage of the catalogue nor a file; {_LINKAGES.hint(text)}"
+                f"{shown(text)} is neither a linkage of the catalogue nor a file; {_LINKAGES.hint(text)}"
             )
     path = Path(linkage)
     return _parsed(file_text(path, "a linkage file"), str(path), readable(path.stem), path.parent)

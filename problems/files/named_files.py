@@ -11,7 +11,7 @@ from grashof.problems.files import drawing_files, spreadsheet
 from grashof.problems.files.drawing_files import areas_of, outlines_of
 from grashof.problems.files.target_files import points_of, poses_of
 from grashof.problems.values.checks import located, noted, refuse
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.errors import ProblemError, shown
 
 Read = Callable[[str, Path, str], dict[str, Any]]  # from a name, its folder and the length unit to keys
 
@@ -78,7 +78,7 @@ def _filled(
 ) -> dict[str, Any]:
     """A table with what a file has in place of its name."""
     if Path(name.partition("#")[0]).suffix.lower() not in endings:
-        raise ProblemError(f"{where} is {name!r}; it must be a list, or a file {' or '.join(endings)}")
+        raise ProblemError(f"{where} is {shown(name)}; it must be a list, or a file {' or '.join(endings)}")
     if folder is None:
         raise ProblemError(f"{where} is the file {name}; here it must be a list instead")
     try:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from grashof.problems.files.toml_file import Catalogue, document_of, exists, file_text, looks_like_path
 from grashof.problems.values.checks import located, readable
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.errors import ProblemError, shown
 from grashof.problems.values.problem import Problem
 
 _PROBLEMS = Catalogue("problem")
@@ -52,7 +52,7 @@ def load_with_text(problem: str | os.PathLike[str]) -> tuple[Problem, str]:
             return problem_of(text, f"{problem}.toml", problem), text
         if not exists(problem):
             hint = _PROBLEMS.hint(problem)
-            raise ProblemError(f"{problem!r} is neither a problem of the catalogue nor a file; {hint}")
+            raise ProblemError(f"{shown(problem)} is neither a problem of the catalogue nor a file; {hint}")
     path = Path(problem)
     text = file_text(path, "a problem file", _PROBLEMS.hint(path.stem))
     return problem_of(text, str(path), readable(path.stem), path.parent), text

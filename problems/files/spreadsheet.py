@@ -11,7 +11,7 @@ from zipfile import ZipFile
 from grashof.problems.files.foreign import read_by_others
 from grashof.problems.files.toml_file import MOST_BYTES, file_bytes, file_text
 from grashof.problems.values.checks import located_in
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.errors import ProblemError, shown
 
 MOST_LINES = 20_000  # of a table, empty ones among them
 _MOST_COLUMNS = 64
@@ -65,7 +65,7 @@ def _sheet(path: Path, name: str) -> list[list[str]]:
             raise ProblemError(f"has {size} bytes when it is unpacked; it must have at most {MOST_BYTES}")
         book = load_workbook(BytesIO(content), read_only=True, data_only=True)
         if name and name not in book.sheetnames:
-            raise ProblemError(f"has no sheet {name!r}; it has {', '.join(book.sheetnames)}")
+            raise ProblemError(f"has no sheet {shown(name)}; it has {', '.join(book.sheetnames)}")
         sheets = [book[name]] if name else book.worksheets
         if not sheets or not hasattr(sheets[0], "iter_rows"):
             raise ProblemError("has no sheet of cells")

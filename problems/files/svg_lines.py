@@ -13,7 +13,7 @@ import numpy as np
 from grashof.problems.files.dxf_lines import FLAT, MOST_POINTS
 from grashof.problems.files.foreign import Budget, read_by_others
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.errors import ProblemError, shown
 
 _CURVE = 129  # points of a curve, of which those are kept that it takes
 _KEPT = 0.8  # of that, what leaving points out may take; the rest is between the points
@@ -57,13 +57,13 @@ def svg_drawing(content: bytes, group: str = "") -> tuple[list[FloatArray], floa
         shapes = _shapes(drawing.elements() if not group else _inside(drawing, group), svgelements)
         width = _WIDTH.fullmatch(str(drawing.values.get("attributes", {}).get("width", "")))
         if width and not (float(width[1]) > 0 and float(drawing.width) > 0):
-            raise ProblemError(f"the drawing has the width {width[0]!r}; it must be positive")
+            raise ProblemError(f"the drawing has the width {shown(width[0])}; it must be positive")
         scale = float(width[1]) * _MILLIMETRES[width[2]] / float(drawing.width) if width else 1.0
         # Not Path(shape): that leaves out the transform of a rectangle or an ellipse that is turned.
         paths = [svgelements.Path(*shape.segments(transformed=True)) for shape in shapes]
         lines = [scale * line * np.array([1, -1]) for path in paths for line in _polylines(path)]
     if not lines:
-        raise ProblemError(f"the drawing has no lines{f' in the group {group!r}' if group else ''}")
+        raise ProblemError(f"the drawing has no lines{f' in the group {shown(group)}' if group else ''}")
     if not all(np.isfinite(line).all() for line in lines):
         raise ProblemError("the drawing has places that are not finite numbers")
     lines = _simplified(lines)
@@ -133,7 +133,7 @@ def _shapes(elements: Any, svgelements: Any) -> list[Any]:
 def _inside(drawing: Any, group: str) -> list[Any]:
     found = drawing.get_element_by_id(group)
     if found is None:
-        raise ProblemError(f"the drawing has no group {group!r}")
+        raise ProblemError(f"the drawing has no group {shown(group)}")
     return list(found.select()) if hasattr(found, "select") else [found]
 
 

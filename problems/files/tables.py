@@ -32,6 +32,7 @@ _WANTED = {
     "string_type": "a string",
     "bool_type": "true or false",
     "model_type": "a table",
+    "list_type": "a list",
 }
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from grashof.problems.values.checks import near_miss
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.errors import ProblemError, shown
 
 MOST_BYTES = 4 * 2**20  # of files that people write or draw
 MOST_BYTES_MADE = 256 * 2**20  # of those that this program writes
@@ -41,7 +41,7 @@ class Catalogue:
     def text(self, name: str) -> str:
         """The file of this name; `ProblemError` when there is none."""
         if name not in self._files:
-            raise ProblemError(f"{name!r} is not a {self.what} of the catalogue; {self.hint(name)}")
+            raise ProblemError(f"{shown(name)} is not a {self.what} of the catalogue; {self.hint(name)}")
         return self._files[name].read_text(encoding="utf-8")
 
     def hint(self, name: str) -> str:

@@ -15,7 +15,7 @@ from grashof.problems.values.checks import (
     number_within,
     positive_number,
 )
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.errors import ProblemError, shown
 from grashof.problems.values.read_only import ReadOnly
 
 LAWS: dict[str, Callable[[FloatArray], FloatArray]] = {
@@ -82,7 +82,7 @@ class FunctionLaw(ReadOnly):
         if self.name != SAMPLED and self.name not in LAWS:
             meant = near_miss(str(self.name), list(LAWS))
             hint = f"did you mean {meant}?" if meant else f"the laws are {', '.join(LAWS)}"
-            raise ProblemError(f"function.law {str(self.name)!r} is unknown; {hint}")
+            raise ProblemError(f"function.law {shown(self.name)} is unknown; {hint}")
         low, high = limits(self.x, "function.x")
         if low == high:
             raise ProblemError(f"function.x is [{low:g}, {high:g}]; the two must differ")

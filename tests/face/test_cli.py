@@ -180,6 +180,7 @@ def test_what_nobody_expected_ends_with_one_line(grashof: Grashof, monkeypatch: 
     assert told.stderr.splitlines()[-1] == line
 
 
+@pytest.mark.study
 def test_no_backend_of_matplotlib_stands_in_the_way(tmp_path: Path) -> None:
     environment = {**os.environ, "MPLBACKEND": "nonsense"}
     code = "import sys; from grashof.cli import main; sys.argv[0] = 'grashof'; main()"

@@ -66,7 +66,7 @@ if __name__ == "__main__":
 '''
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_what_ends_workers_is_given_up_and_a_lost_scheduler_is_told(tmp_path: Path) -> None:
     pytest.importorskip("distributed")
     (tmp_path / "fatal.py").write_text(SCRIPT, encoding="utf-8")

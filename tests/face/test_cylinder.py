@@ -19,6 +19,8 @@ from grashof.figures import plot_linkage
 from grashof.figures.animation import animate
 from grashof.problems import ProblemError, load_linkage_spec
 
+pytestmark = pytest.mark.slow
+
 Grashof = Callable[..., Any]
 
 
@@ -41,6 +43,7 @@ def test_check_says_it(grashof: Grashof) -> None:
     assert "rotatability any" in text
 
 
+@pytest.mark.study
 def test_lists_page_and_analysis_have_it(grashof: Grashof, solved: Path) -> None:
     with (solved / "candidates.csv").open(encoding="utf-8") as file:
         row = next(csv.DictReader(file))

@@ -17,6 +17,7 @@ from grashof.synth import Result
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="a process is copied on Linux alone")
 
 
+@pytest.mark.slow
 def test_a_copy_draws_the_same(few: Result, monkeypatch: pytest.MonkeyPatch) -> None:
     given = few.problem, few.candidates[:2]
     monkeypatch.setattr(grashof_drawing, "_may_be_copied", lambda: False)
@@ -30,6 +31,7 @@ def test_a_copy_draws_the_same(few: Result, monkeypatch: pytest.MonkeyPatch) -> 
     assert here[0] != here[1]
 
 
+@pytest.mark.slow
 def test_what_a_lost_copy_owes_is_drawn_here(few: Result, monkeypatch: pytest.MonkeyPatch) -> None:
     def none(*_: object) -> None:
         os.kill(os.getpid(), signal.SIGKILL)

@@ -71,6 +71,7 @@ def test_an_unknown_length_unit_is_one_line(grashof: Grashof, tmp_path: Path) ->
     assert done.stderr.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_the_table_names_the_torque_among_the_goals(grashof: Grashof, tmp_path: Path) -> None:
     out = str(tmp_path / "out")
     done = grashof("solve", "luggage", "--starts", "8", "--drawings", "0", "--out", out)

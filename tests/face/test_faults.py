@@ -65,6 +65,7 @@ def analysed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[dict[P
     assert {path: path.read_bytes() for path in folder.iterdir()} == before
 
 
+@pytest.mark.slow
 def test_a_full_disk_keeps_the_older_analysis(
     grashof: Grashof, analysed: dict[Path, bytes], full: None
 ) -> None:
@@ -127,6 +128,7 @@ def test_stdout_that_takes_nothing_is_told_in_one_line(tmp_path: Path, command: 
     assert done.stderr == "grashof: standard output: No space left on device\n"
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
 def test_stderr_that_takes_nothing_costs_no_result(tmp_path: Path) -> None:
     done = in_shell("2>/dev/full", "solve", "luggage", *QUICK, cwd=tmp_path)
@@ -135,6 +137,7 @@ def test_stderr_that_takes_nothing_costs_no_result(tmp_path: Path) -> None:
     assert json.loads((tmp_path / "luggage-designs" / "run.json").read_text())["designs"] > 0
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="a shell of another kind")
 @pytest.mark.parametrize("streams", [">&-", pytest.param(">&- 2>&-", marks=pytest.mark.slow)])
 def test_closed_streams_cost_no_result(tmp_path: Path, streams: str) -> None:
@@ -185,6 +188,7 @@ def test_a_full_disk_costs_neither_the_table_nor_the_search(
     assert not (folder / "search").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("recorded")
 def test_a_record_that_cannot_be_written_ends_the_record_alone(
     grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -30,6 +30,7 @@ body = [[0, 0], [1, 0], [1, 0.5]]
 """
 
 
+@pytest.mark.study
 @pytest.mark.parametrize(
     ("text", "no_position", "no_angle"), [(FREE, [2], [1]), (ANGLES_FREE, [], [0, 1, 2, 3])]
 )

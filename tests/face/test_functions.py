@@ -20,6 +20,7 @@ Grashof = Callable[..., Any]
 EXAMPLES = ("function-five-pairs", "function-log10", "function-sin", "function-dosing-slide")
 
 
+@pytest.mark.slow
 def test_a_function_is_solved_and_analysed(grashof: Grashof, tmp_path: Path) -> None:
     done = grashof("solve", "function-five-pairs", "--drawings", "1")
     assert done.exit_code == 0, done.output
@@ -46,6 +47,7 @@ def test_a_function_is_solved_and_analysed(grashof: Grashof, tmp_path: Path) -> 
     assert done.exit_code == 0, done.output
 
 
+@pytest.mark.study
 def test_a_slide_is_told_in_its_unit_of_length(grashof: Grashof, tmp_path: Path) -> None:
     done = grashof("solve", "function-dosing-slide", "--drawings", "1")
     assert done.exit_code == 0, done.output

@@ -27,6 +27,7 @@ from grashof.synth import Candidate
 Grashof = Callable[..., Any]
 
 
+@pytest.mark.study
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
 def test_interrupt_while_drawing_leaves_drawings_out(
     grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -52,6 +53,7 @@ def test_interrupt_while_drawing_leaves_drawings_out(
     assert "drawings are left out: Ctrl-C came before 1 of them were made" in done.stderr.splitlines()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="looks for its processes in /proc")
 @pytest.mark.parametrize("later", [0.05, 0.2])
 def test_ctrl_c_while_processes_begin_leaves_no_traceback(tmp_path: Path, later: float) -> None:
@@ -94,6 +96,7 @@ def test_a_drawing_that_fails_costs_neither_lists_nor_tidiness(
     assert record["run"]["why_left_out"] == "the run ended before they were drawn"
 
 
+@pytest.mark.study
 @pytest.mark.quick("True")
 @pytest.mark.skipif(sys.platform == "win32", reason="pipes of another kind")
 @pytest.mark.parametrize("merged", [True, False])
@@ -120,6 +123,7 @@ def test_a_reader_that_leaves_ends_nothing(tmp_path: Path, merged: bool) -> None
     assert len(pd.read_csv(tmp_path / "luggage-designs" / "candidates.csv")) > 0
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
 def test_interrupt_writes_what_was_verified(tmp_path: Path) -> None:
     text = problem_text("luggage") + "\n[search]\nstarts = 5000\nenough = 300\n"
@@ -150,6 +154,7 @@ def test_interrupt_writes_what_was_verified(tmp_path: Path) -> None:
     assert "drawings are left out" not in said  # none were asked for
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="no terminals that hang up")
 def test_a_terminal_that_hangs_up_asks_for_the_end_unless_that_is_ignored() -> None:
     with interruptible() as asked:
@@ -164,6 +169,7 @@ def test_a_terminal_that_hangs_up_asks_for_the_end_unless_that_is_ignored() -> N
         signal.signal(signal.SIGHUP, before)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
 def test_ctrl_c_while_the_program_is_loaded_is_one_line() -> None:
     # The import of the command line stands for any moment of loading: it sends the signal itself.

@@ -17,6 +17,7 @@ FEW = ("solve", "luggage", "--starts", "4", "--drawings", "0")
 LINE = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z (DEBUG|INFO|WARNING) grashof\.[\w.]+: \S.*")
 
 
+@pytest.mark.slow
 def test_a_log_in_the_folder_of_the_run_is_added_to(grashof: Grashof, tmp_path: Path) -> None:
     log = tmp_path / "luggage-designs" / "run.log"
     assert grashof(*FEW, "--log", log).exit_code == 0
@@ -29,6 +30,7 @@ def test_a_log_in_the_folder_of_the_run_is_added_to(grashof: Grashof, tmp_path: 
     assert "run.log" not in json.loads((log.parent / "run.json").read_text())["files"]
 
 
+@pytest.mark.slow
 def test_a_run_without_a_log_logs_nothing_and_changes_no_level(grashof: Grashof, tmp_path: Path) -> None:
     logger = logging.getLogger("grashof")
     before = logger.level, list(logger.handlers)
@@ -59,6 +61,8 @@ def test_a_log_that_cannot_be_is_refused(grashof: Grashof, tmp_path: Path, log: 
     assert not (tmp_path / "luggage-designs").exists()
 
 
+@pytest.mark.slow
+@pytest.mark.quick("shards/0001-of-0002/search.json")
 @pytest.mark.parametrize("name", ["candidates.csv", "shards/0001-of-0002/search.json", "link"])
 def test_the_log_of_a_shard_harms_no_file_of_the_search(grashof: Grashof, tmp_path: Path, name: str) -> None:
     shard = (*FEW, "--shard", "1/2", "--out", "out")

@@ -37,6 +37,7 @@ def test_check_says_it(grashof: Grashof, mine: Path) -> None:
     assert "made to within 0.02 m, band 0.03 m" in grashof("check", mine).stdout
 
 
+@pytest.mark.slow
 def test_solve_writes_it(grashof: Grashof, mine: Path, tmp_path: Path) -> None:
     done = grashof("solve", mine, "--starts", "16", "--drawings", "0")
     assert done.exit_code == 0, done.output

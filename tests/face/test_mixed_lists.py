@@ -66,6 +66,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_every_design_comes_back_to_the_last_digit(folder: Path) -> None:
     for rank, linkage in enumerate(LINKAGES, start=1):
         design = load_design(folder / "candidates.json", str(rank))

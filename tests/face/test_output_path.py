@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from grashof import load, synthesize
 from grashof.analysis import solve_position
@@ -11,6 +12,7 @@ from grashof.output.run_files import write_run
 from grashof.problems import FourBar
 
 
+@pytest.mark.slow
 def test_designs_of_a_path_have_no_angle_error(tmp_path: Path) -> None:
     result = synthesize(load("path-vertical-line"), starts=8, enough=4)
     files = write_run(tmp_path, result, {}, drawings=1)

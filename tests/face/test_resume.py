@@ -70,7 +70,7 @@ def killed_and_resumed(folder: Path, moments: list[float]) -> bytes:
     return finished(folder, "--resume")
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.parametrize("moments", [2, pytest.param(20, marks=pytest.mark.study)])
 def test_a_run_that_was_killed_goes_on_to_the_same_list(tmp_path: Path, moments: int) -> None:
     whole, killed = tmp_path / "whole", tmp_path / "killed"
@@ -89,6 +89,7 @@ def test_a_run_that_was_killed_goes_on_to_the_same_list(tmp_path: Path, moments:
 SIGNALS = [(signal.SIGINT, 130, "Ctrl-C", "interrupted"), (signal.SIGTERM, 143, "SIGTERM", "terminated")]
 
 
+@pytest.mark.slow
 @pytest.mark.quick("15-143-SIGTERM-terminated")
 @pytest.mark.parametrize(("number", "code", "name", "ending"), SIGNALS)
 def test_a_signal_ends_the_search_and_writes_what_it_has(
@@ -124,6 +125,7 @@ def test_a_record_that_is_not_gone_on_with_is_kept(grashof: Grashof, tmp_path: P
     assert (tmp_path / "luggage-designs" / "search-old" / "search.json").read_text() == "{}"
 
 
+@pytest.mark.quick("search-old")
 @pytest.mark.parametrize("place", ["search", "search-old"])
 def test_files_of_others_beside_a_record_are_never_deleted(
     grashof: Grashof, tmp_path: Path, place: str

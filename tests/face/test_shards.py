@@ -32,6 +32,7 @@ def shard(number: int, of: int, out: str, *options: str) -> list[str]:
     return ["solve", "luggage", "--starts", "32", "--shard", f"{number}/{of}", "--out", out, *options]
 
 
+@pytest.mark.slow
 def test_shards_are_merged_into_the_files_of_a_search(grashof: Grashof, tmp_path: Path) -> None:
     for number in (1, 2):
         done = grashof(*shard(number, 2, "two"))
@@ -52,6 +53,7 @@ def test_shards_are_merged_into_the_files_of_a_search(grashof: Grashof, tmp_path
     assert '"shards": 2' in (tmp_path / "two" / "run.json").read_text(encoding="utf-8")
 
 
+@pytest.mark.study
 def test_what_cannot_be_merged_is_told_in_one_line(grashof: Grashof, tmp_path: Path) -> None:
     def said(*given: str) -> str:
         done = grashof(*given)
@@ -110,6 +112,7 @@ def test_a_shard_does_not_follow_a_link_in_the_place_of_its_folder(
         assert [path.read_text(encoding="utf-8") for path in elsewhere.iterdir()] == ["mine"]
 
 
+@pytest.mark.study
 @pytest.mark.skipif(sys.platform == "win32", reason="no limits of files there")
 def test_a_full_disk_costs_no_shard(grashof: Grashof, tmp_path: Path) -> None:
     import resource
@@ -128,7 +131,7 @@ def test_a_full_disk_costs_no_shard(grashof: Grashof, tmp_path: Path) -> None:
     assert grashof("merge", "out", "--drawings", "0").exit_code == 0
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
 def test_a_terminated_shard_goes_on_with_the_same_command(tmp_path: Path) -> None:
     program = "from grashof.cli import main; main()"
@@ -152,7 +155,7 @@ def test_a_terminated_shard_goes_on_with_the_same_command(tmp_path: Path) -> Non
     assert int(second[1]) >= int(first[1]) > 0
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.skipif(sys.platform == "win32", reason="a script for a shell")
 def test_the_batch_script_of_the_documentation_works(tmp_path: Path) -> None:
     text = (ROOT / "docs" / "shards.sh").read_text(encoding="utf-8")

@@ -45,6 +45,7 @@ def test_lists_are_written_as_pandas_writes_them(few: Result, alike: Result, tmp
     assert here.read_bytes() == there.read_bytes()
 
 
+@pytest.mark.slow
 def test_solve_writes_a_verified_list(grashof: Grashof, tmp_path: Path) -> None:
     done = grashof("solve", "luggage", *QUICK)
     assert done.exit_code == 0, done.output
@@ -85,6 +86,7 @@ def test_solve_writes_a_verified_list(grashof: Grashof, tmp_path: Path) -> None:
     assert "of 16 starts solved" in done.stderr
 
 
+@pytest.mark.slow
 def test_second_run_replaces_only_its_own_files(
     grashof: Grashof, tmp_path: Path, impossible: Path, relaxing_only: Callable[..., None]
 ) -> None:
@@ -105,6 +107,7 @@ def test_second_run_replaces_only_its_own_files(
     assert {path.name for path in out.iterdir()} == names
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("small_search")
 def test_impossible_problem_names_what_stands_in_the_way(
     grashof: Grashof, tmp_path: Path, impossible: Path
@@ -128,6 +131,7 @@ def test_output_folder_that_cannot_be_written(grashof: Grashof, tmp_path: Path) 
     assert (tmp_path / "taken").read_text() == "a file"
 
 
+@pytest.mark.slow
 def test_a_tilde_is_a_name(
     grashof: Grashof,
     tmp_path: Path,
@@ -152,6 +156,7 @@ def test_foreign_files_are_refused_before_solving(grashof: Grashof, tmp_path: Pa
     assert [path.name for path in tmp_path.iterdir()] == ["run.json"]
 
 
+@pytest.mark.slow
 def test_the_list_holds_what_the_file_wants(grashof: Grashof, tmp_path: Path) -> None:
     text = problem_text("luggage") + "\n[search]\nenough = 30\n"
     (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
@@ -159,6 +164,7 @@ def test_the_list_holds_what_the_file_wants(grashof: Grashof, tmp_path: Path) ->
     assert len(pd.read_csv(tmp_path / "mine-designs" / "candidates.csv")) >= 30
 
 
+@pytest.mark.slow
 def test_full_disk_is_told_and_keeps_the_old_run(
     grashof: Grashof, few: Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -186,6 +192,7 @@ POSES = [[0, 0, 0], [30, 10, 10], [60, 15, 25], [90, 10, 40], [120, -5, 60], [13
 MOTION = f'kind = "motion"\nlength_unit = "mm"\n[motion]\nposes = {POSES}\n'
 
 
+@pytest.mark.slow
 def test_the_record_tells_the_least_error_and_the_bound(grashof: Grashof, tmp_path: Path) -> None:
     (tmp_path / "mine.toml").write_text(MOTION + "[requirements]\nerror_factor = 1.5\n")
     done = grashof("solve", "mine.toml", "--effort", "0.2", "--drawings", "0")
@@ -207,7 +214,7 @@ def test_the_record_tells_the_least_error_and_the_bound(grashof: Grashof, tmp_pa
     assert (exact["least_error"], exact["most_error"], exact["settings"]["effort"]) == (None, None, 1.0)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_zones_that_are_too_small_say_how_large_would_do(
     grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

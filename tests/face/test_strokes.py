@@ -26,6 +26,7 @@ def stroke(tmp_path: Path) -> Callable[[float, float], str]:
     return stated
 
 
+@pytest.mark.slow
 def test_check_tells_what_is_asked(grashof: Grashof) -> None:
     done = grashof("check", "quick-return")
     assert done.exit_code == 0, done.output
@@ -33,6 +34,7 @@ def test_check_tells_what_is_asked(grashof: Grashof) -> None:
     assert "r1: 120 mm" in done.output
 
 
+@pytest.mark.slow
 def test_solve_lists_draws_and_analyses(grashof: Grashof, tmp_path: Path) -> None:
     done = grashof("solve", "quick-return", "--drawings", "1")
     assert done.exit_code == 0, done.output
@@ -70,6 +72,7 @@ def test_what_no_linkage_does_is_refused_in_a_line(
     assert "Traceback" not in done.output
 
 
+@pytest.mark.slow
 def test_an_empty_list_is_explained(grashof: Grashof, stroke: Callable[[float, float], str]) -> None:
     path = Path(stroke(80, 1.1))
     path.write_text(path.read_text() + "[requirements]\ntransmission_min_deg = 50\n")

@@ -21,6 +21,7 @@ def test_the_exponent_is_that_of_a_power(monkeypatch: pytest.MonkeyPatch) -> Non
     assert np.isnan(exponent(sizes, [0.0, 0.0, 1.0]))
 
 
+@pytest.mark.quick("starts-100")
 @pytest.mark.slow
 @pytest.mark.parametrize(("axis", "most"), [("positions", 40), ("starts", 100), ("list", 100)])
 def test_every_axis_is_measured(axis: str, most: int) -> None:

@@ -32,6 +32,7 @@ def script(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], ModuleType]:
     return import_module
 
 
+@pytest.mark.slow
 def test_the_seeds_are_right_and_use_every_key(script: Callable[[str], ModuleType], tmp_path: Path) -> None:
     mutants, fuzz = script("mutants"), script("fuzz")
     for seeds, file in (
@@ -53,6 +54,7 @@ def test_the_seeds_are_right_and_use_every_key(script: Callable[[str], ModuleTyp
                 assert set(table.model_fields) - {"weights", "table"} <= used[path], path
 
 
+@pytest.mark.slow
 def test_mutants_are_refused_or_right(
     script: Callable[[str], ModuleType], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -64,7 +66,7 @@ def test_mutants_are_refused_or_right(
     assert min(figures["refused"], figures["accepted"]) > 100
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_designs_and_reports_of_mutants_are_right(
     script: Callable[[str], ModuleType], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

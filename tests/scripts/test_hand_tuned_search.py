@@ -78,6 +78,7 @@ def test_outcomes_are_told(script: ModuleType, luggage: Problem) -> None:
     assert "over the turn" not in told(full_rotation=False)
 
 
+@pytest.mark.study
 def test_pairs_are_judged_as_by_the_judge(script: ModuleType, luggage: Problem, few: tuple[Any, Any]) -> None:
     dyads, pairs = few
     assert pairs.exact.sum() > 300
@@ -103,7 +104,7 @@ def test_shares_and_their_intervals(script: ModuleType) -> None:
     assert high == pytest.approx(0.39, abs=0.04)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_it_prints_what_guesses_come_to(script: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
     assert script.main(["--starts", "40"]) == 0
     said = capsys.readouterr().out

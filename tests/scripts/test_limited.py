@@ -44,6 +44,7 @@ def closed_path(noise: float) -> PathTask:
     return PathTask(points + np.random.default_rng(0).normal(0, noise, points.shape), closed=True)
 
 
+@pytest.mark.slow
 def test_it_finds_a_path_as_well_as_the_planted_linkage_does(independent: ModuleType) -> None:
     problem = Problem(task=closed_path(0.5), requirements=Requirements(**LIMITS, link_length=(30, 130)))
     planted = verify(PLANTED, problem.task, problem.requirements)
@@ -53,6 +54,7 @@ def test_it_finds_a_path_as_well_as_the_planted_linkage_does(independent: Module
     assert found.error <= np.sqrt(planted.square / 10)
 
 
+@pytest.mark.study
 def test_it_finds_poses_as_well_as_the_planted_linkage_does(independent: ModuleType) -> None:
     state = solve_position(PLANTED, np.linspace(0.5, 3, 6))
     rng = np.random.default_rng(1)
@@ -67,7 +69,7 @@ def test_it_finds_poses_as_well_as_the_planted_linkage_does(independent: ModuleT
     assert found.error <= np.sqrt(planted.square / 6)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_a_limit_that_cuts_the_planted_linkage_off_is_active(
     independent: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -84,6 +86,7 @@ def test_limits_that_no_linkage_holds_have_no_design(independent: ModuleType) ->
     assert independent.search(Problem(task=closed_path(0.0), requirements=wanted), starts=3) is None
 
 
+@pytest.mark.slow
 def test_it_shares_nothing_with_the_search_of_the_package() -> None:
     told = "import sys, independent_search; print([m for m in sys.modules if 'synth' in m or 'casadi' in m])"
     command = [sys.executable, "-c", told]
@@ -91,6 +94,7 @@ def test_it_shares_nothing_with_the_search_of_the_package() -> None:
     assert done.stdout == "[]\n"
 
 
+@pytest.mark.quick("limited.json")
 @pytest.mark.parametrize("file", ["limited.json", "limited_random.json"])
 def test_best_designs_known_are_accepted_and_as_good_as_said(file: str) -> None:
     tasks = json.loads((DATA / file).read_text(encoding="utf-8"))["tasks"]
@@ -104,6 +108,7 @@ def test_best_designs_known_are_accepted_and_as_good_as_said(file: str) -> None:
         assert np.sqrt(verdict.square / len(problem.task)) == pytest.approx(task["best"], rel=1e-6, abs=1e-8)
 
 
+@pytest.mark.slow
 def test_benchmark_measures(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

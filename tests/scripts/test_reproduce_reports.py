@@ -146,6 +146,7 @@ def test_every_figure_and_table_of_the_reports_is_listed() -> None:
     assert sorted(angles) == [0, 90, 135, 180]
 
 
+@pytest.mark.quick("pumpjack-f1", "luggage-f2", "luggage-f13", "luggage-f29", "luggage-printed")
 @pytest.mark.parametrize("item", ITEMS, ids=lambda item: item.stem)
 def test_each_has_its_counterpart(item: Any, sources: dict[str, Any]) -> None:
     for words in (item.title, item.reported, item.right, item.wrong):
@@ -215,7 +216,7 @@ def test_words_quote_the_figures_of_the_audit(sources: dict[str, Any]) -> None:
             assert figure in said[stem], (stem, figure, said[stem])
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_the_folder_has_them_all(script: ModuleType, tmp_path: Path) -> None:
     assert script.main(["--out", str(tmp_path / "made")]) == 0
     folder = tmp_path / "made"

@@ -38,6 +38,7 @@ def script(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Script:
     return import_module
 
 
+@pytest.mark.slow
 def test_luggage_states_the_shipped_problem(
     script: Script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -53,7 +54,7 @@ def test_luggage_states_the_shipped_problem(
     assert (tmp_path / "results" / "luggage-3.svg").exists()
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_benchmark_measures(
     script: Script, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -69,7 +70,7 @@ def test_benchmark_measures(
     assert "five poses, 100 random sets" in said
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_own_task_holds_its_own_constraints(tmp_path: Path) -> None:
     """In a process of its own, as a user runs it."""
     said = run("own_task.py", "mine.csv", cwd=tmp_path)
@@ -111,7 +112,7 @@ def test_benchmark_of_the_analysis_agrees_with_the_plain_form(
     assert "50 linkages at 64 angles" in said
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_pictures_of_the_pages_are_made(
     script: Script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -126,6 +127,7 @@ def test_pictures_of_the_pages_are_made(
     assert (SCRIPTS.parent / "docs" / "luggage.gif").stat().st_size < 600_000
 
 
+@pytest.mark.slow
 def test_benchmark_of_the_page_measures(script: Script, capsys: pytest.CaptureFixture[str]) -> None:
     script("benchmark_report").main(["--designs", "60", "--runs", "1"])
     said = capsys.readouterr().out
@@ -133,7 +135,7 @@ def test_benchmark_of_the_page_measures(script: Script, capsys: pytest.CaptureFi
     assert float(said.split()[-2]) < 1  # MB
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.skipif(
     not any(map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))),
     reason="no Chromium on this machine: the picture of the page is not made",

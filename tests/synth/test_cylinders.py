@@ -29,6 +29,8 @@ from grashof.synth import Result, synthesize
 from grashof.synth.designs.driving import cylinder_for
 from grashof.synth.search.plain import plain, restored
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def problem() -> Problem:
@@ -40,7 +42,7 @@ def result(problem: Problem) -> Result:
     return synthesize(problem, enough=5, starts=16)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_every_design_has_a_cylinder_within_its_limits(problem: Problem, result: Result) -> None:
     assert len(result) >= 5
     frame = result.to_frame()
@@ -54,7 +56,6 @@ def test_every_design_has_a_cylinder_within_its_limits(problem: Problem, result:
     assert problem.driver is not None
 
 
-@pytest.mark.slow
 def test_the_judge_needs_the_linkage_and_the_pivots_alone(problem: Problem, result: Result) -> None:
     for each in result.candidates[:3]:
         stated = Cylinder(**each.verdict.cylinder.stated)  # type: ignore[union-attr]
@@ -90,7 +91,7 @@ def test_a_cylinder_that_is_missing_or_beyond_its_limits_is_a_defect(
     assert missed(good, replace(problem, driver=replace(problem.driver, on=other))) == {"driver.cylinder.on"}
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_limits_of_angle_and_force_are_kept(problem: Problem, result: Result) -> None:
     least, most = 40.0, 2750.0
     wanted = replace(problem.requirements, cylinder_angle_min_deg=least, cylinder_force_max=(0.0, most))

@@ -71,6 +71,7 @@ def effort_of(problem: Problem, monkeypatch: pytest.MonkeyPatch) -> Effort:
     return Effort(len(spent), sum(spent), designs)
 
 
+@pytest.mark.slow
 @pytest.mark.quick("luggage")
 @pytest.mark.parametrize("name", EXPECTED)
 def test_a_search_costs_no_more_than_it_did(name: str, monkeypatch: pytest.MonkeyPatch) -> None:

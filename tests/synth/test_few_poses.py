@@ -29,6 +29,7 @@ TWO = {
 }
 
 
+@pytest.mark.quick("whole-slider-crank")
 @pytest.mark.parametrize("kind", ["four-bar", "slider-crank", "inverted-slider-crank"])
 @pytest.mark.parametrize("poses", TWO.values(), ids=TWO)
 def test_two_places_leave_linkages_to_choose_from(kind: str, poses: Any) -> None:
@@ -59,6 +60,7 @@ def test_a_single_place_needs_a_single_pivot(poses: Any, exact: bool) -> None:
     assert result.note == "no design: all positions are at (1, 2): a single pivot there does the job"
 
 
+@pytest.mark.quick("p")
 @pytest.mark.slow
 @pytest.mark.parametrize("part", ["p", "links"])
 def test_p_keeps_out_where_squares_are_made_least(part: str) -> None:

@@ -23,7 +23,7 @@ def ground(design: Any) -> Any:
     return np.hypot(design.o4[0] - design.o2[0], design.o4[1] - design.o2[1])
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.parametrize("objective", [ground, lambda design: design.r1 + design.r2 + design.r3 + design.r4])
 def test_nothing_better_is_found_by_screening_alone(objective: Callable[[Any], Any]) -> None:
     """Every verified design of searches for other things is a rival."""
@@ -39,6 +39,7 @@ def test_nothing_better_is_found_by_screening_alone(objective: Callable[[Any], A
     assert best <= min(rivals) * (1 + 1e-6)
 
 
+@pytest.mark.slow
 def test_designs_are_sorted_by_it_and_say_so() -> None:
     result = synthesize(Problem(task=THREE, requirements=WIDE), objective=ground, enough=10)
     values = [one.own_objective for one in result.candidates]
@@ -61,7 +62,7 @@ def of_path(**wanted: Any) -> Result:
     )
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_it_decides_within_an_allowed_error() -> None:
     least, within = of_path(), of_path(error_factor=1.5)
     error: FloatArray = np.array([one.verdict.error_rms for one in (least.best, within.best)])
@@ -71,6 +72,7 @@ def test_it_decides_within_an_allowed_error() -> None:
     )
 
 
+@pytest.mark.slow
 def test_it_holds_beside_a_constraint() -> None:
     def narrow(design: Any) -> Any:
         return 4.0 - design.r1

@@ -77,7 +77,8 @@ def shard(searched: tuple[Path, list[Made]], tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.quick("zones", "poses")
+@pytest.mark.slow
+@pytest.mark.quick("zones")
 @pytest.mark.usefixtures("small_search")
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_list_does_not_depend_on_the_number_of_shards(kind: str, tmp_path: Path) -> None:
@@ -92,6 +93,7 @@ def test_the_list_does_not_depend_on_the_number_of_shards(kind: str, tmp_path: P
     assert all(design.verdict.ok for design in one.candidates)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("small_search")
 def test_shards_search_every_kind_of_linkage(tmp_path: Path) -> None:
     problem, _ = KINDS["three kinds"]
@@ -100,6 +102,7 @@ def test_shards_search_every_kind_of_linkage(tmp_path: Path) -> None:
     assert found == set(problem.mechanism)
 
 
+@pytest.mark.study
 def test_all_chunks_are_made_and_nothing_ends_them_early(tmp_path: Path) -> None:
     problem = load("luggage")
     made = solve_shard(problem, Shard(1, 1), tmp_path, enough=1, starts=12, effort=1.5)
@@ -108,7 +111,7 @@ def test_all_chunks_are_made_and_nothing_ends_them_early(tmp_path: Path) -> None
     assert len(merge_shards(tmp_path)) == made.designs
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_a_shard_that_was_killed_goes_on(
     tmp_path: Path, mortal: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -129,6 +132,7 @@ def test_a_shard_that_was_killed_goes_on(
     assert table(merge_shards(tmp_path / "killed")) == table(merge_shards(whole))
 
 
+@pytest.mark.study
 def test_a_shard_that_was_stopped_is_not_whole(tmp_path: Path) -> None:
     problem, options = KINDS["poses"]
     seen: list[int] = []
@@ -145,7 +149,7 @@ def test_a_shard_that_was_stopped_is_not_whole(tmp_path: Path) -> None:
     assert solve_shard(problem, Shard(1, 1), tmp_path, **options).whole
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_processes_change_no_byte(tmp_path: Path) -> None:
     divided("poses", tmp_path / "alone", 1)
     divided("poses", tmp_path / "two", 1, workers=2)
@@ -161,6 +165,7 @@ class Mortal(Here):
         return super().made(make, scaled, *which)
 
 
+@pytest.mark.study
 def test_a_chunk_that_ends_its_process_is_made_start_by_start() -> None:
     scaled = ScaledProblem.of(load("luggage"))
     search = scaled.problem.search
@@ -171,6 +176,7 @@ def test_a_chunk_that_ends_its_process_is_made_start_by_start() -> None:
     assert np.shape(known) == (2,)
 
 
+@pytest.mark.slow
 def test_missing_shards_are_named_or_left_out(tmp_path: Path) -> None:
     problem, options = KINDS["poses"]
     for number in (1, 4):
@@ -183,6 +189,7 @@ def test_missing_shards_are_named_or_left_out(tmp_path: Path) -> None:
     assert 0 < some.counts["verified"] < merge_shards(tmp_path).counts["verified"]
 
 
+@pytest.mark.slow
 def test_shards_of_other_searches_are_refused(tmp_path: Path) -> None:
     problem, options = KINDS["poses"]
     solve_shard(problem, Shard(1, 2), tmp_path, **options)
@@ -198,6 +205,8 @@ def test_shards_of_other_searches_are_refused(tmp_path: Path) -> None:
         merge_shards(tmp_path)
 
 
+@pytest.mark.slow
+@pytest.mark.quick("a verdict that is wrong")
 @pytest.mark.parametrize("damage", ["truncated", "another figure", "a verdict that is wrong"])
 @pytest.mark.usefixtures("shard")
 def test_what_is_damaged_is_not_merged_and_done_again(
@@ -244,6 +253,7 @@ def verdict(chunk: dict[str, Any]) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("shard")
 def test_shards_of_another_kind_of_processor_are_merged(tmp_path: Path) -> None:
 
@@ -330,6 +340,7 @@ def test_a_pipe_in_the_place_of_a_file_is_not_waited_for(name: str, tmp_path: Pa
         merge_shards(tmp_path)
 
 
+@pytest.mark.slow
 def test_the_problem_file_is_kept(tmp_path: Path) -> None:
     problem, options = KINDS["poses"]
     text = "# mine\n" + (Path(__file__).parents[2] / "problems/data/luggage.toml").read_text(encoding="utf-8")

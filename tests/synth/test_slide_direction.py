@@ -36,6 +36,7 @@ def test_a_door_on_a_level_track(task: MotionTask, angle_deg: float) -> None:
     assert slides_along(found.candidates, angle_deg)
 
 
+@pytest.mark.slow
 def test_a_door_on_a_level_track_with_its_pivots_in_zones() -> None:
     on_door = Box((-1.1, 1.1), (-0.2, 0.2))
     wanted = Requirements(

@@ -90,6 +90,7 @@ PUBLISHED: dict[str, tuple[float, dict[str, Any]]] = {
 }
 
 
+@pytest.mark.quick("5")
 @pytest.mark.slow
 @pytest.mark.parametrize("limit", PUBLISHED)
 def test_best_worst_case_transmission_over_the_turn(limit: str, independent_judge: Any) -> None:
@@ -105,12 +106,14 @@ def test_best_worst_case_transmission_over_the_turn(limit: str, independent_judg
             assert box is None or getattr(candidate.linkage, pivot)[1] >= -1e-8
 
 
+@pytest.mark.slow
 def test_best_transmission_over_the_task_of_any_driver(independent_judge: Any) -> None:
     result = synthesize(luggage_with(rotatability="any", link_length=(0.3, 5), coupler_arms=(0, 5)))
     check_designs(result, independent_judge, turns=False)
     assert independent_judge(result.best.linkage, result.problem.task).transmission_task >= 23.7
 
 
+@pytest.mark.quick("101")
 @pytest.mark.usefixtures("small_search")
 @pytest.mark.parametrize("seed", [101, 102, 103, 104, 105, 106, 107, 108])
 def test_planted_problems_are_solved(seed: int, independent_judge: Any) -> None:
@@ -120,6 +123,7 @@ def test_planted_problems_are_solved(seed: int, independent_judge: Any) -> None:
     check_designs(result, independent_judge)
 
 
+@pytest.mark.slow
 def test_an_objective_of_compactness_gives_small_designs(luggage_result: Result) -> None:
     compact = replace(luggage_result.problem, objective=Objective(transmission=0, compactness=1))
     result = synthesize(compact, enough=20)
@@ -130,7 +134,7 @@ def test_an_objective_of_compactness_gives_small_designs(luggage_result: Result)
     assert sizes[0] < min(candidate.verdict.size for candidate in luggage_result.candidates) * (1 + 1e-6)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.usefixtures("small_search")
 def test_too_much_transmission_is_named_with_the_nearest_design(independent_judge: Any) -> None:
     wanted: dict[str, Any] = {"link_length": (0.3, 5), "coupler_arms": (0, 5)}
@@ -175,7 +179,8 @@ IMPOSSIBLE: dict[str, tuple[str, str, Problem]] = {
 }
 
 
-@pytest.mark.quick("order", "start angle")
+@pytest.mark.slow
+@pytest.mark.quick("order")
 @pytest.mark.parametrize("kind", IMPOSSIBLE)
 def test_the_requirement_in_the_way_is_named(kind: str, relaxing_only: Callable[..., None]) -> None:
     key, said, problem = IMPOSSIBLE[kind]
@@ -189,6 +194,7 @@ def test_the_requirement_in_the_way_is_named(kind: str, relaxing_only: Callable[
     assert result.counts["verified and distinct"] == 0
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("small_search")
 def test_a_required_ground_angle_is_kept(independent_judge: Any) -> None:
     problem = Problem(task=load("luggage").task, requirements=Requirements(ground_angle_deg=0))
@@ -200,6 +206,7 @@ def test_a_required_ground_angle_is_kept(independent_judge: Any) -> None:
         assert abs(np.arctan2(ground[1], ground[0])) < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("small_search")
 def test_a_pivot_required_on_a_line_is_on_it(independent_judge: Any) -> None:
     result = synthesize(luggage_with(o2=Box(y=(-3, -3))), enough=8)
@@ -209,6 +216,7 @@ def test_a_pivot_required_on_a_line_is_on_it(independent_judge: Any) -> None:
         assert abs(candidate.linkage.o2[1] + 3) < 1e-9 * result.problem.task.size
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("small_search")
 def test_a_required_start_angle_is_kept(independent_judge: Any) -> None:
     result = synthesize(luggage_with(theta2_start_deg=75), enough=8)
@@ -232,6 +240,7 @@ REFUSED = {
 }  # fmt: skip
 
 
+@pytest.mark.quick("pure rotation")
 @pytest.mark.usefixtures("small_search")
 @pytest.mark.parametrize("kind", DEGENERATE)
 def test_degenerate_poses_are_explained(kind: str) -> None:

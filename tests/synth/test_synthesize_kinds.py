@@ -52,6 +52,7 @@ def coupler_points(linkage: Linkage, theta2: FloatArray) -> FloatArray:
     return np.column_stack([p.real, p.imag, np.angle(e3)])
 
 
+@pytest.mark.quick("slider-crank-False", "inverted-slider-crank-True")
 @pytest.mark.parametrize("timed", [False, True])
 @pytest.mark.parametrize("mechanism", SLIDERS)
 def test_planted_paths_are_met(mechanism: str, timed: bool) -> None:
@@ -66,6 +67,7 @@ def test_planted_paths_are_met(mechanism: str, timed: bool) -> None:
         assert (np.diff(best.verdict.theta2) * best.verdict.direction > 0).all()
 
 
+@pytest.mark.quick("slider-crank-3", "inverted-slider-crank-3")
 @pytest.mark.parametrize("poses", [3, 4])
 @pytest.mark.parametrize("mechanism", SLIDERS)
 def test_planted_poses_are_met(mechanism: str, poses: int) -> None:
@@ -116,6 +118,7 @@ def test_limits_of_slides_bind() -> None:
         assert np.degrees(np.arcsin(mu.min())) > 40 - 1e-3
 
 
+@pytest.mark.slow
 def test_mixed_lists_have_one_ranking() -> None:
     """Four poses in general place: all kinds in one list, by one judge and one objective."""
     task, _ = planted_motion(np.random.default_rng([2, 4]), 4, mechanism="slider-crank")
@@ -131,7 +134,7 @@ def test_mixed_lists_have_one_ranking() -> None:
     assert {each.id for each in alone.candidates} <= {each.id for each in found.candidates}
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_a_shorter_list_has_an_equal_share_of_each_kind() -> None:
     task = MotionTask.from_degrees([[0, 0, 0], [60, 90, 15], [180, 140, 40]])
     whole = synthesize(Problem(task=task, mechanism=["slider-crank", "four-bar", "inverted-slider-crank"]))
@@ -145,6 +148,7 @@ def test_a_shorter_list_has_an_equal_share_of_each_kind() -> None:
     assert whole.top(10_000) == whole
 
 
+@pytest.mark.slow
 def test_of_inverted_slider_cranks_without_offset_small_ones_are_found() -> None:
     """The transmission angle is 90 deg for all of them; a search for it alone finds larger ones."""
     task, _ = planted_path(np.random.default_rng(1), 5, mechanism="inverted-slider-crank")
@@ -156,7 +160,7 @@ def test_of_inverted_slider_cranks_without_offset_small_ones_are_found() -> None
     assert best.verdict.size < 0.97 * min(each.verdict.size for each in found)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_a_kind_that_cannot_do_it_is_left_out() -> None:
     """The luggage poses turn back to equal angles: their slider dyads lie at infinity."""
     problem = load("luggage")
@@ -211,6 +215,7 @@ def test_what_a_kind_has_not_is_refused_in_own_functions() -> None:
         synthesize(Problem(task=task, mechanism="slider-crank"), constraints=[has_r4])
 
 
+@pytest.mark.slow
 def test_all_slider_cranks_through_eight_points() -> None:
     """The planted one is among the feasible ones; every start is a design already."""
     task, planted = planted_path(np.random.default_rng([1, 1]), 8, mechanism="slider-crank")

@@ -91,6 +91,7 @@ def check_designs(result: Result, judge: Any) -> None:
     assert all(share_apart(task, x.linkage, y.linkage) > 0.01 for x, y in pairs)
 
 
+@pytest.mark.slow
 def test_case_1_gives_fifty_exact_designs_and_a_good_best_one(case1_result: Result, path_judge: Any) -> None:
     assert len(case1_result) >= 50
     assert case1_result.complete
@@ -130,6 +131,7 @@ def test_case_5_reaches_the_best_published_error(seed: int, path_judge: Any, lea
 PLANTED = [(9, False, seed) for seed in range(3)] + [(n, True, n) for n in (4, 5, 6, 12, 24)]
 
 
+@pytest.mark.quick("9-False-0", "5-True-5", "24-True-24")
 @pytest.mark.parametrize(("points", "timed", "seed"), PLANTED)
 def test_planted_problems_are_solved(points: int, timed: bool, seed: int, path_judge: Any) -> None:
     task, _ = planted_path(np.random.default_rng([31, seed]), points, timed=timed)
@@ -139,6 +141,7 @@ def test_planted_problems_are_solved(points: int, timed: bool, seed: int, path_j
     assert path_judge(best.linkage, best.verdict.theta2, task).errors.max() < 1e-6
 
 
+@pytest.mark.slow
 def test_closed_curves_are_gone_round(path_judge: Any, least_error: LeastError) -> None:
     angle = np.linspace(0, 2 * np.pi, 12, endpoint=False)
     curve = np.exp(1j * angle) + 0.25 * np.exp(-1j * angle) + 0.1 * np.exp(2j * angle)
@@ -150,6 +153,7 @@ def test_closed_curves_are_gone_round(path_judge: Any, least_error: LeastError) 
     assert (frame["hausdorff"] <= frame["frechet"]).all()
 
 
+@pytest.mark.slow
 def test_a_driver_that_rocks_does_it_too(path_judge: Any) -> None:
     result = synthesize(case1(rotatability="any"), enough=10)
     check_designs(result, path_judge)
@@ -170,7 +174,7 @@ def curve_of(linkage: FourBar, count: int) -> ComplexArray:
     return traced[np.isfinite(traced)]
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_cognates_trace_the_curve_of_the_design_that_they_name() -> None:
     result = synthesize(case1(rotatability="any", link_length=(3, 90), o2=None, o4=None), enough=24)
     named = {candidate.id: candidate for candidate in result.candidates}
@@ -216,7 +220,7 @@ def test_workers_change_no_byte(tmp_path: Path, other_process: Executor) -> None
     assert csv_of(synthesize(problem, **(few | {"seed": 4})), tmp_path) != alone
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_an_impossible_path_says_what_stands_in_the_way(relaxing_only: Callable[..., None]) -> None:
     relaxing_only("o2")
     far = Box((1000, 1001), (1000, 1001))

@@ -52,6 +52,7 @@ def check_exact(result: Result, judge: Judge) -> None:
     assert all(one.id != other.id for one, other in combinations(result.candidates, 2))
 
 
+@pytest.mark.quick("0-3", "0-6", "0-12", "1-3", "1-6", "1-12")
 @pytest.mark.parametrize("poses", [2, 3, 5, 6, 8, 12])
 @pytest.mark.parametrize("seed", range(2))
 def test_planted_poses_are_met_exactly(poses: int, seed: int, independent_judge: Judge) -> None:
@@ -117,6 +118,7 @@ def closest_poses(candidate: Candidate, task: MotionTask) -> tuple[npt.NDArray[n
     return gap, turned
 
 
+@pytest.mark.slow
 @pytest.mark.quick("0-6")
 @pytest.mark.parametrize("poses", [6, 12])
 @pytest.mark.parametrize("seed", range(3))
@@ -150,6 +152,7 @@ MIXES: dict[str, tuple[int, list[int], list[int]]] = {
 }
 
 
+@pytest.mark.quick("7 poses, 4 angles free", "3 poses, a place and an angle free")
 @pytest.mark.parametrize("mix", MIXES)
 def test_poses_with_free_parts_are_met_exactly(mix: str) -> None:
     poses, places, angles = MIXES[mix]
@@ -182,6 +185,7 @@ def test_more_freedom_is_never_worse() -> None:
     assert best[0].transmission_min_task >= best[1].transmission_min_task - 1e-6
 
 
+@pytest.mark.slow
 def test_compactness_of_three_poses() -> None:
     task = MotionTask.from_degrees([[0, 0, 0], [2, 1, 20], [3, 3, 50]])
     wanted = Requirements(link_length=(0.2, 12), transmission_min_deg=15)
@@ -192,6 +196,7 @@ def test_compactness_of_three_poses() -> None:
     assert sizes[1] < sizes[0]
 
 
+@pytest.mark.slow
 def test_five_poses_that_no_linkage_meets_come_with_the_closest() -> None:
     draw = np.random.default_rng([43, 4])
     for _ in range(20):
@@ -212,6 +217,7 @@ def too_long(design: Design) -> Any:
     return design.r1 + 1e3
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("small_search")
 def test_a_constraint_that_the_only_linkage_breaks_is_named() -> None:
     task, _ = planted(1, 6)

@@ -46,6 +46,7 @@ def csv_of(result: Result, folder: Path, name: str = "out.csv") -> bytes:
     return (folder / name).read_bytes()
 
 
+@pytest.mark.slow
 def test_repetition_changes_no_byte(luggage: Problem, tmp_path: Path) -> None:
     few = {"starts": 24, "enough": 40, "seed": 5}
     alone = csv_of(synthesize(luggage, **few), tmp_path)
@@ -70,6 +71,7 @@ class Inline(Executor):
         self.closed = True
 
 
+@pytest.mark.slow
 def test_an_executor_does_the_work_and_stays_open(luggage: Problem, tmp_path: Path) -> None:
     executor = Inline()
     result = synthesize(luggage, starts=10, executor=executor)
@@ -106,6 +108,7 @@ def test_a_lost_executor_is_an_error_of_the_surroundings(
         synthesize(luggage, starts=10, executor=executor)
 
 
+@pytest.mark.slow
 def test_progress_grows_until_enough(luggage: Problem) -> None:
     seen: list[Progress] = []
     result = synthesize(luggage, enough=25, progress=seen.append)
@@ -121,6 +124,8 @@ def same_designs(first: Sequence[Candidate], second: Sequence[Candidate]) -> boo
     return [one.id for one in first] == [one.id for one in second]
 
 
+@pytest.mark.slow
+@pytest.mark.quick("luggage")
 @pytest.mark.parametrize("name", ["luggage", "path-18-timed"])
 def test_progress_has_the_designs_that_are_chosen_from(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Exact designs are all listed; of least squares a choice is made of them."""
@@ -140,6 +145,7 @@ def test_progress_has_the_designs_that_are_chosen_from(name: str, monkeypatch: p
         assert {one.id for one in seen[-1].designs} == {one.id for one in result.candidates}
 
 
+@pytest.mark.slow
 def test_what_was_seen_of_a_stopped_search_is_of_use(luggage: Problem, tmp_path: Path) -> None:
     seen: list[Progress] = []
     stopped = synthesize(luggage, progress=seen.append, stop=lambda: len(seen) > 1)
@@ -159,6 +165,7 @@ def test_enough_is_enough(luggage: Problem) -> None:
     assert seen[0].starts == luggage.search.starts > 16
 
 
+@pytest.mark.slow
 def test_a_fruitless_search_ends(luggage: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(import_module("grashof.synth.search.ledger"), "FRUITLESS", 16)
     monkeypatch.setattr(
@@ -223,6 +230,7 @@ def test_stopped_after_a_glance_in_vain(luggage: Problem, monkeypatch: pytest.Mo
     assert not result.complete
 
 
+@pytest.mark.slow
 def test_a_glance_takes_nothing_from_the_list(luggage: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
     with_glance = {each.id for each in synthesize(luggage).candidates}
     monkeypatch.setattr(FewPoses, "glance", lambda *_: None)
@@ -259,5 +267,6 @@ assert all([each.id for each in result.candidates] == alone for result in found)
 """
 
 
+@pytest.mark.slow
 def test_threads_do_not_crash_the_interpreter() -> None:
     subprocess.run([sys.executable, "-c", THREADS], check=True, timeout=120)

@@ -160,7 +160,7 @@ assert min(checked) > 10, checked
 SCRIPTS = {"at once": AT_ONCE, "as executor": AS_EXECUTOR, "async": ASYNC, "own functions": OWN_FUNCTIONS}
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.parametrize(
     "how", [pytest.param(how, marks=pytest.mark.study) if how == "at once" else how for how in SCRIPTS]
 )
@@ -194,6 +194,7 @@ def test_own_functions_of_several_threads_take_turns() -> None:
     assert most == [1]
 
 
+@pytest.mark.slow
 def test_an_error_of_an_own_function_keeps_no_symbols() -> None:
     """Symbols would end with the error, in whatever thread and moment it is dropped."""
 

@@ -65,6 +65,7 @@ TASKS: dict[str, Callable[[], Problem]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.quick("points in any order")
 @pytest.mark.parametrize("task", TASKS)
 def test_a_search_ends_soon_after_its_time_limit(task: str) -> None:
@@ -85,6 +86,7 @@ class Polled:
         return False
 
 
+@pytest.mark.slow
 def test_picking_many_starts_asks_whether_to_stop() -> None:
     """2000 designs wanted: they were picked for 6.6 s on end."""
     few, many = Polled(), Polled()
@@ -93,6 +95,7 @@ def test_picking_many_starts_asks_whether_to_stop() -> None:
     assert many.times > few.times + 250
 
 
+@pytest.mark.study
 def test_fitting_functions_asks_whether_to_stop() -> None:
     """15 pairs and the greatest error: 5.7 s went by between two questions."""
     task = FunctionTask.from_degrees(
@@ -103,6 +106,7 @@ def test_fitting_functions_asks_whether_to_stop() -> None:
     assert polled.times > 300  # long before its end
 
 
+@pytest.mark.slow
 def test_a_stopped_search_for_functions_lists_what_it_has() -> None:
     told: list[Progress] = []
     part = synthesize(load("function-log10"), stop=lambda: bool(told), progress=told.append)

@@ -54,6 +54,7 @@ def check_timing(result: Result) -> None:
         np.testing.assert_allclose(turned, task.driver_turns, rtol=0, atol=1e-9)
 
 
+@pytest.mark.quick("3-False-False", "6-True-True")
 @pytest.mark.parametrize(
     ("poses", "mixed", "closed"), [(3, False, False), (5, False, False), (7, True, False), (6, True, True)]
 )
@@ -66,6 +67,7 @@ def test_planted_timed_poses_are_met_exactly(poses: int, mixed: bool, closed: bo
         assert np.nanmax(candidate.verdict.angle_error) < 1e-9
 
 
+@pytest.mark.quick("6-True-False")
 @pytest.mark.parametrize(("poses", "mixed", "again"), [(4, False, False), (4, False, True), (6, True, False)])
 def test_closed_poses_are_met_on_a_whole_turn(poses: int, mixed: bool, again: bool) -> None:
     task = planted(0, poses, timed=False, mixed=mixed, closed=True)
@@ -82,7 +84,8 @@ def test_closed_poses_are_met_on_a_whole_turn(poses: int, mixed: bool, again: bo
     assert {"hausdorff", "frechet"} <= set(result.to_frame().columns)
 
 
-@pytest.mark.quick("a", "keep_out")
+@pytest.mark.slow
+@pytest.mark.quick("keep_out")
 @pytest.mark.parametrize(
     "limit", ["a", "transmission_min_deg", "o2", "theta2_start_deg", "keep_out", "error_factor"]
 )
@@ -116,6 +119,7 @@ def test_timed_least_squares_keep_an_active_limit(
         assert result.best.verdict.square >= least * (1 - 1e-9)
 
 
+@pytest.mark.slow
 def test_timed_zones_are_kept_where_the_judge_finds_the_driver(free: Result) -> None:
     task, verdict = free.problem.task, free.best.verdict
     wide = 1.3 * float(verdict.position_error.max()), 1.3 * float(verdict.angle_error.max())

@@ -26,6 +26,7 @@ def moved(problem: Problem, by: float) -> Problem:
     return replace(problem, task=MotionTask(positions, problem.task.angles))
 
 
+@pytest.mark.slow
 def test_ten_designs_follow_a_pose_over_eight_steps(luggage) -> None:  # type: ignore[no-untyped-def]
     problem, designs = luggage
     for step in range(1, 9):
@@ -54,7 +55,7 @@ def test_lost_designs_keep_their_place_and_say_what_they_miss(luggage) -> None: 
     assert all(design.verdict.defects and design.problem is limited for design in after)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_trade_offs_of_least_squares_stay_apart() -> None:
     problem = load("path-gait")
     designs = synthesize(problem).candidates
@@ -71,6 +72,7 @@ def test_trade_offs_of_least_squares_stay_apart() -> None:
     assert len({design.id for design in after}) == len(designs)
 
 
+@pytest.mark.study
 def test_a_point_more_and_a_point_less() -> None:
     problem = Problem(task=PathTask(LINE), requirements=Requirements(exact=False))
     designs = synthesize(problem, enough=3).candidates[:3]

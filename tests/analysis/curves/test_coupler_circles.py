@@ -34,6 +34,7 @@ def carrying(linkage: FourBar, theta2: float, place: np.ndarray) -> FourBar:
     return replace(linkage, coupler_point=(arm.real, arm.imag))
 
 
+@pytest.mark.slow
 @given(data=st.data())
 @CHECKED
 def test_points_of_the_circles(four_bars: Drawer, data: st.DataObject) -> None:

@@ -67,6 +67,7 @@ def with_cusp(linkage: FourBar, theta2: float) -> FourBar:
     )
 
 
+@pytest.mark.quick("double-crank", "non-Grashof")
 @pytest.mark.parametrize("kind", [kind for kind in FOUR_BAR_CLASSES if kind is not GrashofClass.CHANGE_POINT])
 @settings(max_examples=8)
 @given(data=st.data())

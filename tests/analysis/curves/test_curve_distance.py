@@ -43,6 +43,7 @@ def test_a_square_about_a_circle() -> None:
     assert frechet == pytest.approx(np.sqrt(2) - 1, abs=1e-2)
 
 
+@pytest.mark.quick("0", "7")
 @pytest.mark.parametrize("seed", range(8))
 def test_a_curve_is_at_no_distance_from_itself_wherever_it_begins(seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -81,7 +82,8 @@ def test_a_corner_and_a_ridge_to_rounding() -> None:
     assert hausdorff == pytest.approx(max(far.max(), np.sqrt(5) - 1), rel=1e-9)
 
 
-@pytest.mark.quick("1", "2")
+@pytest.mark.slow
+@pytest.mark.quick("2")
 @pytest.mark.parametrize("seed", range(6))
 def test_the_hausdorff_distance_to_nine_digits(seed: int) -> None:
     """Against a dense search on both, ever closer about what is furthest."""
@@ -152,6 +154,8 @@ def brute_frechet(one: Array, other: Array) -> float:
     return least
 
 
+@pytest.mark.slow
+@pytest.mark.quick("0")
 @pytest.mark.parametrize("seed", range(2))
 def test_the_definitions_on_dense_samples(seed: int) -> None:
     rng = np.random.default_rng(seed)

@@ -74,6 +74,7 @@ NEARLY_DEAD = FourBar((0, 0), (4, 0), 2, 4.5, 2.501, (2, 1))
 CRANKS = [random_full_crank(np.random.default_rng(seed)) for seed in range(5)]
 
 
+@pytest.mark.quick("linkage0", "linkage2", "linkage3", "linkage5")
 @pytest.mark.parametrize(
     "linkage", [NEARLY_DEAD, *(random_full_crank(np.random.default_rng(s)) for s in range(5))]
 )

@@ -125,6 +125,7 @@ def test_the_torque_is_what_the_engine_takes(linkage: FourBar) -> None:
         assert np.hypot(fx, fy) == pytest.approx(np.hypot(*found.f43[k]), abs=1e-9 * force_scale)
 
 
+@pytest.mark.slow
 def test_a_released_linkage_moves_as_in_the_engine() -> None:
     linkage = CRANK_ROCKER
     masses, loads = stated_masses(linkage, SPEC), stated_loads(SPEC, 1.0)

@@ -80,6 +80,8 @@ def test_no_other_counterweight_makes_the_torque_more_even(measure: str) -> None
     assert np.hypot(*found.crank_weight.centre) == pytest.approx(1.0)
 
 
+@pytest.mark.slow
+@pytest.mark.quick("rms")
 @pytest.mark.parametrize("measure", ["rms", "peak"])
 def test_no_other_counterweight_makes_the_torque_of_a_turn_more_even(measure: str) -> None:
     """Between samples, too: against dense ones, and the counterweights beside it."""

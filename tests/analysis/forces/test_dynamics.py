@@ -154,6 +154,7 @@ def all_loads(draw: st.DrawFn, pins: float) -> Loads:
     )  # fmt: skip
 
 
+@pytest.mark.quick("double-crank")
 @pytest.mark.parametrize("kind", [GrashofClass.CRANK_ROCKER, GrashofClass.DOUBLE_CRANK])
 @given(data=st.data())
 @CHECKED

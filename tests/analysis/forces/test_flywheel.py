@@ -55,6 +55,7 @@ def test_its_energy_is_the_work_between_slowest_and_fastest() -> None:
         assert surplus(angle) == pytest.approx(0, abs=1e-4 * wheel.energy)
 
 
+@pytest.mark.slow
 def test_energy_and_angles_near_a_change_point_with_a_load_that_jumps() -> None:
     """The load on link 4 is larger on its way up; the torque peaks within a thousandth of a radian."""
     linkage = FourBar((0, 0), (4, 0), 2, 4.5, 2.501, (2, 1))

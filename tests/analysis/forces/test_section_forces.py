@@ -213,7 +213,8 @@ def random_masses(rng: np.random.Generator, linkage: FourBar) -> Masses:
     return Masses(links[0], links[1] + plate, links[2]).with_payload(2.0, linkage.coupler_point)
 
 
-@pytest.mark.quick("non-Grashof", "crank-rocker")
+@pytest.mark.slow
+@pytest.mark.quick("crank-rocker")
 @pytest.mark.parametrize("kind", FOUR_BAR_CLASSES)
 @given(data=st.data())
 @settings(max_examples=12)
@@ -412,6 +413,7 @@ def of_all(bars: dict[int, BarForces]) -> Floats:
     return np.stack(found)
 
 
+@pytest.mark.slow
 @given(data=st.data())
 @settings(max_examples=30)
 def test_the_frame_does_not_matter(four_bars: Drawer, data: st.DataObject) -> None:

@@ -44,6 +44,7 @@ def state_of(linkage: Linkage, count: int = 97, speed: float = 3.0) -> Kinematic
     return solve_kinematics(linkage, np.linspace(0.01, 6.27, count), speed, 2.0)
 
 
+@pytest.mark.quick("30.0-profile0-SliderCrank", "-30.0-profile2-InvertedSliderCrank")
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("profile", [MotorSpec(), MotorSpec("trapezoid"), MotorSpec("cycloid")])
 @pytest.mark.parametrize("speed", [30.0, -30.0])
@@ -64,6 +65,7 @@ def test_the_torque_of_everything_at_once_is_virtual_work(
         np.testing.assert_allclose(found.torque, work, rtol=0, atol=1e-9 * peak)
 
 
+@pytest.mark.quick("2.0-SliderCrank", "-2.0-InvertedSliderCrank")
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("speed", [2.0, -2.0])
 def test_power_of_drive_loads_and_friction_is_the_rate_of_the_energy(
@@ -91,6 +93,7 @@ def test_power_of_drive_loads_and_friction_is_the_rate_of_the_energy(
         assert (given.friction < 0).all()
 
 
+@pytest.mark.quick("InvertedSliderCrank")
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_system_of_equations_has_the_same_solution(
     kind: type[Linkage], slider_loads: Specs, made: Maker

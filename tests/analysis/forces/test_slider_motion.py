@@ -29,7 +29,9 @@ from grashof.analysis import (
     stated_loads,
     stated_masses,
 )
+from grashof.analysis.numerics import collocation
 from grashof.problems import DynamicsSpec, InvertedSliderCrank, ProblemError, SliderCrank
+from grashof.problems.values.acting import FrictionSpec, LoadSpec
 from grashof.problems.values.linkage import Linkage
 
 TURN = 2 * np.pi
@@ -43,6 +45,7 @@ def lossless(spec: DynamicsSpec) -> DynamicsSpec:
     return replace(spec, loads=(), dampers=(), friction=None)
 
 
+@pytest.mark.study
 @pytest.mark.quick("InvertedSliderCrank--40.0-2.0-0.3")
 @pytest.mark.parametrize(("omega2", "lasts", "margin"), [(40.0, 2.0, 0.2), (-40.0, 2.0, 0.3)])
 @pytest.mark.parametrize("kind", KINDS)
@@ -61,6 +64,7 @@ def test_a_released_linkage_keeps_its_energy_for_ten_turns(
         assert np.ptp(free.energy) < 1e-11 * np.abs(free.energy).max()
 
 
+@pytest.mark.slow
 @pytest.mark.quick("SliderCrank")
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_torque_of_a_released_linkage_is_none(
@@ -81,6 +85,7 @@ def test_the_torque_of_a_released_linkage_is_none(
         np.testing.assert_allclose(steady.torque[turning], 0.0, atol=1e-8 * scale)
 
 
+@pytest.mark.study
 def test_friction_of_a_slide_brings_an_engine_to_rest() -> None:
     engine = SliderCrank((0, 0), 0.05, 0.2)
     masses = Masses(Body(1.0, 0.01), Body(0.5, 0.002, (0.07, 0.0)), Body(0.4))
@@ -92,6 +97,26 @@ def test_friction_of_a_slide_brings_an_engine_to_rest() -> None:
     travel = np.linspace(0.3, float(last.theta2[-1]), 200_001)
     slid = np.abs(np.diff(solve_kinematics(engine, travel).slide.travel)).sum()
     assert begin == pytest.approx(2.0 * slid, rel=1e-6)  # the work of friction, over the way of the slider
+
+
+def test_a_swing_that_dies_away_where_the_slide_turns_back_takes_few_steps(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    crank = SliderCrank((0, 0), 1, 3, offset=-0.5, slide_angle=np.pi / 6, assembly=-1)
+    spec = DynamicsSpec(
+        mass_per_length=0.002,
+        loads=(LoadSpec(4, values=((-9, 1, 2), (0, 3, 4), (9, 1, 2)), over="travel"),),
+        friction=FrictionSpec(slide_mu=0.1, slide_length=0.4, slide_viscous=2, slide_force=3),
+    )
+    made, steps = collocation._panel, list[float]()
+    monkeypatch.setattr(collocation, "_panel", lambda *given: (steps.append(given[1]), made(*given))[1])
+    masses, loads = stated_masses(crank, spec, 1e-3), stated_loads(spec, 1e-3)
+    free = free_response(crank, masses, np.linspace(0, 0.06, 601), np.pi / 9, 0.0, loads=loads)
+    assert free.end == pytest.approx(0.06)
+    assert len(steps) < 300
+    speeds = np.abs(free.state.omega2)
+    assert speeds.max() > 100
+    assert speeds[-20:].max() < 1e-3 * speeds.max()
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -122,6 +147,7 @@ def test_what_holds_a_linkage_is_what_a_driver_at_rest_gives(
         np.testing.assert_allclose(gain.velocity_ratio * 3.0, output, rtol=1e-9, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_dead_positions_hold_what_the_driver_cannot() -> None:
     """A slider-crank whose driver swings: rod across the slide. A rod through O4's block, at its offset."""
     swings = SliderCrank((0, 0), 2.0, 1.0)
@@ -152,6 +178,8 @@ def test_equilibria_and_swings_of_a_hanging_engine() -> None:
     np.testing.assert_allclose(found.inertia, 0.3, rtol=1e-9)
 
 
+@pytest.mark.slow
+@pytest.mark.quick("InvertedSliderCrank")
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_flywheel_keeps_the_fluctuation_that_it_is_sized_for(
     kind: type[Linkage], slider_loads: Specs, made: Maker

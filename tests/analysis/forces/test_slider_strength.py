@@ -73,6 +73,8 @@ def before_cut(
     return np.stack([-(along * total).sum(axis=-1), cross(along, total), -moment])
 
 
+@pytest.mark.slow
+@pytest.mark.quick("SliderCrank")
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_cut_is_in_equilibrium(kind: type[Linkage], made: Maker) -> None:
     rng = np.random.default_rng(3)
@@ -136,6 +138,7 @@ def test_an_engine_rod_is_pushed_by_gas_over_the_cosine() -> None:
     assert list(strength_at(state, structure, links=[2]).bars) == [2]
 
 
+@pytest.mark.quick("1.0-SliderCrank", "0.0254-InvertedSliderCrank")
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("metre", [1.0, 1e-3, 0.0254])
 def test_strength_over_a_turn_is_that_of_a_dense_search(

@@ -151,6 +151,8 @@ def test_the_torque_is_what_the_engine_takes(linkage: Linkage) -> None:
         assert np.hypot(fx, fy) == pytest.approx(np.hypot(*held[k]), abs=1e-9 * force_scale)
 
 
+@pytest.mark.slow
+@pytest.mark.quick("linkage0")
 @pytest.mark.parametrize("linkage", [ENGINE, SHAPER])
 def test_a_released_linkage_moves_as_in_the_engine(linkage: Linkage) -> None:
     masses, loads = masses_of(linkage), stated_loads(SPEC, 1.0)

@@ -32,6 +32,7 @@ INCH = 0.0254
 Linkages = Callable[[int], list[FourBar]]
 
 
+@pytest.mark.quick("30.0-profile0", "30.0-profile2", "-30.0-profile2")
 @pytest.mark.parametrize("profile", [MotorSpec(), MotorSpec("trapezoid"), MotorSpec("cycloid")])
 @pytest.mark.parametrize("speed", [30.0, -30.0])
 def test_the_torque_of_everything_at_once_is_virtual_work(

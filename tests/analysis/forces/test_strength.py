@@ -230,7 +230,8 @@ def dense(
     return {key: float(value) for key, value in found.items()}
 
 
-@pytest.mark.quick("6", "4")
+@pytest.mark.slow
+@pytest.mark.quick("6")
 @pytest.mark.parametrize("seed", range(8))
 def test_peaks_are_those_of_a_dense_search(seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -310,7 +311,8 @@ def test_the_worst_bar_is_told_without_sections_too() -> None:
     assert (summary.worst_bar.part, summary.worst_bar.key) == ("link 2", "stress")
 
 
-@pytest.mark.quick("2.0-linkage1", "-2.0-linkage0", "0.0-linkage2")
+@pytest.mark.slow
+@pytest.mark.quick("2.0-linkage1")
 @pytest.mark.parametrize(
     "linkage",
     [
@@ -367,6 +369,7 @@ def test_a_motion_over_time_may_be_uneven() -> None:
     assert moment.place in (pytest.approx(0.25), pytest.approx(0.75))
 
 
+@pytest.mark.slow
 @given(data=st.data())
 @settings(max_examples=15)
 def test_units_do_not_matter(four_bars: Drawer, data: st.DataObject) -> None:
@@ -397,6 +400,7 @@ def test_units_do_not_matter(four_bars: Drawer, data: st.DataObject) -> None:
         np.testing.assert_allclose(other[key], value, rtol=1e-8, atol=1e-8 * np.abs(value).max(), err_msg=key)
 
 
+@pytest.mark.slow
 @given(data=st.data())
 @settings(max_examples=15)
 def test_loads_at_rest_are_borne_in_proportion(four_bars: Drawer, data: st.DataObject) -> None:

@@ -74,6 +74,7 @@ def random_loads(rng: np.random.Generator, radius: float) -> Loads:
     )  # fmt: skip
 
 
+@pytest.mark.quick("0.0")
 @pytest.mark.parametrize("pins", [0.0, 0.01])
 @pytest.mark.filterwarnings("ignore::grashof.problems.DeadPositionWarning")
 def test_both_ways_agree_on_random_linkages_and_loads(pins: float) -> None:

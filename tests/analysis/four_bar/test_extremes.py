@@ -73,6 +73,7 @@ def test_strokes_of_the_reference_figures(
     assert np.degrees(swing) == pytest.approx(float(given_swing), rel=1e-12)
 
 
+@pytest.mark.quick("omega4-crank-rocker", "vB_mag-crank-rocker", "P_y-double-crank")
 @pytest.mark.parametrize("kind", [GrashofClass.CRANK_ROCKER, GrashofClass.DOUBLE_CRANK])
 @pytest.mark.parametrize("quantity", ["omega4", "alpha3", "vB_mag", "P_y"])
 @given(data=st.data())

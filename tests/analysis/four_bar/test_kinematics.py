@@ -107,6 +107,7 @@ def differences() -> Callable[[Curves, float, float], list[npt.NDArray[np.float6
     return derive
 
 
+@pytest.mark.quick("double-crank", "double-rocker", "non-Grashof")
 @pytest.mark.parametrize("kind", FOUR_BAR_CLASSES)
 @given(data=st.data())
 @CHECKED

@@ -249,6 +249,7 @@ def test_marching_holds_the_loop_closed_and_goes_all_the_way_around() -> None:
     assert np.abs(steps - STEP).max() < 1e-3 * STEP
 
 
+@pytest.mark.quick("non-Grashof")
 @pytest.mark.parametrize("kind", SMOOTH)
 @given(data=st.data())
 @MARCHED

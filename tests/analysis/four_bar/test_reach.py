@@ -32,6 +32,7 @@ def swept_box(close_loop: Brute, linkage: FourBar, start: float, end: float) -> 
     return np.array([corners.min(axis=0), corners.max(axis=0)])
 
 
+@pytest.mark.quick("double-crank", "double-rocker", "non-Grashof")
 @pytest.mark.parametrize("kind", FOUR_BAR_CLASSES)
 @given(data=st.data())
 @CHECKED
@@ -49,6 +50,7 @@ def test_box_agrees_with_a_dense_sweep(
     np.testing.assert_allclose(reach_box(linkage, end, start), expected, rtol=0, atol=atol)
 
 
+@pytest.mark.quick("double-crank", "double-rocker", "non-Grashof")
 @pytest.mark.parametrize("kind", [kind for kind in FOUR_BAR_CLASSES if kind is not GrashofClass.CHANGE_POINT])
 @given(data=st.data())
 @CHECKED

@@ -21,6 +21,8 @@ def loaded(problem: Problem, low: float, high: float) -> Problem:
     return replace(problem, length_unit="m", dynamics=DynamicsSpec(loads=[load]))
 
 
+@pytest.mark.slow
+@pytest.mark.quick("inverted-slider-crank")
 @pytest.mark.parametrize("mechanism", SLIDING)
 def test_rows_that_end_too_early_are_a_defect(mechanism: str) -> None:
     for seed in range(8):
@@ -42,6 +44,7 @@ def test_rows_that_end_too_early_are_a_defect(mechanism: str) -> None:
             assert found or np.isfinite(Values(linkage, judged, problem)["torque_peak"])
 
 
+@pytest.mark.quick("inverted-slider-crank")
 @pytest.mark.slow
 @pytest.mark.parametrize("mechanism", SLIDING)
 def test_a_search_lists_designs_whose_loads_are_known(mechanism: str) -> None:

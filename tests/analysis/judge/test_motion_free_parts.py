@@ -67,6 +67,7 @@ def test_exact_parts_are_met_to_rounding(seed: int, kinds: Kinds) -> None:
     assert np.nanmax(found.angle_error, initial=0.0) <= 1e-11
 
 
+@pytest.mark.slow
 @given(seed=st.integers(0, 2**32), kinds=KINDS, share=st.sampled_from([1e-3, 0.03, 0.2, 1.0]))
 @CHECKED
 def test_no_driver_angle_of_a_scan_comes_nearer(
@@ -81,6 +82,7 @@ def test_no_driver_angle_of_a_scan_comes_nearer(
     assert (missed(linkage, task) <= least * (1 + 1e-6) + 1e-20 * task.size**2).all()
 
 
+@pytest.mark.quick("double-crank", "non-Grashof")
 @pytest.mark.parametrize("kind", [kind for kind in FOUR_BAR_CLASSES if kind is not GrashofClass.CHANGE_POINT])
 @given(data=st.data())
 @settings(CHECKED, max_examples=15)

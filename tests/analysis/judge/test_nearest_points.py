@@ -88,6 +88,7 @@ def test_planted_timing_is_found_in_its_sense(count: int) -> None:
         np.testing.assert_allclose(again.theta2, targets.theta2, atol=1e-7)
 
 
+@pytest.mark.quick("double-crank", "non-Grashof")
 @pytest.mark.parametrize("kind", CLASSES)
 @settings(max_examples=10)
 @given(data=st.data())

@@ -56,6 +56,7 @@ def test_exact_poses_are_met_to_rounding(seed: int, poses: int) -> None:
     assert found.angle_error.max() <= 1e-11
 
 
+@pytest.mark.study
 @given(seed=st.integers(0, 2**32), share=st.sampled_from([1e-4, 1e-2, 0.05, 0.2, 1.0]))
 @settings(CHECKED, max_examples=80)
 def test_no_driver_angle_of_a_scan_comes_nearer(close_loop: Brute, seed: int, share: float) -> None:
@@ -67,6 +68,8 @@ def test_no_driver_angle_of_a_scan_comes_nearer(close_loop: Brute, seed: int, sh
     assert (miss <= misses_of_scan(close_loop, linkage, task) * (1 + 1e-6)).all()
 
 
+@pytest.mark.slow
+@pytest.mark.quick("crank-rocker")
 @pytest.mark.parametrize("kind", [kind for kind in FOUR_BAR_CLASSES if kind is not GrashofClass.CHANGE_POINT])
 @given(data=st.data())
 @CHECKED

@@ -78,6 +78,7 @@ def test_torque_of_the_reports_linkage_on_the_job(golden_linkages: dict[str, Fou
     assert (torque.max(), torque.min()) == pytest.approx((10.64, -27.69), abs=5e-3)
 
 
+@pytest.mark.slow
 @settings(max_examples=12)
 @given(st.integers(0, 10_000))
 def test_figures_are_those_of_dense_samples_and_no_less(seed: int) -> None:

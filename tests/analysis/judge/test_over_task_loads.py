@@ -40,7 +40,7 @@ MOTORS = {
 }
 
 
-@pytest.mark.quick("0-steady", "1-cycloid", "2-steady", "0-trapezoid", "0-measured")
+@pytest.mark.quick("0-steady", "2-steady")
 @pytest.mark.parametrize("motor", MOTORS)
 @pytest.mark.parametrize("seed", range(3))
 def test_peaks_and_means_are_those_of_dense_samples_in_time(motor: str, seed: int) -> None:

@@ -32,6 +32,7 @@ SPEC = DynamicsSpec(
 )
 
 
+@pytest.mark.quick("1-linkage0-1.0", "1-linkage1-1.0", "-1-linkage0-0.001", "-1-linkage1-0.001")
 @pytest.mark.parametrize("metre", [1.0, 1e-3])
 @pytest.mark.parametrize("linkage", [ENGINE, SHAPER])
 @pytest.mark.parametrize("sense", [1, -1])

@@ -74,6 +74,7 @@ def square_of(task: MotionTask, found: Targets) -> float:
     return float((task.weights * (np.nan_to_num(found.position_error) ** 2 + turn**2)).sum())
 
 
+@pytest.mark.study
 def test_the_way_found_is_in_order_and_no_way_on_a_grid_is_better(close_loop: Brute) -> None:
     checked = 0
     for seed, free in CASES:
@@ -94,6 +95,7 @@ def test_the_way_found_is_in_order_and_no_way_on_a_grid_is_better(close_loop: Br
     assert checked >= 20
 
 
+@pytest.mark.slow
 def test_no_minimisation_by_another_method_gains(close_loop: Brute) -> None:
     checked = 0
     for seed in range(25):
@@ -122,6 +124,7 @@ def test_no_minimisation_by_another_method_gains(close_loop: Brute) -> None:
     assert checked >= 8
 
 
+@pytest.mark.slow
 def test_where_order_binds_the_two_poses_share_a_driver_angle(close_loop: Brute) -> None:
     """Two neighbours that have changed places are met at one angle, the best for both together."""
     checked = 0
@@ -181,6 +184,7 @@ def test_a_linkage_that_cannot_close_stays_as_it_is() -> None:
     assert same is way
 
 
+@pytest.mark.slow
 def test_hundreds_of_poses_are_in_order_in_little_memory(close_loop: Brute) -> None:
     """Valleys of many poses are thinned to begin with; no way on a grid is better all the same."""
     for seed in range(3):

@@ -48,6 +48,7 @@ def each_alone(designs: list[tuple[Linkage, Verdict]], problem: Problem) -> Floa
     return np.concatenate([together([design], problem) for design in designs])
 
 
+@pytest.mark.quick("none", "over time")
 @pytest.mark.parametrize(
     "dynamics",
     [
@@ -70,6 +71,7 @@ def test_many_at_once_are_as_each_alone(
     assert np.isnan(found[:, 3:]).all() == (dynamics is None)
 
 
+@pytest.mark.slow
 def test_they_are_no_lower_than_dense_samples(designs: list[tuple[Linkage, Verdict]]) -> None:
     problem = problem_with(HEAVY)
     for (linkage, verdict), found in zip(designs, together(designs, problem), strict=True):

@@ -88,6 +88,7 @@ def standard_error(share: float, samples: int = SAMPLES) -> float:
     return sqrt(share * (1 - share) / samples)
 
 
+@pytest.mark.slow
 @given(seed=st.integers(0, 2**32), assembly=st.sampled_from([1, -1]))
 @settings(max_examples=100)
 def test_derivatives_are_the_differences(seed: int, assembly: int) -> None:
@@ -170,6 +171,7 @@ def test_a_misplaced_coupler_point_alone_moves_as_far_as_it_is_misplaced(band: f
     assert yield_monte_carlo(CRANK_ROCKER, task, verdict, band, errors) == pytest.approx(linear, abs=1e-4)
 
 
+@pytest.mark.quick("1", "2", "3", "4", "5")
 @pytest.mark.parametrize("index", range(6))
 def test_one_inexact_dimension(index: int) -> None:
     """The worst target moves in proportion: a share of one normal variable."""
@@ -203,6 +205,7 @@ def test_shares_are_those_of_linkages_made_one_by_one(kind: str) -> None:
         assert found == pytest.approx(np.mean(moves <= band), abs=1.5 / 400)
 
 
+@pytest.mark.slow
 @given(seed=st.integers(0, 2**32), motion=st.booleans())
 @settings(max_examples=25)
 def test_small_tolerances_agree_linearised_and_exact(seed: int, motion: bool) -> None:

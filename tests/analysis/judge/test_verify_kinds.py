@@ -208,6 +208,7 @@ def test_small_deviations_move_targets_as_exact_positions_do(mechanism, seed) ->
     assert np.allclose(moves.theta4, turned.T, rtol=1e-3, atol=1e-8)
 
 
+@pytest.mark.quick("slider-crank", "inverted-slider-crank")
 @pytest.mark.parametrize("mechanism", RANDOM)
 def test_what_reaches_into_an_area_is_named(mechanism) -> None:
     task, linkage = planted_path(np.random.default_rng(2), 5, mechanism=mechanism)

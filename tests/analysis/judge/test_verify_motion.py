@@ -33,6 +33,7 @@ def moved(task: MotionTask, rng: np.random.Generator, share: float, **rest: Any)
     return MotionTask(task.positions + task.size * noise[:, :2], task.angles + noise[:, 2], **rest)
 
 
+@pytest.mark.quick("7-places0-angles0")
 @pytest.mark.parametrize(
     ("poses", "places", "angles"),
     [(7, [], [1, 2, 4, 5]), (6, [1, 3], []), (5, [2], []), (4, [1, 2], [0]), (9, [], list(range(1, 9)))],
@@ -96,6 +97,7 @@ def test_a_wrong_part_is_not_exact_and_a_free_one_is_not_asked() -> None:
     assert verify(linkage, alone, EXACT).error_max < 1e-9 * task.size
 
 
+@pytest.mark.slow
 def test_poses_out_of_order_are_a_defect_when_exact_and_cost_least_squares() -> None:
     checked = 0
     for seed in range(12):

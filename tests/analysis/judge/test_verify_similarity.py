@@ -97,6 +97,7 @@ def drawn_task(linkage: FourBar, data: st.DataObject) -> tuple[MotionTask, float
     return MotionTask(positions, angles, angle_length=float(linkage.r3)), float(theta2[0])
 
 
+@pytest.mark.quick("double-crank")
 @pytest.mark.parametrize("kind", [kind for kind in FOUR_BAR_CLASSES if kind is not GrashofClass.CHANGE_POINT])
 @given(data=st.data())
 @CHECKED

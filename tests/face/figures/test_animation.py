@@ -108,6 +108,7 @@ def test_a_driver_with_limits_swings_between_them_and_back() -> None:
     assert np.isfinite(driver).all()
 
 
+@pytest.mark.slow
 def test_a_design_starts_at_its_first_target_in_its_sense_and_carries_the_body(few: Result) -> None:
     task, verdict, axes = few.problem.task, few.best.verdict, Figure().subplots()
     assert isinstance(task, MotionTask)

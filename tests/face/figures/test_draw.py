@@ -96,6 +96,7 @@ def test_dollars_and_backslashes_are_plain_text(few: Result, tmp_path: Path) -> 
     save_animation(draw_motion(few.candidates[0], problem, seconds=0.2, fps=10), tmp_path / "d.gif")
 
 
+@pytest.mark.slow
 def test_signs_that_the_font_lacks_stay_in_the_svg(few: Result, tmp_path: Path) -> None:
     problem = replace(few.problem, title="\N{CJK UNIFIED IDEOGRAPH-4F38}", dynamics=None)
     figure = draw_design(problem, few.candidates[0], 1)
@@ -104,6 +105,7 @@ def test_signs_that_the_font_lacks_stay_in_the_svg(few: Result, tmp_path: Path) 
     save_animation(draw_motion(few.candidates[0], problem, seconds=0.2, fps=10), tmp_path / "d.gif")
 
 
+@pytest.mark.slow
 def test_same_design_same_bytes(few: Result, tmp_path: Path) -> None:
     for folder in ("one", "two"):
         (tmp_path / folder).mkdir()
@@ -113,6 +115,7 @@ def test_same_design_same_bytes(few: Result, tmp_path: Path) -> None:
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
 
 
+@pytest.mark.slow
 @pytest.mark.quick("title0")
 @pytest.mark.parametrize("title", ["Luggage over a staircase, carried " * 8, "W" * 500, "title", "階 " * 99])
 def test_no_title_is_cut_at_the_edge_of_the_picture(few: Result, title: str) -> None:

@@ -85,6 +85,7 @@ def test_an_open_path_shows_the_part_used() -> None:
     assert "path of P, whole turn" in labels
 
 
+@pytest.mark.study
 def test_least_squares_tells_its_error_in_the_heading(tmp_path: Path) -> None:
     problem, design = load("path-18-timed"), published("path-18-timed")[0]
     axes = drawn(design.linkage, problem)

@@ -89,6 +89,7 @@ def test_without_a_unit_none_is_named_and_p_in_a_joint_is_not_named() -> None:
     assert {text.get_text() for text in ax.texts} == {"O2", "O4", "A", "B"}
 
 
+@pytest.mark.slow
 def test_a_linkage_with_a_problem_is_drawn_as_its_design_is(few: Result) -> None:
     best = few.best
     design = plot_linkage(best, few.problem, ax=axes())
@@ -298,6 +299,7 @@ def test_an_angle_at_which_it_cannot_close() -> None:
         plot_linkage(FourBar((0, 0), (4, 0), 2, 2, 3), theta2=np.pi, ax=axes())
 
 
+@pytest.mark.quick("svg")
 @pytest.mark.parametrize("kind", ["svg", "pdf", "png"])
 def test_same_bytes_and_text_as_text(few: Result, tmp_path: Path, kind: str) -> None:
     problem = replace(few.problem, length_unit="$<m>$", dynamics=None)

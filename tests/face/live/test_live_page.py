@@ -123,6 +123,7 @@ def test_forty_moves_show_what_the_library_gives(page: Page) -> None:
     assert last["document"]["motion"]["poses"] == page.evaluate("grashof.state().document.motion.poses")
 
 
+@pytest.mark.slow
 def test_a_pose_is_dragged_by_its_place_and_by_its_angle(page: Page) -> None:
     before = state(page)["document"]["motion"]["poses"]
     drag(page, "target-2", (12, -20))
@@ -178,6 +179,7 @@ def test_numbers_limits_goals_and_kinds_are_those_of_the_file(page: Page) -> Non
     assert page.locator("tr[data-target='0'] [data-cell=x]").input_value() == "5"
 
 
+@pytest.mark.slow
 def test_areas_regions_and_targets_are_added_and_removed(page: Page) -> None:
     stage = page.locator("#stage").bounding_box()
     assert stage is not None
@@ -204,6 +206,7 @@ def test_areas_regions_and_targets_are_added_and_removed(page: Page) -> None:
     problem_from(after, "luggage")
 
 
+@pytest.mark.slow
 def test_a_path_is_drawn_by_hand(page: Page) -> None:
     assert page.locator("[data-mode=draw]").is_hidden()  # of poses there is no path to draw
     page.locator("[data-menu=open] summary").click()
@@ -225,6 +228,7 @@ def test_a_path_is_drawn_by_hand(page: Page) -> None:
     assert max(steps) < 1.1 * min(steps)
 
 
+@pytest.mark.slow
 def test_joints_move_the_linkage_and_the_wheel_brings_it_closer(page: Page) -> None:
     before = page.locator("#angles").inner_text()
     box = page.locator("[data-joint=b]").bounding_box()
@@ -241,6 +245,7 @@ def test_joints_move_the_linkage_and_the_wheel_brings_it_closer(page: Page) -> N
     assert state(page)["document"] == document
 
 
+@pytest.mark.quick("list")
 @pytest.mark.slow
 @pytest.mark.parametrize("what", ["problem", "list", "report", "dxf", "svg", "png"])
 def test_files_are_saved(page: Page, what: str, tmp_path: Path) -> None:
@@ -346,6 +351,7 @@ def test_designs_are_compared_and_lost_ones_fade_with_what_they_miss(page: Page)
     assert found["lost"][0]["why"]
 
 
+@pytest.mark.slow
 def test_what_a_search_has_not_found_yet_comes_back(page: Page) -> None:
     """While it goes on, the chosen and compared designs may be missing; its end decides."""
     for row in (0, 2):
@@ -388,6 +394,7 @@ def solver_pids(server: int) -> list[int]:
     return [int(each) for each in listed if b"spawn_main" in Path(f"/proc/{each}/cmdline").read_bytes()]
 
 
+@pytest.mark.slow
 def test_a_killed_solver_is_replaced_in_mid_work(page: Page, server: tuple[str, int]) -> None:
     before = solver_pids(server[1])
     assert len(before) >= 2
@@ -401,6 +408,7 @@ def test_a_killed_solver_is_replaced_in_mid_work(page: Page, server: tuple[str, 
     assert not set(solver_pids(server[1])) & set(before)
 
 
+@pytest.mark.study
 def test_without_a_design_the_closest_miss_is_shown_and_what_to_relax(page: Page) -> None:
     page.locator("input[type=number][data-limit=transmission_min_deg]").fill("60")
     page.locator("input[type=number][data-limit=transmission_min_deg]").press("Enter")
@@ -410,6 +418,7 @@ def test_without_a_design_the_closest_miss_is_shown_and_what_to_relax(page: Page
     assert "transmission_min_deg" in page.locator("[data-notice]").inner_text()
 
 
+@pytest.mark.quick("inverted-slider-crank")
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["four-bar", "slider-crank", "inverted-slider-crank"])
 def test_the_velocity_of_p_is_that_of_the_analysis(page: Page, kind: str) -> None:
@@ -434,6 +443,7 @@ def test_the_velocity_of_p_is_that_of_the_analysis(page: Page, kind: str) -> Non
             page.keyboard.press("PageUp")
 
 
+@pytest.mark.quick("quick-return-slide")
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "name", ["function-log10", "quick-return-slide", pytest.param("lifting-arm", marks=pytest.mark.study)]
@@ -445,6 +455,7 @@ def test_tasks_without_points_and_with_cylinders_are_searched(page: Page, name: 
     assert linkages(found) == stated(synthesize(load(name)).top(50).candidates)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [(1440, 900), (1920, 1080), (390, 844)])
 def test_it_fits_the_screen(page: Page, size: tuple[int, int]) -> None:
     page.set_viewport_size({"width": size[0], "height": size[1]})

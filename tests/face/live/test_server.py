@@ -54,6 +54,7 @@ def linkages(lines: list[dict[str, Any]]) -> list[dict[str, Any]]:
     return [design["linkage"] for design in lists[-1]["designs"]]
 
 
+@pytest.mark.slow
 def test_a_search_is_that_of_the_library_and_streams_designs_on_the_way(client: Client) -> None:
     lines = client.ask("search")
     phases = [line.get("phase") for line in lines if line["kind"] == "list"]
@@ -63,6 +64,7 @@ def test_a_search_is_that_of_the_library_and_streams_designs_on_the_way(client: 
     assert linkages(lines) == [{"mechanism": "four-bar", **one.linkage.stated} for one in expected.candidates]
 
 
+@pytest.mark.slow
 def test_designs_are_followed_as_the_library_follows_them_and_keep_their_keys(client: Client) -> None:
     found = client.ask("search", page="following")
     keys = [design["key"] for design in found[-2]["designs"]][:10]
@@ -75,6 +77,7 @@ def test_designs_are_followed_as_the_library_follows_them_and_keep_their_keys(cl
         assert linkages(lines) == [{"mechanism": "four-bar", **one.linkage.stated} for one in designs]
 
 
+@pytest.mark.slow
 def test_lost_designs_are_named_with_what_they_miss_and_come_back(client: Client) -> None:
     client.ask("search", page="losing")
     strict = json.loads(json.dumps(DOCUMENT))
@@ -87,6 +90,7 @@ def test_lost_designs_are_named_with_what_they_miss_and_come_back(client: Client
     assert len(back["designs"]) == 10
 
 
+@pytest.mark.slow
 def test_pages_have_their_own_designs(client: Client) -> None:
     client.ask("search", page="mine")
     assert client.ask("track", page="another")[0]["designs"] == []
@@ -113,6 +117,7 @@ def test_what_is_no_task_is_told_line_by_line(client: Client) -> None:
     assert len(error["lines"]) == 2
 
 
+@pytest.mark.slow
 def test_without_a_design_the_closest_misses_are_listed_with_what_to_relax(client: Client) -> None:
     strict = json.loads(json.dumps(DOCUMENT))
     strict["requirements"]["transmission_min_deg"] = 60
@@ -123,7 +128,8 @@ def test_without_a_design_the_closest_misses_are_listed_with_what_to_relax(clien
     assert "transmission_min_deg" in last["note"]
 
 
-@pytest.mark.quick("designs", "list")
+@pytest.mark.slow
+@pytest.mark.quick("designs")
 @pytest.mark.parametrize("wanted", ["problem", "list", "designs", "report", "dxf"])
 def test_files_are_those_of_the_command_line(client: Client, wanted: str) -> None:
     found = client.ask("search", page="saving")

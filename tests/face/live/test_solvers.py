@@ -52,7 +52,7 @@ def test_a_job_that_nobody_waits_for_ends_and_its_solver_is_used_again(solvers: 
     assert run(tried()) == before
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_an_idle_solver_that_is_killed_is_replaced(solvers: Solvers, run: Run) -> None:
     async def tried() -> list[str]:
         await kinds(solvers, job_of("luggage"))
@@ -63,7 +63,7 @@ def test_an_idle_solver_that_is_killed_is_replaced(solvers: Solvers, run: Run) -
     assert run(tried())[-1] == "done"
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_a_job_that_ends_every_solver_is_told_in_a_line(solvers: Solvers, run: Run) -> None:
     async def killing() -> None:
         killed = 0
@@ -86,6 +86,7 @@ def test_a_job_that_ends_every_solver_is_told_in_a_line(solvers: Solvers, run: R
     assert run(kinds(solvers, job_of("luggage")))[-1] == "done"
 
 
+@pytest.mark.study
 def test_the_newest_job_of_a_page_wins(solvers: Solvers, run: Run) -> None:
     session = Sessions(solvers).of("one")
 
@@ -103,7 +104,7 @@ def test_the_newest_job_of_a_page_wins(solvers: Solvers, run: Run) -> None:
     assert second[-1] == "done"
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_pages_that_were_left_long_ago_are_forgotten() -> None:
     sessions = Sessions(Solvers())
     first = sessions.of("0")

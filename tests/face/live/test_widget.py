@@ -63,7 +63,7 @@ def test_the_widget_answers_as_the_server_does(monkeypatch: pytest.MonkeyPatch, 
     assert widget._session.solvers.every == []
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_the_page_works_in_its_frame(browser: Browser, monkeypatch: pytest.MonkeyPatch, run: Run) -> None:
     widget = live("luggage")
     model = Model(widget, monkeypatch, run)

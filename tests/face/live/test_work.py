@@ -37,6 +37,7 @@ def keys(found: dict[str, Any]) -> list[int]:
     return [design["key"] for design in found["designs"]]
 
 
+@pytest.mark.slow
 def test_a_design_that_comes_back_keeps_its_key(result: Result) -> None:
     designs = result.candidates
     before = Shown().matched(designs[:12], result)
@@ -48,6 +49,7 @@ def test_a_design_that_comes_back_keeps_its_key(result: Result) -> None:
     assert list(after.matched([designs[0]]).designs) == [16]
 
 
+@pytest.mark.slow
 def test_few_that_are_absent_are_kept(result: Result) -> None:
     shown = Shown()
     for k, design in enumerate(result.candidates * 5):
@@ -55,7 +57,7 @@ def test_few_that_are_absent_are_kept(result: Result) -> None:
     assert len(shown.absent) == ABSENT
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_designs_that_are_not_followed_keep_their_keys_too(document: dict[str, Any]) -> None:
     (*_, found), shown = told(Job("search", document, "luggage"))
     assert len(keys(found)) > TRACKED
@@ -65,7 +67,7 @@ def test_designs_that_are_not_followed_keep_their_keys_too(document: dict[str, A
     assert keys(again) == keys(found)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_the_keys_of_misses_are_not_those_of_designs_to_come(document: dict[str, Any]) -> None:
     limits = {**document.get("requirements", {}), "transmission_min_deg": 60}
     (*_, found), shown = told(Job("search", {**document, "requirements": limits}, "luggage"))

@@ -79,6 +79,7 @@ def test_what_the_user_wrote_is_text(hostile: str) -> None:
     assert parts.data["scene"]["unit"] == HOSTILE
 
 
+@pytest.mark.quick("search")
 @pytest.mark.parametrize("kind", ["search", "analysis"])
 def test_one_file_without_any_other(hostile: str, kind: str) -> None:
     page = hostile if kind == "search" else analysis_page(report_on(load_linkage_spec("pumpjack")), RECORD)
@@ -201,6 +202,7 @@ def test_the_scene_is_the_problem() -> None:
     assert Parts(page_of(Result(other))).data["scene"]["published"] is None
 
 
+@pytest.mark.slow
 def test_an_analysis_shows_every_curve_and_figure() -> None:
     report = report_on(load_linkage_spec("pumpjack"))
     page = analysis_page(report, RECORD)
@@ -218,6 +220,7 @@ def test_an_analysis_shows_every_curve_and_figure() -> None:
         assert what in text
 
 
+@pytest.mark.slow
 def test_what_figures_are_taken_over_is_said(few: Result) -> None:
     parts = Parts(page_of(few))
     told = {column["label"]: column["about"] for column in parts.data["columns"]}

@@ -54,6 +54,7 @@ def dots(figure: Locator) -> list[tuple[float, float]]:
     ]
 
 
+@pytest.mark.slow
 def test_groups_are_drawn_when_they_are_opened_and_seen(opened: Open) -> None:
     page = opened("sections", size=(1440, 900))
     wait_until(page, "grashof.state().groups[0].drawn === 5")

@@ -107,6 +107,7 @@ def test_the_loop_stays_closed_in_dead_positions_and_past_them(window: Page, nam
         assert abs(reach) == pytest.approx(abs(arm), rel=1e-9)
 
 
+@pytest.mark.quick("behind", "crank-shaper", "whitworth", "change point")
 @pytest.mark.parametrize("name", [name for name, linkage in LINKAGES.items() if linkage.SLIDES])
 def test_the_drawing_follows_the_driver(shown: Callable[[str], Page], name: str) -> None:
     linkage, page = LINKAGES[name], shown(name)

@@ -96,6 +96,7 @@ def test_facts_and_tables_are_text_with_what_is_not_finite_in_words(page: Groups
     assert cells[:6] == [HOSTILE, "no limit", "1", "b", "0.333333", "2"]
 
 
+@pytest.mark.slow
 def test_every_plot_of_an_analysis_has_a_key_of_its_own() -> None:
     page = Groups(analysis_page(report_on(load_linkage_spec("pumpjack")), RECORD))
     keys = [plot["key"] for group in page.data["groups"] for plot in group]

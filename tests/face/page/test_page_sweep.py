@@ -60,6 +60,7 @@ def state(page: Page) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.slow
 def test_a_click_shows_the_best_design(shown: Page, done: tuple[Sweep, Path]) -> None:
     assert shown.locator("h1").inner_text() == "<b>Bold</b>"
     assert shown.locator("img.picture").evaluate("image => image.naturalWidth") > 500

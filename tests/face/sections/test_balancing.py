@@ -43,6 +43,7 @@ def weighted(spec: LinkageSpec, row: Any, links: tuple[int, ...]) -> LinkageSpec
     return replace(spec, dynamics=replace(spec.dynamics, counterweights=weights))
 
 
+@pytest.mark.study
 def test_before_is_the_linkage_as_it_is_and_after_with_its_weights_in_the_file(sections: Sections) -> None:
     found = sections(JACK, balance=True)["balancing"]
     rows = found.tables["balancing"].set_index("aim")
@@ -84,6 +85,7 @@ def test_counterweights_of_slider_kinds(sections: Sections) -> None:
             assert after == 0 < before
 
 
+@pytest.mark.slow
 def test_weights_are_the_same_in_every_unit(sections: Sections) -> None:
     linkage, inch = JACK.linkage, 0.0254
     small = FourBar(linkage.o2 / inch, linkage.o4 / inch, *(linkage.lengths[1:] / inch))
@@ -109,6 +111,7 @@ def test_weights_are_the_same_in_every_unit(sections: Sections) -> None:
         assert facts(inches["flywheel"])[key] == pytest.approx(value, rel=1e-7, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_what_cannot_be_balanced_is_said(sections: Sections) -> None:
     floating = replace(JACK, dynamics=DynamicsSpec(300.0))
     found = sections(floating, balance=True)["balancing"]

@@ -21,6 +21,7 @@ def facts(dynamics: DynamicsSpec, linkage: FourBar = CRANK_ROCKER) -> dict[str, 
     return {fact.key: float(fact.value) for fact in section.facts}
 
 
+@pytest.mark.quick("20.0-None", "20.0-motor2", "-20.0-motor2")
 @pytest.mark.parametrize("motor", [None, MotorSpec("trapezoid"), MotorSpec("cycloid")])
 @pytest.mark.parametrize("speed", [20.0, -20.0])
 def test_the_drive_gives_what_the_load_takes_and_friction(motor: MotorSpec | None, speed: float) -> None:

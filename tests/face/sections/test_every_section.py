@@ -67,6 +67,7 @@ def made(request: pytest.FixtureRequest, sections: Sections) -> dict[str, Sectio
     return sections(load_linkage_spec(request.param), **ASKED)
 
 
+@pytest.mark.quick("triple-rocker", "still")
 def test_keys_are_names_of_files_and_are_met_once(made: dict[str, Section]) -> None:
     tables = [key for section in made.values() for key in section.tables]
     plots = [plot.key for section in made.values() for plot in section.plots]
@@ -76,6 +77,7 @@ def test_keys_are_names_of_files_and_are_met_once(made: dict[str, Section]) -> N
         assert all(re.fullmatch(allowed, key) for key in keys)
 
 
+@pytest.mark.quick("loaded", "pumpjack")
 def test_plots_are_lines_of_numbers(made: dict[str, Section]) -> None:
     for plot in (plot for section in made.values() for plot in section.plots):
         assert plot.series, plot.key

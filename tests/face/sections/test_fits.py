@@ -70,6 +70,7 @@ def test_a_linkage_alone_is_fitted_over_all_that_it_does(sections: Any) -> None:
     assert "points halfway between joints" in swinging.notes[-1]
 
 
+@pytest.mark.quick("1")
 @pytest.mark.parametrize("sense", [1, -1])
 def test_a_design_of_a_list_is_fitted_over_its_task(
     sections: Any, few: Result, tmp_path: Path, sense: int

@@ -46,6 +46,7 @@ def test_it_swings_about_its_equilibrium_with_its_frequency(sections: Sections) 
     assert facts(moved)["release_energy_drift"] < 1e-8
 
 
+@pytest.mark.slow
 def test_the_way_of_a_swinging_driver_is_told_beside_its_net_turn(sections: Sections) -> None:
     moved = sections(SMALL, release_deg=30.0, seconds=5.0)["release"]
     given, table = facts(moved), moved.tables["release"]
@@ -58,6 +59,7 @@ def test_the_way_of_a_swinging_driver_is_told_beside_its_net_turn(sections: Sect
     assert way > abs(net) + 90
 
 
+@pytest.mark.slow
 def test_frequencies_and_energies_in_every_unit(sections: Sections) -> None:
     linkage, inch = SMALL.linkage, 0.0254
     small = FourBar(linkage.o2 / inch, linkage.o4 / inch, *(linkage.lengths[1:] / inch))
@@ -140,7 +142,7 @@ def test_what_is_refused(sections: Sections, spec: LinkageSpec, asked: dict[str,
     assert "\n" not in str(error.value)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_options_of_the_command(grashof: Callable[..., Any], tmp_path: Path) -> None:
     options = ("--release", "100", "--release-rpm", "-2", "--seconds", "0.5", "--dwell-deg", "1")
     options = (*options, "--balance", "--flywheel", "0.05", "--tolerance", "0.01")

@@ -27,6 +27,7 @@ LINKAGES: dict[str, tuple[Linkage, dict[int, float]]] = {
 }
 
 
+@pytest.mark.quick("four-bar", "inverted")
 @pytest.mark.parametrize("kind", LINKAGES)
 def test_volumes_are_those_of_the_bars(kind: str, sections: Callable[..., dict[str, Section]]) -> None:
     linkage, lengths = LINKAGES[kind]

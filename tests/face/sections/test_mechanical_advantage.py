@@ -17,6 +17,7 @@ def section(spec: LinkageSpec, asked: Asked | None = None, key: str = KEY) -> Se
     return next(each for each in report_on(spec, asked).sections if each.key == key)
 
 
+@pytest.mark.slow
 def test_the_table_is_the_ratio_of_the_rates() -> None:
     found = section(JACK)
     table, motion = found.tables[KEY], report_on(JACK).tables["kinematics"]
@@ -29,6 +30,7 @@ def test_the_table_is_the_ratio_of_the_rates() -> None:
     assert facts["mechanical_advantage_least"] <= table["torque_ratio"].abs().min()
 
 
+@pytest.mark.slow
 def test_what_holds_it_is_newtons_in_every_unit_and_follows_the_sense_of_p() -> None:
     assert JACK.dynamics is not None
     linkage, inch = JACK.linkage, 0.0254
@@ -47,12 +49,14 @@ def test_what_holds_it_is_newtons_in_every_unit_and_follows_the_sense_of_p() -> 
     np.testing.assert_allclose(other["holding_torque"], metres["holding_torque"])
 
 
+@pytest.mark.slow
 def test_without_weight_there_is_nothing_to_hold() -> None:
     floating = replace(JACK, dynamics=DynamicsSpec(300))
     for spec in (load_linkage_spec("lufkin-c912d"), floating):
         assert "holding_torque" not in section(spec).tables[KEY]
 
 
+@pytest.mark.quick("linkage1")
 @pytest.mark.parametrize(
     "linkage",
     [

@@ -29,6 +29,7 @@ LOADED = DynamicsSpec(
 JACK = load_linkage_spec("pumpjack")
 
 
+@pytest.mark.slow
 def test_pin_forces_turned_back_are_those_of_the_table(sections: Sections) -> None:
     found, dynamics = sections(JACK)["pin-forces"], report_on(JACK).tables["dynamics"]
     table, motion = found.tables["pin-forces"], report_on(JACK).tables["kinematics"]
@@ -69,6 +70,7 @@ def test_circles_at_the_angles_asked_for(sections: Sections) -> None:
         sections(rocker, at_deg=(0.5, 180.0))
 
 
+@pytest.mark.slow
 def test_the_energy_table_adds_up(sections: Sections) -> None:
     table = sections(JACK)["energies"].tables["energies"]
     np.testing.assert_allclose(table["energy"], table["kinetic"] + table["weights"] + table["springs"])
@@ -89,6 +91,7 @@ def test_the_energy_table_adds_up(sections: Sections) -> None:
     np.testing.assert_allclose(inches["drive_power"], metres["drive_power"], rtol=1e-9, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_the_powers_of_loads_springs_and_friction_are_the_rate_of_the_energy(sections: Sections) -> None:
     spec = replace(JACK, dynamics=LOADED)
     table = sections(spec)["energies"].tables["energies"].iloc[5:-5]

@@ -35,7 +35,8 @@ def test_no_motor_no_section(sections: Sections) -> None:
     assert "motor" not in sections(replace(JACK, dynamics=DynamicsSpec(motor=GEAR)))
 
 
-@pytest.mark.quick("20.0-constant", "-20.0-trapezoid")
+@pytest.mark.slow
+@pytest.mark.quick("20.0-constant")
 @pytest.mark.parametrize("profile", ["constant", "cycloid", "trapezoid"])
 @pytest.mark.parametrize("speed", [20.0, -20.0])
 def test_the_motor_gives_what_the_drive_and_its_rotor_take(
@@ -52,6 +53,7 @@ def test_the_motor_gives_what_the_drive_and_its_rotor_take(
     np.testing.assert_allclose(table["motor_rpm"], 30 * state.omega2 * 30 / np.pi, rtol=1e-12, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_means_are_over_time_and_peaks_over_all_of_it(sections: Sections) -> None:
     spec = jack(replace(GEAR, profile="trapezoid"), friction=FrictionSpec(viscous=(500.0,)))
     given = facts(sections(spec)["motor"])
@@ -92,6 +94,7 @@ def test_the_inertia_at_the_motor_is_that_of_the_torque(sections: Sections) -> N
     assert given["motor_inertia_ratio"] == pytest.approx(given["motor_load_inertia_largest"] / 0.05)
 
 
+@pytest.mark.slow
 def test_a_driver_that_swings_and_inches(sections: Sections) -> None:
     rocker = FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1))
     swings = LinkageSpec(

@@ -116,6 +116,8 @@ def test_a_driver_at_rest_stays(sections: Any) -> None:
 CYCLOID = DynamicsSpec(mass_per_length=2.0, speed_rpm=20, motor=MotorSpec(profile="cycloid"))
 
 
+@pytest.mark.slow
+@pytest.mark.quick("-20.0")
 @pytest.mark.parametrize("speed", [20.0, -20.0])
 def test_a_driver_that_stops_after_each_turn_goes_on_from_its_start(sections: Any, speed: float) -> None:
     """A cycloid of 3 s: theta2 = 2 pi (u - sin(2 pi u) / (2 pi)), u the share of the time."""
@@ -144,6 +146,7 @@ def test_a_swinging_driver_that_starts_and_stops_ends_where_it_stops(sections: A
     assert "the history ends after" in section.notes[0]
 
 
+@pytest.mark.slow
 def test_loads_over_time_begin_anew_with_each_turn(sections: Any) -> None:
     push = LoadSpec(link=4, at=(1.0, 0.0), over="time", values=((0, 100, 0), (1.5, 900, 0), (3, 100, 0)))
     given = DynamicsSpec(mass_per_length=2.0, speed_rpm=20, loads=(push,))

@@ -44,6 +44,7 @@ def test_the_figures_of_the_maker(sections: Sections) -> None:
     assert any("no load on the polished rod" in note for note in found.notes)
 
 
+@pytest.mark.slow
 def test_rod_loads_by_torque_factors_and_by_dynamics(sections: Sections) -> None:
     """The same load as the API's table, and as a moment on the beam of links without mass."""
     assert LUFKIN.pumping_unit is not None

@@ -37,16 +37,7 @@ DYNAMICS = {
 }  # fmt: skip
 
 
-@pytest.mark.quick(
-    "crank-rocker-none",
-    "two ranges-none",
-    "kite-none",
-    "huge-payload alone",
-    "minute-none",
-    "change point-payload alone",
-    "one range-clockwise, a link without mass",
-    "P in A-none",
-)
+@pytest.mark.quick("crank-rocker-none", "minute-none")
 @pytest.mark.parametrize("dynamics", DYNAMICS)
 @pytest.mark.parametrize("name", LINKAGES)
 def test_all_is_finite_or_empty_and_nothing_warns(sections: Any, name: str, dynamics: str) -> None:
@@ -104,6 +95,7 @@ def test_volumes_of_bars_of_stated_density(sections: Any) -> None:
     assert table["mass"].tolist() == pytest.approx([masses[0], masses[1] + 7, masses[2], sum(masses) + 7])
 
 
+@pytest.mark.study
 def test_names_on_the_command_line(grashof: Any, tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     import grashof.figures.files as files
 

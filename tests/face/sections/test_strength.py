@@ -28,6 +28,7 @@ def jack(**given: object) -> LinkageSpec:
     return replace(spec, dynamics=replace(spec.dynamics, **given))  # type: ignore[arg-type]
 
 
+@pytest.mark.slow
 def test_forces_without_a_section_stresses_with_one_safety_with_strengths() -> None:
     bare, cut, strong = (
         section_of(jack(**given))

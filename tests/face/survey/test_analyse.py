@@ -88,6 +88,7 @@ def test_torque_and_forces_of_the_pumpjack_are_the_reference_figures() -> None:
     assert checked >= 1
 
 
+@pytest.mark.slow
 def test_forces_are_newtons_in_every_length_unit() -> None:
     def heavy(density: float) -> DynamicsSpec:
         return DynamicsSpec(density, payload=50, speed_rpm=12, gravity=(0, -9.8))
@@ -188,6 +189,7 @@ def test_two_ranges_are_kept_apart() -> None:
     assert "stroke_chord" not in found
 
 
+@pytest.mark.quick("kite", "change point")
 @pytest.mark.parametrize(
     "linkage",
     [
@@ -207,6 +209,7 @@ def check_change_point(report: LinkageReport) -> None:
     assert len(report.tables["extremes"]) > 0
 
 
+@pytest.mark.slow
 def test_a_parallelogram_keeps_its_speed() -> None:
     report = report_on(LinkageSpec(FourBar((0, 0), (4, 0), 1, 4, 1, (1, 1)), "parallelogram"))
     check_change_point(report)
@@ -243,6 +246,7 @@ def pictures(*names: str) -> set[str]:
     return {f"{name}.{kind}" for name in names for kind in ("png", "svg")}
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("unsaved")
 def test_files_and_terminal(grashof: Grashof, tmp_path: Path) -> None:
     done = grashof("analyse", "pumpjack")
@@ -267,6 +271,7 @@ def test_files_and_terminal(grashof: Grashof, tmp_path: Path) -> None:
     assert {path.name for path in folder.iterdir()} == expected
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("unsaved")
 def test_designs_of_a_list_beside_the_list(grashof: Grashof, few: Result, tmp_path: Path) -> None:
     folder = tmp_path / "luggage-designs"
@@ -281,6 +286,8 @@ def test_designs_of_a_list_beside_the_list(grashof: Grashof, few: Result, tmp_pa
     assert summary["transmission_min_deg"]["value"] == expected
 
 
+@pytest.mark.slow
+@pytest.mark.quick("1")
 @pytest.mark.parametrize("sense", [1, -1])
 def test_a_design_is_analysed_as_the_list_drives_it(few: Result, tmp_path: Path, sense: int) -> None:
     """On its way from the first pose to the last it needs the torque, and the force, that the list says."""
@@ -315,6 +322,7 @@ def test_a_file_that_is_not_ours_is_not_replaced(grashof: Grashof, tmp_path: Pat
     assert (out / "summary.csv").read_text() == "mine"
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("unsaved")
 def test_a_limited_range_on_the_terminal(grashof: Grashof, tmp_path: Path) -> None:
     text = "o4 = [4, 0]\nr2 = 3\nr3 = 1\nr4 = 3\nlength_unit = 'mm'\n[dynamics]\nmass_per_length = 0.01\n"
@@ -347,6 +355,7 @@ def test_given_masses_and_payload() -> None:
     assert facts(report)["torque_rms"] == pytest.approx(np.sqrt(np.mean(expected[:-1] ** 2)))
 
 
+@pytest.mark.slow
 def test_plots_of_a_limited_range_are_made(tmp_path: Path) -> None:
     """Rates without bound are cut off, and no warning is given."""
     from grashof.figures.survey_plots import plots
@@ -374,6 +383,7 @@ def test_a_driver_at_rest_and_backwards(speed: float) -> None:
     assert table.loc["f12", "min"] > 0
 
 
+@pytest.mark.quick("=1+1")
 @pytest.mark.usefixtures("unsaved")
 @pytest.mark.parametrize("unit", ["=1+1", "@SUM(A1)", "+1", "-1"])
 def test_no_unit_is_a_formula_to_a_spreadsheet(grashof: Grashof, tmp_path: Path, unit: str) -> None:
@@ -389,6 +399,7 @@ def test_no_unit_is_a_formula_to_a_spreadsheet(grashof: Grashof, tmp_path: Path,
     assert numbers.min() < 0
 
 
+@pytest.mark.slow
 def test_one_angle_is_counted_alike_everywhere() -> None:
     """Of a rocker that swings about 180 deg: where it turns back, the ends of its dwell, and its extremes."""
 

@@ -275,6 +275,7 @@ def test_every_figure_of_two_hundred_linkages(tens: int) -> None:
         check(random_spec(seed))
 
 
+@pytest.mark.slow
 @pytest.mark.quick("2")
 @pytest.mark.parametrize("seed", [0, 1, 2])
 def test_every_figure_of_a_few(seed: int) -> None:
@@ -303,6 +304,7 @@ def test_torque_near_a_change_point_by_adaptive_quadrature() -> None:
     assert found["torque_rms"] == pytest.approx(np.sqrt(sum(parts) / TURN), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_straightest_half_turn_of_the_pumpjack() -> None:
     found = facts(load_linkage_spec("pumpjack"))
     assert found["straight_from_deg"] == pytest.approx(270.83080434, abs=1e-7)
@@ -310,6 +312,7 @@ def test_straightest_half_turn_of_the_pumpjack() -> None:
     assert found["straight_width"] / found["straight_length"] == pytest.approx(0.22186223374, abs=1e-10)
 
 
+@pytest.mark.slow
 def test_torque_under_a_tabled_load() -> None:
     """Curves through the rows meet there with different second derivatives: panels from row to row."""
     rows = [(0.0, 50.0), (13.7, -200.0), (101.3, -180.0), (211.9, 400.0), (214.0, -40.0), (360.0, 50.0)]
@@ -329,6 +332,7 @@ def test_torque_under_a_tabled_load() -> None:
     assert abs(found["torque_mean"]) > 1.0
 
 
+@pytest.mark.quick("linkage0-ends0", "linkage3-ends3")
 @pytest.mark.parametrize(
     ("linkage", "ends"),
     [
@@ -390,6 +394,7 @@ def test_the_torque_factor_has_a_sign_beside_its_size() -> None:
     assert (table["torque_factor_signed"] > 0).any()
 
 
+@pytest.mark.study
 def test_at_a_change_point_rates_are_those_that_the_motion_tends_to() -> None:
     """An antiparallelogram passes theta2 = 0 at omega4 = -(r1 + r2) / (r1 - r2) omega2, its torque finite."""
     linkage = FourBar((0, 0), (4, 0), 2, 4, 2, (1, 1), assembly=-1)
@@ -405,6 +410,7 @@ def test_at_a_change_point_rates_are_those_that_the_motion_tends_to() -> None:
     assert crossed.loc["f12", "max"] == np.inf
 
 
+@pytest.mark.quick("swings")
 @pytest.mark.parametrize(
     "linkage",
     [FourBar((0, 0), (2.4, 3.2), 2, 4.5, 2.50001, (2, 1)), FourBar((0, 0), (4, 0), 2, 3.2, 1.20001, (2, 1))],

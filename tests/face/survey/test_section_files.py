@@ -130,6 +130,7 @@ def test_a_report_without_facts_of_sections_ends_with_the_extremes(
     assert shown == capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_pictures_of_sections_are_written_when_they_are_asked_for(
     grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

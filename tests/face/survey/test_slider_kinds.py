@@ -115,6 +115,8 @@ def test_sections_that_a_kind_has_not_are_refused_in_one_line(name: str) -> None
     assert "\n" not in str(refused.value)
 
 
+@pytest.mark.slow
+@pytest.mark.quick("crank-shaper")
 @pytest.mark.parametrize("spec", [ENGINE, SHAPER], ids=lambda spec: spec.name)
 def test_all_long_sections_at_once_are_those_that_the_kind_has(spec: LinkageSpec) -> None:
     asked = Asked(

@@ -59,6 +59,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.study
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
 def test_a_cluster_gives_the_same_table(write: Callable[..., Path], tmp_path: Path) -> None:
     pytest.importorskip("distributed")

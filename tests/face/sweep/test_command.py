@@ -67,6 +67,7 @@ def test_nothing_but_invalid_combinations_is_no_design(write: Write, tmp_path: P
     assert pd.read_csv(tmp_path / "out" / "sweep.csv")["status"].tolist() == ["invalid", "invalid"]
 
 
+@pytest.mark.quick("2")
 @posix
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_leaves_what_is_finished(

@@ -46,6 +46,7 @@ def interrupted(study: Path, out: Path, after: int, *, resume: bool) -> int:
     return len(done.results)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("told")
 def test_an_interrupted_sweep_gives_the_same_table(write: Write, tmp_path: Path, told: list[str]) -> None:
     study, out = write(), tmp_path / "out"
@@ -64,6 +65,7 @@ def test_an_interrupted_sweep_gives_the_same_table(write: Write, tmp_path: Path,
     assert len(told) == 24
 
 
+@pytest.mark.slow
 def test_the_row_of_a_combination_is_its_best_design(write: Write) -> None:
     study = write(
         'problem = "base.toml"\ndesigns = 2\n[vary]\n"path.points[1].y" = [1.0, 1.2]\n[search]\nenough = 4'
@@ -88,13 +90,13 @@ def test_anybody_s_executor(write: Write) -> None:
     assert there.to_frame().to_csv() == sweep(write()).to_frame().to_csv()
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_processes_find_the_same(write: Write) -> None:
     here, there = sweep(write()), sweep(write(), workers=2)
     assert here.to_frame().to_csv() == there.to_frame().to_csv()
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_a_combination_without_designs_states_what_stood_in_the_way(write: Write) -> None:
     limits = '[vary]\n"requirements.transmission_min_deg" = [95, 15, 80]\n'
     done = sweep(write(f'problem = "luggage"\n{limits}[search]\nstarts = 2\n'))
@@ -106,6 +108,7 @@ def test_a_combination_without_designs_states_what_stood_in_the_way(write: Write
     assert done.headline == "3 combinations, 1 with designs, 1 invalid"
 
 
+@pytest.mark.study
 @pytest.mark.usefixtures("told")
 def test_what_is_not_gone_on_with(write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     study, out = write(), tmp_path / "out"
@@ -131,6 +134,7 @@ def test_what_is_not_gone_on_with(write: Write, tmp_path: Path, monkeypatch: pyt
     assert sweep(study, out=out, resume=True).complete
 
 
+@pytest.mark.quick("[]-is not a finished task")
 @pytest.mark.usefixtures("told")
 @pytest.mark.parametrize(
     ("text", "words"),
@@ -152,6 +156,7 @@ def test_a_spoilt_checkpoint_is_refused(write: Write, tmp_path: Path, text: str,
         sweep(study, out=out, resume=True)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("told")
 def test_a_finished_sweep_is_done_again_and_other_files_stay(
     write: Write, tmp_path: Path, told: list[str]

@@ -198,6 +198,7 @@ def moved(
     return shapely.polygons(np.stack([path.real, path.imag], axis=-1))
 
 
+@pytest.mark.quick("pumpjack-dxf", "P at A-dxf", "triple rocker-dxf", "parallelogram-svg")
 @pytest.mark.parametrize("kind", READERS)
 @pytest.mark.parametrize("name", LINKAGES)
 def test_nothing_meets_in_motion(name: str, kind: str) -> None:
@@ -272,6 +273,7 @@ def test_all_joints_of_luggage_designs(few: Result) -> None:
 lengths = st.floats(15, 300)
 
 
+@pytest.mark.study
 @settings(max_examples=15)
 @given(r=st.tuples(lengths, lengths, lengths, lengths), u=st.floats(-200, 300), v=st.floats(-200, 200),
        assembly=st.sampled_from([1, -1]), ground=st.floats(0, 6.28))  # fmt: skip

@@ -1,5 +1,6 @@
 """Loads, springs, friction, motor and sections in files: what they state, and what is wrong with them."""
 
+from fnmatch import fnmatchcase
 from pathlib import Path
 
 import pytest
@@ -242,6 +243,22 @@ def test_what_is_wrong_is_one_clear_line(text: str, expected: str) -> None:
         line = str(told.value).removeprefix("mine.toml: ")
         assert line.startswith(expected)
         assert "\n" not in line
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("loads = 3", "loads is 3; it must be a list of tables"),
+        ("springs = { between = 2 }", "springs is a table; it must be a list of tables"),
+        ("[[loads]]\nlink = 3\nmoment = 1\n" * 101, "loads is *; it must be a list of at most 100 entries"),
+    ],
+    ids=["a number", "a table", "too many"],
+)
+def test_they_are_lists_of_a_hundred_tables_at_most(text: str, expected: str) -> None:
+    with pytest.raises(ProblemError) as told:
+        linkage(text)
+    assert fnmatchcase(str(told.value), expected)
+    assert len(str(told.value)) < 400
 
 
 TABLES = [

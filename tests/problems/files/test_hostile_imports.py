@@ -111,6 +111,7 @@ def dxf(change: Callable[[ezdxf.document.Drawing], object]) -> bytes:
     return stream.getvalue().encode()
 
 
+@pytest.mark.study
 def test_dxf_blocks_that_expand(tmp_path: Path, work: Callable[[], int]) -> None:
     def array(document: ezdxf.document.Drawing) -> None:
         document.blocks.new("B").add_line((0, 0), (1, 1))
@@ -182,6 +183,7 @@ def test_a_workbook_that_unpacks_to_more_than_it_should(tmp_path: Path) -> None:
     assert "bytes when it is unpacked" in refused(tmp_path, "a.xlsx", stream.getvalue())
 
 
+@pytest.mark.slow
 def test_damaged_workbooks_and_drawings_are_refused_or_read(tmp_path: Path) -> None:
     """Each with its own bytes changed, its parts shortened, exchanged or lost: never another error."""
     rng = random.Random(5)  # noqa: S311
@@ -251,6 +253,7 @@ def test_pipes_and_devices_are_not_read(tmp_path: Path) -> None:
             outlines_of("a.svg", tmp_path, "")
 
 
+@pytest.mark.slow
 def test_lists_are_as_long_as_tables_at_most(tmp_path: Path) -> None:
     path = tmp_path / "long.toml"
     for count, wrong in ((10_001, True), (10_000, False)):

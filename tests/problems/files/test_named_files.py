@@ -112,6 +112,7 @@ def test_names_that_are_no_such_files(tmp_path: Path) -> None:
     assert refused(tmp_path, MOTION.format("poses.json")) == [
         "task.toml: motion.poses is 'poses.json'; it must be a list, or a file .csv or .xlsx"
     ]
+    assert len(refused(tmp_path, MOTION.format("x" * 100_000))[0]) < 300
     assert refused(tmp_path, MOTION.format("none.csv")) == [
         "task.toml: motion.poses: none.csv: there is no such file"
     ]
@@ -243,6 +244,7 @@ def test_a_long_arc_of_an_svg_is_kept_to_a_thousandth(tmp_path: Path) -> None:
     assert 40 - np.hypot(*between.T).min() <= 1e-3 * 80
 
 
+@pytest.mark.quick("no-width", "negative", "no-area")
 @pytest.mark.parametrize(
     ("body", "width", "said"),
     [

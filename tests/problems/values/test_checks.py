@@ -114,6 +114,7 @@ def test_whole_number_takes_numpy_integers() -> None:
 finite = st.floats(-1e20, 1e20)
 
 
+@pytest.mark.slow
 @given(finite, finite)
 def test_limits_pass_exactly_when_in_order(low: float, high: float) -> None:
     if low <= high:
@@ -175,6 +176,7 @@ def test_span_of_many_points_is_the_greatest_distance(size: float) -> None:
         assert span(rows) == pytest.approx(np.abs(np.subtract.outer(points, points)).max() * size, rel=1e-14)
 
 
+@pytest.mark.slow
 def test_span_of_as_many_points_as_no_memory_holds_the_pairs_of() -> None:
     points = np.random.default_rng(0).uniform(-0.7, 0.7, (200_000, 2))
     points[[77, 777]] = [[-3, -4], [3, 4]]

@@ -65,6 +65,7 @@ def test_corners_are_a_convex_polygon_that_holds_all_points() -> None:
     assert (edges[:, 0] * offset[..., 1] - edges[:, 1] * offset[..., 0] > -1e-12).all()
 
 
+@pytest.mark.study
 def test_memory_grows_with_the_points_not_with_their_pairs() -> None:
     angle = np.linspace(0, 6, 20_000)
     points = np.column_stack([3 * np.cos(angle), np.sin(angle)])

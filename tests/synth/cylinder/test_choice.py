@@ -60,7 +60,7 @@ def test_on_link_2_the_worst_angle_is_90_deg_less_half_the_range() -> None:
         assert found.ratio <= 1.6
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_some_link_has_a_cylinder_of_30_deg_or_more() -> None:
     rng = np.random.default_rng(2)
     angles = []
@@ -139,6 +139,7 @@ def test_an_independent_search_of_great_effort_finds_no_better_one(seed: int) ->
     assert (0.0 if found is None else np.degrees(found.angle_min)) > best - 0.1
 
 
+@pytest.mark.slow
 def test_there_is_none_that_cannot_close() -> None:
     linkage = FourBar((0, 0), (3, 0), 1.6, 2.2, 2.4, (1, 0.5))
     moved = travel(linkage, np.radians([55.0, 110.0]), np.array([1, 1]))

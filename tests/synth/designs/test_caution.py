@@ -88,6 +88,7 @@ def test_doubted_designs_come_last_and_the_best_by_the_objective_says_so() -> No
     ]
 
 
+@pytest.mark.slow
 def test_inverted_slider_cranks_at_90_deg_are_ranked_by_their_leverage() -> None:
     """Their transmission angle says nothing: one whose output went 454 times as fast came third."""
     task = MotionTask.from_degrees([[0, 0, 0], [3, 1, 40], [5, 4, 90]])

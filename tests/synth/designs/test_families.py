@@ -58,6 +58,7 @@ def test_nothing_is_chained_on() -> None:
     assert best_alike(UNEVEN, chain[[1, 0, 2, 3, 4, 5, 6, 7]]).tolist() == [0, 0, 0, 3, 3, 5, 5, 7]
 
 
+@pytest.mark.slow
 def test_families_are_those_of_brute_force(luggage_result: Result, luggage: Problem) -> None:
     """Of the luggage problem, which has no symmetry: each design with the first that is near enough."""
     middle = np.mean(luggage.task.positions, axis=0)
@@ -101,6 +102,7 @@ def are_akin(one: Candidate, other: Candidate, size: float) -> bool:
     return False
 
 
+@pytest.mark.slow
 def test_a_dyad_in_common_is_a_family_where_the_transmission_angle_is(luggage: Problem) -> None:
     """Hinges of a hood: the first six rows shared O4, B and mu (the angle is that of their output dyad)."""
     task = MotionTask.from_degrees([[0, 0, 0], [-20, 60, 20], [-60, 130, 55]])
@@ -135,6 +137,7 @@ def test_cognates_of_a_path_are_alike(seed: int) -> None:
     assert best_alike(motion, signatures).tolist() == list(range(6))  # a cognate turns the body otherwise
 
 
+@pytest.mark.slow
 def test_the_best_of_each_family_comes_first_then_the_others(luggage_result: Result) -> None:
     families = luggage_result.families
     heads = {family[0].id for family in families}
@@ -174,7 +177,7 @@ def test_designs_without_families_stand_for_themselves(luggage_result: Result) -
     assert len(replace(luggage_result, candidates=plain).families) == len(plain)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_mirrored_designs_and_cognates_of_a_symmetric_closed_path() -> None:
     """Designs for the ellipse, their cognates and the mirror images of all, each judged anew."""
     loaded = load("path-ellipse")
@@ -207,6 +210,7 @@ def mirrored(design: Candidate, problem: Problem) -> Candidate | None:
     return replace(design, linkage=flipped, verdict=verdict) if verdict.ok else None
 
 
+@pytest.mark.slow
 def test_a_thousand_designs_take_a_moment() -> None:
     rng = np.random.default_rng(0)
     many = 5 * rng.normal(size=(1000, 9))

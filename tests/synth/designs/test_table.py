@@ -151,6 +151,7 @@ def test_an_empty_result_has_all_columns(luggage: Problem, tmp_path: Path) -> No
     assert to_frame(luggage, ()).shape == (0, len(COLUMNS))
 
 
+@pytest.mark.quick("-2.0", "3.0")
 @pytest.mark.parametrize("turns", [-2.0, 1.0, 3.0])
 def test_the_driver_starts_within_half_a_turn_and_is_never_wrapped(
     luggage_result: Result, turns: float

@@ -10,6 +10,8 @@ from grashof.analysis.judge.tolerance import robustness
 from grashof.problems import Manufacturing
 from grashof.synth import Result
 
+pytestmark = pytest.mark.slow
+
 MANUFACTURING = (
     *("move_r1", "move_r2", "move_r3", "move_r4", "move_u", "move_v"),
     *("worst_move", "share_within_linear", "share_within_made"),
@@ -24,6 +26,7 @@ def frame(luggage_result: Result) -> pd.DataFrame:
     return replace(luggage_result, problem=problem).to_frame()
 
 
+@pytest.mark.study
 def test_figures_are_the_analysis(frame: pd.DataFrame, luggage_result: Result) -> None:
     for row, candidate in zip(frame[list(MANUFACTURING)].to_numpy(), luggage_result.candidates, strict=True):
         found = robustness(candidate.linkage, luggage_result.problem.task, candidate.verdict, MADE)

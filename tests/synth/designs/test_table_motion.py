@@ -20,6 +20,7 @@ def frame(luggage_result: Result) -> pd.DataFrame:
     return luggage_result.to_frame()
 
 
+@pytest.mark.slow
 def test_figures_are_the_analysis(frame: pd.DataFrame, luggage_result: Result) -> None:
     for row, candidate in zip(
         frame[[*MOTION, *DYNAMICS]].itertuples(), luggage_result.candidates, strict=True

@@ -195,15 +195,7 @@ def judged(problem: Problem, linkage: Linkage, theta2: FloatArray) -> FloatArray
     return torque
 
 
-@pytest.mark.quick(
-    "masses",
-    "weightless",
-    "bars",
-    "inverted-slider-crank masses",
-    "slider-crank bars",
-    "inverted-slider-crank loaded",
-    "slider-crank loaded",
-)
+@pytest.mark.quick("slider-crank bars")
 @pytest.mark.parametrize(
     ("mechanism", "given"),
     [
@@ -262,6 +254,7 @@ def test_the_list_begins_with_the_smallest_torque(lightest: Result, driven: Prob
     assert stiff.verdict.transmission_min_task > lightest.best.verdict.transmission_min_task + 0.02
 
 
+@pytest.mark.slow
 def test_no_pair_of_dyads_needs_less(lightest: Result, driven: Problem) -> None:
     """Of thousands of feasible pairs; samples of theirs are no greater than their peaks."""
     scaled = ScaledProblem.of(driven)
@@ -278,6 +271,7 @@ def test_no_pair_of_dyads_needs_less(lightest: Result, driven: Problem) -> None:
     assert peaks.min() < lightest.best.values["torque_peak"] * 1.05  # not for want of good ones
 
 
+@pytest.mark.slow
 def test_the_programme_agrees_with_the_judge(driven: Problem) -> None:
     scaled = ScaledProblem.of(driven)
     starts = finder_for(scaled).round(0, 8, np.random.default_rng(0), 1).starts[:12:3]
@@ -288,7 +282,7 @@ def test_the_programme_agrees_with_the_judge(driven: Problem) -> None:
         assert made.values["torque_peak"] * (1 - GRID_ERROR) < peak < made.values["torque_peak"] * (1 + 1e-6)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.parametrize("weight", [0.3, 3.0])
 def test_a_weight_beside_the_transmission(driven: Problem, lightest: Result, weight: float) -> None:
     both = replace(driven, objective=Objective(transmission=1, torque=weight))
@@ -300,6 +294,7 @@ def test_a_weight_beside_the_transmission(driven: Problem, lightest: Result, wei
     assert best.score(both) >= max(each.score(both) for each in lightest.candidates)
 
 
+@pytest.mark.study
 def test_backwards_the_torque_is_the_same(driven: Problem, lightest: Result) -> None:
     task = driven.task
     assert isinstance(task, MotionTask)
@@ -309,7 +304,7 @@ def test_backwards_the_torque_is_the_same(driven: Problem, lightest: Result) -> 
     assert best.values["torque_peak"] == pytest.approx(lightest.best.values["torque_peak"], rel=GRID_ERROR)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.parametrize("closed", [False, True])
 def test_paths(closed: bool) -> None:
     task, _ = planted_path(np.random.default_rng(4), points=5)
@@ -328,6 +323,7 @@ def test_paths(closed: bool) -> None:
         )
 
 
+@pytest.mark.slow
 @pytest.mark.quick("point_acceleration_max-slider-crank")
 @pytest.mark.parametrize("mechanism", SLIDING)
 @pytest.mark.parametrize("key", ["torque_peak", "joint_force_peak", "point_acceleration_max"])
@@ -350,6 +346,7 @@ def test_slider_kinds(mechanism: str, key: str) -> None:
     assert near
 
 
+@pytest.mark.slow
 @pytest.mark.quick("slider-crank")
 @pytest.mark.parametrize("mechanism", SLIDING)
 def test_limits_of_slider_kinds(mechanism: str) -> None:
@@ -363,7 +360,7 @@ def test_limits_of_slider_kinds(mechanism: str) -> None:
     assert all(each.values["point_speed_max"] <= 0.9 * fast for each in kept.candidates)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_the_bound_holds_between_the_angles_of_the_grid() -> None:
     """On quick paths torque peaks hide between them; those that are found are added."""
     task, _ = planted_path(np.random.default_rng([3, 0]), points=6)
@@ -384,7 +381,7 @@ def test_the_bound_holds_between_the_angles_of_the_grid() -> None:
     assert again.max() < 0.005
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.usefixtures("small_search")
 def test_an_objective_of_least_squares_wants_a_bound_of_the_error() -> None:
     task, _ = planted_path(np.random.default_rng(3), points=10)

@@ -48,6 +48,8 @@ def check_pivots(result: Result, polygon: Any) -> None:
     assert not deeper_than(polygon, pivots, 1e-7).any()
 
 
+@pytest.mark.slow
+@pytest.mark.quick("polygon1-11.29")
 @pytest.mark.parametrize(("polygon", "least"), [(AS_GIVEN, 13.42), (GOES_ON, 11.29)])
 def test_ground_pivots_outside_the_staircase(
     polygon: Any, least: float, independent_judge: Callable[[FourBar, MotionTask], Any]
@@ -68,6 +70,7 @@ def test_ground_pivots_outside_the_staircase(
         assert found.arms.max() <= 8 + 1e-6
 
 
+@pytest.mark.slow
 def test_without_the_area_the_best_pivots_lie_in_it() -> None:
     free = synthesize(
         replace(load("luggage"), requirements=replace(luggage(AS_GIVEN).requirements, keep_out=()))
@@ -76,7 +79,7 @@ def test_without_the_area_the_best_pivots_lie_in_it() -> None:
     assert deeper_than(AS_GIVEN, pivots, 0.1).any()
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.usefixtures("small_search")
 def test_no_crank_turns_fully_outside_a_floor_that_goes_on_and_the_note_says_so(
     relaxing_only: Callable[..., None],
@@ -105,6 +108,7 @@ def test_behind_a_floor_that_ends_at_9_a_crank_turns_fully(
         assert candidate.linkage.o2[0] >= 9 - 1e-7
 
 
+@pytest.mark.slow
 @pytest.mark.quick("names0")
 @pytest.mark.usefixtures("small_search")
 @pytest.mark.parametrize("names", [("a", "b", "p"), ("links",)])
@@ -134,6 +138,7 @@ def test_moving_parts_pass_beside_a_post(names: tuple[str, ...]) -> None:
                 assert not deeper_than(POST, one + share * (other - one), 1e-6).any()
 
 
+@pytest.mark.study
 def test_where_only_the_way_is_obstructed_the_closest_miss_is_shown(
     relaxing_only: Callable[..., None],
 ) -> None:
@@ -146,12 +151,14 @@ def test_where_only_the_way_is_obstructed_the_closest_miss_is_shown(
     assert result.nearest
 
 
+@pytest.mark.slow
 def test_a_target_inside_is_named(relaxing_only: Callable[..., None]) -> None:
     relaxing_only("keep_out")
     result = synthesize(luggage([[1, 2], [3, 2], [3, 4.5], [1, 4.5]], keep_out_for=["p"]), starts=4)
     assert "keep_out drawn in by 1, the depth of P" in result.note
 
 
+@pytest.mark.slow
 def test_a_path_keeps_its_pivots_out() -> None:
     line = load("path-vertical-line")
     free = synthesize(line, enough=8)
@@ -181,6 +188,7 @@ def starts_as_screened(starts: list[Start]) -> Screened:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("small_search")
 def test_a_look_at_the_way_agrees_with_the_judge(luggage_scaled: Callable[..., ScaledProblem]) -> None:
     scaled = luggage_scaled(rotatability="any")

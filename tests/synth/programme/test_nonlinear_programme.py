@@ -242,6 +242,7 @@ RELAXED: dict[str, tuple[str, dict[str, Any]]] = {
 LENGTH_KEYS: dict[str, set[str]] = defaultdict(set, link_length={"r1", "r2", "r3", "r4"})
 
 
+@pytest.mark.quick("short links", "o2 far away", "b in a corner", "pivots far out", "start angle")
 @pytest.mark.parametrize("kind", RELAXED)
 def test_relaxed_misses_nothing_else_and_less_than_any_traced_pair(
     luggage_scaled: SetupOf, kind: str
@@ -299,6 +300,7 @@ def check_no_success(scaled: ScaledProblem, start: Start) -> None:
     assert result.candidate.verdict.ok or result.status != "Solve_Succeeded"
 
 
+@pytest.mark.quick("8", "36")
 @pytest.mark.parametrize("seed", [8, 11, 20, 36])
 def test_no_success_going_back(
     planted_scaled: Callable[..., tuple[ScaledProblem, FourBar]], seed: int
@@ -315,6 +317,7 @@ def test_no_success_going_back(
         check_no_success(scaled, replace(start, theta2=tuple(theta2), direction=sense))
 
 
+@pytest.mark.quick("0", "7")
 @pytest.mark.parametrize("seed", [0, 1, 2, 7])
 def test_no_success_beyond_a_turn(
     planted_scaled: Callable[..., tuple[ScaledProblem, FourBar]], seed: int

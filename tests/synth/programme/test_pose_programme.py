@@ -79,6 +79,7 @@ def rival_from(begin: Floats, problem: Problem, side: float) -> Verdict | None:
     return verdict if verdict.ok and crank == was_crank else None
 
 
+@pytest.mark.quick("6")
 @pytest.mark.slow
 @pytest.mark.parametrize("poses", [6, 12])
 def test_no_worse_than_least_squares_by_another_method(poses: int) -> None:
@@ -103,6 +104,7 @@ def test_no_worse_than_least_squares_by_another_method(poses: int) -> None:
     assert usable >= 2
 
 
+@pytest.mark.slow
 def test_the_planted_rivals_are_mostly_usable() -> None:
     """So that the test above says something: how far the fit goes below the planted linkage."""
     gains = []
@@ -112,6 +114,7 @@ def test_the_planted_rivals_are_mostly_usable() -> None:
     assert np.median(gains) < 0.5
 
 
+@pytest.mark.quick("0", "4")
 @pytest.mark.parametrize("seed", [0, 1, 2, 4])  # of 3 Ipopt runs out of iterations: links as long as 30 tasks
 def test_a_heavy_pose_is_met_more_closely(seed: int) -> None:
     problem, linkage, _ = noisy(seed, 8)
@@ -144,6 +147,7 @@ def test_the_length_of_an_angle_weighs_angles_against_places() -> None:
     assert (angles.angle_error**2).sum() < (places.angle_error**2).sum()
 
 
+@pytest.mark.quick("7-places0-angles0", "4-places2-angles2")
 @pytest.mark.parametrize(
     ("poses", "places", "angles"), [(7, [], [1, 2, 4, 5]), (6, [1, 3], []), (4, [], [1]), (3, [1], [2])]
 )

@@ -90,6 +90,7 @@ def without() -> Result:
     return synthesize(THREE, enough=10)
 
 
+@pytest.mark.quick("a_stays_low", "pivots_in_a_disc")
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_design_holds_the_constraint(kind: str, without: Result) -> None:
     assert worst(kind, without) > 0.01  # or it would say nothing
@@ -107,6 +108,7 @@ def test_two_at_once_hold_both() -> None:
     assert worst("short_driver", result) <= HELD
 
 
+@pytest.mark.slow
 def test_what_all_designs_hold_changes_nothing(without: Result) -> None:
     result = synthesize(THREE, constraints=[lambda design: design.r2 - 1e3], enough=10)
     ours, plain = (
@@ -141,6 +143,7 @@ def test_finds_lack_what_the_judge_finds() -> None:
     assert (violations > 0).any()
 
 
+@pytest.mark.slow
 def test_the_search_looks_for_designs_that_hold_it() -> None:
     """Two metres between the pivots, sideways: a few of the feasible pairs, most of which are wider."""
     result = synthesize(load("luggage"), constraints=[lambda d: (d.o2[0] - d.o4[0]) ** 2 - 4.0])
@@ -148,6 +151,7 @@ def test_the_search_looks_for_designs_that_hold_it() -> None:
     assert all(abs(c.linkage.o2[0] - c.linkage.o4[0]) <= 2 + HELD for c in result.candidates)
 
 
+@pytest.mark.slow
 def test_an_impossible_constraint_is_named(relaxing_only: Callable[..., None]) -> None:
     relaxing_only("constraints")
     result = synthesize(THREE, constraints=[impossible], enough=2, starts=2)
@@ -160,7 +164,7 @@ def test_an_impossible_constraint_is_named(relaxing_only: Callable[..., None]) -
     assert defects[0].found == pytest.approx(float(linkage.r2 + linkage.r4) + 1.0, rel=1e-12)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_least_squares_keeps_it_at_a_price(least_error: Callable[..., Result]) -> None:
     rng = np.random.default_rng([81, 0])
     task, _ = planted_motion(rng, 7)
@@ -260,6 +264,7 @@ def slight(design: Design) -> Any:
     return [np.sin(design.theta2[0]) - 0.9, np.sqrt(design.r2) - 1.5, np.exp(-design.r4) - 0.5]
 
 
+@pytest.mark.slow
 def test_numpy_functions_do_not_warn() -> None:
     """Warnings are errors here."""
     result = synthesize(THREE, constraints=[near_ground, slight], enough=4)

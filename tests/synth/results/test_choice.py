@@ -96,7 +96,8 @@ ZONED: dict[str, dict[str, Any]] = {
 }
 
 
-@pytest.mark.quick("a zone each", "timed", "a tolerance")
+@pytest.mark.slow
+@pytest.mark.quick("a zone each")
 @pytest.mark.parametrize("name", ZONED)
 def test_every_design_keeps_its_zones_and_the_objective_uses_them(
     name: str, least_error: Callable[..., Result]

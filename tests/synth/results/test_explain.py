@@ -35,7 +35,7 @@ def check_nearest(result: Result, said_unit: str) -> float:
     return float(said[1])
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_eight_closed_points_without_a_linkage_come_with_the_closest() -> None:
     task = PathTask(EIGHT, closed=True)
     result = synthesize(Problem(task=task, length_unit="mm"), starts=16)
@@ -57,7 +57,7 @@ def test_more_poses_than_there_are_exact_ones_for() -> None:
     assert squares == sorted(squares)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.parametrize("goal", ["compactness", "torque"])
 def test_a_goal_that_least_squares_or_a_loose_requirement_would_not_have(goal: str) -> None:
     problem = load("luggage")
@@ -81,7 +81,7 @@ def test_where_least_squares_finds_nothing_either_it_is_not_promised() -> None:
     assert "r1 up to 60 instead of 50" in result.note
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_what_least_squares_lacks_is_named_where_no_single_requirement_does() -> None:
     """A tray through four poses under tight limits: of each way that the note names there is a design."""
     tray = MotionTask.from_degrees([[0, 0, 0], [60, 90, 15], [180, 140, 40], [300, 90, 70]])
@@ -104,6 +104,7 @@ def test_what_least_squares_lacks_is_named_where_no_single_requirement_does() ->
     assert any(each.ok and each.error_max <= float(found[2]) for each in nearest)
 
 
+@pytest.mark.slow
 def test_areas_that_cover_everything_are_named(relaxing_only: Callable[..., None]) -> None:
     relaxing_only("keep_out", "rotatability")
     everywhere = [[-3000, -3000], [3000, -3000], [3000, 3000], [-3000, 3000]]
@@ -121,6 +122,7 @@ def test_a_time_limit_leaves_the_explanation_out() -> None:
     assert result.nearest == ()
 
 
+@pytest.mark.slow
 def test_the_time_that_the_explanation_takes_is_told(relaxing_only: Callable[..., None]) -> None:
     relaxing_only("link_length")
     result = synthesize(replace(load("luggage"), requirements=Requirements(link_length=(0.3, 1.5))), starts=4)

@@ -25,7 +25,7 @@ def task(**zones: Any) -> MotionTask:
     return MotionTask.from_degrees(POSES, **zones)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_larger_zones_that_are_named_would_do(least_error: Callable[..., Result]) -> None:
     """Down to the least zone, what is named depends on the poses alone."""
     named = []
@@ -48,7 +48,7 @@ def test_larger_zones_that_are_named_would_do(least_error: Callable[..., Result]
     assert named[0] <= max(squares.error_max, length * squares.angle_error.max())
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_zones_that_are_named_are_little_larger_than_need_be() -> None:
     """With 6.9 mm designs are found by four times the effort, with 6.5 mm none."""
     poses = [[0, 0, 0], [60, 90, 15], [180, 140, 40], [300, 90, 70], [360, 0, 90]]
@@ -118,7 +118,7 @@ def test_two_poses_may_be_missed_too(relaxing_only: Callable[..., None]) -> None
     assert result.note.startswith("no design")
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_exact_poses_that_repeat_are_left_to_least_squares() -> None:
     poses = [[0, 0, 0], [30, 10, 10], [60, 5, 25], [30, 10, 10.0]]
     problem = Problem(task=MotionTask.from_degrees(poses, within=2), requirements=Requirements(exact=False))

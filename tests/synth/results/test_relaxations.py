@@ -57,6 +57,7 @@ def five() -> tuple[MotionTask, FourBar, Any]:
     return planted_five()
 
 
+@pytest.mark.slow
 def test_the_transmission_that_the_only_linkage_has_is_named(five: Any) -> None:
     task, _, verdict = five
     has = np.degrees(verdict.transmission_min_task)
@@ -66,6 +67,7 @@ def test_the_transmission_that_the_only_linkage_has_is_named(five: Any) -> None:
     assert has - 0.11 <= way.requirements.transmission_min_deg <= has
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", ["r1", "r2", "r3", "r4"])
 def test_the_length_that_the_only_linkage_has_is_named(five: Any, key: str) -> None:
     task, linkage, _ = five
@@ -79,6 +81,7 @@ def test_the_length_that_the_only_linkage_has_is_named(five: Any, key: str) -> N
     assert way.words.startswith(f"{key} up to ")
 
 
+@pytest.mark.quick("1-o2-x", "1-o4-x", "-1-o2-x", "-1-o2-y", "-1-o4-y")
 @pytest.mark.parametrize(("key", "axis"), [("o2", "x"), ("o2", "y"), ("o4", "x"), ("o4", "y")])
 @pytest.mark.parametrize("side", [1, -1])
 def test_the_side_of_a_box_that_the_only_linkage_lies_beyond_is_named(
@@ -135,6 +138,7 @@ LUGGAGE: dict[str, tuple[dict[str, Any], str, float]] = {
 }
 
 
+@pytest.mark.quick("length")
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", LUGGAGE)
 def test_a_limit_of_the_luggage_problem_is_relaxed_by_what_is_known_to_do(kind: str) -> None:
@@ -148,6 +152,7 @@ def test_a_limit_of_the_luggage_problem_is_relaxed_by_what_is_known_to_do(kind: 
         assert way.miss >= enough * 0.999
 
 
+@pytest.mark.slow
 def test_a_hint_can_be_followed() -> None:
     """The problem asked as the note says has designs."""
     wanted = {"link_length": (0.3, 5), "coupler_arms": (0, 5), "transmission_over": "cycle"}
@@ -159,7 +164,7 @@ def test_a_hint_can_be_followed() -> None:
 FAR = {"o2": Box((40, 41), (0, 1)), "o4": Box((0, 1), (0, 1)), "link_length": (1, 20)}
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_either_of_two_contradictory_limits_would_do_for_least_squares(
     relaxing_only: Callable[..., None],
 ) -> None:
@@ -227,7 +232,7 @@ def notes(result: Result) -> str:
     return result.note
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_where_no_single_requirement_does_it_is_said() -> None:
     far = Box((900, 901), (900, 901))
     result = synthesize(

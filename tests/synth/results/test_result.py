@@ -116,6 +116,7 @@ def test_real_pareto_marks(luggage_designs: Designs, luggage: Problem) -> None:
     assert 2 <= marks.sum() < len(marks)
 
 
+@pytest.mark.slow
 def test_pareto_marks_with_the_torque(luggage_designs: Designs, luggage: Problem) -> None:
     marks, without = (
         pareto_optimal(problem, luggage_designs) for problem in (luggage, replace(luggage, dynamics=None))

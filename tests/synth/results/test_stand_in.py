@@ -28,6 +28,7 @@ def result(request: pytest.FixtureRequest) -> Result:
     return synthesize(Problem(task=task, requirements=Requirements(exact=False)), effort=0.3)
 
 
+@pytest.mark.quick("path")
 @pytest.mark.slow
 def test_the_error_on_all_targets_is_that_of_the_stand_in_and_the_least(result: Result) -> None:
     scaled = ScaledProblem.of(result.problem)
@@ -41,6 +42,7 @@ def test_the_error_on_all_targets_is_that_of_the_stand_in_and_the_least(result: 
         assert np.hypot(least, added) == pytest.approx(one.error(result.problem), rel=0.1)
 
 
+@pytest.mark.quick("path")
 @pytest.mark.slow
 def test_what_is_offered_is_judged_on_all_targets(result: Result) -> None:
     least = min(one.error(result.problem) for one in result.candidates)

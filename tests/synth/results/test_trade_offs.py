@@ -17,6 +17,8 @@ from grashof.problems.files.problem_file import problem_of
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth import Candidate, Result
 
+pytestmark = pytest.mark.slow
+
 Search = Callable[..., Result]
 TASKS = json.loads((Path(__file__).parents[2] / "data" / "limited.json").read_text())["tasks"]
 POSES = [[0, 0, 0], [30, 10, 10], [60, 15, 25], [90, 10, 40], [120, -5, 60], [130, -30, 80]]
@@ -41,7 +43,7 @@ def mu_of(candidate: Candidate) -> float:
     return float(np.degrees(candidate.verdict.transmission_min_cycle))
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_more_error_buys_transmission_and_size(dshape: Result) -> None:
     """What a search of its own found for 1.2 and twice the least error of 0.6763: 65.2 deg, 277 mm."""
     error = errors_of(dshape)
@@ -91,7 +93,7 @@ def leg(objective: str, least_deg: float) -> Problem:
     return problem_of(text, "here", "leg")
 
 
-@pytest.mark.slow
+@pytest.mark.quick("transmission-35")
 @pytest.mark.parametrize(("objective", "least_deg"), [("transmission", 35), ("compactness", 40)])
 def test_zones_of_the_walking_leg(objective: str, least_deg: float) -> None:
     result = synthesize(leg(objective, least_deg), effort=0.2)
@@ -109,7 +111,7 @@ def test_zones_of_the_walking_leg(objective: str, least_deg: float) -> None:
             assert np.hypot(*(track - point).T).min() <= 6.01
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_an_error_factor_bounds_the_error_and_lets_the_objective_decide(dshape: Result) -> None:
     wanted = replace(dshape.problem.requirements, error_factor=1.2)
     result = synthesize(replace(dshape.problem, requirements=wanted), effort=0.2)
@@ -120,7 +122,7 @@ def test_an_error_factor_bounds_the_error_and_lets_the_objective_decide(dshape: 
     assert synthesize(small, effort=0.2).best.verdict.size <= 334.5
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.usefixtures("small_search")
 def test_a_wide_tolerance_works_as_zones(least_error: Search) -> None:
     problem = problem_of(
@@ -133,7 +135,6 @@ def test_a_wide_tolerance_works_as_zones(least_error: Search) -> None:
     assert mu_of(result.best) > mu_of(by_error) + 1
 
 
-@pytest.mark.slow
 def test_more_effort_is_never_worse_and_less_is_quick(least_error: Search) -> None:
     problem = Problem(task=MotionTask.from_degrees(POSES))
     little, usual, much = (least_error(problem, effort=effort) for effort in (0.2, 1, 1.3))
@@ -151,6 +152,7 @@ def test_more_effort_is_never_worse_and_less_is_quick(least_error: Search) -> No
     assert frame["error"].min() == pytest.approx(usual.least_error, rel=1e-6)
 
 
+@pytest.mark.study
 def test_least_squares_that_meets_every_target_says_what_would_find_more() -> None:
     luggage = load("luggage")
     fitted = replace(luggage, requirements=replace(luggage.requirements, exact=False))
@@ -168,6 +170,7 @@ def test_workers_change_nothing_of_a_list_to_choose_from(other_process: Executor
     assert [each.best_at for each in one.candidates] == [each.best_at for each in two.candidates]
 
 
+@pytest.mark.study
 def test_errors_below_the_tolerance_leave_the_choice_to_the_objective() -> None:
     """Four poses in least squares: many linkages meet them, and rounding noise decides nothing."""
     problem = replace(

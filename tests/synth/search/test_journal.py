@@ -39,7 +39,7 @@ def table(result: Result) -> str:
     return result.to_frame().to_csv() + result.note + result.ended
 
 
-@pytest.mark.quick("poses fitted", "points met")
+@pytest.mark.quick("poses fitted")
 @pytest.mark.usefixtures("small_search")
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_search_that_was_killed_goes_on_to_the_same_list(
@@ -80,6 +80,8 @@ def recorded(folder: Path, files: int = 2) -> Path:
     return folder
 
 
+@pytest.mark.slow
+@pytest.mark.quick("0.1")
 @pytest.mark.parametrize("stop", [0.1, 0.4, 0.8])
 def test_a_search_that_was_stopped_goes_on_to_the_same_list(tmp_path: Path, stop: float) -> None:
     problem, options = KINDS["poses fitted"]
@@ -116,6 +118,7 @@ DAMAGES: dict[str, Callable[[str], str]] = {
 }
 
 
+@pytest.mark.quick("other", "linkages that miss", "fewer attempts")
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_what_is_damaged_or_untrue_is_done_again(
     tmp_path: Path, damage: str, fitted: tuple[Path, str]
@@ -153,6 +156,7 @@ def test_the_record_of_another_search_is_refused(tmp_path: Path) -> None:
     assert list(folder.glob("0*.json"))
 
 
+@pytest.mark.slow
 def test_other_files_in_its_folder_are_left_alone(tmp_path: Path) -> None:
     problem, options = KINDS["poses fitted"]
     folder = recorded(tmp_path / "search")
@@ -164,6 +168,7 @@ def test_other_files_in_its_folder_are_left_alone(tmp_path: Path) -> None:
     assert sorted(folder.iterdir()) == sorted(others)
 
 
+@pytest.mark.slow
 def test_options_may_be_numbers_of_numpy(tmp_path: Path) -> None:
     problem, _ = KINDS["poses"]
     found = synthesize(problem, starts=np.int64(8), seed=np.int64(0), record=tmp_path / "search")

@@ -39,6 +39,7 @@ def designs(problem: Problem) -> list[Candidate]:
     return [made[k] for k in rng.permutation(len(made))]
 
 
+@pytest.mark.quick("7", "100")
 @pytest.mark.parametrize("batch", [1, 7, 100])
 def test_they_are_those_ranked_at_once(problem: Problem, designs: list[Candidate], batch: int) -> None:
     leaders = Leaders(problem)

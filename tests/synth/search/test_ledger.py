@@ -55,6 +55,7 @@ def test_the_best_stay_of_very_many(
     assert some.tally == every.tally
 
 
+@pytest.mark.study
 def test_misses_are_bounded_by_kind(
     scaled: ScaledProblem, attempts: list[Attempt], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -78,6 +79,7 @@ def test_misses_are_bounded_by_kind(
     assert len(filled(asked, missed).rejected) <= 2 * 20 + 16
 
 
+@pytest.mark.slow
 def test_chunks_add_up_to_what_they_hold(scaled: ScaledProblem) -> None:
     search = scaled.problem.search
     some = [chunk(scaled, number, *which(search, 5)) for number in range(3)]

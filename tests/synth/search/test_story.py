@@ -23,6 +23,7 @@ ENDINGS = {
 }
 
 
+@pytest.mark.quick("whole", "stopped", "late, not stopped")
 @pytest.mark.parametrize("how", ENDINGS)
 def test_the_story_tells_what_ended_the_search(how: str) -> None:
     options, ending = ENDINGS[how]

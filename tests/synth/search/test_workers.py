@@ -37,6 +37,7 @@ def table(result: Result) -> str:
     return result.to_frame().to_csv() + result.note + result.ended
 
 
+@pytest.mark.slow
 @pytest.mark.quick("poses fitted")
 @pytest.mark.parametrize("kind", SEARCHES)
 def test_workers_change_no_byte(kind: str) -> None:
@@ -63,7 +64,7 @@ def nap(_scaled: ScaledProblem, seconds: float) -> float:
     return seconds
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_what_ends_its_process_is_given_up_and_the_next_is_not(processes: Processes) -> None:
     scaled = ScaledProblem.of(load("luggage"))
     assert processes.begin(crash, scaled, 7)  # else it is done here as long as they begin
@@ -74,7 +75,7 @@ def test_what_ends_its_process_is_given_up_and_the_next_is_not(processes: Proces
     assert processes.lost == 2
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_what_a_lost_process_did_is_done_again(processes: Processes) -> None:
     scaled = ScaledProblem.of(load("luggage"))
     naps = (0.5, 2.5, 0.1)
@@ -112,6 +113,7 @@ class Replaced(Elsewhere):
         self.drop()
 
 
+@pytest.mark.slow
 def test_of_a_bundle_only_the_start_at_fault_is_given_up() -> None:
     scaled = ScaledProblem.of(load("luggage"))
     found = screen(scaled, 0, 0, 50, 0)
@@ -142,6 +144,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.quick("9")
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])

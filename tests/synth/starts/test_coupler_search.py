@@ -53,6 +53,7 @@ def check_tracks(scaled: ScaledProblem, starts: list[Start], error: float) -> No
         assert np.abs(np.diff(start.theta3)).max() < np.pi
 
 
+@pytest.mark.slow
 def test_the_seed_decides() -> None:
     scaled = setup_of(LINE, link_length=(5, 60))
     first = first_rounds(scaled, 2)
@@ -84,6 +85,7 @@ def test_a_family_has_feasible_starts_that_are_apart() -> None:
     assert gaps.min() > 1e-3
 
 
+@pytest.mark.quick("0", "3")
 @pytest.mark.parametrize("seed", range(4))
 def test_nine_points_settle_their_designs(path_scaled: PathSetup, seed: int) -> None:
     scaled, _ = path_scaled([1, seed], 9)
@@ -105,6 +107,7 @@ def test_prescribed_rotations_are_kept(path_scaled: PathSetup, points: int, any_
     check_tracks(scaled, first_rounds(scaled, 1)[0].starts[:10], 1e-5 if scaled.exact else 1.0)
 
 
+@pytest.mark.quick("True")
 @pytest.mark.parametrize("exact", [True, False])
 def test_a_last_point_that_repeats_the_first_is_met_after_a_turn(exact: bool) -> None:
     points = [*LINE[:3], [24.0, 24.0]] if exact else ELLIPSE
@@ -196,6 +199,7 @@ def test_an_equality_leaves_near_misses_to_start_from(wanted: dict[str, Any]) ->
     assert len(first.starts) >= 10
 
 
+@pytest.mark.slow
 def test_relaxed_starts_miss_one_requirement() -> None:
     scaled = setup_of(LINE, transmission_min_deg=85, transmission_over="cycle")
     relaxed = finder_for(scaled).relaxed(np.random.default_rng(0))

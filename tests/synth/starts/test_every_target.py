@@ -61,6 +61,7 @@ def test_a_task_in_any_order_is_met(path: bool) -> None:
     assert error < 1e-12 * len(target.points)
 
 
+@pytest.mark.quick("False")
 @pytest.mark.slow
 @pytest.mark.parametrize("path", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_it_comes_as_low_as_steps_in_all_angles_at_once(path: bool) -> None:
@@ -108,6 +109,7 @@ def test_no_small_move_of_what_all_targets_share_gains() -> None:
                 assert again >= error.min() * (1 - 1e-5)
 
 
+@pytest.mark.slow
 def test_memory_grows_with_the_targets_not_with_their_square() -> None:
     peaks = []
     for count in (200, 800):

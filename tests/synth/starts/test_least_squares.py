@@ -110,6 +110,7 @@ def mu_of(linkage: FourBar, theta2: float) -> float:
     return float(np.degrees(np.arccos(abs(cosine))))
 
 
+@pytest.mark.study
 @pytest.mark.quick("leg_tight")
 @pytest.mark.parametrize("name", ["leg_tight", "shb_moon", "sh_tear"])
 def test_known_tasks_come_to_the_best_known(name: str, least_error: Search) -> None:
@@ -206,6 +207,7 @@ def least(result: Result) -> Candidate:
     return min(result.candidates, key=lambda c: c.verdict.square)
 
 
+@pytest.mark.slow
 @pytest.mark.quick("timed-transmission_min_deg")
 @pytest.mark.parametrize(
     ("kind", "limit"), [(kind, limit) for kind, limits in GRID.items() for limit in limits]

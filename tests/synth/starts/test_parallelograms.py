@@ -74,6 +74,7 @@ ARCS: dict[str, tuple[list[float], float]] = {
 }
 
 
+@pytest.mark.quick("three clockwise")
 @pytest.mark.parametrize("kind", ARCS)
 def test_poses_on_a_circle_get_the_best_transmission_that_there_is(kind: str) -> None:
     """With the ground line across the middle of the way: 90 deg less half the arc."""
@@ -102,6 +103,7 @@ def test_the_list_offers_many_places_on_both_sides() -> None:
     assert {int(one.linkage.assembly) for one in result.candidates} == {1, -1}
 
 
+@pytest.mark.slow
 def test_two_poses_get_parallelograms_of_either_sense_among_others() -> None:
     result = synthesize(problem(MotionTask.from_degrees([[0, 0, 10], [2, 1, 10]]), link_length=(0.5, 6)))
     kinds = [one.verdict.grashof_class is GrashofClass.CHANGE_POINT for one in result.candidates]
@@ -115,6 +117,7 @@ def test_two_poses_get_parallelograms_of_either_sense_among_others() -> None:
         assert 0.5 <= float(one.linkage.r2) <= 6
 
 
+@pytest.mark.slow
 def test_all_requirements_hold() -> None:
     boxes = {"o2": Box((-3, -2), (0, 1)), "o4": Box((-1, 0), (0, 1))}
     wanted = {**boxes, "transmission_min_deg": 30, "link_length": (0.5, 5), "coupler_arms": (2, 12)}
@@ -127,6 +130,7 @@ def test_all_requirements_hold() -> None:
             assert box.y[0] - 1e-8 <= y <= box.y[1] + 1e-8
 
 
+@pytest.mark.slow
 def test_fixed_pivots_and_a_fixed_ground_line_are_kept() -> None:
     fixed = Box((0, 0), (0, 0))
     three = synthesize(problem(on_circle([10, 40, 100]), ground_angle_deg=0, o2=fixed))
@@ -138,6 +142,7 @@ def test_fixed_pivots_and_a_fixed_ground_line_are_kept() -> None:
     assert all(float(c.linkage.r1) == pytest.approx(np.sqrt(17)) for c in both.candidates)
 
 
+@pytest.mark.slow
 def test_the_start_angle_chooses_the_circle_of_two_poses() -> None:
     result = synthesize(problem(on_circle([30, 90]), theta2_start_deg=30), enough=30)
     chosen = [c for c in result.candidates if c.verdict.grashof_class is GrashofClass.CHANGE_POINT]
@@ -145,6 +150,7 @@ def test_the_start_angle_chooses_the_circle_of_two_poses() -> None:
     assert all(float(c.linkage.r2) == pytest.approx(RADIUS, rel=1e-9) for c in chosen)
 
 
+@pytest.mark.slow
 def test_a_hint_names_what_the_geometry_asks_for(relaxing_only: Callable[..., None]) -> None:
     """B lies from P as O4 from the centre: at least 2.83 away from it here, and 3 is asked."""
     relaxing_only("coupler_arms")
@@ -163,6 +169,7 @@ def test_a_full_crank_is_told_what_would_do(relaxing_only: Callable[..., None]) 
     assert 'rotatability "any" instead of "full-crank"' in result.note
 
 
+@pytest.mark.study
 def test_off_the_circle_it_is_said_how_far_and_least_squares_comes_near(
     relaxing_only: Callable[..., None],
 ) -> None:
@@ -177,6 +184,7 @@ def test_off_the_circle_it_is_said_how_far_and_least_squares_comes_near(
     assert result.nearest[0].verdict.error_max < 0.05
 
 
+@pytest.mark.slow
 def test_a_straight_line_is_told(relaxing_only: Callable[..., None]) -> None:
     relaxing_only()
     result = synthesize(problem(MotionTask.from_degrees([[0, 0, 5], [1, 1, 5], [3, 3, 5]])))
@@ -191,6 +199,7 @@ def test_more_than_half_a_turn_holds_a_change_point(relaxing_only: Callable[...,
     assert "spread over 250 deg of a circle" in result.note
 
 
+@pytest.mark.slow
 def test_order_is_kept_or_left(relaxing_only: Callable[..., None]) -> None:
     relaxing_only("order")
     task = on_circle([10, 60, 40, 80])
@@ -210,6 +219,7 @@ def test_the_circle_of_points_is_found() -> None:
     assert circle_through(np.array([0, 1 + 1j, 3 + 3j])).radius == np.inf
 
 
+@pytest.mark.slow
 def test_least_squares_of_translations_comes_as_near_as_the_best_circle(
     least_error: Callable[..., Result],
 ) -> None:

@@ -51,6 +51,7 @@ def differences(model: Model, batch: Batch, step: float = 1e-6) -> FloatArray:
     return np.stack(columns, axis=-1)
 
 
+@pytest.mark.quick("slider-crank-False-False-full-crank", "inverted-slider-crank-True-True-any")
 @pytest.mark.parametrize("rotatability", ["full-crank", "any"])
 @pytest.mark.parametrize("timed", [False, True])
 @pytest.mark.parametrize("poses", [False, True])
@@ -124,6 +125,8 @@ def test_full_cranks_keep_their_margin_by_construction(mechanism: str) -> None:
     assert sound.mean() > 0.9
 
 
+@pytest.mark.slow
+@pytest.mark.quick("slider-crank")
 @pytest.mark.parametrize("mechanism", SLIDERS)
 def test_many_targets_are_fitted_one_driver_angle_each(mechanism: str) -> None:
     along = np.linspace(0, 5, 60)

@@ -72,6 +72,7 @@ def test_equal_poses_that_do_not_follow_each_other_are_refused(again: float) -> 
         finder_for(ScaledProblem.of(Problem(task=task))).refuse()
 
 
+@pytest.mark.slow
 def test_the_best_are_free_and_apart_then_all_over_the_family(luggage_scaled: SetupOf) -> None:
     scaled = luggage_scaled()
     queue, feasible = queue_of(scaled)
@@ -97,6 +98,7 @@ def test_neighbourhoods_do_not_overlap(luggage_scaled: SetupOf) -> None:
             assert max(np.abs(gap.real).max(), np.abs(gap.imag).max()) > one.radius + other.radius
 
 
+@pytest.mark.slow
 def test_the_best_start_has_the_best_transmission(luggage_scaled: SetupOf) -> None:
     scaled = luggage_scaled()
     queue, _ = queue_of(scaled)
@@ -123,6 +125,7 @@ def test_the_seed_decides(luggage_scaled: SetupOf) -> None:
     assert queue_of(scaled, seed=3) != queue_of(scaled, seed=4)
 
 
+@pytest.mark.quick("0", "2", "3", "5")
 @pytest.mark.parametrize("seed", range(6))
 def test_planted_tasks_have_feasible_starts(
     planted_scaled: Callable[..., tuple[ScaledProblem, FourBar]], seed: int

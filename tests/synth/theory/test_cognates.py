@@ -65,6 +65,7 @@ def test_a_cognate_is_one_linkage_all_the_way_and_carries_the_same_point(case: i
         np.testing.assert_array_equal(p, way[:, 4])
 
 
+@pytest.mark.quick("0", "2", "4", "7", "9", "11")
 @pytest.mark.parametrize("case", range(len(CASES)))
 def test_a_cognate_traces_the_whole_curve(case: int) -> None:
     """From its numbers at one position alone, turned by itself, on either assembly where it rocks."""

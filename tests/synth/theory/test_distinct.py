@@ -3,6 +3,7 @@
 from random import Random
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -32,6 +33,7 @@ def test_the_numbers_that_count() -> None:
     assert apart(signature(linkage), signature(nearly)[None])[0] < DISTINCT
 
 
+@pytest.mark.slow
 @bounded
 @given(signatures)
 def test_apart_is_the_definition_and_symmetric(rows: FloatArray) -> None:
@@ -41,6 +43,7 @@ def test_apart_is_the_definition_and_symmetric(rows: FloatArray) -> None:
     np.testing.assert_allclose(apart(1e3 * rows[0], 1e3 * rows), expected, rtol=1e-12)  # any unit
 
 
+@pytest.mark.slow
 @bounded
 @given(signatures, st.randoms(use_true_random=False), st.floats(0.01, 0.8))
 def test_picked_are_apart_best_first_and_nobody_else_fits(

@@ -10,6 +10,8 @@ from grashof.synth.theory import eight_points
 from grashof.synth.theory.eight_point_linkages import inverted_slider_cranks_through, slider_cranks_through
 from grashof.synth.theory.eight_points import FAMILIES, Family
 
+pytestmark = pytest.mark.slow
+
 SCRIPTS = Path(__file__).parents[3] / "scripts"
 
 
@@ -118,7 +120,7 @@ def test_all_slider_cranks_are_distinct(planted):
     assert apart.min() > 1e-6
 
 
-@pytest.mark.slow
+@pytest.mark.quick("0.001-True-False")
 @pytest.mark.parametrize(
     ("factor", "mirrored", "back"), [(25.4 * np.exp(1j), False, True), (1e-3, True, False)]
 )
@@ -143,7 +145,7 @@ def test_inverted_slider_cranks_pass_all_points(benchmark):
     assert_inverted_ones_pass(through, points)
 
 
-@pytest.mark.slow
+@pytest.mark.quick("on a circle")
 @pytest.mark.parametrize(
     "points",
     [
@@ -171,7 +173,6 @@ def test_of_558_paths_548_arrive_and_the_planted_slider_crank_is_found(benchmark
     assert gap < 1e-6
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "number", [2, *(pytest.param(number, marks=pytest.mark.study) for number in range(2))]
 )

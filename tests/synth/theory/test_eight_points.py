@@ -91,6 +91,7 @@ def test_slider_cranks_are_279_pairs_of_cognates_each_with_an_o2_of_its_own():
     assert 2 * SLIDER_CRANKS.count == 558  # Tari & Su 2010
 
 
+@pytest.mark.slow
 def test_inverted_slider_cranks_share_no_pivot():
     _, solutions = INVERTED_SLIDER_CRANKS.known()
     for pivot in (2, 4):
@@ -99,6 +100,7 @@ def test_inverted_slider_cranks_share_no_pivot():
         assert (apart + np.eye(len(apart))).min() > 1e-5
 
 
+@pytest.mark.quick("slider-crank")
 @pytest.mark.slow
 @KINDS
 def test_loops_from_one_solution_lead_to_known_ones(family):

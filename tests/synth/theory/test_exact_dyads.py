@@ -87,6 +87,7 @@ def test_sampled_dyads_are_exact_and_half_have_their_pivot_where_it_is_wished(po
             assert inside.sum() >= 150
 
 
+@pytest.mark.quick("anywhere-2", "in a box-2", "on a line-3", "fixed-3")
 @pytest.mark.parametrize("poses", [2, 3])
 @pytest.mark.parametrize("kind", BOXES)
 def test_starts_of_two_and_three_poses_meet_them_with_their_pivots_in_place(
@@ -110,6 +111,7 @@ def test_starts_of_two_and_three_poses_meet_them_with_their_pivots_in_place(
         assert found.turns
 
 
+@pytest.mark.quick("5", "12")
 @pytest.mark.parametrize("poses", [5, 6, 8, 12])
 def test_the_planted_dyads_are_among_those_of_five_poses_and_more(poses: int) -> None:
     for seed in range(25):

@@ -144,6 +144,7 @@ def planted(seed: int) -> tuple[MotionTask, FourBar]:
     return planted_motion(np.random.default_rng(seed), poses=5)
 
 
+@pytest.mark.slow
 def test_the_dyads_of_every_planted_four_bar_are_found() -> None:
     tasks, linkages = zip(*(planted(seed) for seed in range(SETS)), strict=True)
     poses = Poses(

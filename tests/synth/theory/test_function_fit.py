@@ -26,13 +26,8 @@ def solved(rng: np.random.Generator, pairs: int, mechanism: str, *, full: bool) 
     return False
 
 
-@pytest.mark.quick(
-    "6-False-slider-crank",
-    "8-False-inverted-slider-crank",
-    "6-False-four-bar",
-    "6-True-inverted-slider-crank",
-    "8-False-four-bar",
-)
+@pytest.mark.slow
+@pytest.mark.quick("8-False-inverted-slider-crank")
 @EVERY
 @pytest.mark.parametrize("full", [False, True])
 @pytest.mark.parametrize("pairs", [6, 8, 12, 24])

@@ -126,6 +126,7 @@ def test_worst_cosine_is_that_of_dense_samples(mechanism: str) -> None:
         assert abs(generator_of(linkage, start, 1.0).worst_cosine(span)[0] - dense.max()) < 1e-6
 
 
+@pytest.mark.slow
 @pytest.mark.quick("inverted-slider-crank")
 @EVERY
 def test_all_planted_linkages_of_a_few_pairs_are_found(mechanism: str) -> None:

@@ -191,7 +191,7 @@ def random_crank_rockers(count, seed):
     return np.stack([np.ones(count), r2, r3, r4], axis=-1)[usable]
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_no_random_crank_rocker_beats_the_optimum_for_its_own_swing_and_ratio() -> None:
     for lengths in random_crank_rockers(6000, seed=1)[:150]:
         linkage = linkage_of(lengths)

@@ -123,7 +123,7 @@ def computed_once():
         yield linkages
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.usefixtures("computed_once")
 def test_points_near_a_circle_have_the_published_21_triplets_and_none_without_defect():
     problem = load("nine-points")

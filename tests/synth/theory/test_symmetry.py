@@ -81,6 +81,7 @@ def test_a_mirrored_linkage_does_the_mirrored_task(seed: int) -> None:
         assert again.transmission_min_cycle == pytest.approx(verdict.transmission_min_cycle)
 
 
+@pytest.mark.quick("1")
 @pytest.mark.slow
 @pytest.mark.parametrize("sides", [1, 2, 3, 12])
 def test_symmetries_of_long_closed_paths_take_no_square_of_their_points(sides: int) -> None:
