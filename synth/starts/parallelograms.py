@@ -40,6 +40,7 @@ MOST, SPACING = 3000, 0.25  # among which the best are chosen, and how much they
 FARTHEST = 100.0  # sizes
 FAULTY = 1e6  # taken off the merit of what violates a requirement
 ROUNDING = 1e-10  # sizes, rad
+SHORTEST = 1e-6  # sizes, of a coupler
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +134,8 @@ def parallelograms(scaled: ScaledProblem, rng: np.random.Generator) -> Screened:
         better = each[winner, columns] > worth
         worth = np.maximum(worth, each[winner, columns])
         best = best.where(better, children[winner * len(best) + columns])
-    return Screened.joined(found)
+    linkages = Screened.joined(found)
+    return linkages[~_short(linkages)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -274,7 +276,13 @@ def _worth(scaled: ScaledProblem, found: Screened) -> FloatArray:
     """Merits of linkages without violations; below all of them, those with some."""
     lacking = found.violations.sum(axis=1)
     worth: FloatArray = np.where(lacking > 0, -FAULTY - lacking, merits(scaled, found))
-    return np.nan_to_num(worth, nan=-np.inf)
+    return np.where(_short(found), -np.inf, np.nan_to_num(worth, nan=-np.inf))
+
+
+def _short(found: Screened) -> BoolArray:
+    """Those without a coupler, as where both pivots were moved into the same corner."""
+    _, _, a, b, _ = found.points.T
+    return np.asarray(np.abs(a - b) < SHORTEST)
 
 
 def _into(box: Box | None, points: ComplexArray) -> ComplexArray:

@@ -169,6 +169,19 @@ def test_a_full_crank_is_told_what_would_do(relaxing_only: Callable[..., None]) 
     assert 'rotatability "any" instead of "full-crank"' in result.note
 
 
+def test_pivots_that_belong_in_one_small_box_do_not_meet_in_its_corner(
+    relaxing_only: Callable[..., None],
+) -> None:
+    relaxing_only("rotatability", "o2")
+    box = Box((0.5, 1.5), (1.5, 2.0))  # the centre lies in it, and no pivot a coupler away
+    task = on_circle([20, 60, 90])
+    stated = {"o2": box, "o4": box, "transmission_min_deg": 20.0}
+    result = synthesize(problem(task, **stated, rotatability="full-crank"))
+    assert not len(result)
+    assert 'rotatability "any" instead of "full-crank"' in result.note
+    check(synthesize(problem(task, **stated)), 20.0)
+
+
 @pytest.mark.study
 def test_off_the_circle_it_is_said_how_far_and_least_squares_comes_near(
     relaxing_only: Callable[..., None],
