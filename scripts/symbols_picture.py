@@ -52,13 +52,13 @@ def joint(axes: Axes, at: complex, name: str, aside: complex) -> None:
     axes.text((at + aside).real, (at + aside).imag, name, ha="center", va="center", weight="bold")
 
 
-def across(axes: Axes, start: complex, end: complex, name: str) -> None:
+def across(axes: Axes, start: complex, end: complex, name: str, aside: float = 0.17) -> None:
     """A dimension between two points, with its name beside the middle."""
     axes.annotate(
         "", (end.real, end.imag), (start.real, start.imag),
         arrowprops={"arrowstyle": "<->", "color": FRAME, "shrinkA": 0, "shrinkB": 0},
     )  # fmt: skip
-    beside = (start + end) / 2 + 0.17j * (end - start) / abs(end - start)
+    beside = (start + end) / 2 + aside * 1j * (end - start) / abs(end - start)
     axes.text(beside.real, beside.imag, name, color=FRAME, ha="center", va="center")
 
 
@@ -110,7 +110,7 @@ def slider_crank(axes: Axes) -> None:
     line(axes, o2, a)
     line(axes, a, b, p, a, lw=2)
     line(axes, b, b + 0.9 * unit(e + np.pi / 2), color=THIN, lw=0.8, ls="--")
-    across(axes, o2, over, "offset")
+    across(axes, o2, over, "offset", 0.32)
     arrow(axes, b + 0.5 * unit(e), b + 1.2 * unit(e), "e")
     down = -0.22 * unit(theta3 + np.pi / 2)
     across(axes, foot + down, a + down, "u")

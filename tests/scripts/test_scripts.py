@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from importlib import import_module
 from pathlib import Path
@@ -118,9 +119,12 @@ def test_pictures_of_the_pages_are_made(
 ) -> None:
     pictures = script("pictures")
     a_moment = partial(pictures.draw_motion, seconds=0.4)
+    study = replace(pictures.load_study(pictures.DOCS / "longer-links.toml"), vary={"search.starts": [2, 4]})
+    monkeypatch.setattr(pictures, "load_study", lambda _: study)
     monkeypatch.setattr(pictures, "draw_motion", lambda design, problem, **_: a_moment(design, problem))
     assert pictures.main(["made"]) == 0
-    made = {path.name for path in (tmp_path / "made").iterdir()}
+    made = {path.name for path in (tmp_path / "made").glob("*.*")}
+    assert (tmp_path / "made" / "tutorials" / "gripper.png").stat().st_size > 10_000
     pages = [path.read_text(encoding="utf-8") for path in (SCRIPTS.parent / "docs").glob("*/*.md")]
     shown = {name for page in pages for name in re.findall(r"\]\(\.\./([\w.-]+)\)", page)}
     assert {"luggage.png", "luggage.gif", "design-space.png"} < made <= shown
