@@ -324,7 +324,7 @@ def hold_searches(route: Route, waiting: list[Route]) -> None:
         route.continue_()
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_designs_are_compared_and_lost_ones_fade_with_what_they_miss(page: Page) -> None:
     for row in (0, 2):
         page.locator(".listing tbody input").nth(row).check()
@@ -351,7 +351,7 @@ def test_designs_are_compared_and_lost_ones_fade_with_what_they_miss(page: Page)
     assert found["lost"][0]["why"]
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_what_a_search_has_not_found_yet_comes_back(page: Page) -> None:
     """While it goes on, the chosen and compared designs may be missing; its end decides."""
     for row in (0, 2):
@@ -418,8 +418,7 @@ def test_without_a_design_the_closest_miss_is_shown_and_what_to_relax(page: Page
     assert "transmission_min_deg" in page.locator("[data-notice]").inner_text()
 
 
-@pytest.mark.quick("inverted-slider-crank")
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.parametrize("kind", ["four-bar", "slider-crank", "inverted-slider-crank"])
 def test_the_velocity_of_p_is_that_of_the_analysis(page: Page, kind: str) -> None:
     page.locator("[data-menu=open] summary").click()

@@ -37,7 +37,7 @@ async def kinds(solvers: Solvers, job: Job, left: Any = lambda: False) -> list[s
     return [json.loads(line.text)["kind"] async for line in solvers.lines(job, left)]
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_a_job_that_nobody_waits_for_ends_and_its_solver_is_used_again(solvers: Solvers, run: Run) -> None:
     async def tried() -> list[int | None]:
         since = monotonic()

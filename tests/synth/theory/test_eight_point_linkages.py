@@ -173,6 +173,7 @@ def test_of_558_paths_548_arrive_and_the_planted_slider_crank_is_found(benchmark
     assert gap < 1e-6
 
 
+@pytest.mark.study
 @pytest.mark.parametrize(
     "number", [2, *(pytest.param(number, marks=pytest.mark.study) for number in range(2))]
 )

@@ -136,7 +136,7 @@ def test_points_near_a_circle_have_the_published_21_triplets_and_none_without_de
     assert not any(verify(c.linkage, problem.task, strict).ok for c in result.candidates)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.usefixtures("computed_once", "small_search")
 def test_where_every_linkage_has_a_defect_the_note_says_so_and_the_closest_comes_as_near_as_it_says():
     problem = replace(load("nine-points"), requirements=Requirements(same_branch=True, order=True))
