@@ -278,6 +278,18 @@ def test_what_is_wrong_with_a_table_names_it(tmp_path: Path, content: str, expec
     assert str(told.value).startswith(f"loads[0].table: {tmp_path / 'rod.csv'}: {expected}")
 
 
+@pytest.mark.parametrize(("count", "wrong"), [(10_000, False), (10_001, True)])
+def test_a_table_of_ten_thousand_rows_at_most(tmp_path: Path, count: int, wrong: bool) -> None:
+    angles = (360 * row / (count - 1) for row in range(count))
+    rows = "".join(f"{angle},0,-9\n" for angle in angles)
+    (tmp_path / "rod.csv").write_text(f"theta2_deg,fx_n,fy_n\n{rows}", encoding="utf-8")
+    if wrong:
+        with pytest.raises(ProblemError, match="has 10001 rows; it must have at most 10000"):
+            linkage(LOAD + 'table = "rod.csv"', tmp_path)
+    else:
+        assert linkage(LOAD + 'table = "rod.csv"', tmp_path).dynamics is not None
+
+
 def test_a_table_that_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(ProblemError, match=r"^loads\[0\].table: .*rod.csv: there is no such file"):
         linkage(LOAD + 'table = "rod.csv"', tmp_path)
