@@ -29,7 +29,6 @@ Drive = float | Callable[[float, float, float], float]
 _DEAD_END = 1e-3
 _AHEAD = 1e-6  # rad of the driver: so far ahead it is seen in which sense a joint is about to turn
 _PARTS = 10_000  # of a motion with friction, between which a joint changes its sense
-_SLOW = 3  # parts, one after the other, no faster than the errors of speeds: friction holds the driver
 _ROUNDS = 50  # of friction that depends on the acceleration, where a driver sets off
 
 
@@ -219,21 +218,17 @@ def _moved(
 ) -> tuple[list[Path], Ending]:
     """The motion, in parts in which each joint turns in one sense where that matters; how it ended."""
     now, last, path = float(time[0]), float(time[-1]), list[Path]()
-    fastest, slow = abs(omega2), 0
+    fastest = abs(omega2)
     while True:
         sense, senses = int(np.sign(omega2)), None
         if rubbing.joints:
             sense = sense or _sets_off(rates, now, theta2, rubbing)
             if not sense:
                 return path or [Path((Panel(now, 0.0, theta2, 0.0, np.zeros(1)),), None)], Ending.AT_REST
-            if slow > _SLOW:
-                return path, Ending.AT_REST
             senses = rubbing.senses(theta2, sense)
         events = rubbing.events(sense, senses)
         path.append(integrate_motion(rates(senses), now, last, theta2, omega2, tolerance, events, fastest))
-        speed = path[-1].fastest()
-        slow = slow + 1 if speed < tolerance * fastest else 0
-        fastest = max(fastest, speed)
+        fastest = max(fastest, path[-1].fastest())
         if path[-1].event is None or len(path) > _PARTS:
             return path, Ending.TIME
         if path[-1].event == 0:

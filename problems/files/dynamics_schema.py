@@ -271,19 +271,19 @@ def _rows(name: str, info: ValidationInfo, kinds: Sequence[Sequence[Names]]) -> 
         raise located(error, str(info.field_name)) from None
 
 
-# More would take minutes to analyse; a table of values is one load.
-_MEMBERS = listed("a list of tables", 100)
+# More would take minutes to analyse; a load with a table of values counts once.
+_TABLES = listed("a list of tables", 100)
 
 
 class MachineTables(Table):
     """What problem and linkage files have in common."""
 
     dynamics: DynamicsTable | None = None
-    loads: Annotated[list[LoadTable], _MEMBERS] = Field(default=[])
-    springs: Annotated[list[SpringTable], _MEMBERS] = Field(default=[])
-    dampers: Annotated[list[DamperTable], _MEMBERS] = Field(default=[])
-    torsion_springs: Annotated[list[TorsionSpringTable], _MEMBERS] = Field(default=[])
-    counterweights: Annotated[list[CounterweightTable], _MEMBERS] = Field(default=[])
+    loads: Annotated[list[LoadTable], _TABLES] = Field(default=[])
+    springs: Annotated[list[SpringTable], _TABLES] = Field(default=[])
+    dampers: Annotated[list[DamperTable], _TABLES] = Field(default=[])
+    torsion_springs: Annotated[list[TorsionSpringTable], _TABLES] = Field(default=[])
+    counterweights: Annotated[list[CounterweightTable], _TABLES] = Field(default=[])
     friction: FrictionTable | None = None
     motor: MotorTable | None = None
     section: SectionTable | None = None

@@ -27,7 +27,7 @@ from grashof.synth.designs.ranking import pareto_optimal
 from grashof.wording.problem import error_meaning, goals
 
 _ROWS = 12
-_ROUNDING = 1e-6  # sizes: solvers leave that of a limit
+_ROUNDING = 1e-6  # sizes: solvers keep limits no closer
 CAUTION = "caution"
 _PIPED_WIDTH = 140
 _WIDE = 100  # columns; narrower terminals get fewer digits
@@ -241,7 +241,7 @@ def _cells(problem: Problem, candidate: Candidate, digits: int) -> dict[str, str
 
 
 def _place(place: FloatArray | None, size: float) -> str:
-    """A place to three digits; one that is nothing beside the size of the task is zero."""
+    """A place to three digits; a coordinate that is negligible beside the size of the task is zero."""
     return "-" if place is None else ", ".join(f"{x if abs(x) > _ROUNDING * size else 0:.3g}" for x in place)
 
 
