@@ -118,3 +118,15 @@ def test_weights_of_points_move_where_they_are_met_together() -> None:
         errors.append(targets.position_error)
     assert errors[1][1] < 1e-3 * errors[0][1]
     assert errors[1][2] > errors[0][2]
+
+
+@pytest.mark.parametrize("theta2", [[4.0, 4.5, 5.0], [-4.0, -3.5, -3.0], [9.0, 9.4, 9.9], [2.9, 3.4, 4.0]])
+@pytest.mark.parametrize("timed", [False, True])
+def test_the_driver_starts_within_half_a_turn(theta2: list[float], timed: bool) -> None:
+    crank = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, coupler_point=(2, 1))
+    angles = np.array(theta2)
+    task = PathTask(solve_position(crank, angles).p, timing=angles - angles[0] if timed else None)
+    _, motion = meet(crank, task, Requirements())
+    assert -np.pi < motion.start <= np.pi
+    turns = (motion.theta2 - angles) / TURN
+    assert turns == pytest.approx(np.full(3, np.round(turns[0])), abs=1e-9)

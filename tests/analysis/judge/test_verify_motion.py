@@ -33,7 +33,7 @@ def moved(task: MotionTask, rng: np.random.Generator, share: float, **rest: Any)
     return MotionTask(task.positions + task.size * noise[:, :2], task.angles + noise[:, 2], **rest)
 
 
-@pytest.mark.quick("7-places0-angles0")
+@pytest.mark.quick("7-places0-angles0", "6-places1-angles1")
 @pytest.mark.parametrize(
     ("poses", "places", "angles"),
     [(7, [], [1, 2, 4, 5]), (6, [1, 3], []), (5, [2], []), (4, [1, 2], [0]), (9, [], list(range(1, 9)))],

@@ -8,9 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from grashof.problems import FourBar
+from grashof.analysis import solve_position
+from grashof.problems import FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.arrays import FloatArray
-from grashof.synth.theory.distinct import DISTINCT, apart, best_first, pick_apart, signature
+from grashof.problems.values.linkage import Linkage
+from grashof.synth.theory.distinct import DISTINCT, MIRRORED, apart, best_first, pick_apart, signature
 
 bounded = settings(max_examples=25)
 number = st.floats(-10, 10).filter(lambda value: value == 0 or abs(value) > 1e-3)
@@ -31,6 +33,32 @@ def test_the_numbers_that_count() -> None:
     assert apart(signature(linkage), signature(longer)[None])[0] > DISTINCT  # 0.08 of 6
     nearly = FourBar(o2=(1, 2), o4=(4, 6), r2=1.05, r3=4.05, r4=3.05, coupler_point=(0.5, -2))
     assert apart(signature(linkage), signature(nearly)[None])[0] < DISTINCT
+
+
+@pytest.mark.parametrize(
+    ("linkage", "image"),
+    [
+        (
+            FourBar((1, 2), (5, 3), 1, 4, 3, (0.5, -2)),
+            FourBar((1, -2), (5, -3), 1, 4, 3, (0.5, 2), assembly=-1),
+        ),
+        (
+            SliderCrank((1, 2), 1, 4, 0.3, 0.2, (0.5, -2)),
+            SliderCrank((1, -2), 1, 4, -0.3, -0.2, (0.5, 2)),
+        ),
+        (
+            InvertedSliderCrank((1, 2), (5, 3), 1, 0.3, (0.5, -2)),
+            InvertedSliderCrank((1, -2), (5, -3), 1, -0.3, (0.5, 2)),
+        ),
+    ],
+)
+def test_numbers_that_change_their_sign_in_a_mirror(linkage: Linkage, image: Linkage) -> None:
+    theta2 = np.linspace(0, 6, 20)
+    there, mirrored = solve_position(linkage, theta2).p, solve_position(image, -theta2).p
+    np.testing.assert_allclose(mirrored, there * [1, -1], atol=1e-12)  # it is the image
+    signs = np.ones(9)
+    signs[[1, 3, *MIRRORED[type(linkage)]]] = -1
+    np.testing.assert_allclose(signature(image), signature(linkage) * signs, atol=1e-12)
 
 
 @pytest.mark.slow
