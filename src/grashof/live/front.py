@@ -6,11 +6,11 @@ import json
 from collections.abc import Callable
 from functools import cache
 
-from grashof.page.render import page_of, script_of, text_of
+from grashof.page.render import DRAWING, page_of, script_of, text_of
 
 SCRIPTS = (
-    *("kinds.js", "linkage.js", "svg.js", "stage.js", "grabbing.js", "player.js", "axes.js", "picture.js"),
-    *("curves.js", "table.js", "compare.js", "saving.js", "live/task.js", "live/handles.js"),
+    *DRAWING,
+    *("picture.js", "curves.js", "table.js", "compare.js", "saving.js", "live/task.js", "live/handles.js"),
     *("live/backdrop.js", "live/form.js", "live/listing.js", "live/transport.js", "live/commands.js"),
     "live/live.js",
 )

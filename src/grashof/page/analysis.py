@@ -2,26 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from grashof.analysis import Verdict
+from grashof.figures.subject import Subject
 from grashof.page.designs import legend, linkage_data
 from grashof.page.panels import motion_sections
 from grashof.page.plot_data import Columns, is_thinned, plot_data
-from grashof.page.render import render
+from grashof.page.render import DRAWING, render
+from grashof.page.scene import scene_of
 from grashof.problems.values.checks import counted
 from grashof.study.section import DRIVER_ANGLE, Fact, Section
 from grashof.survey.report import LinkageReport
 from grashof.wording.linkage import dimensions_text
 from grashof.wording.numbers import number_text, value_text
 
-_SCRIPTS = (
-    "kinds.js", "linkage.js", "svg.js", "stage.js", "grabbing.js", "player.js", "axes.js", "picture.js",
-    "curves.js", "tracks.js", "saving.js", "analysis.js",
-)  # fmt: skip
+_SCRIPTS = (*DRAWING, "picture.js", "curves.js", "tracks.js", "saving.js", "analysis.js")
 _EXTREMES = (("min", "least"), ("theta2_min_deg", "at θ2"), ("max", "largest"), ("theta2_max_deg", "at θ2"))
 _SMALL = 30  # rows up to which a table stands in the page; a larger one is a file beside it
 _DIGITS = 6
@@ -43,7 +43,8 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         One file: it needs no other and no network.
     """
     sweep, spec = report.sweep, report.sweep.spec
-    columns = Columns()
+    columns, posed = Columns(), Subject.of(spec)
+    scene = {"unit": spec.length_unit} if posed.problem is None else scene_of(posed.problem)
     sections = [
         section
         for section in (*motion_sections(report), *report.sections)
@@ -51,7 +52,7 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
     ]
     data = {
         "name": spec.name,
-        "scene": {"unit": spec.length_unit},
+        "scene": scene,
         "designs": [
             {
                 "linkage": linkage_data(spec.linkage),
@@ -60,6 +61,7 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
                 "turns": sweep.turns,
                 "direction": 1 if sweep.speed_rpm >= 0 else -1,
                 **_cylinder(report),
+                **_targets(posed.verdict),
             }
             for low, high in sweep.ranges
         ],
@@ -77,7 +79,10 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         dimensions=dimensions_text(spec),
         links=legend([spec.linkage.MECHANISM], [spec.cylinder]),
         ranges=[f"{np.degrees(low):.6g} to {np.degrees(high):.6g} deg" for low, high in sweep.ranges],
-        facts=_facts(report.facts),
+        facts=_facts(fact for fact in report.facts if not fact.aside),
+        aside=_facts(fact for fact in report.facts if fact.aside),
+        task=posed.problem is not None,
+        body=bool(scene.get("body")),
         groups=[_group(section) for section in sections],
         extremes=_extremes(report.tables["extremes"]),
         extreme_columns=[label for _, label in _EXTREMES],
@@ -85,6 +90,13 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         record=record,
         speed_rpm=abs(sweep.speed_rpm),
     )
+
+
+def _targets(verdict: Verdict | None) -> dict[str, Any]:
+    """Where the linkage meets the targets of its task, where it has one."""
+    if verdict is None:
+        return {}
+    return {"theta2": verdict.theta2.tolist(), "assemblies": verdict.assembly.tolist()}
 
 
 def _cylinder(report: LinkageReport) -> dict[str, Any]:
@@ -96,7 +108,7 @@ def _cylinder(report: LinkageReport) -> dict[str, Any]:
     )
 
 
-def _facts(facts: Sequence[Fact]) -> list[tuple[str, str, str]]:
+def _facts(facts: Iterable[Fact]) -> list[tuple[str, str, str]]:
     return [(fact.label, value_text(fact.value), fact.unit) for fact in facts]
 
 

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from grashof.analysis import (
+    Verdict,
     driver_ranges,
     full_rotation,
     function_curves,
@@ -29,6 +30,7 @@ from grashof.synth import Candidate
 from grashof.synth.designs.table import Row
 
 STEPS = 180
+ROUNDING = 1e-12  # of a turn
 
 
 class Travel(NamedTuple):
@@ -51,6 +53,10 @@ class Travel(NamedTuple):
         inset = 0.0 if self.turns else inset
         return driver_angles(self.low + inset, self.high - inset, STEPS, even=self.turns)
 
+    def turned(self, first: float) -> float:
+        """The whole turns by which the angles of a motion, which begins at `first`, are ahead, rad."""
+        return TURN * float(np.round((first - (self.low + self.high) / 2) / TURN))
+
 
 def driver_travel(linkage: Linkage, theta2: FloatArray) -> Travel:
     """Travel of the driver that holds its angles at the targets.
@@ -65,25 +71,22 @@ def driver_travel(linkage: Linkage, theta2: FloatArray) -> Travel:
     Returns
     -------
     Travel
-        A whole turn, from a multiple of 360 deg where all the angles lie in one such turn; or the
-        range between dead positions that the first target lies in.
+        The turn from 0, or the range between dead positions that the first target lies in, with its
+        middle within half a turn.
 
     Examples
     --------
     >>> from grashof.problems import FourBar
     >>> crank = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
     >>> np.degrees(driver_travel(crank, np.radians([370.0, 500.0]))[:2]).round(9).tolist()
-    [360.0, 720.0]
+    [0.0, 360.0]
     """
-    first, last = float(theta2.min()), float(theta2.max())
     if full_rotation(linkage):
-        low = TURN * float(np.floor(first / TURN))
-        low = low if last <= low + TURN else first
-        return Travel(low, low + TURN, True)
-    index, inside = range_index(linkage, theta2[0])
+        return Travel(0.0, TURN, True)
+    index, _ = range_index(linkage, theta2[0])
     low, high = driver_ranges(linkage)[max(int(index), 0)]
-    turned = 0.0 if index < 0 else TURN * float(np.round((theta2[0] - inside) / TURN))
-    return Travel(float(low) + turned, float(high) + turned, False)
+    turned = TURN * float(np.round((low + high) / 2 / TURN))
+    return Travel(float(low) - turned, float(high) - turned, False)
 
 
 def legend(kinds: Iterable[str], cylinders: Iterable[Cylinder | None] = ()) -> list[tuple[str, str]]:
@@ -130,9 +133,11 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], rows: Sequence[Ro
             "linkage": linkage_data(linkage),
             **travel._asdict(),
             "direction": design.verdict.direction,
-            "theta2": design.verdict.theta2.tolist(),
+            "theta2": (design.verdict.theta2 - turned).tolist(),
             "assemblies": design.verdict.assembly.tolist(),
-            "task": list(motion_ends(problem.task, design.verdict)) if design.verdict.branch_ok else None,
+            "task": [end - turned for end in motion_ends(problem.task, design.verdict)]
+            if design.verdict.branch_ok
+            else None,
             "torque": torque,
             **_cylinder(design),
             **_function(problem, linkage, design),
@@ -141,6 +146,7 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], rows: Sequence[Ro
         for design, linkage, travel, torque, figures in zip(
             designs, linkages, travels, torques, rows, strict=True
         )
+        for turned in [travel.turned(design.verdict.theta2[0])]
     ]
 
 
@@ -205,8 +211,8 @@ def _of_one_kind(
     metre = metres(problem.length_unit)
     kind = type(linkages[0])
     batch = kind(*map(np.stack, zip(*(each.parameters for each in linkages), strict=True)))[:, None]
-    theta2 = np.stack([travel.angles(INSET) for travel in travels])
     laws = [driver_law(problem, *motion_ends(problem.task, each.verdict)) for each in designs]
+    theta2 = np.stack([_counted(travel, each.verdict) for travel, each in zip(travels, designs, strict=True)])
     ways = list(zip(laws, theta2, strict=True))
     motion = zip(*(law.at_angle(angles) for law, angles in ways), strict=True)
     with dead_positions_unwarned():
@@ -217,6 +223,13 @@ def _of_one_kind(
     if spec.motor is not None and not spec.motor.steady:
         torque = np.where([law.holds(angles) for law, angles in ways], torque, np.nan)
     return [compact(row) for row in torque.tolist()]
+
+
+def _counted(travel: Travel, verdict: Verdict) -> FloatArray:
+    """Driver angles over the travel, counted as those of the motion are."""
+    angles = travel.angles(INSET) + travel.turned(verdict.theta2[0])
+    least = float(verdict.theta2.min())
+    return angles + TURN * np.ceil((least - angles) / TURN - ROUNDING) if travel.turns else angles
 
 
 def _plain(value: Any) -> float | int | str | bool | None:

@@ -10,6 +10,12 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+# Scripts of every page that has a moving drawing, in order.
+DRAWING = (
+    "kinds.js", "linkage.js", "svg.js", "scene.js", "labels.js", "stage.js", "grabbing.js", "player.js",
+    "axes.js",
+)  # fmt: skip
+
 
 def render(template: str, scripts: Sequence[str], data: Mapping[str, Any], **shown: Any) -> str:
     """A page that needs no other file and no network.

@@ -11,7 +11,7 @@ import numpy as np
 
 from grashof.page.columns import Column, columns_of, figures_of
 from grashof.page.designs import designs_of, driver_travel, legend
-from grashof.page.render import render
+from grashof.page.render import DRAWING, render
 from grashof.page.scene import scene_of
 from grashof.problems import Problem
 from grashof.problems.values.checks import counted
@@ -22,8 +22,7 @@ from grashof.synth.search.tally import DISTINCT, Tally
 from grashof.wording.problem import goals, summary
 
 _SCRIPTS = (
-    "kinds.js", "linkage.js", "svg.js", "stage.js", "grabbing.js", "player.js", "axes.js", "picture.js",
-    "curves.js", "scatter.js", "table.js", "compare.js", "saving.js", "search.js",
+    *DRAWING, "picture.js", "curves.js", "scatter.js", "table.js", "compare.js", "saving.js", "search.js",
 )  # fmt: skip
 
 

@@ -25,12 +25,15 @@ class Fact:
         What people read.
     value : float, int, str or bool
     unit : str
+    aside : bool
+        A page folds it away.
     """
 
     key: str
     label: str
     value: float | int | str | bool
     unit: str = ""
+    aside: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -65,7 +66,7 @@ def facts_of(study: LinkageStudy, tables: Mapping[str, pd.DataFrame]) -> Iterato
     box = np.array([reach_box(linkage, low, high) for low, high in ranges])
     extent = np.max(box[:, 1], axis=0) - np.min(box[:, 0], axis=0)
     yield Fact("size", f"size {sweep.over} (diagonal of the box it needs)", float(np.hypot(*extent)), unit)
-    yield from _path_facts(sweep)
+    yield from (replace(fact, aside=True) for fact in _path_facts(sweep))
     if masses is not None:
         yield from _mass_facts(study, masses)
 

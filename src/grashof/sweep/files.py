@@ -84,7 +84,7 @@ def write_sweep(folder: Path, done: Sweep, mark: str) -> list[str]:
         if done.study.parquet:
             frame.to_parquet(fresh / PARQUET, index=False)
         save(plot_sweep(done, frame), [fresh / PLOT])
-        write_page(fresh / SWEEP_PAGE, sweep_page(done, frame, (fresh / PLOT).read_bytes(), record))
+        write_page(fresh / SWEEP_PAGE, sweep_page(done, frame, record))
         return _write_record(fresh, record)
 
 

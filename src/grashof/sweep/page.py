@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import json
-from base64 import b64encode
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from math import isfinite
 from typing import Any
 
@@ -14,24 +13,16 @@ import pandas as pd
 from pandas.api.types import is_numeric_dtype
 
 from grashof.page.designs import legend
-from grashof.page.render import render
+from grashof.page.render import DRAWING, render
 from grashof.page.scene import scene_of
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.values.mechanisms import FOUR_BAR, KINDS
+from grashof.sweep.plot import measures, number_axes
 from grashof.sweep.result import Sweep
 from grashof.sweep.table import varied_columns
 from grashof.synth.designs.table import LISTED
 
-_SCRIPTS = (
-    "kinds.js",
-    "linkage.js",
-    "svg.js",
-    "stage.js",
-    "grabbing.js",
-    "player.js",
-    "table.js",
-    "sweep.js",
-)
+_SCRIPTS = (*DRAWING, "table.js", "scatter.js", "cells.js", "saving.js", "sweep.js")
 _ROWS = 1000  # that a browser shows at once without delay
 _DIGITS = 5
 _TEXTS = ("status", "grashof_class")
@@ -53,7 +44,7 @@ class Heading:
     text: bool = False
 
 
-def sweep_page(done: Sweep, frame: pd.DataFrame, picture: bytes, record: Mapping[str, Any]) -> str:
+def sweep_page(done: Sweep, frame: pd.DataFrame, record: Mapping[str, Any]) -> str:
     """The page of a sweep as HTML.
 
     Parameters
@@ -61,8 +52,6 @@ def sweep_page(done: Sweep, frame: pd.DataFrame, picture: bytes, record: Mapping
     done : Sweep
     frame : DataFrame
         Its table.
-    picture : bytes
-        Its plot, PNG.
     record : mapping
         "versions" and counts of the sweep.
     """
@@ -74,7 +63,14 @@ def sweep_page(done: Sweep, frame: pd.DataFrame, picture: bytes, record: Mapping
     rows = [[_value(row[column.key]) for column in columns] for row in shown.to_dict("records")]
     drawn = filter(None, (done.results[place]["drawing"] for place in places))
     kinds = {each["linkage"].get("mechanism", FOUR_BAR) for each in drawn} or {FOUR_BAR}
+    axes, places_of_rows = number_axes(done), {place: row for row, place in enumerate(places)}
+    first = next((row for row, place in enumerate(places) if done.results[place]["found"]), 0)
     data = {
+        "name": done.study.name,
+        "best": first if done.best_place is None else places_of_rows.get(done.best_place, first),
+        "axes": list(axes),
+        "measure": measures(done, best)[0]["column"],
+        "columns": [asdict(column) for column in columns],
         "scenes": scenes,
         "values": rows,
         "designs": [
@@ -93,7 +89,8 @@ def sweep_page(done: Sweep, frame: pd.DataFrame, picture: bytes, record: Mapping
         data,
         title=done.study.title or done.study.name,
         headline=done.headline,
-        picture=b64encode(picture).decode("ascii"),
+        compared=any(column.better for column in columns if column.key != "designs"),
+        cells=len(axes) == 2,
         moves=any(done.results[place]["drawing"] for place in places),
         links=legend(kind for kind in KINDS if kind in kinds),
         columns=columns,

@@ -38,7 +38,7 @@ def plot_sweep(done: Sweep, frame: pd.DataFrame) -> Figure:
     """
     with rc_context(STYLE):
         best = frame.drop_duplicates("combination")
-        decides, size = _measures(done, best)
+        decides, size = measures(done, best)
         keys = number_axes(done)
         if len(keys) == 1:
             figure = _over_one(best, keys[0], decides, size)
@@ -65,7 +65,7 @@ def _is_numeric(values: Sequence[Any]) -> bool:
     return all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values)
 
 
-def _measures(done: Sweep, best: pd.DataFrame) -> tuple[Mapping[str, Any], Mapping[str, Any]]:
+def measures(done: Sweep, best: pd.DataFrame) -> tuple[Mapping[str, Any], Mapping[str, Any]]:
     """What decides in all combinations, or else the transmission angle; and the size.
 
     An error that is nothing but rounding decides nothing.

@@ -85,19 +85,25 @@ class Sweep:
         return f"{text}, {self.invalid} invalid" if self.invalid else text
 
     @property
-    def best(self) -> str:
-        """Which combination has the best design, in words; empty where they are not decided by the same."""
+    def best_place(self) -> int | None:
+        """Place of the combination with the best design; None where they are not decided by the same."""
         told = [(number, one) for number, one in sorted(self.results.items()) if one["designs"]]
         if len({(one["decides"]["column"], one["decides"]["label"]) for _, one in told}) != 1:
-            return ""
+            return None
         decides = told[0][1]["decides"]
         values = {number: one["designs"][0].get(decides["column"]) for number, one in told}
         # Six digits: differences that a search leaves open do not decide, the first of them does.
         known = {number: float(f"{float(x):.6g}") for number, x in values.items() if x is not None}
-        if not known:
+        return max(known, key=lambda each: decides["better"] * known[each], default=None)
+
+    @property
+    def best(self) -> str:
+        """Which combination has the best design, in words; empty where they are not decided by the same."""
+        if (place := self.best_place) is None:
             return ""
-        number = max(known, key=lambda each: decides["better"] * known[each])
-        return f"{self.combinations[number].label}: {decides['label']} {known[number]:.4g}"
+        one = self.results[place]
+        value = one["designs"][0][one["decides"]["column"]]
+        return f"{self.combinations[place].label}: {one['decides']['label']} {value:.4g}"
 
     def to_frame(self) -> pd.DataFrame:
         """A row for each combination and listed design; the columns are those of ``sweep.csv``."""

@@ -139,6 +139,10 @@ def folder(
         "missed": search_page(missed, RECORD, rows=missing),
         "relaxed": search_page(replace(missed, note=WAYS), RECORD, rows=missing),
         "nothing": search_page(replace(missed, nearest=()), RECORD),
+        "design": analysis_page(
+            report_on(LinkageSpec(few.candidates[0].linkage, "design", length_unit="m", problem=few.problem)),
+            RECORD,
+        ),
         "rocker": analysis_page(report_on(LinkageSpec(ROCKER, "rocker", title=TITLE)), RECORD),
         "swift": analysis_page(report_on(LinkageSpec(NEARLY_DEAD, "swift")), RECORD),
         "sections": analysis_page(told, RECORD),

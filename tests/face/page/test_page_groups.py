@@ -63,11 +63,11 @@ def test_groups_are_drawn_when_they_are_opened_and_seen(opened: Open) -> None:
     assert {(group["open"], group["made"]) for group in others} == {(False, 0)}
     page.locator("#open-all").click()
     wait_until(page, "grashof.state().groups.every((group) => group.open)")
-    page.locator("summary").nth(1).evaluate("(node) => node.scrollIntoView()")
+    page.locator(".group summary").nth(1).evaluate("(node) => node.scrollIntoView()")
     wait_until(page, "grashof.state().groups[1].drawn === 3")
     assert [group["made"] for group in state(page)["groups"]] == [5, 3, 7, 9, 14, 3, 0, 5]
     assert state(page)["groups"][-1]["drawn"] == 0  # far below
-    page.locator("details").last.scroll_into_view_if_needed()
+    page.locator(".group").last.scroll_into_view_if_needed()
     wait_until(page, "grashof.state().groups.at(-1).drawn > 0")
     page.locator("#close-all").click()
     wait_until(page, "grashof.state().groups.every((group) => !group.open)")
@@ -76,7 +76,7 @@ def test_groups_are_drawn_when_they_are_opened_and_seen(opened: Open) -> None:
 def test_the_keyboard_folds_and_unfolds(opened: Open) -> None:
     page = opened("sections")
     theta2 = state(page)["theta2"]
-    second = page.locator("summary").nth(1)
+    second = page.locator(".group summary").nth(1)
     second.focus()
     for key, expected in (("Enter", True), ("Space", False), ("Space", True)):
         page.keyboard.press(key)

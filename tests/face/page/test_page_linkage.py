@@ -113,6 +113,7 @@ def test_the_path_of_p_is_smooth_where_p_runs_fast(opened: Open) -> None:
 
 def test_a_point_of_the_scatter_plot_picks_its_design(opened: Open, few: Result) -> None:
     page = opened("search", size=(1300, 1000))
+    page.locator("#scatter").scroll_into_view_if_needed()
     uncovered = page.evaluate(UNCOVERED)
     assert len(uncovered) >= 3
     for index in uncovered[-2:]:

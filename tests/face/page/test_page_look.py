@@ -79,16 +79,49 @@ def test_what_is_missed_is_not_called_a_design(opened: Open, misses: str) -> Non
     assert page.locator("#stage .body").count() == 4
 
 
+OVERLAPS = """
+() => {
+  const names = [...document.querySelectorAll("#stage .number, #stage .linkage text, #stage .ground text")];
+  const boxes = names.map((node) => [node.textContent, node.getBoundingClientRect()]);
+  return boxes.flatMap(([one, a], k) => boxes.slice(k + 1).filter(([, b]) =>
+    Math.min(a.right, b.right) - Math.max(a.left, b.left) > 2 &&
+    Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 5
+  ).map(([other]) => `${one} on ${other}`));
+}
+"""
+
+
+@pytest.mark.parametrize("name", ["search", "design"])
+def test_names_of_joints_and_targets_do_not_cover_each_other(opened: Open, name: str) -> None:
+    page = opened(name, size=(1440, 900))
+    page.locator("#stage").focus()
+    for _ in range(8):
+        assert page.evaluate(OVERLAPS) == []
+        for _ in range(5):
+            page.keyboard.press("PageUp")
+
+
+def test_the_analysis_of_a_design_shows_its_targets(opened: Open) -> None:
+    page = opened("design")
+    assert page.locator("#stage .number").all_text_contents() == ["1", "2", "3", "4"]
+    assert page.locator("#stage .body:not(.live)").count() == 4
+    assert page.locator("#stage .body.live").count() == 1
+    assert page.locator("#stage .ghosts path").count() == 0
+    page.check("#ghosts")
+    assert page.locator("#stage .ghosts path").count() >= 4 * 3
+
+
 @pytest.mark.parametrize("name", ["missed", "nothing"])
 def test_a_page_without_designs_uses_its_width(opened: Open, name: str) -> None:
     page = opened(name, size=(1440, 900))
     drawing = page.locator("#stage").bounding_box()
-    beside = page.locator(".split > div").nth(1).bounding_box()
+    beside = page.locator("#designs, .split > div").first.bounding_box()
     assert drawing is not None
     assert beside is not None
-    assert drawing["x"] + drawing["width"] <= beside["x"]
-    assert beside["x"] + beside["width"] > 1400
-    assert beside["height"] > 0.5 * drawing["height"]
+    left, right = sorted((drawing, beside), key=lambda box: box["x"])
+    assert left["x"] + left["width"] <= right["x"]
+    assert right["x"] + right["width"] > 1400
+    assert beside["height"] > 0.3 * drawing["height"]
     for heading in ("What was asked", "What was searched"):
         assert page.get_by_role("heading", name=heading).count() == 1
 

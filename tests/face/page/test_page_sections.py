@@ -41,7 +41,7 @@ class Groups(HTMLParser):
         self.tags.append(tag)
         self.links += [value or "" for name, value in attributes if name == "href"]
         self.inside = "json" if ("id", "data") in attributes else tag
-        if tag == "details":
+        if tag == "details" and ("class", "group") in attributes:
             self.groups.append([])
             self.grouped = True
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from playwright.sync_api import Page
 
@@ -63,9 +64,7 @@ def state(page: Page) -> dict[str, Any]:
 @pytest.mark.slow
 def test_a_click_shows_the_best_design(shown: Page, done: tuple[Sweep, Path]) -> None:
     assert shown.locator("h1").inner_text() == "<b>Bold</b>"
-    assert shown.locator("img.picture").evaluate("image => image.naturalWidth") > 500
     assert shown.locator("tbody .thumb path").count() > 3
-    assert state(shown)["chosen"] == 0
     shown.locator("#combinations tbody tr").nth(4).click()
     assert state(shown)["chosen"] == 4
     assert shown.locator("#chosen").inner_text() == "Combination 5"
@@ -73,6 +72,40 @@ def test_a_click_shows_the_best_design(shown: Page, done: tuple[Sweep, Path]) ->
     assert shown.locator("#angles").inner_text().startswith("θ2 ")
     driver = float(shown.locator("#angles").inner_text().split()[1].rstrip(",").replace("−", "-"))
     assert driver == pytest.approx(180 / 3.141592653589793 * design["theta2"][0], abs=0.01)
+
+
+def test_it_opens_on_the_best_and_a_cell_picks_its_combination(shown: Page, done: tuple[Sweep, Path]) -> None:
+    frame = done[0].to_frame().drop_duplicates("combination").set_index("combination")
+    values = frame["transmission_min_task_deg"]
+    assert state(shown)["chosen"] + 1 == values.idxmax()
+    cells = shown.locator("#tradeoff .cell")
+    assert cells.count() == 6
+    texts = {
+        int(cell.get_attribute("data-index") or 0) + 1: cell.locator("text").text_content()
+        for cell in cells.all()
+    }
+    for number, value in values.items():
+        assert texts[number] == ("none" if np.isnan(value) else f"{value:.4g}")
+    boxes = {number: shown.locator(f".cell[data-index='{number - 1}']").bounding_box() for number in texts}
+    assert boxes[1]["x"] < boxes[3]["x"] < boxes[5]["x"]  # the first key to the right, the second one up
+    assert boxes[2]["y"] < boxes[1]["y"]
+    names = shown.locator("#tradeoff .axis").all_text_contents()
+    assert names == ["path.points[1].y", "transmission_min_deg"]
+    shown.locator(".cell[data-index='1']").click()
+    assert state(shown)["chosen"] == 1
+    shown.locator(".cell[data-index='1']").focus()
+    for key in ("ArrowDown", "ArrowRight", "Enter"):
+        shown.keyboard.press(key)
+    assert state(shown)["chosen"] == 2
+    shown.locator("#tradeoff select").select_option("size")
+    sizes = frame["size"]
+    strength = {
+        number: float(
+            shown.locator(f".cell[data-index='{number - 1}'] path").get_attribute("fill-opacity") or 0
+        )
+        for number in (1, 3, 5)
+    }
+    assert max(strength, key=strength.__getitem__) == sizes.idxmin()  # the smallest is the strongest
 
 
 def test_one_without_a_design_states_why(shown: Page) -> None:

@@ -68,10 +68,12 @@ class AnalysisPage {
         for (const node of nodes) node.open = open;
       });
     }
-    $("#trace").addEventListener("change", (event) => {
-      this.stage.trace = event.target.checked;
-      this.stage.draw();
-    });
+    for (const name of ["trace", "ghosts"].filter((each) => $(`#${each}`))) {
+      $(`#${name}`).addEventListener("change", (event) => {
+        this.stage[name] = event.target.checked;
+        this.stage.draw();
+      });
+    }
     const ranges = $("#range");
     if (ranges) ranges.addEventListener("change", () => this.choose(Number(ranges.value)));
     listenToKeys(this.stage, this.player);

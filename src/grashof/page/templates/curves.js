@@ -4,8 +4,8 @@ const PEAK = 12; // a rate is drawn up to so many times its typical size, where 
 class Curves extends Picture {
   // panel: { title, unit, series: [{ label, values }] } with values at `places`; besides `over` (what the
   // places are), `angles` (driver angles in deg at the places), `most` (size up to which values are drawn),
-  // `limits` and `points`. options: `bounded`, the `bold` part of the places, target `marks`, and the
-  // `window` of places that is shown.
+  // `limits` and `points`. options: `bounded`, the `bold` parts of the places, target `marks`, the
+  // `window` of places that is shown, and `scaled`: the bold parts fill the frame.
   show(panel, options = {}) {
     const follows = this.panel;
     super.show(panel, options);
@@ -45,7 +45,7 @@ class Curves extends Picture {
     const { bold } = this.options;
     this.panel.series.forEach(({ values }, k) => {
       add(svg, "path", { d: this.line(values), class: `curve ${pen(k)}${bold ? " faint" : ""}` });
-      if (bold) add(svg, "path", { d: this.line(values, bold), class: `curve ${pen(k)}` });
+      for (const part of bold || []) add(svg, "path", { d: this.line(values, part), class: `curve ${pen(k)}` });
     });
     this.spots(svg, (place, value) => [this.x(place), this.y(value)]);
     this.nameAxes(svg, box, across, named ? withUnit(this.panel.title, this.panel.unit) : "");
@@ -79,7 +79,9 @@ class Curves extends Picture {
   limits() {
     const { places, series, points } = this.panel;
     const [first, last] = this.span();
-    const inside = (place) => place !== null && place >= first - 1e-3 && place <= last + 1e-3;
+    const { bold, scaled } = this.options;
+    const parts = scaled && bold ? bold : [[first, last]];
+    const inside = (place) => place !== null && parts.some(([from, to]) => place >= from - 1e-3 && place <= to + 1e-3);
     const known = series.flatMap(({ values }) => values.filter((_, k) => inside(places[k])));
     const most = this.most();
     let [low, high] = extent(known) || [0, 1];

@@ -1,19 +1,13 @@
 // Designs by two quantities, a third as the area of the points; a click picks one.
 class Scatter {
-  svg; columns; designs; onPick;
+  svg; columns; designs; called; onPick;
 
-  constructor(root, { columns, designs, onPick }) {
-    Object.assign(this, {
-      svg: $("svg", root),
-      note: $("figcaption", root),
-      columns,
-      designs,
-      onPick,
-      chosen: 0,
-    });
+  // wanted: keys of the first choice for each axis; called: what each of the designs is.
+  constructor(root, { columns, designs, wanted = {}, called = "design", onPick }) {
+    Object.assign(this, { svg: $("svg", root), columns, designs, called, onPick, chosen: 0 });
     this.selects = Object.fromEntries($$("select", root).map((select) => [select.dataset.axis, select]));
     this.visible = new Set(designs.keys());
-    const wanted = {
+    const usual = {
       x: ["size"],
       y: [...this.differing(), "transmission_min_task_deg", "transmission_min_cycle_deg"],
       area: ["torque_peak", ""],
@@ -21,7 +15,8 @@ class Scatter {
     for (const [axis, select] of Object.entries(this.selects)) {
       const offered = columns.map(({ key, label, unit }) => new Option(withUnit(label, unit), key));
       select.append(...(axis === "area" ? [new Option("none", "")] : []), ...offered);
-      select.value = wanted[axis].find((key) => [...select.options].some((option) => option.value === key));
+      const keys = [...select.options].map(({ value }) => value);
+      select.value = [...(wanted[axis] || []), ...usual[axis], keys[0]].find((key) => keys.includes(key));
       select.addEventListener("change", () => this.draw());
     }
     this.svg.addEventListener("keydown", (event) => this.key(event));
@@ -33,7 +28,7 @@ class Scatter {
     return ["error", "structural_error_max_deg", "structural_error_max"].filter((key) => {
       const column = this.columns.find((each) => each.key === key);
       const [low, high] = extent(this.designs.map(({ figures }) => figures[key])) || [0, 0];
-      return column && high - low > Math.max(column.noise, 1e-6 * high);
+      return column && high - low > Math.max(column.noise || 0, 1e-6 * high);
     });
   }
 
@@ -156,7 +151,7 @@ class Scatter {
       .map((axis) => this.column(axis))
       .filter(Boolean)
       .map(({ key, label, unit, noise }) => `${label} ${rounded(figures[key], null, noise)} ${unit}`.trim());
-    const name = `design ${figures.rank}: ${values.join(", ")}${figures.pareto ? ", Pareto-optimal" : ""}`;
+    const name = `${this.called} ${figures.rank}: ${values.join(", ")}${figures.pareto ? ", Pareto-optimal" : ""}`;
     const style = `point${figures.pareto ? " pareto" : ""}${this.visible.has(k) ? "" : " filtered"}`;
     const node = add(layer, "circle", {
       cx,

@@ -57,7 +57,7 @@ class SearchPage {
 
   turnTo(theta2) {
     this.player.pause();
-    this.player.set(theta2);
+    this.player.set(this.design.turns ? countedIn(this.player, theta2) : theta2);
   }
 
   // The driver goes as far as it can, or only through the task.
@@ -67,7 +67,7 @@ class SearchPage {
     const part = choice.checked && !choice.disabled;
     const [from, to] = part ? [Math.min(...task), Math.max(...task)] : [low, high];
     this.player.travel({ low: from, high: to, wraps: turns && !part, sense: direction, step: 1 / DEG });
-    tellTravel(this.stage, from, to);
+    tellTravel(this.stage, low, high);
   }
 
   curves(design) {
@@ -75,7 +75,7 @@ class SearchPage {
     const places = angles.map((angle) => angle * DEG);
     const marks = design.theta2.map((angle) => within(design, angle) * DEG);
     const whole = this.scene.closed || !design.task;
-    const bold = whole ? null : design.task.map((angle) => angle * DEG).sort((a, b) => a - b);
+    const bold = whole ? null : partsOfTask(design);
     const mu = angles.map((angle) => positionOf(design.linkage, angle).mu * DEG);
     const driver = "driver angle theta2 (deg)";
     const panel = { title: "Transmission angle", unit: "deg", limits: [0, 90], driver };

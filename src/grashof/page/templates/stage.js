@@ -6,64 +6,6 @@ const STRIP = { left: 34, below: 18 }; // px: along the edges, for the numbers o
 const ZOOM = 1.25; // by one step of the wheel or press of a button
 const CLOSEST = 1e6; // times as large as all of the drawing, at most
 
-// Corners of the body that stands at a place in a direction.
-function bodyAt(body, [x, y], angle) {
-  const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
-  return body.map(([u, v]) => [x + u * cos - v * sin, y + u * sin + v * cos]);
-}
-
-// Poses as a design has them where they leave parts free: { at, angle, whole }, or null.
-function posesOf(scene, design) {
-  return (scene.poses || []).map(([x, y, angle], k) => {
-    const whole = x !== null && angle !== null;
-    if (whole) return { at: [x, y], angle, whole };
-    if (!design) return x === null ? null : { at: [x, y], angle: null, whole };
-    const state = positionOf(design.linkage, design.theta2[k], design.assemblies[k]);
-    return {
-      at: x === null ? state.p : [x, y],
-      angle: angle === null ? state.theta3 + design.linkage.body_angle : angle,
-      whole,
-    };
-  });
-}
-
-// Everything that has to be seen of a scene with some designs; `close`: the targets without the linkage.
-function pointsToSee(scene, designs, close) {
-  const points = [...(scene.outlines || []).flat(), ...(scene.points || [])];
-  for (const design of designs.length ? designs : [null]) {
-    for (const pose of posesOf(scene, design)) {
-      if (!pose) continue;
-      points.push(pose.at);
-      if (scene.body && pose.angle !== null) points.push(...bodyAt(scene.body, pose.at, pose.angle));
-    }
-    if (!design || close) continue;
-    for (const angle of travelPath(design).angles) {
-      const state = positionOf(design.linkage, angle);
-      points.push(...drawnPoints(design, state));
-      if (design.cylinder) points.push(design.cylinder.base);
-    }
-  }
-  return points;
-}
-
-// All that a linkage covers in a state, but for the width of blocks.
-function drawnPoints(design, state) {
-  const shapes = kindOf(design.linkage).shapes(slideOf(design), state, 0);
-  return [...pointsOf(design.linkage).map((name) => state[name]), ...Object.values(shapes).flat()];
-}
-
-// Where the block of a slide on the ground is at the ends of its travel; null where there is none.
-function guideOf(design) {
-  const { linkage, from, to } = slideOf(design);
-  if (linkage.slide_angle === undefined) return null;
-  const [cos, sin] = [Math.cos(linkage.slide_angle), Math.sin(linkage.slide_angle)];
-  const on = (along) => [
-    linkage.o2[0] + along * cos - linkage.offset * sin,
-    linkage.o2[1] + along * sin + linkage.offset * cos,
-  ];
-  return [on(from), on(to)];
-}
-
 class Stage {
   trace; beside; behind; scene; svg; close; ghosts; drawnOver; onDrive; onDraw;
 
@@ -256,7 +198,11 @@ class Stage {
     if (scene.published) {
       add(layer, "path", { d: through(scene.published.path.map(this.at)), class: "published" });
     }
+    this.labels = new Labels([{ x: this.svg.clientWidth - 52, y: 20, wide: 104, high: 36 }]); // the buttons of the view
+    this.ways = {};
     const poses = posesOf(scene, design);
+    for (const pose of poses) if (pose) this.labels.keep(this.at(pose.at), 3);
+    for (const point of scene.points || []) this.labels.keep(this.at(point), 3);
     const every = poses.length > MANY_TARGETS ? Math.round(poses.length / 12) : 1;
     poses.forEach((pose, k) => {
       if (!pose || k % every) return;
@@ -273,7 +219,7 @@ class Stage {
         add(layer, "path", { d: `M${px(x)} ${px(y)}l${px(22 * cos)} ${px(-22 * sin)}`, class: "pose" });
       }
       add(layer, "circle", { cx: x, cy: y, r: 2.5, class: "pose-origin" });
-      add(layer, "text", { x: x - 6, y: y - 6, "text-anchor": "end", class: "number" }, k + 1);
+      this.number(layer, [x, y], k + 1);
     });
     const points = scene.points || [];
     const returns = points.length > 1 && points[0].every((value, k) => value === points.at(-1)[k]);
@@ -282,9 +228,15 @@ class Stage {
     shown.forEach((point, k) => {
       const [x, y] = this.at(point);
       add(layer, "circle", { cx: x, cy: y, r: shown.length > MANY_TARGETS ? 2.5 : 4, class: "target" });
-      if (k % step === 0)
-        add(layer, "text", { x: x - 6, y: y - 6, "text-anchor": "end", class: "number" }, k + 1);
+      if (k % step === 0) this.number(layer, [x, y], k + 1);
     });
+  }
+
+  // The number of a target; none where others cover most of its place whatever side it goes to.
+  number(layer, point, number) {
+    const { place, covered } = this.labels.beside(point, number, [-1, -1]);
+    if (covered > 40) this.labels.taken.pop();
+    else add(layer, "text", { ...place, class: "number" }, number);
   }
 
   traces() {
@@ -316,7 +268,8 @@ class Stage {
     for (const name of pivots) {
       const [x, y] = this.at(this.design.linkage[name]);
       add(ground, "path", { d: `M${px(x)} ${px(y)}l-8 13h16Z` });
-      add(ground, "text", { x: x + 10, y: y + 14 }, name.toUpperCase());
+      this.labels.keep([x, y + 5], 8);
+      add(ground, "text", this.labels.beside([x + 3, y + 5], name, [1, 0.2]).place, name.toUpperCase());
     }
     const layer = add(this.svg, "g", { class: "linkage" });
     const parts = {};
@@ -365,15 +318,13 @@ class Stage {
       if (parts[`hold-${name}`]) set(parts[`hold-${name}`], { cx: px(x), cy: px(y) });
     }
     const middle = [(a[0] + b[0] + p[0]) / 3, (a[1] + b[1] + p[1]) / 3];
-    set(parts.P, { x: px(p[0] + 9), y: px(p[1] + 16) });
-    for (const name of ["A", "B"]) {
-      const [x, y] = places[name.toLowerCase()];
-      const away = Math.hypot(x - middle[0], y - middle[1]) || 1;
-      set(parts[name], {
-        x: px(x + (15 * (x - middle[0])) / away),
-        y: px(y + 4 + (15 * (y - middle[1])) / away),
-        "text-anchor": "middle",
-      });
+    const labels = new Labels(this.labels.taken);
+    for (const joint of [a, b, p]) labels.keep(joint);
+    for (const [name, joint] of Object.entries({ A: a, B: b, P: p })) {
+      const away = [joint[0] - middle[0], joint[1] - middle[1]];
+      const { way, place } = labels.beside(joint, name, away, this.ways[name]);
+      this.ways[name] = way;
+      set(parts[name], place);
     }
     if (parts.body) {
       const corners = bodyAt(this.scene.body, state.p, state.theta3 + linkage.body_angle);
@@ -412,19 +363,4 @@ class Stage {
     const barb = to - (direction * 8) / radius;
     return through(arc) + through([on(barb, radius + 4), on(to), on(barb, radius - 4)]);
   }
-}
-
-// The angles and the place of P as text, beside the drawing and for screen readers.
-function tellPosition(stage, { theta2, theta3, theta4, p, slide }) {
-  const [driver, coupler, output] = [theta2, theta3, theta4].map((angle) => fixed(angle * DEG, 2));
-  const place = p.map((value) => fixed(value, stage.decimals)).join(", ");
-  const slid = slide === undefined ? "" : `, ${withUnit(`slide ${fixed(slide, stage.decimals)}`, stage.scene.unit)}`;
-  $("#angles").textContent = `θ2 ${driver}, θ3 ${coupler}, θ4 ${output} deg${slid}`;
-  $("#place").textContent = withUnit(`P ${place}`, stage.scene.unit);
-  const degrees = (theta2 * DEG).toFixed(1);
-  set(stage.svg, { "aria-valuenow": degrees, "aria-valuetext": `${degrees} degrees` });
-}
-
-function tellTravel(stage, low, high) {
-  set(stage.svg, { "aria-valuemin": (low * DEG).toFixed(1), "aria-valuemax": (high * DEG).toFixed(1) });
 }

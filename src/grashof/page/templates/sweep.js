@@ -1,9 +1,9 @@
 // The page of a sweep: a table of combinations, and the best design of the one that is chosen.
 class SweepPage {
-  designs; scenes; values;
+  name; designs; scenes; values; columns; axes; measure;
 
-  constructor({ scenes, designs, values }) {
-    Object.assign(this, { scenes, designs, values, chosen: null });
+  constructor({ name, best, scenes, designs, values, columns, axes, measure }) {
+    Object.assign(this, { name, scenes, designs, values, columns, axes, measure, chosen: null });
     this.body = $("#combinations tbody");
     this.rows = $$("tr", this.body);
     this.headers = $$("#combinations th[aria-sort]");
@@ -36,10 +36,29 @@ class SweepPage {
     } else {
       this.stage = new Stage($("#stage"), scene);
     }
+    this.tradeoff = this.plotted($("#tradeoff"));
     this.pictures();
     this.filter();
-    const first = this.rows.find((row) => row.dataset.found === "1") || this.rows[0];
-    this.choose(Number(first.dataset.index));
+    this.choose(best);
+  }
+
+  // The combinations as cells, over two numbers, or as points; none where they have nothing to compare.
+  plotted(root) {
+    if (!root) return null;
+    const { axes, measure } = this;
+    const numbers = this.columns.filter(({ key, text }) => !text && key !== "combination");
+    const figures = (row) => Object.fromEntries(this.columns.map(({ key }, k) => [key, row[k]]));
+    const designs = this.values.map((row) => ({ figures: { ...figures(row), rank: row[0], pareto: false } }));
+    const onPick = (index) => this.choose(index);
+    const wanted = { x: axes, y: [measure], area: [""] };
+    const made =
+      axes.length === 2
+        ? new Cells(root, { columns: numbers, designs, axes, measure, onPick })
+        : new Scatter(root, { columns: numbers, designs, wanted, called: "combination", onPick });
+    offerSaves($(".save", root), "trade-off", () => fileName(this.name, "trade-off"), {
+      svg: () => savedSvg(made, $("h1").textContent),
+    });
+    return made;
   }
 
   choose(index) {
@@ -49,6 +68,7 @@ class SweepPage {
       each.classList.toggle("chosen", each === row);
       $("[data-pick]", each).setAttribute("aria-pressed", String(each === row));
     }
+    if (this.tradeoff) this.tradeoff.mark(index);
     const { drawing, scene, about, note } = this.designs[index];
     $("#chosen").textContent = `Combination ${$("[data-pick]", row).textContent}`;
     $("#about").textContent = about;
@@ -97,6 +117,7 @@ class SweepPage {
       const passes = row.textContent.toLowerCase().includes(text);
       row.hidden = !passes || (wanted.get("found") && row.dataset.found !== "1");
     }
+    if (this.tradeoff) this.tradeoff.filter(this.listed());
     $("output", this.form).textContent = `${this.listed().length} of ${this.rows.length}`;
   }
 

@@ -231,14 +231,14 @@ class Live {
     const places = angles.map((angle) => angle * DEG);
     const marks = design.theta2.map((angle) => within(design, angle) * DEG);
     const whole = this.stage.scene.closed || !design.task;
-    const bold = whole ? null : design.task.map((angle) => angle * DEG).sort((a, b) => a - b);
+    const bold = whole ? null : partsOfTask(design);
     const over = { places, angles: places };
     const states = angles.map((angle) => positionOf(design.linkage, angle));
     const mu = states.map((state) => state.mu * DEG);
     this.transmission.show({ title: "Transmission angle", unit: "deg", limits: [0, 90], ...over, series: [{ label: "μ", values: mu }] }, { bold, marks });
     const speeds = states.map((state) => pointSpeed(design.linkage, state));
     const unit = this.stage.scene.unit ? `${this.stage.scene.unit}/rad` : "per rad";
-    this.velocity.show({ title: "Velocity of P per driver speed", unit, ...over, series: [{ label: "v", values: speeds }] }, { bold, marks, bounded: !design.turns });
+    this.velocity.show({ title: "Velocity of P per driver speed", unit, ...over, series: [{ label: "v", values: speeds }] }, { bold, marks, bounded: !design.turns, scaled: true });
     $("#torque", this.root).hidden = !design.torque;
     if (!design.torque) return;
     const sampled = travelAngles(design).map((angle) => angle * DEG);
