@@ -162,7 +162,7 @@ def even_motion(linkage: Linkage, start: float, end: float) -> EvenMotion:
         4 r1 r2 a = (r1 - r2)^2 - (r3 - r4)^2,    4 r1 r2 b = (r3 + r4)^2 - (r1 + r2)^2,
 
     x is c sn / cn where the driver turns fully (a, b > 0), X cn where it swings through the ground line
-    (b < 0 < a; the other way round phi is counted from theta1 + pi), and X dn where it swings on one
+    (b < 0 < a; the other way round phi is counted from the back of the ground), and X dn where it swings on one
     side of it (a, b < 0); c^2 = a / (1 + a), X^2 = -(1 + b) / b, and k' is
     c / X, c / sqrt(c^2 + X^2) and |c| / X. At a change point (a or b = 0) nothing is narrow that need be
     met: that part is then left out of the integral.
@@ -202,10 +202,15 @@ def _home(linkage: Linkage, low: float, high: float) -> tuple[_Way, float, float
     for least, most in driver_ranges(linkage).tolist():
         turned = TURN * np.round((low + high - least - most) / (2 * TURN))
         if most - least > _SHORT and least + turned - _SLACK <= low <= high <= most + turned + _SLACK:
+            half_turns = ((least + most) / 2 - theta1) / np.pi
             if a < 0 and b < 0:
-                return _Way.BESIDE, theta1 + turned, a, b
-            folded = a < 0
-            return _Way.THROUGH, theta1 + turned + np.pi * folded, *((b, a) if folded else (a, b))
+                return _Way.BESIDE, theta1 + turned + TURN * np.round(half_turns / 2), a, b
+            folded = a < 0  # about the back of the ground, an odd number of half turns away
+            return (
+                _Way.THROUGH,
+                theta1 + turned + np.pi * np.round(half_turns),
+                *((b, a) if folded else (a, b)),
+            )
     return None
 
 

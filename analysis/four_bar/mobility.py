@@ -129,7 +129,7 @@ def driver_ranges(linkage: Linkage, transmission: float = 0.0) -> FloatArray:
     -------
     ndarray, shape (..., 2, 2), rad
         Up to two ranges [low, high] of theta2, NaN for those that do not exist. A driver that
-        turns fully has one range of a whole turn; a range about theta1 + pi runs past it.
+        turns fully has one range of a whole turn. The middle of each lies within half a turn.
 
     Notes
     -----
@@ -155,8 +155,11 @@ def driver_ranges(linkage: Linkage, transmission: float = 0.0) -> FloatArray:
     two = ~through_ground & ~through_back & assembled
     first = np.stack([np.where(assembled, low, np.nan), np.where(assembled, high, np.nan)], axis=-1)
     second = np.stack([np.where(two, -reach, np.nan), np.where(two, -gap, np.nan)], axis=-1)
-    ranges: FloatArray = linkage.theta1[..., None, None] + np.stack([first, second], axis=-2)
-    return ranges
+    ranges = np.stack([first, second], axis=-2)
+    theta1 = linkage.theta1[..., None, None]
+    middle = theta1 + ranges.mean(axis=-1, keepdims=True)
+    counted: FloatArray = theta1 + (ranges - 2 * np.pi * np.round(middle / (2 * np.pi)))
+    return counted
 
 
 def dead_ends(linkage: Linkage, low: float, high: float) -> tuple[float, float]:

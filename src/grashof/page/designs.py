@@ -71,8 +71,7 @@ def driver_travel(linkage: Linkage, theta2: FloatArray) -> Travel:
     Returns
     -------
     Travel
-        The turn from 0, or the range between dead positions that the first target lies in, with its
-        middle within half a turn.
+        The turn from 0, or the range between dead positions that the first target lies in.
 
     Examples
     --------
@@ -84,9 +83,8 @@ def driver_travel(linkage: Linkage, theta2: FloatArray) -> Travel:
     if full_rotation(linkage):
         return Travel(0.0, TURN, True)
     index, _ = range_index(linkage, theta2[0])
-    low, high = driver_ranges(linkage)[max(int(index), 0)]
-    turned = TURN * float(np.round((low + high) / 2 / TURN))
-    return Travel(float(low) - turned, float(high) - turned, False)
+    low, high = driver_ranges(linkage)[max(int(index), 0)].tolist()
+    return Travel(low, high, False)
 
 
 def legend(kinds: Iterable[str], cylinders: Iterable[Cylinder | None] = ()) -> list[tuple[str, str]]:

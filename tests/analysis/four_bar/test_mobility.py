@@ -143,6 +143,7 @@ def test_driver_ranges_hold_exactly_the_angles_that_close(
     assert len(ranges) == (2 if kind in (GrashofClass.DOUBLE_ROCKER, GrashofClass.ROCKER_CRANK) else 1)
     around = data.draw(st.floats(-TURN, TURN)) + np.linspace(0, TURN, 3601)
     _, b, _ = close_loop(linkage, around, 1)
+    assert (np.abs(ranges.mean(axis=1)) <= np.pi + 1e-12).all()
     low, high = ranges.T
     inside = ((around[:, None] - low) % TURN <= high - low).any(axis=1)
     if kind in SWINGING:
