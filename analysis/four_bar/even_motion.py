@@ -162,8 +162,8 @@ def even_motion(linkage: Linkage, start: float, end: float) -> EvenMotion:
         4 r1 r2 a = (r1 - r2)^2 - (r3 - r4)^2,    4 r1 r2 b = (r3 + r4)^2 - (r1 + r2)^2,
 
     x is c sn / cn where the driver turns fully (a, b > 0), X cn where it swings through the ground line
-    (b < 0 < a; the other way round phi is counted from the back of the ground), and X dn where it swings on one
-    side of it (a, b < 0); c^2 = a / (1 + a), X^2 = -(1 + b) / b, and k' is
+    (b < 0 < a; the other way round phi is counted from its back), and X dn where it swings on one side of
+    it (a, b < 0); c^2 = a / (1 + a), X^2 = -(1 + b) / b, and k' is
     c / X, c / sqrt(c^2 + X^2) and |c| / X. At a change point (a or b = 0) nothing is narrow that need be
     met: that part is then left out of the integral.
 

@@ -25,7 +25,6 @@ from grashof.problems.files.dynamics_schema import MachineTables
 from grashof.problems.files.named_files import with_files
 from grashof.problems.files.tables import (
     LIST,
-    MOST_TARGETS,
     NUMBER,
     TABLE,
     WORD,
@@ -49,7 +48,7 @@ from grashof.problems.values.mechanisms import ANY_KINDS, FOUR_BAR, mechanisms
 from grashof.problems.values.motion_task import MotionTask
 from grashof.problems.values.objective import GOALS, Objective
 from grashof.problems.values.path_task import PathTask
-from grashof.problems.values.problem import NO_OBJECTIVE, Problem, Search
+from grashof.problems.values.problem import MOST_TARGETS, NO_OBJECTIVE, Problem, Search
 from grashof.problems.values.quantities import Kind
 from grashof.problems.values.requirements import LIMITS, MAY_KEEP_OUT, Requirements, Rotatability
 from grashof.problems.values.stroke_task import StrokeTask

@@ -111,7 +111,6 @@ def _plain(text: str, key: ValidationInfo) -> str:
 Text: TypeAlias = Annotated[str, AfterValidator(_plain)]
 
 
-MOST_TARGETS = 10_000  # of a task
 _MOST_ENTRIES = 20_000  # of any list, such as the corners of a drawing
 
 

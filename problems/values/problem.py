@@ -57,6 +57,7 @@ NO_OBJECTIVE = (
     "requirements.error_factor"
 )
 EFFORTS = (0.2, 10_000.0)
+MOST_TARGETS = 10_000
 # Of inverted slider-cranks: with offset 0 the transmission angle is 90 deg, and size decides.
 SMALLEST = Objective(transmission=1.0, compactness=0.05)
 ROCKING = (Rotatability.CRANK_ROCKER, Rotatability.DOUBLE_CRANK)  # told by link 4, which has to turn
@@ -150,6 +151,8 @@ class Problem(ReadOnly):
         for name, kind in _KINDS.items():
             if not isinstance(value := getattr(self, name), kind):
                 raise ProblemError(f"problem.{name} is {shown(value)}; it must be {_named(kind)}")
+        if len(self.task) > MOST_TARGETS:
+            raise ProblemError(f"the task has {len(self.task)} targets; it must have at most {MOST_TARGETS}")
         object.__setattr__(self, "requirements", self.requirements.for_task(self.task))
         object.__setattr__(self, "task", self.task.under(self.requirements))
         for name in ("name", "title", "source", "length_unit"):

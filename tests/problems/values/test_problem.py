@@ -4,6 +4,7 @@ import math
 import pickle
 from typing import Any
 
+import numpy as np
 import pytest
 
 from grashof.problems import (
@@ -11,6 +12,7 @@ from grashof.problems import (
     LinkageSpec,
     MotionTask,
     Objective,
+    PathTask,
     Problem,
     ProblemError,
     Requirements,
@@ -124,3 +126,11 @@ def test_words_are_plain_text(name: str) -> None:
             ProblemError, match=rf"^{name} has control character U\+0007; it must be plain text$"
         ):
             kind(**given)
+
+
+def test_a_task_has_ten_thousand_targets_at_most() -> None:
+    turn = np.linspace(0, 6, 10_001)
+    points = np.column_stack([np.cos(turn), np.sin(turn)])
+    assert len(Problem(task=PathTask(points[1:])).task) == 10_000
+    with pytest.raises(ProblemError, match=r"^the task has 10001 targets; it must have at most 10000$"):
+        Problem(task=PathTask(points))
