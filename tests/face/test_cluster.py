@@ -78,3 +78,4 @@ def test_what_ends_workers_is_given_up_and_a_lost_scheduler_is_told(tmp_path: Pa
     assert given_up.startswith("given up: a task ends the workers that do it")
     assert same == "True"
     assert told == "told: a worker process was lost: the scheduler was lost"
+    assert "Traceback" not in done.stderr

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future
 from contextlib import contextmanager
@@ -47,6 +48,10 @@ class _Cluster(Executor):
         return ours
 
 
+# Their tracebacks of a lost scheduler would stand before the one line that says so.
+_NOISY = ("distributed.client", "distributed.core", "distributed.comm.core", "distributed.utils")
+
+
 @contextmanager
 def cluster(scheduler: str | None, workers: int) -> Iterator[tuple[Executor | None, int]]:
     """Executor of a Dask scheduler, if one is named, and how many it works on at a time.
@@ -65,6 +70,8 @@ def cluster(scheduler: str | None, workers: int) -> Iterator[tuple[Executor | No
         distributed = import_module("distributed")  # without types
     except ImportError:
         raise ProblemError("--scheduler needs Dask; pip install 'grashof[cluster]' installs it") from None
+    for name in _NOISY:
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         client = distributed.Client(scheduler, timeout=PATIENCE)
     except OSError:
