@@ -9,8 +9,8 @@ import numpy as np
 from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.verdict import Defect
 from grashof.problems import Problem, ProblemError, Requirements
-from grashof.problems.values.arrays import Limits, turned_from
-from grashof.problems.values.quantities import Kind, Limit, Needs, Over, Quantity, Unit
+from grashof.problems.values.arrays import Limits, turned_beyond
+from grashof.problems.values.quantities import Limit, Needs, Over, Quantity, Unit
 
 # Limits are inclusive; rounding may carry a design this far past them (sizes, rad or ratio).
 SLACK = 1e-9
@@ -64,8 +64,8 @@ def _miss(value: float, allowed: Limits, limit: Limit, problem: Problem) -> floa
     low, high = allowed
     if np.isnan(value):  # a target at which the linkage cannot be assembled is a defect by itself
         return 0.0 if limit.quantity.over is Over.TARGETS else np.inf
-    if limit.kind is Kind.EQUAL:
-        return abs(float(turned_from(value, low, problem.period(limit.quantity.key))))
+    if limit.kind.is_angle:
+        return abs(float(turned_beyond(value, allowed, problem.period(limit.quantity.key))))
     miss = max(low - value, value - high)
     if limit.quantity.unit is Unit.ANGLE:
         return miss

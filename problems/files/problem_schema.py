@@ -301,7 +301,12 @@ def _is_corner(given: Any) -> bool:
 
 Areas = Annotated[list[Corners], listed(_AREAS), BeforeValidator(_several)]
 Parts = Annotated[list[str], listed(f"a list of {', '.join(MAY_KEEP_OUT[:-1])} and {MAY_KEEP_OUT[-1]}")]
-_BY_KIND = {Kind.BETWEEN: Pair, Kind.INSIDE: Place, Kind.ON_BODY: Place, Kind.WORD: str}
+_ANGLES = "a number or [lo, hi]"
+Turned = Annotated[
+    Annotated[float, Tag(NUMBER)] | Annotated[Pair, Tag(LIST)],
+    Discriminator(tag, custom_error_type=WRONG, custom_error_message=_ANGLES),
+]
+_BY_KIND = {Kind.TURNED: Turned, Kind.BETWEEN: Pair, Kind.INSIDE: Place, Kind.ON_BODY: Place, Kind.WORD: str}
 _MODES: dict[str, Any] = {
     **dict.fromkeys(("exact", "order", "same_branch"), bool),
     **dict.fromkeys(("rotatability", "transmission_over"), str),

@@ -28,6 +28,19 @@ def turned_from(angle: npt.ArrayLike, other: npt.ArrayLike, period: float = TURN
     return np.asarray(apart % period - period / 2)
 
 
+def turned_beyond(angle: npt.ArrayLike, limits: tuple[float, float], period: float = TURN) -> FloatArray:
+    """By how much angles lie beyond a range of angles, after it (positive) or before it, rad; 0 within.
+
+    Examples
+    --------
+    >>> np.degrees(turned_beyond(np.radians([15, 25, 355]), (0.0, np.pi / 9))).round(9).tolist()
+    [0.0, 5.0, -5.0]
+    """
+    middle, half = (limits[0] + limits[1]) / 2, (limits[1] - limits[0]) / 2
+    apart = turned_from(angle, middle, period)
+    return np.asarray(apart - np.clip(apart, -half, half))
+
+
 def frozen_array(values: npt.ArrayLike) -> FloatArray:
     """Read-only float64 copy of `values` (a NumPy scalar where they have no shape)."""
     array = np.array(values, dtype=np.float64)

@@ -51,8 +51,8 @@ class FunctionGround:
         low, high = wanted.r1 or wanted.link_length or (0.0, np.inf)
         usual = float(np.clip(1.0, low, high))
         sides = [(g[0] - m[1], g[1] - m[0]) for m, g in ((o2.x, o4.x), (o2.y, o4.y))]
-        if wanted.ground_angle_deg is not None:
-            theta1 = float(np.radians(wanted.ground_angle_deg))
+        if (fixed := wanted.angle_of("ground_angle_deg")) is not None:
+            theta1 = fixed
         else:
             near = [float(np.clip(wish, *side)) for wish, side in zip((usual, 0.0), sides, strict=True)]
             theta1 = float(np.arctan2(near[1], near[0])) if any(near) else 0.0

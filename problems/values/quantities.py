@@ -288,9 +288,15 @@ class Kind(Enum):
     AT_LEAST = auto()
     AT_MOST = auto()
     EQUAL = auto()  # an angle
+    TURNED = auto()  # an angle, or [lo, hi]
     INSIDE = auto()  # a box in the plane
     ON_BODY = auto()  # a box in the body's frame
     WORD = auto()  # one of several words, each of which allows a range
+
+    @property
+    def is_angle(self) -> bool:
+        """Whether it limits a direction, which counts alike by whole turns."""
+        return self in (Kind.EQUAL, Kind.TURNED)
 
 
 @dataclass(frozen=True, slots=True)
@@ -332,7 +338,7 @@ class Limit:
             return {"x": value.x, "y": value.y}
         if self.kind is Kind.WORD:
             return {"": self.words[value]}
-        low, high = value if self.kind is Kind.BETWEEN else (value, value)
+        low, high = value if isinstance(value, tuple) else (value, value)
         if self.kind is Kind.AT_LEAST:
             high = np.inf
         if self.kind is Kind.AT_MOST:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from enum import StrEnum
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -119,11 +119,12 @@ class Requirements(ReadOnly):
         Where this moving pivot may be at every target.
     offset : tuple of float, optional
         (lo, hi) for the signed offset of a slide: of its line from O2, of an inverted one from O4.
-    slide_angle_deg : float, deg, optional
-        Direction of the slide of a slider-crank. For poses and paths 180 deg more is the same line, unless
-        `offset` is limited; the offset of a listed design counts from the direction that is listed.
-    ground_angle_deg : float, deg, optional
-        Direction O2->O4.
+    slide_angle_deg : float or tuple of float, deg, optional
+        Direction of the slide of a slider-crank, or (lo, hi) for it. For poses and paths 180 deg more is
+        the same line, unless `offset` is limited; the offset of a listed design counts from the direction
+        that is listed.
+    ground_angle_deg : float or tuple of float, deg, optional
+        Direction O2->O4, or (lo, hi) for it.
     theta2_start_deg : float, deg, optional
         Driver angle at the first target.
     size, torque_peak, worst_move, ... : tuple of float, optional
@@ -187,7 +188,7 @@ class Requirements(ReadOnly):
     r3: Limits | None = limit("r3", Kind.BETWEEN, allowed=_FROM_ZERO)
     r4: Limits | None = limit("r4", Kind.BETWEEN, allowed=_FROM_ZERO)
     offset: Limits | None = limit("offset", Kind.BETWEEN, allowed=(-GREATEST, GREATEST))
-    slide_angle_deg: float | None = limit("slide_angle", Kind.EQUAL)
+    slide_angle_deg: float | Limits | None = limit("slide_angle", Kind.TURNED)
     coupler_arms: Limits | None = limit(
         Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False),
         Kind.BETWEEN,
@@ -204,9 +205,9 @@ class Requirements(ReadOnly):
     o4: Box | None = limit(_place("o4", Over.DESIGN), Kind.INSIDE)
     a: Box | None = limit(_place("a", Over.TARGETS), Kind.INSIDE)
     b: Box | None = limit(_place("b", Over.TARGETS), Kind.INSIDE)
-    ground_angle_deg: float | None = limit(
+    ground_angle_deg: float | Limits | None = limit(
         Quantity("ground_angle", "direction of O2O4", Unit.ANGLE, listed=False, kinds=having("o4")),
-        Kind.EQUAL,
+        Kind.TURNED,
     )
     theta2_start_deg: float | None = limit("theta2_start", Kind.EQUAL)
     size: Limits | None = limit("size", Kind.BETWEEN, allowed=_FROM_ZERO)
@@ -332,6 +333,12 @@ class Requirements(ReadOnly):
             wrong.append(f"requirements.error_factor does not go with {task.kind}.within; give one of them")
         if self.error_factor is not None and self.is_exact(task):
             wrong.append("requirements.error_factor needs least squares, exact = false")
+        turned = (name for name, limited in LIMITS.items() if limited.kind is Kind.TURNED)
+        wrong += [
+            f"requirements.{name} is a range; of a {task.kind} it must be a single angle"
+            for name in turned
+            if isinstance(getattr(self, name), tuple) and not task.has_position.any()
+        ]
         if self.keep_out and "body" in self.keep_out_for and task.body is None:
             wrong.append(f"{task.kind}.body is missing; requirements.keep_out_for has body")
         return wrong
@@ -392,6 +399,11 @@ class Requirements(ReadOnly):
         """The quantity itself; of the transmission angle, the one over the motion that is required."""
         over = quantity.key == "transmission"
         return MEASURED[f"transmission_min_{self.transmission_over}"] if over else quantity
+
+    def angle_of(self, name: str) -> float | None:
+        """The angle that a field fixes, rad; None where it fixes none, as a range does not."""
+        value = getattr(self, name)
+        return float(np.radians(value)) if isinstance(value, float) else None
 
     def period(self, key: str) -> float:
         """By how much the angles of a quantity differ that count as one, rad.
@@ -454,7 +466,10 @@ def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float | st
         if value not in limited.words:
             raise wrong_value(where, value, f"one of {', '.join(limited.words)}")
         return str(value)
-    if limited.kind is Kind.EQUAL:
+    if limited.kind is Kind.TURNED and isinstance(value, tuple | list):
+        low, high = limits(cast(Limits, value), where, least=-GREATEST)
+        return low if low == high else (low, high)
+    if limited.kind.is_angle:
         return finite_number(value, where)
     return number_within(value, low, high, where)
 

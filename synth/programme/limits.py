@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
-from grashof.problems.values.quantities import Kind, Unit
+from grashof.problems.values.quantities import Unit
 from grashof.problems.values.requirements import LIMITS, QUANTITIES
 from grashof.synth.programme.along_motion import (
     AGREES,
@@ -40,7 +40,7 @@ def require_limits(build: Builder, form: Form, x: Unknowns, places: Places) -> N
     for name, part in parts_of(form.limited, form.kind.smooth, form.kind.formulas):
         if part.fixed:
             continue
-        value, angle = ca.SX(part.of(design)), LIMITS[name].kind is Kind.EQUAL
+        value, angle = ca.SX(part.of(design)), LIMITS[name].kind.is_angle
         allowed = _angle(name, part) if angle else _range(name, part)
         leaf = value.is_scalar() and value.is_leaf() and part.per is None and not part.squared
         if angle and name != "theta2_start_deg":  # that one is bounded among the unknowns
@@ -75,8 +75,9 @@ def _angle(name: str, part: Part) -> Fill:
             "theta2_start_deg": start.theta2[start.visit.index(0)],
         }[name]
         period = scaled.wanted.period(LIMITS[name].quantity.key)
-        angle = lifted(range_of(scaled.wanted, name, part)[0], now, period)
-        return angle, angle
+        low, high = range_of(scaled.wanted, name, part)
+        by = lifted((low + high) / 2, now, period) - (low + high) / 2
+        return low + by, high + by
 
     return limits
 

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems import Requirements, Rotatability, TransmissionOver
-from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, turned_from
-from grashof.problems.values.quantities import Kind as Limited
+from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, turned_beyond
 from grashof.problems.values.requirements import LIMITS
 from grashof.synth.programme.formulas import Part, View, parts_of, range_of
 from grashof.synth.programme.kind import Kind, as_vector
@@ -211,8 +210,9 @@ def _oversteps(view: Many, wanted: Requirements, dyad: int | None) -> Iterator[t
 
 def _overstep(view: View, name: str, part: Part, wanted: Requirements) -> FloatArray:
     value, (low, high) = part.of(view), range_of(wanted, name, part)
-    if LIMITS[name].kind is Limited.EQUAL:
-        amount: FloatArray = np.abs(turned_from(value, low, wanted.period(LIMITS[name].quantity.key)))
+    if LIMITS[name].kind.is_angle:
+        period = wanted.period(LIMITS[name].quantity.key)
+        amount: FloatArray = np.abs(turned_beyond(value, (low, high), period))
     elif part.per is not None:
         amount = np.maximum(value / high - part.per(view), 0.0)
     else:

@@ -22,7 +22,7 @@ from grashof.synth.programme.start import UNSMOOTH, Start
 from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.results.relaxed_limits import (
     Relaxation,
-    is_angle,
+    fixes_angle,
     limiting,
     loosest,
     relaxation,
@@ -121,7 +121,7 @@ def _finished(scaled: ScaledProblem, found: Relaxation, run: Run) -> Relaxation:
 
     Both are solved under the relaxed requirement, which makes sure of it.
     """
-    angle = is_angle(found.key)
+    angle = fixes_angle(scaled.problem.requirements, found.key)
     if scaled.exact and not angle:
         return found
     asked = with_rounded_angle(scaled.problem, found) if angle else found

@@ -11,7 +11,7 @@ import numpy as np
 from grashof.analysis import Defect, verify
 from grashof.analysis.judge.design import Constraint, Design, name_of
 from grashof.problems import Box, FourBar, Problem, Requirements, Rotatability
-from grashof.problems.values.arrays import Limits, turned_from
+from grashof.problems.values.arrays import Limits, turned_beyond, turned_from
 from grashof.problems.values.quantities import Kind
 from grashof.problems.values.requirements import LIMITS
 from grashof.synth.designs.candidate import Candidate
@@ -80,9 +80,9 @@ def limiting(problem: Problem, constraints: Sequence[Constraint]) -> list[str]:
     return keys + [key for key in UNSMOOTH if getattr(wanted, key)]
 
 
-def is_angle(key: str) -> bool:
-    """Whether a requirement is an angle to be kept."""
-    return key in LIMITS and LIMITS[key].kind is Kind.EQUAL
+def fixes_angle(wanted: Requirements, key: str) -> bool:
+    """Whether a requirement is a single angle to be kept."""
+    return key in LIMITS and LIMITS[key].kind.is_angle and wanted.angle_of(key) is not None
 
 
 def loosest(problem: Problem, key: str) -> Requirements:
@@ -184,13 +184,23 @@ def _eased(
         yield _box_enlarged(key, asked or Box(), missed)
     elif kind is Kind.WORD:
         yield {key: LIMITS[key].widest}, f'{key} "{LIMITS[key].widest}" instead of "{asked}"'
-    elif kind is Kind.EQUAL:
+    elif kind is Kind.TURNED and isinstance(asked, tuple):
+        reached = _turned_to(asked, found[0], problem.period(LIMITS[key].quantity.key))
+        yield {key: reached}, _range_words(key, asked, reached)
+    elif kind is not None and kind.is_angle:
         off = turned_from(np.radians(found[0] - asked), 0.0, problem.period(LIMITS[key].quantity.key))
         angle = float(f"{asked + np.degrees(off):.12g}")
         yield {key: angle}, f"{key} {angle:.12g} instead of {asked:g}"
     else:
         value = max(_rounded(found[0], asked), 0.0)
         yield {key: value}, f"{key} {value:.10g} instead of {asked:g}"
+
+
+def _turned_to(asked: Limits, found: float, period: float) -> Limits:
+    """A range of angles in deg with its nearer end moved to an angle."""
+    low, high = map(np.radians, asked)
+    off = float(np.degrees(turned_beyond(np.radians(found), (low, high), period)))
+    return _reaching(asked, [asked[off > 0] + off])
 
 
 def _turning_less(wanted: Requirements, missed: list[Defect]) -> Iterator[tuple[dict[str, Any], str]]:

@@ -177,5 +177,5 @@ def leaves_freedom(scaled: ScaledProblem) -> bool:
 def _equalities(wanted: Requirements) -> int:
     """How many numbers the requirements fix: coordinates of pivots, and angles."""
     sides = [side for box in (wanted.o2, wanted.o4) if box is not None for side in (box.x, box.y)]
-    fixed = [wanted.ground_angle_deg is not None, wanted.theta2_start_deg is not None]
+    fixed = [wanted.angle_of(name) is not None for name in ("ground_angle_deg", "theta2_start_deg")]
     return sum(low == high for low, high in sides) + sum(fixed)

@@ -8,8 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from grashof.problems import Rotatability, TransmissionOver
-from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, Limits, turned_from
-from grashof.problems.values.quantities import Kind
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, Limits, turned_beyond
 from grashof.problems.values.requirements import LIMITS
 from grashof.synth.programme.dual import Dual
 from grashof.synth.programme.formulas import LOGARITHMIC, View
@@ -157,8 +156,8 @@ def _limit_rows(target: SearchTargets, at: Placement) -> Iterator[Dual]:
         if part.fixed:
             continue
         value = np.sqrt(part.of(at)) if part.squared else part.of(at)
-        if LIMITS[name].kind is Kind.EQUAL:
-            yield _turned(value, low, target.wanted.period(LIMITS[name].quantity.key))
+        if LIMITS[name].kind.is_angle:
+            yield _turned(value, (low, high), target.wanted.period(LIMITS[name].quantity.key))
         elif LIMITS[name].quantity.key in LOGARITHMIC:
             value = np.log(value if part.per is None else value / part.per(at))
             least = LEAST_LENGTH if part.per is None else 1.0
@@ -174,9 +173,11 @@ def _outside(row: Dual, limits: Limits) -> Dual:
     return Dual(over, lambda: np.where((over != 0)[..., None], row.slope, 0.0))
 
 
-def _turned(row: Dual, angle: float, period: float) -> Dual:
-    """By how much angles differ from one, within half a period."""
-    return Dual(turned_from(row.value, angle, period), lambda: row.slope)
+def _turned(row: Dual, limits: Limits, period: float) -> Dual:
+    """By how much angles lie beyond a range, within half a period."""
+    over = turned_beyond(row.value, limits, period)
+    fixed = limits[0] == limits[1]
+    return Dual(over, lambda: row.slope if fixed else np.where((over != 0)[..., None], row.slope, 0.0))
 
 
 def _where(rows: BoolArray, row: Dual) -> Dual:

@@ -14,7 +14,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.problems import Box, Rotatability
-from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, Limits
+from grashof.problems.values.arrays import (
+    TURN,
+    BoolArray,
+    ComplexArray,
+    FloatArray,
+    IntArray,
+    Limits,
+    turned_beyond,
+)
 from grashof.synth.programme.driver_angles import as_they_come, shorter_way
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import (
@@ -228,7 +236,9 @@ def _kept(scaled: ScaledProblem, drawn: _Drawn) -> _Drawn:
     """Moved into the boxes of the ground pivots, the ground line turned as it has to be."""
     wanted, coupler = scaled.wanted, drawn.coupler
     if wanted.ground_angle_deg is not None:
-        coupler = np.abs(coupler) * np.exp(1j * np.radians(wanted.ground_angle_deg))
+        (allowed,) = wanted.ranges("ground_angle_deg").values()
+        angle = np.angle(coupler)
+        coupler = np.abs(coupler) * np.exp(1j * (angle - turned_beyond(angle, allowed)))
     o2 = _into(wanted.o2, drawn.a - drawn.crank)
     o4 = _into(wanted.o4, o2 + coupler)
     if wanted.ground_angle_deg is None:

@@ -42,7 +42,7 @@ class RockerPlaces(Places):
             np.log(high / low),
         ]
         if wanted.ground_angle_deg is not None and wanted.theta2_start_deg is not None:
-            apart = np.exp(1j * (self._angle(members) - np.radians(wanted.ground_angle_deg)))
+            apart = np.exp(1j * (self._angle(members) - (wanted.angle_of("ground_angle_deg") or 0.0)))
             inside.append(-np.abs(np.angle(apart)))
         margin: FloatArray = np.min(inside, axis=0)
         return margin
@@ -106,9 +106,8 @@ class RockerPlaces(Places):
 
     def _angle(self, members: Members) -> FloatArray:
         """Direction of O2O4 that the limits fix, rad; NaN where they do not; shape (n,)."""
-        start, fixed = self.wanted.theta2_start_deg, self.wanted.ground_angle_deg
+        start, fixed = self.wanted.theta2_start_deg, self.wanted.angle_of("ground_angle_deg")
         if start is not None:
             turned: FloatArray = np.radians(start) - self.ends(members)[0]
             return turned
-        angle = np.nan if fixed is None else float(np.radians(fixed))
-        return np.full(len(members.share), angle)
+        return np.full(len(members.share), np.nan if fixed is None else fixed)

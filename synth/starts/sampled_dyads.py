@@ -17,6 +17,7 @@ from grashof.synth.theory.three_poses import (
 
 SAMPLES = 4000
 ON_CURVE = 1e-9  # radius error in sizes
+_GOLDEN = (np.sqrt(5) - 1) / 2  # steps of it, modulo 1, fill a range evenly
 
 
 def sampled_dyads(
@@ -48,7 +49,9 @@ def _along_ground(
     """
     if wanted.ground_angle_deg is None:
         return offset
-    half, along = len(moving) // 2, np.exp(-1j * np.radians(wanted.ground_angle_deg))
+    half = len(moving) // 2
+    ((low, high),) = wanted.ranges("ground_angle_deg").values()
+    along = np.exp(-1j * (low + (high - low) * (np.arange(half) * _GOLDEN % 1)))
     middle = bisector_dyads(motion, moving, np.zeros_like(offset)).ground
     across = bisector_dyads(motion, moving, np.ones_like(offset)).ground - middle
     first, second = slice(0, half), slice(half, 2 * half)

@@ -50,7 +50,7 @@ class ShaperPlaces(RockerPlaces):
             np.log(high / low),
         ]
         if wanted.ground_angle_deg is not None and wanted.theta2_start_deg is not None:
-            apart = np.exp(1j * (self._angle(members) - np.radians(wanted.ground_angle_deg)))
+            apart = np.exp(1j * (self._angle(members) - (wanted.angle_of("ground_angle_deg") or 0.0)))
             inside.append(-np.abs(np.angle(apart)))
         margin: FloatArray = np.min(inside, axis=0)
         return margin

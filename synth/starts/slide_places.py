@@ -57,7 +57,7 @@ class SlidePlaces(Places):
         for (least, greatest), length in zip(limits, (r2, r3, offset), strict=True):
             inside += [length - least / stroke, greatest / stroke - length]
         if wanted.slide_angle_deg is not None and wanted.theta2_start_deg is not None:
-            apart = np.exp(1j * (self._angle(members) - np.radians(wanted.slide_angle_deg)))
+            apart = np.exp(1j * (self._angle(members) - (wanted.angle_of("slide_angle_deg") or 0.0)))
             inside.append(-np.abs(np.angle(apart)))
         margin: FloatArray = np.min(inside, axis=0)
         return margin
@@ -131,12 +131,12 @@ class SlidePlaces(Places):
 
     def _angle(self, members: Members) -> FloatArray:
         """Direction of the slide, (n,), rad: as limits fix it, or else one in which there is room for O2."""
-        start, fixed = self.wanted.theta2_start_deg, self.wanted.slide_angle_deg
+        start, fixed = self.wanted.theta2_start_deg, self.wanted.angle_of("slide_angle_deg")
         if start is not None:
             turned: FloatArray = np.radians(start) - self.ends(members)[0]
             return turned
         if fixed is not None or not self._boxed:
-            return np.full(len(members), np.radians(fixed or 0.0))
+            return np.full(len(members), fixed or 0.0)
         return self._roomiest(members)
 
     def _roomiest(self, members: Members) -> FloatArray:

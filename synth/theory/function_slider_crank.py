@@ -299,7 +299,7 @@ class SliderCranks(Generators):
 
     @staticmethod
     def direction(wanted: Requirements) -> float:
-        return float(np.radians(wanted.slide_angle_deg or 0.0))
+        return wanted.angle_of("slide_angle_deg") or 0.0
 
     def linkage(self, wanted: Requirements, unit: float, driver: int) -> SliderCrank:
         r2, r3 = (

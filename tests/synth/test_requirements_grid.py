@@ -120,7 +120,7 @@ def halving(of: Pool, name: str) -> tuple[Any, FloatArray]:
     low, high = of.ends(name).T
     if limit.kind is Kind.WORD:
         return "ccw", -low
-    if limit.kind is Kind.EQUAL:
+    if limit.kind.is_angle:
         asked = float(low[0])
         return asked * shown, np.abs(np.angle(np.exp(1j * (low - asked))))
     if limit.kind is Kind.AT_LEAST:

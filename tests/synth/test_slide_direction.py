@@ -80,3 +80,42 @@ def test_a_function_gives_a_slide_its_sense() -> None:
     moved = replace(guided, task=FunctionTask([0.0, 1.0, 2.0], [0.0, 1.0, 1.5], travels=True))
     assert (guided.period("slide_angle"), moved.period("slide_angle")) == (np.pi, 2 * np.pi)
     assert guided.period("ground_angle") == 2 * np.pi
+
+
+def test_a_range_of_directions_is_kept_and_used() -> None:
+    wanted = Requirements(rotatability="any", slide_angle_deg=(170.0, 190.0))
+    found = synthesize(Problem(task=DOOR, mechanism="slider-crank", requirements=wanted), enough=20)
+    slides = np.array([float(each.linkage.slide_angle) for each in found.candidates])  # type: ignore[attr-defined]
+    apart = np.degrees(turned_from(slides, np.pi, np.pi))
+    assert len(apart) >= 20
+    assert np.abs(apart).max() <= 10 + 1e-6
+    assert np.ptp(apart) > 5
+
+
+def test_a_range_of_the_ground_counts_alike_by_whole_turns() -> None:
+    task = MotionTask.from_degrees([[0, 0, 0], [30, 20, 25], [70, 25, 60], [90, 10, 85]])
+    found = [
+        synthesize(
+            Problem(task=task, requirements=Requirements(rotatability="any", ground_angle_deg=allowed)),
+            enough=10,
+        )
+        for allowed in ((-10.0, 20.0), (350.0, 380.0))
+    ]
+    here, there = ([each.linkage for each in one.candidates] for one in found)
+    assert len(here) >= 10
+    theta1 = np.degrees([float(linkage.theta1) for linkage in here])
+    assert theta1.min() >= -10 - 1e-6
+    assert theta1.max() <= 20 + 1e-6
+    np.testing.assert_allclose([each.r2 for each in there], [each.r2 for each in here], rtol=1e-6)
+
+
+def test_a_range_that_no_linkage_keeps_is_widened_at_its_nearer_end() -> None:
+    task, linkage = planted_motion(np.random.default_rng([2, 5]), 5, mechanism="slider-crank")
+    angle = float(np.degrees(linkage.slide_angle))  # the only one
+    allowed = (angle + 1.0, angle + 3.0)
+    wanted = Requirements(exact=True, slide_angle_deg=allowed, transmission_min_deg=0)
+    result = synthesize(Problem(task=task, mechanism="slider-crank", requirements=wanted))
+    assert not result.candidates
+    reached = float(result.note.split("slide_angle_deg from ")[1].split()[0])
+    assert reached == pytest.approx(angle, abs=0.01)
+    assert reached <= angle

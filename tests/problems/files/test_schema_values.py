@@ -6,6 +6,7 @@ import pytest
 
 from grashof.problems import Problem, ProblemError
 from grashof.problems.files.problem_schema import problem_from
+from grashof.problems.files.problem_writing import problem_toml
 
 POSES = "poses = [[5, 4, 0], [3.5, 4, -5], [2, 3, -5], [1, 0, 0]]"
 HEAD = f'kind = "motion"\n[motion]\n{POSES}\n'
@@ -45,6 +46,23 @@ STRUCTURE = [
     (HEAD + "[requirements]\ntolerance = true", "requirements.tolerance is true; it must be a number"),
     (HEAD + "[requirements]\nrotatability = true", "requirements.rotatability is true; it must be a string"),
     (HEAD + "[requirements]\nlink_length = 5", "requirements.link_length is 5; it must be [lo, hi]"),
+    (
+        HEAD + "[requirements]\nground_angle_deg = 'up'",
+        "requirements.ground_angle_deg is 'up'; it must be a number or [lo, hi]",
+    ),
+    (
+        HEAD + "[requirements]\nground_angle_deg = [1]",
+        "requirements.ground_angle_deg is [1.0]; it must be [lo, hi]",
+    ),
+    (
+        HEAD + "[requirements]\nground_angle_deg = [20, 10]",
+        "requirements.ground_angle_deg is [20, 10]: lo exceeds hi; it must be [lo, hi] with lo <= hi",
+    ),
+    (
+        'kind = "stroke"\nmechanism = "slider-crank"\n[stroke]\nstroke = 4\ntime_ratio = 1.2\n'
+        "[requirements]\nslide_angle_deg = [0, 9]",
+        "requirements.slide_angle_deg is a range; of a stroke it must be a single angle",
+    ),
     (
         HEAD + "[requirements]\nlink_length = [1, 'a']",
         "requirements.link_length[1] is 'a'; it must be a number",
@@ -252,3 +270,10 @@ def test_numbers_of_thousands_of_digits(text: str, said: str) -> None:
 )
 def test_a_message_is_short_whatever_it_is_about(text: str) -> None:
     assert max(map(len, message(HEAD + text).splitlines())) < 1500
+
+
+def test_a_direction_is_an_angle_or_a_range_that_comes_back_from_a_file() -> None:
+    for stated, value in (("30", 30.0), ("[30, 30]", 30.0), ("[350, 380]", (350.0, 380.0))):
+        made = problem(HEAD + f"[requirements]\nground_angle_deg = {stated}")
+        assert made.requirements.ground_angle_deg == value
+        assert problem(problem_toml(made)).requirements.ground_angle_deg == value
