@@ -213,7 +213,7 @@ _PROBLEMS = (
     f'kind = "motion"\n{_HEAD}[motion]\n{_POSES}weights = [1, 1, 2, 1, 1, 1]\nangle_length = 100\n'
     "body = [[0, 0], [20, 0], [20, 10]]\nwithin = 5\nangle_within_deg = [3, 3, 3, 3, 3, 3]\n"
     "[scene]\noutlines = [[[0, 0], [50, 0]], [[0, 0], [0, 50], [50, 50]]]\n"
-    f"{_LIMITS}ground_angle_deg = 10\ntorque_peak = [0, 1e6]\n"
+    f"{_LIMITS}ground_angle_deg = [-20, 40]\ntorque_peak = [0, 1e6]\n"
     "torque_rms = [0, 1e6]\njoint_force_peak = [0, 1e6]\n"
     "a_on_body = { x = [-500, 500], y = [-500, 500] }\nb_on_body = { x = [-500, 500] }\n"
     "worst_move = [0, 100]\nshare_within_made = [0, 1]\n"
@@ -242,7 +242,7 @@ _PROBLEMS = (
     f"input_range_deg = 60\noutput_range = 40\n{_SEARCH}",
     f'kind = "path"\n{_HEAD}[path]\npoints = [[0, 0], [30, 10], [60, 0]]\n{_SEARCH}',
     f'kind = "path"\nmechanism = ["slider-crank", "four-bar"]\n{_HEAD}[path]\n{_POINTS}'
-    f"[requirements]\noffset = [-90, 90]\nslide_angle_deg = 10\nstroke = [1, 900]\n{_SEARCH}",
+    f"[requirements]\noffset = [-90, 90]\nslide_angle_deg = [-20, 40]\nstroke = [1, 900]\n{_SEARCH}",
     f'kind = "path"\nmechanism = "inverted-slider-crank"\n{_HEAD}[path]\npoints = [[0, 0], [3, 1], [6, 0]]\n'
     f"{_SEARCH}{_SLIDING.replace('-30', '30')}",
     f'kind = "path"\nmechanism = ["slider-crank", "inverted-slider-crank"]\n{_HEAD}[path]\n'

@@ -99,6 +99,7 @@ def test_friction_of_a_slide_brings_an_engine_to_rest() -> None:
     assert begin == pytest.approx(2.0 * slid, rel=1e-6)  # the work of friction, over the way of the slider
 
 
+@pytest.mark.slow
 def test_a_swing_that_dies_away_where_the_slide_turns_back_takes_few_steps(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

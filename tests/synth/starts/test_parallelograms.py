@@ -169,6 +169,7 @@ def test_a_full_crank_is_told_what_would_do(relaxing_only: Callable[..., None]) 
     assert 'rotatability "any" instead of "full-crank"' in result.note
 
 
+@pytest.mark.slow
 def test_pivots_that_belong_in_one_small_box_do_not_meet_in_its_corner(
     relaxing_only: Callable[..., None],
 ) -> None:
