@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from grashof.analysis import Verdict
-from grashof.figures.subject import Subject
+from grashof.analysis import verify
 from grashof.page.designs import legend, linkage_data
 from grashof.page.panels import motion_sections
 from grashof.page.plot_data import Columns, is_thinned, plot_data
 from grashof.page.render import DRAWING, render
 from grashof.page.scene import scene_of
+from grashof.problems import LinkageSpec
 from grashof.problems.values.checks import counted
 from grashof.study.section import DRIVER_ANGLE, Fact, Section
 from grashof.survey.report import LinkageReport
@@ -43,8 +43,8 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         One file: it needs no other and no network.
     """
     sweep, spec = report.sweep, report.sweep.spec
-    columns, posed = Columns(), Subject.of(spec)
-    scene = {"unit": spec.length_unit} if posed.problem is None else scene_of(posed.problem)
+    columns, targets = Columns(), _targets(spec)
+    scene = {"unit": spec.length_unit} if spec.problem is None else scene_of(spec.problem)
     sections = [
         section
         for section in (*motion_sections(report), *report.sections)
@@ -61,7 +61,7 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
                 "turns": sweep.turns,
                 "direction": 1 if sweep.speed_rpm >= 0 else -1,
                 **_cylinder(report),
-                **_targets(posed.verdict),
+                **targets,
             }
             for low, high in sweep.ranges
         ],
@@ -81,7 +81,7 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         ranges=[f"{np.degrees(low):.6g} to {np.degrees(high):.6g} deg" for low, high in sweep.ranges],
         facts=_facts(fact for fact in report.facts if not fact.aside),
         aside=_facts(fact for fact in report.facts if fact.aside),
-        task=posed.problem is not None,
+        task=spec.problem is not None,
         body=bool(scene.get("body")),
         groups=[_group(section) for section in sections],
         extremes=_extremes(report.tables["extremes"]),
@@ -92,10 +92,12 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
     )
 
 
-def _targets(verdict: Verdict | None) -> dict[str, Any]:
+def _targets(spec: LinkageSpec) -> dict[str, Any]:
     """Where the linkage meets the targets of its task, where it has one."""
-    if verdict is None:
+    if spec.problem is None:
         return {}
+    task, wanted = spec.problem.task, spec.problem.requirements
+    verdict = verify(spec.linkage, task, wanted, problem=spec.problem, cylinder=spec.cylinder)
     return {"theta2": verdict.theta2.tolist(), "assemblies": verdict.assembly.tolist()}
 
 
