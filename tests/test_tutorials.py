@@ -59,6 +59,24 @@ def test_each_step_gives_what_is_shown(name: str, tmp_path: Path, monkeypatch: p
     assert shown >= 3
 
 
+@pytest.mark.slow
+def test_the_first_list_of_the_readme_is_what_is_printed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    said = " ".join(run("grashof solve luggage").split())
+    for page in ("README.md", "docs/howto/results.md"):
+        text = (PAGES.parents[1] / page).read_text(encoding="utf-8")
+        (shown,) = [
+            block for block in re.findall(r"^```\w*\n(.*?)^```", text, re.M | re.S) if "distinct" in block
+        ]
+        lines = [
+            re.sub(r"largest position error \S+", "", " ".join(line.split())) for line in shown.splitlines()
+        ]
+        printed = re.sub(r"largest position error \S+", "", said)
+        assert [line for line in lines if line != "…" and line not in printed] == []
+
+
 def _without_keys_of(text: str, added: str) -> str:
     """A file without the keys that are about to be added."""
     keys = [line.partition("=")[0].strip() for line in added.splitlines()]
