@@ -302,11 +302,17 @@ def _is_corner(given: Any) -> bool:
 Areas = Annotated[list[Corners], listed(_AREAS), BeforeValidator(_several)]
 Parts = Annotated[list[str], listed(f"a list of {', '.join(MAY_KEEP_OUT[:-1])} and {MAY_KEEP_OUT[-1]}")]
 _ANGLES = "a number or [lo, hi]"
-Turned = Annotated[
+Direction = Annotated[
     Annotated[float, Tag(NUMBER)] | Annotated[Pair, Tag(LIST)],
     Discriminator(tag, custom_error_type=WRONG, custom_error_message=_ANGLES),
 ]
-_BY_KIND = {Kind.TURNED: Turned, Kind.BETWEEN: Pair, Kind.INSIDE: Place, Kind.ON_BODY: Place, Kind.WORD: str}
+_BY_KIND = {
+    Kind.DIRECTION: Direction,
+    Kind.BETWEEN: Pair,
+    Kind.INSIDE: Place,
+    Kind.ON_BODY: Place,
+    Kind.WORD: str,
+}
 _MODES: dict[str, Any] = {
     **dict.fromkeys(("exact", "order", "same_branch"), bool),
     **dict.fromkeys(("rotatability", "transmission_over"), str),

@@ -288,7 +288,7 @@ class Kind(Enum):
     AT_LEAST = auto()
     AT_MOST = auto()
     EQUAL = auto()  # an angle
-    TURNED = auto()  # an angle, or [lo, hi]
+    DIRECTION = auto()  # an angle, or [lo, hi]
     INSIDE = auto()  # a box in the plane
     ON_BODY = auto()  # a box in the body's frame
     WORD = auto()  # one of several words, each of which allows a range
@@ -296,7 +296,7 @@ class Kind(Enum):
     @property
     def is_angle(self) -> bool:
         """Whether it limits a direction, which counts alike by whole turns."""
-        return self in (Kind.EQUAL, Kind.TURNED)
+        return self in (Kind.EQUAL, Kind.DIRECTION)
 
 
 @dataclass(frozen=True, slots=True)

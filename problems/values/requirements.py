@@ -188,7 +188,7 @@ class Requirements(ReadOnly):
     r3: Limits | None = limit("r3", Kind.BETWEEN, allowed=_FROM_ZERO)
     r4: Limits | None = limit("r4", Kind.BETWEEN, allowed=_FROM_ZERO)
     offset: Limits | None = limit("offset", Kind.BETWEEN, allowed=(-GREATEST, GREATEST))
-    slide_angle_deg: float | Limits | None = limit("slide_angle", Kind.TURNED)
+    slide_angle_deg: float | Limits | None = limit("slide_angle", Kind.DIRECTION)
     coupler_arms: Limits | None = limit(
         Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False),
         Kind.BETWEEN,
@@ -207,7 +207,7 @@ class Requirements(ReadOnly):
     b: Box | None = limit(_place("b", Over.TARGETS), Kind.INSIDE)
     ground_angle_deg: float | Limits | None = limit(
         Quantity("ground_angle", "direction of O2O4", Unit.ANGLE, listed=False, kinds=having("o4")),
-        Kind.TURNED,
+        Kind.DIRECTION,
     )
     theta2_start_deg: float | None = limit("theta2_start", Kind.EQUAL)
     size: Limits | None = limit("size", Kind.BETWEEN, allowed=_FROM_ZERO)
@@ -333,10 +333,10 @@ class Requirements(ReadOnly):
             wrong.append(f"requirements.error_factor does not go with {task.kind}.within; give one of them")
         if self.error_factor is not None and self.is_exact(task):
             wrong.append("requirements.error_factor needs least squares, exact = false")
-        turned = (name for name, limited in LIMITS.items() if limited.kind is Kind.TURNED)
+        directions = (name for name, limited in LIMITS.items() if limited.kind is Kind.DIRECTION)
         wrong += [
             f"requirements.{name} is a range; of a {task.kind} it must be a single angle"
-            for name in turned
+            for name in directions
             if isinstance(getattr(self, name), tuple) and not task.has_position.any()
         ]
         if self.keep_out and "body" in self.keep_out_for and task.body is None:
@@ -466,7 +466,7 @@ def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float | st
         if value not in limited.words:
             raise wrong_value(where, value, f"one of {', '.join(limited.words)}")
         return str(value)
-    if limited.kind is Kind.TURNED and isinstance(value, tuple | list):
+    if limited.kind is Kind.DIRECTION and isinstance(value, tuple | list):
         low, high = limits(cast(Limits, value), where, least=-GREATEST)
         return low if low == high else (low, high)
     if limited.kind.is_angle:

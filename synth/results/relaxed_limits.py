@@ -184,7 +184,7 @@ def _eased(
         yield _box_enlarged(key, asked or Box(), missed)
     elif kind is Kind.WORD:
         yield {key: LIMITS[key].widest}, f'{key} "{LIMITS[key].widest}" instead of "{asked}"'
-    elif kind is Kind.TURNED and isinstance(asked, tuple):
+    elif kind is Kind.DIRECTION and isinstance(asked, tuple):
         reached = _turned_to(asked, found[0], problem.period(LIMITS[key].quantity.key))
         yield {key: reached}, _range_words(key, asked, reached)
     elif kind is not None and kind.is_angle:

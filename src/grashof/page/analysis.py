@@ -44,7 +44,7 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
     """
     sweep, spec = report.sweep, report.sweep.spec
     columns, targets = Columns(), _targets(spec)
-    scene = {"unit": spec.length_unit} if spec.problem is None else scene_of(spec.problem)
+    scene = {"unit": spec.length_unit} if not targets or spec.problem is None else scene_of(spec.problem)
     sections = [
         section
         for section in (*motion_sections(report), *report.sections)
@@ -81,8 +81,8 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         ranges=[f"{np.degrees(low):.6g} to {np.degrees(high):.6g} deg" for low, high in sweep.ranges],
         facts=_facts(fact for fact in report.facts if not fact.aside),
         aside=_facts(fact for fact in report.facts if fact.aside),
-        task=spec.problem is not None,
-        body=bool(scene.get("body")),
+        task=bool(targets),
+        marked="body" if scene.get("body") else "target" if scene.get("poses") or scene.get("points") else "",
         groups=[_group(section) for section in sections],
         extremes=_extremes(report.tables["extremes"]),
         extreme_columns=[label for _, label in _EXTREMES],
@@ -93,11 +93,13 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
 
 
 def _targets(spec: LinkageSpec) -> dict[str, Any]:
-    """Where the linkage meets the targets of its task, where it has one."""
+    """Where the linkage meets the targets of its task; empty without one, or where it is open at a target."""
     if spec.problem is None:
         return {}
     task, wanted = spec.problem.task, spec.problem.requirements
     verdict = verify(spec.linkage, task, wanted, problem=spec.problem, cylinder=spec.cylinder)
+    if not np.isfinite(verdict.theta2).all():
+        return {}
     return {"theta2": verdict.theta2.tolist(), "assemblies": verdict.assembly.tolist()}
 
 

@@ -30,7 +30,7 @@ from grashof.synth import Candidate
 from grashof.synth.designs.table import Row
 
 STEPS = 180
-ROUNDING = 1e-12  # of a turn
+_ROUNDING = 1e-12  # of a turn
 
 
 class Travel(NamedTuple):
@@ -53,7 +53,7 @@ class Travel(NamedTuple):
         inset = 0.0 if self.turns else inset
         return driver_angles(self.low + inset, self.high - inset, STEPS, even=self.turns)
 
-    def turned(self, first: float) -> float:
+    def ahead(self, first: float) -> float:
         """The whole turns by which the angles of a motion, which begins at `first`, are ahead, rad."""
         return TURN * float(np.round((first - (self.low + self.high) / 2) / TURN))
 
@@ -131,9 +131,9 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], rows: Sequence[Ro
             "linkage": linkage_data(linkage),
             **travel._asdict(),
             "direction": design.verdict.direction,
-            "theta2": (design.verdict.theta2 - turned).tolist(),
+            "theta2": (design.verdict.theta2 - ahead).tolist(),
             "assemblies": design.verdict.assembly.tolist(),
-            "task": [end - turned for end in motion_ends(problem.task, design.verdict)]
+            "task": [end - ahead for end in motion_ends(problem.task, design.verdict)]
             if design.verdict.branch_ok
             else None,
             "torque": torque,
@@ -144,7 +144,7 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], rows: Sequence[Ro
         for design, linkage, travel, torque, figures in zip(
             designs, linkages, travels, torques, rows, strict=True
         )
-        for turned in [travel.turned(design.verdict.theta2[0])]
+        for ahead in [travel.ahead(design.verdict.theta2[0])]
     ]
 
 
@@ -210,7 +210,9 @@ def _of_one_kind(
     kind = type(linkages[0])
     batch = kind(*map(np.stack, zip(*(each.parameters for each in linkages), strict=True)))[:, None]
     laws = [driver_law(problem, *motion_ends(problem.task, each.verdict)) for each in designs]
-    theta2 = np.stack([_counted(travel, each.verdict) for travel, each in zip(travels, designs, strict=True)])
+    theta2 = np.stack(
+        [_angles_of_motion(travel, each.verdict) for travel, each in zip(travels, designs, strict=True)]
+    )
     ways = list(zip(laws, theta2, strict=True))
     motion = zip(*(law.at_angle(angles) for law, angles in ways), strict=True)
     with dead_positions_unwarned():
@@ -223,11 +225,11 @@ def _of_one_kind(
     return [compact(row) for row in torque.tolist()]
 
 
-def _counted(travel: Travel, verdict: Verdict) -> FloatArray:
+def _angles_of_motion(travel: Travel, verdict: Verdict) -> FloatArray:
     """Driver angles over the travel, counted as those of the motion are."""
-    angles = travel.angles(INSET) + travel.turned(verdict.theta2[0])
+    angles = travel.angles(INSET) + travel.ahead(verdict.theta2[0])
     least = float(verdict.theta2.min())
-    return angles + TURN * np.ceil((least - angles) / TURN - ROUNDING) if travel.turns else angles
+    return angles + TURN * np.ceil((least - angles) / TURN - _ROUNDING) if travel.turns else angles
 
 
 def _plain(value: Any) -> float | int | str | bool | None:

@@ -63,12 +63,14 @@ def sweep_page(done: Sweep, frame: pd.DataFrame, record: Mapping[str, Any]) -> s
     rows = [[_value(row[column.key]) for column in columns] for row in shown.to_dict("records")]
     drawn = filter(None, (done.results[place]["drawing"] for place in places))
     kinds = {each["linkage"].get("mechanism", FOUR_BAR) for each in drawn} or {FOUR_BAR}
-    axes, places_of_rows = number_axes(done), {place: row for row, place in enumerate(places)}
+    listed = {column.key for column in columns}  # so far: an interrupted sweep may not have varied all
+    axes = [key for key in number_axes(done) if key in listed]
+    rows_of_places = {place: row for row, place in enumerate(places)}
     first = next((row for row, place in enumerate(places) if done.results[place]["found"]), 0)
     data = {
         "name": done.study.name,
-        "best": first if done.best_place is None else places_of_rows.get(done.best_place, first),
-        "axes": list(axes),
+        "best": first if done.best_place is None else rows_of_places.get(done.best_place, first),
+        "axes": axes,
         "measure": measures(done, best)[0]["column"],
         "columns": [asdict(column) for column in columns],
         "scenes": scenes,

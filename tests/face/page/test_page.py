@@ -163,10 +163,10 @@ def test_travel_holds_the_targets() -> None:
     assert driver_travel(ROCKER, np.array([0.1, 0.2])) == pytest.approx((low, high, False))
     turned = driver_travel(ROCKER, 2 * np.pi + np.array([0.1, 0.2]))
     assert turned == pytest.approx((low, high, False))
-    assert turned.turned(2 * np.pi + 0.1) == pytest.approx(2 * np.pi)
+    assert turned.ahead(2 * np.pi + 0.1) == pytest.approx(2 * np.pi)
     crank = FourBar((0, 0), (4, 0), 1, 4, 3)
     assert driver_travel(crank, np.array([-0.1, 0.2])) == pytest.approx((0, 2 * np.pi, True))
-    assert driver_travel(crank, np.array([-0.1, 0.2])).turned(-0.1) == pytest.approx(-2 * np.pi)
+    assert driver_travel(crank, np.array([-0.1, 0.2])).ahead(-0.1) == pytest.approx(-2 * np.pi)
     angles = Travel(low, high, turns=False).angles()
     assert np.isfinite(solve_position(ROCKER, angles).theta3).all()
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ import pytest
 from playwright.sync_api import Page
 
 from grashof.sweep import Sweep, load_study, sweep
+from grashof.sweep.page import sweep_page
 
 BASE = """\
 kind = "path"
@@ -137,3 +139,17 @@ def test_sorted_and_filtered(shown: Page, done: tuple[Sweep, Path]) -> None:
 def test_no_sideways_scroll(shown: Page, width: int) -> None:
     shown.set_viewport_size({"width": width, "height": 800})
     assert shown.evaluate("document.documentElement.scrollWidth") <= width
+
+
+def test_one_that_was_interrupted_before_it_varied_a_key_is_shown(
+    window: Page, done: tuple[Sweep, Path]
+) -> None:
+    few = replace(done[0], results={0: done[0].results[0]})
+    page = done[1].with_name("few.html")
+    page.write_text(sweep_page(few, few.to_frame(), {"versions": {"grashof": "0"}}), encoding="utf-8")
+    complaints: list[str] = []
+    window.once("pageerror", lambda error: complaints.append(str(error)))
+    window.goto(page.as_uri())
+    assert state(window)["chosen"] == 0
+    assert window.locator("#tradeoff .point").count() == 1
+    assert complaints == []

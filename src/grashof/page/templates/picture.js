@@ -42,11 +42,7 @@ class Picture {
   // Draws what is in sight and not up to date.
   refresh(always = false) {
     if (this.drawn || !this.panel || !(this.seen || always)) return;
-    const [width, height] = [this.svg.clientWidth, this.svg.clientHeight];
-    if (width < 80) return;
-    set(this.svg, { viewBox: `0 0 ${width} ${height}` });
-    this.svg.replaceChildren();
-    this.paint(this.svg, { left: 0, top: 0, right: width, bottom: height });
+    if (!repaint(this)) return;
     this.pointers();
     this.drawn = true;
     if (this.marked) this.mark(...this.marked);

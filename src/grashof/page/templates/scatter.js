@@ -48,11 +48,7 @@ class Scatter {
   }
 
   draw() {
-    const [width, height] = [this.svg.clientWidth, this.svg.clientHeight];
-    if (width < 80) return;
-    set(this.svg, { viewBox: `0 0 ${width} ${height}` });
-    this.svg.replaceChildren();
-    this.paint(this.svg, { left: 0, top: 0, right: width, bottom: height });
+    repaint(this);
   }
 
   // Into a box of a drawing.

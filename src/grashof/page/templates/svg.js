@@ -69,6 +69,17 @@ function figure(value, digits = 4) {
 
 const withUnit = (label, unit) => (unit ? `${label} (${unit})` : label);
 
+// Paints a plot anew over all of its element; whether that is wide enough for it.
+function repaint(plot) {
+  const { svg } = plot;
+  const [width, height] = [svg.clientWidth, svg.clientHeight];
+  if (width < 80) return false;
+  set(svg, { viewBox: `0 0 ${width} ${height}` });
+  svg.replaceChildren();
+  plot.paint(svg, { left: 0, top: 0, right: width, bottom: height });
+  return true;
+}
+
 // Calls back now and whenever the width of an element changes.
 function onResize(node, callback) {
   let width = 0;
