@@ -13,6 +13,7 @@ from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.values.checks import readable
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.user_functions import refuse_no_list, refuse_unusable
+from grashof.synth.proof.bounds import Proving, bounds_of
 from grashof.synth.results.conclusion import conclude, needless
 from grashof.synth.results.function_list import function_list
 from grashof.synth.results.mixed import one_list
@@ -45,6 +46,8 @@ def synthesize(
     stop: Callable[[], bool] | None = None,
     record: Path | None = None,
     keep_record: bool = False,
+    gap: float = 0.01,
+    prove: bool = False,
 ) -> Result:
     """Find, verify and rank linkages for a problem.
 
@@ -77,6 +80,10 @@ def synthesize(
         ends the record, not the search. Not with constraints or an objective of your own.
     keep_record : bool
         Leave the record of a whole search, too, until its list is safe.
+    gap : float, deg
+        Up to which proofs bring their bounds together, 0.0001 to 90.
+    prove : bool
+        Give proofs all the time they take, not a budget that costs a few seconds.
 
     Returns
     -------
@@ -105,6 +112,7 @@ def synthesize(
     asked = asking(time_limit, stop)
     search = search_of(problem, workers, starts=starts, enough=enough, seed=seed, effort=effort)
     refuse_no_list(constraints)
+    proving = Proving(gap, None) if prove else Proving(gap)
     if record is not None and (constraints or objective is not None):
         raise ProblemError("record does not go with constraints or an objective of your own")
     how = problem.task.kind, search.seed, search.effort, search.starts, workers
@@ -118,12 +126,13 @@ def synthesize(
         return needless(kinds[0], asked)
     found: list[Result] = []
     with journal_of(record, problem, search, keep=keep_record) as journal, working(workers, executor) as work:
-        run = Run(search, work, asked, journal, progress)
+        run = Run(search, work, asked, journal, progress, proving=proving)
         for number, scaled in enumerate(kinds, start=1):
             part = asked.part(number, len(kinds))
             with stopping(part):
                 run = replace(run, asked_to_stop=part)
-                found.append(conclude(scaled, searches(scaled, run), run, part))
+                bounds = bounds_of(scaled, proving)
+                found.append(conclude(scaled, searches(scaled, run, bounds), run, part, bounds))
             if part.ending not in (Ending.COMPLETE, Ending.TIME_LIMIT):
                 break
     return one_list(problem, found)

@@ -6,6 +6,8 @@ import logging
 
 from grashof.synth.designs.families import listed
 from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.proof.bounds import Bounds
+from grashof.synth.proof.proof import proof_of
 from grashof.synth.results.advice import advice
 from grashof.synth.results.choice import choose, least_error, why_ended
 from grashof.synth.results.explain import explain
@@ -19,8 +21,10 @@ from grashof.synth.starts.finder import finder_for
 _LOG = logging.getLogger(__name__)
 
 
-def conclude(scaled: ScaledProblem, ledgers: list[Ledger], run: Run, asked: Asking) -> Result:
-    """The ranked list of what one or two searches found, or why it is empty."""
+def conclude(
+    scaled: ScaledProblem, ledgers: list[Ledger], run: Run, asked: Asking, bounds: Bounds | None = None
+) -> Result:
+    """The ranked list of what one or two searches found, or why it is empty; with what bounds prove of it."""
     chosen = choose(scaled, ledgers, run)
     _LOG.info("choice: %d designs, %d solves for it", len(chosen.designs), chosen.solved)
     explanation = explain(scaled, ledgers[-1], chosen, run)
@@ -40,7 +44,7 @@ def conclude(scaled: ScaledProblem, ledgers: list[Ledger], run: Run, asked: Aski
         processes_lost=run.work.lost,
         starts_crashed=tuple(run.crashed),
     )
-    ended, seconds = why_ended(scaled, ledger), run.times
+    ended, seconds = "" if bounds is not None and bounds.none else why_ended(scaled, ledger), run.times
     if ended and designs and not chosen.designs:
         ended += "; those listed were found in looking for what stands in the way"
     why = f"; {ended}" if ended else ""
@@ -56,6 +60,7 @@ def conclude(scaled: ScaledProblem, ledgers: list[Ledger], run: Run, asked: Aski
         ended=ended,
         least_error=least_error(scaled, ledger),
         story=story,
+        proof=None if bounds is None else proof_of(problem, bounds, designs, run.proving.gap),
     )
 
 

@@ -49,6 +49,7 @@ def one_list(problem: Problem, found: Sequence[Result]) -> Result:
         ended=_by_kind(found, "ended"),
         least_error=least if np.isfinite(least) else np.nan,
         story=_story([one.story for one in found if one.story is not None]),
+        proof=next((one.proof for one in found if one.proof is not None), None),
     )
 
 

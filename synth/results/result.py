@@ -14,6 +14,7 @@ from grashof.problems.values.checks import counted
 from grashof.problems.values.display import Displayed
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.merit import same_error
+from grashof.synth.proof.proof import Proof
 from grashof.synth.search.story import Story
 from grashof.synth.search.tally import Tally
 
@@ -47,6 +48,8 @@ class Result(Displayed):
         otherwise.
     story : Story, optional
         What happened to the search that it is of.
+    proof : Proof, optional
+        What is proven of the list, where the question arises.
     """
 
     problem: Problem
@@ -59,6 +62,7 @@ class Result(Displayed):
     ended: str = ""
     least_error: float = np.nan
     story: Story | None = field(default=None, compare=False)
+    proof: Proof | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         for name in ("candidates", "nearest"):

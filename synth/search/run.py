@@ -14,6 +14,7 @@ from grashof.problems import Search
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Round, Start
+from grashof.synth.proof.bounds import Proving
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.journal import Journal, Unrecorded
 from grashof.synth.search.ledger import Ledger
@@ -74,6 +75,8 @@ class Run:
         When it began.
     crashed : list of int
         Numbers of the starts that end the process that solves them.
+    proving : Proving
+        How far proofs go.
     """
 
     search: Search
@@ -84,6 +87,7 @@ class Run:
     seconds: dict[str, float] = field(default_factory=lambda: {"screening": 0.0, "solving": 0.0})
     since: float = field(default_factory=perf_counter)
     crashed: list[int] = field(default_factory=list)
+    proving: Proving = field(default_factory=Proving)
 
     @property
     def times(self) -> dict[str, float]:

@@ -72,6 +72,15 @@ def near_misses(
     return _judged(motion, body, driver[first], driven[second], wanted)
 
 
+def judged_pairs(
+    motion: Displacements, body: complex, drivers: Dyads, driven: Dyads, wanted: Requirements
+) -> Screened:
+    """Given pairs, entry by entry, and how far each violates the requirements."""
+    driver, _ = _sides(motion, body, drivers, wanted)
+    _, other = _sides(motion, body, driven, wanted)
+    return _judged(motion, body, driver, other, wanted)
+
+
 def _sides(motion: Displacements, body: complex, dyads: Dyads, wanted: Requirements) -> tuple[_Side, _Side]:
     places = motion.apply(dyads.moving)
     visit, theta2, direction, disorder = _visiting_order(

@@ -1,0 +1,237 @@
+"""What a problem asks for, as far as there are forms for it; and what there are none for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from grashof.problems import Box, Requirements, Rotatability, TransmissionOver
+from grashof.problems.values.arrays import Limits
+from grashof.problems.values.mechanisms import FOUR_BAR
+from grashof.problems.values.requirements import LIMITS
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.proof.curve import Curve
+
+# Limits are inclusive: the judge overlooks 1e-9 (sizes, rad or ratio), and so do proofs, with a margin.
+SLACK = 2e-9
+LEAST = float(np.radians(0.01))  # rad: designs below it count as none
+TOGETHER = 1e-9  # sizes, and unit rotations: poses closer are the same one
+POSES = 4
+# Fields of the requirements that have forms.
+_FORMS = (
+    "transmission_min_deg",
+    "link_length", "r1", "r2", "r3", "r4", "link_ratio_max", "coupler_arms",
+    "o2", "o4", "a", "b", "a_on_body", "b_on_body",
+    "driver_sense", "driver_rotation_deg", "theta2_start_deg", "ground_angle_deg",
+)  # fmt: skip
+_OF_ORDER = ("driver_sense", "driver_rotation_deg")  # these have forms where the poses are met in order
+ANY_LENGTH = (0.0, np.inf)
+
+
+@dataclass(frozen=True, slots=True)
+class Dyad:
+    """What is asked of one of the two dyads, in the frame of a `Curve`.
+
+    Parameters
+    ----------
+    length, arm : tuple of float, sizes
+        Limits of the distance from its ground pivot to its moving pivot, and from there to P.
+    ground, moving, on_body : Box, sizes
+        Where the ground pivot may be; the moving one, at every pose; the same in the frame of the body.
+    """
+
+    length: Limits
+    arm: Limits
+    ground: Box
+    moving: Box
+    on_body: Box
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """All requirements that have forms, widened by the slack of the judge.
+
+    Parameters
+    ----------
+    curve : Curve
+    origin : complex, sizes
+        Of the frame of the curve, in the frame of the search.
+    first_turn : float, rad
+        Angle of the body in the first pose.
+    driver, driven : Dyad
+    r1, r3 : tuple of float, sizes
+    ratio : float
+        Longest to shortest link at most.
+    ordered, one_branch : bool
+    turns : bool
+        Whether the driver turns fully.
+    margin : float
+        Of full rotation, a share of the sum of lengths.
+    longer_ground : tuple of int
+        Signs of r1 - r2 that are allowed where the driver turns fully.
+    over_turn : bool
+        Whether the transmission angle counts over the whole turn.
+    sense : int
+        Of the driver; 0 for either.
+    rotation : tuple of float, rad
+        Of the driver from the first pose to the last.
+    theta2_start : float, rad, or None
+    ground_angle : tuple of float, rad, or None
+    floor : float, rad
+        Transmission angle below which no design counts.
+    """
+
+    curve: Curve
+    origin: complex
+    first_turn: float
+    driver: Dyad
+    driven: Dyad
+    r1: Limits
+    r3: Limits
+    ratio: float
+    ordered: bool
+    one_branch: bool
+    turns: bool
+    margin: float
+    longer_ground: tuple[int, ...]
+    over_turn: bool
+    sense: int
+    rotation: Limits
+    theta2_start: float | None
+    ground_angle: Limits | None
+    floor: float
+
+    @classmethod
+    def of(cls, scaled: ScaledProblem, at_least: float | None = None) -> Asked:
+        """What is asked of a problem that `refusal` does not refuse; with more than its least angle (deg)."""
+        motion, wanted = scaled.motion, scaled.wanted
+        if motion is None:
+            raise TypeError("only whole poses that are met exactly have a curve of dyads")
+        origin = complex(scaled.targets[0])
+        r1, r2, r3, r4 = (_widened(limits) for limits in wanted.link_lengths)
+        over_turn = wanted.transmission_over is TransmissionOver.CYCLE or scaled.closed
+        turns = over_turn or wanted.rotatability is not Rotatability.ANY
+        margin = 0.0 if wanted.rotatability is Rotatability.ANY else wanted.rotatability_margin
+        senses = LIMITS["driver_sense"].words[wanted.driver_sense]
+        rotation = np.radians(wanted.driver_rotation_deg or (0.0, 360.0))
+        return cls(
+            curve=Curve.of(motion, origin),
+            origin=origin,
+            first_turn=motion.first_turn,
+            driver=_dyad(wanted, "o2", "a", r2, origin),
+            driven=_dyad(wanted, "o4", "b", r4, origin),
+            r1=r1,
+            r3=r3,
+            ratio=wanted.link_ratio_max * (1 + SLACK),
+            ordered=wanted.order,
+            one_branch=wanted.same_branch,
+            turns=turns,
+            margin=margin - SLACK,
+            longer_ground=_SIGNS.get(wanted.rotatability, (1, -1)),
+            over_turn=over_turn,
+            sense=int(np.sign(sum(senses))) if wanted.order else 0,
+            rotation=_widened((float(rotation[0]), float(rotation[1]))) if wanted.order else (0.0, 7.0),
+            theta2_start=wanted.angle_of("theta2_start_deg"),
+            ground_angle=_directions(wanted),
+            floor=max(LEAST, float(np.radians(max(wanted.transmission_min_deg, at_least or 0.0))) - SLACK),
+        )
+
+    @property
+    def longest(self) -> float:
+        """Of both dyads, sizes."""
+        return max(self.driver.length[1], self.driven.length[1])
+
+
+_SIGNS = {Rotatability.CRANK_ROCKER: (1,), Rotatability.DOUBLE_CRANK: (-1,)}
+
+
+def _dyad(wanted: Requirements, ground: str, moving: str, length: Limits, origin: complex) -> Dyad:
+    return Dyad(
+        length=length,
+        arm=_widened(wanted.coupler_arms or ANY_LENGTH),
+        ground=_moved(getattr(wanted, ground), origin),
+        moving=_moved(getattr(wanted, moving), origin),
+        on_body=_moved(getattr(wanted, f"{moving}_on_body"), 0j),
+    )
+
+
+def _widened(limits: Limits) -> Limits:
+    return limits[0] - SLACK, limits[1] + SLACK
+
+
+def _moved(box: Box | None, origin: complex) -> Box:
+    box = box or Box()
+    x, y = (_widened((side[0] - begin, side[1] - begin))
+            for side, begin in ((box.x, origin.real), (box.y, origin.imag)))  # fmt: skip
+    return Box(x, y)
+
+
+def _directions(wanted: Requirements) -> Limits | None:
+    """Directions of the ground line that are allowed; None where it is all of them."""
+    given: Any = wanted.ground_angle_deg
+    if given is None:
+        return None
+    low, high = np.radians(given if isinstance(given, tuple) else (given, given))
+    return _widened((float(low), float(high))) if high - low < np.pi else None
+
+
+def left_out(scaled: ScaledProblem) -> tuple[str, ...]:
+    """Requirements that are stated and have no form, by their fields.
+
+    Examples
+    --------
+    >>> from grashof import load
+    >>> left_out(ScaledProblem.of(load("bonnet-hinge")))
+    ('keep_out',)
+    """
+    wanted = scaled.problem.requirements
+    without = [name for name in wanted.limited if name not in _FORMS and not _says_nothing(wanted, name)]
+    if not wanted.order:
+        without += [name for name in wanted.limited if name in _OF_ORDER and not _says_nothing(wanted, name)]
+    without += ["keep_out"] * bool(wanted.keep_out) + ["constraints"] * bool(scaled.constraints)
+    return tuple(without)
+
+
+def _says_nothing(wanted: Requirements, name: str) -> bool:
+    limit = LIMITS[name]
+    return bool(limit.words) and getattr(wanted, name) == limit.widest
+
+
+def with_forms(scaled: ScaledProblem) -> ScaledProblem:
+    """The problem without the requirements that have no form."""
+    wanted = scaled.problem.requirements
+    changed: dict[str, Any] = {
+        name: LIMITS[name].widest if LIMITS[name].words else None
+        for name in left_out(scaled)
+        if name in LIMITS
+    }
+    problem = replace(scaled.problem, requirements=replace(wanted, **changed, keep_out=()))
+    return ScaledProblem.of(problem)
+
+
+def refusal(scaled: ScaledProblem) -> str | None:
+    """Why there is no proof; empty where there can be one, None where the question does not arise.
+
+    Examples
+    --------
+    >>> from grashof import load
+    >>> refusal(ScaledProblem.of(load("luggage"))), refusal(ScaledProblem.of(load("straight-line")))
+    ('', None)
+    """
+    motion, problem = scaled.motion, scaled.problem
+    if motion is None or len(scaled.targets) != POSES or problem.mechanism[0] != FOUR_BAR:
+        return None
+    if scaled.objective is None or set(scaled.objective.goals) != {"transmission"}:
+        return "the objective has no forms; transmission alone has"
+    if problem.driver is not None:
+        return "a cylinder drives it, through dead positions of link 2, perhaps"
+    for i in range(POSES):
+        for j in range(i):
+            apart = abs(motion.rotation[i] - motion.rotation[j]) + abs(scaled.targets[i] - scaled.targets[j])
+            if apart < TOGETHER:
+                return f"poses {j + 1} and {i + 1} are equal"
+    if Curve.of(motion, complex(scaled.targets[0])).degenerate:
+        return "the poses have a plane of dyads (translations, or a rotation about one point)"
+    return ""

@@ -1,0 +1,140 @@
+"""Bounds of the best that four poses allow: what branch and bound comes to, for one kind of linkage."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass, field
+from time import perf_counter
+
+import numpy as np
+
+from grashof.problems.values.checks import number_within
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.screening import Screened
+from grashof.synth.proof.asked import Asked, left_out, refusal, with_forms
+from grashof.synth.proof.branch_and_bound import Search
+from grashof.synth.proof.lookout import Lookout
+from grashof.synth.proof.table import Table, TooMany
+from grashof.synth.theory.stopping import Stopped
+
+_LOG = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class Proving:
+    """How far proofs go.
+
+    Parameters
+    ----------
+    gap : float, deg
+        Up to which bounds are brought together.
+    most_pairs : int, optional
+        Budget of pairs of pieces; without it only the time limit counts.
+    """
+
+    gap: float = 0.01
+    most_pairs: int | None = 1_000_000
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "gap", number_within(self.gap, 1e-4, 90.0, "gap"))
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """What is known of the greatest transmission angle of all linkages that meet what has forms.
+
+    Parameters
+    ----------
+    lower : float, rad
+        Of a design that the judge accepts for that; 0 where none is known.
+    upper : float, rad
+        No design has more.
+    closed : bool
+        Whether the bounds have met, or no design is left.
+    found : Screened, optional
+        The design with `lower`, as the only entry, in the frame of the search.
+    pieces : tuple of int
+        Pieces of the curve to begin with: that may be drivers, and driven.
+    pairs, levels : int
+    seconds : float, s
+    left_out : tuple of str
+        Requirements without a form, by their fields.
+    why : str
+        Why there are no bounds, or why they have not met; else empty.
+    refused : bool
+        Whether there is no proof for such a problem at all.
+    """
+
+    lower: float = 0.0
+    upper: float = np.pi / 2
+    closed: bool = False
+    found: Screened | None = field(default=None, compare=False)
+    pieces: tuple[int, int] = (0, 0)
+    pairs: int = 0
+    levels: int = 0
+    seconds: float = 0.0
+    left_out: tuple[str, ...] = ()
+    why: str = ""
+    refused: bool = False
+
+    @property
+    def none(self) -> bool:
+        """Whether it is proven that there is no design."""
+        return self.closed and not self.lower
+
+
+def bounds_of(scaled: ScaledProblem, proving: Proving, at_least: float | None = None) -> Bounds | None:
+    """Bounds of the best design; None where the question does not arise.
+
+    Parameters
+    ----------
+    scaled : ScaledProblem
+    proving : Proving
+    at_least : float, deg, optional
+        Only decide whether a design has that much: end with the first one.
+    """
+    why = refusal(scaled)
+    if why is None:
+        return None
+    if why:
+        return Bounds(why=why, refused=True)
+    since = perf_counter()
+    without = left_out(scaled)
+    about = with_forms(scaled) if without else scaled
+    asked = Asked.of(about, at_least)
+    budget = np.inf if proving.most_pairs is None else proving.most_pairs
+    search = Search(asked, float(np.radians(proving.gap)), budget)
+    look = Lookout(about, asked)
+    begun = (0, 0)
+    try:
+        table = Table.covering(asked)
+        begun = int(table.pieces.driver.sum()), int(table.pieces.driven.sum())
+        search.run(table, look, content=at_least is not None)
+        why = "" if search.done or search.lower and at_least is not None else _open(search)
+    except TooMany:
+        why = "the curve takes too many pieces to be covered"
+    except Stopped:
+        why = _STOPPED
+    made = Bounds(
+        lower=search.lower,
+        upper=search.upper,
+        closed=search.done,
+        found=look.best,
+        pieces=begun,
+        pairs=search.pairs,
+        levels=search.levels,
+        seconds=perf_counter() - since,
+        left_out=without,
+        why=why,
+    )
+    told = np.degrees(made.lower), np.degrees(made.upper), made.pairs, made.seconds, f"; {why}" if why else ""
+    _LOG.info("bounds: %.4f to %.4f deg, %d pairs, %.2f s%s", *told)
+    return made
+
+
+_STOPPED = "it was stopped"
+
+
+def _open(search: Search) -> str:
+    """Why a branch and bound ended before its bounds met."""
+    return f"the budget of {search.most_pairs:.0f} pairs ended" if search.over_budget else _STOPPED

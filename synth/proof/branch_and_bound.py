@@ -1,0 +1,120 @@
+"""Branch and bound over pairs of pieces: the greatest transmission angle, between bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from grashof.problems.values.arrays import IntArray
+from grashof.synth.proof.asked import Asked
+from grashof.synth.proof.pairs import Pairs, bounded
+from grashof.synth.proof.table import Table
+from grashof.synth.theory.stopping import asked_to_stop
+
+AT_ONCE = 8192  # pairs bounded together
+# What designs the kept pairs hold: the best transmission angle found among them, rad, more than the given one.
+Lookout = Callable[[Table, Pairs, float], float]
+
+
+@dataclass(slots=True)
+class Search:
+    """A branch and bound, breadth first.
+
+    Parameters
+    ----------
+    asked : Asked
+    gap : float, rad
+        Up to which the bounds are brought together.
+    most_pairs : float
+        Budget.
+    lower : float, rad
+        Transmission angle of a design that is known; 0 where none is.
+    pairs, levels : int
+        How many were bounded, and how often all that are left were halved.
+    left : Pairs
+        That may hold designs better than `upper`; none where the search is done.
+    begun : bool
+        Whether every pair of the first level was bounded.
+    over_budget : bool
+    """
+
+    asked: Asked
+    gap: float
+    most_pairs: float
+    lower: float = 0.0
+    pairs: int = 0
+    levels: int = 0
+    left: Pairs | None = None
+    begun: bool = False
+    over_budget: bool = False
+
+    @property
+    def threshold(self) -> float:
+        """Designs that transmit less do not count, rad."""
+        return max(self.lower + self.gap if self.lower else 0.0, self.asked.floor)
+
+    @property
+    def done(self) -> bool:
+        """Whether no design transmits more than `threshold`."""
+        return self.begun and self.left is not None and not len(self.left)
+
+    @property
+    def upper(self) -> float:
+        """No design transmits more, rad."""
+        if not self.begun or self.left is None:
+            return float(np.pi / 2)
+        return max(self.threshold, float(self.left.bound.max(initial=0.0)))
+
+    def run(self, table: Table, look: Lookout, *, content: bool = False) -> None:
+        """Bound all pairs, look for designs in those that are left, halve these, until none is left.
+
+        It ends early with the budget, where it is asked to stop, or where it is `content` with any
+        design; `upper` holds even so.
+        """
+        self.left = self._first(table)
+        while self.left is not None and len(self.left):
+            self.lower = max(self.lower, look(table, self.left, max(self.lower, self.asked.floor)))
+            if content and self.lower:
+                return
+            self.left = self.left[self.left.bound > self.threshold]
+            if not len(self.left):
+                return
+            halved = self._halved(table, self.left)
+            if halved is None:
+                return
+            self.left, self.levels = halved, self.levels + 1
+
+    def _first(self, table: Table) -> Pairs | None:
+        """All pairs of the pieces of a cover; None where they are too many, or it is asked to stop."""
+        drivers = np.flatnonzero(table.pieces.driver)
+        driven = np.flatnonzero(table.pieces.driven)
+        rows = max(1, AT_ONCE // max(1, len(driven)))
+        blocks = (drivers[begin : begin + rows] for begin in range(0, len(drivers), rows))
+        found = self._bounded(table, ((np.repeat(some, len(driven)), np.tile(driven, len(some))) for some in blocks))
+        self.begun = found is not None
+        return found
+
+    def _halved(self, table: Table, pairs: Pairs) -> Pairs | None:
+        """The pairs of halves of the pieces of pairs."""
+        first, second = table.halve(pairs.driver), table.halve(pairs.driven)
+        one, other = np.repeat(first, 2, axis=1).ravel(), np.tile(second, (1, 2)).ravel()
+        some = (one >= 0) & (other >= 0)
+        one, other = one[some], other[some]
+        some = table.pieces.driver[one] & table.pieces.driven[other]
+        one, other = one[some], other[some]
+        blocks = (slice(begin, begin + AT_ONCE) for begin in range(0, len(one), AT_ONCE))
+        return self._bounded(table, ((one[block], other[block]) for block in blocks))
+
+    def _bounded(self, table: Table, blocks: Iterator[tuple[IntArray, IntArray]]) -> Pairs | None:
+        """What is left of pairs; None where the budget ends, or it is asked to stop."""
+        nothing = np.zeros(0, dtype=np.int64)
+        found = [Pairs(nothing, nothing, np.zeros(0))]
+        for one, other in blocks:
+            self.over_budget = self.pairs + len(one) > self.most_pairs
+            if self.over_budget or asked_to_stop():
+                return None
+            self.pairs += len(one)
+            found.append(bounded(self.asked, table.pieces, one, other, self.threshold))
+        return Pairs.joined(found)

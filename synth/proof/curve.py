@@ -1,0 +1,158 @@
+"""The circle-point curve of four poses as a polynomial, with its exact Taylor series.
+
+The origin is the guided point at the first pose, lengths are in sizes, points are complex. A point z of
+the body at the first pose is at ``rotation[j] * z + shift[j]`` at pose j.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.synth.theory.burmester import Displacements
+
+PLANE = 1e-9  # of its terms: below it a polynomial vanishes, and every point is a circle point
+_ROUNDING = 64 * np.finfo(float).eps  # of the magnitude of a sum of some thirty terms
+
+
+@dataclass(frozen=True, slots=True)
+class Taylor:
+    """The polynomial about some points q, in a frame turned by a direction t: f(q + t (x + iy)).
+
+    Parameters
+    ----------
+    cubic, square, linear : ndarray of complex, shape (n,)
+    both : ndarray, shape (n,)
+        f = 2 Re(cubic w) |w|^2 + 2 Re(square w^2) + both |w|^2 + 2 Re(linear w) + value with w = x + iy.
+    value, error : ndarray, shape (n,)
+        At the point, and by how much rounding may have changed it.
+    """
+
+    cubic: ComplexArray
+    square: ComplexArray
+    both: FloatArray
+    linear: ComplexArray
+    value: FloatArray
+    error: FloatArray
+
+    @property
+    def along_twice(self) -> FloatArray:
+        """Coefficient of x^2."""
+        return self.both + 2 * self.square.real
+
+    def turned(self, direction: ComplexArray) -> Taylor:
+        """The same in a frame turned by unit numbers, shape (n,)."""
+        return Taylor(
+            self.cubic * direction, self.square * direction**2, self.both, self.linear * direction,
+            self.value, self.error,
+        )  # fmt: skip
+
+    def beyond_linear(self, x: FloatArray, y: FloatArray) -> FloatArray:
+        """Greatest absolute value of the terms of second and third order where ``|w.real| <= x``, ``|w.imag| <= y``."""
+        return np.abs(self.along_twice) * x * x + self._others(x, y)
+
+    def beyond_parabola(self, x: FloatArray, y: FloatArray) -> FloatArray:
+        """The same without that of x^2."""
+        return self._others(x, y)
+
+    def _others(self, x: FloatArray, y: FloatArray) -> FloatArray:
+        across: FloatArray = np.abs(self.both - 2 * self.square.real) * y * y
+        mixed = 4 * np.abs(self.square.imag) * x * y
+        third = 2 * (np.abs(self.cubic.real) * x + np.abs(self.cubic.imag) * y) * (x * x + y * y)
+        return across + mixed + third
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """Circle points of four poses: where a cubic vanishes.
+
+    Parameters
+    ----------
+    rotation, shift : ndarray of complex, shape (4,)
+        Displacements from the first pose, 1 and 0 for itself.
+    cubic, square, linear : complex
+    both, constant : float
+        Of the polynomial about the origin, see `Taylor`; its largest coefficient is 1.
+    degenerate : bool
+        Whether the polynomial vanishes: every point of the plane is a circle point.
+    """
+
+    rotation: ComplexArray
+    shift: ComplexArray
+    cubic: complex
+    square: complex
+    both: float
+    linear: complex
+    constant: float
+    degenerate: bool
+
+    @classmethod
+    def of(cls, motion: Displacements, point: complex) -> Curve:
+        """The curve of four displacements of the body, seen from a point of it at the first pose.
+
+        Notes
+        -----
+        z_j - z = alpha_j z + d_j with alpha_j = rho_j - 1, and (|z_j|^2 - |z|^2) / 2 = |d_j|^2 / 2 +
+        Re(conj(d_j) rho_j z): three equations Re(conj(c) (z_j - z)) = (|z_j|^2 - |z|^2) / 2 ask for the
+        determinant of these columns to vanish, which is i/2 times that of [z_j - z, its conjugate, half
+        the difference of squares] (Burmester 1888; McCarthy & Soh, *Geometric Design of Linkages*, ch. 5).
+        """
+        rotation = motion.rotation
+        shift = motion.apply(np.array([point]))[0] - point
+        alpha, d, half = rotation[1:] - 1, shift[1:], 0.5 * np.abs(shift[1:]) ** 2
+        beta = 0.5 * d.conj() * rotation[1:]
+        columns = alpha, alpha.conj(), d, d.conj(), beta, beta.conj(), half + 0j
+        names = "a", "A", "d", "D", "b", "B", "e"
+        column = dict(zip(names, columns, strict=True))
+
+        def det(chosen: str) -> complex:
+            return 0.5j * complex(np.linalg.det(np.stack([column[name] for name in chosen], axis=1)))
+
+        terms = (
+            det("aAb"),
+            det("aDb"),
+            (det("aAe") + det("aDB") + det("dAb")).real,
+            det("aDe") + det("dDb"),
+            det("dDe").real,
+        )
+        sizes = [float(np.prod([np.abs(column[name]).max() for name in name3]))
+                 for name3 in ("aAb", "aDb", "aAe", "aDe", "dDb", "dDe")]  # fmt: skip
+        largest = max(abs(term) for term in terms)
+        degenerate = largest <= PLANE * max(sizes)
+        scale = 1.0 if degenerate else largest
+        cubic, square, both, linear, constant = (term / scale for term in terms)
+        return cls(rotation, shift, cubic, square, float(both.real), linear, float(constant.real), degenerate)
+
+    def about(self, q: ComplexArray) -> Taylor:
+        """The polynomial about points, shape (n,), in the frame of the plane."""
+        square_q = (q * q.conj()).real
+        along = 2 * (self.cubic * q).real
+        value = along * square_q + 2 * (self.square * q * q).real + self.both * square_q
+        value += 2 * (self.linear * q).real + self.constant
+        size = np.abs(q)
+        magnitude = ((2 * abs(self.cubic) * size + 2 * abs(self.square) + abs(self.both)) * size) * size
+        magnitude += 2 * abs(self.linear) * size + abs(self.constant)
+        return Taylor(
+            cubic=np.broadcast_to(np.complex128(self.cubic), q.shape),
+            square=self.square + self.cubic * q.conj(),
+            both=self.both + 2 * along,
+            linear=self.linear
+            + along * q.conj()
+            + self.cubic * square_q
+            + 2 * self.square * q
+            + self.both * q.conj(),
+            value=value,
+            error=_ROUNDING * (1.0 + magnitude),
+        )
+
+    def onto(self, points: ComplexArray, steps: int = 3) -> ComplexArray:
+        """Points moved to the curve along the gradient, by Newton's method."""
+        for _ in range(steps):
+            taylor = self.about(points)
+            slope = taylor.linear
+            with np.errstate(divide="ignore", invalid="ignore"):
+                step = taylor.value * slope.conj() / (2 * np.abs(slope) ** 2)
+            points = np.where(np.isfinite(step), points - step, points)
+        return points

@@ -1,0 +1,111 @@
+"""What is proven of a list: that its best is the best, that nothing is above a bound, or that there is none."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+import numpy as np
+
+from grashof.problems import Problem
+from grashof.problems.values.requirements import QUANTITIES
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.proof.bounds import Bounds
+
+ROUNDING = "doubles, enclosures widened for rounding; poses as stored, limits by 2e-9"
+_NOISE = 1e-6  # deg: targets are met up to rounding, and so are bounds
+
+
+class Claim(StrEnum):
+    """What is claimed of a list."""
+
+    BEST = "best"
+    BOUND = "bound"
+    NONE = "none"
+    FOLLOWED = "followed"
+    REFUSED = "refused"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Proof:
+    """What is proven of the designs of a problem, as ``run.json`` has it.
+
+    Parameters
+    ----------
+    claim : Claim
+        best: no design has more than `upper`, at most the gap above the best that is listed; bound: no
+        design has more than `upper`; none: there is no design; followed: every solution that is known
+        numerically was followed; refused: there is no proof.
+    complete : bool
+        Whether all solutions are known.
+    quantity : str
+        What is bounded, by its column.
+    lower, upper : float or None, deg
+        Of the best design that is listed, as judged; and what no design exceeds.
+    pieces : tuple of int
+        Pieces of the curve of dyads, to begin with: that may be drivers, and driven.
+    pairs, levels : int
+        Pairs of pieces that were bounded, and how often what was left was halved.
+    seconds : float, s
+    left_out : tuple of str
+        Requirements that the proof does without, by their keys: designs that meet them have `upper` at most.
+    rounding, why : str
+        How rounding is accounted for; why there is no proof, or no closer bound.
+    """
+
+    claim: Claim
+    complete: bool = False
+    quantity: str
+    lower: float | None = None
+    upper: float | None = None
+    pieces: tuple[int, int] = (0, 0)
+    pairs: int = 0
+    levels: int = 0
+    seconds: float = 0.0
+    left_out: tuple[str, ...] = ()
+    rounding: str = ROUNDING
+    why: str = ""
+
+    @property
+    def stated(self) -> dict[str, Any]:
+        """All of it, for a file."""
+        values = {name: getattr(self, name) for name in self.__slots__}
+        pieces, left_out = list(self.pieces), list(self.left_out)
+        return {**values, "claim": str(self.claim), "pieces": pieces, "left_out": left_out}
+
+
+def quantity_of(problem: Problem) -> str:
+    """Key of the transmission angle that a problem is about."""
+    return problem.requirements.meant(QUANTITIES["transmission"]).key
+
+
+def proof_of(problem: Problem, bounds: Bounds, designs: Sequence[Candidate], gap: float) -> Proof:
+    """What bounds prove of listed designs."""
+    key = quantity_of(problem)
+    kind = problem.mechanism[0]
+    listed = [float(np.degrees(one.values[key])) for one in designs if one.linkage.MECHANISM == kind]
+    upper, lower = float(np.degrees(bounds.upper)), max(listed, default=None)
+    claim, why = Claim.BOUND, bounds.why
+    if bounds.refused:
+        claim = Claim.REFUSED
+    elif lower is not None and lower > upper + _NOISE:
+        claim, why = Claim.REFUSED, f"a listed design has more than the bound of {upper:.6g} deg: a fault in it"
+    elif bounds.none:
+        claim = Claim.NONE
+    elif lower is not None and upper <= lower + gap + _NOISE:
+        claim = Claim.BEST
+    return Proof(
+        claim=claim,
+        complete=claim is Claim.NONE,
+        quantity=QUANTITIES[key].column,
+        lower=lower,
+        upper=None if claim is Claim.REFUSED else upper,
+        pieces=bounds.pieces,
+        pairs=bounds.pairs,
+        levels=bounds.levels,
+        seconds=round(bounds.seconds, 4),
+        left_out=bounds.left_out,
+        why=why,
+    )

@@ -1,0 +1,214 @@
+"""Pieces of the curve that a proof works with: begun by a cover, halved as pairs need it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.synth.proof.asked import Asked
+from grashof.synth.proof.centres import Centres, centres_of
+from grashof.synth.proof.dyads import lengths_of, possible_arms, roles_of
+from grashof.synth.proof.forms import Form, Span
+from grashof.synth.proof.pieces import SLENDER, Tubes, contracted
+from grashof.synth.theory.stopping import give_way
+
+SQUARES = 32  # along each side of the disc that is covered
+COARSE = 0.5  # length of first pieces, as a share of what is near
+TINY = 4e-3  # sizes: pieces as small as that are not halved for themselves
+MOST_RECTANGLES = 100_000  # of a cover
+_OPEN, _NOTHING = -1, -2  # children that are not made yet; that hold no dyad
+
+
+class TooMany(Exception):  # noqa: N818  (no error: the proof stays open)
+    """A cover takes more rectangles than it may."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pieces:
+    """Pieces with their centres and what pairs need of them; arrays of shape (n,) or (n, 4).
+
+    Parameters
+    ----------
+    tubes : Tubes
+    centres : Centres
+    driver, driven : ndarray of bool
+    sense : ndarray of int
+    """
+
+    tubes: Tubes
+    centres: Centres
+    driver: BoolArray
+    driven: BoolArray
+    sense: IntArray
+
+    def __len__(self) -> int:
+        return len(self.tubes)
+
+    @classmethod
+    def of(cls, asked: Asked, tubes: Tubes) -> tuple[Pieces, IntArray]:
+        """The pieces that rectangles hold, and which of these each is in."""
+        tubes, filled = contracted(asked.curve, tubes)
+        rows = np.flatnonzero(filled)
+        tubes = tubes[rows]
+        near = possible_arms(asked, tubes)
+        rows, tubes = rows[near], tubes[near]
+        centres = centres_of(asked.curve, tubes, asked.longest)
+        roles = roles_of(asked, tubes, centres)
+        some = np.flatnonzero(roles.driver | roles.driven)
+        kept = cls(tubes[some], centres[some], roles.driver[some], roles.driven[some], roles.sense[some])
+        return kept, rows[some]
+
+    def __getitem__(self, index: IntArray | BoolArray) -> Pieces:
+        return Pieces(
+            self.tubes[index], self.centres[index], self.driver[index], self.driven[index], self.sense[index]
+        )
+
+    @classmethod
+    def joined(cls, *parts: Pieces) -> Pieces:
+        """Several as one."""
+        return cls(
+            Tubes.joined(*(part.tubes for part in parts)),
+            Centres.joined(*(part.centres for part in parts)),
+            *(
+                np.concatenate([getattr(part, name) for part in parts])
+                for name in ("driver", "driven", "sense")
+            ),
+        )
+
+    @property
+    def resolved(self) -> BoolArray:
+        """Which pieces are short enough to begin with."""
+        tubes, centres = self.tubes, self.centres
+        moved = np.abs(centres.along)
+        short = tubes.half + moved <= COARSE * (
+            0.3 + np.minimum(lengths_of(tubes, centres).high, np.abs(tubes.middle))
+        )
+        slender = tubes.side <= SLENDER * tubes.half
+        known = centres.rest <= 0.3 * (moved + 0.02)
+        done: BoolArray = (short & slender & known) | (tubes.half + tubes.side < TINY)
+        return done
+
+
+@dataclass(slots=True)
+class Table:
+    """All pieces of a proof.
+
+    Parameters
+    ----------
+    asked : Asked
+    pieces : Pieces
+    rectangles : int
+        How many were looked at.
+    """
+
+    asked: Asked
+    pieces: Pieces
+    rectangles: int = 0
+    _children: IntArray = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._children = np.full((len(self.pieces), 2), _OPEN)
+
+    @classmethod
+    def covering(cls, asked: Asked) -> Table:
+        """Pieces that hold all dyads that may meet what is asked of one.
+
+        Raises
+        ------
+        TooMany
+            They take more rectangles than a cover may have.
+        Stopped
+            Asked to stop.
+        """
+        reach = asked.driver.arm[1]
+        step = 2 * reach / SQUARES
+        even = -reach + step * (np.arange(SQUARES) + 0.5)
+        middle = (even[:, None] + 1j * even).ravel()
+        size = np.full(len(middle), step / 2)
+        active = Tubes.rectangles(middle, np.ones_like(middle), size, size)
+        done: list[Pieces] = []
+        count = 0
+        while len(active):
+            give_way()
+            count += len(active)
+            if count > MOST_RECTANGLES:
+                raise TooMany
+            found, _ = Pieces.of(asked, active)
+            ready = found.resolved
+            done.append(found[ready])
+            active = found.tubes[~ready].halves
+        return cls(asked, Pieces.joined(*done), count)
+
+    def __len__(self) -> int:
+        return len(self.pieces)
+
+    def halve(self, which: IntArray) -> IntArray:
+        """Halves of pieces, shape (n, 2); negative where one holds no dyad that does."""
+        new = np.unique(which[self._children[which, 0] == _OPEN])
+        if len(new):
+            made, rows = Pieces.of(self.asked, self.pieces.tubes[new].halves)
+            numbers = np.full(2 * len(new), _NOTHING)
+            numbers[rows] = len(self.pieces) + np.arange(len(made))
+            self._children[new] = numbers.reshape(2, -1).T
+            self.pieces = Pieces.joined(self.pieces, made)
+            self._children = np.concatenate([self._children, np.full((len(made), 2), _OPEN)])
+            self.rectangles += 2 * len(new)
+        halves: IntArray = self._children[which]
+        return halves
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """Pieces as drivers, which vary by s, or as driven dyads, which vary by t; arrays by piece.
+
+    Parameters
+    ----------
+    moving, ground : tuple of ndarray
+        Middle, step and rest of z and c.
+    """
+
+    moving: tuple[ComplexArray, ComplexArray, FloatArray]
+    ground: tuple[ComplexArray, ComplexArray, FloatArray]
+    is_driver: bool
+
+    @classmethod
+    def of(cls, pieces: Pieces, index: IntArray, *, is_driver: bool) -> Side:
+        """Some pieces, in any order."""
+        tubes, centres = pieces.tubes[index], pieces.centres[index]
+        return cls(
+            (tubes.middle, tubes.along, tubes.stray),
+            (centres.middle, centres.along, centres.rest),
+            is_driver,
+        )
+
+    def __getitem__(self, index: IntArray | BoolArray) -> Side:
+        moving, ground = (tuple(part[index] for part in parts) for parts in (self.moving, self.ground))
+        return Side(moving, ground, self.is_driver)  # type: ignore[arg-type]
+
+    def span(self, middle: ComplexArray, along: ComplexArray, rest: FloatArray) -> Span:
+        """A complex form of the parameter of this side alone."""
+        nothing = np.zeros_like(along)
+        return Span(middle, along, nothing, rest) if self.is_driver else Span(middle, nothing, along, rest)
+
+    @property
+    def z(self) -> Span:
+        """The moving pivot at the first pose."""
+        return self.span(*self.moving)
+
+    @property
+    def c(self) -> Span:
+        """The ground pivot."""
+        return self.span(*self.ground)
+
+    def seen_from_body(self, rotation: complex, shift: complex) -> Span:
+        """From the ground pivot, as the body sees it at a pose, to the moving pivot."""
+        (z0, z1, z_rest), (c0, c1, c_rest) = self.moving, self.ground
+        back = np.conj(rotation)
+        return self.span(z0 - back * (c0 - shift), z1 - back * c1, z_rest + c_rest)
+
+    @property
+    def length(self) -> Form:
+        """The distance from the ground pivot to the moving one."""
+        return self.seen_from_body(1.0, 0.0).norm
