@@ -83,7 +83,7 @@ def synthesize(
     gap : float, deg
         Up to which proofs bring their bounds together, 0.0001 to 90.
     prove : bool
-        Give proofs all the time they take, not a budget that costs a few seconds.
+        Give proofs minutes where they need them, not seconds.
 
     Returns
     -------
@@ -112,7 +112,7 @@ def synthesize(
     asked = asking(time_limit, stop)
     search = search_of(problem, workers, starts=starts, enough=enough, seed=seed, effort=effort)
     refuse_no_list(constraints)
-    proving = Proving(gap, None) if prove else Proving(gap)
+    proving = Proving.patient(gap) if prove else Proving(gap)
     if record is not None and (constraints or objective is not None):
         raise ProblemError("record does not go with constraints or an objective of your own")
     how = problem.task.kind, search.seed, search.effort, search.starts, workers

@@ -1,4 +1,4 @@
-"""The command line: solve, merge, sweep, check, judge, problems, linkages, analyse, live, animate, export."""
+"""The command line: a command for each verb, its options, and one line for each error."""
 
 from __future__ import annotations
 
@@ -95,6 +95,10 @@ TopOption = Annotated[
     ),
 ]
 
+GapOption = Annotated[
+    float, typer.Option(min=1e-4, max=90, help="Deg up to which proofs bring their bounds together.")
+]
+
 SchedulerOption = Annotated[
     str | None,
     typer.Option(help="Dask scheduler to work on, such as tcp://host:8786.", show_default=False),
@@ -130,6 +134,10 @@ def solve(
     time_limit: Annotated[
         float | None, typer.Option(help="Seconds after which no new solves begin.", show_default=False)
     ] = None,
+    gap: GapOption = 0.01,
+    prove: Annotated[
+        bool, typer.Option("--prove", help="Give proofs minutes where they need them, not seconds.")
+    ] = False,
     top: TopOption = None,
     drawings: DrawingsOption = 3,
     effort: Annotated[
@@ -170,6 +178,8 @@ def solve(
             effort=effort,
             workers=workers,
             time_limit=time_limit,
+            gap=gap,
+            prove=prove,
             top=top,
             drawings=drawings,
             resume=resume,
@@ -239,6 +249,27 @@ def check(problem: ProblemArgument) -> None:
             say(line)
         for line in folded([f"note: {told}"] if (told := advice(loaded)) else []):
             say(line)
+
+
+@app.command()
+def prove(
+    problem: ProblemArgument,
+    at_least: Annotated[
+        float | None,
+        typer.Option(min=0, max=90, help="Only decide whether a design has so many deg.", show_default=False),
+    ] = None,
+    gap: GapOption = 0.01,
+    time_limit: Annotated[
+        float | None, typer.Option(help="Seconds after which the bound so far counts.", show_default=False)
+    ] = None,
+) -> None:
+    """Prove how large the transmission angle of the best design can be, or that there is no design.
+
+    For four whole poses and a four-bar. Exit code 0: decided; 1: not decided; 2: bad input;
+    3: environment error; 130: interrupted (Ctrl-C).
+    """
+    with _errors_told():
+        raise typer.Exit(commands.prove(problem, at_least, gap, time_limit))
 
 
 @app.command()

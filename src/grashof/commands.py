@@ -35,6 +35,9 @@ class Options:
         See `Search`.
     workers : int
     time_limit : float, s, optional
+    gap : float, deg
+    prove : bool
+        See `synthesize`.
     top : int, optional
         Most families in the list.
     drawings : int
@@ -52,6 +55,8 @@ class Options:
     effort: float | None = None
     workers: int = 1
     time_limit: float | None = None
+    gap: float = 0.01
+    prove: bool = False
     top: int | None = None
     drawings: int = 3
     scheduler: str | None = None
@@ -86,6 +91,8 @@ def _solve(problem: Problem, text: str, options: Options, folder: Path) -> Exit:
         "workers": options.workers,
         "scheduler": dask,
         "time_limit": options.time_limit,
+        "gap": options.gap,
+        "prove": options.prove,
         "top": options.top or max(TOP, search.enough),
     }
     record = folder / SEARCH
@@ -141,6 +148,8 @@ def _found(
             workers=workers,
             executor=executor,
             time_limit=options.time_limit,
+            gap=options.gap,
+            prove=options.prove,
             progress=progress,
             stop=interrupted,
             record=record,
@@ -319,6 +328,22 @@ def _report(note: str, files: list[str], folder: Path) -> None:
 
 def _point_to(page: Path) -> None:
     say(f"Open {page} in a browser to look at it.", err=True)
+
+
+def prove(problem: str, at_least: float | None, gap: float, time_limit: float | None) -> Exit:
+    """Print what is proven of a problem."""
+    from grashof.synth import prove as proven
+    from grashof.wording.proof import bound_line, is_decided, work_line
+
+    loaded = load(problem)
+    with interruptible() as interrupted:
+        proof = proven(loaded, at_least=at_least, gap=gap, time_limit=time_limit, stop=interrupted)
+        say(bound_line(proof, at_least))
+        if proof.pairs:
+            say(work_line(proof))
+        if interrupted():
+            return interrupted.code
+    return Exit.OK if is_decided(proof, at_least) else Exit.NO_DESIGN
 
 
 def judge(linkage: str, problem: str) -> Exit:

@@ -21,6 +21,7 @@ from grashof.problems import Linkage as AnyKind
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.synth import Candidate, Result
+from grashof.wording.proof import proof_line
 
 _ROWS = 12  # of a batch
 _SMALL = {**STYLE, "font.size": 7, "axes.grid": False}
@@ -52,10 +53,12 @@ def html(value: AnyKind | LinkageSpec | Candidate | Result) -> str:
 
 def _result(result: Result) -> str:
     if not result.candidates:
-        return f"<p>No design. {escape(result.note)}</p>"
+        proven = f"<br>{escape(said)}" if (said := proof_line(result)) else ""
+        return f"<p>No design. {escape(result.note)}{proven}</p>"
     rows = best_rows(result)
     note = f"<p>{escape(result.note)}</p>" if result.note else ""
-    summary = "<br>".join(escape(line) for line in heading(result, len(result)).splitlines())
+    lines = [*heading(result, len(result)).splitlines(), proof_line(result)]
+    summary = "<br>".join(escape(line) for line in lines if line)
     named = units(result.problem)
     names = (f"{name} ({named[name]})" if name in named else name for name in rows[0])
     table = _table(names, (row.values() for row in rows))

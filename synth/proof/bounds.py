@@ -18,6 +18,7 @@ from grashof.synth.proof.table import Table, TooMany
 from grashof.synth.theory.stopping import Stopped
 
 _LOG = logging.getLogger(__name__)
+_PATIENT = 30_000_000  # pairs
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,15 +29,20 @@ class Proving:
     ----------
     gap : float, deg
         Up to which bounds are brought together.
-    most_pairs : int, optional
-        Budget of pairs of pieces; without it only the time limit counts.
+    most_pairs : int
+        Budget of pairs of pieces: what a proof takes does not depend on the clock.
     """
 
     gap: float = 0.01
-    most_pairs: int | None = 1_000_000
+    most_pairs: int = 1_000_000
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "gap", number_within(self.gap, 1e-4, 90.0, "gap"))
+
+    @classmethod
+    def patient(cls, gap: float) -> Proving:
+        """With a budget that takes minutes."""
+        return cls(gap, _PATIENT)
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,15 +108,14 @@ def bounds_of(scaled: ScaledProblem, proving: Proving, at_least: float | None = 
     without = left_out(scaled)
     about = with_forms(scaled) if without else scaled
     asked = Asked.of(about, at_least)
-    budget = np.inf if proving.most_pairs is None else proving.most_pairs
-    search = Search(asked, float(np.radians(proving.gap)), budget)
+    search = Search(asked, float(np.radians(proving.gap)), proving.most_pairs)
     look = Lookout(about, asked)
     begun = (0, 0)
     try:
         table = Table.covering(asked)
         begun = int(table.pieces.driver.sum()), int(table.pieces.driven.sum())
         search.run(table, look, content=at_least is not None)
-        why = "" if search.done or search.lower and at_least is not None else _open(search)
+        why = "" if search.done or (search.lower and at_least is not None) else _open(search)
     except TooMany:
         why = "the curve takes too many pieces to be covered"
     except Stopped:
@@ -137,4 +142,4 @@ _STOPPED = "it was stopped"
 
 def _open(search: Search) -> str:
     """Why a branch and bound ended before its bounds met."""
-    return f"the budget of {search.most_pairs:.0f} pairs ended" if search.over_budget else _STOPPED
+    return f"the budget of {search.most_pairs} pairs ended" if search.over_budget else _STOPPED

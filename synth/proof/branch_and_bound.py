@@ -14,7 +14,7 @@ from grashof.synth.proof.table import Table
 from grashof.synth.theory.stopping import asked_to_stop
 
 AT_ONCE = 8192  # pairs bounded together
-# What designs the kept pairs hold: the best transmission angle found among them, rad, more than the given one.
+# The transmission angle of a design in the pairs, rad, where one has more than the given angle; else 0.
 Lookout = Callable[[Table, Pairs, float], float]
 
 
@@ -27,7 +27,7 @@ class Search:
     asked : Asked
     gap : float, rad
         Up to which the bounds are brought together.
-    most_pairs : float
+    most_pairs : int
         Budget.
     lower : float, rad
         Transmission angle of a design that is known; 0 where none is.
@@ -42,7 +42,7 @@ class Search:
 
     asked: Asked
     gap: float
-    most_pairs: float
+    most_pairs: int
     lower: float = 0.0
     pairs: int = 0
     levels: int = 0
@@ -91,8 +91,10 @@ class Search:
         drivers = np.flatnonzero(table.pieces.driver)
         driven = np.flatnonzero(table.pieces.driven)
         rows = max(1, AT_ONCE // max(1, len(driven)))
-        blocks = (drivers[begin : begin + rows] for begin in range(0, len(drivers), rows))
-        found = self._bounded(table, ((np.repeat(some, len(driven)), np.tile(driven, len(some))) for some in blocks))
+        some = (drivers[begin : begin + rows] for begin in range(0, len(drivers), rows))
+        found = self._bounded(
+            table, ((np.repeat(one, len(driven)), np.tile(driven, len(one))) for one in some)
+        )
         self.begun = found is not None
         return found
 

@@ -56,9 +56,7 @@ def centres_of(curve: Curve, tubes: Tubes, longest: float) -> Centres:
 
 def _of_rows(curve: Curve, tubes: Tubes, rows: tuple[int, int]) -> Centres:
     z0, z1, z2 = tubes.middle, tubes.along, tubes.bend
-    alpha, d, rho = (
-        part[1:, None][list(rows)] for part in (curve.rotation - 1, curve.shift, curve.rotation)
-    )
+    alpha, d, rho = (part[1:, None][list(rows)] for part in (curve.rotation - 1, curve.shift, curve.rotation))
     facing = d.conj() * rho
     a, a1 = alpha * z0 + d, alpha * z1
     k, k1 = np.abs(d) ** 2 / 2 + (facing * z0).real, (facing * z1).real

@@ -50,14 +50,11 @@ class Taylor:
         )  # fmt: skip
 
     def beyond_linear(self, x: FloatArray, y: FloatArray) -> FloatArray:
-        """Greatest absolute value of the terms of second and third order where ``|w.real| <= x``, ``|w.imag| <= y``."""
-        return np.abs(self.along_twice) * x * x + self._others(x, y)
+        """Greatest sum of the terms of second and third order where ``|w.real| <= x``, ``|w.imag| <= y``."""
+        return np.abs(self.along_twice) * x * x + self.beyond_parabola(x, y)
 
     def beyond_parabola(self, x: FloatArray, y: FloatArray) -> FloatArray:
         """The same without that of x^2."""
-        return self._others(x, y)
-
-    def _others(self, x: FloatArray, y: FloatArray) -> FloatArray:
         across: FloatArray = np.abs(self.both - 2 * self.square.real) * y * y
         mixed = 4 * np.abs(self.square.imag) * x * y
         third = 2 * (np.abs(self.cubic.real) * x + np.abs(self.cubic.imag) * y) * (x * x + y * y)

@@ -157,6 +157,5 @@ def _rotations(asked: Asked, tubes: Tubes, centres: Centres, sense: IntArray) ->
     keep = np.zeros(len(tubes), dtype=bool)
     for turns in (-TURN, 0.0, TURN):
         keep |= Range(turned + turns - off, turned + turns + off).within(asked.rotation)
-    open_ = (sense == 0) | ~(reach < np.minimum(np.abs(first), np.abs(last)))
-    return keep | open_
-
+    keep |= (sense == 0) | ~(reach < np.minimum(np.abs(first), np.abs(last)))
+    return keep

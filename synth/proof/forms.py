@@ -43,14 +43,10 @@ class Form:
         return inf
 
     def __add__(self, other: Form) -> Form:
-        return Form(
-            self.centre + other.centre, self.s + other.s, self.t + other.t, self.rest + other.rest
-        )
+        return Form(self.centre + other.centre, self.s + other.s, self.t + other.t, self.rest + other.rest)
 
     def __sub__(self, other: Form) -> Form:
-        return Form(
-            self.centre - other.centre, self.s - other.s, self.t - other.t, self.rest + other.rest
-        )
+        return Form(self.centre - other.centre, self.s - other.s, self.t - other.t, self.rest + other.rest)
 
     def times(self, factor: float | FloatArray) -> Form:
         """Multiplied by numbers."""
@@ -80,9 +76,7 @@ class Span:
     rest: FloatArray
 
     def __sub__(self, other: Span) -> Span:
-        return Span(
-            self.middle - other.middle, self.s - other.s, self.t - other.t, self.rest + other.rest
-        )
+        return Span(self.middle - other.middle, self.s - other.s, self.t - other.t, self.rest + other.rest)
 
     @property
     def size(self) -> FloatArray:

@@ -41,14 +41,17 @@ class Pairs:
         return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
 
-def bounded(asked: Asked, pieces: Pieces, driver: IntArray, driven: IntArray, least: float) -> Pairs:
+def bounded(
+    asked: Asked, pieces: Pieces, driver: IntArray, driven: IntArray, least: float | FloatArray
+) -> Pairs:
     """The pairs that may hold a linkage with a transmission angle of more than `least`, rad."""
+    least = np.broadcast_to(np.asarray(least, dtype=np.float64), driver.shape)
     one = Side.of(pieces, driver, is_driver=True)
     other = Side.of(pieces, driven, is_driver=False)
     lengths = _lengths(one, other)
     keep = np.flatnonzero(_lengths_allowed(asked, lengths) & _directed(asked, one, other))
     if len(keep) < len(driver):
-        driver, driven, one, other = driver[keep], driven[keep], one[keep], other[keep]
+        driver, driven, one, other, least = driver[keep], driven[keep], one[keep], other[keep], least[keep]
         lengths = tuple(Form(*(getattr(form, name)[keep] for name in _PARTS)) for form in lengths)  # type: ignore[assignment]
     pair = _Pair(asked, one, other, lengths, pieces.sense[driver])
     bound, conditions = pair.bound(least)
@@ -127,8 +130,8 @@ class _Pair:
     lengths: _Lengths
     sense: IntArray
 
-    def bound(self, least: float) -> tuple[FloatArray, list[Form]]:
-        """Upper bounds of the transmission angle, rad, and forms that are positive where it is greater than `least`."""
+    def bound(self, least: FloatArray) -> tuple[FloatArray, list[Form]]:
+        """Upper bounds of the transmission angle, rad; and forms, positive where it exceeds `least`."""
         r1, r2, r3, r4 = self.lengths
         product = r3 * r4
         bound, forms = self._at_poses(product, np.sin(least))
@@ -165,8 +168,8 @@ class _Pair:
             ]
         return forms
 
-    def _at_poses(self, product: Form, sine: float) -> tuple[FloatArray, list[Form]]:
-        """Bounds from the sine of the transmission angle at the poses, of one sign where one branch is asked."""
+    def _at_poses(self, product: Form, sine: FloatArray) -> tuple[FloatArray, list[Form]]:
+        """Bounds by the sine of the transmission angle at the poses; of one sign on one branch."""
         curve = self.asked.curve
         coupler = self.other.z - self.one.z
         areas = [
@@ -203,7 +206,5 @@ class _Pair:
         crank = self.one.seen_from_body(1.0, 0.0).cross(last)
         r1, r2, _, _ = self.lengths
         across, along = r2 * ground, r1 * crank
-        passed = []
-        for area in (across - along, across.times(-1.0) - along):
-            passed.append(area.times(self.sense.astype(float)).inf > 0)
-        return passed[0], passed[1]
+        sense = self.sense.astype(float)
+        return (across - along).times(sense).inf > 0, (across.times(-1.0) - along).times(sense).inf > 0

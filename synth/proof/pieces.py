@@ -175,7 +175,7 @@ def _within(
     start: ComplexArray, turn: ComplexArray, half: FloatArray, side: FloatArray, x: FloatArray, y: FloatArray,
     hair: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:  # fmt: skip
-    """Range of x for which start + conj(turn) (x + iy) is in the old rectangle, for some y that is possible."""
+    """Range of x for which start + conj(turn) (x + iy) is in the old rectangle for some possible y."""
     low, high = -x, x
     for part, step, spread, end in (
         (start.real, turn.real, np.abs(turn.imag) * y, half),

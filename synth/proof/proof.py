@@ -1,4 +1,4 @@
-"""What is proven of a list: that its best is the best, that nothing is above a bound, or that there is none."""
+"""What is proven of a list: that its best is the best there is, an upper bound, or that there is none."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems import Problem
+from grashof.problems.values.quantities import Quantity
 from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.proof.bounds import Bounds
@@ -76,22 +77,26 @@ class Proof:
         return {**values, "claim": str(self.claim), "pieces": pieces, "left_out": left_out}
 
 
-def quantity_of(problem: Problem) -> str:
-    """Key of the transmission angle that a problem is about."""
-    return problem.requirements.meant(QUANTITIES["transmission"]).key
+def quantity_of(problem: Problem) -> Quantity:
+    """The transmission angle that a problem is about."""
+    return problem.requirements.meant(QUANTITIES["transmission"])
 
 
-def proof_of(problem: Problem, bounds: Bounds, designs: Sequence[Candidate], gap: float) -> Proof:
-    """What bounds prove of listed designs."""
-    key = quantity_of(problem)
-    kind = problem.mechanism[0]
-    listed = [float(np.degrees(one.values[key])) for one in designs if one.linkage.MECHANISM == kind]
-    upper, lower = float(np.degrees(bounds.upper)), max(listed, default=None)
+def best_listed(problem: Problem, designs: Sequence[Candidate]) -> float | None:
+    """The greatest transmission angle of some designs, deg, as judged; None of none."""
+    key = quantity_of(problem).key
+    return max((float(np.degrees(one.values[key])) for one in designs), default=None)
+
+
+def proof_of(problem: Problem, bounds: Bounds, lower: float | None, gap: float) -> Proof:
+    """What bounds prove, where the best design that is known has a transmission angle `lower`, deg."""
+    upper = float(np.degrees(bounds.upper))
     claim, why = Claim.BOUND, bounds.why
     if bounds.refused:
         claim = Claim.REFUSED
     elif lower is not None and lower > upper + _NOISE:
-        claim, why = Claim.REFUSED, f"a listed design has more than the bound of {upper:.6g} deg: a fault in it"
+        claim = Claim.REFUSED
+        why = f"a design has {lower:.6g} deg, more than the bound of {upper:.6g} deg, which is a fault"
     elif bounds.none:
         claim = Claim.NONE
     elif lower is not None and upper <= lower + gap + _NOISE:
@@ -99,7 +104,7 @@ def proof_of(problem: Problem, bounds: Bounds, designs: Sequence[Candidate], gap
     return Proof(
         claim=claim,
         complete=claim is Claim.NONE,
-        quantity=QUANTITIES[key].column,
+        quantity=quantity_of(problem).column,
         lower=lower,
         upper=None if claim is Claim.REFUSED else upper,
         pieces=bounds.pieces,

@@ -7,7 +7,7 @@ import logging
 from grashof.synth.designs.families import listed
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.bounds import Bounds
-from grashof.synth.proof.proof import proof_of
+from grashof.synth.proof.proof import best_listed, proof_of
 from grashof.synth.results.advice import advice
 from grashof.synth.results.choice import choose, least_error, why_ended
 from grashof.synth.results.explain import explain
@@ -49,6 +49,9 @@ def conclude(
         ended += "; those listed were found in looking for what stands in the way"
     why = f"; {ended}" if ended else ""
     _LOG.info("ended after %.1f s, %s: %d designs%s", seconds["total"], story.ending, len(designs), why)
+    proof = None
+    if bounds is not None:
+        proof = proof_of(problem, bounds, best_listed(problem, designs), run.proving.gap)
     return Result(
         problem=problem,
         candidates=designs,
@@ -60,7 +63,7 @@ def conclude(
         ended=ended,
         least_error=least_error(scaled, ledger),
         story=story,
-        proof=None if bounds is None else proof_of(problem, bounds, designs, run.proving.gap),
+        proof=proof,
     )
 
 

@@ -233,6 +233,7 @@ def _record(
         **{name: None if np.isnan(error) else error for name, error in errors.items()},
         "designs": len(result),
         "note": result.note,
+        "proof": None if result.proof is None else result.proof.stated,
         "counts": result.counts,
         "guards_hit": guards,
         "seconds": {stage: round(time, 4) for stage, time in result.seconds.items()},

@@ -25,6 +25,7 @@ from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth import Candidate, Progress, Result
 from grashof.synth.designs.ranking import pareto_optimal
 from grashof.wording.problem import error_meaning, goals
+from grashof.wording.proof import proof_line
 
 _ROWS = 12
 _ROUNDING = 1e-6  # sizes: solvers keep limits no closer
@@ -101,6 +102,8 @@ def print_table(result: Result, verified: int | None = None) -> None:
         say(line)
     doubted = [f"{row['#'].rstrip(' *')}: {row[CAUTION]}" for row in best_rows(result) if row.get(CAUTION)]
     for line in folded([f"caution: {'; '.join(doubted)}"] if doubted else []):
+        say(line)
+    for line in folded([proven] if (proven := proof_line(result)) else []):
         say(line)
 
 

@@ -20,6 +20,7 @@ from grashof.synth.designs.table import Row, rows_of, rows_of_nearest
 from grashof.synth.results.explain import note_parts
 from grashof.synth.search.tally import DISTINCT, Tally
 from grashof.wording.problem import goals, summary
+from grashof.wording.proof import proof_line, work_line
 
 _SCRIPTS = (
     *DRAWING, "picture.js", "curves.js", "scatter.js", "table.js", "compare.js", "saving.js", "search.js",
@@ -65,6 +66,8 @@ def search_page(
         asked=[line.strip() for line in summary(problem)][1:],
         found=bool(result.candidates),
         headline=headline(result),
+        proven=proof_line(result),
+        proof_work="" if result.proof is None else work_line(result.proof),
         note=note,
         ways=ways,
         goals=goals(problem).replace("mu", "μ"),

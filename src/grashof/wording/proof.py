@@ -1,0 +1,108 @@
+"""What is proven of a list, in one line."""
+
+from __future__ import annotations
+
+import math
+
+from grashof.problems import FourBar
+from grashof.problems.values.checks import counted
+from grashof.synth import Result
+from grashof.synth.proof.proof import Claim, Proof
+
+_DECIMALS = 2
+_NOTHING = 90.0  # deg: a bound that says nothing
+
+
+def proof_line(result: Result) -> str:
+    """What is proven of a list; empty where the question does not arise.
+
+    Numbers are rounded to the safe side: bounds up, values down.
+
+    Examples
+    --------
+    >>> from grashof import load, synthesize
+    >>> proof_line(synthesize(load("luggage"), enough=5))
+    'Proven: no four-bar meets these requirements with more than 27.35 deg; number 1 has 27.33 deg.'
+    """
+    proof = result.proof
+    if proof is None:
+        return ""
+    known = f"number {_rank(result, proof)} has" if proof.lower is not None else ""
+    return _line(proof, known)
+
+
+def bound_line(proof: Proof, at_least: float | None = None) -> str:
+    """What is proven of a problem without a list; or whether a design has `at_least` so much, deg.
+
+    Examples
+    --------
+    >>> bound_line(Proof(claim=Claim.BEST, quantity="", lower=27.3314, upper=27.3414))
+    'Proven: no four-bar meets these requirements with more than 27.35 deg; a design has 27.33 deg.'
+    >>> bound_line(Proof(claim=Claim.BOUND, quantity="", lower=27.3314, upper=90.0), at_least=20)
+    'Proven: a design that the judge accepts has 27.33 deg.'
+    """
+    if _reached(proof, at_least):
+        return f"Proven: a design that the judge accepts has {_down(proof.lower)} deg."
+    return _line(proof, "a design has" if proof.lower is not None else "")
+
+
+def is_decided(proof: Proof, at_least: float | None = None) -> bool:
+    """Whether the best is known, or that there is none; or whether a design has `at_least` so much."""
+    return proof.claim in (Claim.BEST, Claim.NONE) or _reached(proof, at_least)
+
+
+def _reached(proof: Proof, at_least: float | None) -> bool:
+    return at_least is not None and proof.lower is not None and proof.lower >= at_least
+
+
+def _line(proof: Proof, known: str) -> str:
+    if proof.claim is Claim.REFUSED or proof.upper is None:
+        return f"Not proven: {proof.why}."
+    angle = f"{_up(proof.upper)} deg"
+    if proof.claim is Claim.NONE:
+        return f"Proven: no four-bar meets these requirements with a transmission angle of {angle} or more."
+    has = f"; {known} {_down(proof.lower)} deg" if known else ""
+    if proof.claim is Claim.BEST:
+        return f"Proven: no four-bar meets these requirements with more than {angle}{has}."
+    if proof.upper >= _NOTHING:
+        return f"Not proven{_because(proof)}{has}."
+    return f"Proven: no four-bar has more than {angle}{_because(proof)}{has}."
+
+
+def _because(proof: Proof) -> str:
+    """Why a bound is no closer."""
+    reasons = [f"without {' and '.join(proof.left_out)}"] * bool(proof.left_out)
+    reasons += [proof.why] * bool(proof.why)
+    return f" ({'; '.join(reasons)})" if reasons else ""
+
+
+def _rank(result: Result, proof: Proof) -> int:
+    """Which of a list has the most of what is bounded."""
+    key = proof.quantity.removesuffix("_deg")
+    found = [rank for rank, one in enumerate(result.candidates) if isinstance(one.linkage, FourBar)]
+    return 1 + max(found, key=lambda rank: (result.candidates[rank].values[key], -rank))
+
+
+def _up(value: float) -> str:
+    step = 10**_DECIMALS
+    return f"{math.ceil(value * step - 1e-9) / step:.{_DECIMALS}f}"
+
+
+def _down(value: float | None) -> str:
+    step = 10**_DECIMALS
+    return f"{math.floor((value or 0.0) * step + 1e-9) / step:.{_DECIMALS}f}"
+
+
+def work_line(proof: Proof) -> str:
+    """What a proof took.
+
+    Examples
+    --------
+    >>> work_line(Proof(claim=Claim.BEST, quantity="", pieces=(42, 40), pairs=3049, levels=5, seconds=0.1))
+    '42 by 40 pieces of the curve of dyads, 3049 pairs, halved 5 times, 0.10 s'
+    """
+    first, second = proof.pieces
+    return (
+        f"{first} by {second} pieces of the curve of dyads, {counted(proof.pairs, 'pair')}, "
+        f"halved {counted(proof.levels, 'time')}, {proof.seconds:.2f} s"
+    )

@@ -1,0 +1,96 @@
+"""From a problem to what is proven of it, without a list."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from grashof.analysis import verify
+from grashof.analysis.judge.design import Constraint
+from grashof.problems import Problem, ProblemError
+from grashof.problems.values.checks import number_within
+from grashof.problems.values.mechanisms import FOUR_BAR
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.proof.bounds import Bounds, Proving, bounds_of
+from grashof.synth.proof.proof import Claim, Proof, proof_of, quantity_of
+from grashof.synth.search.asked import asking
+from grashof.synth.starts.finder import refuse_unsearchable
+from grashof.synth.theory.stopping import stopping
+
+_BEYOND = "there are proofs of four whole poses that a four-bar meets exactly, and of no other task yet"
+
+
+def prove(
+    problem: Problem,
+    *,
+    at_least: float | None = None,
+    gap: float = 0.01,
+    constraints: Sequence[Constraint] = (),
+    time_limit: float | None = None,
+    stop: Callable[[], bool] | None = None,
+) -> Proof:
+    """Find out how good the best design can be, or that there is none.
+
+    Parameters
+    ----------
+    problem : Problem
+        Four whole poses for a four-bar, to be met exactly, the transmission angle to be maximised.
+    at_least : float, deg, optional
+        Only decide whether a design has a transmission angle of so much.
+    gap : float, deg
+        Up to which the bounds are brought together, 0.0001 to 90.
+    constraints : sequence of callable
+        Your own, as for `synthesize`; the bound does without them.
+    time_limit, stop
+        As for `synthesize`; the bound so far holds.
+
+    Returns
+    -------
+    Proof
+        With the value of a design that the judge accepts as `lower`, None where none was found.
+
+    Raises
+    ------
+    ProblemError
+        The problem, or another argument, is invalid.
+
+    Notes
+    -----
+    Branch and bound over pairs of pieces of Burmester's curve; see "Proofs" in the documentation.
+
+    Examples
+    --------
+    >>> from grashof import load
+    >>> proof = prove(load("luggage"))
+    >>> str(proof.claim), round(proof.lower, 1), round(proof.upper, 1)
+    ('best', 27.3, 27.3)
+    >>> str(prove(load("luggage"), at_least=28).claim)
+    'none'
+    """
+    asked = asking(time_limit, stop)
+    if not isinstance(problem, Problem):
+        raise ProblemError(f"problem is a {type(problem).__name__}; it must be a Problem, such as load gives")
+    refuse_unsearchable(problem)
+    if at_least is not None:
+        number_within(at_least, 0.0, 90.0, "at_least")
+    proving = Proving.patient(gap)
+    beyond = Proof(claim=Claim.REFUSED, quantity=quantity_of(problem).column, why=_BEYOND)
+    if FOUR_BAR not in problem.mechanism:
+        return beyond
+    scaled = ScaledProblem.of(problem.for_kind(FOUR_BAR), constraints)
+    with stopping(asked):
+        bounds = bounds_of(scaled, proving, at_least)
+    if bounds is None:
+        return beyond
+    return proof_of(scaled.problem, bounds, _known(scaled, bounds), gap)
+
+
+def _known(scaled: ScaledProblem, bounds: Bounds) -> float | None:
+    """Transmission angle of the design that was found, deg, where it meets all that is asked."""
+    if bounds.found is None:
+        return None
+    linkage = scaled.linkages(bounds.found.points[0], bounds.found.assembly[0])
+    problem = scaled.problem
+    accepted = verify(linkage, problem.task, problem.requirements, scaled.constraints, problem=problem).ok
+    return float(np.degrees(bounds.lower)) if accepted else None
