@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 
 ROUNDING = 1e-14  # share of the magnitude of a product: some 90 units of the last place
 
@@ -23,6 +23,9 @@ class Form:
     s: FloatArray
     t: FloatArray
     rest: FloatArray
+
+    def __getitem__(self, index: IntArray | BoolArray) -> Form:
+        return Form(self.centre[index], self.s[index], self.t[index], self.rest[index])
 
     @property
     def slope(self) -> FloatArray:
@@ -47,6 +50,10 @@ class Form:
 
     def __sub__(self, other: Form) -> Form:
         return Form(self.centre - other.centre, self.s - other.s, self.t - other.t, self.rest + other.rest)
+
+    def where(self, which: BoolArray) -> Form:
+        """The same where it counts; infinite elsewhere, so that no condition on it fails there."""
+        return Form(np.where(which, self.centre, np.inf), self.s, self.t, self.rest)
 
     def times(self, factor: float | FloatArray) -> Form:
         """Multiplied by numbers."""

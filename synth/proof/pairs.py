@@ -41,31 +41,31 @@ class Pairs:
         return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
 
-def bounded(
-    asked: Asked, pieces: Pieces, driver: IntArray, driven: IntArray, least: float | FloatArray
-) -> Pairs:
+def bounded(asked: Asked, pieces: Pieces, driver: IntArray, driven: IntArray, least: float) -> Pairs:
     """The pairs that may hold a linkage with a transmission angle of more than `least`, rad."""
-    least = np.broadcast_to(np.asarray(least, dtype=np.float64), driver.shape)
+    rows, bound = rows_left(asked, pieces, driver, driven, np.full(len(driver), least))
+    return Pairs(driver[rows], driven[rows], bound)
+
+
+def rows_left(
+    asked: Asked, pieces: Pieces, driver: IntArray, driven: IntArray, least: FloatArray
+) -> tuple[IntArray, FloatArray]:
+    """Which pairs may hold a linkage that transmits more than `least`, rad, and their bounds."""
     one = Side.of(pieces, driver, is_driver=True)
     other = Side.of(pieces, driven, is_driver=False)
     lengths = _lengths(one, other)
-    keep = np.flatnonzero(_lengths_allowed(asked, lengths) & _directed(asked, one, other))
-    if len(keep) < len(driver):
-        driver, driven, one, other, least = driver[keep], driven[keep], one[keep], other[keep], least[keep]
-        lengths = tuple(Form(*(getattr(form, name)[keep] for name in _PARTS)) for form in lengths)  # type: ignore[assignment]
-    pair = _Pair(asked, one, other, lengths, pieces.sense[driver])
+    first = np.flatnonzero(_lengths_allowed(asked, lengths) & _directed(asked, one, other))
+    if len(first) < len(driver):
+        one, other, least = one[first], other[first], least[first]
+        lengths = tuple(form[first] for form in lengths)
+    pair = _Pair(asked, one, other, lengths, pieces.sense[driver[first]])
     bound, conditions = pair.bound(least)
-    keep = np.flatnonzero(bound > least)
-    kept = keep[~nothing_left([_rows(each, keep) for each in conditions])]
-    return Pairs(driver[kept], driven[kept], bound[kept])
+    second = np.flatnonzero(bound > least)
+    second = second[~nothing_left([each[second] for each in conditions])]
+    return first[second], bound[second]
 
 
-_PARTS = ("centre", "s", "t", "rest")
-_Lengths = tuple[Form, Form, Form, Form]
-
-
-def _rows(form: Form, index: IntArray) -> Form:
-    return Form(*(getattr(form, name)[index] for name in _PARTS))
+_Lengths = tuple[Form, ...]  # r1, r2, r3, r4
 
 
 def _lengths(one: Side, other: Side) -> _Lengths:
@@ -81,23 +81,26 @@ def _lengths_allowed(asked: Asked, lengths: _Lengths) -> BoolArray:
         keep &= (high >= least) & (low <= most)
     keep &= np.maximum.reduce(lows) <= asked.ratio * np.minimum.reduce(highs)
     if asked.turns:
-        total, first, second = _turning(asked, lengths)
+        total, by_sign = _turning(asked, lengths)
         keep &= total.sup >= 0
-        keep &= np.logical_or.reduce(
-            [((first if sign > 0 else second)[0].sup >= 0) & ((first if sign > 0 else second)[1].sup >= 0)
-             for sign in asked.longer_ground]
-        )  # fmt: skip
+        keep &= np.logical_or.reduce([_possible(by_sign[sign]) for sign in asked.longer_ground])
     return keep
 
 
-def _turning(asked: Asked, lengths: _Lengths) -> tuple[Form, tuple[Form, Form], tuple[Form, Form]]:
-    """What has to be positive for a full turn: one form, and two for either sign of r1 - r2."""
+def _turning(asked: Asked, lengths: _Lengths) -> tuple[Form, dict[int, tuple[Form, Form]]]:
+    """What has to be positive for a full turn: one form, and two by the sign of r1 - r2."""
     r1, r2, r3, r4 = lengths
     margin = (r1 + r2 + r3 + r4).times(asked.margin)
     ground, coupler = r1 - r2, r3 - r4
     longer = ground + coupler - margin, ground - coupler - margin
     shorter = coupler - ground - margin, ground.times(-1.0) - coupler - margin
-    return r3 + r4 - r1 - r2 - margin, longer, shorter
+    return r3 + r4 - r1 - r2 - margin, {1: longer, -1: shorter}
+
+
+def _possible(forms: tuple[Form, Form]) -> BoolArray:
+    """Where both may be positive."""
+    both: BoolArray = (forms[0].sup >= 0) & (forms[1].sup >= 0)
+    return both
 
 
 def _directed(asked: Asked, one: Side, other: Side) -> BoolArray:
@@ -145,7 +148,7 @@ class _Pair:
             at_most = np.arccos(np.clip(cosine, -1.0, 1.0))
             bound = np.where(where, np.minimum(bound, at_most), bound)
             slack = outer + product.times(2 * np.cos(least))
-            forms.append(Form(np.where(where, slack.centre, np.inf), slack.s, slack.t, slack.rest))
+            forms.append(slack.where(where))
         limits = self.asked.r1, self.asked.driver.length, self.asked.r3, self.asked.driven.length
         for length, (low, high) in zip(self.lengths, limits, strict=True):
             forms.append(Form(length.centre - low, length.s, length.t, length.rest))
@@ -156,17 +159,13 @@ class _Pair:
 
     def _turning_forms(self) -> list[Form]:
         """What has to be positive for a full turn, where only one sign of r1 - r2 is possible."""
-        total, longer, shorter = _turning(self.asked, self.lengths)
-        forms = [total]
-        signs = {1: longer, -1: shorter}
-        can = {sign: np.zeros(len(self.sense), dtype=bool) for sign in (1, -1)}
-        for sign in self.asked.longer_ground:
-            can[sign] = (signs[sign][0].sup >= 0) & (signs[sign][1].sup >= 0)
-        for sign, pair in signs.items():
-            forms += [
-                Form(np.where(can[-sign], np.inf, form.centre), form.s, form.t, form.rest) for form in pair
-            ]
-        return forms
+        total, by_sign = _turning(self.asked, self.lengths)
+        nowhere = np.zeros(len(self.sense), dtype=bool)
+        can = {
+            sign: _possible(by_sign[sign]) if sign in self.asked.longer_ground else nowhere
+            for sign in by_sign
+        }
+        return [total, *(form.where(~can[-sign]) for sign, pair in by_sign.items() for form in pair)]
 
     def _at_poses(self, product: Form, sine: FloatArray) -> tuple[FloatArray, list[Form]]:
         """Bounds by the sine of the transmission angle at the poses; of one sign on one branch."""
@@ -185,10 +184,7 @@ class _Pair:
         best = np.maximum(left_worst, right_worst)
         both = np.minimum(left_worst, right_worst) > sine
         sign = np.where(left_worst >= right_worst, 1.0, -1.0)
-        forms = []
-        for area in areas:
-            slack = area.times(sign) - product.times(sine)
-            forms.append(Form(np.where(both, np.inf, slack.centre), slack.s, slack.t, slack.rest))
+        forms = [(area.times(sign) - product.times(sine)).where(~both) for area in areas]
         return np.arcsin(np.clip(best, -1.0, 1.0)), forms
 
     def _passed(self) -> tuple[BoolArray, BoolArray]:

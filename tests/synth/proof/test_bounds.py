@@ -1,0 +1,210 @@
+"""Bounds of the best: published figures, planted limits, budgets, interruptions, what is refused."""
+
+from dataclasses import replace
+from itertools import count
+
+import numpy as np
+import pytest
+
+from grashof import load
+from grashof.analysis.judge.planted import planted_motion
+from grashof.problems import Box, MotionTask, Objective, Problem, ProblemError, Requirements
+from grashof.synth import Claim, prove
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.proof.bounds import Bounds, Proving, bounds_of
+from grashof.synth.theory.stopping import stopping
+
+
+def luggage(**requirements: object) -> Problem:
+    problem = load("luggage")
+    wanted = {"transmission_min_deg": 0.0, **requirements}
+    return replace(problem, requirements=replace(problem.requirements, **wanted))
+
+
+def bounds(problem: Problem, **options: float) -> Bounds:
+    made = bounds_of(ScaledProblem.of(problem), Proving(**options))  # type: ignore[arg-type]
+    assert made is not None
+    return made
+
+
+def with_links(longest: float, **requirements: object) -> Problem:
+    return luggage(link_length=(0.3, longest), coupler_arms=(0.3, longest), **requirements)
+
+
+# Best transmission angles, deg, by an independent prover and by search (luggage, and with other limits).
+BEST = [
+    (luggage(), 27.33255),
+    (with_links(5, transmission_over="cycle"), 13.4412),
+    (with_links(8, transmission_over="cycle"), 22.6984),
+    (with_links(12, transmission_over="cycle"), 30.1742),
+    (with_links(5, rotatability="any"), 23.7524),
+]
+
+
+@pytest.mark.parametrize(
+    ("problem", "best"), BEST, ids=lambda each: "" if isinstance(each, Problem) else each
+)
+def test_bounds_close_about_the_best_known(problem: Problem, best: float) -> None:
+    made = bounds(problem)
+    lower, upper = np.degrees(made.lower), np.degrees(made.upper)
+    assert made.closed
+    assert lower <= best + 5e-5
+    assert best - 5e-5 <= upper <= lower + 0.01 + 1e-9
+
+
+def test_a_smaller_gap_comes_closer() -> None:
+    made = bounds(luggage(), gap=0.001)
+    assert np.degrees(made.upper) == pytest.approx(27.3330, abs=6e-4)
+    assert 27.33254 <= np.degrees(made.upper) <= np.degrees(made.lower) + 0.001 + 1e-9
+
+
+def planted_limits(seed: int, inside: float) -> Problem:
+    """A planted task with limits that hold the planted linkage by a margin, sizes."""
+    rng = np.random.default_rng(seed)
+    task, linkage = planted_motion(rng, poses=4)
+    margin = inside * task.size
+    lengths = {
+        name: (float(length) - 0.02 * task.size, float(length) + margin)
+        for name, length in zip(("r1", "r2", "r3", "r4"), linkage.lengths, strict=True)
+    }
+    boxes = {
+        name: Box(
+            (float(x) - 0.02 * task.size, float(x) + margin), (float(y) - margin, float(y) + 0.02 * task.size)
+        )
+        for name, (x, y) in (("o2", linkage.o2), ("o4", linkage.o4))
+    }
+    which = {0: lengths, 1: boxes, 2: {**lengths, **boxes}}[seed % 3]
+    return Problem(task=task, requirements=Requirements(rotatability="any", **which))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_limits_that_just_hold_a_linkage_have_it(seed: int) -> None:
+    made = bounds(planted_limits(seed, inside=1e-6))
+    assert not made.none
+    assert made.closed
+    assert made.found is not None
+
+
+@pytest.mark.study
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(12, 200))
+def test_limits_that_just_hold_a_linkage_have_it_too(seed: int) -> None:
+    made = bounds(planted_limits(seed, inside=1e-6))
+    assert not made.none
+    assert made.closed
+
+
+def test_none_is_proven_where_a_length_is_out_of_reach() -> None:
+    made = bounds(luggage(link_length=(0.3, 2.0), coupler_arms=(0.3, 2.0)))
+    assert made.none
+    assert np.degrees(made.upper) == pytest.approx(0.01)
+
+
+@pytest.mark.parametrize(("at_least", "claim"), [(28.0, Claim.NONE), (27.35, Claim.NONE)])
+def test_more_than_the_best_is_proven_to_be_impossible(at_least: float, claim: Claim) -> None:
+    proof = prove(load("luggage"), at_least=at_least)
+    assert (proof.claim, proof.lower) == (claim, None)
+    assert proof.upper == pytest.approx(at_least)
+
+
+def test_a_design_decides_that_so_much_is_possible() -> None:
+    proof = prove(load("luggage"), at_least=27.0)
+    assert proof.lower is not None
+    assert proof.lower >= 27.0
+
+
+def test_a_transmission_angle_that_is_demanded_bounds_none() -> None:
+    problem = luggage(transmission_min_deg=28.0)
+    proof = prove(problem)
+    assert (proof.claim, proof.complete, proof.lower) == (Claim.NONE, True, None)
+    assert proof.upper == pytest.approx(28.0)
+
+
+def test_a_budget_leaves_a_bound_that_holds() -> None:
+    whole = bounds(luggage())
+    for most in (1, 1000, 2000, 2800):
+        made = bounds(luggage(), most_pairs=most)
+        assert not made.closed
+        assert made.why == f"the budget of {most} pairs ended"
+        assert made.upper >= whole.lower
+        assert made.pairs <= most
+
+
+def test_a_search_that_is_stopped_leaves_a_bound_that_holds() -> None:
+    best = bounds(luggage()).lower
+    for most in (0, 1, 3, 5):
+        asked = count()
+        with stopping(lambda: next(asked) >= most):  # noqa: B023  (asked within the loop)
+            made = bounds(luggage())
+        assert not made.closed
+        assert made.why == "it was stopped"
+        assert made.upper >= best
+
+
+def test_requirements_without_a_form_leave_a_bound() -> None:
+    problem = luggage(size=(0.0, 12.5))
+    proof = prove(problem)
+    assert proof.left_out == ("size",)
+    assert proof.claim is Claim.BOUND
+    assert proof.upper == pytest.approx(27.34, abs=0.01)
+    wanted = replace(problem.requirements, link_length=(0.3, 2.0), coupler_arms=(0.3, 2.0))
+    never = prove(replace(problem, requirements=wanted))
+    assert never.claim is Claim.NONE
+
+
+def test_a_users_constraint_is_left_out() -> None:
+    proof = prove(load("luggage"), constraints=[lambda design: design.r1 - design.r3])
+    assert proof.left_out == ("constraints",)
+    assert proof.upper == pytest.approx(27.34, abs=0.01)
+
+
+ROTATION = MotionTask.from_degrees([(np.cos(t), np.sin(t), np.degrees(t)) for t in (0.0, 0.4, 0.9, 1.7)])
+TRANSLATIONS = MotionTask.from_degrees([(0, 0, 0), (1, 0, 0), (2, 1, 0), (1, 3, 0)])
+
+
+@pytest.mark.parametrize("task", [ROTATION, TRANSLATIONS], ids=["rotation", "translations"])
+def test_a_plane_of_dyads_is_refused(task: MotionTask) -> None:
+    made = bounds(Problem(task=task))
+    assert made.refused
+    assert "plane of dyads" in made.why
+
+
+def test_other_objectives_are_refused() -> None:
+    problem = replace(load("luggage"), objective=Objective(transmission=1.0, compactness=0.2))
+    proof = prove(problem)
+    assert proof.claim is Claim.REFUSED
+    assert proof.why == "the objective has no forms; transmission alone has"
+    assert proof.upper is None
+
+
+def test_other_tasks_are_refused_in_words() -> None:
+    proof = prove(load("straight-line"))
+    assert proof.claim is Claim.REFUSED
+    assert proof.why.startswith("there are proofs of four whole poses")
+
+
+@pytest.mark.parametrize("at_least", [-1.0, 91.0, np.nan])
+def test_an_angle_that_cannot_be_is_refused(at_least: float) -> None:
+    with pytest.raises(ProblemError, match="at_least"):
+        prove(load("luggage"), at_least=at_least)
+
+
+@pytest.mark.parametrize("gap", [0.0, -1.0, 100.0, np.inf])
+def test_a_gap_that_cannot_be_is_refused(gap: float) -> None:
+    with pytest.raises(ProblemError, match="gap"):
+        prove(load("luggage"), gap=gap)
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1e6])
+def test_scale_and_place_change_nothing(scale: float) -> None:
+    task = load("luggage").task
+    assert isinstance(task, MotionTask)
+    rows = np.column_stack([task.positions * scale + 3 * scale, np.degrees(task.angles)])
+    lengths = (0.3 * scale, 8 * scale)
+    far = Problem(
+        task=MotionTask.from_degrees(rows),
+        requirements=Requirements(link_length=lengths, coupler_arms=lengths),
+    )
+    made = bounds(far)
+    assert made.closed
+    assert np.degrees(made.lower) == pytest.approx(27.33, abs=0.01)

@@ -1,0 +1,137 @@
+"""Pieces hold the curve: every point of it, with its centre, and hardly more."""
+
+import numpy as np
+import pytest
+
+from grashof import load
+from grashof.analysis.judge.planted import planted_motion
+from grashof.problems import Problem
+from grashof.problems.values.arrays import ComplexArray
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.proof.asked import Asked
+from grashof.synth.proof.centres import centres_of
+from grashof.synth.proof.curve import Curve
+from grashof.synth.proof.pieces import Tubes, contracted
+from grashof.synth.theory.burmester import Displacements, Dyads, centre_points, circle_points_on_lines, polish
+
+PROBLEMS = [
+    load("luggage"),
+    *(Problem(task=planted_motion(np.random.default_rng(seed), poses=4)[0]) for seed in range(3)),
+]
+
+
+def asked(problem: Problem) -> Asked:
+    return Asked.of(ScaledProblem.of(problem))
+
+
+def motion_of(curve: Curve) -> Displacements:
+    return Displacements(curve.rotation, curve.shift)
+
+
+def on_curve(curve: Curve, reach: float, lines: int) -> Dyads:
+    """Dyads on many lines, by the roots of cubics, polished."""
+    motion = motion_of(curve)
+    places = np.linspace(-reach, reach, lines)
+    points = np.concatenate([
+        circle_points_on_lines(motion, places.astype(np.complex128), 1j),
+        circle_points_on_lines(motion, 1j * places, 1.0),
+    ])  # fmt: skip
+    points = points[np.abs(points) < reach]
+    centres = centre_points(motion, points)
+    near = np.isfinite(centres) & (np.abs(centres) < 50)
+    return polish(motion, Dyads(points[near], centres[near]))
+
+
+@pytest.mark.parametrize("problem", PROBLEMS, ids=lambda one: one.name)
+def test_polynomial_vanishes_where_four_places_are_on_a_circle(problem: Problem) -> None:
+    curve = asked(problem).curve
+    dyads = on_curve(curve, 4.0, 60)
+    taylor = curve.about(dyads.moving)
+    assert len(dyads) > 50
+    slope = np.maximum(np.abs(taylor.linear), 1e-3) * (1 + np.abs(dyads.moving))
+    assert np.all(np.abs(taylor.value) <= 1e-9 * slope)
+
+
+@pytest.mark.parametrize("problem", PROBLEMS[:2], ids=lambda one: one.name)
+def test_taylor_series_is_exact(problem: Problem) -> None:
+    curve, rng = asked(problem).curve, np.random.default_rng(0)
+    q, w = (rng.normal(size=200) + 1j * rng.normal(size=200) for _ in range(2))
+    turn = np.exp(1j * rng.uniform(0, 2 * np.pi, 200))
+    taylor = curve.about(q).turned(turn)
+    square = np.abs(w) ** 2
+    value = 2 * (taylor.cubic * w).real * square + 2 * (taylor.square * w**2).real + taylor.both * square
+    value = value + 2 * (taylor.linear * w).real + taylor.value
+    assert np.allclose(value, curve.about(q + turn * w).value, rtol=0, atol=1e-11)
+
+
+def inside(tubes: Tubes, k: int, points: ComplexArray) -> tuple[np.ndarray, np.ndarray]:
+    """The parameter of points in a tube, and the share of its rest that they use."""
+    moved = (points - tubes.middle[k]) * np.conj(tubes.direction[k])
+    s = moved.real / tubes.half[k]
+    off = np.abs(moved.imag - tubes.tilt[k] * s - tubes.bow[k] * (s * s - 0.5))
+    return s, off / tubes.rest[k]
+
+
+@pytest.mark.parametrize("size", [0.4, 0.1, 0.02])
+@pytest.mark.parametrize("problem", PROBLEMS, ids=lambda one: one.name)
+def test_tubes_and_centres_hold_the_points_of_their_rectangles(problem: Problem, size: float) -> None:
+    about = asked(problem)
+    curve, rng = about.curve, np.random.default_rng(1)
+    dyads = on_curve(curve, 4.0, 400)
+    picked = rng.choice(len(dyads), 40)
+    middle = dyads.moving[picked] + size * rng.uniform(-1, 1, 40) * np.exp(1j * rng.uniform(0, 7, 40))
+    direction = np.exp(1j * rng.uniform(0, 2 * np.pi, 40))
+    side = size * rng.uniform(0.2, 1, 40)
+    rectangles = Tubes.rectangles(middle, direction, np.full(40, size), side)
+    tubes, filled = contracted(curve, rectangles)
+    centres = centres_of(curve, tubes, about.longest)
+    most = most_centre = 0.0
+    for k in range(40):
+        moved = (dyads.moving - middle[k]) * np.conj(direction[k])
+        rows = np.flatnonzero((np.abs(moved.real) <= size) & (np.abs(moved.imag) <= side[k]))
+        rows = rows[np.abs(dyads.moving[rows] - dyads.ground[rows]) <= about.longest]
+        assert filled[k] or not len(rows)
+        s, used = inside(tubes, k, dyads.moving[rows])
+        assert np.all(np.abs(s) <= 1 + 1e-9)
+        assert np.all(used <= 1 + 1e-6)
+        off = np.abs(dyads.ground[rows] - centres.middle[k] - centres.along[k] * s) / centres.rest[k]
+        assert np.all(off <= 1 + 1e-6)
+        most, most_centre = max(most, *used, 0.0), max(most_centre, *off, 0.0)
+    if size < 0.4:
+        assert most > 0.2  # the bounds are near what they bound
+        assert most_centre > 0.05
+
+
+@pytest.mark.parametrize("problem", PROBLEMS, ids=lambda one: one.name)
+def test_halves_hold_what_a_tube_holds(problem: Problem) -> None:
+    about, rng = asked(problem), np.random.default_rng(2)
+    dyads = on_curve(about.curve, 3.0, 100)
+    middle = dyads.moving[rng.choice(len(dyads), 60)]
+    size = np.full(60, 0.2)
+    tubes, _ = contracted(about.curve, Tubes.rectangles(middle, np.ones(60, complex), size, size))
+    s, e = rng.uniform(-1, 1, (2, 60))
+    across = tubes.tilt * s + tubes.bow * (s * s - 0.5) + e * tubes.rest
+    points = tubes.middle + tubes.direction * (tubes.half * s + 1j * across)
+    held = np.zeros(60, dtype=bool)
+    for half in (tubes.halves[:60], tubes.halves[60:]):
+        moved = (points - half.middle) * half.direction.conj()
+        held |= (np.abs(moved.real) <= half.half) & (np.abs(moved.imag) <= half.side)
+    assert held.all()
+
+
+def test_contracted_tubes_shrink_with_the_square_of_their_length() -> None:
+    about = asked(PROBLEMS[0])
+    dyads = on_curve(about.curve, 3.0, 40)
+    dyads = dyads[np.abs(dyads.moving - dyads.ground) < 3]
+    rest = []
+    for size in (0.04, 0.02, 0.01):
+        count = len(dyads)
+        whole = np.full(count, size)
+        around = Tubes.rectangles(dyads.moving, np.ones(count, complex), whole, whole)
+        tubes, _ = contracted(about.curve, around)
+        rest.append((np.median(tubes.rest), np.median(centres_of(about.curve, tubes, about.longest).rest)))
+    (first, first_centre), (second, second_centre), (third, third_centre) = rest
+    assert first / second > 3
+    assert second / third > 3  # without the parabola, of third order
+    assert 3 < second_centre / third_centre < 9
+    assert first_centre > second_centre

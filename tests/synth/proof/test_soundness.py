@@ -1,0 +1,219 @@
+"""Soundness: linkages that meet a problem are in its pieces, and no bound is below what they transmit."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+from grashof import load
+from grashof.analysis.judge.planted import planted_motion
+from grashof.problems import Box, MotionTask, Problem, Requirements
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.proof.asked import Asked
+from grashof.synth.proof.pairs import rows_left
+from grashof.synth.proof.table import Table
+from grashof.synth.starts.dyad_pairs import judged_pairs, screen
+from grashof.synth.theory.burmester import Dyads, polish, trace_four_pose_curves
+
+JUST_BELOW = 1e-7  # rad
+NOWHERE = -1
+
+
+def luggage(**requirements: object) -> Problem:
+    problem = load("luggage")
+    wanted = {"transmission_min_deg": 0.0, **requirements}
+    return replace(problem, requirements=replace(problem.requirements, **wanted))
+
+
+def with_links(longest: float, **requirements: object) -> Problem:
+    return luggage(link_length=(0.3, longest), coupler_arms=(0.3, longest), **requirements)
+
+
+def random_poses(seed: int, **requirements: object) -> Problem:
+    rng = np.random.default_rng(seed)
+    poses = np.column_stack([rng.uniform(0, 1, (4, 2)), rng.uniform(-180, 180, 4)])
+    return Problem(task=MotionTask.from_degrees(poses), requirements=Requirements(**requirements))  # type: ignore[arg-type]
+
+
+WITHIN = {"o2": Box((-4, 4), (-5, 5)), "b": Box((-3, 9), (-8, 8)), "a_on_body": Box((-6, 6), (-6, 6))}
+TURNED = {"driver_sense": "ccw", "driver_rotation_deg": (20, 120), "ground_angle_deg": (-60, 90)}
+
+
+@dataclass(frozen=True)
+class Designs:
+    """Dyads of linkages in the frame of a proof, and the transmission angle that counts, rad."""
+
+    a: ComplexArray
+    o2: ComplexArray
+    b: ComplexArray
+    o4: ComplexArray
+    transmission: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.a)
+
+    def __getitem__(self, index: IntArray) -> "Designs":
+        every = (self.a, self.o2, self.b, self.o4, self.transmission)
+        return Designs(*(each[index] for each in every))
+
+
+def feasible_designs(problem: Problem, most: int, seed: int = 0) -> Designs:
+    """Linkages that meet a problem, from traced curves; so many at most, drawn at random."""
+    scaled = ScaledProblem.of(problem)
+    motion, body, wanted = scaled.motion, complex(scaled.targets[0]), scaled.wanted
+    assert motion is not None
+    longest = max(limits[1] for limits in wanted.link_lengths)
+    reach = min(1 + 1.2 * ((wanted.coupler_arms or (0, 30))[1] + longest), 200.0)
+    found = screen(motion, body, trace_four_pose_curves(motion, reach, 300, 0.02), wanted, 400_000)
+    rng = np.random.default_rng(seed)
+    if len(found) > most:
+        found = found[np.sort(rng.choice(len(found), most, replace=False))]
+    o2, o4, a, b, _ = found.points.T
+    driver, driven = polish(motion, Dyads(a, o2), 3), polish(motion, Dyads(b, o4), 3)
+    judged = judged_pairs(motion, body, driver, driven, wanted)
+    good = judged.feasible & (judged.transmission > Asked.of(scaled).floor + 2 * JUST_BELOW)
+    dyads = (driver.moving, driver.ground, driven.moving, driven.ground)
+    return Designs(*(points[good] - body for points in dyads), judged.transmission[good])
+
+
+def holds(table: Table, which: IntArray, z: ComplexArray, c: ComplexArray) -> BoolArray:
+    """Whether pieces hold dyads, entry by entry: by the definition of tubes alone."""
+    tubes, centres = table.pieces.tubes[which], table.pieces.centres[which]
+    moved = (z - tubes.middle) * tubes.direction.conj()
+    s = moved.real / np.maximum(tubes.half, 1e-300)
+    off = np.abs(moved.imag - tubes.tilt * s - tubes.bow * (s * s - 0.5))
+    inside = (np.abs(s) <= 1 + 1e-9) & (off <= tubes.rest + 1e-13)
+    apart = np.abs(c - centres.middle - centres.along * np.clip(s, -1, 1))
+    return inside & (apart <= centres.rest + 1e-12 * (1 + np.abs(c)))
+
+
+def pieces_of(table: Table, z: ComplexArray, c: ComplexArray, role: BoolArray) -> IntArray:
+    """The first piece of a cover that holds each dyad; `NOWHERE` where none does."""
+    found = np.full(len(z), NOWHERE)
+    for piece in np.flatnonzero(role)[::-1]:
+        found[holds(table, np.full(len(z), piece), z, c)] = piece
+    return found
+
+
+def halves_of(table: Table, which: IntArray, z: ComplexArray, c: ComplexArray) -> IntArray:
+    """The half of each piece that holds each dyad."""
+    halves, found = table.halve(which), np.full(len(z), NOWHERE)
+    for half in halves.T:
+        rows = np.flatnonzero(half >= 0)
+        inside = rows[holds(table, half[rows], z[rows], c[rows])]
+        found[inside] = half[inside]
+    return found
+
+
+@dataclass(frozen=True)
+class Descent:
+    """What became of designs: how many were in no piece, or excluded, and how near a bound came, rad."""
+
+    lost: int
+    excluded: int
+    nearest: float
+
+
+def followed(problem: Problem, designs: Designs, levels: int = 8) -> Descent:
+    """Follow designs down halves of pieces, each with its own transmission angle as the threshold."""
+    asked = Asked.of(ScaledProblem.of(problem))
+    table = Table.covering(asked)
+    a, o2, b, o4, least = designs.a, designs.o2, designs.b, designs.o4, designs.transmission
+    driver = pieces_of(table, a, o2, table.pieces.driver)
+    driven = pieces_of(table, b, o4, table.pieces.driven)
+    lost = excluded = 0
+    nearest = np.inf
+    for _ in range(levels):
+        there = (driver >= 0) & (driven >= 0)
+        lost += int((~there).sum())
+        a, o2, b, o4, least = (each[there] for each in (a, o2, b, o4, least))
+        driver, driven = driver[there], driven[there]
+        rows, bound = rows_left(asked, table.pieces, driver, driven, least - JUST_BELOW)
+        excluded += len(driver) - len(rows)
+        nearest = min(nearest, float((bound - least[rows]).min(initial=np.inf)))
+        driver, driven = halves_of(table, driver, a, o2), halves_of(table, driven, b, o4)
+    return Descent(lost, excluded, nearest)
+
+
+CASES = {
+    "luggage": load("luggage"),
+    "short links over the turn": with_links(5, transmission_over="cycle"),
+    "long links, crank-rocker": with_links(12, rotatability="crank-rocker"),
+    "any rotatability": with_links(5, rotatability="any"),
+    "any order": luggage(order=False),
+    "any order and branch": luggage(order=False, same_branch=False),
+    "boxes": luggage(**WITHIN),
+    "sense, rotation, ground angle": luggage(**TURNED),
+    **{f"random {seed}": random_poses(seed, rotatability="any") for seed in (104, 105)},
+    **{
+        f"any order, random {seed}": random_poses(seed, rotatability="any", order=False)
+        for seed in (100, 102)
+    },
+    "planted": Problem(task=planted_motion(np.random.default_rng(2), poses=4)[0]),
+    "planted, over the turn": Problem(
+        task=planted_motion(np.random.default_rng(4), poses=4)[0],
+        requirements=Requirements(transmission_over="cycle"),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_no_linkage_is_lost_or_bounded_too_low(name: str) -> None:
+    problem = CASES[name]
+    designs = feasible_designs(problem, 400)
+    assert len(designs) > 10
+    descent = followed(problem, designs)
+    assert (descent.lost, descent.excluded) == (0, 0)
+    assert descent.nearest < np.radians(0.1)  # sharp: a bound that is 0.1 deg too low would show
+
+
+def outside_the_arc(designs: Designs, rotation: complex, shift: complex) -> FloatArray:
+    """How far A is from its places on the ground line when it is first or last at a pose, rad, at least."""
+    line = np.angle(designs.o4 - designs.o2)
+    ends = (np.angle(place - designs.o2) for place in (designs.a, rotation * designs.a + shift))
+    off: FloatArray = np.min([np.abs((end - line + np.pi / 2) % np.pi - np.pi / 2) for end in ends], axis=0)
+    return off
+
+
+@pytest.mark.parametrize("seed", [2, 6, 8])
+def test_no_linkage_is_lost_that_ends_its_motion_near_the_ground_line(seed: int) -> None:
+    # Where A almost passes the ground line, its transmission angle there must not count.
+    task = planted_motion(np.random.default_rng(seed), poses=4)[0]
+    problem = Problem(task=task, requirements=Requirements(rotatability="any"))
+    curve = Asked.of(ScaledProblem.of(problem)).curve
+    designs = feasible_designs(problem, 40_000)
+    off = outside_the_arc(designs, complex(curve.rotation[-1]), complex(curve.shift[-1]))
+    assert np.sort(off)[399] < np.radians(0.5)
+    descent = followed(problem, designs[np.argsort(off)[:400]], levels=12)
+    assert (descent.lost, descent.excluded) == (0, 0)
+
+
+def test_no_linkage_is_lost_whose_angles_are_just_within_limits() -> None:
+    designs = feasible_designs(luggage(driver_sense="ccw"), 12)
+    curve = Asked.of(ScaledProblem.of(luggage())).curve
+    assert len(designs) > 5
+    for k in range(len(designs)):
+        one = designs[np.array([k])]
+        start = float(np.degrees(np.angle(one.a - one.o2)[0]))
+        ground = float(np.degrees(np.angle(one.o4 - one.o2)[0]))
+        last = curve.rotation[-1] * one.a + curve.shift[-1]
+        turned = float(np.degrees(np.angle((last - one.o2) / (one.a - one.o2))[0])) % 360
+        for limits in (
+            {"theta2_start_deg": start},
+            {"ground_angle_deg": ground},
+            {"ground_angle_deg": (ground, ground + 30)},
+            {"driver_sense": "ccw", "driver_rotation_deg": (turned - 1e-6, turned + 1e-6)},
+            {"driver_sense": "ccw", "driver_rotation_deg": (0, turned + 1e-6)},
+        ):
+            descent = followed(luggage(**limits), one, levels=12)
+            assert (descent.lost, descent.excluded) == (0, 0), limits
+
+
+@pytest.mark.study
+@pytest.mark.slow
+@pytest.mark.parametrize("name", CASES)
+def test_no_linkage_of_many_is_lost_or_bounded_too_low(name: str) -> None:
+    problem = CASES[name]
+    descent = followed(problem, feasible_designs(problem, 8000, seed=1))
+    assert (descent.lost, descent.excluded) == (0, 0)
