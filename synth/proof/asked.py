@@ -126,7 +126,8 @@ class Asked:
             r3=r3,
             ratio=wanted.link_ratio_max * (1 + SLACK),
             ordered=wanted.order,
-            one_branch=wanted.same_branch,
+            # Without a motion on one branch nothing is transmitted over the task.
+            one_branch=wanted.same_branch or not over_turn,
             turns=turns,
             margin=margin - SLACK,
             longer_ground=_SIGNS.get(wanted.rotatability, (1, -1)),
@@ -211,6 +212,17 @@ def with_forms(scaled: ScaledProblem) -> ScaledProblem:
     return ScaledProblem.of(problem)
 
 
+def _transmits_nothing(scaled: ScaledProblem) -> str:
+    """Which requirement lets a design do with a transmission angle of zero; empty where none does."""
+    wanted = scaled.wanted
+    over_turn = wanted.transmission_over is TransmissionOver.CYCLE
+    if not wanted.same_branch and not over_turn and not scaled.closed:
+        return "same_branch = false"
+    if over_turn and wanted.rotatability is Rotatability.ANY:
+        return 'rotatability = "any", with the transmission angle over the turn,'
+    return ""
+
+
 def refusal(scaled: ScaledProblem) -> str | None:
     """Why there is no proof; empty where there can be one, None where the question does not arise.
 
@@ -227,6 +239,8 @@ def refusal(scaled: ScaledProblem) -> str | None:
         return "the objective has no forms; transmission alone has"
     if problem.driver is not None:
         return "a cylinder drives it, through dead positions of link 2, perhaps"
+    if (without := _transmits_nothing(scaled)) and not scaled.wanted.transmission_min_deg:
+        return f"{without} allows designs that transmit nothing"
     for i in range(POSES):
         for j in range(i):
             apart = abs(motion.rotation[i] - motion.rotation[j]) + abs(scaled.targets[i] - scaled.targets[j])

@@ -20,6 +20,7 @@ from grashof.synth.programme.screening import (
 )
 from grashof.synth.programme.start import UNSMOOTH, Start
 from grashof.synth.programme.whole_screening import fully_screened
+from grashof.synth.proof.bounds import Bounds, bounds_of
 from grashof.synth.results.relaxed_limits import (
     Relaxation,
     fixes_angle,
@@ -49,7 +50,8 @@ def relaxations(
     -----
     Without the requirement a search finds linkages that meet all others; from the nearest of them the
     elastic programme makes what is missed of it as small as it can. Fixed numbers of draws and solves
-    bound the time, so that the seed decides.
+    bound the time, so that the seed decides. Where it is proven that even without the requirement there
+    is no design, nothing is searched.
     """
     found = list[Relaxation]()
     for key in limiting(scaled.problem, scaled.constraints):
@@ -59,11 +61,22 @@ def relaxations(
             loose = _loose(scaled, key)
         except ProblemError:  # something else that is asked needs this requirement
             continue
+        bounds = bounds_of(loose, run.proving)
+        if bounds is not None and bounds.none:
+            continue
         rejected = [one for one in known if {d.requirement for d in one.verdict.defects} == {key}]
         best = _least(scaled, key, _candidates(scaled, loose, key, rng, run) + rejected)
         if best is not None:
-            found.append(_finished(scaled, best, run))
+            found.append(_with_best(_finished(scaled, best, run), bounds))
     return sorted(found, key=lambda one: (one.miss, one.key))
+
+
+def _with_best(relaxed: Relaxation, bounds: Bounds | None) -> Relaxation:
+    """The same with what the best design without the requirement transmits, where that is proven."""
+    if bounds is None or not bounds.closed or bounds.left_out:
+        return relaxed
+    best = f"without {relaxed.key} {np.degrees(bounds.upper):.1f} deg at best, proven"
+    return replace(relaxed, words=f"{relaxed.words} ({best})")
 
 
 def _least(scaled: ScaledProblem, key: str, candidates: list[Candidate]) -> Relaxation | None:

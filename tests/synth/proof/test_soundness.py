@@ -142,7 +142,7 @@ CASES = {
     "long links, crank-rocker": with_links(12, rotatability="crank-rocker"),
     "any rotatability": with_links(5, rotatability="any"),
     "any order": luggage(order=False),
-    "any order and branch": luggage(order=False, same_branch=False),
+    "any order and branch": luggage(order=False, same_branch=False, transmission_over="cycle"),
     "boxes": luggage(**WITHIN),
     "sense, rotation, ground angle": luggage(**TURNED),
     **{f"random {seed}": random_poses(seed, rotatability="any") for seed in (104, 105)},
