@@ -184,8 +184,10 @@ def left_out(scaled: ScaledProblem) -> tuple[str, ...]:
     Examples
     --------
     >>> from grashof import load
-    >>> left_out(ScaledProblem.of(load("bonnet-hinge")))
-    ('keep_out',)
+    >>> problem = load("luggage")
+    >>> compact = replace(problem, requirements=replace(problem.requirements, size=(0, 13)))
+    >>> left_out(ScaledProblem.of(problem)), left_out(ScaledProblem.of(compact))
+    ((), ('size',))
     """
     wanted = scaled.problem.requirements
     without = [name for name in wanted.limited if name not in _FORMS and not _says_nothing(wanted, name)]

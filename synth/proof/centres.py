@@ -46,7 +46,7 @@ def centres_of(curve: Curve, tubes: Tubes, longest: float) -> Centres:
     # Wherever z is, c is not farther than the longest dyad is long.
     rest = np.full(len(tubes), longest) + tubes.stray
     for rows in _ROWS:
-        found = _of_rows(curve, tubes, rows)
+        found = of_rows(curve, tubes, rows)
         better = found.rest < rest
         middle = np.where(better, found.middle, middle)
         along = np.where(better, found.along, along)
@@ -54,7 +54,8 @@ def centres_of(curve: Curve, tubes: Tubes, longest: float) -> Centres:
     return Centres(middle, along, rest)
 
 
-def _of_rows(curve: Curve, tubes: Tubes, rows: tuple[int, int]) -> Centres:
+def of_rows(curve: Curve, tubes: Tubes, rows: tuple[int, int]) -> Centres:
+    """Where the solutions c of two of the three equations lie for every z in tubes."""
     z0, z1, z2 = tubes.middle, tubes.along, tubes.bend
     alpha, d, rho = (part[1:, None][list(rows)] for part in (curve.rotation - 1, curve.shift, curve.rotation))
     facing = d.conj() * rho

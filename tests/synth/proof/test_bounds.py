@@ -11,7 +11,10 @@ from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, MotionTask, Objective, Problem, ProblemError, Requirements
 from grashof.synth import Claim, prove
 from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.proof.asked import Asked
 from grashof.synth.proof.bounds import Bounds, Proving, bounds_of
+from grashof.synth.proof.branch_and_bound import Search
+from grashof.synth.proof.table import Table
 from grashof.synth.theory.stopping import stopping
 
 
@@ -56,6 +59,15 @@ def test_a_smaller_gap_comes_closer() -> None:
     made = bounds(luggage(), gap=0.001)
     assert np.degrees(made.upper) == pytest.approx(27.3330, abs=6e-4)
     assert 27.33254 <= np.degrees(made.upper) <= np.degrees(made.lower) + 0.001 + 1e-9
+
+
+def test_what_exceeds_the_gap_is_not_dropped() -> None:
+    # Of a bound that is 1.5 gaps below the best, the pairs that hold the best have to be left.
+    asked, gap = Asked.of(ScaledProblem.of(luggage())), np.radians(0.1)
+    search = Search(asked, gap, 20_000, lower=np.radians(27.33255) - 1.5 * gap)
+    search.run(Table.covering(asked), lambda _table, _pairs, _least: 0.0)
+    assert not search.done
+    assert search.upper >= np.radians(27.33255)
 
 
 def planted_limits(seed: int, inside: float) -> Problem:

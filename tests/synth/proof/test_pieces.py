@@ -9,7 +9,7 @@ from grashof.problems import Problem
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.asked import Asked
-from grashof.synth.proof.centres import centres_of
+from grashof.synth.proof.centres import centres_of, of_rows
 from grashof.synth.proof.curve import Curve
 from grashof.synth.proof.pieces import Tubes, contracted
 from grashof.synth.theory.burmester import Displacements, Dyads, centre_points, circle_points_on_lines, polish
@@ -100,6 +100,38 @@ def test_tubes_and_centres_hold_the_points_of_their_rectangles(problem: Problem,
     if size < 0.4:
         assert most > 0.2  # the bounds are near what they bound
         assert most_centre > 0.05
+
+
+@pytest.mark.parametrize("rows", [(0, 1), (0, 2), (1, 2)])
+@pytest.mark.parametrize("scale", [1.0, 0.1, 0.01])
+def test_centres_hold_every_solution_of_two_equations(rows: tuple[int, int], scale: float) -> None:
+    # Wide tubes that are on no curve: every term of the remainder has its turn.
+    curve, rng, count = asked(PROBLEMS[1]).curve, np.random.default_rng(3), 4000
+    middle = rng.normal(size=count) + 1j * rng.normal(size=count)
+    direction = np.exp(1j * rng.uniform(0, 7, count))
+    half, tilt, bow, rest = scale * rng.uniform(0, 0.2, (4, count)) * rng.choice([0.01, 1.0], (4, count))
+    tubes = Tubes(middle, direction, half, tilt, bow, rest)
+    centres = of_rows(curve, tubes, rows)
+    most = 0.0
+    for s, e in [
+        (1.0, 1.0),
+        (1.0, -1.0),
+        (-1.0, 1.0),
+        (-1.0, -1.0),
+        (0.0, 1.0),
+        (0.0, -1.0),
+        *rng.uniform(-1, 1, (8, 2)),
+    ]:
+        z = middle + direction * (half * s + 1j * (tilt * s + bow * (s * s - 0.5) + e * rest))
+        turn, move = curve.rotation[1:, None], curve.shift[1:, None]
+        a = (turn - 1) * z + move
+        k = (np.abs(turn * z + move) ** 2 - np.abs(z) ** 2) / 2
+        i, j = rows
+        c = 1j * (k[j] * a[i] - k[i] * a[j]) / (a[i].conj() * a[j]).imag
+        off = np.abs(c - centres.middle - centres.along * s)
+        assert np.all(off <= centres.rest * (1 + 1e-9))
+        most = max(most, float((off / centres.rest)[np.isfinite(centres.rest)].max()))
+    assert most > 0.95  # nothing to spare
 
 
 @pytest.mark.parametrize("problem", PROBLEMS, ids=lambda one: one.name)

@@ -189,6 +189,26 @@ def test_no_linkage_is_lost_that_ends_its_motion_near_the_ground_line(seed: int)
     assert (descent.lost, descent.excluded) == (0, 0)
 
 
+def least_area(designs: Designs, problem: Problem) -> FloatArray:
+    """The smaller of the two triangles of A that state its sense, over the square of r2."""
+    curve = Asked.of(ScaledProblem.of(problem)).curve
+    chord = [(turn - 1) * designs.a + move for turn, move in zip(curve.rotation, curve.shift, strict=True)]
+    areas = [(chord[i].conj() * chord[j]).imag for i, j in ((1, 2), (2, 3))]
+    least: FloatArray = np.min(np.abs(areas), axis=0) / np.abs(designs.a - designs.o2) ** 2
+    return least
+
+
+@pytest.mark.parametrize("seed", [0, 3, 7])
+def test_no_linkage_is_lost_whose_driver_hardly_moves_between_two_poses(seed: int) -> None:
+    task = planted_motion(np.random.default_rng(seed), poses=4)[0]
+    problem = Problem(task=task, requirements=Requirements(rotatability="any"))
+    designs = feasible_designs(problem, 40_000)
+    area = least_area(designs, problem)
+    assert np.sort(area)[200] < 1e-2
+    descent = followed(problem, designs[np.argsort(area)[:400]])
+    assert (descent.lost, descent.excluded) == (0, 0)
+
+
 def test_no_linkage_is_lost_whose_angles_are_just_within_limits() -> None:
     designs = feasible_designs(luggage(driver_sense="ccw"), 12)
     curve = Asked.of(ScaledProblem.of(luggage())).curve

@@ -1,0 +1,148 @@
+"""What the terminal, the page, notebooks and run.json say of proofs; `grashof prove`."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grashof import synthesize
+from grashof.notebook import html
+from grashof.page.search import search_page
+from grashof.problems import Problem, load
+from grashof.synth import Claim, Proof, Result
+from grashof.wording.proof import bound_line, is_decided, proof_line
+
+Grashof = Callable[..., Any]
+
+LUGGAGE = "Proven: no four-bar meets these requirements with more than 27.35 deg; number 1 has 27.33 deg."
+NONE = "Proven: no four-bar meets these requirements with a transmission angle of 28.00 deg or more."
+
+
+def luggage(**requirements: object) -> Problem:
+    problem = load("luggage")
+    return replace(problem, requirements=replace(problem.requirements, **requirements))  # type: ignore[arg-type]
+
+
+@pytest.fixture(scope="module")
+def found() -> Result:
+    return synthesize(load("luggage"), enough=3)
+
+
+@pytest.fixture(scope="module")
+def none() -> Result:
+    return synthesize(luggage(transmission_min_deg=28))
+
+
+def test_the_best_is_proven_and_told_by_its_rank(found: Result) -> None:
+    assert found.proof is not None
+    assert found.proof.claim is Claim.BEST
+    assert found.proof.lower == pytest.approx(27.3325519, abs=1e-6)
+    assert proof_line(found) == LUGGAGE
+    behind = replace(found, candidates=found.candidates[::-1])
+    assert proof_line(behind).endswith(f"number {len(found)} has 27.33 deg.")
+
+
+def test_none_is_proven_without_a_search_and_what_would_do_is_told(none: Result) -> None:
+    assert not none.candidates
+    assert none.seconds["solving"] == 0
+    assert none.ended == ""
+    assert proof_line(none) == NONE
+    assert "transmission_min_deg 27.3" in none.note
+    assert "(without transmission_min_deg 27.3 deg at best, proven)" in none.note
+
+
+def test_the_page_and_notebooks_say_it(found: Result, none: Result) -> None:
+    record: dict[str, Any] = {"versions": {"grashof": "0"}, "settings": {}}
+    assert LUGGAGE in search_page(found, record)
+    assert NONE in search_page(none, record)
+    assert LUGGAGE in html(found)
+    assert NONE in html(none)
+
+
+def test_the_record_has_every_part_of_it(grashof: Grashof, tmp_path: Path) -> None:
+    done = grashof("solve", "luggage", "--top", "3", "--drawings", "0", "--gap", "0.5")
+    assert done.exit_code == 0
+    assert "Proven: no four-bar" in done.stdout
+    proof = json.loads((tmp_path / "luggage-designs" / "run.json").read_text())["proof"]
+    assert set(proof) == {
+        "claim", "complete", "quantity", "lower", "upper", "pieces", "pairs", "levels", "seconds", "left_out",
+        "rounding", "why",
+    }  # fmt: skip
+    assert (proof["claim"], proof["quantity"]) == ("best", "transmission_min_task_deg")
+    assert proof["lower"] <= proof["upper"] <= proof["lower"] + 0.5
+    assert (proof["left_out"], proof["why"]) == ([], "")
+
+
+def test_a_task_without_proofs_has_none_in_its_record(grashof: Grashof, tmp_path: Path) -> None:
+    grashof("solve", "path-ellipse", "--starts", "4", "--drawings", "0")
+    assert json.loads((tmp_path / "path-ellipse-designs" / "run.json").read_text())["proof"] is None
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said", "code"),
+    [
+        (("luggage",), LUGGAGE.replace("number 1 has", "a design has"), 0),
+        (("luggage", "--at-least", "28"), NONE, 0),
+        (("luggage", "--at-least", "20"), "Proven: a design that the judge accepts has 2", 0),
+        (("straight-line",), "Not proven: there are proofs of four whole poses", 1),
+    ],
+)
+def test_prove_decides_alone(grashof: Grashof, arguments: tuple[str, ...], said: str, code: int) -> None:
+    done = grashof("prove", *arguments)
+    assert done.stdout.startswith(said)
+    assert done.exit_code == code
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("luggage", "--at-least", "91"), "--at-least"),
+        (("luggage", "--gap", "0"), "--gap"),
+        (("luggage", "--time-limit", "-1"), "time_limit is -1"),
+        (("no-such-problem",), "no-such-problem"),
+    ],
+)
+def test_prove_refuses_what_cannot_be_in_a_line(
+    grashof: Grashof, arguments: tuple[str, ...], said: str
+) -> None:
+    done = grashof("prove", *arguments)
+    assert done.exit_code == 2
+    assert said in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+def a_proof(**parts: Any) -> Proof:
+    return Proof(**{"claim": Claim.BOUND, "quantity": "transmission_min_task_deg", "upper": 31.0, **parts})
+
+
+@pytest.mark.parametrize(
+    ("proof", "line"),
+    [
+        (
+            a_proof(lower=27.3, left_out=("size", "stroke")),
+            "Proven: no four-bar has more than 31.00 deg (without size and stroke); a design has 27.30 deg.",
+        ),
+        (
+            a_proof(why="the budget of 1000 pairs ended"),
+            "Proven: no four-bar has more than 31.00 deg (the budget of 1000 pairs ended).",
+        ),
+        (a_proof(upper=90.0, why="it was stopped"), "Not proven (it was stopped)."),
+        (
+            a_proof(claim=Claim.REFUSED, upper=None, why="poses 1 and 2 are equal"),
+            "Not proven: poses 1 and 2 are equal.",
+        ),
+    ],
+)
+def test_lines_say_what_is_and_is_not_proven(proof: Proof, line: str) -> None:
+    assert bound_line(proof) == line
+    assert not is_decided(proof)
+
+
+def test_numbers_are_rounded_to_the_safe_side() -> None:
+    proof = a_proof(claim=Claim.BEST, lower=27.3399, upper=27.34001)
+    assert bound_line(proof).endswith("with more than 27.35 deg; a design has 27.33 deg.")
