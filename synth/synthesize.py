@@ -13,6 +13,7 @@ from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.values.checks import readable
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.user_functions import refuse_no_list, refuse_unusable
+from grashof.synth.proof.atlas import atlas_of
 from grashof.synth.proof.bounds import Proving, bounds_of
 from grashof.synth.results.conclusion import conclude, needless
 from grashof.synth.results.function_list import function_list
@@ -21,10 +22,11 @@ from grashof.synth.results.result import Result
 from grashof.synth.search.asked import asking, search_of
 from grashof.synth.search.journal import journal_of
 from grashof.synth.search.run import Progress, Run
-from grashof.synth.search.searches import searches
+from grashof.synth.search.searches import nothing_to_search, searches
 from grashof.synth.search.story import Asking, Ending
 from grashof.synth.search.workers import working
 from grashof.synth.starts.finder import finder_for
+from grashof.synth.starts.regions import round_of_regions
 from grashof.synth.theory.stopping import stopping
 
 _LOG = logging.getLogger(__name__)
@@ -131,11 +133,21 @@ def synthesize(
             part = asked.part(number, len(kinds))
             with stopping(part):
                 run = replace(run, asked_to_stop=part)
-                bounds = bounds_of(scaled, proving)
-                found.append(conclude(scaled, searches(scaled, run, bounds), run, part, bounds))
+                found.append(_one_kind(scaled, run, part))
             if part.ending not in (Ending.COMPLETE, Ending.TIME_LIMIT):
                 break
     return one_list(problem, found)
+
+
+def _one_kind(scaled: ScaledProblem, run: Run, asked: Asking) -> Result:
+    """The list of one kind of linkage: what theory bounds and encloses, then the search."""
+    with run.timed("proving"):
+        bounds = bounds_of(scaled, run.proving)
+        if bounds is not None and bounds.none:
+            return conclude(scaled, nothing_to_search(scaled, run), run, asked, bounds)
+        atlas = None if bounds is None else atlas_of(scaled, bounds)
+        known = None if atlas is None else round_of_regions(scaled, atlas, run.search.enough)
+    return conclude(scaled, searches(scaled, run, known), run, asked, bounds, atlas)
 
 
 def _functions(

@@ -42,6 +42,8 @@ class Candidate(Displayed):
         Why a design comes last in a list though it does all that is asked, such as its size; else empty.
     family : str
         Id of the best design of those like it; empty before designs are sorted into families.
+    region : int
+        Number of the region that it lies in, from 1; 0 where regions are not known, or it lies in none.
     own_objective : float, optional
         What the user's own objective makes of it, less is better; None where there is none.
     values : Values
@@ -57,6 +59,7 @@ class Candidate(Displayed):
     best_at: str = ""
     caution: str = ""
     family: str = ""
+    region: int = 0
     own_objective: float | None = None
     values: Values = field(default=None, compare=False)  # type: ignore[assignment]  # kept by `replace`
 

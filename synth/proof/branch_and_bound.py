@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.problems.values.arrays import IntArray
+from grashof.problems.values.arrays import BoolArray, IntArray
 from grashof.synth.proof.asked import Asked
 from grashof.synth.proof.pairs import Pairs, bounded
-from grashof.synth.proof.table import Table
+from grashof.synth.proof.table import NOTHING, Table
 from grashof.synth.theory.stopping import asked_to_stop
 
 AT_ONCE = 8192  # pairs bounded together
@@ -73,7 +73,7 @@ class Search:
         It ends early with the budget, where it is asked to stop, or where it is `content` with any
         design; `upper` holds even so.
         """
-        self.left = self._first(table)
+        self.left = self.first(table)
         while self.left is not None and len(self.left):
             self.lower = max(self.lower, look(table, self.left, max(self.lower, self.asked.floor)))
             if content and self.lower:
@@ -81,12 +81,12 @@ class Search:
             self.left = self.left[self.left.bound > self.threshold]
             if not len(self.left):
                 return
-            halved = self._halved(table, self.left)
+            halved = self.halved(table, self.left)
             if halved is None:
                 return
             self.left, self.levels = halved, self.levels + 1
 
-    def _first(self, table: Table) -> Pairs | None:
+    def first(self, table: Table) -> Pairs | None:
         """All pairs of the pieces of a cover; None where they are too many, or it is asked to stop."""
         drivers = np.flatnonzero(table.pieces.driver)
         driven = np.flatnonzero(table.pieces.driven)
@@ -98,10 +98,12 @@ class Search:
         self.begun = found is not None
         return found
 
-    def _halved(self, table: Table, pairs: Pairs) -> Pairs | None:
-        """The pairs of halves of the pieces of pairs."""
-        first, second = table.halve(pairs.driver), table.halve(pairs.driven)
-        one, other = np.repeat(first, 2, axis=1).ravel(), np.tile(second, (1, 2)).ravel()
+    def halved(
+        self, table: Table, pairs: Pairs, first: BoolArray | None = None, second: BoolArray | None = None
+    ) -> Pairs | None:
+        """The pairs of halves of the pieces of pairs; with masks, these drivers and driven pieces alone."""
+        one = np.repeat(_halves(table, pairs.driver, first), 2, axis=1).ravel()
+        other = np.tile(_halves(table, pairs.driven, second), (1, 2)).ravel()
         some = (one >= 0) & (other >= 0)
         one, other = one[some], other[some]
         some = table.pieces.driver[one] & table.pieces.driven[other]
@@ -120,3 +122,12 @@ class Search:
             self.pairs += len(one)
             found.append(bounded(self.asked, table.pieces, one, other, self.threshold))
         return Pairs.joined(found)
+
+
+def _halves(table: Table, which: IntArray, long: BoolArray | None) -> IntArray:
+    """Halves of pieces, shape (n, 2); where `long` is False the piece itself, alone."""
+    if long is None:
+        return table.halve(which)
+    made = np.stack([which, np.full(len(which), NOTHING)], axis=1)
+    made[long] = table.halve(which[long])
+    return made

@@ -8,7 +8,7 @@ import numpy as np
 
 from grashof.analysis import Verdict, verify
 from grashof.problems import Linkage, TransmissionOver
-from grashof.problems.values.arrays import ComplexArray, IntArray
+from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 from grashof.synth.proof.asked import Asked
@@ -40,7 +40,8 @@ class Lookout:
 
     def __call__(self, table: Table, pairs: Pairs, least: float) -> float:
         """The transmission angle of a design better than `least`, rad; 0 where none is found."""
-        found = self.screened(table, pairs)
+        best_first = pairs[np.argsort(-pairs.bound, kind="stable")[:MOST]]
+        found = screened_pairs(self.scaled, self.asked, table, best_first)
         rows = np.flatnonzero(found.feasible & (found.transmission > least))
         for row in rows[np.argsort(-found.transmission[rows], kind="stable")][:JUDGED]:
             transmitted = self._judged(found, int(row))
@@ -48,28 +49,6 @@ class Lookout:
                 self.best = found[np.array([row])]
                 return transmitted
         return 0.0
-
-    def screened(self, table: Table, pairs: Pairs) -> Screened:
-        """The linkages in the middle of the pairs with the greatest bounds."""
-        order = np.argsort(-pairs.bound, kind="stable")[:MOST]
-        pairs = pairs[order]
-        driver, driven = (self._dyads(table, which) for which in (pairs.driver, pairs.driven))
-        scaled = self.scaled
-        if scaled.motion is None:
-            raise TypeError("only whole poses that are met exactly have dyads")
-        return judged_pairs(scaled.motion, complex(scaled.targets[0]), driver, driven, scaled.wanted)
-
-    def _dyads(self, table: Table, which: IntArray) -> Dyads:
-        """Dyads in the middle of pieces, brought onto the curve."""
-        unique, back = np.unique(which, return_inverse=True)
-        motion = self.scaled.motion
-        points: ComplexArray = self.asked.curve.onto(table.pieces.tubes.middle[unique]) + self.asked.origin
-        if motion is None:
-            raise TypeError("only whole poses that are met exactly have dyads")
-        centres = centre_points(motion, points)
-        usable = np.isfinite(centres)
-        dyads = polish(motion, Dyads(points, np.where(usable, centres, 0.0)), steps=2)
-        return dyads[back]
 
     def _judged(self, found: Screened, row: int) -> float:
         """What the judge finds that a linkage transmits, rad; 0 where it has a defect."""
@@ -85,3 +64,17 @@ class Lookout:
         linkage: Linkage = self.scaled.linkages(found.points[row], found.assembly[row])
         problem = self.scaled.problem
         return verify(linkage, problem.task, problem.requirements, problem=problem)
+
+
+def screened_pairs(scaled: ScaledProblem, asked: Asked, table: Table, pairs: Pairs) -> Screened:
+    """The linkages in the middle of pairs, brought onto the curve."""
+    motion = scaled.motion
+    if motion is None:
+        raise TypeError("only whole poses that are met exactly have dyads")
+    unique, back = np.unique(np.concatenate([pairs.driver, pairs.driven]), return_inverse=True)
+    points: ComplexArray = asked.curve.onto(table.pieces.tubes.middle[unique]) + asked.origin
+    centres = centre_points(motion, points)
+    usable = np.isfinite(centres)
+    dyads = polish(motion, Dyads(points, np.where(usable, centres, 0.0)), steps=2)
+    driver, driven = dyads[back[: len(pairs)]], dyads[back[len(pairs) :]]
+    return judged_pairs(motion, complex(scaled.targets[0]), driver, driven, scaled.wanted)

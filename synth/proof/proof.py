@@ -52,6 +52,10 @@ class Proof:
     seconds : float, s
     left_out : tuple of str
         Requirements that the proof does without, by their keys: designs that meet them have `upper` at most.
+    regions : int
+        Connected sets of designs above half the best, or the angle demanded; 0 where they are not known.
+    region_size : float, sizes
+        Half the length of the pieces that they were told apart by; 0 where they are not known.
     rounding, why : str
         How rounding is accounted for; why there is no proof, or no closer bound.
     """
@@ -66,6 +70,8 @@ class Proof:
     levels: int = 0
     seconds: float = 0.0
     left_out: tuple[str, ...] = ()
+    regions: int = 0
+    region_size: float = 0.0
     rounding: str = ROUNDING
     why: str = ""
 

@@ -18,7 +18,7 @@ SQUARES = 32  # along each side of the disc that is covered
 COARSE = 0.5  # length of first pieces, as a share of what is near
 TINY = 4e-3  # sizes: pieces as small as that are not halved for themselves
 MOST_RECTANGLES = 100_000  # of a cover
-_OPEN, _NOTHING = -1, -2  # children that are not made yet; that hold no dyad
+_OPEN, NOTHING = -1, -2  # children that are not made yet; that hold no dyad
 
 
 class TooMany(Exception):  # noqa: N818  (no error: the proof stays open)
@@ -149,7 +149,7 @@ class Table:
         new = np.unique(which[self._children[which, 0] == _OPEN])
         if len(new):
             made, rows = Pieces.of(self.asked, self.pieces.tubes[new].halves)
-            numbers = np.full(2 * len(new), _NOTHING)
+            numbers = np.full(2 * len(new), NOTHING)
             numbers[rows] = len(self.pieces) + np.arange(len(made))
             self._children[new] = numbers.reshape(2, -1).T
             self.pieces = Pieces.joined(self.pieces, made)

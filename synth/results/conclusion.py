@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import logging
+from dataclasses import replace
 
 from grashof.synth.designs.families import listed
 from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.proof.atlas import Atlas
 from grashof.synth.proof.bounds import Bounds
 from grashof.synth.proof.proof import best_listed, proof_of
 from grashof.synth.results.advice import advice
@@ -22,7 +24,12 @@ _LOG = logging.getLogger(__name__)
 
 
 def conclude(
-    scaled: ScaledProblem, ledgers: list[Ledger], run: Run, asked: Asking, bounds: Bounds | None = None
+    scaled: ScaledProblem,
+    ledgers: list[Ledger],
+    run: Run,
+    asked: Asking,
+    bounds: Bounds | None = None,
+    atlas: Atlas | None = None,
 ) -> Result:
     """The ranked list of what one or two searches found, or why it is empty; with what bounds prove of it."""
     chosen = choose(scaled, ledgers, run)
@@ -33,6 +40,9 @@ def conclude(
     run.ended()
     problem, ledger = scaled.problem, ledgers[-1]
     designs = listed(problem, chosen.designs or explanation.designs)
+    if atlas is not None:
+        regions = atlas.regions_of(scaled, designs)
+        designs = tuple(replace(each, region=one) for each, one in zip(designs, regions, strict=True))
     ledger.tally.totals.update({CHOICE: chosen.solved, DISTINCT: len(designs)})
     story = Story(
         begun=asked.begun,
@@ -52,6 +62,8 @@ def conclude(
     proof = None
     if bounds is not None:
         proof = proof_of(problem, bounds, best_listed(problem, designs), run.proving.gap)
+    if proof is not None and atlas is not None:
+        proof = replace(proof, regions=atlas.count, region_size=atlas.size)
     return Result(
         problem=problem,
         candidates=designs,

@@ -176,13 +176,13 @@ class Ledger:
         """Whether the round may go on."""
         if self.solved >= self.starts:
             return False
-        return not self.scaled.exact or self.work > self.planned or not (self._enough or self._fruitless)
+        return not self.scaled.exact or self.work > self.planned or not (self.enough or self._fruitless)
 
     @property
     def ended(self) -> bool:
         """Whether the rounds of ``effort = 1`` (or less) have done what can be expected of them."""
         if self.scaled.exact:
-            return self._enough or bool(self._no_use)
+            return self.enough or bool(self._no_use)
         share = min(1.0, self.search.effort)
         agreed, many = self._came_up >= ceil(AGREEING * share), max(1, round(MOST_ROUNDS * share))
         return agreed or len(self._errors) >= many or bool(self._no_use)
@@ -196,13 +196,14 @@ class Ledger:
             return f"the search ended after {solves}: it was stopped{none}"
         if self.scaled.exact:
             reason = self._no_use or self.exhausted
-            return "" if self._enough else f"the search ended after {solves}: {reason}"
+            return "" if self.enough else f"the search ended after {solves}: {reason}"
         agreed = f"the best came up in {self._came_up} of {counted(len(self._errors), 'round')}"
         reason = agreed if self.best else "no design came up"
         return f"the search ended after {counted(self.solved, 'solve')}: {reason}"
 
     @property
-    def _enough(self) -> bool:
+    def enough(self) -> bool:
+        """Whether there are as many exact designs as were asked for."""
         return self.scaled.exact and len(self.best) >= self.search.enough
 
     @property

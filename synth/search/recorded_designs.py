@@ -66,7 +66,7 @@ def _is_true(scaled: ScaledProblem, one: Candidate, most_error: float = np.inf) 
 
 def _is_unlisted(scaled: ScaledProblem, one: Candidate) -> bool:
     """Whether a design is one of this task that no list has named yet."""
-    if one.own_objective is not None or f"{one.best_at}{one.family}{one.caution}":
+    if one.own_objective is not None or one.region or f"{one.best_at}{one.family}{one.caution}":
         return False
     if not _COGNATE.fullmatch(one.cognate_of):
         return False

@@ -13,9 +13,7 @@ import numpy as np
 
 from grashof.synth.programme.nonlinear_programme import MOST_ITERATIONS
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Round, Start
-from grashof.synth.proof.bounds import Bounds
 from grashof.synth.search.chunks import begin_chunks, chunks, starts_of_chunk
 from grashof.synth.search.ledger import SAME, Ledger
 from grashof.synth.search.rounds import solve, solve_round
@@ -30,16 +28,13 @@ FEW = 8  # exact designs: with fewer, zones are filled from those of least squar
 CONTINUED = 3  # times at most that the solve of the least error goes on
 
 
-def searches(scaled: ScaledProblem, run: Run, bounds: Bounds | None = None) -> list[Ledger]:
+def searches(scaled: ScaledProblem, run: Run, known: Round | None = None) -> list[Ledger]:
     """The search as it is asked; where targets may be missed, one or two without.
 
-    First with all of them met, where that can be expected; then by least squares, where few do. Where
-    bounds leave no design, there is nothing to search.
+    First with all of them met, where that can be expected; then by least squares, where few do.
     """
     first, *second = asked_in_turn(scaled)
-    if bounds is not None and bounds.none:
-        return [Ledger(first, run.search, finder_for(first).exhausted)]
-    ledger = search_designs(first, run, bounds)
+    ledger = search_designs(first, run, known)
     if second and ledger.complete and found_few(ledger):
         return [ledger, search_designs(second[0], run)]
     return [ledger]
@@ -62,17 +57,23 @@ def found_few(ledger: Ledger) -> bool:
     return len(ledger.best) < FEW
 
 
-def search_designs(scaled: ScaledProblem, run: Run, bounds: Bounds | None = None) -> Ledger:
+def nothing_to_search(scaled: ScaledProblem, run: Run) -> list[Ledger]:
+    """What a search comes to that is not made, as it is proven that there is no design."""
+    first = asked_in_turn(scaled)[0]
+    return [Ledger(first, run.search, finder_for(first).exhausted)]
+
+
+def search_designs(scaled: ScaledProblem, run: Run, known: Round | None = None) -> Ledger:
     """Find starts, solve from them, and keep what is verified, round by round until there is enough.
 
-    The best design that bounds were found by comes first.
+    Starts that are known make the first round; where these are enough, nothing else is looked for.
     """
     finder = finder_for(scaled)
     ledger = Ledger(scaled, run.search, finder.exhausted)
     _LOG.info("search begun: %s, %d targets", type(finder).__name__, len(scaled.targets))
     _begin_more(finder, ledger, run)
-    known = [] if bounds is None or bounds.found is None else [_known(scaled, bounds.found)]
-    for number, found in enumerate(chain(known, _rounds(finder, ledger, run)), start=1):
+    given = [known] if known is not None and known.starts else []
+    for number, found in enumerate(chain(given, _rounds(finder, ledger, run)), start=1):
         with run.timed("solving"):
             solve_round(found, ledger, run)
         _log(f"round {number}", len(found.starts), ledger)
@@ -81,14 +82,9 @@ def search_designs(scaled: ScaledProblem, run: Run, bounds: Bounds | None = None
             break
         if ledger.ended:
             break
-    if ledger.complete and not run.ended():
+    if ledger.complete and not run.ended() and not (given and ledger.enough):
         _do_more(finder, ledger, run)
     return finished(ledger, run)
-
-
-def _known(scaled: ScaledProblem, found: Screened) -> Round:
-    """The round of a single design that is known."""
-    return Round([Start.of_screened(found, 0, scaled.objective)], {}, size=0)
 
 
 def finished(ledger: Ledger, run: Run) -> Ledger:

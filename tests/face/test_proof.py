@@ -71,7 +71,7 @@ def test_the_record_has_every_part_of_it(grashof: Grashof, tmp_path: Path) -> No
     proof = json.loads((tmp_path / "luggage-designs" / "run.json").read_text())["proof"]
     assert set(proof) == {
         "claim", "complete", "quantity", "lower", "upper", "pieces", "pairs", "levels", "seconds", "left_out",
-        "rounding", "why",
+        "regions", "region_size", "rounding", "why",
     }  # fmt: skip
     assert (proof["claim"], proof["quantity"]) == ("best", "transmission_min_task_deg")
     assert proof["lower"] <= proof["upper"] <= proof["lower"] + 0.5

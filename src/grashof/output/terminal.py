@@ -134,28 +134,46 @@ def best_rows(result: Result, digits: int = 4) -> list[dict[str, str]]:
     """The best design of each family in cells, with what an engineer decides by; angles in deg.
 
     "like this" is how many others the family has. Columns that are alike for all of them are left out.
+    Where there are regions the best design of each comes first.
     """
     front, families = pareto_optimal(result.problem, result.candidates), result.families
-    shown = result.first_of_each(_ROWS)
+    place = {id(each): number for number, each in enumerate(result.candidates)}
+    at = [place[id(family[0])] for family in families]
+    firsts = first_of_regions([family[0].region for family in families])
+    shown = [*firsts, *(k for k in result.first_of_each(_ROWS) if k not in firsts)][:_ROWS]
     left_out = [
         *(["class"] if len(_classes(result)) == 1 else []),
         *([] if len(result.problem.mechanism) > 1 else ["mechanism"]),
         *([] if set(having("o4")) & set(result.problem.mechanism) else ["O4"]),
         *([] if any(len(families[k]) > 1 for k in shown) else ["like this"]),
+        *([] if len(firsts) > 1 else ["region"]),
         *([] if any(families[k][0].best_at for k in shown) else ["best at"]),
         *([] if any(families[k][0].caution for k in shown) else [CAUTION]),
     ]
     rows = [
         {
-            "#": f"{k + 1}{'*' if front[k] else ' '}",
+            "#": f"{at[k] + 1}{'*' if front[at[k]] else ' '}",
             **_cells(result.problem, families[k][0], digits),
             "like this": str(len(families[k]) - 1 or ""),
+            "region": str(families[k][0].region or ""),
             "best at": families[k][0].best_at,
             CAUTION: families[k][0].caution,
         }
         for k in shown
     ]
     return [{name: cell for name, cell in row.items() if name not in left_out} for row in rows]
+
+
+def first_of_regions(regions: Sequence[int]) -> list[int]:
+    """Places of the first of each region, in a list of regions, 0 for none; empty for a single region.
+
+    Examples
+    --------
+    >>> first_of_regions([1, 1, 0, 3, 2, 3]), first_of_regions([1, 1, 0])
+    ([0, 3, 4], [])
+    """
+    firsts = {region: k for k, region in reversed(list(enumerate(regions))) if region}
+    return sorted(firsts.values()) if len(firsts) > 1 else []
 
 
 def units(problem: Problem) -> dict[str, str]:

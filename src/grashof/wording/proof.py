@@ -63,10 +63,15 @@ def _line(proof: Proof, known: str) -> str:
         return f"Proven: no four-bar meets these requirements with a transmission angle of {angle} or more."
     has = f"; {known} {_down(proof.lower)} deg" if known else ""
     if proof.claim is Claim.BEST:
-        return f"Proven: no four-bar meets these requirements with more than {angle}{has}."
+        return f"Proven: no four-bar meets these requirements with more than {angle}{has}.{_regions(proof)}"
     if proof.upper >= _NOTHING:
         return f"Not proven{_because(proof)}{has}."
     return f"Proven: no four-bar has more than {angle}{_because(proof)}{has}."
+
+
+def _regions(proof: Proof) -> str:
+    """How many kinds of solution there are, where there are several."""
+    return f" Designs above half of that form {proof.regions} regions." if proof.regions > 1 else ""
 
 
 def _because(proof: Proof) -> str:

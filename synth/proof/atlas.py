@@ -1,0 +1,176 @@
+"""Regions: all linkages above half the best transmission angle, as pairs of small pieces that are joined.
+
+Two linkages are in one region where a chain of pairs of pieces joins them, each near the next and all
+of them able to hold a linkage that transmits enough.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from grashof.analysis import solve_position
+from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.screening import Screened
+from grashof.synth.proof.asked import Asked, with_forms
+from grashof.synth.proof.bounds import Bounds
+from grashof.synth.proof.branch_and_bound import Search
+from grashof.synth.proof.lookout import screened_pairs
+from grashof.synth.proof.pairs import Pairs
+from grashof.synth.proof.table import Table
+
+SHARE = 0.5  # of the best transmission angle: less is not listed by regions
+SIZE = 0.02  # sizes: pieces are halved until they are so short
+MOST_PAIRS = 100_000  # bounded for it
+SLACK = 1.2  # times their lengths: pieces whose middles are nearer are neighbours
+NEAR = 4.0  # times the length of pieces: designs farther from all linkages of a region are of none
+
+
+@dataclass(frozen=True, slots=True)
+class Atlas:
+    """Linkages in the middle of pairs of pieces, in regions.
+
+    Parameters
+    ----------
+    linkages : Screened
+        That meet all requirements that are screened, in the frame of the search.
+    region : ndarray of int, shape (n,)
+        Of each, numbered from 1 in the order of their best.
+    size : float, sizes
+        Half the length of the longest piece.
+    """
+
+    linkages: Screened
+    region: IntArray
+    size: float
+
+    @property
+    def count(self) -> int:
+        """How many regions there are."""
+        return int(self.region.max(initial=0))
+
+    def regions_of(self, scaled: ScaledProblem, designs: Sequence[Candidate]) -> list[int]:
+        """Region of each design: that of the nearest linkage; 0 where none is near."""
+        if not len(self.linkages) or not designs:
+            return [0] * len(designs)
+        from scipy.spatial import cKDTree  # takes longer to import than many a search
+
+        places = _coordinates(self.linkages.points[:, :4])
+        wanted = _coordinates(np.array([_first_points(scaled, each) for each in designs]))
+        apart, nearest = cKDTree(places).query(wanted, p=np.inf)
+        regions = np.where(apart <= NEAR * self.size, self.region[nearest], 0)
+        return [int(region) for region in regions]
+
+
+def atlas_of(scaled: ScaledProblem, bounds: Bounds) -> Atlas | None:
+    """All linkages above half the best that bounds know; None where they know none.
+
+    Raises
+    ------
+    Stopped
+        Asked to stop.
+    """
+    if not bounds.closed or not bounds.lower:
+        return None
+    about = with_forms(scaled) if bounds.left_out else scaled
+    asked = Asked.of(about)
+    asked = replace(asked, floor=max(asked.floor, SHARE * bounds.lower))
+    table = Table.covering(asked)
+    pairs = _small_pairs(asked, table)
+    linkages = screened_pairs(scaled, asked, table, pairs)
+    feasible = np.flatnonzero(linkages.feasible)
+    labels, linkages = _joined(table, pairs)[feasible], linkages[feasible]
+    names, label = np.unique(labels, return_inverse=True)
+    best = np.zeros(len(names))
+    np.maximum.at(best, label, linkages.transmission)
+    number = np.empty(len(names), dtype=np.int64)
+    number[np.argsort(-best, kind="stable")] = 1 + np.arange(len(names))
+    sizes = _lengths(table, np.unique(np.concatenate([pairs.driver, pairs.driven])))
+    return Atlas(linkages, number[label], max(SIZE, float(sizes.max(initial=0.0))))
+
+
+def _small_pairs(asked: Asked, table: Table) -> Pairs:
+    """Pairs of pieces that may hold linkages above the floor, halved until they are short."""
+    search = Search(asked, 0.0, 10 * MOST_PAIRS)
+    pairs, done = search.first(table), list[Pairs]()
+    while pairs is not None and len(pairs):
+        one, other = _lengths(table, pairs.driver) > SIZE, _lengths(table, pairs.driven) > SIZE
+        more = one | other
+        done.append(pairs[~more])
+        pairs, one, other = pairs[more], one[more], other[more]
+        if search.pairs + int(np.where(one & other, 4, 2).sum()) > MOST_PAIRS:
+            done.append(pairs)
+            break
+        pairs = search.halved(table, pairs, one, other)
+    return Pairs.joined(done)
+
+
+def _lengths(table: Table, pieces: IntArray) -> FloatArray:
+    """Half the lengths of pieces, or of the ways of their centres where these are longer, sizes."""
+    lengths: FloatArray = np.maximum(
+        table.pieces.tubes.half[pieces], np.abs(table.pieces.centres.along[pieces])
+    )
+    return lengths
+
+
+def _joined(table: Table, pairs: Pairs) -> IntArray:
+    """A number for each pair that all those have in common that chains of neighbours join."""
+    from scipy.sparse import coo_array  # take longer to import than many a search
+    from scipy.sparse.csgraph import connected_components
+
+    used, numbers = np.unique(np.concatenate([pairs.driver, pairs.driven]), return_inverse=True)
+    count = len(pairs)
+    if not count:
+        return np.zeros(0, dtype=np.int64)
+    first, second = numbers[:count].astype(np.int64), numbers[count:].astype(np.int64)
+    start, neighbours = _neighbours(table, used)
+    codes = first * len(used) + second
+    order = np.argsort(codes)
+    ends = []
+    for moved, kept, swapped in ((first, second, False), (second, first, True)):
+        many = np.diff(start)[moved]
+        source = np.repeat(np.arange(count), many)
+        place = np.arange(len(source)) - np.repeat(np.cumsum(many) - many, many)
+        other = neighbours[start[moved][source] + place]
+        wanted = kept[source] * len(used) + other if swapped else other * len(used) + kept[source]
+        found = np.minimum(np.searchsorted(codes[order], wanted), count - 1)
+        there = codes[order][found] == wanted
+        ends.append((source[there], order[found[there]]))
+    rows, columns = (np.concatenate(side) for side in zip(*ends, strict=True))
+    graph = coo_array((np.ones(len(rows), dtype=bool), (rows, columns)), shape=(count, count))
+    labels: IntArray = connected_components(graph, directed=False)[1].astype(np.int64)
+    return labels
+
+
+def _neighbours(table: Table, used: IntArray) -> tuple[IntArray, IntArray]:
+    """Pieces near each of some pieces: where theirs begin, and their numbers among these."""
+    from scipy.sparse import coo_array
+    from scipy.spatial import cKDTree
+
+    tubes, centres = table.pieces.tubes[used], table.pieces.centres[used]
+    reach, way = tubes.half + tubes.side, np.abs(centres.along) + centres.rest
+    tree = cKDTree(_coordinates(tubes.middle[:, None]))
+    pairs = tree.query_pairs(2 * SLACK * float(reach.max()), output_type="ndarray")
+    i, j = pairs.T
+    near = np.abs(tubes.middle[i] - tubes.middle[j]) <= SLACK * (reach[i] + reach[j])
+    near &= np.abs(centres.middle[i] - centres.middle[j]) <= SLACK * (way[i] + way[j])
+    i, j = i[near], j[near]
+    both = np.concatenate([i, j]), np.concatenate([j, i])
+    graph = coo_array((np.ones(2 * len(i), dtype=bool), both), shape=(len(used), len(used))).tocsr()
+    return graph.indptr.astype(np.int64), graph.indices.astype(np.int64)
+
+
+def _coordinates(points: ComplexArray) -> FloatArray:
+    """Points, shape (n, k), as real coordinates, shape (n, 2 k)."""
+    return np.concatenate([points.real, points.imag], axis=1)
+
+
+def _first_points(scaled: ScaledProblem, design: Candidate) -> list[complex]:
+    """O2, O4 and A, B at the first target in the frame of the search."""
+    linkage, verdict = design.linkage, design.verdict
+    state = solve_position(linkage, verdict.theta2[0], verdict.assembly[0])
+    return [complex(scaled.frame.inward(np.asarray(x))) for x in (linkage.o2, linkage.o4, state.a, state.b)]  # type: ignore[attr-defined]

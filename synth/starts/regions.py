@@ -1,0 +1,27 @@
+"""The first round of four poses: starts in all regions of linkages, and spread over them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.start import Round
+from grashof.synth.programme.whole_screening import fully_screened
+from grashof.synth.proof.atlas import Atlas
+from grashof.synth.starts.selection import feasible_starts, merits, starts_of
+from grashof.synth.theory.distinct import best_first
+
+MOST_REGIONS = 20  # whose best linkages are begun from
+SPREAD = 0.6  # of the best transmission angle: linkages above it are spread over
+
+
+def round_of_regions(scaled: ScaledProblem, atlas: Atlas, enough: int) -> Round:
+    """Starts from the best linkage of each region, then as from any feasible linkages."""
+    linkages = fully_screened(scaled, atlas.linkages)
+    rows = np.flatnonzero(linkages.feasible)
+    order = rows[best_first(merits(scaled, linkages[rows]))]
+    _, first = np.unique(atlas.region[order], return_index=True)
+    firsts = order[np.sort(first)][:MOST_REGIONS]
+    good = rows[linkages.transmission[rows] >= SPREAD * linkages.transmission[rows].max(initial=0.0)]
+    starts = starts_of(scaled, linkages, firsts) + feasible_starts(scaled, linkages[good], enough)
+    return Round(starts, {"feasible finds": len(rows)})
