@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -27,7 +28,7 @@ from grashof.synth.search.story import Asking, Ending
 from grashof.synth.search.workers import working
 from grashof.synth.starts.finder import finder_for
 from grashof.synth.starts.regions import round_of_regions
-from grashof.synth.theory.stopping import stopping
+from grashof.synth.theory.stopping import Stopped, stopping
 
 _LOG = logging.getLogger(__name__)
 
@@ -145,8 +146,10 @@ def _one_kind(scaled: ScaledProblem, run: Run, asked: Asking) -> Result:
         bounds = bounds_of(scaled, run.proving)
         if bounds is not None and bounds.none:
             return conclude(scaled, nothing_to_search(scaled, run), run, asked, bounds)
-        atlas = None if bounds is None else atlas_of(scaled, bounds)
-        known = None if atlas is None else round_of_regions(scaled, atlas, run.search.enough)
+        atlas, known = None, None
+        with suppress(Stopped):  # the finder has a glance for those in haste
+            atlas = None if bounds is None else atlas_of(scaled, bounds)
+            known = None if atlas is None else round_of_regions(scaled, atlas, run.search.enough)
     return conclude(scaled, searches(scaled, run, known), run, asked, bounds, atlas)
 
 

@@ -23,5 +23,6 @@ def round_of_regions(scaled: ScaledProblem, atlas: Atlas, enough: int) -> Round:
     _, first = np.unique(atlas.region[order], return_index=True)
     firsts = order[np.sort(first)][:MOST_REGIONS]
     good = rows[linkages.transmission[rows] >= SPREAD * linkages.transmission[rows].max(initial=0.0)]
-    starts = starts_of(scaled, linkages, firsts) + feasible_starts(scaled, linkages[good], enough)
+    starts = starts_of(scaled, linkages, firsts)
+    starts += feasible_starts(scaled, linkages[good], enough, peaks=0)
     return Round(starts, {"feasible finds": len(rows)})

@@ -25,10 +25,12 @@ OTHERS = 10.0  # weight of what else is missed, where one requirement may be
 NEARLY = 0.1  # linkages that violate no more are also spread over, for variety
 
 
-def feasible_starts(scaled: ScaledProblem, linkages: Screened, enough: int) -> list[Start]:
+def feasible_starts(
+    scaled: ScaledProblem, linkages: Screened, enough: int, peaks: int = PEAKS
+) -> list[Start]:
     """Starts from feasible linkages.
 
-    The best well separated ones first, free to climb to the best optima, then about 1.4 times
+    The best well separated ones (`peaks`) first, free to climb to the best optima, then about 1.4 times
     `enough` spread over all, each kept to its own neighbourhood so that the list offers a choice.
     """
     if not len(linkages):
@@ -38,7 +40,7 @@ def feasible_starts(scaled: ScaledProblem, linkages: Screened, enough: int) -> l
     linkages, merit = linkages[pool], every[pool]
     signatures = _signatures(scaled, linkages)
     spacing = PEAK_SPACING if scaled.exact else MISS_SPACING
-    free = starts_of(scaled, linkages, pick_apart(signatures, merit, spacing, PEAKS, leave_off))
+    free = starts_of(scaled, linkages, pick_apart(signatures, merit, spacing, peaks, leave_off))
     if not scaled.exact:  # what counts is the error, and a neighbourhood would only keep it large
         return free
     return free + _spread(scaled, linkages, merit, signatures, enough)

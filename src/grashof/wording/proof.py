@@ -7,7 +7,7 @@ import math
 from grashof.problems import FourBar
 from grashof.problems.values.checks import counted
 from grashof.synth import Result
-from grashof.synth.proof.proof import Claim, Proof
+from grashof.synth.proof.proof import Claim, Proof, quantity_of
 
 _DECIMALS = 2
 _NOTHING = 90.0  # deg: a bound that says nothing
@@ -27,7 +27,7 @@ def proof_line(result: Result) -> str:
     proof = result.proof
     if proof is None:
         return ""
-    known = f"number {_rank(result, proof)} has" if proof.lower is not None else ""
+    known = f"number {_rank(result)} has" if proof.lower is not None and result.candidates else ""
     return _line(proof, known)
 
 
@@ -81,9 +81,9 @@ def _because(proof: Proof) -> str:
     return f" ({'; '.join(reasons)})" if reasons else ""
 
 
-def _rank(result: Result, proof: Proof) -> int:
-    """Which of a list has the most of what is bounded."""
-    key = proof.quantity.removesuffix("_deg")
+def _rank(result: Result) -> int:
+    """Which four-bar of a list has the most of what is bounded."""
+    key = quantity_of(result.problem).key
     found = [rank for rank, one in enumerate(result.candidates) if isinstance(one.linkage, FourBar)]
     return 1 + max(found, key=lambda rank: (result.candidates[rank].values[key], -rank))
 
