@@ -80,9 +80,12 @@ def test_all_linkages_that_do_it_are_listed_exactly(kind: str, count: int, timed
 
 
 def test_of_timed_poses_the_other_pairs_of_dyads_are_listed_too() -> None:
-    """Five poses leave up to four dyads; timing fixes the driver's alone."""
+    """Five poses leave up to four dyads; timing fixes the driver's alone.
+
+    With the usual effort it depends on rounding which of the two comes up in the first three rounds.
+    """
     task, _ = planted_motion(np.random.default_rng([2, 5, True, 5]), 5, timed=True)
-    found = synthesize(Problem(task=task)).candidates
+    found = synthesize(Problem(task=task), effort=3).candidates
     driver = np.array([[*each.linkage.o2, each.linkage.r2] for each in found])  # type: ignore[attr-defined]
     output = np.array([[*each.linkage.o4, each.linkage.r4] for each in found])  # type: ignore[attr-defined]
     assert len(found) == 2

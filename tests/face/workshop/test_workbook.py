@@ -69,7 +69,7 @@ def test_the_list_is_the_csv(designs: Path, grashof: Grashof) -> None:
         "General",
     )
     assert {"mechanism", "family", "best_at"} <= set(head)
-    assert page.column_dimensions["E"].width > len("grashof_class")
+    assert page.column_dimensions["F"].width > len("grashof_class")
 
 
 def test_a_design_has_its_targets_and_transmission(designs: Path, few: Result) -> None:

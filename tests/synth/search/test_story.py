@@ -69,7 +69,8 @@ def test_the_log_tells_rounds_and_starts(caplog: pytest.LogCaptureFixture) -> No
         result = synthesize(load("luggage"), starts=20)
     told = [each.getMessage() for each in caplog.records]
     assert told[0] == "luggage: motion; seed 0, effort 1, at most 20 starts, 1 at a time"
-    assert told[1] == "search begun: FewPoses, 4 targets"
+    assert told[1].startswith("bounds: 27.3")
+    assert told[2] == "search begun: FewPoses, 4 targets"
     solved = [line.partition(":")[0] for line in told if line.startswith("start ")]
     assert solved == [f"start {number}" for number in range(20)]
     (ended,) = [line for line in told if line.startswith("round ")]

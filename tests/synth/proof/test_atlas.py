@@ -1,0 +1,99 @@
+"""Regions: every linkage that transmits enough is in one of them, and each has its best in the list."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from grashof import load, synthesize
+from grashof.analysis.judge.planted import planted_motion
+from grashof.problems import Problem, Requirements
+from grashof.synth import Claim, Result
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.proof.atlas import Atlas, atlas_of
+from grashof.synth.proof.bounds import Proving, bounds_of
+from grashof.synth.starts.dyad_pairs import screen
+from grashof.synth.theory.burmester import trace_four_pose_curves
+
+OVER_TURN = Requirements(transmission_over="cycle")  # type: ignore[arg-type]
+PLANTED = [
+    Problem(task=planted_motion(np.random.default_rng(seed), poses=4)[0], requirements=OVER_TURN)
+    for seed in (0, 3, 7)
+]
+
+
+def atlas(problem: Problem) -> Atlas:
+    scaled = ScaledProblem.of(problem)
+    bounds = bounds_of(scaled, Proving())
+    assert bounds is not None
+    made = atlas_of(scaled, bounds)
+    assert made is not None
+    return made
+
+
+@pytest.mark.parametrize("problem", [load("luggage"), *PLANTED], ids=["luggage", "0", "3", "7"])
+def test_linkages_of_another_search_lie_in_regions(problem: Problem) -> None:
+    scaled, made = ScaledProblem.of(problem), atlas(problem)
+    assert scaled.motion is not None
+    traced = trace_four_pose_curves(scaled.motion, 30.0, 400, 0.02)
+    found = screen(scaled.motion, complex(scaled.targets[0]), traced, scaled.wanted, 400_000)
+    best = made.linkages.transmission.max()
+    least = max(0.5 * best, float(np.radians(problem.requirements.transmission_min_deg)))
+    found = found[found.transmission > 1.02 * least]
+    found = found[:: max(1, len(found) // 500)]
+    assert len(found) > 20
+    here, there = found.points[:, :4], made.linkages.points[:, :4]
+    for one in here:
+        apart = np.abs(there - one).max(axis=1)
+        assert apart.min() <= 4 * made.size
+
+
+def test_linkages_of_regions_meet_the_requirements() -> None:
+    made = atlas(PLANTED[0])
+    assert made.linkages.feasible.all()
+    best = [made.linkages.transmission[made.region == number].max() for number in range(1, made.count + 1)]
+    assert best == sorted(best, reverse=True)
+
+
+def test_planted_designs_come_in_the_regions_that_another_prover_found() -> None:
+    made = atlas(load("luggage"))
+    assert made.count == 1
+
+
+@pytest.fixture(scope="module")
+def several() -> Result:
+    return synthesize(PLANTED[2])
+
+
+def test_the_list_has_the_best_of_every_region(several: Result) -> None:
+    assert several.proof is not None
+    assert several.proof.claim is Claim.BEST
+    listed = {one.region for one in several.candidates} - {0}
+    assert listed == set(range(1, several.proof.regions + 1))
+    made = atlas(PLANTED[2])
+    for number in listed:
+        seen = made.linkages.transmission[made.region == number].max()
+        best = max(one.values["transmission_min_cycle"] for one in several.candidates if one.region == number)
+        assert best >= seen - 1e-3
+
+
+def test_seed_and_workers_change_nothing(several: Result) -> None:
+    again = synthesize(PLANTED[2], seed=7, workers=2)
+    assert [one.id for one in again.candidates] == [one.id for one in several.candidates]
+
+
+def test_a_constraint_of_ones_own_is_kept(several: Result) -> None:
+    problem = load("luggage")
+    found = synthesize(problem, constraints=[lambda design: design.r1 - design.r3 + 1.0], enough=10)
+    assert found.candidates
+    assert all(one.linkage.r1 - one.linkage.r3 + 1.0 <= 1e-9 for one in found.candidates)  # type: ignore[attr-defined]
+
+
+def test_requirements_without_a_form_are_kept() -> None:
+    problem = load("luggage")
+    wanted = replace(problem.requirements, size=(0.0, 12.5))
+    found = synthesize(replace(problem, requirements=wanted), enough=10)
+    assert found.candidates
+    assert max(one.values["size"] for one in found.candidates) <= 12.5 * (1 + 1e-9)
+    assert found.proof is not None
+    assert found.proof.left_out == ("size",)
