@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,12 +14,16 @@ from grashof.problems.values.checks import number_within
 from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.bounds import Bounds, Proving, bounds_of
+from grashof.synth.proof.five_poses import FIVE
 from grashof.synth.proof.proof import Claim, Proof, proof_of, quantity_of
 from grashof.synth.search.asked import asking
 from grashof.synth.starts.finder import refuse_unsearchable
+from grashof.synth.synthesize import synthesize
 from grashof.synth.theory.stopping import stopping
 
-_BEYOND = "there are proofs of four whole poses that a four-bar meets exactly, and of no other task yet"
+_BEYOND = (
+    "there are proofs of four or five whole poses that a four-bar meets exactly, and of no other task yet"
+)
 
 
 def prove(
@@ -35,7 +40,7 @@ def prove(
     Parameters
     ----------
     problem : Problem
-        Four whole poses for a four-bar, to be met exactly, the transmission angle to be maximised.
+        Four whole poses for a four-bar, to be met exactly, the transmission angle to be maximised; or five.
     at_least : float, deg, optional
         Only decide whether a design has a transmission angle of so much.
     gap : float, deg
@@ -57,7 +62,8 @@ def prove(
 
     Notes
     -----
-    Branch and bound over pairs of pieces of Burmester's curve; see "Proofs" in the documentation.
+    Branch and bound over pairs of pieces of Burmester's curve; of five poses a search among all dyads.
+    See "Proofs" in the documentation.
 
     Examples
     --------
@@ -79,11 +85,21 @@ def prove(
     if FOUR_BAR not in problem.mechanism:
         return beyond
     scaled = ScaledProblem.of(problem.for_kind(FOUR_BAR), constraints)
+    if scaled.motion is not None and len(scaled.targets) == FIVE:
+        found = synthesize(scaled.problem, constraints=constraints, time_limit=time_limit, stop=stop).proof
+        return beyond if found is None else _of_at_least(found, at_least)
     with stopping(asked):
         bounds = bounds_of(scaled, proving, at_least)
     if bounds is None:
         return beyond
     return proof_of(scaled.problem, bounds, _known(scaled, bounds), gap)
+
+
+def _of_at_least(proof: Proof, at_least: float | None) -> Proof:
+    """The same where only designs with so much count, deg."""
+    if at_least is None or not proof.complete or (proof.lower or 0.0) >= at_least:
+        return proof
+    return replace(proof, claim=Claim.NONE, lower=None, upper=at_least)
 
 
 def _known(scaled: ScaledProblem, bounds: Bounds) -> float | None:

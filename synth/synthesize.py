@@ -16,6 +16,7 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.user_functions import refuse_no_list, refuse_unusable
 from grashof.synth.proof.atlas import atlas_of
 from grashof.synth.proof.bounds import Proving, bounds_of
+from grashof.synth.proof.five_poses import certified_of
 from grashof.synth.results.conclusion import conclude, needless
 from grashof.synth.results.function_list import function_list
 from grashof.synth.results.mixed import one_list
@@ -146,11 +147,12 @@ def _one_kind(scaled: ScaledProblem, run: Run, asked: Asking) -> Result:
         bounds = bounds_of(scaled, run.proving)
         if bounds is not None and bounds.none:
             return conclude(scaled, nothing_to_search(scaled, run), run, asked, bounds)
+        dyads = certified_of(scaled) if bounds is None else None
         atlas, known = None, None
         with suppress(Stopped):  # the finder has a glance for those in haste
             atlas = None if bounds is None else atlas_of(scaled, bounds)
             known = None if atlas is None else round_of_regions(scaled, atlas, run.search.enough)
-    return conclude(scaled, searches(scaled, run, known), run, asked, bounds, atlas)
+    return conclude(scaled, searches(scaled, run, known), run, asked, bounds or dyads, atlas)
 
 
 def _functions(

@@ -238,6 +238,7 @@ def sweep(
 def check(problem: ProblemArgument) -> None:
     """Read PROBLEM and print what will be required of a design, without solving."""
     from grashof.output.terminal import folded
+    from grashof.synth.proof.asked import enclosed
     from grashof.synth.results.advice import advice
     from grashof.synth.starts.finder import refuse_unsearchable
     from grashof.wording.problem import summary
@@ -247,8 +248,9 @@ def check(problem: ProblemArgument) -> None:
         refuse_unsearchable(loaded)
         for line in folded(summary(loaded)):
             say(line)
-        for line in folded([f"note: {told}"] if (told := advice(loaded)) else []):
-            say(line)
+        for told in (advice(loaded), enclosed(loaded)):
+            for line in folded([f"note: {told}"] if told else []):
+                say(line)
 
 
 @app.command()

@@ -183,6 +183,7 @@ def _deliver(
     from grashof.output.folder import PAGE
     from grashof.output.run_files import left_out, write_run
     from grashof.output.terminal import print_table
+    from grashof.wording.proof import proof_line
 
     if found.story is not None and found.story.record_lost:
         say(f"{found.story.record_lost}; the search went on without its record", err=True)
@@ -194,6 +195,8 @@ def _deliver(
         return interrupted.code if interrupted() else Exit.NO_DESIGN
     try:
         files = write_run(folder, result, settings, drawings, interrupted, text, drawing, listed)
+        if not result.candidates and (proven := proof_line(result)):
+            say(proven, err=True)
         _report(result.note, files, folder)
         if left := left_out(result, drawings, files):
             say(f"drawings are left out: {interrupted.by} came before {left} of them were made", err=True)

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import combinations
 from typing import Any
 
 import numpy as np
 
-from grashof.problems import Box, Requirements, Rotatability, TransmissionOver
+from grashof.problems import Box, MotionTask, Problem, Requirements, Rotatability, TransmissionOver
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.problems.values.requirements import LIMITS
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve import Curve
+from grashof.synth.theory.burmester import Displacements
 
 # Limits are inclusive: the judge overlooks 1e-9 (sizes, rad or ratio), and so do proofs, with a margin.
 SLACK = 2e-9
@@ -105,7 +107,7 @@ class Asked:
 
     @classmethod
     def of(cls, scaled: ScaledProblem, at_least: float | None = None) -> Asked:
-        """What is asked of a problem that `refusal` does not refuse; with more than its least angle (deg)."""
+        """What is asked of the first four poses of a problem; perhaps with a greater least angle (deg)."""
         motion, wanted = scaled.motion, scaled.wanted
         if motion is None:
             raise TypeError("only whole poses that are met exactly have a curve of dyads")
@@ -117,7 +119,7 @@ class Asked:
         senses = LIMITS["driver_sense"].words[wanted.driver_sense]
         rotation = np.radians(wanted.driver_rotation_deg or (0.0, 360.0))
         return cls(
-            curve=Curve.of(motion, origin),
+            curve=Curve.of(Displacements(motion.rotation[:POSES], motion.shift[:POSES]), origin),
             origin=origin,
             first_turn=motion.first_turn,
             driver=_dyad(wanted, "o2", "a", r2, origin),
@@ -243,11 +245,36 @@ def refusal(scaled: ScaledProblem) -> str | None:
         return "a cylinder drives it, through dead positions of link 2, perhaps"
     if (without := _transmits_nothing(scaled)) and not scaled.wanted.transmission_min_deg:
         return f"{without} allows designs that transmit nothing"
-    for i in range(POSES):
-        for j in range(i):
-            apart = abs(motion.rotation[i] - motion.rotation[j]) + abs(scaled.targets[i] - scaled.targets[j])
-            if apart < TOGETHER:
-                return f"poses {j + 1} and {i + 1} are equal"
-    if Curve.of(motion, complex(scaled.targets[0])).degenerate:
+    return unusable(scaled)
+
+
+def unusable(scaled: ScaledProblem) -> str:
+    """Why the poses themselves leave no curve of dyads; empty where they leave one."""
+    motion = scaled.motion
+    if motion is None:
+        raise TypeError("only whole poses that are met exactly have a curve of dyads")
+    for i, j in combinations(range(len(scaled.targets)), 2):
+        apart = abs(motion.rotation[i] - motion.rotation[j]) + abs(scaled.targets[i] - scaled.targets[j])
+        if apart < TOGETHER:
+            return f"poses {i + 1} and {j + 1} are equal"
+    first = Displacements(motion.rotation[:POSES], motion.shift[:POSES])
+    if Curve.of(first, complex(scaled.targets[0])).degenerate:
         return "the poses have a plane of dyads (translations, or a rotation about one point)"
     return ""
+
+
+def enclosed(problem: Problem) -> str:
+    """That the search of a problem encloses all linkages, for those who read it; empty where it does not.
+
+    Examples
+    --------
+    >>> from grashof import load
+    >>> print(enclosed(load("luggage")))
+    all four-bars through four poses are enclosed: seed and effort change nothing where that finds enough
+    """
+    if not isinstance(problem.task, MotionTask) or problem.mechanism[0] != FOUR_BAR:
+        return ""
+    if refusal(ScaledProblem.of(problem.for_kind(FOUR_BAR))) != "":
+        return ""
+    told = "all four-bars through four poses are enclosed"
+    return f"{told}: seed and effort change nothing where that finds enough"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any
 
@@ -14,6 +14,7 @@ from grashof.problems.values.quantities import Quantity
 from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.proof.bounds import Bounds
+from grashof.synth.proof.five_poses import Certified
 
 ROUNDING = "doubles, enclosures widened for rounding; poses as stored, limits by 2e-9"
 _NOISE = 1e-6  # deg: targets are met up to rounding, and so are bounds
@@ -46,7 +47,7 @@ class Proof:
     lower, upper : float or None, deg
         Of the best design that is listed, as judged; and what no design exceeds.
     pieces : tuple of int
-        Pieces of the curve of dyads, to begin with: that may be drivers, and driven.
+        Pieces of the curve of dyads, to begin with: that may be drivers, and driven; of five poses dyads.
     pairs, levels : int
         Pairs of pieces that were bounded, and how often what was left was halved.
     seconds : float, s
@@ -120,3 +121,20 @@ def proof_of(problem: Problem, bounds: Bounds, lower: float | None, gap: float) 
         left_out=bounds.left_out,
         why=why,
     )
+
+
+def proof_of_all(problem: Problem, dyads: Certified, designs: Sequence[Candidate], *, whole: bool) -> Proof:
+    """What certified dyads of five poses prove of listed designs, where the search was whole."""
+    best = best_listed(problem, designs)
+    proof = Proof(
+        claim=Claim.REFUSED,
+        quantity=quantity_of(problem).column,
+        lower=best,
+        pieces=(dyads.within, dyads.within),
+        seconds=round(dyads.seconds, 4),
+        why=dyads.why or ("" if whole else "the search was not whole"),
+    )
+    if proof.why:
+        return proof
+    claim = Claim.NONE if best is None else Claim.BEST
+    return replace(proof, claim=claim, complete=True, upper=best)

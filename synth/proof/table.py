@@ -91,6 +91,16 @@ class Pieces:
         return done
 
 
+def squares(asked: Asked) -> Tubes:
+    """The squares that a cover begins with: within reach of the arms."""
+    reach = asked.driver.arm[1]
+    step = 2 * reach / SQUARES
+    even = -reach + step * (np.arange(SQUARES) + 0.5)
+    middle = (even[:, None] + 1j * even).ravel()
+    size = np.full(len(middle), step / 2)
+    return Tubes.rectangles(middle, np.ones_like(middle), size, size)
+
+
 @dataclass(slots=True)
 class Table:
     """All pieces of a proof.
@@ -122,12 +132,7 @@ class Table:
         Stopped
             Asked to stop.
         """
-        reach = asked.driver.arm[1]
-        step = 2 * reach / SQUARES
-        even = -reach + step * (np.arange(SQUARES) + 0.5)
-        middle = (even[:, None] + 1j * even).ravel()
-        size = np.full(len(middle), step / 2)
-        active = Tubes.rectangles(middle, np.ones_like(middle), size, size)
+        active = squares(asked)
         done: list[Pieces] = []
         count = 0
         while len(active):

@@ -9,7 +9,8 @@ from grashof.synth.designs.families import listed
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.atlas import Atlas
 from grashof.synth.proof.bounds import Bounds
-from grashof.synth.proof.proof import best_listed, proof_of
+from grashof.synth.proof.five_poses import Certified
+from grashof.synth.proof.proof import best_listed, proof_of, proof_of_all
 from grashof.synth.results.advice import advice
 from grashof.synth.results.choice import choose, least_error, why_ended
 from grashof.synth.results.explain import explain
@@ -28,7 +29,7 @@ def conclude(
     ledgers: list[Ledger],
     run: Run,
     asked: Asking,
-    bounds: Bounds | None = None,
+    bounds: Bounds | Certified | None = None,
     atlas: Atlas | None = None,
 ) -> Result:
     """The ranked list of what one or two searches found, or why it is empty; with what bounds prove of it."""
@@ -54,13 +55,16 @@ def conclude(
         processes_lost=run.work.lost,
         starts_crashed=tuple(run.crashed),
     )
-    ended, seconds = "" if bounds is not None and bounds.none else why_ended(scaled, ledger), run.times
+    none = isinstance(bounds, Bounds) and bounds.none
+    ended, seconds = "" if none else why_ended(scaled, ledger), run.times
     if ended and designs and not chosen.designs:
         ended += "; those listed were found in looking for what stands in the way"
     why = f"; {ended}" if ended else ""
     _LOG.info("ended after %.1f s, %s: %d designs%s", seconds["total"], story.ending, len(designs), why)
     proof = None
-    if bounds is not None:
+    if isinstance(bounds, Certified):
+        proof = proof_of_all(problem, bounds, designs, whole=ledger.exhaustive)
+    elif bounds is not None:
         proof = proof_of(problem, bounds, best_listed(problem, designs), run.proving.gap)
     if proof is not None and atlas is not None:
         proof = replace(proof, regions=atlas.count, region_size=atlas.size)

@@ -207,6 +207,11 @@ class Ledger:
         return self.scaled.exact and len(self.best) >= self.search.enough
 
     @property
+    def exhaustive(self) -> bool:
+        """Whether every start that there is was solved."""
+        return self.complete and not self.enough and self.solved < self.starts
+
+    @property
     def _came_up(self) -> int:
         """In how many rounds the least error came up."""
         return sum(error <= max(self.least * (1 + SAME), EXACT_ERROR) for error in self._errors)

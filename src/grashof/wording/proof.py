@@ -56,8 +56,10 @@ def _reached(proof: Proof, at_least: float | None) -> bool:
 
 
 def _line(proof: Proof, known: str) -> str:
-    if proof.claim is Claim.REFUSED or proof.upper is None:
+    if proof.claim is Claim.REFUSED:
         return f"Not proven: {proof.why}."
+    if proof.upper is None or proof.upper == proof.lower:
+        return _all_line(proof, known)
     angle = f"{_up(proof.upper)} deg"
     if proof.claim is Claim.NONE:
         return f"Proven: no four-bar meets these requirements with a transmission angle of {angle} or more."
@@ -67,6 +69,15 @@ def _line(proof: Proof, known: str) -> str:
     if proof.upper >= _NOTHING:
         return f"Not proven{_because(proof)}{has}."
     return f"Proven: no four-bar has more than {angle}{_because(proof)}{has}."
+
+
+def _all_line(proof: Proof, known: str) -> str:
+    """Of five poses: that all linkages are known."""
+    dyads = counted(proof.pieces[0], "dyad")
+    if proof.claim is Claim.NONE:
+        return f"Proven: the poses have {dyads} within the limits, and none of their linkages does."
+    has = f"; {known} the most, {_down(proof.lower)} deg" if known else ""
+    return f"Proven: the poses have {dyads} within the limits, and no other linkage of these does{has}."
 
 
 def _regions(proof: Proof) -> str:
@@ -107,6 +118,8 @@ def work_line(proof: Proof) -> str:
     '42 by 40 pieces of the curve of dyads, 3049 pairs, halved 5 times, 0.10 s'
     """
     first, second = proof.pieces
+    if not proof.pairs:
+        return f"{counted(first, 'dyad')}, each in a box of its own, {proof.seconds:.2f} s"
     return (
         f"{first} by {second} pieces of the curve of dyads, {counted(proof.pairs, 'pair')}, "
         f"halved {counted(proof.levels, 'time')}, {proof.seconds:.2f} s"

@@ -18,7 +18,8 @@ from grashof.synth.designs.table import LISTED, NAMES, to_frame
 CONTRACT = """
 rank, id, mechanism, family, region, grashof_class, direction, assembly, o2_x, o2_y, o4_x, o4_y,
 r1, r2, r3, r4, p_u, p_v, body_angle_deg, theta2_start_deg, theta2_end_deg, error, error_max, error_rms,
-error_sse, angle_error_max_deg, angle_error_rms_deg, transmission_min_task_deg, transmission_min_cycle_deg, circuit_ok,
+error_sse, angle_error_max_deg, angle_error_rms_deg, transmission_min_task_deg,
+transmission_min_cycle_deg, circuit_ok,
 branch_ok, order_ok, full_rotation, omega4_max, point_speed_max, point_acceleration_max, torque_peak,
 torque_rms, joint_force_peak, coupler_fit_r2, size, pareto, cognate_of, start, iterations, best_at,
 caution, hausdorff, frechet, move_r1, move_r2, move_r3, move_r4, move_u, move_v, worst_move,
