@@ -22,7 +22,8 @@ from grashof.synth.synthesize import synthesize
 from grashof.synth.theory.stopping import stopping
 
 _BEYOND = (
-    "there are proofs of four or five whole poses that a four-bar meets exactly, and of no other task yet"
+    "there are proofs of four and five whole poses, and of five pairs, that a four-bar meets exactly; "
+    "of no other task yet"
 )
 
 
@@ -40,7 +41,8 @@ def prove(
     Parameters
     ----------
     problem : Problem
-        Four whole poses for a four-bar, to be met exactly, the transmission angle to be maximised; or five.
+        For a four-bar, met exactly: four whole poses, the transmission angle to be maximised; five whole
+        poses; a function of five pairs.
     at_least : float, deg, optional
         Only decide whether a design has a transmission angle of so much.
     gap : float, deg
@@ -62,7 +64,7 @@ def prove(
 
     Notes
     -----
-    Branch and bound over pairs of pieces of Burmester's curve; of five poses a search among all dyads.
+    Branch and bound over pairs of pieces of Burmester's curve; of five targets a search among all dyads.
     See "Proofs" in the documentation.
 
     Examples
@@ -84,10 +86,14 @@ def prove(
     beyond = Proof(claim=Claim.REFUSED, quantity=quantity_of(problem).column, why=_BEYOND)
     if FOUR_BAR not in problem.mechanism:
         return beyond
-    scaled = ScaledProblem.of(problem.for_kind(FOUR_BAR), constraints)
-    if scaled.motion is not None and len(scaled.targets) == FIVE:
-        found = synthesize(scaled.problem, constraints=constraints, time_limit=time_limit, stop=stop).proof
+    alone = problem.for_kind(FOUR_BAR)
+    function = bool(problem.task.has_output.any())
+    if len(problem.task) == FIVE and (function or problem.task.is_whole):
+        found = synthesize(alone, constraints=constraints, time_limit=time_limit, stop=stop).proof
         return beyond if found is None else _of_at_least(found, at_least)
+    if function:
+        return beyond
+    scaled = ScaledProblem.of(alone, constraints)
     with stopping(asked):
         bounds = bounds_of(scaled, proving, at_least)
     if bounds is None:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems import Box, MotionTask, Problem, Requirements, Rotatability, TransmissionOver
-from grashof.problems.values.arrays import Limits
+from grashof.problems.values.arrays import TURN, Limits
 from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.problems.values.requirements import LIMITS
 from grashof.synth.programme.scaled_problem import ScaledProblem
@@ -139,6 +139,32 @@ class Asked:
             theta2_start=wanted.angle_of("theta2_start_deg"),
             ground_angle=_directions(wanted),
             floor=max(LEAST, float(np.radians(max(wanted.transmission_min_deg, at_least or 0.0))) - SLACK),
+        )
+
+    @classmethod
+    def within(cls, motion: Displacements, reach: float) -> Asked:
+        """Dyads alone: with arms and lengths up to `reach`, sizes."""
+        dyad = Dyad((0.0, reach), (0.0, reach), Box(), Box(), Box())
+        return cls(
+            curve=Curve.of(Displacements(motion.rotation[:POSES], motion.shift[:POSES]), 0j),
+            origin=0j,
+            first_turn=0.0,
+            driver=dyad,
+            driven=dyad,
+            r1=ANY_LENGTH,
+            r3=ANY_LENGTH,
+            ratio=np.inf,
+            ordered=False,
+            one_branch=False,
+            turns=False,
+            margin=0.0,
+            longer_ground=(1, -1),
+            over_turn=False,
+            sense=0,
+            rotation=(0.0, TURN),
+            theta2_start=None,
+            ground_angle=None,
+            floor=LEAST,
         )
 
     @property

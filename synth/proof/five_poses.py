@@ -19,6 +19,7 @@ from grashof.synth.theory.five_poses import five_pose_dyads
 from grashof.synth.theory.stopping import Stopped, give_way
 
 FIVE = 5
+STOPPED = "it was stopped"
 MOST_RECTANGLES = 300_000
 CLOSE = 0.9  # of the largest box that Krawczyk's test accepts, about
 _NEWTON = 30  # steps from what is left to a root
@@ -57,6 +58,12 @@ class Certified:
     def __len__(self) -> int:
         return len(self.moving)
 
+    @classmethod
+    def nothing(cls) -> Certified:
+        """No dyad."""
+        nowhere = np.zeros(0, dtype=np.complex128)
+        return cls(nowhere, nowhere, np.zeros(0))
+
 
 def certified_of(scaled: ScaledProblem) -> Certified | None:
     """All dyads of a problem of five whole poses, met exactly by a four-bar; None of other problems.
@@ -65,10 +72,8 @@ def certified_of(scaled: ScaledProblem) -> Certified | None:
     """
     if scaled.motion is None or len(scaled.targets) != FIVE or scaled.problem.driver is not None:
         return None
-    nowhere = np.zeros(0, dtype=np.complex128)
-    nothing = Certified(nowhere, nowhere, np.zeros(0))
     if why := unusable(scaled):
-        return replace(nothing, why=why)
+        return replace(Certified.nothing(), why=why)
     since = perf_counter()
     asked = replace(Asked.of(scaled), rotation=(0.0, TURN))
     shift = scaled.motion.apply(np.array([asked.origin]))[0] - asked.origin
@@ -76,15 +81,18 @@ def certified_of(scaled: ScaledProblem) -> Certified | None:
     try:
         made = certified_dyads(asked, motion)
     except Stopped:
-        return replace(nothing, why="it was stopped")
-    known = five_pose_dyads(motion)
-    unknown = [
-        z for z, box in zip(made.moving, made.box, strict=True) if np.all(np.abs(known.moving - z) > box)
-    ]
-    why = "" if made.complete else "the curve takes too many pieces, as near a double dyad"
-    if unknown:
-        why = f"{counted(len(unknown), 'dyad')} came up that the search does not know"
+        return replace(Certified.nothing(), why=STOPPED)
+    why = why_open(made, motion)
     return replace(made, complete=not why, seconds=perf_counter() - since, why=why)
+
+
+def why_open(made: Certified, motion: Displacements) -> str:
+    """Why dyads may not be all, or not all known to the search; empty where they are."""
+    if not made.complete:
+        return "the curve takes too many pieces, as near a double dyad"
+    known = five_pose_dyads(motion).moving
+    unknown = [z for z, box in zip(made.moving, made.box, strict=True) if np.all(np.abs(known - z) > box)]
+    return f"{counted(len(unknown), 'dyad')} came up that the search does not know" if unknown else ""
 
 
 def certified_dyads(asked: Asked, motion: Displacements) -> Certified:

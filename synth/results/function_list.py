@@ -15,6 +15,8 @@ from grashof.analysis.judge.design import Constraint, OwnObjective
 from grashof.problems import Problem, ProblemError, Search
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.families import listed
+from grashof.synth.proof.functions import certified_functions
+from grashof.synth.proof.proof import proof_of_all
 from grashof.synth.results.result import Result
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.run import Progress
@@ -115,8 +117,11 @@ def function_list(
                 seconds["judging"] += perf_counter() - since
                 if overdue():
                     break
+    with stopping(asked):
+        dyads = certified_functions(aims)
     seconds["solving"] = perf_counter() - begun - seconds["judging"]
     complete = not asked()
+    whole = complete and len(judged.good) < search.enough
     if not aims.exact and judged.good:
         least = min(one.error(problem) for one in judged.good)
         judged.good = [named(one, problem, least, aims.unit) for one in _within(judged, least)]
@@ -145,6 +150,7 @@ def function_list(
         ended=ended if complete else "the search ended before it was done: it was stopped",
         least_error=least,
         story=Story(begun=asked.begun, ended=now(), ending=asked.ending),
+        proof=None if dyads is None else proof_of_all(problem, dyads, designs, whole=whole),
     )
 
 

@@ -72,12 +72,14 @@ def _line(proof: Proof, known: str) -> str:
 
 
 def _all_line(proof: Proof, known: str) -> str:
-    """Of five poses: that all linkages are known."""
-    dyads = counted(proof.pieces[0], "dyad")
+    """Of five poses or pairs: that all linkages are known."""
+    dyads, meet = counted(proof.pieces[0], "dyad"), "meets" if proof.pieces[0] == 1 else "meet"
     if proof.claim is Claim.NONE:
-        return f"Proven: the poses have {dyads} within the limits, and none of their linkages does."
+        return f"Proven: {dyads} {meet} the targets within the limits, and none of their linkages does it."
     has = f"; {known} the most, {_down(proof.lower)} deg" if known else ""
-    return f"Proven: the poses have {dyads} within the limits, and no other linkage of these does{has}."
+    return (
+        f"Proven: {dyads} {meet} the targets within the limits, and no other linkage of these does it{has}."
+    )
 
 
 def _regions(proof: Proof) -> str:

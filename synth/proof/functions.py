@@ -1,0 +1,51 @@
+"""Functions of five pairs: all four-bars that generate them, each for certain."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from time import perf_counter
+
+import numpy as np
+
+from grashof.problems.values.mechanisms import FOUR_BAR
+from grashof.synth.proof.asked import Asked
+from grashof.synth.proof.five_poses import FIVE, STOPPED, Certified, certified_dyads, why_open
+from grashof.synth.starts.function_aims import FunctionAims
+from grashof.synth.theory.burmester import Displacements
+from grashof.synth.theory.stopping import Stopped
+
+_TRIVIAL = 1e-6  # of r1: the ground link itself is a dyad of every function
+
+
+def certified_functions(aims: FunctionAims) -> Certified | None:
+    """All couplers of four-bars through five pairs, up to the ratio of link lengths; None of other functions.
+
+    Notes
+    -----
+    Seen from link 4, link 2 moves through known poses, and the coupler is a dyad of that motion; with r1 = 1
+    no length is greater than the ratio of lengths allows.
+    """
+    ways = list(aims.ways())
+    if aims.problem.mechanism[0] != FOUR_BAR or not aims.exact or len(aims.task) != FIVE:
+        return None
+    if any(first is not None for _, _, first in ways):
+        return None
+    since, found = perf_counter(), []
+    for sense in dict.fromkeys(sense for sense, _, _ in ways):
+        wanted = aims.pairs(sense)
+        turned, output = wanted.turned - wanted.turned[0], wanted.output - wanted.output[0]
+        motion = Displacements(np.exp(1j * (turned - output)), 1.0 - np.exp(-1j * output))
+        try:
+            made = certified_dyads(Asked.within(motion, aims.wanted.link_ratio_max), motion)
+        except Stopped:
+            return replace(Certified.nothing(), why=STOPPED)
+        made = replace(made, within=int(made.within - _trivial(made)), why=why_open(made, motion))
+        found.append(made)
+    whole = replace(found[0], within=sum(one.within for one in found), seconds=perf_counter() - since)
+    why = next((one.why for one in found if one.why), "")
+    return replace(whole, complete=not why, why=why)
+
+
+def _trivial(dyads: Certified) -> int:
+    """How many of dyads are the ground link."""
+    return int(np.sum((np.abs(dyads.moving) < _TRIVIAL) & (np.abs(dyads.ground - 1) < _TRIVIAL)))
