@@ -14,7 +14,7 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.five_poses import Certified, certified_of
 from grashof.synth.theory.five_poses import five_pose_dyads
 
-REACH = 50.0  # sizes
+REACH = 50.0
 WIDE = {"link_length": (1e-6, REACH), "coupler_arms": (0.0, REACH), "rotatability": "any"}
 
 
@@ -49,7 +49,8 @@ def test_every_dyad_is_counted_once(seed: int) -> None:
     assert motion is not None
     known = five_pose_dyads(motion)
     arm = np.abs(known.moving - ScaledProblem.of(problem).targets[0])
-    within = (arm <= REACH) & (np.abs(known.moving - known.ground) <= REACH * problem.task.size)
+    reach = REACH / problem.task.size
+    within = (arm <= reach) & (np.abs(known.moving - known.ground) <= reach)
     assert made.within == within.sum()
 
 
