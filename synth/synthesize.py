@@ -16,6 +16,7 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.user_functions import refuse_no_list, refuse_unusable
 from grashof.synth.proof.atlas import atlas_of
 from grashof.synth.proof.bounds import Proving, bounds_of
+from grashof.synth.proof.first_round import round_of_regions
 from grashof.synth.proof.five_poses import certified_of
 from grashof.synth.results.conclusion import conclude, needless
 from grashof.synth.results.function_list import function_list
@@ -28,7 +29,6 @@ from grashof.synth.search.searches import nothing_to_search, searches
 from grashof.synth.search.story import Asking, Ending
 from grashof.synth.search.workers import working
 from grashof.synth.starts.finder import finder_for
-from grashof.synth.starts.regions import round_of_regions
 from grashof.synth.theory.stopping import Stopped, stopping
 
 _LOG = logging.getLogger(__name__)

@@ -31,6 +31,23 @@ NEAR = 4.0  # times the length of pieces: designs farther from all linkages of a
 
 
 @dataclass(frozen=True, slots=True)
+class Loci:
+    """Where the joints of a four-bar can be: pieces of the curves of dyads, in the problem's unit.
+
+    Parameters
+    ----------
+    moving, ground : ndarray, shape (n, 2, 2)
+        Ends of each piece: of the moving pivot at the first pose, and of the ground pivot that belongs to it.
+    transmission : ndarray, shape (n,), rad
+        Of the best linkage that was seen with a dyad of the piece, as driver or driven.
+    """
+
+    moving: FloatArray
+    ground: FloatArray
+    transmission: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
 class Atlas:
     """Linkages in the middle of pairs of pieces, in regions.
 
@@ -42,11 +59,13 @@ class Atlas:
         Of each, numbered from 1 in the order of their best.
     size : float, sizes
         Half the length of the longest piece.
+    loci : Loci
     """
 
     linkages: Screened
     region: IntArray
     size: float
+    loci: Loci
 
     @property
     def count(self) -> int:
@@ -90,7 +109,21 @@ def atlas_of(scaled: ScaledProblem, bounds: Bounds) -> Atlas | None:
     number = np.empty(len(names), dtype=np.int64)
     number[np.argsort(-best, kind="stable")] = 1 + np.arange(len(names))
     sizes = _lengths(table, np.unique(np.concatenate([pairs.driver, pairs.driven])))
-    return Atlas(linkages, number[label], max(SIZE, float(sizes.max(initial=0.0))))
+    loci = _loci(scaled, asked, table, pairs[feasible], linkages.transmission)
+    return Atlas(linkages, number[label], max(SIZE, float(sizes.max(initial=0.0))), loci)
+
+
+def _loci(scaled: ScaledProblem, asked: Asked, table: Table, pairs: Pairs, transmission: FloatArray) -> Loci:
+    """The pieces of pairs, each with the best of its linkages."""
+    used, piece = np.unique(np.concatenate([pairs.driver, pairs.driven]), return_inverse=True)
+    best = np.zeros(len(used))
+    np.maximum.at(best, piece, np.tile(transmission, 2))
+    tubes, centres = table.pieces.tubes[used], table.pieces.centres[used]
+
+    def ends(middle: ComplexArray, along: ComplexArray) -> FloatArray:
+        return scaled.frame.outward(np.stack([middle - along, middle + along], axis=1) + asked.origin)
+
+    return Loci(ends(tubes.middle, tubes.along), ends(centres.middle, centres.along), best)
 
 
 def _small_pairs(asked: Asked, table: Table) -> Pairs:

@@ -80,6 +80,7 @@ def conclude(
         least_error=least_error(scaled, ledger),
         story=story,
         proof=proof,
+        loci=None if atlas is None else atlas.loci,
     )
 
 

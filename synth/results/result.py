@@ -14,6 +14,7 @@ from grashof.problems.values.checks import counted
 from grashof.problems.values.display import Displayed
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.merit import same_error
+from grashof.synth.proof.atlas import Loci
 from grashof.synth.proof.proof import Proof
 from grashof.synth.search.story import Story
 from grashof.synth.search.tally import Tally
@@ -50,6 +51,8 @@ class Result(Displayed):
         What happened to the search that it is of.
     proof : Proof, optional
         What is proven of the list, where the question arises.
+    loci : Loci, optional
+        Where the joints can be, where all linkages are enclosed.
     """
 
     problem: Problem
@@ -63,6 +66,7 @@ class Result(Displayed):
     least_error: float = np.nan
     story: Story | None = field(default=None, compare=False)
     proof: Proof | None = field(default=None, compare=False)
+    loci: Loci | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         for name in ("candidates", "nearest"):

@@ -12,6 +12,7 @@ from grashof.page.render import compact
 from grashof.problems import FourBar, Problem, Task, catalogue, load
 from grashof.problems.files.published import published
 from grashof.problems.values.arrays import FloatArray
+from grashof.synth import Result
 
 _SAMPLES = 181
 
@@ -35,6 +36,21 @@ def scene_of(problem: Problem) -> dict[str, Any]:
             for box in dict.fromkeys(boxes.values())
         ],
         "published": _published(problem),
+    }
+
+
+def loci_of(result: Result) -> dict[str, Any] | None:
+    """Where the joints can be, the pieces of the best linkages last; None where that is not known, or few."""
+    loci = result.loci
+    if loci is None or not len(loci.transmission) or not result.candidates:
+        return None
+    order = np.argsort(loci.transmission, kind="stable")
+    degrees = np.degrees(loci.transmission[order])
+    return {
+        "moving": [compact(ends) for ends in loci.moving[order].reshape(-1, 4)],
+        "ground": [compact(ends) for ends in loci.ground[order].reshape(-1, 4)],
+        "share": [round(float(each), 3) for each in degrees / degrees[-1]],
+        "best": round(float(degrees[-1]), 1),
     }
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from grashof.page.columns import Column, columns_of, figures_of
 from grashof.page.designs import designs_of, driver_travel, legend
 from grashof.page.render import DRAWING, render
-from grashof.page.scene import scene_of
+from grashof.page.scene import loci_of, scene_of
 from grashof.problems import Problem
 from grashof.problems.values.checks import counted
 from grashof.synth import Candidate, Result
@@ -23,7 +23,8 @@ from grashof.wording.problem import goals, summary
 from grashof.wording.proof import proof_line, work_line
 
 _SCRIPTS = (
-    *DRAWING, "picture.js", "curves.js", "scatter.js", "table.js", "compare.js", "saving.js", "search.js",
+    *DRAWING, "picture.js", "curves.js", "scatter.js", "table.js", "compare.js", "saving.js", "loci.js",
+    "search.js",
 )  # fmt: skip
 
 
@@ -56,6 +57,7 @@ def search_page(
     rows = [row for row, moves in zip(rows, moving, strict=True) if moves]
     note, ways = note_parts(result.note)
     data = search_data(problem, designs, rows, found=bool(result.candidates))
+    data["loci"] = loci_of(result)
     columns = [Column(**each) for each in data["columns"]]
     return render(
         "search.html",
@@ -67,6 +69,7 @@ def search_page(
         found=bool(result.candidates),
         headline=headline(result),
         proven=proof_line(result),
+        loci=data["loci"],
         proof_work="" if result.proof is None else work_line(result.proof),
         note=note,
         ways=ways,

@@ -111,6 +111,20 @@ def test_the_path_of_p_is_smooth_where_p_runs_fast(opened: Open) -> None:
     assert turns[seen[1:] & seen[:-1]].max() < 6
 
 
+def test_the_curves_of_all_joints_are_drawn_where_they_are_known(opened: Open, few: Result) -> None:
+    page = opened("search", size=(1300, 1000))
+    assert few.loci is not None
+    assert page.locator("#stage .locus").count() == 0
+    page.locator("#loci").check()
+    drawn = page.locator("#stage .locus").evaluate_all(
+        "(paths) => paths.map((path) => (path.getAttribute('d').match(/M/g) || []).length)"
+    )
+    assert sum(drawn) == 2 * len(few.loci.transmission)
+    assert page.locator("#stage .locus.ground.shade-4").count() == 1
+    page.locator("#loci").uncheck()
+    assert page.locator("#stage .locus").count() == 0
+
+
 def test_a_point_of_the_scatter_plot_picks_its_design(opened: Open, few: Result) -> None:
     page = opened("search", size=(1300, 1000))
     page.locator("#scatter").scroll_into_view_if_needed()

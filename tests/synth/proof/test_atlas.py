@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from grashof import load, synthesize
+from grashof.analysis import solve_position
 from grashof.analysis.judge.planted import planted_motion
-from grashof.problems import Problem, Requirements
+from grashof.problems import FourBar, Problem, Requirements
 from grashof.synth import Claim, Result
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.atlas import Atlas, atlas_of
@@ -74,6 +75,26 @@ def test_the_list_has_the_best_of_every_region(several: Result) -> None:
         seen = made.linkages.transmission[made.region == number].max()
         best = max(one.values["transmission_min_cycle"] for one in several.candidates if one.region == number)
         assert best >= seen - 1e-3
+
+
+def test_the_joints_of_listed_designs_lie_on_the_curves_that_are_drawn(several: Result) -> None:
+    loci, size = several.loci, several.problem.task.size
+    assert loci is not None
+
+    def apart(point: np.ndarray, ends: np.ndarray) -> float:
+        """From the nearest piece, sizes."""
+        start, step = ends[:, 0], ends[:, 1] - ends[:, 0]
+        share = np.clip(((point - start) * step).sum(1) / np.maximum((step**2).sum(1), 1e-300), 0, 1)
+        return float(np.linalg.norm(point - start - share[:, None] * step, axis=1).min()) / size
+
+    for one in several.candidates:
+        if one.region:
+            state = solve_position(one.linkage, one.verdict.theta2[0], one.verdict.assembly[0])
+            linkage = one.linkage
+            assert isinstance(linkage, FourBar)
+            assert max(apart(point, loci.ground) for point in (linkage.o2, linkage.o4)) < 0.1
+            assert max(apart(point, loci.moving) for point in (state.a, state.b)) < 0.1
+    assert loci.transmission.max() <= several.best.values["transmission_min_cycle"] + 1e-3
 
 
 def test_seed_and_workers_change_nothing(several: Result) -> None:

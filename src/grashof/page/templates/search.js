@@ -1,9 +1,9 @@
 // The page of a search: what is chosen is drawn, marked and described everywhere.
 class SearchPage {
-  designs; scene; torqueUnit; found; values; name; columns;
+  designs; scene; torqueUnit; found; values; name; columns; loci;
 
-  constructor({ name, found, scene, columns, axes, values, designs, torqueUnit }) {
-    Object.assign(this, { name, found, scene, columns, values, designs, torqueUnit, chosen: 0 });
+  constructor({ name, found, scene, columns, axes, values, designs, torqueUnit, loci }) {
+    Object.assign(this, { name, found, scene, columns, values, designs, torqueUnit, loci, chosen: 0 });
     const choose = (index) => this.choose(index);
     const turnTo = (degrees) => this.turnTo(degrees / DEG);
     this.stage = new Stage($("#stage"), scene, {
@@ -152,6 +152,12 @@ class SearchPage {
     for (const name of ["trace", "ghosts", "close"]) {
       $(`#${name}`).addEventListener("change", (event) => {
         this.stage[name] = event.target.checked;
+        this.stage.draw();
+      });
+    }
+    if (this.loci) {
+      $("#loci").addEventListener("change", (event) => {
+        this.stage.beside = event.target.checked ? () => drawLoci(this.stage, this.loci) : () => {};
         this.stage.draw();
       });
     }
