@@ -12,13 +12,13 @@ from grashof.problems.values.checks import number_within
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 from grashof.synth.proof.asked import Asked, left_out, refusal, with_forms
-from grashof.synth.proof.branch_and_bound import Search
+from grashof.synth.proof.branch_and_bound import MOST_LEFT, Search
 from grashof.synth.proof.lookout import Lookout
 from grashof.synth.proof.table import Table, TooMany
 from grashof.synth.theory.stopping import Stopped
 
 _LOG = logging.getLogger(__name__)
-_PATIENT = 30_000_000  # pairs
+_PATIENT = 20_000_000  # pairs
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,4 +142,6 @@ _STOPPED = "it was stopped"
 
 def _open(search: Search) -> str:
     """Why a branch and bound ended before its bounds met."""
+    if search.left is not None and len(search.left) > MOST_LEFT:
+        return f"more than {MOST_LEFT} pairs are left"
     return f"the budget of {search.most_pairs} pairs ended" if search.over_budget else _STOPPED

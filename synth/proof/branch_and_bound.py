@@ -14,6 +14,7 @@ from grashof.synth.proof.table import NOTHING, Table
 from grashof.synth.theory.stopping import asked_to_stop
 
 AT_ONCE = 8192  # pairs bounded together
+MOST_LEFT = 1_000_000  # pairs kept in memory
 # The transmission angle of a design in the pairs, rad, where one has more than the given angle; else 0.
 Lookout = Callable[[Table, Pairs, float], float]
 
@@ -79,7 +80,8 @@ class Search:
             if content and self.lower:
                 return
             self.left = self.left[self.left.bound > self.threshold]
-            if not len(self.left):
+            self.over_budget = len(self.left) > MOST_LEFT
+            if not len(self.left) or self.over_budget:
                 return
             halved = self.halved(table, self.left)
             if halved is None:
