@@ -15,7 +15,8 @@ from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.bounds import Bounds, Proving, bounds_of
 from grashof.synth.proof.five_poses import FIVE
-from grashof.synth.proof.proof import Claim, Proof, proof_of, quantity_of
+from grashof.synth.proof.lookout import quantity_of
+from grashof.synth.proof.proof import Claim, Proof, proof_of
 from grashof.synth.search.asked import asking
 from grashof.synth.starts.finder import refuse_unsearchable
 from grashof.synth.synthesize import synthesize
@@ -112,7 +113,6 @@ def _known(scaled: ScaledProblem, bounds: Bounds) -> float | None:
     """Transmission angle of the design that was found, deg, where it meets all that is asked."""
     if bounds.found is None:
         return None
-    linkage = scaled.linkages(bounds.found.points[0], bounds.found.assembly[0])
-    problem = scaled.problem
+    problem, linkage = scaled.problem, bounds.found.linkage
     accepted = verify(linkage, problem.task, problem.requirements, scaled.constraints, problem=problem).ok
     return float(np.degrees(bounds.lower)) if accepted else None

@@ -26,6 +26,7 @@ from grashof.synth.proof.table import Table
 SHARE = 0.5  # of the best transmission angle: less is not listed by regions
 SIZE = 0.02  # sizes: pieces are halved until they are so short
 MOST_PAIRS = 100_000  # bounded for it
+AT_ONCE = 256  # pieces compared with all others
 SLACK = 1.2  # times their lengths: pieces whose middles are nearer are neighbours
 NEAR = 4.0  # times the length of pieces: designs farther from all linkages of a region are of none
 
@@ -74,15 +75,14 @@ class Atlas:
 
     def regions_of(self, scaled: ScaledProblem, designs: Sequence[Candidate]) -> list[int]:
         """Region of each design: that of the nearest linkage; 0 where none is near."""
-        if not len(self.linkages) or not designs:
+        if not len(self.linkages):
             return [0] * len(designs)
-        from scipy.spatial import cKDTree  # takes longer to import than many a search
-
-        places = _coordinates(self.linkages.points[:, :4])
-        wanted = _coordinates(np.array([_first_points(scaled, each) for each in designs]))
-        apart, nearest = cKDTree(places).query(wanted, p=np.inf)
-        regions = np.where(apart <= NEAR * self.size, self.region[nearest], 0)
-        return [int(region) for region in regions]
+        places, found = _coordinates(self.linkages.points[:, :4]), []
+        for place in _coordinates(np.array([_first_points(scaled, each) for each in designs]).reshape(-1, 4)):
+            apart = np.abs(places - place).max(axis=1)
+            nearest = int(np.argmin(apart))
+            found.append(int(self.region[nearest]) if apart[nearest] <= NEAR * self.size else 0)
+        return found
 
 
 def atlas_of(scaled: ScaledProblem, bounds: Bounds) -> Atlas | None:
@@ -152,9 +152,6 @@ def _lengths(table: Table, pieces: IntArray) -> FloatArray:
 
 def _joined(table: Table, pairs: Pairs) -> IntArray:
     """A number for each pair that all those have in common that chains of neighbours join."""
-    from scipy.sparse import coo_array  # take longer to import than many a search
-    from scipy.sparse.csgraph import connected_components
-
     used, numbers = np.unique(np.concatenate([pairs.driver, pairs.driven]), return_inverse=True)
     count = len(pairs)
     if not count:
@@ -174,27 +171,38 @@ def _joined(table: Table, pairs: Pairs) -> IntArray:
         there = codes[order][found] == wanted
         ends.append((source[there], order[found[there]]))
     rows, columns = (np.concatenate(side) for side in zip(*ends, strict=True))
-    graph = coo_array((np.ones(len(rows), dtype=bool), (rows, columns)), shape=(count, count))
-    labels: IntArray = connected_components(graph, directed=False)[1].astype(np.int64)
-    return labels
+    return _components(count, rows, columns)
+
+
+def _components(count: int, rows: IntArray, columns: IntArray) -> IntArray:
+    """The least number in the component of each node of a graph, by its edges.
+
+    Labels spread along edges, and each jumps to the label of its label, until nothing changes.
+    """
+    labels = np.arange(count)
+    while True:
+        before = labels.copy()
+        np.minimum.at(labels, rows, before[columns])
+        np.minimum.at(labels, columns, labels[rows])
+        labels = labels[labels]
+        if np.array_equal(labels, before):
+            return labels
 
 
 def _neighbours(table: Table, used: IntArray) -> tuple[IntArray, IntArray]:
     """Pieces near each of some pieces: where theirs begin, and their numbers among these."""
-    from scipy.sparse import coo_array
-    from scipy.spatial import cKDTree
-
     tubes, centres = table.pieces.tubes[used], table.pieces.centres[used]
     reach, way = tubes.half + tubes.side, np.abs(centres.along) + centres.rest
-    tree = cKDTree(_coordinates(tubes.middle[:, None]))
-    pairs = tree.query_pairs(2 * SLACK * float(reach.max()), output_type="ndarray")
-    i, j = pairs.T
-    near = np.abs(tubes.middle[i] - tubes.middle[j]) <= SLACK * (reach[i] + reach[j])
-    near &= np.abs(centres.middle[i] - centres.middle[j]) <= SLACK * (way[i] + way[j])
-    i, j = i[near], j[near]
-    both = np.concatenate([i, j]), np.concatenate([j, i])
-    graph = coo_array((np.ones(2 * len(i), dtype=bool), both), shape=(len(used), len(used))).tocsr()
-    return graph.indptr.astype(np.int64), graph.indices.astype(np.int64)
+    numbers, many = [], []
+    for k in range(0, len(used), AT_ONCE):
+        rows = np.arange(k, min(k + AT_ONCE, len(used)))[:, None]
+        near = np.abs(tubes.middle[rows] - tubes.middle) <= SLACK * (reach[rows] + reach)
+        near &= np.abs(centres.middle[rows] - centres.middle) <= SLACK * (way[rows] + way)
+        near &= rows != np.arange(len(used))
+        numbers.append(np.nonzero(near)[1])
+        many.append(near.sum(axis=1))
+    start = np.concatenate([[0], np.cumsum(np.concatenate(many))])
+    return start, np.concatenate(numbers)
 
 
 def _coordinates(points: ComplexArray) -> FloatArray:

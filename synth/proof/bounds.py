@@ -9,8 +9,8 @@ from time import perf_counter
 import numpy as np
 
 from grashof.problems.values.checks import number_within
+from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import Screened
 from grashof.synth.proof.asked import Asked, left_out, refusal, with_forms
 from grashof.synth.proof.branch_and_bound import MOST_LEFT, Search
 from grashof.synth.proof.lookout import Lookout
@@ -57,8 +57,8 @@ class Bounds:
         No design has more.
     closed : bool
         Whether the bounds have met, or no design is left.
-    found : Screened, optional
-        The design with `lower`, as the only entry, in the frame of the search.
+    found : Candidate, optional
+        The design with `lower`.
     pieces : tuple of int
         Pieces of the curve to begin with: that may be drivers, and driven.
     pairs, levels : int
@@ -74,7 +74,7 @@ class Bounds:
     lower: float = 0.0
     upper: float = np.pi / 2
     closed: bool = False
-    found: Screened | None = field(default=None, compare=False)
+    found: Candidate | None = field(default=None, compare=False)
     pieces: tuple[int, int] = (0, 0)
     pairs: int = 0
     levels: int = 0

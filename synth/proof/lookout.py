@@ -6,11 +6,17 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from grashof.analysis import Verdict, verify
-from grashof.problems import Linkage, TransmissionOver
+from grashof.problems import Problem
 from grashof.problems.values.arrays import ComplexArray
+from grashof.problems.values.quantities import Quantity
+from grashof.problems.values.requirements import QUANTITIES
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.judging import judged
+from grashof.synth.designs.polishing import polished_solve
+from grashof.synth.programme.exchange import solve_by_exchange
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
+from grashof.synth.programme.start import Start
 from grashof.synth.proof.asked import Asked
 from grashof.synth.proof.pairs import Pairs
 from grashof.synth.proof.table import Table
@@ -19,24 +25,26 @@ from grashof.synth.theory.burmester import Dyads, centre_points, polish
 
 MOST = 4000  # pairs looked at of each level, those with the greatest bounds
 JUDGED = 3  # of them by the judge
+CLIMBS, MOST_CLIMBS = 2, 12  # solves of a level, and in all, where no pair has a design in its middle
 
 
 @dataclass(slots=True)
 class Lookout:
-    """Looks for designs in the middle of pairs.
+    """Looks for designs in the middle of pairs; where none is, as under limits of no width, near it.
 
     Parameters
     ----------
     scaled : ScaledProblem
         With the requirements that the proof is about.
     asked : Asked
-    best : Screened, optional
-        The best design so far: a single one.
+    best : Candidate, optional
+        The best design so far.
     """
 
     scaled: ScaledProblem
     asked: Asked
-    best: Screened | None = field(default=None)
+    best: Candidate | None = field(default=None)
+    _climbs: int = field(default=0)
 
     def __call__(self, table: Table, pairs: Pairs, least: float) -> float:
         """The transmission angle of a design better than `least`, rad; 0 where none is found."""
@@ -44,26 +52,32 @@ class Lookout:
         found = screened_pairs(self.scaled, self.asked, table, best_first)
         rows = np.flatnonzero(found.feasible & (found.transmission > least))
         for row in rows[np.argsort(-found.transmission[rows], kind="stable")][:JUDGED]:
-            transmitted = self._judged(found, int(row))
-            if transmitted > least:
-                self.best = found[np.array([row])]
+            if transmitted := self._taken(found.points[row], float(found.assembly[row]), 0.0, least):
                 return transmitted
-        return 0.0
-
-    def _judged(self, found: Screened, row: int) -> float:
-        """What the judge finds that a linkage transmits, rad; 0 where it has a defect."""
-        verdict = self.verdict(found, row)
-        if verdict is None or verdict.defects:
+        if found.feasible.any() or self._climbs >= MOST_CLIMBS:
             return 0.0
-        over = self.scaled.wanted.transmission_over
-        cycle = over is TransmissionOver.CYCLE
-        return float(verdict.transmission_min_cycle if cycle else verdict.transmission_min_task)
+        nearest = np.argsort(found.violations.sum(axis=1), kind="stable")[:CLIMBS]
+        return max([self._climbed(found, int(row), least) for row in nearest], default=0.0)
 
-    def verdict(self, found: Screened, row: int) -> Verdict | None:
-        """The verdict on one of some screened linkages."""
-        linkage: Linkage = self.scaled.linkages(found.points[row], found.assembly[row])
-        problem = self.scaled.problem
-        return verify(linkage, problem.task, problem.requirements, problem=problem)
+    def _climbed(self, found: Screened, row: int, least: float) -> float:
+        """What a solve from a pair comes to."""
+        self._climbs += 1
+        start = Start.of_screened(found, row, self.scaled.objective)
+        solve = polished_solve(self.scaled, start, solve_by_exchange(self.scaled, start))
+        if not np.isfinite(solve.points).all():
+            return 0.0
+        return self._taken(np.array(solve.points), start.assembly, solve.body_angle, least)
+
+    def _taken(self, points: ComplexArray, assembly: float, body_angle: float, least: float) -> float:
+        """Transmission angle of a linkage that the judge accepts and that has more than `least`; else 0."""
+        made = judged(self.scaled, points, int(assembly), body_angle, start=0, iterations=0)
+        if made is None or not made.verdict.ok:
+            return 0.0
+        transmitted = float(made.values[quantity_of(self.scaled.problem).key])
+        if transmitted <= least:
+            return 0.0
+        self.best = made
+        return transmitted
 
 
 def screened_pairs(scaled: ScaledProblem, asked: Asked, table: Table, pairs: Pairs) -> Screened:
@@ -78,3 +92,8 @@ def screened_pairs(scaled: ScaledProblem, asked: Asked, table: Table, pairs: Pai
     dyads = polish(motion, Dyads(points, np.where(usable, centres, 0.0)), steps=2)
     driver, driven = dyads[back[: len(pairs)]], dyads[back[len(pairs) :]]
     return judged_pairs(motion, complex(scaled.targets[0]), driver, driven, scaled.wanted)
+
+
+def quantity_of(problem: Problem) -> Quantity:
+    """The transmission angle that a problem is about."""
+    return problem.requirements.meant(QUANTITIES["transmission"])

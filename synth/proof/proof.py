@@ -10,11 +10,10 @@ from typing import Any
 import numpy as np
 
 from grashof.problems import Problem
-from grashof.problems.values.quantities import Quantity
-from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.proof.bounds import Bounds
 from grashof.synth.proof.five_poses import Certified
+from grashof.synth.proof.lookout import quantity_of
 
 ROUNDING = "doubles, enclosures widened for rounding; poses as stored, limits by 2e-9"
 _NOISE = 1e-6  # deg: targets are met up to rounding, and so are bounds
@@ -82,11 +81,6 @@ class Proof:
         values = {name: getattr(self, name) for name in self.__slots__}
         pieces, left_out = list(self.pieces), list(self.left_out)
         return {**values, "claim": str(self.claim), "pieces": pieces, "left_out": left_out}
-
-
-def quantity_of(problem: Problem) -> Quantity:
-    """The transmission angle that a problem is about."""
-    return problem.requirements.meant(QUANTITIES["transmission"])
 
 
 def best_listed(problem: Problem, designs: Sequence[Candidate]) -> float | None:
