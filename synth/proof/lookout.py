@@ -21,6 +21,7 @@ from grashof.synth.proof.asked import Asked
 from grashof.synth.proof.pairs import Pairs
 from grashof.synth.proof.table import Table
 from grashof.synth.starts.dyad_pairs import judged_pairs
+from grashof.synth.starts.sampled_dyads import stated_dyads
 from grashof.synth.theory.burmester import Dyads, centre_points, polish
 
 MOST = 4000  # pairs looked at of each level, those with the greatest bounds
@@ -81,7 +82,7 @@ class Lookout:
 
 
 def screened_pairs(scaled: ScaledProblem, asked: Asked, table: Table, pairs: Pairs) -> Screened:
-    """The linkages in the middle of pairs, brought onto the curve."""
+    """The linkages in the middle of pairs, brought onto the curve, and to dyads in stated places."""
     motion = scaled.motion
     if motion is None:
         raise TypeError("only whole poses that are met exactly have dyads")
@@ -90,6 +91,10 @@ def screened_pairs(scaled: ScaledProblem, asked: Asked, table: Table, pairs: Pai
     centres = centre_points(motion, points)
     usable = np.isfinite(centres)
     dyads = polish(motion, Dyads(points, np.where(usable, centres, 0.0)), steps=2)
+    stated = stated_dyads(scaled, motion)
+    for z, c in zip(stated.moving, stated.ground, strict=True):
+        near = np.abs(points - z) <= 2 * table.pieces.tubes.half[unique]
+        dyads.moving[near], dyads.ground[near] = z, c
     driver, driven = dyads[back[: len(pairs)]], dyads[back[len(pairs) :]]
     return judged_pairs(motion, complex(scaled.targets[0]), driver, driven, scaled.wanted)
 

@@ -8,7 +8,7 @@ import pytest
 
 from grashof import load
 from grashof.analysis.judge.planted import planted_motion
-from grashof.problems import Box, MotionTask, Objective, Problem, ProblemError, Requirements
+from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, ProblemError, Requirements
 from grashof.synth import Claim, prove
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.asked import Asked
@@ -68,6 +68,31 @@ def test_what_exceeds_the_gap_is_not_dropped() -> None:
     search.run(Table.covering(asked), lambda _table, _pairs, _least: 0.0)
     assert not search.done
     assert search.upper >= np.radians(27.33255)
+
+
+def fixed(point: np.ndarray) -> Box:
+    x, y = (float(each) for each in point)
+    return Box((x, x), (y, y))
+
+
+def test_limits_of_no_width_are_met_by_designs() -> None:
+    linkage = bounds(luggage()).found.linkage  # type: ignore[union-attr]
+    assert isinstance(linkage, FourBar)
+    length, on_line = (float(linkage.r2),) * 2, Box((-50, 50), (0.0, 0.0))
+    best = 27.33255
+    for limits, most in (
+        ({"o2": fixed(linkage.o2)}, best),
+        ({"r2": length}, best),
+        ({"r2": length, "r4": (float(linkage.r4),) * 2}, best),
+        ({"o2": on_line}, 21.8713),
+        ({"theta2_start_deg": 70.0}, 27.2485),
+        ({"o2": Box((-50, 50), (-3.0, -3.0)), "o4": Box((-50, 50), (2.0, 2.0))}, 25.6440),
+    ):
+        made = bounds(luggage(**limits))
+        assert made.closed, limits
+        assert np.degrees(made.lower) <= most + 1e-3
+        assert most - 2e-2 <= np.degrees(made.upper) <= most + 0.011
+        assert made.pairs < 10_000
 
 
 def planted_limits(seed: int, inside: float) -> Problem:
