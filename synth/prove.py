@@ -15,6 +15,7 @@ from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.bounds import Bounds, Proving, bounds_of
 from grashof.synth.proof.five_poses import FIVE
+from grashof.synth.proof.four_pairs import FOUR
 from grashof.synth.proof.lookout import quantity_of
 from grashof.synth.proof.proof import Claim, Proof, proof_of
 from grashof.synth.search.asked import asking
@@ -23,7 +24,7 @@ from grashof.synth.synthesize import synthesize
 from grashof.synth.theory.stopping import stopping
 
 _BEYOND = (
-    "there are proofs of four and five whole poses, and of five pairs, that a four-bar meets exactly; "
+    "there are proofs of four and five whole poses, and pairs of a function, that a four-bar meets exactly; "
     "of no other task yet"
 )
 
@@ -88,9 +89,9 @@ def prove(
     if FOUR_BAR not in problem.mechanism:
         return beyond
     alone = problem.for_kind(FOUR_BAR)
-    function = bool(problem.task.has_output.any())
-    if len(problem.task) == FIVE and (function or problem.task.is_whole):
-        found = synthesize(alone, constraints=constraints, time_limit=time_limit, stop=stop).proof
+    function, count = bool(problem.task.has_output.any()), len(problem.task)
+    if (count == FIVE and problem.task.is_whole) or (function and count in (FOUR, FIVE)):
+        found = synthesize(alone, constraints=constraints, time_limit=time_limit, stop=stop, gap=gap).proof
         return beyond if found is None else _of_at_least(found, at_least)
     if function:
         return beyond
@@ -104,7 +105,8 @@ def prove(
 
 def _of_at_least(proof: Proof, at_least: float | None) -> Proof:
     """The same where only designs with so much count, deg."""
-    if at_least is None or not proof.complete or (proof.lower or 0.0) >= at_least:
+    reached = proof.lower if proof.complete else proof.upper
+    if at_least is None or proof.claim is Claim.REFUSED or (reached or 0.0) >= at_least:
         return proof
     return replace(proof, claim=Claim.NONE, lower=None, upper=at_least)
 

@@ -122,7 +122,7 @@ def synthesize(
     how = problem.task.kind, search.seed, search.effort, search.starts, workers
     _LOG.info("%s: %s; seed %d, effort %g, at most %d starts, %d at a time", readable(problem.name), *how)
     if problem.task.has_output.any():
-        return _functions(problem, search, asked, constraints, objective, progress)
+        return _functions(problem, search, asked, constraints, objective, progress, proving)
     kinds = [ScaledProblem.of(problem.for_kind(kind), constraints, objective) for kind in problem.mechanism]
     for scaled in kinds:
         refuse_unusable(scaled, in_processes=workers > 1 or executor is not None)
@@ -162,13 +162,14 @@ def _functions(
     constraints: Sequence[Constraint],
     objective: OwnObjective | None,
     progress: Callable[[Progress], object] | None,
+    proving: Proving,
 ) -> Result:
     """One list of all kinds of linkage that may generate a function."""
     found: list[Result] = []
     count = len(problem.mechanism)
     for number, kind in enumerate(problem.mechanism, start=1):
         part, alone = asked.part(number, count), problem.for_kind(kind) if count > 1 else problem
-        found.append(function_list(alone, search, part, constraints, objective, progress))
+        found.append(function_list(alone, search, part, constraints, objective, progress, proving))
         if part.ending not in (Ending.COMPLETE, Ending.TIME_LIMIT):
             break
     return one_list(problem, found)

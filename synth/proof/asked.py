@@ -14,6 +14,7 @@ from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.problems.values.requirements import LIMITS
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve import Curve
+from grashof.synth.proof.loop import LoopLimits
 from grashof.synth.theory.burmester import Displacements
 
 # Limits are inclusive: the judge overlooks 1e-9 (sizes, rad or ratio), and so do proofs, with a margin.
@@ -142,9 +143,10 @@ class Asked:
         )
 
     @classmethod
-    def within(cls, motion: Displacements, reach: float) -> Asked:
-        """Dyads alone: with arms and lengths up to `reach`, sizes."""
-        dyad = Dyad((0.0, reach), (0.0, reach), Box(), Box(), Box())
+    def within(cls, motion: Displacements, reach: float, least: float = 0.0) -> Asked:
+        """Dyads alone: with arms and lengths from `least` up to `reach`, sizes."""
+        limits = _widened((least, reach))
+        dyad = Dyad(limits, limits, Box(), Box(), Box())
         return cls(
             curve=Curve.of(Displacements(motion.rotation[:POSES], motion.shift[:POSES]), 0j),
             origin=0j,
@@ -166,6 +168,12 @@ class Asked:
             ground_angle=None,
             floor=LEAST,
         )
+
+    @property
+    def loop(self) -> LoopLimits:
+        """What is asked of the loop."""
+        lengths = self.r1, self.driver.length, self.r3, self.driven.length
+        return LoopLimits(lengths, self.ratio, self.turns, self.margin, self.longer_ground, self.one_branch)
 
     @property
     def longest(self) -> float:

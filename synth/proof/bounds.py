@@ -12,7 +12,7 @@ from grashof.problems.values.checks import number_within
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.asked import Asked, left_out, refusal, with_forms
-from grashof.synth.proof.branch_and_bound import MOST_LEFT, Search
+from grashof.synth.proof.branch_and_bound import MOST_LEFT, MOST_LEVELS, Search
 from grashof.synth.proof.lookout import Lookout
 from grashof.synth.proof.table import Table, TooMany
 from grashof.synth.theory.stopping import Stopped
@@ -138,10 +138,13 @@ def bounds_of(scaled: ScaledProblem, proving: Proving, at_least: float | None = 
 
 
 _STOPPED = "it was stopped"
+TOO_SMALL = "a dyad whose centre is open stays within pieces as small as rounding"
 
 
 def _open(search: Search) -> str:
     """Why a branch and bound ended before its bounds met."""
+    if search.levels >= MOST_LEVELS:
+        return TOO_SMALL
     if search.left is not None and len(search.left) > MOST_LEFT:
         return f"more than {MOST_LEFT} pairs are left"
     return f"the budget of {search.most_pairs} pairs ended" if search.over_budget else _STOPPED

@@ -15,6 +15,7 @@ from grashof.synth.theory.stopping import asked_to_stop
 
 AT_ONCE = 8192  # pairs bounded together
 MOST_LEFT = 1_000_000  # pairs kept in memory
+MOST_LEVELS = 60  # pieces are as small as rounding then
 # The transmission angle of a design in the pairs, rad, where one has more than the given angle; else 0.
 Lookout = Callable[[Table, Pairs, float], float]
 
@@ -80,7 +81,7 @@ class Search:
             if content and self.lower:
                 return
             self.left = self.left[self.left.bound > self.threshold]
-            self.over_budget = len(self.left) > MOST_LEFT
+            self.over_budget = len(self.left) > MOST_LEFT or self.levels >= MOST_LEVELS
             if not len(self.left) or self.over_budget:
                 return
             halved = self.halved(table, self.left)

@@ -15,8 +15,11 @@ from grashof.analysis.judge.design import Constraint, OwnObjective
 from grashof.problems import Problem, ProblemError, Search
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.families import listed
+from grashof.synth.proof.bounds import Bounds, Proving
+from grashof.synth.proof.five_poses import Certified
+from grashof.synth.proof.four_pairs import bounds_of_pairs
 from grashof.synth.proof.functions import certified_functions
-from grashof.synth.proof.proof import proof_of_all
+from grashof.synth.proof.proof import Proof, best_listed, proof_of, proof_of_all
 from grashof.synth.results.result import Result
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.run import Progress
@@ -76,6 +79,7 @@ def function_list(
     constraints: Sequence[Constraint] = (),
     objective: OwnObjective | None = None,
     progress: Callable[[Progress], object] | None = None,
+    proving: Proving = Proving(),  # noqa: B008  (a frozen value)
 ) -> Result:
     """Find, verify and rank linkages of one kind that generate a function.
 
@@ -91,6 +95,7 @@ def function_list(
         The user's own: what is found is judged and ranked by them.
     progress : callable, optional
         Called as designs are judged.
+    proving : Proving
 
     Returns
     -------
@@ -118,7 +123,9 @@ def function_list(
                 if overdue():
                     break
     with stopping(asked):
-        dyads = certified_functions(aims)
+        dyads, pairs = certified_functions(aims), bounds_of_pairs(aims, proving)
+    for one in [] if pairs is None else pairs[1][-1:]:
+        judged.take(aims, one)
     seconds["solving"] = perf_counter() - begun - seconds["judging"]
     complete = not asked()
     whole = complete and len(judged.good) < search.enough
@@ -150,8 +157,23 @@ def function_list(
         ended=ended if complete else "the search ended before it was done: it was stopped",
         least_error=least,
         story=Story(begun=asked.begun, ended=now(), ending=asked.ending),
-        proof=None if dyads is None else proof_of_all(problem, dyads, designs, whole=whole),
+        proof=_proof(problem, dyads, None if pairs is None else pairs[0], designs, proving, whole=whole),
     )
+
+
+def _proof(
+    problem: Problem,
+    dyads: Certified | None,
+    bounds: Bounds | None,
+    designs: Sequence[Candidate],
+    proving: Proving,
+    *,
+    whole: bool,
+) -> Proof | None:
+    """What is proven of the list, of five pairs or four."""
+    if dyads is not None:
+        return proof_of_all(problem, dyads, designs, whole=whole)
+    return None if bounds is None else proof_of(problem, bounds, best_listed(problem, designs), proving.gap)
 
 
 def _levels(problem: Problem) -> tuple[float, ...] | None:
