@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems import Box, MotionTask, Problem, Requirements, Rotatability, TransmissionOver
-from grashof.problems.values.arrays import TURN, Limits
+from grashof.problems.values.arrays import TURN, FloatArray, Limits
 from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.problems.values.requirements import LIMITS
 from grashof.synth.programme.scaled_problem import ScaledProblem
@@ -29,6 +29,7 @@ _FORMS = (
     "o2", "o4", "a", "b", "a_on_body", "b_on_body",
     "driver_sense", "driver_rotation_deg", "theta2_start_deg", "ground_angle_deg",
 )  # fmt: skip
+_GROUND = {"o2", "o4"}  # what areas kept out have a form for
 _OF_ORDER = ("driver_sense", "driver_rotation_deg")  # these have forms where the poses are met in order
 ANY_LENGTH = (0.0, np.inf)
 
@@ -43,6 +44,8 @@ class Dyad:
         Limits of the distance from its ground pivot to its moving pivot, and from there to P.
     ground, moving, on_body : Box, sizes
         Where the ground pivot may be; the moving one, at every pose; the same in the frame of the body.
+    keep_out : tuple of ndarray, shape (m, 2), sizes
+        Areas in which the ground pivot must not be.
     """
 
     length: Limits
@@ -50,6 +53,7 @@ class Dyad:
     ground: Box
     moving: Box
     on_body: Box
+    keep_out: tuple[FloatArray, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,6 +195,9 @@ def _dyad(wanted: Requirements, ground: str, moving: str, length: Limits, origin
         ground=_moved(getattr(wanted, ground), origin),
         moving=_moved(getattr(wanted, moving), origin),
         on_body=_moved(getattr(wanted, f"{moving}_on_body"), 0j),
+        keep_out=tuple(area - [origin.real, origin.imag] for area in wanted.keep_out)
+        if ground in wanted.keep_out_for
+        else (),
     )
 
 
@@ -215,7 +222,7 @@ def _directions(wanted: Requirements) -> Limits | None:
 
 
 def left_out(scaled: ScaledProblem) -> tuple[str, ...]:
-    """Requirements that are stated and have no form, by their fields.
+    """Requirements that are stated and have no form, or not one for all that they ask, by their fields.
 
     Examples
     --------
@@ -229,7 +236,8 @@ def left_out(scaled: ScaledProblem) -> tuple[str, ...]:
     without = [name for name in wanted.limited if name not in _FORMS and not _says_nothing(wanted, name)]
     if not wanted.order:
         without += [name for name in wanted.limited if name in _OF_ORDER and not _says_nothing(wanted, name)]
-    without += ["keep_out"] * bool(wanted.keep_out) + ["constraints"] * bool(scaled.constraints)
+    moving = wanted.keep_out and not set(wanted.keep_out_for) <= _GROUND
+    without += ["keep_out"] * bool(moving) + ["constraints"] * bool(scaled.constraints)
     return tuple(without)
 
 
@@ -246,7 +254,12 @@ def with_forms(scaled: ScaledProblem) -> ScaledProblem:
         for name in left_out(scaled)
         if name in LIMITS
     }
-    problem = replace(scaled.problem, requirements=replace(wanted, **changed, keep_out=()))
+    for_ground = tuple(name for name in wanted.keep_out_for if name in _GROUND)
+    if for_ground:
+        changed["keep_out_for"] = for_ground
+    else:
+        changed["keep_out"] = ()
+    problem = replace(scaled.problem, requirements=replace(wanted, **changed))
     return ScaledProblem.of(problem)
 
 

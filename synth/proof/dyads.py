@@ -98,6 +98,8 @@ def _allowed(asked: Asked, dyad: Dyad, tubes: Tubes, centres: Centres) -> BoolAr
     curve = asked.curve
     keep = lengths_of(tubes, centres).within(dyad.length)
     keep &= _inside(centres.middle, centres.along, centres.rest, dyad.ground)
+    if dyad.keep_out:
+        keep &= ~_within_areas(centres, dyad.keep_out)
     for rotation, shift in zip(curve.rotation, curve.shift, strict=True):
         keep &= _inside(rotation * tubes.middle + shift, rotation * tubes.along, tubes.stray, dyad.moving)
     turn = np.exp(-1j * asked.first_turn)
@@ -123,6 +125,20 @@ def _inside(middle: ComplexArray, along: ComplexArray, stray: FloatArray, box: B
             reach = np.abs(step) + stray + WIDER * (1.0 + np.abs(part))
             keep &= Range(part - reach, part + reach).within(side)
     return keep
+
+
+def _within_areas(centres: Centres, areas: tuple[FloatArray, ...]) -> BoolArray:
+    """Which pieces surely have their ground pivot inside areas, by more than the slack of the judge."""
+    import shapely  # takes a while to import, and few problems have areas
+
+    from grashof.problems.values.areas import solid
+
+    area = solid(areas)
+    ends = np.stack([centres.middle - centres.along, centres.middle + centres.along], axis=1)
+    lines = shapely.linestrings(np.stack([ends.real, ends.imag], axis=-1))
+    far = shapely.distance(lines, shapely.boundary(area)) > centres.rest + SLACK
+    inside: BoolArray = far & shapely.contains_xy(area, centres.middle.real, centres.middle.imag)
+    return inside
 
 
 def _senses(curve: Curve, tubes: Tubes) -> tuple[IntArray, BoolArray]:

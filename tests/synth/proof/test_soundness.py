@@ -36,6 +36,7 @@ def random_poses(seed: int, **requirements: object) -> Problem:
     return Problem(task=MotionTask.from_degrees(poses), requirements=Requirements(**requirements))  # type: ignore[arg-type]
 
 
+STAIRS = np.array([[0, -9], [0, 0], [5, 0], [5, 4], [9, 4], [9, -9]], dtype=np.float64)
 WITHIN = {"o2": Box((-4, 4), (-5, 5)), "b": Box((-3, 9), (-8, 8)), "a_on_body": Box((-6, 6), (-6, 6))}
 TURNED = {"driver_sense": "ccw", "driver_rotation_deg": (20, 120), "ground_angle_deg": (-60, 90)}
 
@@ -144,6 +145,7 @@ CASES = {
     "any order": luggage(order=False),
     "any order and branch": luggage(order=False, same_branch=False, transmission_over="cycle"),
     "boxes": luggage(**WITHIN),
+    "areas kept out": with_links(8, rotatability="any", keep_out=(STAIRS,)),
     "sense, rotation, ground angle": luggage(**TURNED),
     **{f"random {seed}": random_poses(seed, rotatability="any") for seed in (104, 105)},
     **{
