@@ -16,11 +16,15 @@ import numpy as np
 
 from grashof import load, synthesize
 from grashof.analysis.judge.planted import planted_motion
-from grashof.problems import Box, MotionTask, Problem, Requirements
+from grashof.problems import Box, FunctionTask, MotionTask, Problem, Requirements
 from grashof.synth import Claim, Proof
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.bounds import Proving, bounds_of
+from grashof.synth.proof.five_poses import certified_of
+from grashof.synth.proof.four_pairs import bounds_of_pairs
+from grashof.synth.proof.functions import certified_functions
 from grashof.synth.proof.proof import proof_of
+from grashof.synth.starts.function_aims import FunctionAims
 
 EACH = 50
 _OVER = ("task", "cycle")
@@ -70,7 +74,8 @@ def boxed(number: int) -> Problem:
         half = task.size * rng.uniform(0.1, 0.5)
         boxes[name] = Box(*((float(x) - half, float(x) + half) for x in middle))
     size = float(task.size)
-    return Problem(task=task, requirements=Requirements(link_length=(0.1 * size, 3 * size), **boxes))
+    wanted = Requirements(link_length=(0.1 * size, 3 * size), o2=boxes["o2"], o4=boxes["o4"])
+    return Problem(task=task, requirements=wanted)
 
 
 GROUPS = {"planted": planted, "random": random, "practical": practical, "boxes": boxed}
@@ -101,6 +106,49 @@ def compared(number: int) -> tuple[float, Proof]:
     return float(np.degrees(best)), proven(problem)[0]
 
 
+def five_poses(number: int) -> bool:
+    """Whether all dyads of five random poses within 50 sizes are counted."""
+    rng = np.random.default_rng(4000 + number)
+    poses = np.column_stack([rng.uniform(-0.5, 0.5, (5, 2)), rng.uniform(-180, 180, 5)])
+    task = MotionTask.from_degrees(poses)
+    reach = 50.0 * task.size
+    wanted = Requirements(link_length=(1e-6, reach), coupler_arms=(0.0, reach))
+    made = certified_of(ScaledProblem.of(Problem(task=task, requirements=wanted)))
+    return made is not None and made.complete
+
+
+def aims(number: int, count: int) -> FunctionAims:
+    """A function of random pairs, in either sense."""
+    rng = np.random.default_rng(5000 + number)
+    turned, output = np.sort(rng.uniform(0, 120, count)), np.sort(rng.uniform(0, 90, count))
+    output *= rng.choice([-1, 1])
+    return FunctionAims.of(Problem(task=FunctionTask.from_degrees(turned - turned[0], output - output[0])))
+
+
+def five_pairs(number: int) -> bool:
+    """Whether all four-bars through five random pairs are known."""
+    made = certified_functions(aims(number, 5))
+    return made is not None and made.complete
+
+
+def four_pairs(number: int) -> bool:
+    """Whether the best four-bar through four random pairs is proven, or that there is none."""
+    made = bounds_of_pairs(aims(number, 4), Proving())
+    return made is not None and made[0].closed
+
+
+def others(count: int) -> None:
+    """Print how many of other tasks are decided, and in what time."""
+    for decided in (five_poses, five_pairs, four_pairs):
+        done, times = 0, []
+        for number in range(count):
+            since = process_time()
+            done += decided(number)
+            times.append(process_time() - since)
+        name = decided.__name__.replace("_", " ")
+        print(f"{name}: {done} of {count} decided; median {np.median(times):.2f} s, most {max(times):.2f} s")
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Print what is proven of each group of tasks; return 0 unless a search is better than a bound."""
     parser = argparse.ArgumentParser(
@@ -110,7 +158,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument(
         "--compare", type=int, default=0, help="tasks that are also searched, with ten times the effort"
     )
+    parser.add_argument(
+        "--others", type=int, default=0, help="sets of five poses, and of five and four pairs"
+    )
     options = parser.parse_args(argv)
+    if options.others:
+        others(options.others)
+        return 0
     above = 0
     for number in range(options.compare):
         best, proof = compared(number)
