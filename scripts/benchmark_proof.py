@@ -20,8 +20,8 @@ from grashof.problems import Box, FunctionTask, MotionTask, Problem, Requirement
 from grashof.synth import Claim, Proof
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.bounds import Proving, bounds_of
+from grashof.synth.proof.few_pairs import bounds_of_pairs
 from grashof.synth.proof.five_poses import certified_of
-from grashof.synth.proof.four_pairs import bounds_of_pairs
 from grashof.synth.proof.functions import certified_functions
 from grashof.synth.proof.proof import proof_of
 from grashof.synth.starts.function_aims import FunctionAims

@@ -14,8 +14,8 @@ from grashof.problems.values.checks import number_within
 from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.bounds import Bounds, Proving, bounds_of
+from grashof.synth.proof.few_pairs import FOUR, THREE
 from grashof.synth.proof.five_poses import FIVE
-from grashof.synth.proof.four_pairs import FOUR
 from grashof.synth.proof.lookout import quantity_of
 from grashof.synth.proof.proof import Claim, Proof, proof_of
 from grashof.synth.search.asked import asking
@@ -90,7 +90,7 @@ def prove(
         return beyond
     alone = problem.for_kind(FOUR_BAR)
     function, count = bool(problem.task.has_output.any()), len(problem.task)
-    if (count == FIVE and problem.task.is_whole) or (function and count in (FOUR, FIVE)):
+    if (count == FIVE and problem.task.is_whole) or (function and count in (THREE, FOUR, FIVE)):
         found = synthesize(alone, constraints=constraints, time_limit=time_limit, stop=stop, gap=gap).proof
         return beyond if found is None else _of_at_least(found, at_least)
     if function:

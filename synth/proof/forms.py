@@ -85,6 +85,12 @@ class Span:
     def __sub__(self, other: Span) -> Span:
         return Span(self.middle - other.middle, self.s - other.s, self.t - other.t, self.rest + other.rest)
 
+    @classmethod
+    def joined(cls, *parts: Span) -> Span:
+        """Several as one."""
+        names = "middle", "s", "t", "rest"
+        return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+
     @property
     def size(self) -> FloatArray:
         """Upper bound of the absolute value, the disc aside."""
@@ -116,6 +122,10 @@ class Span:
             np.where(plain, 0.0, by_t.real),
             half + self.rest + ROUNDING * most,
         )
+
+    def dot(self, other: Span) -> Form:
+        """Scalar product: real part of conj(self) other."""
+        return self.cross(Span(1j * other.middle, 1j * other.s, 1j * other.t, other.rest))
 
     def cross(self, other: Span) -> Form:
         """Signed area: imaginary part of conj(self) other."""

@@ -26,7 +26,7 @@ from grashof.synth.theory.burmester import Dyads, centre_points, polish
 
 MOST = 4000  # pairs looked at of each level, those with the greatest bounds
 JUDGED = 3  # of them by the judge
-CLIMBS, MOST_CLIMBS = 2, 12  # solves of a level, and in all, where no pair has a design in its middle
+CLIMBS, MOST_CLIMBS = 2, 4  # solves of a level, and in all, where no pair has a design in its middle
 
 
 @dataclass(slots=True)

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, FloatArray, Limits
-from grashof.synth.proof.forms import Form, greatest_quotient
+from grashof.synth.proof.forms import Form, Span, greatest_quotient
 
+STEEP = float(np.radians(50))  # from here on cosines count, too
 Lengths = tuple[Form, ...]  # r1, r2, r3, r4
 
 
@@ -56,7 +57,7 @@ def lengths_allowed(limits: LoopLimits, lengths: Lengths) -> BoolArray:
 def transmission_bound(
     limits: LoopLimits,
     lengths: Lengths,
-    areas: list[Form],
+    arms: list[tuple[Span, Span]],
     passed: tuple[BoolArray, BoolArray],
     least: FloatArray,
 ) -> tuple[FloatArray, list[Form]]:
@@ -67,15 +68,18 @@ def transmission_bound(
     limits : LoopLimits
     lengths : tuple of Form
         r1, r2, r3, r4.
-    areas : list of Form
-        Signed area of AB and O4B at each target: r3 r4 sin(theta4 - theta3).
+    arms : list of tuple of Span
+        From A to B and from O4 to B at each target, in any frame.
     passed : tuple of ndarray of bool
         Where A surely passes the ground line between O2 and O4, or beyond O2, while it counts.
     least : ndarray, rad
     """
     r1, r2, r3, r4 = lengths
     product = r3 * r4
-    bound, forms = _at_targets(limits, areas, product, np.sin(least))
+    bound, forms = _at_targets(limits, [u.cross(v) for u, v in arms], product, np.sin(least))
+    if least.size and least.min() > STEEP:
+        closer, more = _square_at_targets([u.dot(v) for u, v in arms], product, np.cos(least))
+        bound, forms = np.minimum(bound, closer), forms + more
     apart, together = r1 + r2, r1 - r2
     squares = r3 * r3 + r4 * r4
     folded, stretched = together * together - squares, squares - apart * apart
@@ -109,6 +113,17 @@ def _at_targets(
     sign = np.where(left_worst >= right_worst, 1.0, -1.0)
     forms = [(area.times(sign) - product.times(sine)).where(~both) for area in areas]
     return np.arcsin(np.clip(best, -1.0, 1.0)), forms
+
+
+def _square_at_targets(dots: list[Form], product: Form, cosine: FloatArray) -> tuple[FloatArray, list[Form]]:
+    """The same by the cosine, which is accurate where the sine is not: near 90 deg."""
+    least = np.zeros_like(product.centre)
+    forms = []
+    for dot in dots:
+        for either in (dot, dot.times(-1.0)):
+            least = np.maximum(least, -greatest_quotient(either, product))
+            forms.append(product.times(cosine) - either)
+    return np.arccos(np.clip(least, 0.0, 1.0)), forms
 
 
 def _turning(limits: LoopLimits, lengths: Lengths) -> tuple[Form, dict[int, tuple[Form, Form]]]:

@@ -60,19 +60,17 @@ def rows_left(
         one, other, least = one[first], other[first], least[first]
         lengths = tuple(form[first] for form in lengths)
     passed = _passed(asked, one, other, lengths, pieces.sense[driver[first]])
-    bound, conditions = transmission_bound(asked.loop, lengths, _areas(asked, one, other), passed, least)
+    bound, conditions = transmission_bound(asked.loop, lengths, _arms(asked, one, other), passed, least)
     second = np.flatnonzero(bound > least)
     second = second[~nothing_left([each[second] for each in conditions])]
     return first[second], bound[second]
 
 
-def _areas(asked: Asked, one: Side, other: Side) -> list[Form]:
-    """Signed area of AB and O4B at each pose, as the body sees it."""
+def _arms(asked: Asked, one: Side, other: Side) -> list[tuple[Span, Span]]:
+    """AB and O4B at each pose, as the body sees them."""
     curve, coupler = asked.curve, other.z - one.z
-    return [
-        coupler.cross(other.seen_from_body(complex(rotation), complex(shift)))
-        for rotation, shift in zip(curve.rotation, curve.shift, strict=True)
-    ]
+    poses = zip(curve.rotation, curve.shift, strict=True)
+    return [(coupler, other.seen_from_body(complex(turn), complex(move))) for turn, move in poses]
 
 
 def _directed(asked: Asked, one: Side, other: Side) -> BoolArray:

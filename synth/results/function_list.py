@@ -16,8 +16,8 @@ from grashof.problems import Problem, ProblemError, Search
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.families import listed
 from grashof.synth.proof.bounds import Bounds, Proving
+from grashof.synth.proof.few_pairs import bounds_of_pairs
 from grashof.synth.proof.five_poses import Certified
-from grashof.synth.proof.four_pairs import bounds_of_pairs
 from grashof.synth.proof.functions import certified_functions
 from grashof.synth.proof.proof import Proof, best_listed, proof_of, proof_of_all
 from grashof.synth.results.result import Result
@@ -123,7 +123,9 @@ def function_list(
                 if overdue():
                     break
     with stopping(asked):
-        dyads, pairs = certified_functions(aims), bounds_of_pairs(aims, proving)
+        best = best_listed(problem, judged.good)
+        dyads = certified_functions(aims)
+        pairs = bounds_of_pairs(aims, proving, 0.0 if best is None else float(np.radians(best)))
     for one in [] if pairs is None else pairs[1][-1:]:
         judged.take(aims, one)
     seconds["solving"] = perf_counter() - begun - seconds["judging"]

@@ -1,0 +1,130 @@
+"""Three and four pairs of a function: no generator is above a bound, and forms hold every coupler."""
+
+import numpy as np
+import pytest
+
+from grashof import synthesize
+from grashof.analysis import verify
+from grashof.problems import FunctionTask, Problem, Requirements
+from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.synth import Claim
+from grashof.synth.proof.bounds import Proving
+from grashof.synth.proof.few_pairs import bounds_of_pairs
+from grashof.synth.proof.forms import Span
+from grashof.synth.proof.patches import Patches
+from grashof.synth.starts.function_aims import FunctionAims
+from grashof.synth.starts.function_search import exact_functions
+from grashof.synth.theory.burmester import Displacements
+
+
+def random_function(seed: int, count: int, **requirements: object) -> Problem:
+    rng = np.random.default_rng(seed)
+    turned, output = np.sort(rng.uniform(0, 120, count)), np.sort(rng.uniform(0, 90, count))
+    output *= rng.choice([-1, 1])
+    task = FunctionTask.from_degrees(turned - turned[0], output - output[0])
+    return Problem(task=task, requirements=Requirements(**requirements))  # type: ignore[arg-type]
+
+
+def motion_of(problem: Problem) -> Displacements:
+    wanted = FunctionAims.of(problem).pairs(1)
+    turned, output = wanted.turned - wanted.turned[0], wanted.output - wanted.output[0]
+    return Displacements(np.exp(1j * (turned - output)), 1.0 - np.exp(-1j * output))
+
+
+def centres(motion: Displacements, z: ComplexArray) -> ComplexArray:
+    """Centre of the circle through three places, by its determinant."""
+    one, two, three = motion.apply(z).T
+    b, c = two - one, three - one
+    double = 2 * (b.conj() * c).imag
+    x = (c.imag * np.abs(b) ** 2 - b.imag * np.abs(c) ** 2) / double
+    y = (b.real * np.abs(c) ** 2 - c.real * np.abs(b) ** 2) / double
+    return one + x + 1j * y
+
+
+def off(span: Span, s: float, t: float, points: ComplexArray) -> FloatArray:
+    """Share of the rest of forms that points use."""
+    used: FloatArray = np.abs(points - span.middle - span.s * s - span.t * t) / span.rest
+    return used
+
+
+@pytest.mark.parametrize("half", [0.3, 0.03, 0.003])
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_forms_hold_the_ground_pivot_of_every_point(seed: int, half: float) -> None:
+    motion, rng, count = motion_of(random_function(seed, 3)), np.random.default_rng(seed), 4000
+    middle = 3 * (rng.normal(size=count) + 1j * rng.normal(size=count))
+    patches = Patches(motion, 20.0, middle, np.full(count, half))
+    moving, ground = patches.spans
+    most = 0.0
+    for s, t in [(-1, -1), (-1, 1), (1, -1), (1, 1), (0, 1), (1, 0), *rng.uniform(-1, 1, (10, 2))]:
+        z = middle + half * (s + 1j * t)
+        c = centres(motion, z)
+        counts = np.abs(c - z) <= 20.0
+        assert np.all(off(moving, s, t, z) <= 1 + 1e-6)
+        assert np.all(off(ground, s, t, c)[counts] <= 1 + 1e-9)
+        assert np.all(patches.bounded[counts])
+        most = max(most, float(off(ground, s, t, c)[counts].max()))
+    assert most > 0.5
+    far = np.abs(centres(motion, middle) - middle) > 25
+    assert half > 0.003 or not far.any() or patches.bounded[far].mean() < 0.5
+
+
+def test_quarters_cover_a_square() -> None:
+    motion, rng = motion_of(random_function(0, 3)), np.random.default_rng(0)
+    one = Patches(motion, 20.0, np.array([1.3 - 0.4j]), np.array([0.25]))
+    points = one.middle + 0.25 * (rng.uniform(-1, 1, 200) + 1j * rng.uniform(-1, 1, 200))
+    step = points[:, None] - one.quarters.middle
+    assert np.all(np.any(np.maximum(np.abs(step.real), np.abs(step.imag)) <= one.quarters.half, axis=1))
+
+
+@pytest.mark.parametrize("count", [3, 4])
+@pytest.mark.parametrize("over", ["task", "cycle"])
+@pytest.mark.parametrize("rotatability", ["any", "full-crank", "crank-rocker"])
+def test_no_generator_is_above_its_bound(count: int, over: str, rotatability: str) -> None:
+    if (over, rotatability) == ("cycle", "any"):
+        return
+    for seed in (0,) if count == 3 else (0, 6):
+        problem = random_function(seed, count, rotatability=rotatability, transmission_over=over)
+        aims = FunctionAims.of(problem)
+        judged = []
+        for one in exact_functions(aims, np.random.default_rng(seed), 30, 0.5):
+            linkage = aims.linkage(one.made, one.driver)
+            verdict = verify(linkage, problem.task, problem.requirements, problem=problem)
+            if verdict.ok:
+                judged.append(
+                    verdict.transmission_min_cycle if over == "cycle" else verdict.transmission_min_task
+                )
+        # The worse ones as what is known: better ones must not be excluded.
+        known = min(judged, default=0.0)
+        made = bounds_of_pairs(aims, Proving(gap=0.5, most_pairs=300_000), known)
+        assert made is not None
+        assert max(judged, default=0.0) <= made[0].upper + 1e-8
+
+
+@pytest.mark.parametrize(("count", "seed"), [(3, 4), (4, 0), (4, 1), (4, 6)])
+def test_the_best_of_few_pairs_or_none_is_proven(count: int, seed: int) -> None:
+    found = synthesize(random_function(seed, count))
+    assert found.proof is not None
+    assert found.proof.claim in (Claim.BEST, Claim.NONE)
+    assert (found.proof.claim is Claim.NONE) == (not found.candidates)
+    more = synthesize(random_function(seed, count), effort=3, seed=1)
+    best = max((one.values["transmission_min_task"] for one in more.candidates), default=0.0)
+    assert found.proof.upper is not None
+    assert np.degrees(best) <= found.proof.upper + 1e-6
+
+
+@pytest.mark.study
+@pytest.mark.slow
+@pytest.mark.parametrize("count", [3, 4])
+@pytest.mark.parametrize("seed", range(20, 60))
+def test_the_best_of_many_or_none_is_proven(count: int, seed: int) -> None:
+    found = synthesize(random_function(seed, count))
+    assert found.proof is not None
+    assert found.proof.claim in (Claim.BEST, Claim.NONE)
+
+
+def test_coinciding_poles_are_said_to_be_open() -> None:
+    problem = Problem(task=FunctionTask.from_degrees([0, 30, 60, 90], [0, 20, 35, 45]))
+    proof = synthesize(problem, enough=5).proof
+    assert proof is not None
+    assert proof.claim is Claim.BOUND
+    assert "centre is open" in proof.why or "budget" in proof.why
