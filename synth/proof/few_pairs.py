@@ -32,7 +32,8 @@ from grashof.synth.theory.function_four_bar import FourBars
 from grashof.synth.theory.stopping import Stopped, give_way
 
 THREE, FOUR = 3, 4
-MOST_OF_CURVE = 100_000  # pieces: more only where a centre stays open
+# Of the budget of pairs: a piece takes longer, and most are needed where a centre stays open.
+SHARE_OF_CURVE, SHARE_OF_PLANE = 0.1, 0.4
 ABOUT = 1e-3  # of r1: so near a pole A is left to B; where B is so near one, too, both are in small discs
 JUDGED = 6  # of each level, those with the greatest bounds
 # Fields of the requirements that have forms here, or that say nothing of a shape.
@@ -58,7 +59,8 @@ def bounds_of_pairs(
         return None
     since, found, stated = perf_counter(), list[FoundFunction](), problem.requirements.limited
     whole = Bounds(left_out=tuple(name for name in stated if name not in _FORMS))
-    most = proving.most_pairs if len(aims.task) == THREE else min(proving.most_pairs, MOST_OF_CURVE)
+    share = SHARE_OF_PLANE if len(aims.task) == THREE else SHARE_OF_CURVE
+    most = round(share * proving.most_pairs)
     search = _Search(aims, float(np.radians(proving.gap)), most, found, lower)
     try:
         for sense, driver, _ in {sense: (sense, driver, first) for sense, driver, first in ways}.values():
