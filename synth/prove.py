@@ -44,7 +44,7 @@ def prove(
     ----------
     problem : Problem
         For a four-bar, met exactly: four whole poses, the transmission angle to be maximised; five whole
-        poses; a function of five pairs.
+        poses; a function of three to five pairs.
     at_least : float, deg, optional
         Only decide whether a design has a transmission angle of so much.
     gap : float, deg
@@ -91,7 +91,9 @@ def prove(
     alone = problem.for_kind(FOUR_BAR)
     function, count = bool(problem.task.has_output.any()), len(problem.task)
     if (count == FIVE and problem.task.is_whole) or (function and count in (THREE, FOUR, FIVE)):
-        found = synthesize(alone, constraints=constraints, time_limit=time_limit, stop=stop, gap=gap).proof
+        found = synthesize(
+            alone, constraints=constraints, time_limit=time_limit, stop=stop, gap=gap, prove=True
+        ).proof
         return beyond if found is None else _of_at_least(found, at_least)
     if function:
         return beyond

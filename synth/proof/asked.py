@@ -140,7 +140,7 @@ class Asked:
             longer_ground=_SIGNS.get(wanted.rotatability, (1, -1)),
             over_turn=over_turn,
             sense=int(np.sign(sum(senses))) if wanted.order else 0,
-            rotation=_widened((float(rotation[0]), float(rotation[1]))) if wanted.order else (0.0, 7.0),
+            rotation=_widened((float(rotation[0]), float(rotation[1]))) if wanted.order else (0.0, TURN),
             theta2_start=wanted.angle_of("theta2_start_deg"),
             ground_angle=_directions(wanted),
             floor=max(LEAST, float(np.radians(max(wanted.transmission_min_deg, at_least or 0.0))) - SLACK),

@@ -48,9 +48,8 @@ def bounds_of_pairs(
 ) -> tuple[Bounds, list[FoundFunction]] | None:
     """Bounds of the best four-bar through three or four pairs, and designs better than a given one.
 
-    `lower` is the transmission angle of a design that is known, as judged, rad.
-
-    None of other functions, other objectives, or with the driver angle given.
+    `lower` is the transmission angle of a design that is known, as judged, rad. None of other functions,
+    of other objectives, or where the driver angle is given.
     """
     problem, ways = aims.problem, list(aims.ways())
     if problem.mechanism[0] != FOUR_BAR or not aims.exact or len(aims.task) not in (THREE, FOUR):

@@ -98,7 +98,7 @@ def proof_of(problem: Problem, bounds: Bounds, lower: float | None, gap: float) 
     elif lower is not None and lower > upper + _NOISE:
         claim = Claim.REFUSED
         why = f"a design has {lower:.6g} deg, more than the bound of {upper:.6g} deg, which is a fault"
-    elif bounds.none:
+    elif bounds.none and lower is None:
         claim = Claim.NONE
     elif lower is not None and upper <= lower + gap + _NOISE:
         claim = Claim.BEST

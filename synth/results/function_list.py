@@ -125,7 +125,11 @@ def function_list(
     with stopping(asked):
         best = best_listed(problem, judged.good)
         dyads = certified_functions(aims)
-        pairs = bounds_of_pairs(aims, proving, 0.0 if best is None else float(np.radians(best)))
+        known = 0.0 if best is None else float(np.radians(best))
+        pairs = None if objective is not None else bounds_of_pairs(aims, proving, known)
+    if pairs is not None and constraints:
+        bounds, found_by_it = pairs
+        pairs = replace(bounds, left_out=(*bounds.left_out, "constraints")), found_by_it
     for one in [] if pairs is None else pairs[1][-1:]:
         judged.take(aims, one)
     seconds["solving"] = perf_counter() - begun - seconds["judging"]

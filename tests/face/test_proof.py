@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from grashof import synthesize
@@ -15,6 +16,8 @@ from grashof.notebook import html
 from grashof.page.search import search_page
 from grashof.problems import Problem, load
 from grashof.synth import Claim, Proof, Result
+from grashof.synth.proof.bounds import Bounds
+from grashof.synth.proof.proof import proof_of
 from grashof.wording.proof import bound_line, is_decided, proof_line
 
 Grashof = Callable[..., Any]
@@ -146,3 +149,23 @@ def test_lines_say_what_is_and_is_not_proven(proof: Proof, line: str) -> None:
 def test_numbers_are_rounded_to_the_safe_side() -> None:
     proof = a_proof(claim=Claim.BEST, lower=27.3399, upper=27.34001)
     assert bound_line(proof).endswith("with more than 27.35 deg; a design has 27.33 deg.")
+
+
+def test_a_short_list_without_the_best_names_no_number(found: Result) -> None:
+    behind = replace(found, candidates=found.candidates[1:])
+    assert proof_line(behind) == f"{LUGGAGE.partition(';')[0]}."
+    assert proof_line(replace(found, candidates=())) == f"{LUGGAGE.partition(';')[0]}."
+
+
+def test_a_best_below_what_is_asked_decides_nothing_within_the_gap() -> None:
+    proof = a_proof(claim=Claim.BEST, lower=27.3314, upper=27.3414)
+    assert is_decided(proof)
+    assert is_decided(proof, at_least=27.33)
+    assert not is_decided(proof, at_least=27.335)
+
+
+def test_designs_that_transmit_next_to_nothing_are_not_called_none() -> None:
+    problem = load("luggage")
+    nothing_above = Bounds(upper=float(np.radians(0.01)), closed=True)
+    assert proof_of(problem, nothing_above, None, 0.01).claim is Claim.NONE
+    assert proof_of(problem, nothing_above, 0.004, 0.01).claim is Claim.BEST

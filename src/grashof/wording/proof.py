@@ -11,6 +11,7 @@ from grashof.synth.proof.lookout import quantity_of
 from grashof.synth.proof.proof import Claim, Proof
 
 _DECIMALS = 2
+_SAME = 1e-9  # deg: rounding
 _NOTHING = 90.0  # deg: a bound that says nothing
 
 
@@ -28,7 +29,8 @@ def proof_line(result: Result) -> str:
     proof = result.proof
     if proof is None:
         return ""
-    known = f"number {_rank(result)} has" if proof.lower is not None and result.candidates else ""
+    rank = _rank(result, proof)
+    known = f"number {rank} has" if rank else ""
     return _line(proof, known)
 
 
@@ -49,7 +51,9 @@ def bound_line(proof: Proof, at_least: float | None = None) -> str:
 
 def is_decided(proof: Proof, at_least: float | None = None) -> bool:
     """Whether the best is known, or that there is none; or whether a design has `at_least` so much."""
-    return proof.claim in (Claim.BEST, Claim.NONE) or _reached(proof, at_least)
+    if at_least is not None:
+        return proof.claim is Claim.NONE or _reached(proof, at_least)
+    return proof.claim in (Claim.BEST, Claim.NONE)
 
 
 def _reached(proof: Proof, at_least: float | None) -> bool:
@@ -95,11 +99,14 @@ def _because(proof: Proof) -> str:
     return f" ({'; '.join(reasons)})" if reasons else ""
 
 
-def _rank(result: Result) -> int:
-    """Which four-bar of a list has the most of what is bounded."""
+def _rank(result: Result, proof: Proof) -> int:
+    """Which four-bar of a list has the value that is proven of it; 0 where a short list leaves it out."""
     key = quantity_of(result.problem).key
-    found = [rank for rank, one in enumerate(result.candidates) if isinstance(one.linkage, FourBar)]
-    return 1 + max(found, key=lambda rank: (result.candidates[rank].values[key], -rank))
+    least = math.inf if proof.lower is None else proof.lower - _SAME
+    for rank, one in enumerate(result.candidates, start=1):
+        if isinstance(one.linkage, FourBar) and math.degrees(one.values[key]) >= least:
+            return rank
+    return 0
 
 
 def _up(value: float) -> str:
