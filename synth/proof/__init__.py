@@ -1,1 +1,1 @@
-"""Proofs: upper bounds of the transmission angle of all linkages through four poses, by branch and bound."""
+"""Proofs: bounds of the transmission angle of all linkages through poses or pairs, and all dyads of five."""
