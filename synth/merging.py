@@ -12,7 +12,7 @@ from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.toml_file import file_text
 from grashof.problems.values.checks import located, plain_text
-from grashof.synth.proof.bounds import bounds_of
+from grashof.synth.proof.poses.bounds import bounds_of
 from grashof.synth.results.conclusion import conclude, needless
 from grashof.synth.results.mixed import one_list
 from grashof.synth.results.result import Result

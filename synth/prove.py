@@ -13,10 +13,10 @@ from grashof.problems import Problem, ProblemError
 from grashof.problems.values.checks import number_within
 from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.proof.bounds import Bounds, Proving, bounds_of
-from grashof.synth.proof.few_pairs import FOUR, THREE
-from grashof.synth.proof.five_poses import FIVE
-from grashof.synth.proof.lookout import quantity_of
+from grashof.synth.proof.functions.few_pairs import FOUR, THREE
+from grashof.synth.proof.poses.bounds import Bounds, Proving, bounds_of
+from grashof.synth.proof.poses.five_poses import FIVE
+from grashof.synth.proof.poses.lookout import quantity_of
 from grashof.synth.proof.proof import Claim, Proof, proof_of
 from grashof.synth.search.asked import asking
 from grashof.synth.starts.finder import refuse_unsearchable

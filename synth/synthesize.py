@@ -14,10 +14,10 @@ from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.values.checks import readable
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.user_functions import refuse_no_list, refuse_unusable
-from grashof.synth.proof.atlas import atlas_of
-from grashof.synth.proof.bounds import Proving, bounds_of
-from grashof.synth.proof.first_round import round_of_regions
-from grashof.synth.proof.five_poses import certified_of
+from grashof.synth.proof.poses.atlas import atlas_of
+from grashof.synth.proof.poses.bounds import Proving, bounds_of
+from grashof.synth.proof.poses.first_round import round_of_regions
+from grashof.synth.proof.poses.five_poses import certified_of
 from grashof.synth.results.conclusion import conclude, needless
 from grashof.synth.results.function_list import function_list
 from grashof.synth.results.mixed import one_list

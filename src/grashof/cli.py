@@ -238,7 +238,7 @@ def sweep(
 def check(problem: ProblemArgument) -> None:
     """Read PROBLEM and print what will be required of a design, without solving."""
     from grashof.output.terminal import folded
-    from grashof.synth.proof.asked import enclosed
+    from grashof.synth.proof.curve.asked import enclosed
     from grashof.synth.results.advice import advice
     from grashof.synth.starts.finder import refuse_unsearchable
     from grashof.wording.problem import summary

@@ -11,9 +11,9 @@ import numpy as np
 
 from grashof.problems import Problem
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.proof.bounds import Bounds
-from grashof.synth.proof.five_poses import Certified
-from grashof.synth.proof.lookout import quantity_of
+from grashof.synth.proof.poses.bounds import Bounds
+from grashof.synth.proof.poses.five_poses import Certified
+from grashof.synth.proof.poses.lookout import quantity_of
 
 ROUNDING = "doubles, enclosures widened for rounding; poses as stored, limits by 2e-9"
 _NOISE = 1e-6  # deg: targets are met up to rounding, and so are bounds

@@ -7,7 +7,7 @@ import math
 from grashof.problems import FourBar
 from grashof.problems.values.checks import counted
 from grashof.synth import Result
-from grashof.synth.proof.lookout import quantity_of
+from grashof.synth.proof.poses.lookout import quantity_of
 from grashof.synth.proof.proof import Claim, Proof
 
 _DECIMALS = 2

@@ -10,9 +10,9 @@ from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, MotionTask, Problem, Requirements
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.proof.asked import Asked
-from grashof.synth.proof.pairs import rows_left
-from grashof.synth.proof.table import Table
+from grashof.synth.proof.curve.asked import Asked
+from grashof.synth.proof.curve.table import Table
+from grashof.synth.proof.poses.pairs import rows_left
 from grashof.synth.starts.dyad_pairs import judged_pairs, screen
 from grashof.synth.theory.burmester import Dyads, polish, trace_four_pose_curves
 

@@ -8,10 +8,10 @@ from grashof.analysis import verify
 from grashof.problems import FunctionTask, Problem, Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth import Claim
-from grashof.synth.proof.bounds import Proving
-from grashof.synth.proof.few_pairs import bounds_of_pairs
-from grashof.synth.proof.forms import Span
-from grashof.synth.proof.patches import Patches
+from grashof.synth.proof.curve.patches import Patches
+from grashof.synth.proof.forms.forms import Span
+from grashof.synth.proof.functions.few_pairs import bounds_of_pairs
+from grashof.synth.proof.poses.bounds import Proving
 from grashof.synth.starts.function_aims import FunctionAims
 from grashof.synth.starts.function_search import exact_functions
 from grashof.synth.theory.burmester import Displacements

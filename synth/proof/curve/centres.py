@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from grashof.synth.proof.curve import Curve
-from grashof.synth.proof.pieces import WIDER, Tubes
+from grashof.synth.proof.curve.curve import Curve
+from grashof.synth.proof.curve.pieces import WIDER, Tubes
 
 _ROWS = ((0, 1), (0, 2), (1, 2))  # of the three equations, two at a time
 _MOST_SHIFT = 0.9  # of the matrix relative to itself, up to which its inverse is bounded

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from grashof.problems.values.arrays import FloatArray
-from grashof.synth.proof.forms import Form, Span, greatest_quotient
-from grashof.synth.proof.square import nothing_left
+from grashof.synth.proof.forms.forms import Form, Span, greatest_quotient
+from grashof.synth.proof.forms.square import nothing_left
 
 COUNT = 3000
 CORNERS = np.array([[x, y] for x in (-1.0, 0.0, 1.0) for y in (-1.0, 0.0, 1.0)])

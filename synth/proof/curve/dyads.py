@@ -9,10 +9,10 @@ import numpy as np
 
 from grashof.problems import Box
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, Limits
-from grashof.synth.proof.asked import SLACK, Asked, Dyad
-from grashof.synth.proof.centres import Centres
-from grashof.synth.proof.curve import Curve
-from grashof.synth.proof.pieces import WIDER, Tubes
+from grashof.synth.proof.curve.asked import SLACK, Asked, Dyad
+from grashof.synth.proof.curve.centres import Centres
+from grashof.synth.proof.curve.curve import Curve
+from grashof.synth.proof.curve.pieces import WIDER, Tubes
 
 
 @dataclass(frozen=True, slots=True)

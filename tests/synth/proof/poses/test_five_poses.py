@@ -11,7 +11,7 @@ from grashof.problems import MotionTask, Problem, Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth import Claim, prove
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.proof.five_poses import Certified, certified_of
+from grashof.synth.proof.poses.five_poses import Certified, certified_of
 from grashof.synth.theory.five_poses import five_pose_dyads
 
 REACH = 50.0

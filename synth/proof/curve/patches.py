@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from grashof.synth.proof.forms import Span
-from grashof.synth.proof.pieces import WIDER
+from grashof.synth.proof.curve.pieces import WIDER
+from grashof.synth.proof.forms.forms import Span
 from grashof.synth.theory.burmester import Displacements
 
 SQUARES = 64  # along each side of the plane

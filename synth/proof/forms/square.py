@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, FloatArray
-from grashof.synth.proof.forms import ROUNDING, Form
+from grashof.synth.proof.forms.forms import ROUNDING, Form
 
 SWEEPS = 2
 _WIDER = 1e-9  # of a side: what is left is widened by this for rounding

@@ -16,12 +16,12 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
-from grashof.synth.proof.asked import Asked, with_forms
-from grashof.synth.proof.bounds import Bounds
-from grashof.synth.proof.branch_and_bound import Search
-from grashof.synth.proof.lookout import screened_pairs
-from grashof.synth.proof.pairs import Pairs
-from grashof.synth.proof.table import Table
+from grashof.synth.proof.curve.asked import Asked, with_forms
+from grashof.synth.proof.curve.table import Table
+from grashof.synth.proof.poses.bounds import Bounds
+from grashof.synth.proof.poses.branch_and_bound import Search
+from grashof.synth.proof.poses.lookout import screened_pairs
+from grashof.synth.proof.poses.pairs import Pairs
 
 SHARE = 0.5  # of the best transmission angle: less is not listed by regions
 SIZE = 0.02  # sizes: pieces are halved until they are so short

@@ -11,10 +11,10 @@ from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, ProblemError, Requirements
 from grashof.synth import Claim, prove
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.proof.asked import Asked
-from grashof.synth.proof.bounds import Bounds, Proving, bounds_of
-from grashof.synth.proof.branch_and_bound import Search
-from grashof.synth.proof.table import Table
+from grashof.synth.proof.curve.asked import Asked
+from grashof.synth.proof.curve.table import Table
+from grashof.synth.proof.poses.bounds import Bounds, Proving, bounds_of
+from grashof.synth.proof.poses.branch_and_bound import Search
 from grashof.synth.theory.stopping import stopping
 
 

@@ -11,10 +11,10 @@ import numpy as np
 from grashof.problems.values.checks import number_within
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.proof.asked import Asked, left_out, refusal, with_forms
-from grashof.synth.proof.branch_and_bound import MOST_LEFT, MOST_LEVELS, Search
-from grashof.synth.proof.lookout import Lookout
-from grashof.synth.proof.table import Table, TooMany
+from grashof.synth.proof.curve.asked import Asked, left_out, refusal, with_forms
+from grashof.synth.proof.curve.table import Table, TooMany
+from grashof.synth.proof.poses.branch_and_bound import MOST_LEFT, MOST_LEVELS, Search
+from grashof.synth.proof.poses.lookout import Lookout
 from grashof.synth.theory.stopping import Stopped
 
 _LOG = logging.getLogger(__name__)

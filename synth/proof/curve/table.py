@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from grashof.synth.proof.asked import Asked
-from grashof.synth.proof.centres import Centres, centres_of
-from grashof.synth.proof.dyads import lengths_of, possible_arms, roles_of
-from grashof.synth.proof.forms import Form, Span
-from grashof.synth.proof.pieces import SLENDER, Tubes, contracted
+from grashof.synth.proof.curve.asked import Asked
+from grashof.synth.proof.curve.centres import Centres, centres_of
+from grashof.synth.proof.curve.dyads import lengths_of, possible_arms, roles_of
+from grashof.synth.proof.curve.pieces import SLENDER, Tubes, contracted
+from grashof.synth.proof.forms.forms import Form, Span
 from grashof.synth.theory.stopping import give_way
 
 SQUARES = 32  # along each side of the disc that is covered

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, FloatArray, Limits
-from grashof.synth.proof.forms import Form, Span, greatest_quotient
+from grashof.synth.proof.forms.forms import Form, Span, greatest_quotient
 
 STEEP = float(np.radians(50))  # from here on cosines count, too
 Lengths = tuple[Form, ...]  # r1, r2, r3, r4

@@ -17,9 +17,9 @@ from grashof.synth.programme.exchange import solve_by_exchange
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Start
-from grashof.synth.proof.asked import Asked
-from grashof.synth.proof.pairs import Pairs
-from grashof.synth.proof.table import Table
+from grashof.synth.proof.curve.asked import Asked
+from grashof.synth.proof.curve.table import Table
+from grashof.synth.proof.poses.pairs import Pairs
 from grashof.synth.starts.dyad_pairs import judged_pairs
 from grashof.synth.starts.sampled_dyads import stated_dyads
 from grashof.synth.theory.burmester import Dyads, centre_points, polish

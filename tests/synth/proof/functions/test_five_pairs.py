@@ -7,7 +7,7 @@ from grashof import synthesize
 from grashof.analysis import solve_position
 from grashof.problems import FourBar, FunctionTask, Problem, Requirements
 from grashof.synth import Claim
-from grashof.synth.proof.functions import certified_functions
+from grashof.synth.proof.functions.five_pairs import certified_functions
 from grashof.synth.starts.function_aims import FunctionAims
 
 

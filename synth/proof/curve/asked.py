@@ -13,8 +13,8 @@ from grashof.problems.values.arrays import TURN, FloatArray, Limits
 from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.problems.values.requirements import LIMITS
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.proof.curve import Curve
-from grashof.synth.proof.loop import LoopLimits
+from grashof.synth.proof.curve.curve import Curve
+from grashof.synth.proof.forms.loop import LoopLimits
 from grashof.synth.theory.burmester import Displacements
 
 # Limits are inclusive: the judge overlooks 1e-9 (sizes, rad or ratio), and so do proofs, with a margin.

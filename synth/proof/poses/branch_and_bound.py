@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, IntArray
-from grashof.synth.proof.asked import Asked
-from grashof.synth.proof.pairs import Pairs, bounded
-from grashof.synth.proof.table import NOTHING, Table
+from grashof.synth.proof.curve.asked import Asked
+from grashof.synth.proof.curve.table import NOTHING, Table
+from grashof.synth.proof.poses.pairs import Pairs, bounded
 from grashof.synth.theory.stopping import asked_to_stop
 
 AT_ONCE = 8192  # pairs bounded together

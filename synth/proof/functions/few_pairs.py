@@ -16,15 +16,15 @@ from grashof.analysis import verify
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.problems.values.mechanisms import FOUR_BAR
-from grashof.synth.proof.asked import LEAST, SLACK, Asked
-from grashof.synth.proof.bounds import TOO_SMALL, Bounds, Proving
-from grashof.synth.proof.branch_and_bound import MOST_LEVELS
-from grashof.synth.proof.forms import Form, Span
-from grashof.synth.proof.lookout import quantity_of
-from grashof.synth.proof.loop import LoopLimits, lengths_allowed, transmission_bound
-from grashof.synth.proof.patches import Patches
-from grashof.synth.proof.square import nothing_left
-from grashof.synth.proof.table import Side, Table, TooMany
+from grashof.synth.proof.curve.asked import LEAST, SLACK, Asked
+from grashof.synth.proof.curve.patches import Patches
+from grashof.synth.proof.curve.table import Side, Table, TooMany
+from grashof.synth.proof.forms.forms import Form, Span
+from grashof.synth.proof.forms.loop import LoopLimits, lengths_allowed, transmission_bound
+from grashof.synth.proof.forms.square import nothing_left
+from grashof.synth.proof.poses.bounds import TOO_SMALL, Bounds, Proving
+from grashof.synth.proof.poses.branch_and_bound import MOST_LEVELS
+from grashof.synth.proof.poses.lookout import quantity_of
 from grashof.synth.starts.function_aims import FunctionAims
 from grashof.synth.starts.function_search import FoundFunction
 from grashof.synth.theory.burmester import Displacements, Dyads, centre_points, polish

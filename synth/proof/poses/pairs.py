@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
-from grashof.synth.proof.asked import Asked
-from grashof.synth.proof.forms import Form, Span
-from grashof.synth.proof.loop import Lengths, lengths_allowed, transmission_bound
-from grashof.synth.proof.square import nothing_left
-from grashof.synth.proof.table import Pieces, Side
+from grashof.synth.proof.curve.asked import Asked
+from grashof.synth.proof.curve.table import Pieces, Side
+from grashof.synth.proof.forms.forms import Form, Span
+from grashof.synth.proof.forms.loop import Lengths, lengths_allowed, transmission_bound
+from grashof.synth.proof.forms.square import nothing_left
 
 
 @dataclass(frozen=True, slots=True)

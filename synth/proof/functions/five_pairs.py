@@ -8,8 +8,8 @@ from time import perf_counter
 import numpy as np
 
 from grashof.problems.values.mechanisms import FOUR_BAR
-from grashof.synth.proof.asked import Asked
-from grashof.synth.proof.five_poses import FIVE, STOPPED, Certified, certified_dyads, why_open
+from grashof.synth.proof.curve.asked import Asked
+from grashof.synth.proof.poses.five_poses import FIVE, STOPPED, Certified, certified_dyads, why_open
 from grashof.synth.starts.function_aims import FunctionAims
 from grashof.synth.theory.burmester import Displacements
 from grashof.synth.theory.stopping import Stopped

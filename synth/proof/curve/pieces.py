@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from grashof.synth.proof.curve import Curve, Taylor
+from grashof.synth.proof.curve.curve import Curve, Taylor
 
 WIDER = 1e-12  # share of all magnitudes by which enclosures are widened for rounding
 LITTLE = 0.5  # a contraction that leaves more of the area of a wide rectangle is not worth its place

@@ -1,0 +1,1 @@
+"""Burmester's curve in pieces, and what is asked of one dyad."""

@@ -1,0 +1,1 @@
+"""Linkages that generate three to five pairs of a function."""

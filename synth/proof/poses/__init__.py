@@ -1,0 +1,1 @@
+"""Linkages through four poses between bounds, and all dyads of five."""
