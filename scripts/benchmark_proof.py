@@ -137,9 +137,15 @@ def four_pairs(number: int) -> bool:
     return made is not None and made[0].closed
 
 
+def three_pairs(number: int) -> bool:
+    """Whether the best of a list through three random pairs is proven, or that there is none."""
+    proof = synthesize(aims(number, 3).problem).proof
+    return proof is not None and proof.claim in (Claim.BEST, Claim.NONE)
+
+
 def others(count: int) -> None:
     """Print how many of other tasks are decided, and in what time."""
-    for decided in (five_poses, five_pairs, four_pairs):
+    for decided in (five_poses, five_pairs, four_pairs, three_pairs):
         done, times = 0, []
         for number in range(count):
             since = process_time()
@@ -159,7 +165,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         "--compare", type=int, default=0, help="tasks that are also searched, with ten times the effort"
     )
     parser.add_argument(
-        "--others", type=int, default=0, help="sets of five poses, and of five and four pairs"
+        "--others", type=int, default=0, help="sets of five poses, and of five, four and three pairs"
     )
     options = parser.parse_args(argv)
     if options.others:

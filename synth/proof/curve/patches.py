@@ -17,6 +17,28 @@ _MOST_SHIFT = 0.9  # of the matrix relative to itself, up to which its inverse i
 
 
 @dataclass(frozen=True, slots=True)
+class _Equations:
+    """Two equations k - Re(conj(c) a) = 0 for each square, shape (2, n), in the middle.
+
+    Parameters
+    ----------
+    alpha, facing : ndarray of complex
+        Derivative of a by z; that of k by z is Re(facing dz).
+    a : ndarray of complex
+    k : ndarray
+    off_a, off_k : ndarray
+        Rounding of `a` and `k`, anywhere in the square.
+    """
+
+    alpha: ComplexArray
+    facing: ComplexArray
+    a: ComplexArray
+    k: FloatArray
+    off_a: FloatArray
+    off_k: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
 class Patches:
     """Squares z = middle + half (s + i t) with ``|s|, |t| <= 1``.
 
@@ -65,11 +87,44 @@ class Patches:
         bounded: BoolArray = least <= 2 * self.longest * most * (1 + 1e-9)
         return bounded
 
-    def within(self, points: ComplexArray, radius: float) -> BoolArray:
+    def within(self, points: ComplexArray, radius: float | FloatArray) -> BoolArray:
         """Which squares lie wholly within a distance of one of some points."""
         apart = np.abs(self.middle[:, None] - points)
         inside: BoolArray = (apart + np.sqrt(2) * self.half[:, None] < radius).any(axis=1)
         return inside
+
+    def may_meet(self, points: ComplexArray, radius: float | FloatArray) -> BoolArray:
+        """Which squares may hold a dyad with its ground pivot within a distance of one of some points.
+
+        Notes
+        -----
+        Each equation k - Re(conj(c) a) = 0 is bilinear in z and c, so that its change over both is known.
+        """
+        these, back, size = self._equations, points.conj(), np.abs(points) + radius
+        alpha, facing, a, k, off_a, off_k = (getattr(these, name)[..., None] for name in _Equations.__slots__)
+        reach = np.sqrt(2) * self.half[:, None]
+        off = np.abs(k - (back * a).real) - off_k - size * off_a
+        most = np.abs(facing - back * alpha) * reach + radius * (np.abs(a) + np.abs(alpha) * reach)
+        either: BoolArray = (off <= most).all(axis=0).any(axis=1)
+        return either
+
+    @property
+    def _equations(self) -> _Equations:
+        """Of the two pairs of places that are closest: about a pole only these bound the centre well."""
+        rho, d = self.motion.rotation[:3], self.motion.shift[:3]
+        z, far, squares = self.middle, np.abs(self.middle) + 2 * self.half, np.abs(d) ** 2
+        facing = d.conj() * rho
+        rows = [
+            (rho[i] - rho[j], d[i] - d[j], facing[i] - facing[j], squares[i] - squares[j]) for i, j in _SIDES
+        ]
+        alpha, shift, tilt, constant = (np.array(each)[:, None] for each in zip(*rows, strict=True))
+        reach = np.array([abs(d[i]) + abs(d[j]) for i, j in _SIDES])[:, None]
+        a, k = alpha * z + shift, constant.real / 2 + (tilt * z).real
+        near = np.argsort(np.abs(a), axis=0)[:2]
+        columns = alpha, tilt, a, k, WIDER * (reach + 2 * far), WIDER * reach * (reach + far)
+        return _Equations(
+            *(np.take_along_axis(np.broadcast_to(one, a.shape), near, axis=0) for one in columns)
+        )
 
     @property
     def quarters(self) -> Patches:
@@ -89,9 +144,8 @@ class Patches:
         """
         z, h = self.middle, self.half
         steps = h + 0j, 1j * h
-        rho, d = self.motion.rotation[1:3, None], self.motion.shift[1:3, None]
-        alpha, facing = rho - 1, d.conj() * rho
-        a, k = alpha * z + d, np.abs(d) ** 2 / 2 + (facing * z).real
+        these = self._equations
+        alpha, facing, a, k = these.alpha, these.facing, these.a, these.k
         area = (a[0].conj() * a[1]).imag
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
 
@@ -113,7 +167,7 @@ class Patches:
             miss = np.abs(left) + sum(np.abs(each) for each in off) + np.abs(mixed)
             miss = miss + (np.abs(squares[0]) + np.abs(squares[1])) / 2
             moved = np.abs(by_s) + np.abs(by_t)
-            miss = miss + WIDER * (np.abs(k) + (np.abs(c) + moved) * (np.abs(a) + np.abs(alpha) * h))
+            miss = miss + these.off_k + (np.abs(c) + moved) * these.off_a
             size, far = np.abs(a), np.abs(alpha) * np.sqrt(2) * h
             rest = (size[1] * miss[0] + size[0] * miss[1]) / np.abs(area)
             shift = (size[1] * far[0] + size[0] * far[1]) / np.abs(area)

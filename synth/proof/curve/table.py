@@ -22,7 +22,7 @@ _OPEN, NOTHING = -1, -2  # children that are not made yet; that hold no dyad
 
 
 class TooMany(Exception):  # noqa: N818  (no error: the proof stays open)
-    """A cover takes more rectangles than it may."""
+    """A proof takes more pieces than it may, or than it can tell apart; states which."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +139,7 @@ class Table:
             give_way()
             count += len(active)
             if count > MOST_RECTANGLES:
-                raise TooMany
+                raise TooMany("the curve takes too many pieces to be covered")
             found, _ = Pieces.of(asked, active)
             ready = found.resolved
             done.append(found[ready])

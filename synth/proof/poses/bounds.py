@@ -116,8 +116,8 @@ def bounds_of(scaled: ScaledProblem, proving: Proving, at_least: float | None = 
         begun = int(table.pieces.driver.sum()), int(table.pieces.driven.sum())
         search.run(table, look, content=at_least is not None)
         why = "" if search.done or (search.lower and at_least is not None) else _open(search)
-    except TooMany:
-        why = "the curve takes too many pieces to be covered"
+    except TooMany as ended:
+        why = str(ended)
     except Stopped:
         why = _STOPPED
     made = Bounds(

@@ -6,15 +6,17 @@ import pytest
 from grashof import synthesize
 from grashof.analysis import verify
 from grashof.problems import FunctionTask, Problem, Requirements
-from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 from grashof.synth import Claim
 from grashof.synth.proof.curve.patches import Patches
 from grashof.synth.proof.forms.forms import Span
-from grashof.synth.proof.functions.few_pairs import bounds_of_pairs
+from grashof.synth.proof.functions.couplers import ABOUT, PlaneOfCouplers
+from grashof.synth.proof.functions.few_pairs import Sense, bounds_of_pairs
 from grashof.synth.proof.poses.bounds import Proving
 from grashof.synth.starts.function_aims import FunctionAims
 from grashof.synth.starts.function_search import exact_functions
 from grashof.synth.theory.burmester import Displacements
+from grashof.synth.theory.function_four_bar import FourBars
 
 
 def random_function(seed: int, count: int, **requirements: object) -> Problem:
@@ -128,3 +130,102 @@ def test_coinciding_poles_are_said_to_be_open() -> None:
     assert proof is not None
     assert proof.claim is Claim.BOUND
     assert "centre is open" in proof.why or "budget" in proof.why
+
+
+def onto_couplers(
+    motion: Displacements, a: ComplexArray, b: ComplexArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """The nearest A and B with one distance at all pairs, by Newton steps of least length."""
+    turn = motion.rotation[:, None] * np.array([1, 1j])
+    for _ in range(4):
+        away = motion.apply(a) - b[:, None]
+        by_a, by_b = (away.conj()[..., None] * turn).real, -(away.conj()[..., None] * np.array([1, 1j])).real
+        slope = np.concatenate([by_a, by_b], axis=-1)
+        off = np.abs(away[:, 1:]) ** 2 - np.abs(away[:, :1]) ** 2
+        step = (np.linalg.pinv(slope[:, 1:] - slope[:, :1]) @ off[..., None])[..., 0] / 2
+        a, b = a - step[:, 0] - 1j * step[:, 1], b - step[:, 2] - 1j * step[:, 3]
+    return a, b
+
+
+def holding(plane: PlaneOfCouplers, a: ComplexArray, b: ComplexArray) -> BoolArray:
+    """Which squares of a plane hold which couplers, shape (squares, couplers)."""
+    squares = zip((plane.of_a, plane.of_b), (a, b), (b, a), strict=True)
+    found = []
+    for patches, moving, ground in squares:
+        z, c = (
+            Span(*(part[:, None] for part in (one.middle, one.s, one.t, one.rest))) for one in patches.spans
+        )
+        s, t = (
+            (moving - z.middle).real / patches.half[:, None],
+            (moving - z.middle).imag / patches.half[:, None],
+        )
+        inside = np.maximum(np.abs(s), np.abs(t)) <= 1
+        found.append(inside & (np.abs(ground - c.middle - c.s * s - c.t * t) <= c.rest * (1 + 1e-9) + 1e-13))
+    return np.concatenate(found)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_squares_hold_every_coupler_however_near_to_poles(seed: int) -> None:
+    motion, rng, count = motion_of(random_function(seed, 3)), np.random.default_rng(seed), 60
+    plane = PlaneOfCouplers.of(motion, 20.0)
+
+    def near(points: ComplexArray) -> ComplexArray:
+        """Anywhere about some points, evenly by the logarithm of the distance."""
+        about = rng.choice(np.append(points, 0.3 + 0.2j), count)
+        away: ComplexArray = 10.0 ** rng.uniform(-6, 1, count) * np.exp(2j * np.pi * rng.random(count))
+        return about + away
+
+    a, b, c, d = near(plane.poles), near(plane.others), near(plane.poles), near(plane.others)
+    a, b = np.concatenate([a, centres(motion.inverse(), b), c]), np.concatenate([centres(motion, a), b, d])
+    a, b = onto_couplers(motion, a, b)
+    within = (np.abs(a) < 20) & (np.abs(b - 1) < 20) & (np.abs(b - a) < 20)
+    away = np.abs(motion.apply(a) - b[:, None])
+    within &= np.abs(away - away[:, :1]).max(axis=1) < 1e-13 * np.abs(b)
+    a, b = a[within], b[within]
+    assert len(a) > 60
+    discs = np.abs(a[:, None] - plane.poles).min(axis=1) < ABOUT
+    discs &= np.abs(b[:, None] - plane.others).min(axis=1) < ABOUT
+    for _ in range(24):
+        held = holding(plane, a, b)
+        assert np.all(held.any(axis=0) | discs)
+        plane.divided(np.flatnonzero(held.any(axis=1)))
+    assert plane.of_a.half.max(initial=0) < 1e-6
+
+
+def couplers_of(made: FourBars, turned: float) -> tuple[ComplexArray, ComplexArray]:
+    """A and B after a driver rotation, on the ground from 0 to 1, by triangles."""
+    _, r2, r3, r4 = made.lengths.T
+    a = r2 * np.exp(1j * (made.first + turned))
+    d = 1 - a
+    along = (np.abs(d) ** 2 + r3**2 - r4**2) / (2 * np.abs(d))
+    across = made.assembly * np.sqrt(r3**2 - along**2)
+    return a, a + d / np.abs(d) * (along + 1j * across)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 6, 12])
+def test_no_square_that_holds_a_generator_is_dropped(seed: int) -> None:
+    problem = random_function(seed, 3)
+    aims = FunctionAims.of(problem)
+    found = exact_functions(aims, np.random.default_rng(seed), 12, 0.5)
+    made = FourBars.joined([one.made for one in found])
+    sense = Sense.of(aims, 1, 1)
+    a, b = onto_couplers(sense.motion, *couplers_of(made, sense.begun))
+    worth = []
+    for one in found:
+        verdict = verify(
+            aims.linkage(one.made, one.driver), problem.task, problem.requirements, problem=problem
+        )
+        assert verdict.ok
+        worth.append(verdict.transmission_min_task)
+    plane = PlaneOfCouplers.of(sense.motion, 20.0)
+    for _ in range(20):
+        held = holding(plane, a, b)
+        assert np.all(held.any(axis=0))
+        which = np.flatnonzero(held.any(axis=1))
+        least = np.where(held[which], worth, np.inf).min(axis=1) - 1e-7
+        for row in which:
+            mine = np.array([row])
+            kept, bound = sense.rows_left(*plane.spans(mine), float(least[which == row][0]))
+            assert len(kept)
+            assert np.all(bound[0] >= np.where(held[row], worth, 0.0).max())
+        plane.divided(which)
