@@ -26,12 +26,13 @@ NEARLY = 0.1  # linkages that violate no more are also spread over, for variety
 
 
 def feasible_starts(
-    scaled: ScaledProblem, linkages: Screened, enough: int, peaks: int = PEAKS
+    scaled: ScaledProblem, linkages: Screened, enough: int, peaks: int = PEAKS, closer: float = 1.0
 ) -> list[Start]:
     """Starts from feasible linkages.
 
     The best well separated ones (`peaks`) first, free to climb to the best optima, then about 1.4 times
-    `enough` spread over all, each kept to its own neighbourhood so that the list offers a choice.
+    `enough` spread over all, each kept to its own neighbourhood so that the list offers a choice; by
+    `closer`, below 1, they are nearer to each other than they could be, and better.
     """
     if not len(linkages):
         return []
@@ -43,7 +44,7 @@ def feasible_starts(
     free = starts_of(scaled, linkages, pick_apart(signatures, merit, spacing, peaks, leave_off))
     if not scaled.exact:  # what counts is the error, and a neighbourhood would only keep it large
         return free
-    return free + _spread(scaled, linkages, merit, signatures, enough)
+    return free + _spread(scaled, linkages, merit, signatures, enough, closer)
 
 
 def mended_starts(scaled: ScaledProblem, linkages: Screened, enough: int) -> list[Start]:
@@ -95,14 +96,17 @@ def starts_of(scaled: ScaledProblem, linkages: Screened, picked: IntArray) -> li
 
 
 def _spread(
-    scaled: ScaledProblem, linkages: Screened, merit: FloatArray, signatures: FloatArray, enough: int
-) -> list[Start]:
-    """Linkages as far apart as can be, with neighbourhoods that do not overlap."""
+    scaled: ScaledProblem, linkages: Screened, merit: FloatArray, signatures: FloatArray, enough: int,
+    closer: float,
+) -> list[Start]:  # fmt: skip
+    """Linkages as far apart as can be, or closer, with neighbourhoods that do not overlap."""
     wanted = enough + (2 * enough + 4) // 5
     picked = np.zeros(0, dtype=np.int64)
     for spacing in SPACINGS:
         picked = pick_apart(signatures, merit, spacing, wanted, leave_off)
         if len(picked) == wanted:
+            if closer < 1:
+                picked = pick_apart(signatures, merit, closer * spacing, wanted, leave_off)
             break
     points = linkages.points[picked]
     coordinates = np.concatenate([points.real, points.imag], axis=1)

@@ -25,6 +25,7 @@ from grashof.synth.proof.poses.pairs import Pairs
 
 SHARE = 0.5  # of the best transmission angle: less is not listed by regions
 SIZE = 0.02  # sizes: pieces are halved until they are so short
+FEWEST, SMALLEST = 2000, 1e-3  # pairs below which pieces are halved further, down to so short ones
 MOST_PAIRS = 100_000  # bounded for it
 AT_ONCE = 256  # pieces compared with all others
 SLACK = 1.2  # times their lengths: pieces whose middles are nearer are neighbours
@@ -110,7 +111,7 @@ def atlas_of(scaled: ScaledProblem, bounds: Bounds) -> Atlas | None:
     number[np.argsort(-best, kind="stable")] = 1 + np.arange(len(names))
     sizes = _lengths(table, np.unique(np.concatenate([pairs.driver, pairs.driven])))
     loci = _loci(scaled, asked, table, pairs[feasible], linkages.transmission)
-    return Atlas(linkages, number[label], max(SIZE, float(sizes.max(initial=0.0))), loci)
+    return Atlas(linkages, number[label], float(sizes.max(initial=SMALLEST)), loci)
 
 
 def _loci(scaled: ScaledProblem, asked: Asked, table: Table, pairs: Pairs, transmission: FloatArray) -> Loci:
@@ -128,10 +129,10 @@ def _loci(scaled: ScaledProblem, asked: Asked, table: Table, pairs: Pairs, trans
 
 def _small_pairs(asked: Asked, table: Table) -> Pairs:
     """Pairs of pieces that may hold linkages above the floor, halved until they are short."""
-    search = Search(asked, 0.0, 10 * MOST_PAIRS)
+    search, size = Search(asked, 0.0, 10 * MOST_PAIRS), SIZE
     pairs, done = search.first(table), list[Pairs]()
     while pairs is not None and len(pairs):
-        one, other = _lengths(table, pairs.driver) > SIZE, _lengths(table, pairs.driven) > SIZE
+        one, other = _lengths(table, pairs.driver) > size, _lengths(table, pairs.driven) > size
         more = one | other
         done.append(pairs[~more])
         pairs, one, other = pairs[more], one[more], other[more]
@@ -139,6 +140,8 @@ def _small_pairs(asked: Asked, table: Table) -> Pairs:
             done.append(pairs)
             break
         pairs = search.halved(table, pairs, one, other)
+        if pairs is not None and not len(pairs) and 0 < sum(map(len, done)) < FEWEST and size > SMALLEST:
+            pairs, size, done = Pairs.joined(done), size / 2, []
     return Pairs.joined(done)
 
 

@@ -12,6 +12,7 @@ from grashof.synth.starts.selection import feasible_starts, merits, starts_of
 from grashof.synth.theory.distinct import best_first
 
 MOST_REGIONS = 20  # whose best linkages are begun from
+CLOSER = 0.65  # share of the distance at which enough linkages are found: so the list has the better ones
 SPREAD = 0.6  # of the best transmission angle: linkages above it are spread over
 
 
@@ -24,5 +25,5 @@ def round_of_regions(scaled: ScaledProblem, atlas: Atlas, enough: int) -> Round:
     firsts = order[np.sort(first)][:MOST_REGIONS]
     good = rows[linkages.transmission[rows] >= SPREAD * linkages.transmission[rows].max(initial=0.0)]
     starts = starts_of(scaled, linkages, firsts)
-    starts += feasible_starts(scaled, linkages[good], enough, peaks=0)
+    starts += feasible_starts(scaled, linkages[good], enough, peaks=0, closer=CLOSER)
     return Round(starts, {"feasible finds": len(rows)})
