@@ -75,7 +75,8 @@ def _with_best(relaxed: Relaxation, bounds: Bounds | None) -> Relaxation:
     """The same with what the best design without the requirement transmits, where that is proven."""
     if bounds is None or not bounds.closed or bounds.left_out:
         return relaxed
-    best = f"without {relaxed.key} {np.degrees(bounds.upper):.1f} deg at best, proven"
+    upper = np.ceil(100 * np.degrees(bounds.upper)) / 100  # to the safe side
+    best = f"without {relaxed.key} {upper:.2f} deg at best, proven"
     return replace(relaxed, words=f"{relaxed.words} ({best})")
 
 

@@ -56,7 +56,7 @@ def test_none_is_proven_without_a_search_and_what_would_do_is_told(none: Result)
     assert none.ended == ""
     assert proof_line(none) == NONE
     assert "transmission_min_deg 27.3" in none.note
-    assert "(without transmission_min_deg 27.3 deg at best, proven)" in none.note
+    assert "(without transmission_min_deg 27.35 deg at best, proven)" in none.note
 
 
 def test_the_page_and_notebooks_say_it(found: Result, none: Result) -> None:
