@@ -62,7 +62,7 @@ def _reached(proof: Proof, at_least: float | None) -> bool:
 def _line(proof: Proof, known: str) -> str:
     if proof.claim is Claim.REFUSED:
         return f"Not proven: {proof.why}."
-    if not proof.pairs and (proof.upper is None or proof.upper == proof.lower):
+    if proof.upper is None or (not proof.pairs and proof.upper == proof.lower):
         return _all_line(proof, known)
     angle, none = f"{_up(proof.upper)} deg", f"no {proof.mechanism} meets these requirements"
     if proof.claim is Claim.NONE:

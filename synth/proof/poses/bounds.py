@@ -156,7 +156,7 @@ def _of_stroke(scaled: ScaledProblem, proving: Proving, at_least: float | None) 
         levels=cover.levels,
         seconds=perf_counter() - since,
         left_out=sizes_left_out(scaled),
-        why="" if cover.closed else "what is left is as small as rounding",
+        why="" if cover.closed else "pieces of families stay open, as small as rounding or too many",
     )
     why = refusal_of_stroke(scaled)
     return Bounds(why=why, refused=True) if why and not made.none else made
