@@ -9,7 +9,7 @@ import numpy as np
 
 from grashof.analysis import verify
 from grashof.analysis.judge.design import Constraint
-from grashof.problems import Problem, ProblemError
+from grashof.problems import Problem, ProblemError, StrokeTask
 from grashof.problems.values.checks import number_within
 from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
@@ -24,8 +24,8 @@ from grashof.synth.synthesize import synthesize
 from grashof.synth.theory.stopping import stopping
 
 _BEYOND = (
-    "there are proofs of four and five whole poses, and pairs of a function, that a four-bar meets exactly; "
-    "of no other task yet"
+    "there are proofs of four and five whole poses, and pairs of a function, that a four-bar meets exactly, "
+    "and of a swing or a stroke; of no other task yet"
 )
 
 
@@ -44,7 +44,8 @@ def prove(
     ----------
     problem : Problem
         For a four-bar, met exactly: four whole poses, the transmission angle to be maximised; five whole
-        poses; a function of three to five pairs.
+        poses; a function of three to five pairs. For every kind of linkage a swing or a stroke; of a list
+        of kinds for the first.
     at_least : float, deg, optional
         Only decide whether a design has a transmission angle of so much.
     gap : float, deg
@@ -66,7 +67,8 @@ def prove(
 
     Notes
     -----
-    Branch and bound over pairs of pieces of Burmester's curve; of five targets a search among all dyads.
+    Branch and bound over pairs of pieces of Burmester's curve; of five targets a search among all dyads; of a
+    stroke over families of one number.
     See "Proofs" in the documentation.
 
     Examples
@@ -86,11 +88,13 @@ def prove(
         number_within(at_least, 0.0, 90.0, "at_least")
     proving = Proving.patient(gap)
     beyond = Proof(claim=Claim.REFUSED, quantity=quantity_of(problem).column, why=_BEYOND)
-    if FOUR_BAR not in problem.mechanism:
+    stroke = isinstance(problem.task, StrokeTask)
+    kind = problem.mechanism[0] if stroke else FOUR_BAR
+    if kind not in problem.mechanism:
         return beyond
-    alone = problem.for_kind(FOUR_BAR)
+    alone = problem.for_kind(kind)
     function, count = bool(problem.task.has_output.any()), len(problem.task)
-    if (count == FIVE and problem.task.is_whole) or (function and count in (THREE, FOUR, FIVE)):
+    if stroke or (count == FIVE and problem.task.is_whole) or (function and count in (THREE, FOUR, FIVE)):
         found = synthesize(
             alone, constraints=constraints, time_limit=time_limit, stop=stop, gap=gap, prove=True
         ).proof

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems import Problem
+from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.proof.poses.bounds import Bounds
 from grashof.synth.proof.poses.five_poses import Certified
@@ -41,14 +42,17 @@ class Proof:
         numerically was followed; refused: there is no proof.
     complete : bool
         Whether all solutions are known.
+    mechanism : str
+        Of which kind of linkage.
     quantity : str
         What is bounded, by its column.
     lower, upper : float or None, deg
         Of the best design that is listed, as judged; and what no design exceeds.
     pieces : tuple of int
-        Pieces of the curve of dyads, to begin with: that may be drivers, and driven; of five poses dyads.
+        Pieces of the curve of dyads, to begin with: that may be drivers, and driven; of five poses dyads;
+        of a stroke pieces of families of one number, and 0.
     pairs, levels : int
-        Pairs of pieces that were bounded, and how often what was left was halved.
+        Pairs of pieces, or pieces, that were bounded, and how often what was left was halved.
     seconds : float, s
     left_out : tuple of str
         Requirements that the proof does without, by their keys: designs that meet them have `upper` at most.
@@ -62,6 +66,7 @@ class Proof:
 
     claim: Claim
     complete: bool = False
+    mechanism: str = FOUR_BAR
     quantity: str
     lower: float | None = None
     upper: float | None = None
@@ -105,6 +110,7 @@ def proof_of(problem: Problem, bounds: Bounds, lower: float | None, gap: float) 
     return Proof(
         claim=claim,
         complete=claim is Claim.NONE,
+        mechanism=problem.mechanism[0],
         quantity=quantity_of(problem).column,
         lower=lower,
         upper=None if claim is Claim.REFUSED else upper,

@@ -74,7 +74,7 @@ def test_the_record_has_every_part_of_it(grashof: Grashof, tmp_path: Path) -> No
     proof = json.loads((tmp_path / "luggage-designs" / "run.json").read_text())["proof"]
     assert set(proof) == {
         "claim", "complete", "quantity", "lower", "upper", "pieces", "pairs", "levels", "seconds", "left_out",
-        "regions", "region_size", "rounding", "why",
+        "regions", "region_size", "rounding", "why", "mechanism",
     }  # fmt: skip
     assert (proof["claim"], proof["quantity"]) == ("best", "transmission_min_task_deg")
     assert proof["lower"] <= proof["upper"] <= proof["lower"] + 0.5
@@ -169,3 +169,12 @@ def test_designs_that_transmit_next_to_nothing_are_not_called_none() -> None:
     nothing_above = Bounds(upper=float(np.radians(0.01)), closed=True)
     assert proof_of(problem, nothing_above, None, 0.01).claim is Claim.NONE
     assert proof_of(problem, nothing_above, 0.004, 0.01).claim is Claim.BEST
+
+
+def test_a_best_that_equals_its_bound_is_told_as_one_of_families() -> None:
+    shaper = "inverted-slider-crank"
+    proof = Proof(
+        claim=Claim.BEST, quantity="", mechanism=shaper, lower=90.0, upper=90.0, pieces=(64, 0), pairs=78
+    )
+    told = f"Proven: no {shaper} meets these requirements with more than 90.00 deg; a design has 90.00 deg."
+    assert bound_line(proof) == told

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-from grashof.problems import FourBar
 from grashof.problems.values.checks import counted
 from grashof.synth import Result
 from grashof.synth.proof.poses.lookout import quantity_of
@@ -63,17 +62,17 @@ def _reached(proof: Proof, at_least: float | None) -> bool:
 def _line(proof: Proof, known: str) -> str:
     if proof.claim is Claim.REFUSED:
         return f"Not proven: {proof.why}."
-    if proof.upper is None or proof.upper == proof.lower:
+    if proof.upper is None or (not proof.pairs and proof.upper == proof.lower):
         return _all_line(proof, known)
-    angle = f"{_up(proof.upper)} deg"
+    angle, none = f"{_up(proof.upper)} deg", f"no {proof.mechanism} meets these requirements"
     if proof.claim is Claim.NONE:
-        return f"Proven: no four-bar meets these requirements with a transmission angle of {angle} or more."
+        return f"Proven: {none} with a transmission angle of {angle} or more."
     has = f"; {known} {_down(proof.lower)} deg" if known else ""
     if proof.claim is Claim.BEST:
-        return f"Proven: no four-bar meets these requirements with more than {angle}{has}.{_regions(proof)}"
+        return f"Proven: {none} with more than {angle}{has}.{_regions(proof)}"
     if proof.upper >= _NOTHING:
         return f"Not proven{_because(proof)}{has}."
-    return f"Proven: no four-bar has more than {angle}{_because(proof)}{has}."
+    return f"Proven: no {proof.mechanism} has more than {angle}{_because(proof)}{has}."
 
 
 def _all_line(proof: Proof, known: str) -> str:
@@ -100,11 +99,11 @@ def _because(proof: Proof) -> str:
 
 
 def _rank(result: Result, proof: Proof) -> int:
-    """Which four-bar of a list has the value that is proven of it; 0 where a short list leaves it out."""
+    """Which linkage of a list has the value that is proven of it; 0 where a short list leaves it out."""
     key = quantity_of(result.problem).key
     least = math.inf if proof.lower is None else proof.lower - _SAME
     for rank, one in enumerate(result.candidates, start=1):
-        if isinstance(one.linkage, FourBar) and math.degrees(one.values[key]) >= least:
+        if proof.mechanism == one.linkage.MECHANISM and math.degrees(one.values[key]) >= least:
             return rank
     return 0
 
@@ -128,9 +127,9 @@ def work_line(proof: Proof) -> str:
     '42 by 40 pieces of the curve of dyads, 3049 pairs, halved 5 times, 0.10 s'
     """
     first, second = proof.pieces
+    halved = f"halved {counted(proof.levels, 'time')}, {proof.seconds:.2f} s"
+    if proof.pairs and not second:
+        return f"{counted(first, 'piece')} of families of one number, {proof.pairs} in all, {halved}"
     if not proof.pairs:
         return f"{counted(first, 'dyad')}, each in a box of its own, {proof.seconds:.2f} s"
-    return (
-        f"{first} by {second} pieces of the curve of dyads, {counted(proof.pairs, 'pair')}, "
-        f"halved {counted(proof.levels, 'time')}, {proof.seconds:.2f} s"
-    )
+    return f"{first} by {second} pieces of the curve of dyads, {counted(proof.pairs, 'pair')}, {halved}"

@@ -87,14 +87,14 @@ class Atlas:
 
 
 def atlas_of(scaled: ScaledProblem, bounds: Bounds) -> Atlas | None:
-    """All linkages above half the best that bounds know; None where they know none.
+    """All linkages above half the best that bounds know; None where they know none, and without poses.
 
     Raises
     ------
     Stopped
         Asked to stop.
     """
-    if not bounds.closed or not bounds.lower:
+    if scaled.motion is None or not bounds.closed or not bounds.lower:
         return None
     about = with_forms(scaled) if bounds.left_out else scaled
     asked = Asked.of(about)

@@ -1,4 +1,4 @@
-"""Bounds of the best that four poses allow: what branch and bound comes to, for one kind of linkage."""
+"""Bounds of the best that four poses or a stroke allow: what branch and bound comes to, for one kind."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from time import perf_counter
 
 import numpy as np
 
+from grashof.problems import StrokeTask
 from grashof.problems.values.checks import number_within
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.scaled_problem import ScaledProblem
@@ -15,6 +16,8 @@ from grashof.synth.proof.curve.asked import Asked, left_out, refusal, with_forms
 from grashof.synth.proof.curve.table import Table, TooMany
 from grashof.synth.proof.poses.branch_and_bound import MOST_LEFT, MOST_LEVELS, Search
 from grashof.synth.proof.poses.lookout import Lookout
+from grashof.synth.proof.strokes.asked import families_of_stroke, floor_of, refusal_of_stroke, sizes_left_out
+from grashof.synth.proof.strokes.cover import covered
 from grashof.synth.theory.stopping import Stopped
 
 _LOG = logging.getLogger(__name__)
@@ -52,7 +55,8 @@ class Bounds:
     Parameters
     ----------
     lower : float, rad
-        Of a design that the judge accepts for that; 0 where none is known.
+        Of a design that the judge accepts for that, or of a member of a stroke's families; 0 where none
+        is known.
     upper : float, rad
         No design has more.
     closed : bool
@@ -60,7 +64,7 @@ class Bounds:
     found : Candidate, optional
         The design with `lower`.
     pieces : tuple of int
-        Pieces of the curve to begin with: that may be drivers, and driven.
+        Pieces of the curve to begin with: that may be drivers, and driven; of a stroke pieces of families.
     pairs, levels : int
     seconds : float, s
     left_out : tuple of str
@@ -99,6 +103,8 @@ def bounds_of(scaled: ScaledProblem, proving: Proving, at_least: float | None = 
     at_least : float, deg, optional
         Only decide whether a design has that much: end with the first one.
     """
+    if isinstance(scaled.problem.task, StrokeTask):
+        return _of_stroke(scaled, proving, at_least)
     why = refusal(scaled)
     if why is None:
         return None
@@ -135,6 +141,25 @@ def bounds_of(scaled: ScaledProblem, proving: Proving, at_least: float | None = 
     told = np.degrees(made.lower), np.degrees(made.upper), made.pairs, made.seconds, f"; {why}" if why else ""
     _LOG.info("bounds: %.4f to %.4f deg, %d pairs, %.2f s%s", *told)
     return made
+
+
+def _of_stroke(scaled: ScaledProblem, proving: Proving, at_least: float | None) -> Bounds:
+    """The same of a swing or a stroke, whose linkages are families of one number."""
+    since = perf_counter()
+    cover = covered(families_of_stroke(scaled), float(np.radians(proving.gap)), floor_of(scaled, at_least))
+    made = Bounds(
+        lower=cover.lower,
+        upper=cover.upper,
+        closed=cover.closed,
+        pieces=(cover.begun, 0),
+        pairs=cover.bounded,
+        levels=cover.levels,
+        seconds=perf_counter() - since,
+        left_out=sizes_left_out(scaled),
+        why="" if cover.closed else "pieces of families stay open, as small as rounding or too many",
+    )
+    why = refusal_of_stroke(scaled)
+    return Bounds(why=why, refused=True) if why and not made.none else made
 
 
 _STOPPED = "it was stopped"

@@ -1,0 +1,1 @@
+"""Strokes: families of one number, covered by intervals."""

@@ -1,0 +1,125 @@
+"""Branch and bound over the one number of a family: what none of its members exceeds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from grashof.problems.values.arrays import FloatArray
+from grashof.synth.proof.strokes.members import Family, Members
+from grashof.synth.proof.strokes.ranges import Range
+
+_BEGUN = 64  # pieces of each family
+_MOST_LEVELS = 60
+_MOST_LEFT = 20_000
+_OFF = 1e-14  # rad: more than the rounding of an angle
+
+
+@dataclass(frozen=True, slots=True)
+class Cover:
+    """What is known of the greatest transmission angle in families.
+
+    Parameters
+    ----------
+    lower : float, rad
+        Of a member that is allowed and counts; 0 where none is known.
+    upper : float, rad
+        No member has more.
+    closed : bool
+        Whether the bounds have met, or no member is left.
+    begun, bounded, levels : int
+        Pieces to begin with, and in all; how often what was left was halved.
+    """
+
+    lower: float = 0.0
+    upper: float = np.pi / 2
+    closed: bool = True
+    begun: int = 0
+    bounded: int = 0
+    levels: int = 0
+
+
+def covered(families: Sequence[Family], gap: float, floor: float) -> Cover:
+    """Bounds of the greatest transmission angle of all members of families.
+
+    Parameters
+    ----------
+    families : sequence of Family
+    gap : float, rad
+        Up to which the bounds are brought together.
+    floor : float, rad
+        Members that transmit less do not count.
+
+    Examples
+    --------
+    >>> from grashof.synth.proof.strokes.members import StrokeLimits, slider_cranks
+    >>> anything = StrokeLimits({"r2": (0, np.inf), "r3": (0, np.inf)}, ratio=1000.0, margin=0.0)
+    >>> found = covered([slider_cranks(1.0, 2.0, anything)], gap=1e-5, floor=1e-5)
+    >>> np.degrees([found.lower, found.upper]).round(3).tolist(), found.closed
+    ([11.211, 11.212], True)
+    >>> covered([slider_cranks(1.0, 3.0, anything)], gap=1e-5, floor=1e-5).lower
+    0.0
+    """
+    whole, open_bounds = Cover(), [0.0]
+    for family in families:
+        whole, left = _family(family, whole, gap, floor)
+        open_bounds.append(left)
+    threshold, left = _threshold(whole, gap, floor), max(open_bounds)
+    return replace(whole, upper=float(min(max(threshold, left), np.pi / 2)), closed=bool(left <= threshold))
+
+
+def _threshold(cover: Cover, gap: float, floor: float) -> float:
+    return max(cover.lower + gap if cover.lower else 0.0, floor)
+
+
+def _family(family: Family, cover: Cover, gap: float, floor: float) -> tuple[Cover, float]:
+    """What one more family adds; and the greatest bound of what is left of it, or 0."""
+    low, high = _first(family)
+    cover = replace(cover, begun=cover.begun + len(low))
+    for level in range(_MOST_LEVELS + 1):
+        piece, middle = Range(low, high), (low + high) / 2
+        at_middle = family.members(Range.of(middle))
+        bound = _bounds(family.members(piece), piece - Range.of(middle), at_middle)
+        found = float(_sure(at_middle).max(initial=0.0))
+        lower = max(cover.lower, found if found > floor else 0.0)
+        cover = replace(cover, lower=lower, bounded=cover.bounded + len(low), levels=max(cover.levels, level))
+        left = bound > _threshold(cover, gap, floor)
+        low, high, middle, bound = low[left], high[left], middle[left], bound[left]
+        halves = (low < middle) & (middle < high)
+        if not len(low) or len(low) > _MOST_LEFT or not halves.all():
+            break
+        low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+    return cover, float(bound.max(initial=0.0))
+
+
+def _first(family: Family) -> tuple[FloatArray, FloatArray]:
+    """Pieces to begin with; of a number that cannot be zero they are shares of it."""
+    if family.low > family.high:
+        return np.zeros(0), np.zeros(0)
+    spaced = np.geomspace if family.low > 0 else np.linspace
+    edges = spaced(family.low, family.high, _BEGUN + 1)
+    edges[[0, -1]] = family.low, family.high
+    return edges[:-1], edges[1:]
+
+
+def _bounds(members: Members, from_middle: Range, middle: Members) -> FloatArray:
+    """What pieces transmit at most, rad; nothing where no member of them is allowed.
+
+    The cosine changes from the middle of a piece by no more than its slope does.
+    """
+    possible = np.ones(members.cosine.low.shape, dtype=bool)
+    for some, most in members.conditions:
+        possible &= ~(some.low > most.high)
+    by_slope = middle.cosine + members.slope * from_middle
+    cosine = np.nan_to_num(np.fmax(members.cosine.low, by_slope.low), nan=0.0)
+    return np.where(possible, np.arccos(np.clip(cosine, 0.0, 1.0)) + _OFF, 0.0)
+
+
+def _sure(members: Members) -> FloatArray:
+    """What members transmit at least, rad; nothing where they may be ruled out."""
+    allowed = np.ones(members.cosine.low.shape, dtype=bool)
+    for some, most in members.conditions:
+        allowed &= some.high <= most.low
+    return np.where(allowed, np.arccos(np.clip(members.cosine.high, 0.0, 1.0)), 0.0)
