@@ -120,8 +120,7 @@ class Patches:
             rest = np.where(shift < _MOST_SHIFT, rest / (1 - shift), np.inf) * (1 + WIDER)
             rest = rest + WIDER * (np.abs(c) + moved)
         known = np.isfinite(rest) & np.isfinite(c) & np.isfinite(moved) & (rest < self.longest)
-        either = ((c, z), (by_s, steps[0]), (by_t, steps[1]))
-        middle, s, t = (np.where(known, yes, no).astype(np.complex128) for yes, no in either)
-        ground = Span(middle, s, t, np.where(known, rest, self.longest))
-        across, up = (step.astype(np.complex128) for step in steps)
-        return Span(z, across, up, WIDER * (np.abs(z) + h)), ground
+        across = np.stack(steps)
+        middle, moves = np.where(known, c, z), np.where(known, np.stack(slopes), across)
+        ground = Span(middle, moves, np.where(known, rest, self.longest))
+        return Span(z, across, WIDER * (np.abs(z) + h)), ground

@@ -195,7 +195,7 @@ class Side:
     def span(self, middle: ComplexArray, along: ComplexArray, rest: FloatArray) -> Span:
         """A complex form of the parameter of this side alone."""
         nothing = np.zeros_like(along)
-        return Span(middle, along, nothing, rest) if self.is_driver else Span(middle, nothing, along, rest)
+        return Span(middle, np.stack((along, nothing) if self.is_driver else (nothing, along)), rest)
 
     @property
     def z(self) -> Span:

@@ -119,19 +119,15 @@ class _Sense:
     def rows_left(self, z: Span, c: Span, least: float) -> tuple[IntArray, FloatArray]:
         """Which pieces may hold a linkage that transmits more than `least`, rad, and their bounds."""
         nothing = np.zeros(len(z.rest))
-        output = Span(c.middle - 1.0, c.s, c.t, c.rest)
-        lengths = Form(nothing + 1.0, nothing, nothing, nothing), z.norm, (c - z).norm, output.norm
+        output, ground = c.placed(1.0, -1.0), Form(nothing + 1.0, np.zeros(z.steps.shape), nothing)
+        lengths = ground, z.norm, (c - z).norm, output.norm
         pairs = zip(self.motion.rotation, self.motion.shift, strict=True)
-        arms = [(c - self._placed(z, complex(turn), complex(move)), output) for turn, move in pairs]
+        arms = [(c - z.placed(complex(turn), complex(move)), output) for turn, move in pairs]
         bound, forms = transmission_bound(self.limits, lengths, arms, self._passed(z), nothing + least)
         allowed = lengths_allowed(self.limits, lengths) & (bound > least)
         rows = np.flatnonzero(allowed)
         rows = rows[~nothing_left([form[rows] for form in forms])]
         return rows, bound[rows]
-
-    @staticmethod
-    def _placed(z: Span, turn: complex, move: complex) -> Span:
-        return Span(turn * z.middle + move, turn * z.s, turn * z.t, z.rest)
 
     def _passed(self, z: Span) -> tuple[BoolArray, BoolArray]:
         """Where A surely passes the ground line on the side of O4, and on the other one."""
@@ -139,7 +135,7 @@ class _Sense:
         if self.aims.limits.over_cycle:
             return everywhere, everywhere
         size = np.maximum(np.abs(z.middle), 1e-300)
-        reach = (np.abs(z.s) + np.abs(z.t) + z.rest) / size
+        reach = z.reach / size
         off = np.where(reach < 1, np.arcsin(np.minimum(reach, 1.0)), np.inf)
         first = np.angle(z.middle) - self.begun
         low, high = first + off + SLACK, first + self.aims.limits.span - off - SLACK
@@ -280,7 +276,7 @@ class _Plane:
         of_b = self.of_b[self.of_b.bounded & ~self.of_b.within(self.others, ABOUT)]
         places = of_b.spans[1]
         near = np.abs(places.middle[:, None] - self.poles).min(axis=1, initial=np.inf)
-        of_b = of_b[near - np.abs(places.s) - np.abs(places.t) - places.rest <= ABOUT]
+        of_b = of_b[near - places.reach <= ABOUT]
         return _Plane(of_a, of_b, self.poles, self.others)
 
     def __len__(self) -> int:
@@ -300,8 +296,8 @@ class _Plane:
     def discs(self) -> tuple[Span, Span]:
         """A and B each about one of its poles: what no square holds."""
         a, b = (each.ravel() for each in np.meshgrid(self.poles, self.others))
-        nothing, rest = np.zeros_like(a), np.full(len(a), ABOUT)
-        return Span(a, nothing, nothing, rest), Span(b, nothing, nothing, rest)
+        nothing, rest = np.zeros((2, len(a)), dtype=np.complex128), np.full(len(a), ABOUT)
+        return Span(a, nothing, rest), Span(b, nothing, rest)
 
     def divided(self, which: IntArray) -> IntArray:
         """Quarters, which take the place of all squares."""

@@ -13,7 +13,7 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve.asked import Asked, unusable
 from grashof.synth.proof.curve.pieces import WIDER, Tubes
 from grashof.synth.proof.curve.table import Pieces, squares
-from grashof.synth.proof.forms.forms import Form, Span
+from grashof.synth.proof.forms.forms import Form
 from grashof.synth.theory.burmester import Displacements, Dyads
 from grashof.synth.theory.five_poses import five_pose_dyads
 from grashof.synth.theory.stopping import Stopped, give_way
@@ -146,19 +146,15 @@ def _counted(asked: Asked, known: Certified, *, complete: bool, rectangles: int)
 def _may_meet(motion: Displacements, pieces: Pieces) -> BoolArray:
     """Where the equation of the fifth pose may have a zero."""
     tubes, centres = pieces.tubes, pieces.centres
-    nothing = np.zeros(len(pieces), dtype=np.complex128)
-    rotation, shift = motion.rotation[-1], motion.shift[-1]
-    alpha, facing = rotation - 1, np.conj(shift) * rotation
-    chord = Span(alpha * tubes.middle + shift, alpha * tubes.along, nothing, abs(alpha) * tubes.stray)
-    turned = Span(1j * chord.middle, 1j * chord.s, nothing, chord.rest)
-    centre = Span(centres.middle, centres.along, nothing, centres.rest)
+    rotation, shift = complex(motion.rotation[-1]), complex(motion.shift[-1])
+    facing = np.conj(shift) * rotation
+    chord = tubes.span.placed(rotation - 1, shift)
     half = Form(
         abs(shift) ** 2 / 2 + (facing * tubes.middle).real,
-        (facing * tubes.along).real,
-        nothing.real,
+        (facing * tubes.span.steps).real,
         abs(facing) * tubes.stray + WIDER * (1.0 + np.abs(facing * tubes.middle)),
     )
-    miss = half - centre.cross(turned)
+    miss = half - centres.span.dot(chord)
     meets: BoolArray = (miss.inf <= 0) & (miss.sup >= 0)
     return meets
 

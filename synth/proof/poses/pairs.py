@@ -88,9 +88,10 @@ def _directed(asked: Asked, one: Side, other: Side) -> BoolArray:
 def _crossed(span: Span, direction: float, *, ahead: bool = False) -> Form:
     """How far a complex form reaches to the left of a direction, or ahead along it."""
     turned = np.exp(-1j * direction)
-    parts = [turned * part for part in (span.middle, span.s, span.t)]
-    centre, s, t = (part.real if ahead else part.imag for part in parts)
-    return Form(centre, s, t, span.rest)
+    centre, slopes = (
+        part.real if ahead else part.imag for part in (turned * span.middle, turned * span.steps)
+    )
+    return Form(centre, slopes, span.rest)
 
 
 def _passed(

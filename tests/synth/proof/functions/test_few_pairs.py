@@ -43,7 +43,7 @@ def centres(motion: Displacements, z: ComplexArray) -> ComplexArray:
 
 def off(span: Span, s: float, t: float, points: ComplexArray) -> FloatArray:
     """Share of the rest of forms that points use."""
-    used: FloatArray = np.abs(points - span.middle - span.s * s - span.t * t) / span.rest
+    used: FloatArray = np.abs(points - span.middle - span.steps[0] * s - span.steps[1] * t) / span.rest
     return used
 
 
