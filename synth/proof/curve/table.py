@@ -52,10 +52,10 @@ class Pieces:
         tubes, filled = contracted(asked.curve, tubes)
         rows = np.flatnonzero(filled)
         tubes = tubes[rows]
-        near = possible_arms(asked, tubes)
+        near = possible_arms(asked, tubes.span)
         rows, tubes = rows[near], tubes[near]
         centres = centres_of(asked.curve, tubes, asked.longest)
-        roles = roles_of(asked, tubes, centres)
+        roles = roles_of(asked, tubes.span, centres.span)
         some = np.flatnonzero(roles.driver | roles.driven)
         kept = cls(tubes[some], centres[some], roles.driver[some], roles.driven[some], roles.sense[some])
         return kept, rows[some]
@@ -83,7 +83,7 @@ class Pieces:
         tubes, centres = self.tubes, self.centres
         moved = np.abs(centres.along)
         short = tubes.half + moved <= COARSE * (
-            0.3 + np.minimum(lengths_of(tubes, centres).high, np.abs(tubes.middle))
+            0.3 + np.minimum(lengths_of(tubes.span, centres.span).high, np.abs(tubes.middle))
         )
         slender = tubes.side <= SLENDER * tubes.half
         known = centres.rest <= 0.3 * (moved + 0.02)
