@@ -13,6 +13,7 @@ from grashof.synth.proof.curve.asked import SLACK, Asked, Dyad
 from grashof.synth.proof.curve.curve import Curve
 from grashof.synth.proof.curve.pieces import WIDER
 from grashof.synth.proof.forms.forms import Span
+from grashof.synth.theory.burmester import Displacements
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,29 +50,45 @@ def possible_arms(asked: Asked, z: Span) -> BoolArray:
 
     This needs no centres: it disposes of the places where these run off to infinity.
     """
-    curve = asked.curve
-    reach, distance = z.reach, np.abs(z.middle)
-    arms = Range(distance - reach, distance + reach)
-    keep = arms.within(asked.driver.arm) & np.isfinite(distance)
+    distance = np.abs(z.middle)
+    arms = Range(distance - z.reach, distance + z.reach)
     shortest = min(asked.driver.length[0], asked.driven.length[0])
+    round_ = possible_radii(asked.curve, z, (shortest, asked.longest))
+    return arms.within(asked.driver.arm) & np.isfinite(distance) & round_
+
+
+def possible_radii(motion: Curve | Displacements, points: Span, radii: Limits) -> BoolArray:
+    """Which pieces may hold points whose circles through three places have allowed radii."""
+    reach, distance = points.reach, np.abs(points.middle)
+    keep = np.ones(len(points), dtype=bool)
+    turn, move = motion.rotation, motion.shift
     chords = {
         (i, j): (
-            (curve.rotation[j] - curve.rotation[i]) * z.middle + curve.shift[j] - curve.shift[i],
-            abs(curve.rotation[j] - curve.rotation[i]) * reach + WIDER * (1.0 + distance),
+            (turn[j] - turn[i]) * points.middle + move[j] - move[i],
+            abs(turn[j] - turn[i]) * reach + WIDER * (1.0 + distance),
         )
-        for i, j in combinations(range(len(curve.shift)), 2)
+        for i, j in combinations(range(len(move)), 2)
     }
-    for i, j, k in combinations(range(len(curve.shift)), 3):
+    for i, j, k in combinations(range(len(move)), 3):
         (u, du), (v, dv), (w, dw) = chords[i, j], chords[i, k], chords[j, k]
         longs = [(np.abs(x), dx) for x, dx in ((u, du), (v, dv), (w, dw))]
-        least, most = np.ones(len(z)), np.ones(len(z))
+        least, most = np.ones(len(points)), np.ones(len(points))
         for size, spread in longs:
             least, most = least * np.maximum(size - spread, 0.0), most * (size + spread)
         cross = np.abs((u.conj() * v).imag)
         spread = longs[0][0] * dv + longs[1][0] * du + du * dv
-        keep &= ~(least > 2 * asked.longest * (cross + spread) * (1 + SLACK))
-        keep &= ~(most < 2 * shortest * (cross - spread) * (1 - SLACK))
+        keep &= ~(least > 2 * radii[1] * (cross + spread) * (1 + SLACK))
+        keep &= ~(most < 2 * radii[0] * (cross - spread) * (1 - SLACK))
     return keep
+
+
+def same_lengths(motion: Curve | Displacements, z: Span, c: Span) -> BoolArray:
+    """Where the distance from z to c may be the same at all poses."""
+    poses = zip(motion.rotation, motion.shift, strict=True)
+    ranges = [lengths_of(z.placed(complex(turn), complex(move)), c) for turn, move in poses]
+    low, high = np.max([each.low for each in ranges], axis=0), np.min([each.high for each in ranges], axis=0)
+    some: BoolArray = low <= high
+    return some
 
 
 def roles_of(asked: Asked, z: Span, c: Span) -> Roles:

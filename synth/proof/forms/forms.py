@@ -118,7 +118,7 @@ class Span:
     @property
     def reach(self) -> FloatArray:
         """How far it goes from its middle at most."""
-        reach: FloatArray = _total(np.abs(self.steps)) + self.rest
+        reach: FloatArray = farthest(self.steps) + self.rest
         return reach
 
     @property
@@ -167,6 +167,14 @@ class Span:
             _total(np.abs(squares)) / 2 + _mixed(steps, other.steps)
             + self.rest * (its + other.rest) + other.rest * size + ROUNDING * size * its,
         )  # fmt: skip
+
+
+def farthest(steps: ComplexArray) -> FloatArray:
+    """How far symbols move a point at most; of two of them, to the farther corners."""
+    pairs = range(0, len(steps) - 1, 2)
+    corners = [np.maximum(np.abs(steps[k] + steps[k + 1]), np.abs(steps[k] - steps[k + 1])) for k in pairs]
+    corners += [np.abs(steps[-1])] * (len(steps) % 2)
+    return _total(np.stack(corners))
 
 
 def _total(each: FloatArray) -> FloatArray:

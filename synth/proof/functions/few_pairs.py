@@ -18,6 +18,7 @@ from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatA
 from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.synth.proof.curve.asked import LEAST, SLACK, Asked
 from grashof.synth.proof.curve.patches import Patches
+from grashof.synth.proof.curve.poles import poles
 from grashof.synth.proof.curve.table import Side, Table, TooMany
 from grashof.synth.proof.forms.forms import Form, Span
 from grashof.synth.proof.forms.loop import LoopLimits, lengths_allowed, transmission_bound
@@ -268,7 +269,7 @@ class _Plane:
         motion, reach = sense.motion, sense.limits.ratio
         back = motion.inverse()
         of_a, of_b = Patches.covering(motion, reach, reach), Patches.covering(back, 1 + reach, reach)
-        return cls(of_a, of_b, _poles(motion), _poles(back))._cut()
+        return cls(of_a, of_b, poles(motion)[1], poles(back)[1])._cut()
 
     def _cut(self) -> _Plane:
         """Without squares of A about poles, without those of B that have no A there."""
@@ -314,16 +315,6 @@ class _Plane:
         return Dyads(
             np.concatenate([mine.moving, others.ground]), np.concatenate([mine.ground, others.moving])
         )
-
-
-def _poles(motion: Displacements) -> ComplexArray:
-    """Where A is at the first pair if it is in one place at two of them."""
-    found = []
-    for i, j in ((0, 1), (0, 2), (1, 2)):
-        turn, move = motion.rotation[j] - motion.rotation[i], motion.shift[j] - motion.shift[i]
-        if abs(turn) > LEAST:
-            found.append(-move / turn)
-    return np.array(found, dtype=np.complex128)
 
 
 def _dyads_at(motion: Displacements, points: ComplexArray) -> Dyads:

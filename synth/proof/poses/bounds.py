@@ -31,10 +31,13 @@ class Proving:
         Up to which bounds are brought together.
     most_pairs : int
         Budget of pairs of pieces: what a proof takes does not depend on the clock.
+    minutes : bool
+        Whether proofs that always take long are wanted.
     """
 
     gap: float = 0.01
     most_pairs: int = 1_000_000
+    minutes: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "gap", number_within(self.gap, 1e-4, 90.0, "gap"))
@@ -42,7 +45,7 @@ class Proving:
     @classmethod
     def patient(cls, gap: float) -> Proving:
         """With a budget that takes minutes."""
-        return cls(gap, _PATIENT)
+        return cls(gap, _PATIENT, minutes=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +122,7 @@ def bounds_of(scaled: ScaledProblem, proving: Proving, at_least: float | None = 
     except TooMany:
         why = "the curve takes too many pieces to be covered"
     except Stopped:
-        why = _STOPPED
+        why = STOPPED
     made = Bounds(
         lower=search.lower,
         upper=search.upper,
@@ -132,12 +135,18 @@ def bounds_of(scaled: ScaledProblem, proving: Proving, at_least: float | None = 
         left_out=without,
         why=why,
     )
-    told = np.degrees(made.lower), np.degrees(made.upper), made.pairs, made.seconds, f"; {why}" if why else ""
+    return logged(made)
+
+
+def logged(bounds: Bounds) -> Bounds:
+    """The same, after a line in the log."""
+    why = f"; {bounds.why}" if bounds.why else ""
+    told = np.degrees(bounds.lower), np.degrees(bounds.upper), bounds.pairs, bounds.seconds, why
     _LOG.info("bounds: %.4f to %.4f deg, %d pairs, %.2f s%s", *told)
-    return made
+    return bounds
 
 
-_STOPPED = "it was stopped"
+STOPPED = "it was stopped"
 TOO_SMALL = "a dyad whose centre is open stays within pieces as small as rounding"
 
 
@@ -147,4 +156,4 @@ def _open(search: Search) -> str:
         return TOO_SMALL
     if search.left is not None and len(search.left) > MOST_LEFT:
         return f"more than {MOST_LEFT} pairs are left"
-    return f"the budget of {search.most_pairs} pairs ended" if search.over_budget else _STOPPED
+    return f"the budget of {search.most_pairs} pairs ended" if search.over_budget else STOPPED
