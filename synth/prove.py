@@ -17,6 +17,7 @@ from grashof.synth.proof.functions.few_pairs import FOUR, THREE
 from grashof.synth.proof.poses.bounds import Bounds, Proving, bounds_of
 from grashof.synth.proof.poses.five_poses import FIVE
 from grashof.synth.proof.poses.lookout import quantity_of
+from grashof.synth.proof.poses.three_poses import bounds_of_three
 from grashof.synth.proof.proof import Claim, Proof, proof_of
 from grashof.synth.search.asked import asking
 from grashof.synth.starts.finder import refuse_unsearchable
@@ -24,7 +25,7 @@ from grashof.synth.synthesize import synthesize
 from grashof.synth.theory.stopping import stopping
 
 _BEYOND = (
-    "there are proofs of four and five whole poses, and pairs of a function, that a four-bar meets exactly; "
+    "there are proofs of three to five whole poses, and pairs of a function, that a four-bar meets exactly; "
     "of no other task yet"
 )
 
@@ -43,8 +44,8 @@ def prove(
     Parameters
     ----------
     problem : Problem
-        For a four-bar, met exactly: four whole poses, the transmission angle to be maximised; five whole
-        poses; a function of three to five pairs.
+        For a four-bar, met exactly: three or four whole poses, the transmission angle to be maximised; five
+        whole poses; a function of three to five pairs.
     at_least : float, deg, optional
         Only decide whether a design has a transmission angle of so much.
     gap : float, deg
@@ -66,7 +67,8 @@ def prove(
 
     Notes
     -----
-    Branch and bound over pairs of pieces of Burmester's curve; of five targets a search among all dyads.
+    Branch and bound over pairs of pieces of Burmester's curve, of three poses of squares of the plane; of
+    five targets a search among all dyads.
     See "Proofs" in the documentation.
 
     Examples
@@ -99,7 +101,7 @@ def prove(
         return beyond
     scaled = ScaledProblem.of(alone, constraints)
     with stopping(asked):
-        bounds = bounds_of(scaled, proving, at_least)
+        bounds = bounds_of(scaled, proving, at_least) or bounds_of_three(scaled, proving, at_least)
     if bounds is None:
         return beyond
     return proof_of(scaled.problem, bounds, _known(scaled, bounds), gap)

@@ -67,6 +67,8 @@ def _line(proof: Proof, known: str) -> str:
         return _all_line(proof, known)
     angle = f"{_up(proof.upper)} deg"
     if proof.claim is Claim.NONE:
+        if proof.why:
+            return f"Proven: no four-bar meets these requirements, as {proof.why}."
         return f"Proven: no four-bar meets these requirements with a transmission angle of {angle} or more."
     has = f"; {known} {_down(proof.lower)} deg" if known else ""
     if proof.claim is Claim.BEST:
@@ -125,12 +127,14 @@ def work_line(proof: Proof) -> str:
     Examples
     --------
     >>> work_line(Proof(claim=Claim.BEST, quantity="", pieces=(42, 40), pairs=3049, levels=5, seconds=0.1))
-    '42 by 40 pieces of the curve of dyads, 3049 pairs, halved 5 times, 0.10 s'
+    '42 by 40 pieces of all dyads, 3049 pairs, halved 5 times, 0.10 s'
     """
     first, second = proof.pieces
+    if not proof.pairs and not first:
+        return f"{proof.seconds:.2f} s"
     if not proof.pairs:
         return f"{counted(first, 'dyad')}, each in a box of its own, {proof.seconds:.2f} s"
     return (
-        f"{first} by {second} pieces of the curve of dyads, {counted(proof.pairs, 'pair')}, "
+        f"{first} by {second} pieces of all dyads, {counted(proof.pairs, 'pair')}, "
         f"halved {counted(proof.levels, 'time')}, {proof.seconds:.2f} s"
     )

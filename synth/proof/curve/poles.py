@@ -19,8 +19,8 @@ def poles(motion: Displacements) -> tuple[IntArray, ComplexArray]:
     --------
     >>> motion = Displacements.from_poses(np.array([1, 1j, -1]), np.radians([0, 90, 90]))
     >>> pairs, places = poles(motion)
-    >>> pairs.tolist(), places.round(12).tolist()
-    ([[0, 1], [0, 2]], [0j, 1j])
+    >>> pairs.tolist(), bool(np.allclose(places, [0, -1j]))
+    ([[0, 1], [0, 2]], True)
     """
     pairs, places = [], []
     for i, j in combinations(range(len(motion.rotation)), 2):

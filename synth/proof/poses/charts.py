@@ -21,6 +21,7 @@ from grashof.synth.theory.burmester import Displacements
 MOVING, GROUND, BOTH = 0, 1, 2  # kinds of charts: by z, by c, and from here on each about a pole of each
 _NEAR = 0.15  # of the least distance of two poles: so near one other charts are used
 _NEWTON = 4
+SMALL = 0.02  # sizes: rectangles are not cut into smaller squares to begin with
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,9 +123,10 @@ class Tiles:
 
     @classmethod
     def rectangle(cls, charts: Charts, kind: int, low: FloatArray, high: FloatArray, count: int) -> Tiles:
-        """Squares that cover a rectangle between corners, shape (2,); so many along its longer side."""
+        """Squares that cover a rectangle between corners, shape (2,); so many at most on its longer side."""
         wide = np.maximum(high - low, 0.0)
-        many = np.maximum(np.ceil(count * wide / max(float(wide.max()), 1e-300)), 1).astype(int)
+        side = max(float(wide.max()) / count, SMALL)
+        many = np.maximum(np.ceil(wide / side), 1).astype(int)
         if np.any(high < low):
             many[:] = 0
         steps = wide / np.maximum(many, 1)

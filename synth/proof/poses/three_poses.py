@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from time import perf_counter
 
 import numpy as np
 
 from grashof.problems.values.mechanisms import FOUR_BAR
+from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve.asked import Asked, left_out, refusal, unusable, with_forms
 from grashof.synth.proof.curve.table import TooMany
 from grashof.synth.proof.poses.best_first import MOST_LEFT, BestFirst, Tilings
-from grashof.synth.proof.poses.bounds import STOPPED, Bounds, Proving, logged
-from grashof.synth.proof.poses.lookout import Lookout
+from grashof.synth.proof.poses.bounds import STOPPED, Bounds, Proving, bounds_of, logged
+from grashof.synth.proof.poses.lookout import Lookout, quantity_of
 from grashof.synth.proof.poses.pairs import Pairs
 from grashof.synth.proof.poses.sides import OneSide, is_empty
 from grashof.synth.starts.dyad_pairs import judged_pairs
@@ -42,12 +44,35 @@ class _Middles:
         if motion is None:
             raise TypeError("only whole poses that are met exactly have dyads")
         best = pairs[np.argsort(-pairs.bound, kind="stable")[:LOOKED_AT]]
-        dyads = [
+        driver, driven = (
             polish(motion, Dyads(*(each.middle[which] + self.asked.origin for each in (of.z, of.c))), steps=2)
             for of, which in ((sides.driver.sites, best.driver), (sides.driven.sites, best.driven))
-        ]
-        found = judged_pairs(motion, complex(self.scaled.targets[0]), *dyads, self.scaled.wanted)
+        )
+        found = judged_pairs(motion, complex(self.scaled.targets[0]), driver, driven, self.scaled.wanted)
         return self.look.best_of(found, least)
+
+
+def bounds_before(scaled: ScaledProblem, proving: Proving) -> Bounds | None:
+    """What is proven before a search, in a second: bounds of four poses, or of three with few pivots.
+
+    None where the question does not arise, or where it would take minutes.
+    """
+    known = bounds_of(scaled, proving)
+    return bounds_of_three(scaled, replace(proving, minutes=False)) if known is None else known
+
+
+def bounds_after(
+    scaled: ScaledProblem, proving: Proving, before: Bounds | None, designs: Sequence[Candidate]
+) -> Bounds | None:
+    """What is proven in the end of a search: where minutes are given, bounds above its best design.
+
+    `before` is what was proven before it, and `designs` are what it found.
+    """
+    if not proving.minutes or (before is not None and before.closed):
+        return before
+    key = quantity_of(scaled.problem).key
+    best = max((float(each.values[key]) for each in designs), default=0.0)
+    return bounds_of_three(scaled, proving, lower=best) or before
 
 
 def sides_of(scaled: ScaledProblem) -> Bounds | None:

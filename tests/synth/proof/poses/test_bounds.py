@@ -219,7 +219,7 @@ def test_other_objectives_are_refused() -> None:
 def test_other_tasks_are_refused_in_words() -> None:
     proof = prove(load("straight-line"))
     assert proof.claim is Claim.REFUSED
-    assert proof.why.startswith("there are proofs of four and five whole poses")
+    assert proof.why.startswith("there are proofs of three to five whole poses")
 
 
 @pytest.mark.parametrize("at_least", [-1.0, 91.0, np.nan])

@@ -11,8 +11,9 @@ from grashof.problems import Box, MotionTask, Problem, Requirements
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve.asked import Asked
+from grashof.synth.proof.curve.poles import poles
 from grashof.synth.proof.poses.best_first import Tilings
-from grashof.synth.proof.poses.charts import BOTH, GROUND, MOVING, Charts
+from grashof.synth.proof.poses.charts import BOTH, GROUND, MOVING, Charts, Tiles
 from grashof.synth.proof.poses.sides import Sites, Tiling
 from grashof.synth.starts.dyad_pairs import judged_pairs
 from grashof.synth.theory.burmester import Displacements, Dyads, polish
@@ -35,7 +36,12 @@ def luggage(shortest: float, longest: float, ratio: float = 20.0, **requirements
     """Poses 1, 2 and 4 of the luggage task."""
     problem, limits = load("luggage"), (shortest, longest)
     poses = np.column_stack([problem.task.positions, np.degrees(problem.task.angles)])[[0, 1, 3]]
-    wanted = {"transmission_min_deg": 0.0, "link_length": limits, "coupler_arms": limits, "link_ratio_max": ratio}
+    wanted = {
+        "transmission_min_deg": 0.0,
+        "link_length": limits,
+        "coupler_arms": limits,
+        "link_ratio_max": ratio,
+    }
     return replace(
         problem,
         task=MotionTask.from_degrees(poses),
@@ -49,6 +55,14 @@ def random_poses(seed: int, **requirements: object) -> Problem:
     return Problem(task=MotionTask.from_degrees(poses), requirements=Requirements(**requirements))  # type: ignore[arg-type]
 
 
+def about_pole(seed: int, number: int) -> Box:
+    """A box of ground pivots about a pole of random poses."""
+    scaled = ScaledProblem.of(random_poses(seed))
+    assert scaled.motion is not None
+    x, y = scaled.frame.outward(poles(scaled.motion.inverse())[1][number : number + 1])[0]
+    return Box((x - 0.2, x + 0.3), (y - 0.3, y + 0.2))
+
+
 PARALLEL = [[0, 0, 0], [1, 0.3, 0], [0.7, -0.5, 50]]
 STAIRS = np.array([[-60, -160], [100, -160], [100, -260], [-60, -260]], dtype=np.float64)
 CASES = {
@@ -59,7 +73,10 @@ CASES = {
     "luggage, crank-rocker": luggage(0.3, 8, rotatability="crank-rocker"),
     "luggage, any order": luggage(0.3, 8, order=False, rotatability="any"),
     "random": random_poses(3, rotatability="any"),
-    "random, short links": random_poses(5, rotatability="any", link_length=(0.1, 2.0), coupler_arms=(0.0, 2.0)),
+    "random, short links": random_poses(
+        5, rotatability="any", link_length=(0.1, 2.0), coupler_arms=(0.0, 2.0)
+    ),
+    "boxes about poles": random_poses(3, rotatability="any", o2=about_pole(3, 0), o4=about_pole(3, 1)),
     "two parallel poses": Problem(
         task=MotionTask.from_degrees(PARALLEL), requirements=Requirements(rotatability="any")
     ),
@@ -127,14 +144,15 @@ def feasible_designs(problem: Problem, most: int, seed: int = 0, count: int = 40
         charts = tiling.side.charts
         reach = min(asked.driver.arm[1], 3.0)
         dyads = exact(charts.motion, some_dyads(charts, reach, count, rng))
-        found, rows = Sites.of(tiling.side, tiles_of(charts, dyads))
-        assert len(found) <= len(dyads)
-        every.append((charts, dyads[rows]))
+        _, rows = Sites.of(tiling.side, tiles_of(charts, dyads))
+        every.append((charts, dyads[rows]))  # those that meet what is asked of one dyad, about
     drawn = []
     for charts, dyads in every:
         special = kinds(charts, dyads) != charts.main
         weight = np.where(special, 1 / max(special.sum(), 1), 1 / max((~special).sum(), 1))
-        drawn.append(dyads[rng.choice(len(dyads), 60 * most, p=weight / weight.sum())] if len(dyads) else dyads)
+        drawn.append(
+            dyads[rng.choice(len(dyads), 60 * most, p=weight / weight.sum())] if len(dyads) else dyads
+        )
     one, other = (Dyads(each.moving + body, each.ground + body) for each in drawn)
     least = min(len(one), len(other))
     judged = judged_pairs(scaled.motion, body, one[:least], other[:least], scaled.wanted)
@@ -143,7 +161,7 @@ def feasible_designs(problem: Problem, most: int, seed: int = 0, count: int = 40
 
 
 def kinds(charts: Charts, dyads: Dyads) -> IntArray:
-    """The chart that each dyad belongs to: the main one but near its poles, then the other one but near its."""
+    """The chart of each dyad: the main one but near its poles, there the other one but near its poles."""
     pivots = (dyads.moving, dyads.ground)
     near = [np.abs(z[:, None] - poles) for z, poles in zip(pivots, charts.poles, strict=True)]
     main, other = charts.main, GROUND if charts.main == MOVING else MOVING
@@ -162,10 +180,8 @@ def coordinates(charts: Charts, kind: IntArray, dyads: Dyads) -> FloatArray:
     return of_z + of_c
 
 
-def tiles_of(charts: Charts, dyads: Dyads):  # type: ignore[no-untyped-def]
+def tiles_of(charts: Charts, dyads: Dyads) -> Tiles:
     """Tiles of no size about dyads."""
-    from grashof.synth.proof.poses.charts import Tiles
-
     kind = kinds(charts, dyads)
     place = coordinates(charts, kind, dyads)
     return Tiles(charts, kind, place, np.zeros_like(place))
@@ -197,7 +213,8 @@ def half_of(tiling: Tiling, which: IntArray, dyads: Dyads) -> IntArray:
     halves, found = tiling.halve(which), np.full(len(dyads), NOWHERE)
     for half in halves.T:
         rows = np.flatnonzero(half >= 0)
-        found[rows[holds(tiling.sites, half[rows], dyads[rows])]] = half[rows[holds(tiling.sites, half[rows], dyads[rows])]]
+        rows = rows[holds(tiling.sites, half[rows], dyads[rows])]
+        found[rows] = half[rows]
     return found
 
 
