@@ -46,9 +46,10 @@ class Proof:
     lower, upper : float or None, deg
         Of the best design that is listed, as judged; and what no design exceeds.
     pieces : tuple of int
-        Pieces of the curve of dyads, to begin with: that may be drivers, and driven; of five poses dyads.
+        Pieces of the curve, or plane, of dyads, to begin with: that may be drivers, and driven; of five poses
+        dyads.
     pairs, levels : int
-        Pairs of pieces that were bounded, and how often what was left was halved.
+        Pairs of pieces that were bounded, and how often what was left was halved; of three poses, a part.
     seconds : float, s
     left_out : tuple of str
         Requirements that the proof does without, by their keys: designs that meet them have `upper` at most.
@@ -57,7 +58,7 @@ class Proof:
     region_size : float, sizes
         Half the length of the pieces that they were told apart by; 0 where they are not known.
     rounding, why : str
-        How rounding is accounted for; why there is no proof, or no closer bound.
+        How rounding is accounted for; why there is no proof, no closer bound, or no design on one side.
     """
 
     claim: Claim

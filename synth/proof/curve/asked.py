@@ -23,7 +23,7 @@ SLACK = 2e-9
 LEAST = float(np.radians(0.01))  # rad: designs below it count as none
 TOGETHER = 1e-9  # sizes, and unit rotations: poses closer are the same one
 ONE_POINT = 1e-6  # sizes: poles closer are the same one
-POSES = 4
+THREE, POSES = 3, 4
 # Fields of the requirements that have forms.
 _FORMS = (
     "transmission_min_deg",
@@ -307,7 +307,7 @@ def unusable(scaled: ScaledProblem) -> str:
         if apart < TOGETHER:
             return f"poses {i + 1} and {j + 1} are equal"
     first = Displacements(motion.rotation[:POSES], motion.shift[:POSES])
-    if len(first.rotation) < POSES:
+    if len(first.rotation) == THREE:
         return _degenerate(first)
     if Curve.of(first, complex(scaled.targets[0])).degenerate:
         return "the poses have a plane of dyads (translations, or a rotation about one point)"
@@ -325,7 +325,7 @@ def _degenerate(motion: Displacements) -> str:
 
 
 def enclosed(problem: Problem) -> str:
-    """That the search of a problem encloses all linkages, for those who read it; empty where it does not.
+    """That the search of a problem encloses all linkages, or can, for those who read it; else empty.
 
     Examples
     --------
@@ -335,7 +335,10 @@ def enclosed(problem: Problem) -> str:
     """
     if not isinstance(problem.task, MotionTask) or problem.mechanism[0] != FOUR_BAR:
         return ""
-    if refusal(ScaledProblem.of(problem.for_kind(FOUR_BAR))) != "":
+    scaled = ScaledProblem.of(problem.for_kind(FOUR_BAR))
+    if refusal(scaled, THREE) == "":
+        return "--prove encloses all four-bars through three poses, and bounds what they transmit"
+    if refusal(scaled) != "":
         return ""
     told = "all four-bars through four poses are enclosed"
     return f"{told}: seed and effort change nothing where that finds enough"

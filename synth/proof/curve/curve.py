@@ -14,7 +14,7 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.theory.burmester import Displacements
 
 PLANE = 1e-9  # of its terms: below it a polynomial vanishes, and every point is a circle point
-_THREE = 3  # poses
+_POSES = 4
 _ROUNDING = 64 * np.finfo(float).eps  # of the magnitude of a sum of some thirty terms
 
 
@@ -101,7 +101,7 @@ class Curve:
         """
         rotation = motion.rotation
         shift = motion.apply(np.array([point]))[0] - point
-        if len(rotation) == _THREE:
+        if len(rotation) < _POSES:
             return cls(rotation, shift, 0j, 0j, 0.0, 0j, 0.0, degenerate=True)
         alpha, d, half = rotation[1:] - 1, shift[1:], 0.5 * np.abs(shift[1:]) ** 2
         beta = 0.5 * d.conj() * rotation[1:]

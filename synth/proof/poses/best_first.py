@@ -62,8 +62,8 @@ class Tilings:
         return sides_left(self.asked, one, other, first.sense[driver], least)
 
     def halved(self, pairs: Pairs) -> tuple[IntArray, IntArray]:
-        """Pairs with one tile halved, the longer one of each."""
-        first = self.driver.lengths[pairs.driver] >= self.driven.lengths[pairs.driven]
+        """Pairs with one tile halved, the larger one of each."""
+        first = self.driver.sizes[pairs.driver] >= self.driven.sizes[pairs.driven]
         of_driver, of_driven = pairs[first], pairs[~first]
         one, other = self.driver.halve(of_driver.driver), self.driven.halve(of_driven.driven)
         drivers = np.concatenate([one.ravel(), np.repeat(of_driven.driver, 2)])

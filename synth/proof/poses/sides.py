@@ -230,10 +230,9 @@ class Tiling:
         return len(self.sites)
 
     @property
-    def lengths(self) -> FloatArray:
-        """Lengths of the longer sides of all tiles."""
-        lengths: FloatArray = self.sites.lengths.max(axis=0)
-        return lengths
+    def sizes(self) -> FloatArray:
+        """How far the pivots of each tile may be from its middle, at most."""
+        return np.maximum(self.sites.z.reach, self.sites.c.reach)
 
     def halve(self, which: IntArray) -> IntArray:
         """Halves of tiles, shape (n, 2); negative where one holds no dyad that does."""

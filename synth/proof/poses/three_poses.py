@@ -11,7 +11,7 @@ import numpy as np
 from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.proof.curve.asked import Asked, left_out, refusal, unusable, with_forms
+from grashof.synth.proof.curve.asked import THREE, Asked, left_out, refusal, unusable, with_forms
 from grashof.synth.proof.curve.table import TooMany
 from grashof.synth.proof.poses.best_first import MOST_LEFT, BestFirst, Tilings
 from grashof.synth.proof.poses.bounds import STOPPED, Bounds, Proving, bounds_of, logged
@@ -22,8 +22,7 @@ from grashof.synth.starts.dyad_pairs import judged_pairs
 from grashof.synth.theory.burmester import Dyads, polish
 from grashof.synth.theory.stopping import Stopped
 
-THREE = 3
-FEW = 1000  # pairs of first tiles, as where the pivots of a side are given: these are bounded at once
+FEW = 100  # pairs of first tiles, as where pivots are given: these are bounded at once
 FEW_PAIRS = 20_000  # in all, then
 LOOKED_AT = 1000  # pairs of each step, those with the greatest bounds
 SIDES = {True: "link 2, with O2 and A,", False: "link 4, with O4 and B,"}

@@ -12,6 +12,7 @@ from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, 
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve.asked import Asked
 from grashof.synth.proof.curve.poles import poles
+from grashof.synth.proof.forms.forms import Span
 from grashof.synth.proof.poses.best_first import Tilings
 from grashof.synth.proof.poses.charts import BOTH, GROUND, MOVING, Charts, Tiles
 from grashof.synth.proof.poses.sides import Sites, Tiling
@@ -245,3 +246,44 @@ def test_no_linkage_is_lost_or_bounded_too_low(name: str) -> None:
     lost, excluded, nearest = followed(CASES[name], designs, 20)
     assert (lost, excluded) == (0, 0)
     assert nearest < np.radians(0.1)  # sharp: a bound that is 0.1 deg too low would show
+
+
+@pytest.mark.study
+@pytest.mark.slow
+@pytest.mark.parametrize("name", CASES)
+def test_no_linkage_of_many_is_lost_or_bounded_too_low(name: str) -> None:
+    for seed in range(1, 5):
+        lost, excluded, _ = followed(
+            CASES[name], feasible_designs(CASES[name], 1000, seed=seed, count=8000), 24
+        )
+        assert (lost, excluded) == (0, 0)
+
+
+def used(span: Span, points: ComplexArray, s: FloatArray) -> FloatArray:
+    """Share of the rest of forms that points use."""
+    apart: FloatArray = np.abs(points - span.middle - (span.steps * s).sum(axis=0))
+    return apart / (span.rest + 1e-13 * (1 + np.abs(points)))
+
+
+@pytest.mark.parametrize("half", [0.1, 0.01, 0.001])
+@pytest.mark.parametrize("main", [MOVING, GROUND])
+def test_charts_hold_every_dyad(main: int, half: float) -> None:
+    rng, longest = np.random.default_rng(main), 6.0
+    scaled = ScaledProblem.of(random_poses(3))
+    assert scaled.motion is not None
+    charts = Charts.of(scaled.motion, longest, main, complex(np.exp(0.7j)))
+    dyads = exact(charts.motion, some_dyads(charts, 3.0, 3000, rng))
+    dyads = dyads[np.abs(dyads.moving - dyads.ground) < longest]
+    kind = kinds(charts, dyads)
+    corner = rng.choice([-1.0, 1.0], (2, len(dyads)))
+    s = np.where(rng.random(len(dyads)) < 0.5, corner, rng.uniform(-1, 1, (2, len(dyads))))
+    size = half * np.where(kind >= BOTH, charts.radius, 1.0)
+    halves = np.stack([size, size * rng.choice([0.3, 1.0], len(dyads))])
+    tiles = Tiles(charts, kind, coordinates(charts, kind, dyads) - s * halves, halves)
+    z, c, known = tiles.spans
+    share = np.maximum(used(z, dyads.moving, s), used(c, dyads.ground, s))
+    assert share.max() <= 1 + 1e-9
+    for each in (kind == MOVING, kind == GROUND, kind >= BOTH):
+        assert (known & each).sum() > 20
+        assert share[known & each].max() > 0.5
+    assert tiles.counted(z, c).all()
