@@ -12,7 +12,7 @@ from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.toml_file import file_text
 from grashof.problems.values.checks import located, plain_text
-from grashof.synth.proof.poses.bounds import bounds_of
+from grashof.synth.proof.provers import bounds_after, bounds_before
 from grashof.synth.results.conclusion import conclude, needless
 from grashof.synth.results.mixed import one_list
 from grashof.synth.results.result import Result
@@ -178,8 +178,10 @@ def merge_shards(
         found = []
         for scaled, (first, *second) in zip(plan.asked, ledgers, strict=True):
             used = [first, *second] if found_few(first) else [first]
-            bounds = bounds_of(scaled, run.proving)
-            found.append(conclude(scaled, [finished(ledger, run) for ledger in used], run, asked, bounds))
+            done = [finished(ledger, run) for ledger in used]
+            bounds = bounds_before(scaled, run.proving)
+            bounds = bounds_after(scaled, run.proving, bounds, [each for one in done for each in one.best])
+            found.append(conclude(scaled, done, run, asked, bounds))
         return one_list(plan.problem, found)
 
 

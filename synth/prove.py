@@ -13,18 +13,19 @@ from grashof.problems import Problem, ProblemError, StrokeTask
 from grashof.problems.values.checks import number_within
 from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.proof.bounds import Bounds, Proving
 from grashof.synth.proof.functions.few_pairs import FOUR, THREE
-from grashof.synth.proof.poses.bounds import Bounds, Proving, bounds_of
 from grashof.synth.proof.poses.five_poses import FIVE
 from grashof.synth.proof.poses.lookout import quantity_of
 from grashof.synth.proof.proof import Claim, Proof, proof_of
+from grashof.synth.proof.provers import bounds_of
 from grashof.synth.search.asked import asking
 from grashof.synth.starts.finder import refuse_unsearchable
 from grashof.synth.synthesize import synthesize
 from grashof.synth.theory.stopping import stopping
 
 _BEYOND = (
-    "there are proofs of four and five whole poses, and pairs of a function, that a four-bar meets exactly, "
+    "there are proofs of three to five whole poses, and pairs of a function, that a four-bar meets exactly, "
     "and of a swing or a stroke; of no other task yet"
 )
 
@@ -43,9 +44,9 @@ def prove(
     Parameters
     ----------
     problem : Problem
-        For a four-bar, met exactly: four whole poses, the transmission angle to be maximised; five whole
-        poses; a function of three to five pairs. For every kind of linkage a swing or a stroke; of a list
-        of kinds for the first.
+        For a four-bar, met exactly: three or four whole poses, the transmission angle to be maximised; five
+        whole poses; a function of three to five pairs. For every kind of linkage a swing or a stroke; of a
+        list of kinds for the first.
     at_least : float, deg, optional
         Only decide whether a design has a transmission angle of so much.
     gap : float, deg
@@ -67,8 +68,8 @@ def prove(
 
     Notes
     -----
-    Branch and bound over pairs of pieces of Burmester's curve; of five targets a search among all dyads; of a
-    stroke over families of one number.
+    Branch and bound over pairs of pieces of Burmester's curve, of three poses of squares of the plane; of
+    five targets a search among all dyads; of a stroke over families of one number.
     See "Proofs" in the documentation.
 
     Examples

@@ -14,10 +14,11 @@ from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.values.checks import readable
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.user_functions import refuse_no_list, refuse_unusable
+from grashof.synth.proof.bounds import Proving
 from grashof.synth.proof.poses.atlas import atlas_of
-from grashof.synth.proof.poses.bounds import Proving, bounds_of
 from grashof.synth.proof.poses.first_round import round_of_regions
 from grashof.synth.proof.poses.five_poses import certified_of
+from grashof.synth.proof.provers import bounds_after, bounds_before
 from grashof.synth.results.conclusion import conclude, needless
 from grashof.synth.results.function_list import function_list
 from grashof.synth.results.mixed import one_list
@@ -144,7 +145,7 @@ def synthesize(
 def _one_kind(scaled: ScaledProblem, run: Run, asked: Asking) -> Result:
     """The list of one kind of linkage: what theory bounds and encloses, then the search."""
     with run.timed("proving"):
-        bounds = bounds_of(scaled, run.proving)
+        bounds = bounds_before(scaled, run.proving)
         if bounds is not None and bounds.none:
             return conclude(scaled, nothing_to_search(scaled, run), run, asked, bounds)
         dyads = certified_of(scaled) if bounds is None else None
@@ -152,7 +153,10 @@ def _one_kind(scaled: ScaledProblem, run: Run, asked: Asking) -> Result:
         with suppress(Stopped):  # the finder has a glance for those in haste
             atlas = None if bounds is None else atlas_of(scaled, bounds)
             known = None if atlas is None else round_of_regions(scaled, atlas, run.search.enough)
-    return conclude(scaled, searches(scaled, run, known), run, asked, bounds or dyads, atlas)
+    ledgers = searches(scaled, run, known)
+    with run.timed("proving"):
+        bounds = bounds_after(scaled, run.proving, bounds, [each for one in ledgers for each in one.best])
+    return conclude(scaled, ledgers, run, asked, bounds or dyads, atlas)
 
 
 def _functions(

@@ -267,8 +267,8 @@ def prove(
 ) -> None:
     """Prove how large the transmission angle of the best design can be, or that there is no design.
 
-    For four whole poses and a four-bar. Exit code 0: decided; 1: not decided; 2: bad input;
-    3: environment error; 130: interrupted (Ctrl-C).
+    For three to five whole poses, or pairs of a function, and a four-bar. Exit code 0: decided;
+    1: not decided; 2: bad input; 3: environment error; 130: interrupted (Ctrl-C).
     """
     with _errors_told():
         raise typer.Exit(commands.prove(problem, at_least, gap, time_limit))

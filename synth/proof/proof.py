@@ -12,7 +12,7 @@ import numpy as np
 from grashof.problems import Problem
 from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.proof.poses.bounds import Bounds
+from grashof.synth.proof.bounds import Bounds
 from grashof.synth.proof.poses.five_poses import Certified
 from grashof.synth.proof.poses.lookout import quantity_of
 
@@ -49,10 +49,11 @@ class Proof:
     lower, upper : float or None, deg
         Of the best design that is listed, as judged; and what no design exceeds.
     pieces : tuple of int
-        Pieces of the curve of dyads, to begin with: that may be drivers, and driven; of five poses dyads;
-        of a stroke pieces of families of one number, and 0.
+        Pieces of the curve, or plane, of dyads, to begin with: that may be drivers, and driven; of five poses
+        dyads; of a stroke pieces of families of one number, and 0.
     pairs, levels : int
-        Pairs of pieces, or pieces, that were bounded, and how often what was left was halved.
+        Pairs of pieces, or pieces, that were bounded, and how often what was left was halved; of three poses,
+        a part.
     seconds : float, s
     left_out : tuple of str
         Requirements that the proof does without, by their keys: designs that meet them have `upper` at most.
@@ -61,7 +62,7 @@ class Proof:
     region_size : float, sizes
         Half the length of the pieces that they were told apart by; 0 where they are not known.
     rounding, why : str
-        How rounding is accounted for; why there is no proof, or no closer bound.
+        How rounding is accounted for; why there is no proof, no closer bound, or no design on one side.
     """
 
     claim: Claim

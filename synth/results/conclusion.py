@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from grashof.synth.designs.families import listed
 from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.proof.bounds import Bounds
 from grashof.synth.proof.poses.atlas import Atlas
-from grashof.synth.proof.poses.bounds import Bounds
 from grashof.synth.proof.poses.five_poses import Certified
 from grashof.synth.proof.proof import best_listed, proof_of, proof_of_all
 from grashof.synth.results.advice import advice

@@ -20,7 +20,8 @@ from grashof.synth.programme.screening import (
 )
 from grashof.synth.programme.start import UNSMOOTH, Start
 from grashof.synth.programme.whole_screening import fully_screened
-from grashof.synth.proof.poses.bounds import Bounds, bounds_of
+from grashof.synth.proof.bounds import Bounds
+from grashof.synth.proof.provers import bounds_before
 from grashof.synth.results.relaxed_limits import (
     Relaxation,
     fixes_angle,
@@ -61,7 +62,7 @@ def relaxations(
             loose = _loose(scaled, key)
         except ProblemError:  # something else that is asked needs this requirement
             continue
-        bounds = bounds_of(loose, run.proving)
+        bounds = bounds_before(loose, run.proving)
         if bounds is not None and bounds.none:
             continue
         rejected = [one for one in known if {d.requirement for d in one.verdict.defects} == {key}]

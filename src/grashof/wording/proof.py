@@ -66,7 +66,8 @@ def _line(proof: Proof, known: str) -> str:
         return _all_line(proof, known)
     angle, none = f"{_up(proof.upper)} deg", f"no {proof.mechanism} meets these requirements"
     if proof.claim is Claim.NONE:
-        return f"Proven: {none} with a transmission angle of {angle} or more."
+        reason = f", as {proof.why}" if proof.why else f" with a transmission angle of {angle} or more"
+        return f"Proven: {none}{reason}."
     has = f"; {known} {_down(proof.lower)} deg" if known else ""
     if proof.claim is Claim.BEST:
         return f"Proven: {none} with more than {angle}{has}.{_regions(proof)}"
@@ -124,12 +125,14 @@ def work_line(proof: Proof) -> str:
     Examples
     --------
     >>> work_line(Proof(claim=Claim.BEST, quantity="", pieces=(42, 40), pairs=3049, levels=5, seconds=0.1))
-    '42 by 40 pieces of the curve of dyads, 3049 pairs, halved 5 times, 0.10 s'
+    '42 by 40 pieces of all dyads, 3049 pairs, halved 5 times, 0.10 s'
     """
     first, second = proof.pieces
     halved = f"halved {counted(proof.levels, 'time')}, {proof.seconds:.2f} s"
-    if proof.pairs and not second:
-        return f"{counted(first, 'piece')} of families of one number, {proof.pairs} in all, {halved}"
+    if not first:
+        return f"{proof.seconds:.2f} s"
     if not proof.pairs:
         return f"{counted(first, 'dyad')}, each in a box of its own, {proof.seconds:.2f} s"
-    return f"{first} by {second} pieces of the curve of dyads, {counted(proof.pairs, 'pair')}, {halved}"
+    if not second:
+        return f"{counted(first, 'piece')} of families of one number, {proof.pairs} in all, {halved}"
+    return f"{first} by {second} pieces of all dyads, {counted(proof.pairs, 'pair')}, {halved}"

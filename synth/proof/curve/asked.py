@@ -14,6 +14,7 @@ from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.problems.values.requirements import LIMITS
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve.curve import Curve
+from grashof.synth.proof.curve.poles import poles
 from grashof.synth.proof.forms.loop import LoopLimits
 from grashof.synth.theory.burmester import Displacements
 
@@ -21,7 +22,8 @@ from grashof.synth.theory.burmester import Displacements
 SLACK = 2e-9
 LEAST = float(np.radians(0.01))  # rad: designs below it count as none
 TOGETHER = 1e-9  # sizes, and unit rotations: poses closer are the same one
-POSES = 4
+ONE_POINT = 1e-6  # sizes: poles closer are the same one
+THREE, POSES = 3, 4
 # Fields of the requirements that have forms.
 _FORMS = (
     "transmission_min_deg",
@@ -112,7 +114,7 @@ class Asked:
 
     @classmethod
     def of(cls, scaled: ScaledProblem, at_least: float | None = None) -> Asked:
-        """What is asked of the first four poses of a problem; perhaps with a greater least angle (deg)."""
+        """What is asked of the first four poses of a problem, or three; `at_least` a greater angle (deg)."""
         motion, wanted = scaled.motion, scaled.wanted
         if motion is None:
             raise TypeError("only whole poses that are met exactly have a curve of dyads")
@@ -274,8 +276,8 @@ def _transmits_nothing(scaled: ScaledProblem) -> str:
     return ""
 
 
-def refusal(scaled: ScaledProblem) -> str | None:
-    """Why there is no proof; empty where there can be one, None where the question does not arise.
+def refusal(scaled: ScaledProblem, poses: int = POSES) -> str | None:
+    """Why there is no proof of so many poses; empty where there can be one, None of other problems.
 
     Examples
     --------
@@ -283,8 +285,8 @@ def refusal(scaled: ScaledProblem) -> str | None:
     >>> refusal(ScaledProblem.of(load("luggage"))), refusal(ScaledProblem.of(load("straight-line")))
     ('', None)
     """
-    motion, problem = scaled.motion, scaled.problem
-    if motion is None or len(scaled.targets) != POSES or problem.mechanism[0] != FOUR_BAR:
+    problem = scaled.problem
+    if scaled.motion is None or len(scaled.targets) != poses or problem.mechanism[0] != FOUR_BAR:
         return None
     if scaled.objective is None or set(scaled.objective.goals) != {"transmission"}:
         return "the objective has no forms; transmission alone has"
@@ -296,7 +298,7 @@ def refusal(scaled: ScaledProblem) -> str | None:
 
 
 def unusable(scaled: ScaledProblem) -> str:
-    """Why the poses themselves leave no curve of dyads; empty where they leave one."""
+    """Why the poses themselves leave no curve of dyads, or three no plane; empty where they leave one."""
     motion = scaled.motion
     if motion is None:
         raise TypeError("only whole poses that are met exactly have a curve of dyads")
@@ -305,13 +307,25 @@ def unusable(scaled: ScaledProblem) -> str:
         if apart < TOGETHER:
             return f"poses {i + 1} and {j + 1} are equal"
     first = Displacements(motion.rotation[:POSES], motion.shift[:POSES])
+    if len(first.rotation) == THREE:
+        return _degenerate(first)
     if Curve.of(first, complex(scaled.targets[0])).degenerate:
         return "the poses have a plane of dyads (translations, or a rotation about one point)"
     return ""
 
 
+def _degenerate(motion: Displacements) -> str:
+    """Why three poses leave each pivot no other one, or each the same."""
+    if np.abs(motion.rotation - 1).max() < TOGETHER:
+        return "the poses are translations"
+    places = poles(motion)[1]
+    if len(places) == len(motion.rotation) and np.abs(places - places[0]).max() < ONE_POINT:
+        return "the poses are a rotation about one point"
+    return ""
+
+
 def enclosed(problem: Problem) -> str:
-    """That the search of a problem encloses all linkages, for those who read it; empty where it does not.
+    """That the search of a problem encloses all linkages, or can, for those who read it; else empty.
 
     Examples
     --------
@@ -321,7 +335,10 @@ def enclosed(problem: Problem) -> str:
     """
     if not isinstance(problem.task, MotionTask) or problem.mechanism[0] != FOUR_BAR:
         return ""
-    if refusal(ScaledProblem.of(problem.for_kind(FOUR_BAR))) != "":
+    scaled = ScaledProblem.of(problem.for_kind(FOUR_BAR))
+    if refusal(scaled, THREE) == "":
+        return "--prove encloses all four-bars through three poses, and bounds what they transmit"
+    if refusal(scaled) != "":
         return ""
     told = "all four-bars through four poses are enclosed"
     return f"{told}: seed and effort change nothing where that finds enough"

@@ -9,6 +9,7 @@ import numpy as np
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.synth.proof.curve.curve import Curve
 from grashof.synth.proof.curve.pieces import WIDER, Tubes
+from grashof.synth.proof.forms.forms import Span
 
 _ROWS = ((0, 1), (0, 2), (1, 2))  # of the three equations, two at a time
 _MOST_SHIFT = 0.9  # of the matrix relative to itself, up to which its inverse is bounded
@@ -24,6 +25,11 @@ class Centres:
 
     def __getitem__(self, index: IntArray | BoolArray) -> Centres:
         return Centres(self.middle[index], self.along[index], self.rest[index])
+
+    @property
+    def span(self) -> Span:
+        """As a form of s alone."""
+        return Span(self.middle, self.along[None], self.rest)
 
     @classmethod
     def joined(cls, *parts: Centres) -> Centres:

@@ -14,6 +14,7 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.theory.burmester import Displacements
 
 PLANE = 1e-9  # of its terms: below it a polynomial vanishes, and every point is a circle point
+_POSES = 4
 _ROUNDING = 64 * np.finfo(float).eps  # of the magnitude of a sum of some thirty terms
 
 
@@ -89,6 +90,8 @@ class Curve:
     def of(cls, motion: Displacements, point: complex) -> Curve:
         """The curve of four displacements of the body, seen from a point of it at the first pose.
 
+        Of three every point is a circle point.
+
         Notes
         -----
         z_j - z = alpha_j z + d_j with alpha_j = rho_j - 1, and (|z_j|^2 - |z|^2) / 2 = |d_j|^2 / 2 +
@@ -98,6 +101,8 @@ class Curve:
         """
         rotation = motion.rotation
         shift = motion.apply(np.array([point]))[0] - point
+        if len(rotation) < _POSES:
+            return cls(rotation, shift, 0j, 0j, 0.0, 0j, 0.0, degenerate=True)
         alpha, d, half = rotation[1:] - 1, shift[1:], 0.5 * np.abs(shift[1:]) ** 2
         beta = 0.5 * d.conj() * rotation[1:]
         columns = alpha, alpha.conj(), d, d.conj(), beta, beta.conj(), half + 0j

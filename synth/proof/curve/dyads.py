@@ -1,18 +1,19 @@
-"""Conditions of one dyad: which pieces of the curve may hold a driver, or a driven dyad."""
+"""Conditions of one dyad: which pieces of its curve, or its plane, may hold a driver, or a driven dyad."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, pairwise, product
 
 import numpy as np
 
 from grashof.problems import Box
-from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, Limits
+from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray, Limits
 from grashof.synth.proof.curve.asked import SLACK, Asked, Dyad
-from grashof.synth.proof.curve.centres import Centres
 from grashof.synth.proof.curve.curve import Curve
-from grashof.synth.proof.curve.pieces import WIDER, Tubes
+from grashof.synth.proof.curve.pieces import WIDER
+from grashof.synth.proof.forms.forms import Span
+from grashof.synth.theory.burmester import Displacements
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,133 +45,144 @@ class Roles:
     sense: IntArray
 
 
-def possible_arms(asked: Asked, tubes: Tubes) -> BoolArray:
-    """Which tubes may hold moving pivots at an allowed distance from P, and within circles not too large.
+def possible_arms(asked: Asked, z: Span) -> BoolArray:
+    """Which pieces may hold moving pivots at an allowed distance from P, and within circles not too large.
 
     This needs no centres: it disposes of the places where these run off to infinity.
     """
-    curve = asked.curve
-    reach = np.abs(tubes.along) + tubes.stray
-    distance = np.abs(tubes.middle)
-    arms = Range(distance - reach, distance + reach)
-    keep = arms.within(asked.driver.arm) & np.isfinite(distance)
+    distance = np.abs(z.middle)
+    arms = Range(distance - z.reach, distance + z.reach)
     shortest = min(asked.driver.length[0], asked.driven.length[0])
+    round_ = possible_radii(asked.curve, z, (shortest, asked.longest))
+    return arms.within(asked.driver.arm) & np.isfinite(distance) & round_
+
+
+def possible_radii(motion: Curve | Displacements, points: Span, radii: Limits) -> BoolArray:
+    """Which pieces may hold points whose circles through three places have allowed radii."""
+    reach, distance = points.reach, np.abs(points.middle)
+    keep = np.ones(len(points), dtype=bool)
+    turn, move = motion.rotation, motion.shift
     chords = {
         (i, j): (
-            (curve.rotation[j] - curve.rotation[i]) * tubes.middle + curve.shift[j] - curve.shift[i],
-            abs(curve.rotation[j] - curve.rotation[i]) * reach + WIDER * (1.0 + distance),
+            (turn[j] - turn[i]) * points.middle + move[j] - move[i],
+            abs(turn[j] - turn[i]) * reach + WIDER * (1.0 + distance),
         )
-        for i, j in combinations(range(len(curve.shift)), 2)
+        for i, j in combinations(range(len(move)), 2)
     }
-    for i, j, k in combinations(range(len(curve.shift)), 3):
+    for i, j, k in combinations(range(len(move)), 3):
         (u, du), (v, dv), (w, dw) = chords[i, j], chords[i, k], chords[j, k]
         longs = [(np.abs(x), dx) for x, dx in ((u, du), (v, dv), (w, dw))]
-        least, most = np.ones(len(tubes)), np.ones(len(tubes))
+        least, most = np.ones(len(points)), np.ones(len(points))
         for size, spread in longs:
             least, most = least * np.maximum(size - spread, 0.0), most * (size + spread)
         cross = np.abs((u.conj() * v).imag)
         spread = longs[0][0] * dv + longs[1][0] * du + du * dv
-        keep &= ~(least > 2 * asked.longest * (cross + spread) * (1 + SLACK))
-        keep &= ~(most < 2 * shortest * (cross - spread) * (1 - SLACK))
+        keep &= ~(least > 2 * radii[1] * (cross + spread) * (1 + SLACK))
+        keep &= ~(most < 2 * radii[0] * (cross - spread) * (1 - SLACK))
     return keep
 
 
-def roles_of(asked: Asked, tubes: Tubes, centres: Centres) -> Roles:
-    """What pieces may be."""
-    sense, ordered = _senses(asked.curve, tubes)
-    driver = _allowed(asked, asked.driver, tubes, centres)
-    driven = _allowed(asked, asked.driven, tubes, centres)
+def same_lengths(motion: Curve | Displacements, z: Span, c: Span) -> BoolArray:
+    """Where the distance from z to c may be the same at all poses."""
+    poses = zip(motion.rotation, motion.shift, strict=True)
+    ranges = [lengths_of(z.placed(complex(turn), complex(move)), c) for turn, move in poses]
+    low, high = np.max([each.low for each in ranges], axis=0), np.min([each.high for each in ranges], axis=0)
+    some: BoolArray = low <= high
+    return some
+
+
+def roles_of(asked: Asked, z: Span, c: Span) -> Roles:
+    """What pieces with these moving and ground pivots may be."""
+    sense, ordered = _senses(asked.curve, z)
+    driver = _allowed(asked, asked.driver, z, c)
+    driven = _allowed(asked, asked.driven, z, c)
     if asked.ordered:
         driver &= ordered
         driver &= (sense == 0) | (asked.sense == 0) | (sense == asked.sense)
-        driver &= _rotations(asked, tubes, centres, sense)
+        driver &= _rotations(asked, z, c, sense)
     if asked.theta2_start is not None:
-        crank = (tubes.middle - centres.middle) * np.exp(-1j * asked.theta2_start)
-        along = (tubes.along - centres.along) * np.exp(-1j * asked.theta2_start)
-        off = tubes.stray + centres.rest + SLACK * (1.0 + np.abs(crank))
-        driver &= np.abs(crank.imag) <= np.abs(along.imag) + off
-        driver &= crank.real + np.abs(along.real) + off >= 0
+        crank = (z - c).placed(complex(np.exp(-1j * asked.theta2_start)))
+        off = crank.rest + SLACK * (1.0 + np.abs(crank.middle))
+        driver &= np.abs(crank.middle.imag) <= np.abs(crank.steps.imag).sum(axis=0) + off
+        driver &= crank.middle.real + np.abs(crank.steps.real).sum(axis=0) + off >= 0
     return Roles(driver, driven, sense)
 
 
-def _allowed(asked: Asked, dyad: Dyad, tubes: Tubes, centres: Centres) -> BoolArray:
+def _allowed(asked: Asked, dyad: Dyad, z: Span, c: Span) -> BoolArray:
     """Which pieces may meet the limits of a dyad."""
     curve = asked.curve
-    keep = lengths_of(tubes, centres).within(dyad.length)
-    keep &= _inside(centres.middle, centres.along, centres.rest, dyad.ground)
+    keep = lengths_of(z, c).within(dyad.length)
+    keep &= _inside(c, dyad.ground)
     if dyad.keep_out:
-        keep &= ~_within_areas(centres, dyad.keep_out)
+        keep &= ~_within_areas(c, dyad.keep_out)
     for rotation, shift in zip(curve.rotation, curve.shift, strict=True):
-        keep &= _inside(rotation * tubes.middle + shift, rotation * tubes.along, tubes.stray, dyad.moving)
-    turn = np.exp(-1j * asked.first_turn)
-    keep &= _inside(turn * tubes.middle, turn * tubes.along, tubes.stray, dyad.on_body)
+        keep &= _inside(z.placed(complex(rotation), complex(shift)), dyad.moving)
+    keep &= _inside(z.placed(complex(np.exp(-1j * asked.first_turn))), dyad.on_body)
     return keep
 
 
-def lengths_of(tubes: Tubes, centres: Centres) -> Range:
+def lengths_of(z: Span, c: Span) -> Range:
     """Distances from z to c."""
-    middle, along = tubes.middle - centres.middle, tubes.along - centres.along
-    rest = tubes.stray + centres.rest + WIDER * (1.0 + np.abs(tubes.middle) + np.abs(centres.middle))
-    square = np.abs(along) ** 2
-    nearest = np.clip(-(along.conj() * middle).real / np.where(square > 0, square, 1.0), -1.0, 1.0)
-    least = np.abs(middle + nearest * along) - rest
-    most = np.maximum(np.abs(middle + along), np.abs(middle - along)) + rest
-    return Range(np.maximum(least, 0.0), most)
+    length = (z - c).norm
+    rest = WIDER * (1.0 + np.abs(z.middle) + np.abs(c.middle))
+    return Range(np.maximum(length.inf - rest, 0.0), length.sup + rest)
 
 
-def _inside(middle: ComplexArray, along: ComplexArray, stray: FloatArray, box: Box) -> BoolArray:
-    keep = np.ones(len(middle), dtype=bool)
-    for part, step, side in ((middle.real, along.real, box.x), (middle.imag, along.imag, box.y)):
+def _inside(points: Span, box: Box) -> BoolArray:
+    keep = np.ones(len(points), dtype=bool)
+    middle, steps = points.middle, points.steps
+    for part, step, side in ((middle.real, steps.real, box.x), (middle.imag, steps.imag, box.y)):
         if np.isfinite(side).any():
-            reach = np.abs(step) + stray + WIDER * (1.0 + np.abs(part))
+            reach = np.abs(step).sum(axis=0) + points.rest + WIDER * (1.0 + np.abs(part))
             keep &= Range(part - reach, part + reach).within(side)
     return keep
 
 
-def _within_areas(centres: Centres, areas: tuple[FloatArray, ...]) -> BoolArray:
+def _within_areas(c: Span, areas: tuple[FloatArray, ...]) -> BoolArray:
     """Which pieces surely have their ground pivot inside areas, by more than the slack of the judge."""
     import shapely  # takes a while to import, and few problems have areas
 
     from grashof.problems.values.areas import solid
 
     area = solid(areas)
-    ends = np.stack([centres.middle - centres.along, centres.middle + centres.along], axis=1)
-    lines = shapely.linestrings(np.stack([ends.real, ends.imag], axis=-1))
-    far = shapely.distance(lines, shapely.boundary(area)) > centres.rest + SLACK
-    inside: BoolArray = far & shapely.contains_xy(area, centres.middle.real, centres.middle.imag)
+    signs = np.array(list(product((-1.0, 1.0), repeat=len(c.steps))))
+    corners = (c.middle + signs @ c.steps).T
+    hulls = shapely.convex_hull(shapely.multipoints(np.stack([corners.real, corners.imag], axis=-1)))
+    far = shapely.distance(hulls, shapely.boundary(area)) > c.rest + SLACK
+    inside: BoolArray = far & shapely.contains_xy(area, c.middle.real, c.middle.imag)
     return inside
 
 
-def _senses(curve: Curve, tubes: Tubes) -> tuple[IntArray, BoolArray]:
+def _senses(curve: Curve, z: Span) -> tuple[IntArray, BoolArray]:
     """In which sense pieces meet the poses, and whether that may be in order.
 
-    Four points of a circle follow each other where the triangles 123 and 134 have one sense.
+    Four points of a circle follow each other where the triangles 123 and 134 have one sense, three always.
     """
-    reach = np.abs(tubes.along) + tubes.stray
-    chord = [(turn - 1) * tubes.middle + move for turn, move in zip(curve.rotation, curve.shift, strict=True)]
-    spread = [abs(turn - 1) * reach + WIDER * (1.0 + np.abs(tubes.middle)) for turn in curve.rotation]
+    reach = z.reach
+    chord = [(turn - 1) * z.middle + move for turn, move in zip(curve.rotation, curve.shift, strict=True)]
+    spread = [abs(turn - 1) * reach + WIDER * (1.0 + np.abs(z.middle)) for turn in curve.rotation]
     signs = []
-    for i, j in ((1, 2), (2, 3)):
+    for i, j in pairwise(range(1, len(chord))):
         area = (chord[i].conj() * chord[j]).imag
         off = np.abs(chord[i]) * spread[j] + np.abs(chord[j]) * spread[i] + spread[i] * spread[j]
         signs.append(np.where(np.abs(area) > off, np.sign(area), 0.0).astype(np.int64))
-    first, second = signs
-    sense: IntArray = np.where(first != 0, first, second)
-    return sense, first * second >= 0
+    first, last = signs[0], signs[-1]
+    sense: IntArray = np.where(first != 0, first, last)
+    return sense, first * last >= 0
 
 
-def _rotations(asked: Asked, tubes: Tubes, centres: Centres, sense: IntArray) -> BoolArray:
+def _rotations(asked: Asked, z: Span, c: Span, sense: IntArray) -> BoolArray:
     """Which pieces may turn from the first pose to the last by an allowed angle."""
     if asked.rotation[0] <= 0 and asked.rotation[1] >= TURN:
-        return np.ones(len(tubes), dtype=bool)
+        return np.ones(len(z), dtype=bool)
     curve = asked.curve
-    first = tubes.middle - centres.middle
-    last = curve.rotation[-1] * tubes.middle + curve.shift[-1] - centres.middle
-    reach = np.abs(tubes.along) + tubes.stray + np.abs(centres.along) + centres.rest
+    first = z.middle - c.middle
+    last = curve.rotation[-1] * z.middle + curve.shift[-1] - c.middle
+    reach = z.reach + c.reach
     with np.errstate(divide="ignore", invalid="ignore"):
         off = sum(np.arcsin(np.minimum(reach / np.abs(arm), 1.0)) for arm in (first, last)) + SLACK
         turned = (sense * np.angle(last * first.conj())) % TURN
-    keep = np.zeros(len(tubes), dtype=bool)
+    keep = np.zeros(len(z), dtype=bool)
     for turns in (-TURN, 0.0, TURN):
         keep |= Range(turned + turns - off, turned + turns + off).within(asked.rotation)
     keep |= (sense == 0) | ~(reach < np.minimum(np.abs(first), np.abs(last)))

@@ -8,6 +8,7 @@ import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.synth.proof.curve.curve import Curve, Taylor
+from grashof.synth.proof.forms.forms import Span
 
 WIDER = 1e-12  # share of all magnitudes by which enclosures are widened for rounding
 LITTLE = 0.5  # a contraction that leaves more of the area of a wide rectangle is not worth its place
@@ -51,6 +52,11 @@ class Tubes:
         """What s^2 - 1/2 multiplies."""
         bend: ComplexArray = 1j * self.direction * self.bow
         return bend
+
+    @property
+    def span(self) -> Span:
+        """As a form of s alone."""
+        return Span(self.middle, self.along[None], self.stray)
 
     @property
     def side(self) -> FloatArray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TypeVar
 
 import numpy as np
 
@@ -18,7 +19,8 @@ SQUARES = 32  # along each side of the disc that is covered
 COARSE = 0.5  # length of first pieces, as a share of what is near
 TINY = 4e-3  # sizes: pieces as small as that are not halved for themselves
 MOST_RECTANGLES = 100_000  # of a cover
-_OPEN, NOTHING = -1, -2  # children that are not made yet; that hold no dyad
+_Steps = TypeVar("_Steps", FloatArray, ComplexArray)
+OPEN, NOTHING = -1, -2  # children that are not made yet; that hold no dyad
 
 
 class TooMany(Exception):  # noqa: N818  (no error: the proof stays open)
@@ -52,10 +54,10 @@ class Pieces:
         tubes, filled = contracted(asked.curve, tubes)
         rows = np.flatnonzero(filled)
         tubes = tubes[rows]
-        near = possible_arms(asked, tubes)
+        near = possible_arms(asked, tubes.span)
         rows, tubes = rows[near], tubes[near]
         centres = centres_of(asked.curve, tubes, asked.longest)
-        roles = roles_of(asked, tubes, centres)
+        roles = roles_of(asked, tubes.span, centres.span)
         some = np.flatnonzero(roles.driver | roles.driven)
         kept = cls(tubes[some], centres[some], roles.driver[some], roles.driven[some], roles.sense[some])
         return kept, rows[some]
@@ -83,7 +85,7 @@ class Pieces:
         tubes, centres = self.tubes, self.centres
         moved = np.abs(centres.along)
         short = tubes.half + moved <= COARSE * (
-            0.3 + np.minimum(lengths_of(tubes, centres).high, np.abs(tubes.middle))
+            0.3 + np.minimum(lengths_of(tubes.span, centres.span).high, np.abs(tubes.middle))
         )
         slender = tubes.side <= SLENDER * tubes.half
         known = centres.rest <= 0.3 * (moved + 0.02)
@@ -119,7 +121,7 @@ class Table:
     _children: IntArray = field(init=False)
 
     def __post_init__(self) -> None:
-        self._children = np.full((len(self.pieces), 2), _OPEN)
+        self._children = np.full((len(self.pieces), 2), OPEN)
 
     @classmethod
     def covering(cls, asked: Asked) -> Table:
@@ -151,14 +153,14 @@ class Table:
 
     def halve(self, which: IntArray) -> IntArray:
         """Halves of pieces, shape (n, 2); negative where one holds no dyad that does."""
-        new = np.unique(which[self._children[which, 0] == _OPEN])
+        new = np.unique(which[self._children[which, 0] == OPEN])
         if len(new):
             made, rows = Pieces.of(self.asked, self.pieces.tubes[new].halves)
             numbers = np.full(2 * len(new), NOTHING)
             numbers[rows] = len(self.pieces) + np.arange(len(made))
             self._children[new] = numbers.reshape(2, -1).T
             self.pieces = Pieces.joined(self.pieces, made)
-            self._children = np.concatenate([self._children, np.full((len(made), 2), _OPEN)])
+            self._children = np.concatenate([self._children, np.full((len(made), 2), OPEN)])
             self.rectangles += 2 * len(new)
         halves: IntArray = self._children[which]
         return halves
@@ -166,54 +168,52 @@ class Table:
 
 @dataclass(frozen=True, slots=True)
 class Side:
-    """Pieces as drivers, which vary by s, or as driven dyads, which vary by t; arrays by piece.
+    """Dyads of some pieces as drivers, whose symbols come first, or as driven ones.
 
     Parameters
     ----------
-    moving, ground : tuple of ndarray
-        Middle, step and rest of z and c.
+    moving, ground : Span
+        z and c, of the symbols of this side alone.
+    is_driver : bool
     """
 
-    moving: tuple[ComplexArray, ComplexArray, FloatArray]
-    ground: tuple[ComplexArray, ComplexArray, FloatArray]
+    moving: Span
+    ground: Span
     is_driver: bool
 
     @classmethod
     def of(cls, pieces: Pieces, index: IntArray, *, is_driver: bool) -> Side:
         """Some pieces, in any order."""
-        tubes, centres = pieces.tubes[index], pieces.centres[index]
-        return cls(
-            (tubes.middle, tubes.along, tubes.stray),
-            (centres.middle, centres.along, centres.rest),
-            is_driver,
-        )
+        return cls(pieces.tubes[index].span, pieces.centres[index].span, is_driver)
 
     def __getitem__(self, index: IntArray | BoolArray) -> Side:
-        moving, ground = (tuple(part[index] for part in parts) for parts in (self.moving, self.ground))
-        return Side(moving, ground, self.is_driver)  # type: ignore[arg-type]
+        return Side(self.moving[index], self.ground[index], self.is_driver)
 
-    def span(self, middle: ComplexArray, along: ComplexArray, rest: FloatArray) -> Span:
-        """A complex form of the parameter of this side alone."""
-        nothing = np.zeros_like(along)
-        return Span(middle, along, nothing, rest) if self.is_driver else Span(middle, nothing, along, rest)
+    def span(self, own: Span) -> Span:
+        """A complex form of the symbols of this side as one of both."""
+        return Span(own.middle, self._of_both(own.steps), own.rest)
+
+    def _of_both(self, own: _Steps) -> _Steps:
+        nothing = np.zeros_like(own)
+        return np.concatenate((own, nothing) if self.is_driver else (nothing, own))
 
     @property
     def z(self) -> Span:
         """The moving pivot at the first pose."""
-        return self.span(*self.moving)
+        return self.span(self.moving)
 
     @property
     def c(self) -> Span:
         """The ground pivot."""
-        return self.span(*self.ground)
+        return self.span(self.ground)
 
     def seen_from_body(self, rotation: complex, shift: complex) -> Span:
         """From the ground pivot, as the body sees it at a pose, to the moving pivot."""
-        (z0, z1, z_rest), (c0, c1, c_rest) = self.moving, self.ground
-        back = np.conj(rotation)
-        return self.span(z0 - back * (c0 - shift), z1 - back * c1, z_rest + c_rest)
+        back = complex(np.conj(rotation))
+        return self.span(self.moving - self.ground.placed(back, -back * shift))
 
     @property
     def length(self) -> Form:
         """The distance from the ground pivot to the moving one."""
-        return self.seen_from_body(1.0, 0.0).norm
+        own = (self.moving - self.ground).norm
+        return Form(own.centre, self._of_both(own.slopes), own.rest)

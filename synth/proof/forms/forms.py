@@ -1,12 +1,14 @@
-"""Affine forms x = centre + s_slope s + t_slope t + [-rest, rest] with ``|s|, |t| <= 1``, many at once.
+"""Affine forms x = centre + slopes . s + [-rest, rest] with all ``|s_k| <= 1``, many at once.
 
 They keep what two quantities have in common, so that bounds of their sums and quotients are of second
-order (Stolfi & de Figueiredo, *Self-Validated Numerical Methods and Applications*, 1997).
+order (Stolfi & de Figueiredo, *Self-Validated Numerical Methods and Applications*, 1997). Symbols come
+first in arrays: a pair of pieces of curves has two, a pair of squares of the plane four.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 
@@ -17,21 +19,26 @@ ROUNDING = 1e-14  # share of the magnitude of a product: some 90 units of the la
 
 @dataclass(frozen=True, slots=True)
 class Form:
-    """Real forms; arrays of one shape."""
+    """Real forms.
+
+    Parameters
+    ----------
+    centre, rest : ndarray, shape (n,)
+    slopes : ndarray, shape (k, n)
+        By symbol.
+    """
 
     centre: FloatArray
-    s: FloatArray
-    t: FloatArray
+    slopes: FloatArray
     rest: FloatArray
 
     def __getitem__(self, index: IntArray | BoolArray) -> Form:
-        return Form(self.centre[index], self.s[index], self.t[index], self.rest[index])
+        return Form(self.centre[index], self.slopes[:, index], self.rest[index])
 
     @property
     def slope(self) -> FloatArray:
-        """How much s and t change it at most."""
-        slope: FloatArray = np.abs(self.s) + np.abs(self.t)
-        return slope
+        """How much all symbols change it at most."""
+        return _total(np.abs(self.slopes))
 
     @property
     def sup(self) -> FloatArray:
@@ -46,55 +53,78 @@ class Form:
         return inf
 
     def __add__(self, other: Form) -> Form:
-        return Form(self.centre + other.centre, self.s + other.s, self.t + other.t, self.rest + other.rest)
+        return Form(self.centre + other.centre, self.slopes + other.slopes, self.rest + other.rest)
 
     def __sub__(self, other: Form) -> Form:
-        return Form(self.centre - other.centre, self.s - other.s, self.t - other.t, self.rest + other.rest)
+        return Form(self.centre - other.centre, self.slopes - other.slopes, self.rest + other.rest)
 
     def where(self, which: BoolArray) -> Form:
         """The same where it counts; infinite elsewhere, so that no condition on it fails there."""
-        return Form(np.where(which, self.centre, np.inf), self.s, self.t, self.rest)
+        return Form(np.where(which, self.centre, np.inf), self.slopes, self.rest)
 
     def times(self, factor: float | FloatArray) -> Form:
         """Multiplied by numbers."""
-        size = np.abs(factor)
-        return Form(factor * self.centre, factor * self.s, factor * self.t, size * self.rest)
+        return Form(factor * self.centre, factor * self.slopes, np.abs(factor) * self.rest)
 
     def __mul__(self, other: Form) -> Form:
-        squares_s, squares_t = self.s * other.s, self.t * other.t
-        mixed = np.abs(self.s * other.t + self.t * other.s)
+        squares = self.slopes * other.slopes
         mine, its = np.abs(self.centre) + self.slope, np.abs(other.centre) + other.slope
         return Form(
-            self.centre * other.centre + (squares_s + squares_t) / 2,
-            self.centre * other.s + self.s * other.centre,
-            self.centre * other.t + self.t * other.centre,
-            (np.abs(squares_s) + np.abs(squares_t)) / 2 + mixed + self.rest * (its + other.rest)
+            self.centre * other.centre + _total(squares) / 2,
+            self.centre * other.slopes + self.slopes * other.centre,
+            _total(np.abs(squares)) / 2 + _mixed(self.slopes, other.slopes) + self.rest * (its + other.rest)
             + other.rest * mine + ROUNDING * mine * its,
         )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """Complex forms: a point middle + s_step s + t_step t + disc(rest)."""
+    """Complex forms: a point middle + steps . s + disc(rest).
+
+    Parameters
+    ----------
+    middle : ndarray of complex, shape (n,)
+    steps : ndarray of complex, shape (k, n)
+        By symbol.
+    rest : ndarray, shape (n,)
+    """
 
     middle: ComplexArray
-    s: ComplexArray
-    t: ComplexArray
+    steps: ComplexArray
     rest: FloatArray
 
+    def __len__(self) -> int:
+        return len(self.middle)
+
+    def __getitem__(self, index: IntArray | BoolArray) -> Span:
+        return Span(self.middle[index], self.steps[:, index], self.rest[index])
+
+    def __add__(self, other: Span) -> Span:
+        return Span(self.middle + other.middle, self.steps + other.steps, self.rest + other.rest)
+
     def __sub__(self, other: Span) -> Span:
-        return Span(self.middle - other.middle, self.s - other.s, self.t - other.t, self.rest + other.rest)
+        return Span(self.middle - other.middle, self.steps - other.steps, self.rest + other.rest)
 
     @classmethod
     def joined(cls, *parts: Span) -> Span:
         """Several as one."""
-        names = "middle", "s", "t", "rest"
-        return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+        names = "middle", "steps", "rest"
+        return cls(*(np.concatenate([getattr(part, name) for part in parts], axis=-1) for name in names))
+
+    def placed(self, turn: complex, move: complex = 0j) -> Span:
+        """Turned about the origin by a unit number, or stretched, and moved."""
+        return Span(turn * self.middle + move, turn * self.steps, abs(turn) * self.rest)
+
+    @property
+    def reach(self) -> FloatArray:
+        """How far it goes from its middle at most."""
+        reach: FloatArray = farthest(self.steps) + self.rest
+        return reach
 
     @property
     def size(self) -> FloatArray:
         """Upper bound of the absolute value, the disc aside."""
-        size: FloatArray = np.abs(self.middle) + np.abs(self.s) + np.abs(self.t)
+        size: FloatArray = np.abs(self.middle) + _total(np.abs(self.steps))
         return size
 
     @property
@@ -109,37 +139,57 @@ class Span:
         size = np.abs(self.middle)
         with np.errstate(divide="ignore", invalid="ignore"):
             unit = np.where(size > 0, self.middle / size, 1.0).conj()
-            by_s, by_t = self.s * unit, self.t * unit
-            least = size - np.abs(by_s.real) - np.abs(by_t.real)
-            across = np.abs(by_s.imag) + np.abs(by_t.imag)
+            turned = self.steps * unit
+            least = size - _total(np.abs(turned.real))
+            across = _total(np.abs(turned.imag))
             bulge = across**2 / (2 * least)
         most = self.size
         plain = ~((least > 0) & (bulge < most))
         half = np.where(plain, most, bulge) / 2
         return Form(
             np.where(plain, half, size + half),
-            np.where(plain, 0.0, by_s.real),
-            np.where(plain, 0.0, by_t.real),
+            np.where(plain, 0.0, turned.real),
             half + self.rest + ROUNDING * most,
         )
 
     def dot(self, other: Span) -> Form:
         """Scalar product: real part of conj(self) other."""
-        return self.cross(Span(1j * other.middle, 1j * other.s, 1j * other.t, other.rest))
+        return self.cross(other.placed(1j))
 
     def cross(self, other: Span) -> Form:
         """Signed area: imaginary part of conj(self) other."""
-        mine = self.middle.conj(), self.s.conj(), self.t.conj()
-        (m0, ms, mt), (o0, os, ot) = mine, (other.middle, other.s, other.t)
-        squares_s, squares_t = (ms * os).imag, (mt * ot).imag
+        middle, steps = self.middle.conj(), self.steps.conj()
+        squares = (steps * other.steps).imag
         size, its = self.size, other.size
         return Form(
-            (m0 * o0).imag + (squares_s + squares_t) / 2,
-            (m0 * os + ms * o0).imag,
-            (m0 * ot + mt * o0).imag,
-            (np.abs(squares_s) + np.abs(squares_t)) / 2 + np.abs((ms * ot + mt * os).imag)
+            (middle * other.middle).imag + _total(squares) / 2,
+            (middle * other.steps + steps * other.middle).imag,
+            _total(np.abs(squares)) / 2 + _mixed(steps, other.steps)
             + self.rest * (its + other.rest) + other.rest * size + ROUNDING * size * its,
         )  # fmt: skip
+
+
+def farthest(steps: ComplexArray) -> FloatArray:
+    """How far symbols move a point at most; of two of them, to the farther corners."""
+    pairs = range(0, len(steps) - 1, 2)
+    corners = [np.maximum(np.abs(steps[k] + steps[k + 1]), np.abs(steps[k] - steps[k + 1])) for k in pairs]
+    corners += [np.abs(steps[-1])] * (len(steps) % 2)
+    return _total(np.stack(corners))
+
+
+def _total(each: FloatArray) -> FloatArray:
+    """Sum over symbols; as plain sums, which are quicker than those of an axis so short."""
+    total: FloatArray = sum(each[1:], each[0])
+    return total
+
+
+def _mixed(one: FloatArray | ComplexArray, other: FloatArray | ComplexArray) -> FloatArray:
+    """What products of two different symbols change at most; of complex ones in the imaginary part."""
+    most = np.zeros(one.shape[1:])
+    for i, j in combinations(range(len(one)), 2):
+        product = one[i] * other[j] + one[j] * other[i]
+        most = most + np.abs(product.imag if np.iscomplexobj(product) else product)
+    return most
 
 
 def greatest_quotient(above: Form, below: Form) -> FloatArray:
@@ -153,7 +203,7 @@ def greatest_quotient(above: Form, below: Form) -> FloatArray:
     least = below.inf
     with np.errstate(divide="ignore", invalid="ignore"):
         q = above.centre / below.centre
-        over = np.abs(above.s - q * below.s) + np.abs(above.t - q * below.t)
+        over = _total(np.abs(above.slopes - q * below.slopes))
         over += above.rest + np.abs(q) * below.rest + ROUNDING * (np.abs(above.centre) + below.centre)
         most = q + over / least
     bound: FloatArray = np.where((least > 0) & np.isfinite(most), most, np.inf)

@@ -91,8 +91,8 @@ def transmission_bound(
         slack = outer + product.times(2 * np.cos(least))
         forms.append(slack.where(where))
     for length, (low, high) in zip(lengths, limits.lengths, strict=True):
-        forms.append(Form(length.centre - low, length.s, length.t, length.rest))
-        forms.append(Form(high - length.centre, -length.s, -length.t, length.rest))
+        forms.append(Form(length.centre - low, length.slopes, length.rest))
+        forms.append(Form(high - length.centre, -length.slopes, length.rest))
     if limits.turns:
         forms += _turning_forms(limits, lengths)
     return bound, forms

@@ -1,4 +1,4 @@
-"""Propagation: whether conditions leave anything of the square of two parameters."""
+"""Propagation: whether conditions leave anything of the square, or cube, of parameters."""
 
 from __future__ import annotations
 
@@ -11,25 +11,30 @@ from grashof.synth.proof.forms.forms import ROUNDING, Form
 
 SWEEPS = 2
 _WIDER = 1e-9  # of a side: what is left is widened by this for rounding
+_Side = tuple[FloatArray, FloatArray]
 
 
 def nothing_left(forms: Sequence[Form]) -> BoolArray:
-    """Where no point of the square ``|s|, |t| <= 1`` lets all forms be zero or greater, shape (n,)."""
-    count = len(forms[0].centre)
-    s, t = ((np.full(count, -1.0), np.full(count, 1.0)) for _ in range(2))
+    """Where no point with all symbols ``|s_k| <= 1`` lets all forms be zero or greater, shape (n,)."""
+    count, symbols = len(forms[0].centre), range(len(forms[0].slopes))
+    sides: list[_Side] = [(np.full(count, -1.0), np.full(count, 1.0)) for _ in symbols]
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for _ in range(SWEEPS):
             for form in forms:
                 most = form.centre + form.rest + ROUNDING * (np.abs(form.centre) + form.slope + form.rest)
-                s = _tightened(s, form.s, most + np.maximum(form.t * t[0], form.t * t[1]))
-                t = _tightened(t, form.t, most + np.maximum(form.s * s[0], form.s * s[1]))
-    nothing: BoolArray = (s[0] > s[1]) | (t[0] > t[1])
+                for k in symbols:
+                    others = (_greatest(form.slopes[j], sides[j]) for j in symbols if j != k)
+                    sides[k] = _tightened(sides[k], form.slopes[k], sum(others, most))
+    nothing: BoolArray = np.logical_or.reduce([low > high for low, high in sides])
     return nothing
 
 
-def _tightened(
-    side: tuple[FloatArray, FloatArray], slope: FloatArray, most: FloatArray
-) -> tuple[FloatArray, FloatArray]:
+def _greatest(slope: FloatArray, side: _Side) -> FloatArray:
+    greatest: FloatArray = np.maximum(slope * side[0], slope * side[1])
+    return greatest
+
+
+def _tightened(side: _Side, slope: FloatArray, most: FloatArray) -> _Side:
     """The part of a side where slope x + most can be zero or greater."""
     low, high = side
     root = -most / slope

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray, IntArray
-from grashof.synth.proof.curve.asked import LEAST, Asked
+from grashof.synth.proof.curve.asked import Asked
 from grashof.synth.proof.curve.patches import Patches
+from grashof.synth.proof.curve.poles import poles
 from grashof.synth.proof.curve.table import Side, Table
 from grashof.synth.proof.forms.forms import Span
 from grashof.synth.theory.burmester import Displacements, Dyads, centre_points, polish
@@ -74,7 +75,7 @@ class PlaneOfCouplers:
         """All within a ratio of lengths."""
         back = motion.inverse()
         of_a, of_b = Patches.covering(motion, reach, reach), Patches.covering(back, 1 + reach, reach)
-        return cls(of_a, of_b, _poles(motion), _poles(back))._cut()
+        return cls(of_a, of_b, poles(motion)[1], poles(back)[1])._cut()
 
     def _cut(self) -> PlaneOfCouplers:
         """Without what the other squares, or the discs, hold."""
@@ -86,7 +87,7 @@ class PlaneOfCouplers:
         of_b = of_b[of_b.may_meet(self.poles, np.where(left_to_a, ABOUT, near))]
         places = of_b.spans[1]
         beyond = (np.abs(places.middle[:, None] - self.poles) - near).min(axis=1, initial=np.inf)
-        of_b = of_b[beyond <= np.abs(places.s) + np.abs(places.t) + places.rest]
+        of_b = of_b[beyond <= places.reach]
         return PlaneOfCouplers(of_a, of_b, self.poles, self.others)
 
     def __len__(self) -> int:
@@ -106,8 +107,8 @@ class PlaneOfCouplers:
     def discs(self) -> tuple[Span, Span]:
         """A and B each about one of its poles: what no square holds."""
         a, b = (each.ravel() for each in np.meshgrid(self.poles, self.others))
-        nothing, rest = np.zeros_like(a), np.full(len(a), ABOUT)
-        return Span(a, nothing, nothing, rest), Span(b, nothing, nothing, rest)
+        nothing, rest = np.zeros((2, len(a)), dtype=np.complex128), np.full(len(a), ABOUT)
+        return Span(a, nothing, rest), Span(b, nothing, rest)
 
     def divided(self, which: IntArray) -> IntArray:
         """Quarters, which take the place of all squares."""
@@ -124,16 +125,6 @@ class PlaneOfCouplers:
         return Dyads(
             np.concatenate([mine.moving, others.ground]), np.concatenate([mine.ground, others.moving])
         )
-
-
-def _poles(motion: Displacements) -> ComplexArray:
-    """Where A is at the first pair if it is in one place at two of them."""
-    found = []
-    for i, j in ((0, 1), (0, 2), (1, 2)):
-        turn, move = motion.rotation[j] - motion.rotation[i], motion.shift[j] - motion.shift[i]
-        if abs(turn) > LEAST:
-            found.append(-move / turn)
-    return np.array(found, dtype=np.complex128)
 
 
 def dyads_at(motion: Displacements, points: ComplexArray) -> Dyads:

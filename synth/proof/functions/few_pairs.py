@@ -16,13 +16,13 @@ from grashof.analysis import verify
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray
 from grashof.problems.values.mechanisms import FOUR_BAR
+from grashof.synth.proof.bounds import TOO_SMALL, Bounds, Proving
 from grashof.synth.proof.curve.asked import LEAST, SLACK
 from grashof.synth.proof.curve.table import TooMany
 from grashof.synth.proof.forms.forms import Form, Span
 from grashof.synth.proof.forms.loop import LoopLimits, lengths_allowed, transmission_bound
 from grashof.synth.proof.forms.square import nothing_left
 from grashof.synth.proof.functions.couplers import CurveOfCouplers, PlaneOfCouplers
-from grashof.synth.proof.poses.bounds import TOO_SMALL, Bounds, Proving
 from grashof.synth.proof.poses.branch_and_bound import MOST_LEVELS
 from grashof.synth.proof.poses.lookout import quantity_of
 from grashof.synth.starts.function_aims import FunctionAims
@@ -111,19 +111,15 @@ class Sense:
     def rows_left(self, z: Span, c: Span, least: float) -> tuple[IntArray, FloatArray]:
         """Which pieces may hold a linkage that transmits more than `least`, rad, and their bounds."""
         nothing = np.zeros(len(z.rest))
-        output = Span(c.middle - 1.0, c.s, c.t, c.rest)
-        lengths = Form(nothing + 1.0, nothing, nothing, nothing), z.norm, (c - z).norm, output.norm
+        output, ground = c.placed(1.0, -1.0), Form(nothing + 1.0, np.zeros(z.steps.shape), nothing)
+        lengths = ground, z.norm, (c - z).norm, output.norm
         pairs = zip(self.motion.rotation, self.motion.shift, strict=True)
-        arms = [(c - self._placed(z, complex(turn), complex(move)), output) for turn, move in pairs]
+        arms = [(c - z.placed(complex(turn), complex(move)), output) for turn, move in pairs]
         bound, forms = transmission_bound(self.limits, lengths, arms, self._passed(z), nothing + least)
         allowed = lengths_allowed(self.limits, lengths) & (bound > least)
         rows = np.flatnonzero(allowed)
         rows = rows[~nothing_left([form[rows] for form in forms])]
         return rows, bound[rows]
-
-    @staticmethod
-    def _placed(z: Span, turn: complex, move: complex) -> Span:
-        return Span(turn * z.middle + move, turn * z.s, turn * z.t, z.rest)
 
     def _passed(self, z: Span) -> tuple[BoolArray, BoolArray]:
         """Where A surely passes the ground line on the side of O4, and on the other one."""
@@ -131,7 +127,7 @@ class Sense:
         if self.aims.limits.over_cycle:
             return everywhere, everywhere
         size = np.maximum(np.abs(z.middle), 1e-300)
-        reach = (np.abs(z.s) + np.abs(z.t) + z.rest) / size
+        reach = z.reach / size
         off = np.where(reach < 1, np.arcsin(np.minimum(reach, 1.0)), np.inf)
         first = np.angle(z.middle) - self.begun
         low, high = first + off + SLACK, first + self.aims.limits.span - off - SLACK

@@ -16,9 +16,9 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
-from grashof.synth.proof.curve.asked import Asked, with_forms
+from grashof.synth.proof.bounds import Bounds
+from grashof.synth.proof.curve.asked import POSES, Asked, with_forms
 from grashof.synth.proof.curve.table import Table
-from grashof.synth.proof.poses.bounds import Bounds
 from grashof.synth.proof.poses.branch_and_bound import Search
 from grashof.synth.proof.poses.lookout import screened_pairs
 from grashof.synth.proof.poses.pairs import Pairs
@@ -87,14 +87,14 @@ class Atlas:
 
 
 def atlas_of(scaled: ScaledProblem, bounds: Bounds) -> Atlas | None:
-    """All linkages above half the best that bounds know; None where they know none, and without poses.
+    """All linkages of four poses above half the best that bounds know; None where they know none.
 
     Raises
     ------
     Stopped
         Asked to stop.
     """
-    if scaled.motion is None or not bounds.closed or not bounds.lower:
+    if not bounds.closed or not bounds.lower or len(scaled.targets) != POSES:
         return None
     about = with_forms(scaled) if bounds.left_out else scaled
     asked = Asked.of(about)

@@ -18,11 +18,12 @@ MOST_LEFT = 1_000_000  # pairs kept in memory
 MOST_LEVELS = 60  # pieces are as small as rounding then
 # The transmission angle of a design in the pairs, rad, where one has more than the given angle; else 0.
 Lookout = Callable[[Table, Pairs, float], float]
+Blocks = Iterator[tuple[IntArray, IntArray]]
 
 
 @dataclass(slots=True)
-class Search:
-    """A branch and bound, breadth first.
+class Bracket:
+    """The greatest transmission angle of linkages in pairs of pieces, between bounds.
 
     Parameters
     ----------
@@ -69,6 +70,38 @@ class Search:
             return float(np.pi / 2)
         return max(self.threshold, float(self.left.bound.max(initial=0.0)))
 
+    def bounded(self, blocks: Blocks, bound: Callable[[IntArray, IntArray, float], Pairs]) -> Pairs | None:
+        """What is left of pairs; None where the budget ends, or it is asked to stop."""
+        nothing = np.zeros(0, dtype=np.int64)
+        found = [Pairs(nothing, nothing, np.zeros(0))]
+        for one, other in blocks:
+            self.over_budget = self.pairs + len(one) > self.most_pairs
+            if self.over_budget or asked_to_stop():
+                return None
+            self.pairs += len(one)
+            found.append(bound(one, other, self.threshold))
+        return Pairs.joined(found)
+
+
+def all_pairs(drivers: IntArray, driven: IntArray) -> Blocks:
+    """All pairs of two lots of pieces, in blocks."""
+    rows = max(1, AT_ONCE // max(1, len(driven)))
+    for begin in range(0, len(drivers), rows):
+        some = drivers[begin : begin + rows]
+        yield np.repeat(some, len(driven)), np.tile(driven, len(some))
+
+
+def in_blocks(one: IntArray, other: IntArray) -> Blocks:
+    """Pairs in blocks."""
+    for begin in range(0, len(one), AT_ONCE):
+        block = slice(begin, begin + AT_ONCE)
+        yield one[block], other[block]
+
+
+@dataclass(slots=True)
+class Search(Bracket):
+    """A branch and bound, breadth first."""
+
     def run(self, table: Table, look: Lookout, *, content: bool = False) -> None:
         """Bound all pairs, look for designs in those that are left, halve these, until none is left.
 
@@ -93,11 +126,7 @@ class Search:
         """All pairs of the pieces of a cover; None where they are too many, or it is asked to stop."""
         drivers = np.flatnonzero(table.pieces.driver)
         driven = np.flatnonzero(table.pieces.driven)
-        rows = max(1, AT_ONCE // max(1, len(driven)))
-        some = (drivers[begin : begin + rows] for begin in range(0, len(drivers), rows))
-        found = self._bounded(
-            table, ((np.repeat(one, len(driven)), np.tile(driven, len(one))) for one in some)
-        )
+        found = self._bounded(table, all_pairs(drivers, driven))
         self.begun = found is not None
         return found
 
@@ -111,20 +140,10 @@ class Search:
         one, other = one[some], other[some]
         some = table.pieces.driver[one] & table.pieces.driven[other]
         one, other = one[some], other[some]
-        blocks = (slice(begin, begin + AT_ONCE) for begin in range(0, len(one), AT_ONCE))
-        return self._bounded(table, ((one[block], other[block]) for block in blocks))
+        return self._bounded(table, in_blocks(one, other))
 
-    def _bounded(self, table: Table, blocks: Iterator[tuple[IntArray, IntArray]]) -> Pairs | None:
-        """What is left of pairs; None where the budget ends, or it is asked to stop."""
-        nothing = np.zeros(0, dtype=np.int64)
-        found = [Pairs(nothing, nothing, np.zeros(0))]
-        for one, other in blocks:
-            self.over_budget = self.pairs + len(one) > self.most_pairs
-            if self.over_budget or asked_to_stop():
-                return None
-            self.pairs += len(one)
-            found.append(bounded(self.asked, table.pieces, one, other, self.threshold))
-        return Pairs.joined(found)
+    def _bounded(self, table: Table, blocks: Blocks) -> Pairs | None:
+        return self.bounded(blocks, lambda *pair: bounded(self.asked, table.pieces, *pair))
 
 
 def _halves(table: Table, which: IntArray, long: BoolArray | None) -> IntArray:

@@ -118,13 +118,14 @@ def certified_dyads(asked: Asked, motion: Displacements) -> Certified:
     """
     known = _certified(motion, five_pose_dyads(motion))
     active, count = squares(asked), 0
+    last = complex(motion.rotation[-1]), complex(motion.shift[-1])
     while len(active):
         give_way()
         count += len(active)
         if count > MOST_RECTANGLES:
             return _counted(asked, known, complete=False, rectangles=count)
         pieces, _ = Pieces.of(asked, active)
-        pieces = pieces[_may_meet(motion, pieces)]
+        pieces = pieces[_may_meet(pieces.tubes.span, pieces.centres.span, *last)]
         pieces = pieces[~_settled(known, pieces)]
         small = np.flatnonzero(pieces.tubes.half < _SMALL)
         if small.size:
@@ -143,22 +144,16 @@ def _counted(asked: Asked, known: Certified, *, complete: bool, rectangles: int)
     return replace(known, complete=complete, within=within, rectangles=rectangles)
 
 
-def _may_meet(motion: Displacements, pieces: Pieces) -> BoolArray:
-    """Where the equation of the fifth pose may have a zero."""
-    tubes, centres = pieces.tubes, pieces.centres
-    nothing = np.zeros(len(pieces), dtype=np.complex128)
-    rotation, shift = motion.rotation[-1], motion.shift[-1]
-    alpha, facing = rotation - 1, np.conj(shift) * rotation
-    chord = Span(alpha * tubes.middle + shift, alpha * tubes.along, nothing, abs(alpha) * tubes.stray)
-    turned = Span(1j * chord.middle, 1j * chord.s, nothing, chord.rest)
-    centre = Span(centres.middle, centres.along, nothing, centres.rest)
+def _may_meet(z: Span, c: Span, rotation: complex, shift: complex) -> BoolArray:
+    """Where the distance from z to c may be the same at another pose as at the first."""
+    facing = np.conj(shift) * rotation
+    chord = z.placed(rotation - 1, shift)
     half = Form(
-        abs(shift) ** 2 / 2 + (facing * tubes.middle).real,
-        (facing * tubes.along).real,
-        nothing.real,
-        abs(facing) * tubes.stray + WIDER * (1.0 + np.abs(facing * tubes.middle)),
+        abs(shift) ** 2 / 2 + (facing * z.middle).real,
+        (facing * z.steps).real,
+        abs(facing) * z.rest + WIDER * (1.0 + np.abs(facing * z.middle)),
     )
-    miss = half - centre.cross(turned)
+    miss = half - c.dot(chord)
     meets: BoolArray = (miss.inf <= 0) & (miss.sup >= 0)
     return meets
 

@@ -50,7 +50,10 @@ class Lookout:
     def __call__(self, table: Table, pairs: Pairs, least: float) -> float:
         """The transmission angle of a design better than `least`, rad; 0 where none is found."""
         best_first = pairs[np.argsort(-pairs.bound, kind="stable")[:MOST]]
-        found = screened_pairs(self.scaled, self.asked, table, best_first)
+        return self.best_of(screened_pairs(self.scaled, self.asked, table, best_first), least)
+
+    def best_of(self, found: Screened, least: float) -> float:
+        """Transmission angle of a design better than `least`, rad, among linkages or near them; else 0."""
         rows = np.flatnonzero(found.feasible & (found.transmission > least))
         for row in rows[np.argsort(-found.transmission[rows], kind="stable")][:JUDGED]:
             if transmitted := self._taken(found.points[row], float(found.assembly[row]), 0.0, least):

@@ -32,7 +32,7 @@ class Pairs:
     def __len__(self) -> int:
         return len(self.driver)
 
-    def __getitem__(self, index: IntArray | BoolArray) -> Pairs:
+    def __getitem__(self, index: IntArray | BoolArray | slice) -> Pairs:
         return Pairs(self.driver[index], self.driven[index], self.bound[index])
 
     @classmethod
@@ -54,12 +54,20 @@ def rows_left(
     """Which pairs may hold a linkage that transmits more than `least`, rad, and their bounds."""
     one = Side.of(pieces, driver, is_driver=True)
     other = Side.of(pieces, driven, is_driver=False)
+    return sides_left(asked, one, other, pieces.sense[driver], least)
+
+
+def sides_left(
+    asked: Asked, one: Side, other: Side, sense: IntArray, least: FloatArray
+) -> tuple[IntArray, FloatArray]:
+    """The same of drivers, which meet the poses in a sense, and driven dyads, entry by entry."""
+    count = len(sense)
     lengths: Lengths = (other.c - one.c).norm, one.length, (other.z - one.z).norm, other.length
     first = np.flatnonzero(lengths_allowed(asked.loop, lengths) & _directed(asked, one, other))
-    if len(first) < len(driver):
-        one, other, least = one[first], other[first], least[first]
+    if len(first) < count:
+        one, other, sense, least = one[first], other[first], sense[first], least[first]
         lengths = tuple(form[first] for form in lengths)
-    passed = _passed(asked, one, other, lengths, pieces.sense[driver[first]])
+    passed = _passed(asked, one, other, lengths, sense)
     bound, conditions = transmission_bound(asked.loop, lengths, _arms(asked, one, other), passed, least)
     second = np.flatnonzero(bound > least)
     second = second[~nothing_left([each[second] for each in conditions])]
@@ -88,9 +96,10 @@ def _directed(asked: Asked, one: Side, other: Side) -> BoolArray:
 def _crossed(span: Span, direction: float, *, ahead: bool = False) -> Form:
     """How far a complex form reaches to the left of a direction, or ahead along it."""
     turned = np.exp(-1j * direction)
-    parts = [turned * part for part in (span.middle, span.s, span.t)]
-    centre, s, t = (part.real if ahead else part.imag for part in parts)
-    return Form(centre, s, t, span.rest)
+    centre, slopes = (
+        part.real if ahead else part.imag for part in (turned * span.middle, turned * span.steps)
+    )
+    return Form(centre, slopes, span.rest)
 
 
 def _passed(
@@ -104,8 +113,7 @@ def _passed(
         return ~everywhere, ~everywhere
     # F = O2 +- (r2 / r1) O2O4 is between A1 and A4 where the triangle A1 F A4 has the sense of the order.
     curve = asked.curve
-    (z0, z1, rest), turn = one.moving, curve.rotation[-1] - 1
-    last = one.span(turn * z0 + curve.shift[-1], turn * z1, abs(turn) * rest)
+    last = one.z.placed(complex(curve.rotation[-1]) - 1, complex(curve.shift[-1]))
     ground = (other.c - one.c).cross(last)
     crank = one.seen_from_body(1.0, 0.0).cross(last)
     r1, r2, _, _ = lengths

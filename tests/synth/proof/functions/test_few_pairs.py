@@ -8,11 +8,11 @@ from grashof.analysis import verify
 from grashof.problems import FunctionTask, Problem, Requirements
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 from grashof.synth import Claim
+from grashof.synth.proof.bounds import Proving
 from grashof.synth.proof.curve.patches import Patches
 from grashof.synth.proof.forms.forms import Span
 from grashof.synth.proof.functions.couplers import ABOUT, PlaneOfCouplers
 from grashof.synth.proof.functions.few_pairs import Sense, bounds_of_pairs
-from grashof.synth.proof.poses.bounds import Proving
 from grashof.synth.starts.function_aims import FunctionAims
 from grashof.synth.starts.function_search import exact_functions
 from grashof.synth.theory.burmester import Displacements
@@ -45,7 +45,7 @@ def centres(motion: Displacements, z: ComplexArray) -> ComplexArray:
 
 def off(span: Span, s: float, t: float, points: ComplexArray) -> FloatArray:
     """Share of the rest of forms that points use."""
-    used: FloatArray = np.abs(points - span.middle - span.s * s - span.t * t) / span.rest
+    used: FloatArray = np.abs(points - span.middle - span.steps[0] * s - span.steps[1] * t) / span.rest
     return used
 
 
@@ -152,15 +152,11 @@ def holding(plane: PlaneOfCouplers, a: ComplexArray, b: ComplexArray) -> BoolArr
     squares = zip((plane.of_a, plane.of_b), (a, b), (b, a), strict=True)
     found = []
     for patches, moving, ground in squares:
-        z, c = (
-            Span(*(part[:, None] for part in (one.middle, one.s, one.t, one.rest))) for one in patches.spans
-        )
-        s, t = (
-            (moving - z.middle).real / patches.half[:, None],
-            (moving - z.middle).imag / patches.half[:, None],
-        )
-        inside = np.maximum(np.abs(s), np.abs(t)) <= 1
-        found.append(inside & (np.abs(ground - c.middle - c.s * s - c.t * t) <= c.rest * (1 + 1e-9) + 1e-13))
+        along = (moving - patches.middle[:, None]) / patches.half[:, None]
+        c = patches.spans[1]
+        off = ground - c.middle[:, None] - c.steps[0][:, None] * along.real - c.steps[1][:, None] * along.imag
+        inside = np.maximum(np.abs(along.real), np.abs(along.imag)) <= 1
+        found.append(inside & (np.abs(off) <= c.rest[:, None] * (1 + 1e-9) + 1e-13))
     return np.concatenate(found)
 
 

@@ -11,10 +11,11 @@ from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, ProblemError, Requirements
 from grashof.synth import Claim, prove
 from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.proof.bounds import Bounds, Proving
 from grashof.synth.proof.curve.asked import Asked
 from grashof.synth.proof.curve.table import Table
-from grashof.synth.proof.poses.bounds import Bounds, Proving, bounds_of
 from grashof.synth.proof.poses.branch_and_bound import Search
+from grashof.synth.proof.provers import bounds_of
 from grashof.synth.theory.stopping import stopping
 
 
@@ -219,7 +220,7 @@ def test_other_objectives_are_refused() -> None:
 def test_other_tasks_are_refused_in_words() -> None:
     proof = prove(load("straight-line"))
     assert proof.claim is Claim.REFUSED
-    assert proof.why.startswith("there are proofs of four and five whole poses")
+    assert proof.why.startswith("there are proofs of three to five whole poses")
 
 
 @pytest.mark.parametrize("at_least", [-1.0, 91.0, np.nan])

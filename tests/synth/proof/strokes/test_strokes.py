@@ -12,7 +12,8 @@ from grashof.problems import Box, InvertedSliderCrank, Problem, SliderCrank, Str
 from grashof.problems.files.problem_schema import problem_from
 from grashof.synth import Claim, Proof, prove
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.proof.poses.bounds import Bounds, Proving, bounds_of
+from grashof.synth.proof.bounds import Bounds, Proving
+from grashof.synth.proof.provers import bounds_of
 from grashof.synth.proof.strokes.asked import sizes_left_out
 from grashof.wording.proof import bound_line, is_decided, proof_line, work_line
 
@@ -58,7 +59,7 @@ def test_none_is_proven_without_a_search() -> None:
     assert result.proof is not None
     assert (result.proof.claim, result.proof.lower) == (Claim.NONE, None)
     assert "slider-crank meets these requirements with a transmission angle of 47.30" in proof_line(result)
-    assert "(without transmission_min_deg 47.2 deg at best, proven)" in result.note
+    assert "(without transmission_min_deg 47.22 deg at best, proven)" in result.note
     assert proof_for(slide(transmission_min_deg=47.2)).claim is Claim.BEST
 
 

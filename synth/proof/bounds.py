@@ -1,0 +1,96 @@
+"""Bounds of the best design, and how far the proofs that find them go."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from grashof.problems.values.checks import number_within
+from grashof.synth.designs.candidate import Candidate
+
+_LOG = logging.getLogger(__name__)
+_PATIENT = 20_000_000  # pairs
+STOPPED = "it was stopped"
+TOO_SMALL = "a dyad whose centre is open stays within pieces as small as rounding"
+
+
+@dataclass(frozen=True, slots=True)
+class Proving:
+    """How far proofs go.
+
+    Parameters
+    ----------
+    gap : float, deg
+        Up to which bounds are brought together.
+    most_pairs : int
+        Budget of pairs of pieces: what a proof takes does not depend on the clock.
+    minutes : bool
+        Whether proofs that always take long are wanted.
+    """
+
+    gap: float = 0.01
+    most_pairs: int = 1_000_000
+    minutes: bool = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "gap", number_within(self.gap, 1e-4, 90.0, "gap"))
+
+    @classmethod
+    def patient(cls, gap: float) -> Proving:
+        """With a budget that takes minutes."""
+        return cls(gap, _PATIENT, minutes=True)
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """What is known of the greatest transmission angle of all linkages that meet what has forms.
+
+    Parameters
+    ----------
+    lower : float, rad
+        Of a design that the judge accepts for that, or of a member of a stroke's families; 0 where none
+        is known.
+    upper : float, rad
+        No design has more.
+    closed : bool
+        Whether the bounds have met, or no design is left.
+    found : Candidate, optional
+        The design with `lower`.
+    pieces : tuple of int
+        Pieces of the curve to begin with: that may be drivers, and driven; of a stroke pieces of families.
+    pairs, levels : int
+    seconds : float, s
+    left_out : tuple of str
+        Requirements without a form, by their fields.
+    why : str
+        Why there are no bounds, or why they have not met; else empty.
+    refused : bool
+        Whether there is no proof for such a problem at all.
+    """
+
+    lower: float = 0.0
+    upper: float = np.pi / 2
+    closed: bool = False
+    found: Candidate | None = field(default=None, compare=False)
+    pieces: tuple[int, int] = (0, 0)
+    pairs: int = 0
+    levels: int = 0
+    seconds: float = 0.0
+    left_out: tuple[str, ...] = ()
+    why: str = ""
+    refused: bool = False
+
+    @property
+    def none(self) -> bool:
+        """Whether it is proven that there is no design."""
+        return self.closed and not self.lower
+
+
+def logged(bounds: Bounds) -> Bounds:
+    """The same, after a line in the log."""
+    why = f"; {bounds.why}" if bounds.why else ""
+    told = np.degrees(bounds.lower), np.degrees(bounds.upper), bounds.pairs, bounds.seconds, why
+    _LOG.info("bounds: %.4f to %.4f deg, %d pairs, %.2f s%s", *told)
+    return bounds

@@ -1,0 +1,196 @@
+"""Dyads of three poses where two of their four coordinates are given: what the other two can be."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.synth.proof.curve.pieces import WIDER
+from grashof.synth.proof.forms.forms import Span, farthest
+from grashof.synth.theory.burmester import Displacements
+
+_PAIRS = np.array([(0, 1), (0, 2), (1, 2)])  # of poses
+_MOST_SHIFT = 0.9  # of the matrix relative to itself, up to which its inverse is bounded
+
+
+@dataclass(frozen=True, slots=True)
+class Steps:
+    """Steps of a dyad: of its moving pivot and of its ground pivot, shape (k, n) or what goes with it."""
+
+    z: ComplexArray
+    c: ComplexArray
+
+
+@dataclass(frozen=True, slots=True)
+class At:
+    """Equations F = k - Re(conj(c) a) = 0 at dyads: the ground pivot is as far from two places of z.
+
+    Parameters
+    ----------
+    alpha, facing : ndarray of complex, shape (k, n)
+        Derivative of `chord` by z; that of k is Re(facing dz).
+    chord : ndarray of complex, shape (k, n)
+        a = alpha z + d, from one place to the other.
+    tilted : ndarray of complex, shape (k, n)
+        Derivative of F is Re(tilted dz).
+    value : ndarray, shape (k, n)
+    reach : ndarray, shape (k, n)
+        Magnitude of what `chord` is the difference of, but for z.
+    """
+
+    alpha: ComplexArray
+    facing: ComplexArray
+    chord: ComplexArray
+    tilted: ComplexArray
+    value: FloatArray
+    reach: FloatArray
+
+    @classmethod
+    def of(cls, motion: Displacements, z: ComplexArray, c: ComplexArray, rows: IntArray | None = None) -> At:
+        """At dyads of three poses; of all three pairs of places, or of some, each shape (k, n)."""
+        which = np.arange(3)[:, None] if rows is None else rows
+        rho, d = motion.rotation[_PAIRS][which], motion.shift[_PAIRS][which]
+        facings, squares = d.conj() * rho, np.abs(d) ** 2 / 2
+        alpha, facing = rho[..., 1] - rho[..., 0], facings[..., 1] - facings[..., 0]
+        chord = alpha * z + d[..., 1] - d[..., 0]
+        value = squares[..., 1] - squares[..., 0] + (facing * z).real - (c.conj() * chord).real
+        return cls(alpha, facing, chord, facing - c.conj() * alpha, value, np.abs(d).sum(axis=-1))
+
+    def off(self, far_z: FloatArray, far_c: FloatArray) -> FloatArray:
+        """Rounding of F anywhere at so great z and c."""
+        off: FloatArray = WIDER * (self.reach + far_z) * (self.reach + 2 * far_c)
+        return off
+
+    def along(self, z: ComplexArray, c: ComplexArray) -> FloatArray:
+        """Derivatives along a step."""
+        along: FloatArray = (self.tilted * z).real - (c.conj() * self.chord).real
+        return along
+
+    def bent(self, z: ComplexArray, c: ComplexArray) -> FloatArray:
+        """What the product of the steps of z and c adds."""
+        bent: FloatArray = -(c.conj() * self.alpha * z).real
+        return bent
+
+
+@dataclass(frozen=True, slots=True)
+class _Matrix:
+    """Derivatives of both equations along two directions, shape (n,) each, and its inverse."""
+
+    first: FloatArray  # shape (2, n): of both equations along the first direction
+    second: FloatArray
+
+    @classmethod
+    def of(cls, at: At, bound: Steps) -> _Matrix:
+        return cls(at.along(bound.z[0], bound.c[0]), at.along(bound.z[1], bound.c[1]))
+
+    @property
+    def det(self) -> FloatArray:
+        det: FloatArray = self.first[0] * self.second[1] - self.second[0] * self.first[1]
+        return det
+
+    def solved(self, right: FloatArray) -> FloatArray:
+        """Shares of both directions, shape (2, n)."""
+        p = self.second[1] * right[0] - self.second[0] * right[1]
+        q = self.first[0] * right[1] - self.first[1] * right[0]
+        return np.stack([p, q]) / self.det
+
+    def most(self, right: FloatArray) -> FloatArray:
+        """Upper bound of the norm of both shares where each right hand side is up to so much."""
+        by_first = np.hypot(self.second[1], self.first[1]) * right[0]
+        by_second = np.hypot(self.second[0], self.first[0]) * right[1]
+        most: FloatArray = (by_first + by_second) / np.abs(self.det)
+        return most
+
+
+def enclosed(
+    motion: Displacements,
+    start: tuple[ComplexArray, ComplexArray],
+    free: Steps,
+    bound: Steps,
+    off: FloatArray | float = 0.0,
+    newton: int = 1,
+) -> tuple[Span, Span, BoolArray]:
+    """Moving and ground pivots of all dyads in rectangles of two coordinates, as forms of these.
+
+    Parameters
+    ----------
+    motion : Displacements
+        Of three poses.
+    start : tuple of ndarray of complex, shape (n,)
+        z and c: in the middle of a rectangle, the other two coordinates about right.
+    free : Steps, shape (2, n)
+        From there to the ends of a rectangle; one of z, or of c, is along one axis of the other's plane.
+    bound : Steps, shape (2, n)
+        Unit directions of the other two coordinates; zero in the pivot that they do not move.
+    off : ndarray, shape (n,)
+        How far the other coordinates of a dyad can be from `start`; counts where they are of both pivots.
+    newton : int
+        Steps to the dyad in the middle; one is enough where the other coordinates are those of one pivot.
+
+    Returns
+    -------
+    tuple of Span, Span, ndarray of bool
+        z and c, and where they are bounded; elsewhere they hold nothing.
+
+    Notes
+    -----
+    As of pieces of a curve (see `centres_of`): both equations are bilinear in z and c, so that what is
+    left after the linear terms is a quadratic form of both parameters; over the norm of the inverse matrix
+    it bounds the disc.
+    """
+    z, c = start
+    begun = z, c
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        rows = _closest(motion, z, c, bound)
+        for _ in range(newton):
+            at = At.of(motion, z, c, rows)
+            z, c = _moved(z, c, bound, -_Matrix.of(at, bound).solved(at.value))
+        at = At.of(motion, z, c, rows)
+        matrix = _Matrix.of(at, bound)
+        shares = [-matrix.solved(at.along(free.z[k], free.c[k])) for k in (0, 1)]
+        ends = [_moved(free.z[k], free.c[k], bound, shares[k]) for k in (0, 1)]
+        steps = Steps(np.stack([z_step for z_step, _ in ends]), np.stack([c_step for _, c_step in ends]))
+        squares = [at.bent(*end) for end in ends]
+        z, c = _moved(z, c, bound, -matrix.solved(at.value + (squares[0] + squares[1]) / 2))
+        at = At.of(motion, z, c, rows)
+        matrix = _Matrix.of(at, bound)
+        mixed = at.bent(ends[0][0], ends[1][1]) + at.bent(ends[1][0], ends[0][1])
+        far_z, far_c = farthest(steps.z), farthest(steps.c)
+        miss = np.abs(at.value + (squares[0] + squares[1]) / 2) + np.abs(mixed)
+        miss = miss + sum(np.abs(at.along(*end)) for end in ends) + sum(np.abs(each) for each in squares) / 2
+        miss = miss + at.off(np.abs(z) + far_z, np.abs(c) + far_c)
+        moves_z, moves_c = (np.abs(each).max(axis=0) for each in (bound.z, bound.c))
+        away = (
+            off
+            + np.abs(z - begun[0])
+            + np.abs(c - begun[1])
+            + sum(np.abs(each).sum(axis=0) for each in shares)
+        )
+        shift = np.abs(at.alpha) * (far_z * moves_c + far_c * moves_z + moves_z * moves_c * away / 2)
+        loose = matrix.most(shift)
+        rest = np.where(loose < _MOST_SHIFT, matrix.most(miss) / (1 - loose), np.inf) * (1 + WIDER)
+        rest = rest + WIDER * (np.abs(z) + np.abs(c) + far_z + far_c)
+    known = np.isfinite(rest) & np.isfinite(far_z) & np.isfinite(far_c)
+    return (
+        Span(z, steps.z, np.where(moves_z > 0, rest, WIDER * (np.abs(z) + far_z))),
+        Span(c, steps.c, np.where(moves_c > 0, rest, WIDER * (np.abs(c) + far_c))),
+        known,
+    )
+
+
+def _closest(motion: Displacements, z: ComplexArray, c: ComplexArray, bound: Steps) -> IntArray:
+    """Two of three pairs of places, shape (2, n): about a pole only its own and another bound a dyad well."""
+    at = At.of(motion, z, c)
+    steep = sum(np.abs(at.along(bound.z[k], bound.c[k])) for k in (0, 1))
+    return np.argsort(steep, axis=0)[:2]
+
+
+def _moved(
+    z: ComplexArray, c: ComplexArray, bound: Steps, shares: FloatArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """Dyads, or steps, moved by shares of two directions."""
+    return z + shares[0] * bound.z[0] + shares[1] * bound.z[1], c + shares[0] * bound.c[0] + shares[
+        1
+    ] * bound.c[1]

@@ -1,0 +1,70 @@
+"""Four whole poses: bounds of the best there is, by branch and bound over pairs of pieces of the curve."""
+
+from __future__ import annotations
+
+from time import perf_counter
+
+import numpy as np
+
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.proof.bounds import STOPPED, TOO_SMALL, Bounds, Proving, logged
+from grashof.synth.proof.curve.asked import Asked, left_out, refusal, with_forms
+from grashof.synth.proof.curve.table import Table, TooMany
+from grashof.synth.proof.poses.branch_and_bound import MOST_LEFT, MOST_LEVELS, Search
+from grashof.synth.proof.poses.lookout import Lookout
+from grashof.synth.theory.stopping import Stopped
+
+
+def bounds_of_four(scaled: ScaledProblem, proving: Proving, at_least: float | None = None) -> Bounds | None:
+    """Bounds of the best design; None where the question does not arise.
+
+    Parameters
+    ----------
+    scaled : ScaledProblem
+    proving : Proving
+    at_least : float, deg, optional
+        Only decide whether a design has that much: end with the first one.
+    """
+    why = refusal(scaled)
+    if why is None:
+        return None
+    if why:
+        return Bounds(why=why, refused=True)
+    since = perf_counter()
+    without = left_out(scaled)
+    about = with_forms(scaled) if without else scaled
+    asked = Asked.of(about, at_least)
+    search = Search(asked, float(np.radians(proving.gap)), proving.most_pairs)
+    look = Lookout(about, asked)
+    begun = (0, 0)
+    try:
+        table = Table.covering(asked)
+        begun = int(table.pieces.driver.sum()), int(table.pieces.driven.sum())
+        search.run(table, look, content=at_least is not None)
+        why = "" if search.done or (search.lower and at_least is not None) else _open(search)
+    except TooMany as ended:
+        why = str(ended)
+    except Stopped:
+        why = STOPPED
+    made = Bounds(
+        lower=search.lower,
+        upper=search.upper,
+        closed=search.done,
+        found=look.best,
+        pieces=begun,
+        pairs=search.pairs,
+        levels=search.levels,
+        seconds=perf_counter() - since,
+        left_out=without,
+        why=why,
+    )
+    return logged(made)
+
+
+def _open(search: Search) -> str:
+    """Why a branch and bound ended before its bounds met."""
+    if search.levels >= MOST_LEVELS:
+        return TOO_SMALL
+    if search.left is not None and len(search.left) > MOST_LEFT:
+        return f"more than {MOST_LEFT} pairs are left"
+    return f"the budget of {search.most_pairs} pairs ended" if search.over_budget else STOPPED

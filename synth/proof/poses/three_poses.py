@@ -1,0 +1,139 @@
+"""Three whole poses: whether one side of the linkage is impossible, and bounds of the best there is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from time import perf_counter
+
+import numpy as np
+
+from grashof.problems.values.mechanisms import FOUR_BAR
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.proof.bounds import STOPPED, Bounds, Proving, logged
+from grashof.synth.proof.curve.asked import THREE, Asked, left_out, refusal, unusable, with_forms
+from grashof.synth.proof.curve.table import TooMany
+from grashof.synth.proof.poses.best_first import MOST_LEFT, BestFirst, Tilings
+from grashof.synth.proof.poses.lookout import Lookout
+from grashof.synth.proof.poses.pairs import Pairs
+from grashof.synth.proof.poses.sides import OneSide, is_empty
+from grashof.synth.starts.dyad_pairs import judged_pairs
+from grashof.synth.theory.burmester import Dyads, polish
+from grashof.synth.theory.stopping import Stopped
+
+FEW = 100  # pairs of first tiles, as where pivots are given: these are bounded at once
+FEW_PAIRS = 20_000  # in all, then
+LOOKED_AT = 1000  # pairs of each step, those with the greatest bounds
+SIDES = {True: "link 2, with O2 and A,", False: "link 4, with O4 and B,"}
+
+
+@dataclass(slots=True)
+class _Middles:
+    """Looks for designs in the middle of pairs of tiles."""
+
+    look: Lookout
+    scaled: ScaledProblem
+    asked: Asked
+    steps: int = field(default=0)
+
+    def __call__(self, sides: Tilings, pairs: Pairs, least: float) -> float:
+        """The transmission angle of a design better than `least`, rad; 0 where none is found."""
+        motion = self.scaled.motion
+        if motion is None:
+            raise TypeError("only whole poses that are met exactly have dyads")
+        best = pairs[np.argsort(-pairs.bound, kind="stable")[:LOOKED_AT]]
+        driver, driven = (
+            polish(motion, Dyads(*(each.middle[which] + self.asked.origin for each in (of.z, of.c))), steps=2)
+            for of, which in ((sides.driver.sites, best.driver), (sides.driven.sites, best.driven))
+        )
+        found = judged_pairs(motion, complex(self.scaled.targets[0]), driver, driven, self.scaled.wanted)
+        return self.look.best_of(found, least)
+
+
+def sides_of(scaled: ScaledProblem) -> Bounds | None:
+    """A proof that there is no design, as no dyad of one side meets what is asked of it; else None.
+
+    The objective does not matter.
+    """
+    asked, without = _asked(scaled)
+    since = perf_counter()
+    for is_driver, words in SIDES.items():
+        try:
+            empty = is_empty(OneSide.of(asked, is_driver=is_driver))
+        except (TooMany, Stopped):
+            return None
+        if empty:
+            why = f"{words} meets the poses nowhere within its limits"
+            spent = perf_counter() - since
+            return logged(Bounds(upper=asked.floor, closed=True, seconds=spent, left_out=without, why=why))
+    return None
+
+
+def _asked(scaled: ScaledProblem, at_least: float | None = None) -> tuple[Asked, tuple[str, ...]]:
+    """What has forms, and what is left out."""
+    without = left_out(scaled)
+    return Asked.of(with_forms(scaled) if without else scaled, at_least), without
+
+
+def bounds_of_three(
+    scaled: ScaledProblem, proving: Proving, at_least: float | None = None, lower: float = 0.0
+) -> Bounds | None:
+    """Bounds of the best design; None where the question does not arise, or where it would take minutes.
+
+    Parameters
+    ----------
+    scaled : ScaledProblem
+    proving : Proving
+    at_least : float, deg, optional
+        Only decide whether a design has that much: end with the first one.
+    lower : float, rad
+        Transmission angle of a design that is known, as judged.
+    """
+    if scaled.motion is None or len(scaled.targets) != THREE or scaled.problem.mechanism[0] != FOUR_BAR:
+        return None
+    if scaled.problem.driver is None and not unusable(scaled) and (none := sides_of(scaled)) is not None:
+        return none
+    why = refusal(scaled, THREE)
+    if why:
+        return Bounds(why=why, refused=True) if proving.minutes else None
+    since = perf_counter()
+    asked, without = _asked(scaled, at_least)
+    about = with_forms(scaled) if without else scaled
+    search = BestFirst(asked, float(np.radians(proving.gap)), proving.most_pairs, lower=lower)
+    look = Lookout(about, asked)
+    begun = (0, 0)
+    try:
+        sides = Tilings.covering(asked)
+        begun = len(sides.driver), len(sides.driven)
+        if not proving.minutes:
+            if begun[0] * begun[1] > FEW:
+                return None
+            search.most_pairs = min(search.most_pairs, FEW_PAIRS)
+        search.run(sides, _Middles(look, about, asked), content=at_least is not None)
+        decided = search.done or (at_least is not None and search.lower)
+        why = "" if decided else _open(search)
+    except TooMany as ended:
+        why = str(ended)
+    except Stopped:
+        why = STOPPED
+    if not (proving.minutes or search.done):
+        return None
+    made = Bounds(
+        lower=search.lower,
+        upper=search.upper,
+        closed=search.done,
+        found=look.best,
+        pieces=begun,
+        pairs=search.pairs,
+        levels=search.levels,
+        seconds=perf_counter() - since,
+        left_out=without,
+        why=why,
+    )
+    return logged(made)
+
+
+def _open(search: BestFirst) -> str:
+    """Why a branch and bound ended before its bounds met."""
+    if search.left is not None and len(search.left) > MOST_LEFT:
+        return f"more than {MOST_LEFT} pairs are left"
+    return f"the budget of {search.most_pairs} pairs ended" if search.over_budget else STOPPED

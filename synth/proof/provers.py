@@ -1,0 +1,49 @@
+"""Which proofs there are: each knows the problems that it is for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.proof.bounds import Bounds, Proving
+from grashof.synth.proof.poses.four_poses import bounds_of_four
+from grashof.synth.proof.poses.lookout import quantity_of
+from grashof.synth.proof.poses.three_poses import bounds_of_three
+from grashof.synth.proof.strokes.bounds import bounds_of_stroke
+
+_PROVERS = bounds_of_stroke, bounds_of_four, bounds_of_three
+
+
+def bounds_of(scaled: ScaledProblem, proving: Proving, at_least: float | None = None) -> Bounds | None:
+    """Bounds of the best design; None where no proof is for the problem, or it would take minutes.
+
+    Parameters
+    ----------
+    scaled : ScaledProblem
+    proving : Proving
+    at_least : float, deg, optional
+        Only decide whether a design has that much.
+    """
+    found = (prover(scaled, proving, at_least) for prover in _PROVERS)
+    return next((bounds for bounds in found if bounds is not None), None)
+
+
+def bounds_before(scaled: ScaledProblem, proving: Proving) -> Bounds | None:
+    """What is proven before a search, in a second; None where nothing is, or it would take minutes."""
+    return bounds_of(scaled, replace(proving, minutes=False))
+
+
+def bounds_after(
+    scaled: ScaledProblem, proving: Proving, before: Bounds | None, designs: Sequence[Candidate]
+) -> Bounds | None:
+    """What is proven in the end of a search: where minutes are given, bounds above its best design.
+
+    `before` is what was proven before it, and `designs` are what it found.
+    """
+    if not proving.minutes or (before is not None and before.closed):
+        return before
+    key = quantity_of(scaled.problem).key
+    best = max((float(each.values[key]) for each in designs), default=0.0)
+    return bounds_of_three(scaled, proving, lower=best) or before

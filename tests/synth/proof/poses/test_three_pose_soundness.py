@@ -1,0 +1,289 @@
+"""Three poses: linkages that meet a problem are in its tiles, and no bound is below what they transmit."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+from grashof import load
+from grashof.analysis.judge.planted import planted_motion
+from grashof.problems import Box, MotionTask, Problem, Requirements
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.proof.curve.asked import Asked
+from grashof.synth.proof.curve.poles import poles
+from grashof.synth.proof.forms.forms import Span
+from grashof.synth.proof.poses.best_first import Tilings
+from grashof.synth.proof.poses.charts import BOTH, GROUND, MOVING, Charts, Tiles
+from grashof.synth.proof.poses.sides import Sites, Tiling
+from grashof.synth.starts.dyad_pairs import judged_pairs
+from grashof.synth.theory.burmester import Displacements, Dyads, polish
+from grashof.synth.theory.three_poses import circle_dyads, circle_dyads_of_ground
+
+JUST_BELOW = 1e-7  # rad
+NOWHERE = -1
+BRACKET, PLATE = Box((-60, 350), (-260, -60)), Box((0, 350), (-100, -10))
+
+
+def bonnet(**requirements: object) -> Problem:
+    """The gallery's bonnet hinge."""
+    limits = {"o2": BRACKET, "o4": BRACKET, "a_on_body": PLATE, "b_on_body": PLATE}
+    wanted = {"rotatability": "any", "link_length": (60, 260), **limits, **requirements}
+    task = MotionTask.from_degrees([[0, 0, 0], [20, 33, 10], [76, 10, 50]])
+    return Problem(length_unit="mm", task=task, requirements=Requirements(**wanted))  # type: ignore[arg-type]
+
+
+def luggage(shortest: float, longest: float, ratio: float = 20.0, **requirements: object) -> Problem:
+    """Poses 1, 2 and 4 of the luggage task."""
+    problem, limits = load("luggage"), (shortest, longest)
+    poses = np.column_stack([problem.task.positions, np.degrees(problem.task.angles)])[[0, 1, 3]]
+    wanted = {
+        "transmission_min_deg": 0.0,
+        "link_length": limits,
+        "coupler_arms": limits,
+        "link_ratio_max": ratio,
+    }
+    return replace(
+        problem,
+        task=MotionTask.from_degrees(poses),
+        requirements=replace(problem.requirements, **{**wanted, **requirements}),
+    )
+
+
+def random_poses(seed: int, **requirements: object) -> Problem:
+    rng = np.random.default_rng(seed)
+    poses = np.column_stack([rng.uniform(0, 1, (3, 2)), rng.uniform(-180, 180, 3)])
+    return Problem(task=MotionTask.from_degrees(poses), requirements=Requirements(**requirements))  # type: ignore[arg-type]
+
+
+def about_pole(seed: int, number: int) -> Box:
+    """A box of ground pivots about a pole of random poses."""
+    scaled = ScaledProblem.of(random_poses(seed))
+    assert scaled.motion is not None
+    x, y = scaled.frame.outward(poles(scaled.motion.inverse())[1][number : number + 1])[0]
+    return Box((x - 0.2, x + 0.3), (y - 0.3, y + 0.2))
+
+
+PARALLEL = [[0, 0, 0], [1, 0.3, 0], [0.7, -0.5, 50]]
+STAIRS = np.array([[-60, -160], [100, -160], [100, -260], [-60, -260]], dtype=np.float64)
+CASES = {
+    "bonnet": bonnet(),
+    "bonnet, area kept out": bonnet(keep_out=(STAIRS,)),
+    "bonnet, angles": bonnet(driver_sense="cw", driver_rotation_deg=(10, 120), ground_angle_deg=(-90, 60)),
+    "luggage over the turn": luggage(1, 5, 8, transmission_over="cycle"),
+    "luggage, crank-rocker": luggage(0.3, 8, rotatability="crank-rocker"),
+    "luggage, any order": luggage(0.3, 8, order=False, rotatability="any"),
+    "random": random_poses(3, rotatability="any"),
+    "random, short links": random_poses(
+        5, rotatability="any", link_length=(0.1, 2.0), coupler_arms=(0.0, 2.0)
+    ),
+    "boxes about poles": random_poses(3, rotatability="any", o2=about_pole(3, 0), o4=about_pole(3, 1)),
+    "two parallel poses": Problem(
+        task=MotionTask.from_degrees(PARALLEL), requirements=Requirements(rotatability="any")
+    ),
+    "planted": Problem(task=planted_motion(np.random.default_rng(2), poses=3)[0]),
+}
+
+
+@dataclass(frozen=True)
+class Designs:
+    """Dyads of linkages in the frame of a proof, and the transmission angle that counts, rad."""
+
+    driver: Dyads
+    driven: Dyads
+    transmission: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.driver)
+
+    def __getitem__(self, index: IntArray | BoolArray) -> "Designs":
+        return Designs(self.driver[index], self.driven[index], self.transmission[index])
+
+
+def some_dyads(charts: Charts, reach: float, count: int, rng: np.random.Generator) -> Dyads:
+    """Dyads of all charts: anywhere, near poles of one pivot, and near those of both; exactly there, too."""
+    motion = charts.motion
+
+    def points(places: ComplexArray, size: float) -> ComplexArray:
+        off = size * 10 ** rng.uniform(-9, 0, count) * np.exp(1j * rng.uniform(0, 2 * np.pi, count))
+        return rng.choice(places, count) + off * rng.choice([0.0, 1.0], count, p=[0.02, 0.98])
+
+    of_z, of_c = charts.poles
+    anywhere = reach * np.sqrt(rng.uniform(size=count)) * np.exp(1j * rng.uniform(0, 2 * np.pi, count))
+    far = np.array([*of_c, 0]) + 0j
+    found = [
+        circle_dyads(motion, anywhere),
+        circle_dyads_of_ground(motion, 2 * anywhere),
+        circle_dyads(motion, points(of_z, charts.radius)),
+        circle_dyads_of_ground(motion, points(of_c, charts.radius)),
+        # From the line of ground pivots that belong to a pole: moving pivots next to it.
+        circle_dyads_of_ground(motion, points(far, reach)),
+    ]
+    for k in range(BOTH, len(charts.origin.z)):
+        z = np.full(count, charts.origin.z[k]) + points(np.zeros(1, dtype=complex), charts.radius)
+        c = np.full(count, charts.origin.c[k]) + points(np.zeros(1, dtype=complex), charts.radius)
+        found.append(polish(motion, Dyads(z, c), 6))
+    z, c = (np.concatenate([getattr(each, name) for each in found]) for name in ("moving", "ground"))
+    finite = np.isfinite(z) & np.isfinite(c)
+    return Dyads(z[finite], c[finite])
+
+
+def exact(motion: Displacements, dyads: Dyads) -> Dyads:
+    """Those of some dyads that are exact."""
+    arms = np.abs(motion.apply(dyads.moving) - dyads.ground[:, None])
+    return dyads[np.ptp(arms, axis=1) <= 1e-13 * (1 + arms.max(axis=1))]
+
+
+def feasible_designs(problem: Problem, most: int, seed: int = 0, count: int = 4000) -> Designs:
+    """Linkages that meet a problem; so many at most, a good part of them near poles."""
+    scaled = ScaledProblem.of(problem)
+    assert scaled.motion is not None
+    asked, rng, body = Asked.of(scaled), np.random.default_rng(seed), complex(scaled.targets[0])
+    sides = Tilings.covering(asked)
+    every = []
+    for tiling in (sides.driver, sides.driven):
+        charts = tiling.side.charts
+        reach = min(asked.driver.arm[1], 3.0)
+        dyads = exact(charts.motion, some_dyads(charts, reach, count, rng))
+        _, rows = Sites.of(tiling.side, tiles_of(charts, dyads))
+        every.append((charts, dyads[rows]))  # those that meet what is asked of one dyad, about
+    drawn = []
+    for charts, dyads in every:
+        special = kinds(charts, dyads) != charts.main
+        weight = np.where(special, 1 / max(special.sum(), 1), 1 / max((~special).sum(), 1))
+        drawn.append(
+            dyads[rng.choice(len(dyads), 60 * most, p=weight / weight.sum())] if len(dyads) else dyads
+        )
+    one, other = (Dyads(each.moving + body, each.ground + body) for each in drawn)
+    least = min(len(one), len(other))
+    judged = judged_pairs(scaled.motion, body, one[:least], other[:least], scaled.wanted)
+    good = np.flatnonzero(judged.feasible & (judged.transmission > asked.floor + 2 * JUST_BELOW))[:most]
+    return Designs(drawn[0][good], drawn[1][good], judged.transmission[good])
+
+
+def kinds(charts: Charts, dyads: Dyads) -> IntArray:
+    """The chart of each dyad: the main one but near its poles, there the other one but near its poles."""
+    pivots = (dyads.moving, dyads.ground)
+    near = [np.abs(z[:, None] - poles) for z, poles in zip(pivots, charts.poles, strict=True)]
+    main, other = charts.main, GROUND if charts.main == MOVING else MOVING
+    kind = np.full(len(dyads), charts.main)
+    if not len(charts.poles[0]):
+        return kind
+    away = near[main].min(axis=1) > charts.radius
+    both = BOTH + near[0].argmin(axis=1) * len(charts.poles[1]) + near[1].argmin(axis=1)
+    return np.where(away, main, np.where(near[other].min(axis=1) > charts.radius, other, both))
+
+
+def coordinates(charts: Charts, kind: IntArray, dyads: Dyads) -> FloatArray:
+    """Where dyads are in their charts, shape (2, n)."""
+    of_z = (charts.free.z[:, kind].conj() * (dyads.moving - charts.origin.z[kind])).real
+    of_c = (charts.free.c[:, kind].conj() * (dyads.ground - charts.origin.c[kind])).real
+    return of_z + of_c
+
+
+def tiles_of(charts: Charts, dyads: Dyads) -> Tiles:
+    """Tiles of no size about dyads."""
+    kind = kinds(charts, dyads)
+    place = coordinates(charts, kind, dyads)
+    return Tiles(charts, kind, place, np.zeros_like(place))
+
+
+def holds(sites: Sites, which: IntArray, dyads: Dyads) -> BoolArray:
+    """Whether tiles hold dyads, entry by entry."""
+    tiles, z, c = sites.tiles[which], sites.z[which], sites.c[which]
+    off = coordinates(tiles.charts, tiles.kind, dyads) - tiles.place
+    s = np.clip(off / np.maximum(tiles.half, 1e-300), -1, 1)
+    inside = np.all(np.abs(off) <= tiles.half * (1 + 1e-13) + 3e-16, axis=0)
+    inside &= tiles.kind == kinds(tiles.charts, dyads)
+    for span, points in ((z, dyads.moving), (c, dyads.ground)):
+        apart = np.abs(points - span.middle - (span.steps * s).sum(axis=0))
+        inside &= apart <= span.rest + 1e-12 * (1 + np.abs(points))
+    return inside
+
+
+def tile_of(tiling: Tiling, dyads: Dyads) -> IntArray:
+    """The first tile that holds each dyad; `NOWHERE` where none does."""
+    found = np.full(len(dyads), NOWHERE)
+    for tile in range(len(tiling) - 1, -1, -1):
+        found[holds(tiling.sites, np.full(len(dyads), tile), dyads)] = tile
+    return found
+
+
+def half_of(tiling: Tiling, which: IntArray, dyads: Dyads) -> IntArray:
+    """The half of each tile that holds each dyad."""
+    halves, found = tiling.halve(which), np.full(len(dyads), NOWHERE)
+    for half in halves.T:
+        rows = np.flatnonzero(half >= 0)
+        rows = rows[holds(tiling.sites, half[rows], dyads[rows])]
+        found[rows] = half[rows]
+    return found
+
+
+def followed(problem: Problem, designs: Designs, levels: int) -> tuple[int, int, float]:
+    """How many designs are in no tile or excluded on the way down, and how near a bound came, rad."""
+    sides = Tilings.covering(Asked.of(ScaledProblem.of(problem)))
+    one, other = tile_of(sides.driver, designs.driver), tile_of(sides.driven, designs.driven)
+    lost = excluded = 0
+    nearest = np.inf
+    for _ in range(levels):
+        there = (one >= 0) & (other >= 0)
+        lost += int((~there).sum())
+        designs, one, other = designs[there], one[there], other[there]
+        for k in range(0, len(designs), 4096):
+            rows = slice(k, k + 4096)
+            least = designs.transmission[rows] - JUST_BELOW
+            kept, bound = sides.each_bounded(one[rows], other[rows], least)
+            excluded += len(least) - len(kept)
+            nearest = min(nearest, float((bound - least[kept]).min(initial=np.inf)))
+        one, other = half_of(sides.driver, one, designs.driver), half_of(sides.driven, other, designs.driven)
+    return lost, excluded, nearest
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_no_linkage_is_lost_or_bounded_too_low(name: str) -> None:
+    designs = feasible_designs(CASES[name], 150, count=800)
+    assert len(designs) > 20
+    lost, excluded, nearest = followed(CASES[name], designs, 20)
+    assert (lost, excluded) == (0, 0)
+    assert nearest < np.radians(0.1)  # sharp: a bound that is 0.1 deg too low would show
+
+
+@pytest.mark.study
+@pytest.mark.slow
+@pytest.mark.parametrize("name", CASES)
+def test_no_linkage_of_many_is_lost_or_bounded_too_low(name: str) -> None:
+    for seed in range(1, 5):
+        lost, excluded, _ = followed(
+            CASES[name], feasible_designs(CASES[name], 1000, seed=seed, count=8000), 24
+        )
+        assert (lost, excluded) == (0, 0)
+
+
+def used(span: Span, points: ComplexArray, s: FloatArray) -> FloatArray:
+    """Share of the rest of forms that points use."""
+    apart: FloatArray = np.abs(points - span.middle - (span.steps * s).sum(axis=0))
+    return apart / (span.rest + 1e-13 * (1 + np.abs(points)))
+
+
+@pytest.mark.parametrize("half", [0.1, 0.01, 0.001])
+@pytest.mark.parametrize("main", [MOVING, GROUND])
+def test_charts_hold_every_dyad(main: int, half: float) -> None:
+    rng, longest = np.random.default_rng(main), 6.0
+    scaled = ScaledProblem.of(random_poses(3))
+    assert scaled.motion is not None
+    charts = Charts.of(scaled.motion, longest, main, complex(np.exp(0.7j)))
+    dyads = exact(charts.motion, some_dyads(charts, 3.0, 3000, rng))
+    dyads = dyads[np.abs(dyads.moving - dyads.ground) < longest]
+    kind = kinds(charts, dyads)
+    corner = rng.choice([-1.0, 1.0], (2, len(dyads)))
+    s = np.where(rng.random(len(dyads)) < 0.5, corner, rng.uniform(-1, 1, (2, len(dyads))))
+    size = half * np.where(kind >= BOTH, charts.radius, 1.0)
+    halves = np.stack([size, size * rng.choice([0.3, 1.0], len(dyads))])
+    tiles = Tiles(charts, kind, coordinates(charts, kind, dyads) - s * halves, halves)
+    z, c, known = tiles.spans
+    share = np.maximum(used(z, dyads.moving, s), used(c, dyads.ground, s))
+    assert share.max() <= 1 + 1e-9
+    for each in (kind == MOVING, kind == GROUND, kind >= BOTH):
+        assert (known & each).sum() > 20
+        assert share[known & each].max() > 0.4
+    assert tiles.counted(z, c).all()
