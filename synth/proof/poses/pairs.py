@@ -52,6 +52,14 @@ def rows_left(
     asked: Asked, pieces: Pieces, driver: IntArray, driven: IntArray, least: FloatArray
 ) -> tuple[IntArray, FloatArray]:
     """Which pairs may hold a linkage that transmits more than `least`, rad, and their bounds."""
+    _, _, rows, bound = sifted(asked, pieces, driver, driven, least)
+    return rows, bound
+
+
+def sifted(
+    asked: Asked, pieces: Pieces, driver: IntArray, driven: IntArray, least: FloatArray
+) -> tuple[IntArray, IntArray, IntArray, FloatArray]:
+    """Which pairs are left by lengths, then by what they transmit, then by both together; their bounds."""
     one = Side.of(pieces, driver, is_driver=True)
     other = Side.of(pieces, driven, is_driver=False)
     lengths: Lengths = (other.c - one.c).norm, one.length, (other.z - one.z).norm, other.length
@@ -62,8 +70,8 @@ def rows_left(
     passed = _passed(asked, one, other, lengths, pieces.sense[driver[first]])
     bound, conditions = transmission_bound(asked.loop, lengths, _arms(asked, one, other), passed, least)
     second = np.flatnonzero(bound > least)
-    second = second[~nothing_left([each[second] for each in conditions])]
-    return first[second], bound[second]
+    third = second[~nothing_left([each[second] for each in conditions])]
+    return first, first[second], first[third], bound[third]
 
 
 def _arms(asked: Asked, one: Side, other: Side) -> list[tuple[Span, Span]]:
