@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
@@ -13,8 +14,11 @@ from grashof.problems import Problem, ProblemError
 from grashof.problems.values.checks import number_within
 from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.proof.curve.asked import refusal
+from grashof.synth.proof.curve.trail import Trail
 from grashof.synth.proof.functions.few_pairs import FOUR, THREE
 from grashof.synth.proof.poses.bounds import Bounds, Proving, bounds_of
+from grashof.synth.proof.poses.certificate import certificate_of, without_check, writable, write
 from grashof.synth.proof.poses.five_poses import FIVE
 from grashof.synth.proof.poses.lookout import quantity_of
 from grashof.synth.proof.proof import Claim, Proof, proof_of
@@ -37,6 +41,7 @@ def prove(
     constraints: Sequence[Constraint] = (),
     time_limit: float | None = None,
     stop: Callable[[], bool] | None = None,
+    certificate: str | Path | None = None,
 ) -> Proof:
     """Find out how good the best design can be, or that there is none.
 
@@ -53,6 +58,8 @@ def prove(
         Your own, as for `synthesize`; the bound does without them.
     time_limit, stop
         As for `synthesize`; the bound so far holds.
+    certificate : str or Path, optional
+        File to write what was proven of four poses to, for ``scripts/check_certificate.py``.
 
     Returns
     -------
@@ -90,6 +97,8 @@ def prove(
         return beyond
     alone = problem.for_kind(FOUR_BAR)
     function, count = bool(problem.task.has_output.any()), len(problem.task)
+    if certificate is not None:
+        _certifiable(alone, constraints, Path(certificate))
     if (count == FIVE and problem.task.is_whole) or (function and count in (THREE, FOUR, FIVE)):
         found = synthesize(
             alone, constraints=constraints, time_limit=time_limit, stop=stop, gap=gap, prove=True
@@ -98,11 +107,28 @@ def prove(
     if function:
         return beyond
     scaled = ScaledProblem.of(alone, constraints)
+    trail = None if certificate is None else Trail()
     with stopping(asked):
-        bounds = bounds_of(scaled, proving, at_least)
+        bounds = bounds_of(scaled, proving, at_least, trail)
     if bounds is None:
         return beyond
+    if trail is not None and certificate is not None:
+        if bounds.refused or bounds.upper >= np.pi / 2:
+            raise ProblemError(
+                f"certificate {certificate}: not written, for no bound was reached: {bounds.why}"
+            )
+        write(certificate_of(scaled, trail, float(np.degrees(bounds.upper)), at_least), Path(certificate))
     return proof_of(scaled.problem, bounds, _known(scaled, bounds), gap)
+
+
+def _certifiable(problem: Problem, constraints: Sequence[Constraint], path: Path) -> None:
+    """Refuse a certificate, before the proof, where there can be none."""
+    scaled = ScaledProblem.of(problem, constraints)
+    if refusal(scaled) is None:
+        raise ProblemError(f"certificate {path}: there are certificates of four whole poses only")
+    if without := without_check(scaled):
+        raise ProblemError(f"certificate {path}: certificates cannot state {' and '.join(without)} yet")
+    writable(path)
 
 
 def _of_at_least(proof: Proof, at_least: float | None) -> Proof:

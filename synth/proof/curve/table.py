@@ -10,7 +10,7 @@ from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, 
 from grashof.synth.proof.curve.asked import Asked
 from grashof.synth.proof.curve.centres import Centres, centres_of
 from grashof.synth.proof.curve.dyads import lengths_of, possible_arms, roles_of
-from grashof.synth.proof.curve.pieces import SLENDER, Tubes, contracted
+from grashof.synth.proof.curve.pieces import SLENDER, WIDER, Tubes, contracted
 from grashof.synth.proof.curve.trail import ROOT, Trail
 from grashof.synth.proof.forms.forms import Form, Span
 from grashof.synth.theory.stopping import give_way
@@ -98,7 +98,7 @@ def squares(asked: Asked) -> Tubes:
     step = 2 * reach / SQUARES
     even = -reach + step * (np.arange(SQUARES) + 0.5)
     middle = (even[:, None] + 1j * even).ravel()
-    size = np.full(len(middle), step / 2)
+    size = np.full(len(middle), step / 2 * (1 + WIDER))  # no gaps by rounding
     return Tubes.rectangles(middle, np.ones_like(middle), size, size)
 
 

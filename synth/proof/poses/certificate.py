@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import json
+import os
+from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from grashof.problems import ProblemError
 from grashof.problems.values.arrays import IntArray
-from grashof.problems.values.requirements import LIMITS
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve.asked import Asked, with_forms
 from grashof.synth.proof.curve.centres import centres_of
@@ -20,17 +24,20 @@ from grashof.synth.proof.poses.pairs import sifted
 FORM = 1  # of the file
 _BOXES = ("o2", "o4", "a", "b", "a_on_body", "b_on_body")
 _UNCHECKED = ("driver_sense", "driver_rotation_deg", "theta2_start_deg", "ground_angle_deg")
+_EITHER = "either"  # sense of the driver
 _AT_ONCE = 8192
 
 
 def without_check(scaled: ScaledProblem) -> tuple[str, ...]:
     """Requirements that proofs use and certificates do not state, by their fields."""
     wanted = with_forms(scaled).problem.requirements
-    stated = [name for name in _UNCHECKED if getattr(wanted, name) not in (None, LIMITS[name].widest)]
+    stated = [name for name in _UNCHECKED if getattr(wanted, name) not in (None, _EITHER)]
     return (*stated, *["keep_out"] * bool(wanted.keep_out))
 
 
-def certificate_of(scaled: ScaledProblem, trail: Trail, upper: float, at_least: float | None) -> dict[str, Any]:
+def certificate_of(
+    scaled: ScaledProblem, trail: Trail, upper: float, at_least: float | None
+) -> dict[str, Any]:
     """The certificate that no linkage transmits more than `upper`, deg, ready for a file.
 
     Notes
@@ -43,11 +50,32 @@ def certificate_of(scaled: ScaledProblem, trail: Trail, upper: float, at_least: 
     return {"grashof_certificate": FORM, **_stated(about, asked, upper), **_tree(asked, trail, upper)}
 
 
+def writable(path: Path) -> None:
+    """Refuse a path that no file can be written to, before the proof."""
+    if path.is_dir() or not path.parent.is_dir():
+        reason = "a folder" if path.is_dir() else "in a folder that does not exist"
+        raise ProblemError(f"certificate {path}: {reason}; it must be a file that can be written")
+
+
+def write(certificate: dict[str, Any], path: Path) -> None:
+    """Write a certificate, wholly or not at all."""
+    fresh = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        fresh.write_text(json.dumps(certificate), encoding="utf-8")
+        fresh.replace(path)
+    except OSError as error:
+        with suppress(OSError):
+            fresh.unlink(missing_ok=True)
+        reason = error.strerror or "it cannot be written"
+        raise ProblemError(f"certificate {path}: {reason}; it must be a file that can be written") from None
+
+
 def _stated(scaled: ScaledProblem, asked: Asked, upper: float) -> dict[str, Any]:
     """What is proven, in the units of the problem."""
     task, size = scaled.problem.task, float(scaled.frame.scale)
     wanted = scaled.problem.requirements.resolved(size, scale_free=scaled.frame.scale_free)
-    boxes = {name: box for name in _BOXES if (box := getattr(wanted, name)) is not None}
+    asked_of = {name: getattr(wanted, name) for name in _BOXES}
+    boxes = {name: box for name, box in asked_of.items() if box and np.isfinite([box.x, box.y]).any()}
     limits = dict(zip(("r1", "r2", "r3", "r4"), map(list, wanted.link_lengths), strict=True))
     return {
         "problem": scaled.problem.name,
