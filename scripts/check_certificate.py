@@ -1,9 +1,10 @@
 """Check a certificate of `grashof prove PROBLEM --certificate FILE`, with mathematics of its own.
 
-Nothing of Grashof is used. Quantities are polynomials of degree 3 in two parameters of [-1, 1], and a radius that
-holds all terms left out and all rounding: of each operation at most 8 units of the last place (2**-52) of the sum
-of the magnitudes that go into it. Square roots and the four operations are taken as IEEE 754 has them, sines and
-cosines as right to 2e-15. Where an enclosure is too wide for a claim, its part is quartered, up to six times.
+Nothing of Grashof is used. Quantities are polynomials of degree 3 in two parameters of [-1, 1], and a radius
+that holds all terms left out and all rounding: of each operation at most 8 units of the last place (2**-52)
+of the sum of the magnitudes that go into it. Square roots and the four operations are taken as IEEE 754 has
+them, sines and cosines as right to 2e-16. Where an enclosure is too wide for a claim, its part is quartered,
+up to six times.
 """
 
 from __future__ import annotations
@@ -12,13 +13,14 @@ import argparse
 import json
 import sys
 import tomllib
-from itertools import combinations
+from itertools import combinations, pairwise
 from math import cos, inf, radians, sin
 from pathlib import Path
 
 import numpy as np
 
 UNIT, HAIR, DEPTH = 2.0**-52, 1e-300, 6
+NEXT = 4 * UNIT  # by which parts overlap: no gaps between them by rounding
 TERMS = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3)]
 AT, DEGREE = {term: k for k, term in enumerate(TERMS)}, [i + j for i, j in TERMS]
 PRODUCTS = [(a, b, AT[p[0] + q[0], p[1] + q[1]]) for a, p in enumerate(TERMS) for b, q in enumerate(TERMS)
@@ -33,6 +35,7 @@ class Poly:
 
     @classmethod
     def of(cls, value, s=0.0, t=0.0, r=0.0):
+        """A value + s_slope s + t_slope t, and what it may be off by."""
         value, s, t, r = np.broadcast_arrays(value, s, t, r)
         c = np.zeros((10, len(value)))
         c[0], c[1], c[2] = value, s, t
@@ -40,6 +43,7 @@ class Poly:
 
     @property
     def size(self):
+        """Greatest magnitude, the radius aside."""
         return np.abs(self.c).sum(axis=0)
 
     def __neg__(self):
@@ -47,7 +51,8 @@ class Poly:
 
     def __add__(self, other):
         if not isinstance(other, Poly):
-            other = Poly.of(np.full(self.c.shape[1], other))
+            value = np.full(self.c.shape[1], other)
+            other = Poly.of(value, r=4 * UNIT * np.abs(value))
         return Poly(self.c + other.c, self.r + other.r + UNIT * (self.size + other.size))
 
     def __sub__(self, other):
@@ -55,7 +60,7 @@ class Poly:
 
     def __mul__(self, other):
         if not isinstance(other, Poly):
-            return Poly(self.c * other, (self.r + 2 * UNIT * self.size) * np.abs(other))
+            return Poly(self.c * other, (self.r + 8 * UNIT * self.size) * np.abs(other))
         c = np.zeros_like(self.c)
         for a, b, k in PRODUCTS:
             c[k] += self.c[a] * other.c[b]
@@ -82,6 +87,7 @@ class Poly:
         return Poly(np.where(good, made.c, 0.0), np.where(good, made.r + 4 * UNIT * made.size, inf))
 
     def inverse(self):
+        """One over it."""
         return self.series(lambda v: 1 / v, (-1, 1, -1), lambda w: w**4 / (1 - w))
 
     def root(self):
@@ -96,22 +102,27 @@ class Poly:
 
 
 def chosen(which, yes, no):
+    """One or the other, entry by entry."""
     return Poly(np.where(which, yes.c, no.c), np.where(which, yes.r, no.r))
 
 
 def square(v):
+    """Squared length."""
     return v[0] * v[0] + v[1] * v[1]
 
 
 def minus(v, w):
+    """From w to v."""
     return v[0] - w[0], v[1] - w[1]
 
 
 def cross(v, w):
+    """Signed area."""
     return v[0] * w[1] - v[1] * w[0]
 
 
 def dot(v, w):
+    """Scalar product."""
     return v[0] * w[0] + v[1] * w[1]
 
 
@@ -121,6 +132,7 @@ def turned(v, re, im):
 
 
 def ranges(box, term):
+    """Bounds of a power product in a box."""
     made = None
     for (low, high), power in zip(box, term, strict=True):
         if power:
@@ -290,18 +302,23 @@ class Checker:
             raise ValueError("the first rectangles do not cover every place that the arms reach")
 
     def zero_free(self, f):
+        """Where a polynomial is of one sign."""
         square_ = [[-1.0, 1.0]] * 2
         return (most(f, square_) < 0) | (most(-f, square_) < 0)
 
     def missed(self, k, s, ds, t, dt):
         """The curve is nowhere in parts of rectangles."""
         p, v, half, side = (part[k] for part in self.rect)
-        x, y = turned((Poly.of(half * s, half * ds), Poly.of(side * t, 0.0, side * dt)), v.real, v.imag)
+        x, y = turned(
+            (Poly.of(half * s, half * (ds + NEXT)), Poly.of(side * t, 0.0, side * (dt + NEXT))),
+            v.real,
+            v.imag,
+        )
         return self.zero_free(self.cubic((x + Poly.of(p.real), y + Poly.of(p.imag))))
 
     def narrowed(self, k, low, high, e, rounds=5):
         """How far from the middle of tubes the curve can be, where it is no farther than e."""
-        s = Poly.of((low + high) / 2, (high - low) / 2 * (1 + 1e-15) + 1e-16)
+        s = Poly.of((low + high) / 2, (high - low) / 2 + NEXT * (1 + np.abs(low) + np.abs(high)))
         for _ in range(rounds):
             f = self.cubic(self.on_tube(k, s, Poly.of(0.0 * e, 0.0, e)))
             level = np.abs(f.c[[0, 1, 3, 6]]).sum(axis=0) + f.r + UNIT * f.size
@@ -313,7 +330,11 @@ class Checker:
     def contained(self, k, s, ds, t, dt):
         """The curve in parts of rectangles is in the tube; how far from its middle is noted."""
         p, v, half, side = (part[k] for part in self.rect)
-        x, y = turned((Poly.of(half * s, half * ds), Poly.of(side * t, 0.0, side * dt)), v.real, v.imag)
+        x, y = turned(
+            (Poly.of(half * s, half * (ds + NEXT)), Poly.of(side * t, 0.0, side * (dt + NEXT))),
+            v.real,
+            v.imag,
+        )
         z = x + Poly.of(p.real), y + Poly.of(p.imag)
         good = self.zero_free(self.cubic(z))
         m, u, length, tilt, bow = (part[k] for part in self.tube)
@@ -328,7 +349,9 @@ class Checker:
             there = finish > begin
             first, last = np.where(there, begin, 0.0), np.where(there, finish, 0.0)
             place = self.on_tube(
-                k, Poly.of((first + last) / 2, (last - first) / 2 + 1e-16), Poly.of(0.0 * e, 0.0, e)
+                k,
+                Poly.of((first + last) / 2, (last - first) / 2 + NEXT * (1 + np.abs(first) + np.abs(last))),
+                Poly.of(0.0 * e, 0.0, e),
             )
             out = self.zero_free(self.cubic(place))
             for c, at, reach in zip(self.within(place, k), (s, t), (ds, dt), strict=True):
@@ -336,15 +359,18 @@ class Checker:
             held &= ~there | out
         inside = (low < end) & (high > -end) & ~good
         cuts = np.linspace(np.clip(low, -end, end), np.clip(high, -end, end), 13)
-        rest = np.maximum.reduce([self.narrowed(k, *cut, e) for cut in zip(cuts, cuts[1:], strict=False)])
+        rest = np.maximum.reduce([self.narrowed(k, *cut, e) for cut in pairwise(cuts)])
         rows = good | held
         np.maximum.at(self.rest, k[rows & inside], rest[rows & inside])
         return rows
 
     def place(self, k, s, ds, t, dt):
+        """Points z in parts of tubes."""
         end = self.ends[k]
         rest = self.narrowed(k, (s - ds) * end, (s + ds) * end, self.rest[k], 2)
-        return self.on_tube(k, Poly.of(s * end, ds * end), Poly.of(t * rest, 0.0, dt * rest))
+        return self.on_tube(
+            k, Poly.of(s * end, (ds + NEXT) * end), Poly.of(t * rest, 0.0, (dt + NEXT) * rest)
+        )
 
     def children(self, k, s, ds, t, dt):
         """Parts of tubes lie in one of two rectangles."""
@@ -361,8 +387,8 @@ class Checker:
         forms += [far + -(self.arms[0] ** 2)]
         if c is None:
             w = [self.moved(z, j) for j in range(4)]
-            for i, j, l in combinations(range(4), 3):
-                a, b = minus(w[j], w[i]), minus(w[l], w[i])
+            for i, j, k in combinations(range(4), 3):
+                a, b = minus(w[j], w[i]), minus(w[k], w[i])
                 area = cross(a, b)
                 forms.append(
                     area * area * (4 * self.longest**2) - square(a) * square(b) * square(minus(a, b))
@@ -383,14 +409,17 @@ class Checker:
         return [cross(a[0], a[1]) * sense, cross(a[1], a[2]) * sense] if sense else []
 
     def far(self, *part):
+        """No arm is so long, or no link."""
         return empty(self.dyad(self.place(*part), None, "", "", ()))
 
     def no_driver(self, *part):
+        """No driver is in parts of tubes."""
         z = self.place(*part)
         forms = self.dyad(z, self.centre(z), "o2", "a", self.links["r2"])
         return np.all([empty(forms + self.order(z, sense)) for sense in self.senses], axis=0)
 
     def no_driven(self, *part):
+        """No driven dyad is in parts of tubes."""
         z = self.place(*part)
         return empty(self.dyad(z, self.centre(z), "o4", "b", self.links["r4"]))
 

@@ -163,10 +163,10 @@ class Table:
         """Halves of pieces, shape (n, 2); negative where one holds no dyad that does."""
         new = np.unique(which[self._children[which, 0] == _OPEN])
         if len(new):
-            halves = self.pieces.tubes[new].halves
-            made, rows = Pieces.of(self.asked, halves)
+            rectangles = self.pieces.tubes[new].halves
+            made, rows = Pieces.of(self.asked, rectangles)
             if self.trail is not None:
-                looked_at = self.trail.look(halves, np.tile(self.trail.pieces[new], 2))
+                looked_at = self.trail.look(rectangles, np.tile(self.trail.pieces[new], 2))
                 self.trail.pieces = np.concatenate([self.trail.pieces, looked_at[rows]])
             numbers = np.full(2 * len(new), NOTHING)
             numbers[rows] = len(self.pieces) + np.arange(len(made))

@@ -140,8 +140,8 @@ def _levels(asked: Asked, pieces: Pieces, trail: Trail, upper: float) -> list[di
     halves[has] = np.stack([order[begin[has]], order[begin[has] + 1]], axis=1)
     held = np.isin(np.arange(count), trail.pieces)
     driver, driven = pieces.driver & held, pieces.driven & held
-    one, other = np.meshgrid(first[driver[first]], first[driven[first]], indexing="ij")
-    one, other = one.ravel(), other.ravel()
+    drivers, others = first[driver[first]], first[driven[first]]
+    one, other = np.repeat(drivers, len(others)), np.tile(others, len(drivers))
     levels = []
     for halved in [*trail.halved, None]:
         now = np.zeros(0, dtype=np.int64) if halved is None else _keys(trail, halved, count)
@@ -171,7 +171,8 @@ def _reasons(asked: Asked, pieces: Pieces, one: IntArray, other: IntArray, upper
     found: dict[str, list[list[int]]] = {"lengths": [], "transmission": [], "together": [], "left": []}
     for begin in range(0, len(one), _AT_ONCE):
         pairs = np.stack([one[begin : begin + _AT_ONCE], other[begin : begin + _AT_ONCE]], axis=1)
-        first, second, third, _ = sifted(asked, pieces, *pairs.T, np.full(len(pairs), upper))
+        least = np.full(len(pairs), upper)
+        first, second, third, _ = sifted(asked, pieces, pairs[:, 0], pairs[:, 1], least)
         step = np.zeros(len(pairs), dtype=np.int64)
         for rows in (first, second, third):
             step[rows] += 1
