@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
@@ -14,8 +15,12 @@ from grashof.problems.values.checks import number_within
 from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.bounds import Bounds, Proving
+from grashof.synth.proof.curve.asked import refusal
+from grashof.synth.proof.curve.trail import Trail
 from grashof.synth.proof.functions.few_pairs import FOUR, THREE
+from grashof.synth.proof.poses.certificate import certificate_of, without_check, writable, write
 from grashof.synth.proof.poses.five_poses import FIVE
+from grashof.synth.proof.poses.four_poses import bounds_of_four
 from grashof.synth.proof.poses.lookout import quantity_of
 from grashof.synth.proof.proof import Claim, Proof, proof_of
 from grashof.synth.proof.provers import bounds_of
@@ -38,6 +43,7 @@ def prove(
     constraints: Sequence[Constraint] = (),
     time_limit: float | None = None,
     stop: Callable[[], bool] | None = None,
+    certificate: str | Path | None = None,
 ) -> Proof:
     """Find out how good the best design can be, or that there is none.
 
@@ -55,6 +61,8 @@ def prove(
         Your own, as for `synthesize`; the bound does without them.
     time_limit, stop
         As for `synthesize`; the bound so far holds.
+    certificate : str or Path, optional
+        File to write what was proven of four poses to, for ``scripts/check_certificate.py``.
 
     Returns
     -------
@@ -91,6 +99,8 @@ def prove(
     beyond = Proof(claim=Claim.REFUSED, quantity=quantity_of(problem).column, why=_BEYOND)
     stroke = isinstance(problem.task, StrokeTask)
     kind = problem.mechanism[0] if stroke else FOUR_BAR
+    if certificate is not None:
+        _certifiable(problem, constraints, Path(certificate))
     if kind not in problem.mechanism:
         return beyond
     alone = problem.for_kind(kind)
@@ -103,11 +113,32 @@ def prove(
     if function:
         return beyond
     scaled = ScaledProblem.of(alone, constraints)
+    trail = None if certificate is None else Trail()
     with stopping(asked):
-        bounds = bounds_of(scaled, proving, at_least)
+        if trail is None:
+            bounds = bounds_of(scaled, proving, at_least)
+        else:
+            bounds = bounds_of_four(scaled, proving, at_least, trail)
     if bounds is None:
         return beyond
+    if trail is not None and certificate is not None:
+        if bounds.refused or bounds.upper >= np.pi / 2:
+            raise ProblemError(
+                f"certificate {certificate}: not written, for no bound was reached: {bounds.why}"
+            )
+        write(certificate_of(scaled, trail, float(np.degrees(bounds.upper)), at_least), Path(certificate))
     return proof_of(scaled.problem, bounds, _known(scaled, bounds), gap)
+
+
+def _certifiable(problem: Problem, constraints: Sequence[Constraint], path: Path) -> None:
+    """Refuse a certificate, before the proof, where there can be none."""
+    four_bar = FOUR_BAR in problem.mechanism
+    scaled = ScaledProblem.of(problem.for_kind(FOUR_BAR) if four_bar else problem, constraints)
+    if refusal(scaled) is None:
+        raise ProblemError(f"certificate {path}: there are certificates of four whole poses only")
+    if without := without_check(scaled):
+        raise ProblemError(f"certificate {path}: certificates cannot state {' and '.join(without)} yet")
+    writable(path)
 
 
 def _of_at_least(proof: Proof, at_least: float | None) -> Proof:

@@ -264,6 +264,14 @@ def prove(
     time_limit: Annotated[
         float | None, typer.Option(help="Seconds after which the bound so far counts.", show_default=False)
     ] = None,
+    certificate: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="File for the proof of four poses, for scripts/check_certificate.py.",
+            show_default=False,
+        ),
+    ] = None,
 ) -> None:
     """Prove how large the transmission angle of the best design can be, or that there is no design.
 
@@ -271,7 +279,7 @@ def prove(
     1: not decided; 2: bad input; 3: environment error; 130: interrupted (Ctrl-C).
     """
     with _errors_told():
-        raise typer.Exit(commands.prove(problem, at_least, gap, time_limit))
+        raise typer.Exit(commands.prove(problem, at_least, gap, time_limit, certificate))
 
 
 @app.command()

@@ -333,14 +333,27 @@ def _point_to(page: Path) -> None:
     say(f"Open {page} in a browser to look at it.", err=True)
 
 
-def prove(problem: str, at_least: float | None, gap: float, time_limit: float | None) -> Exit:
+def prove(
+    problem: str,
+    at_least: float | None,
+    gap: float,
+    time_limit: float | None,
+    certificate: Path | None = None,
+) -> Exit:
     """Print what is proven of a problem."""
     from grashof.synth import prove as proven
     from grashof.wording.proof import bound_line, is_decided, work_line
 
     loaded = load(problem)
     with interruptible() as interrupted:
-        proof = proven(loaded, at_least=at_least, gap=gap, time_limit=time_limit, stop=interrupted)
+        proof = proven(
+            loaded,
+            at_least=at_least,
+            gap=gap,
+            time_limit=time_limit,
+            stop=interrupted,
+            certificate=certificate,
+        )
         say(bound_line(proof, at_least))
         if proof.pairs:
             say(work_line(proof))

@@ -11,7 +11,8 @@ from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, 
 from grashof.synth.proof.curve.asked import Asked
 from grashof.synth.proof.curve.centres import Centres, centres_of
 from grashof.synth.proof.curve.dyads import lengths_of, possible_arms, roles_of
-from grashof.synth.proof.curve.pieces import SLENDER, Tubes, contracted
+from grashof.synth.proof.curve.pieces import SLENDER, WIDER, Tubes, contracted
+from grashof.synth.proof.curve.trail import ROOT, Trail
 from grashof.synth.proof.forms.forms import Form, Span
 from grashof.synth.theory.stopping import give_way
 
@@ -99,7 +100,7 @@ def squares(asked: Asked) -> Tubes:
     step = 2 * reach / SQUARES
     even = -reach + step * (np.arange(SQUARES) + 0.5)
     middle = (even[:, None] + 1j * even).ravel()
-    size = np.full(len(middle), step / 2)
+    size = np.full(len(middle), step / 2 * (1 + WIDER))  # no gaps by rounding
     return Tubes.rectangles(middle, np.ones_like(middle), size, size)
 
 
@@ -113,18 +114,21 @@ class Table:
     pieces : Pieces
     rectangles : int
         How many were looked at.
+    trail : Trail, optional
+        Where these are noted.
     """
 
     asked: Asked
     pieces: Pieces
     rectangles: int = 0
+    trail: Trail | None = None
     _children: IntArray = field(init=False)
 
     def __post_init__(self) -> None:
         self._children = np.full((len(self.pieces), 2), OPEN)
 
     @classmethod
-    def covering(cls, asked: Asked) -> Table:
+    def covering(cls, asked: Asked, trail: Trail | None = None) -> Table:
         """Pieces that hold all dyads that may meet what is asked of one.
 
         Raises
@@ -135,18 +139,24 @@ class Table:
             Asked to stop.
         """
         active = squares(asked)
+        parents = np.full(len(active), ROOT)
+        noted = Trail() if trail is None else trail
         done: list[Pieces] = []
+        places: list[IntArray] = []
         count = 0
         while len(active):
             give_way()
             count += len(active)
             if count > MOST_RECTANGLES:
                 raise TooMany("the curve takes too many pieces to be covered")
-            found, _ = Pieces.of(asked, active)
-            ready = found.resolved
+            found, rows = Pieces.of(asked, active)
+            numbers, ready = noted.look(active, parents)[rows], found.resolved
             done.append(found[ready])
-            active = found.tubes[~ready].halves
-        return cls(asked, Pieces.joined(*done), count)
+            places.append(numbers[ready])
+            active, parents = found.tubes[~ready].halves, np.tile(numbers[~ready], 2)
+        noted.pieces = np.concatenate(places)
+        noted.first = len(noted.pieces)
+        return cls(asked, Pieces.joined(*done), count, trail)
 
     def __len__(self) -> int:
         return len(self.pieces)
@@ -155,7 +165,11 @@ class Table:
         """Halves of pieces, shape (n, 2); negative where one holds no dyad that does."""
         new = np.unique(which[self._children[which, 0] == OPEN])
         if len(new):
-            made, rows = Pieces.of(self.asked, self.pieces.tubes[new].halves)
+            rectangles = self.pieces.tubes[new].halves
+            made, rows = Pieces.of(self.asked, rectangles)
+            if self.trail is not None:
+                looked_at = self.trail.look(rectangles, np.tile(self.trail.pieces[new], 2))
+                self.trail.pieces = np.concatenate([self.trail.pieces, looked_at[rows]])
             numbers = np.full(2 * len(new), NOTHING)
             numbers[rows] = len(self.pieces) + np.arange(len(made))
             self._children[new] = numbers.reshape(2, -1).T

@@ -120,6 +120,8 @@ class Search(Bracket):
             halved = self.halved(table, self.left)
             if halved is None:
                 return
+            if table.trail is not None:
+                table.trail.halved.append((self.left.driver, self.left.driven))
             self.left, self.levels = halved, self.levels + 1
 
     def first(self, table: Table) -> Pairs | None:

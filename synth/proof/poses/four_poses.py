@@ -10,12 +10,15 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.bounds import STOPPED, TOO_SMALL, Bounds, Proving, logged
 from grashof.synth.proof.curve.asked import Asked, left_out, refusal, with_forms
 from grashof.synth.proof.curve.table import Table, TooMany
+from grashof.synth.proof.curve.trail import Trail
 from grashof.synth.proof.poses.branch_and_bound import MOST_LEFT, MOST_LEVELS, Search
 from grashof.synth.proof.poses.lookout import Lookout
 from grashof.synth.theory.stopping import Stopped
 
 
-def bounds_of_four(scaled: ScaledProblem, proving: Proving, at_least: float | None = None) -> Bounds | None:
+def bounds_of_four(
+    scaled: ScaledProblem, proving: Proving, at_least: float | None = None, trail: Trail | None = None
+) -> Bounds | None:
     """Bounds of the best design; None where the question does not arise.
 
     Parameters
@@ -24,6 +27,8 @@ def bounds_of_four(scaled: ScaledProblem, proving: Proving, at_least: float | No
     proving : Proving
     at_least : float, deg, optional
         Only decide whether a design has that much: end with the first one.
+    trail : Trail, optional
+        Where what was looked at is noted, for a certificate.
     """
     why = refusal(scaled)
     if why is None:
@@ -38,7 +43,7 @@ def bounds_of_four(scaled: ScaledProblem, proving: Proving, at_least: float | No
     look = Lookout(about, asked)
     begun = (0, 0)
     try:
-        table = Table.covering(asked)
+        table = Table.covering(asked, trail)
         begun = int(table.pieces.driver.sum()), int(table.pieces.driven.sum())
         search.run(table, look, content=at_least is not None)
         why = "" if search.done or (search.lower and at_least is not None) else _open(search)

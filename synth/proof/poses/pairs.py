@@ -52,15 +52,22 @@ def rows_left(
     asked: Asked, pieces: Pieces, driver: IntArray, driven: IntArray, least: FloatArray
 ) -> tuple[IntArray, FloatArray]:
     """Which pairs may hold a linkage that transmits more than `least`, rad, and their bounds."""
-    one = Side.of(pieces, driver, is_driver=True)
-    other = Side.of(pieces, driven, is_driver=False)
-    return sides_left(asked, one, other, pieces.sense[driver], least)
+    sides = Side.of(pieces, driver, is_driver=True), Side.of(pieces, driven, is_driver=False)
+    return sides_left(asked, *sides, pieces.sense[driver], least)
 
 
 def sides_left(
     asked: Asked, one: Side, other: Side, sense: IntArray, least: FloatArray
 ) -> tuple[IntArray, FloatArray]:
     """The same of drivers, which meet the poses in a sense, and driven dyads, entry by entry."""
+    _, _, rows, bound = sifted(asked, one, other, sense, least)
+    return rows, bound
+
+
+def sifted(
+    asked: Asked, one: Side, other: Side, sense: IntArray, least: FloatArray
+) -> tuple[IntArray, IntArray, IntArray, FloatArray]:
+    """Which are left by lengths, then by what they transmit, then by both together; their bounds."""
     count = len(sense)
     lengths: Lengths = (other.c - one.c).norm, one.length, (other.z - one.z).norm, other.length
     first = np.flatnonzero(lengths_allowed(asked.loop, lengths) & _directed(asked, one, other))
@@ -70,8 +77,8 @@ def sides_left(
     passed = _passed(asked, one, other, lengths, sense)
     bound, conditions = transmission_bound(asked.loop, lengths, _arms(asked, one, other), passed, least)
     second = np.flatnonzero(bound > least)
-    second = second[~nothing_left([each[second] for each in conditions])]
-    return first[second], bound[second]
+    third = second[~nothing_left([each[second] for each in conditions])]
+    return first, first[second], first[third], bound[third]
 
 
 def _arms(asked: Asked, one: Side, other: Side) -> list[tuple[Span, Span]]:
