@@ -40,7 +40,7 @@ class Proof:
         design has more than `upper`; none: there is no design; followed: every solution that is known
         numerically was followed; refused: there is no proof.
     complete : bool
-        Whether all solutions are known.
+        Whether all solutions are known; not where they are only followed.
     quantity : str
         What is bounded, by its column.
     lower, upper : float or None, deg
@@ -57,7 +57,7 @@ class Proof:
     region_size : float, sizes
         Half the length of the pieces that they were told apart by; 0 where they are not known.
     rounding, why : str
-        How rounding is accounted for; why there is no proof, or no closer bound.
+        How rounding is accounted for; why there is no proof, or no closer bound; what was followed.
     """
 
     claim: Claim

@@ -7,6 +7,7 @@ import math
 from grashof.problems import FourBar
 from grashof.problems.values.checks import counted
 from grashof.synth import Result
+from grashof.synth.proof.points.followed import ROUNDING as POINTS_ROUNDING
 from grashof.synth.proof.poses.lookout import quantity_of
 from grashof.synth.proof.proof import Claim, Proof
 
@@ -63,6 +64,8 @@ def _reached(proof: Proof, at_least: float | None) -> bool:
 def _line(proof: Proof, known: str) -> str:
     if proof.claim is Claim.REFUSED:
         return f"Not proven: {proof.why}."
+    if proof.claim is Claim.FOLLOWED:
+        return f"All followed, which is no proof of all: {proof.why}."
     if proof.upper is None or proof.upper == proof.lower:
         return _all_line(proof, known)
     angle = f"{_up(proof.upper)} deg"
@@ -128,6 +131,8 @@ def work_line(proof: Proof) -> str:
     '42 by 40 pieces of the curve of dyads, 3049 pairs, halved 5 times, 0.10 s'
     """
     first, second = proof.pieces
+    if proof.rounding == POINTS_ROUNDING:
+        return f"Krawczyk's test of each listed linkage, {proof.seconds:.2f} s"
     if not proof.pairs:
         return f"{counted(first, 'dyad')}, each in a box of its own, {proof.seconds:.2f} s"
     return (

@@ -31,8 +31,8 @@ def boxes(passing: Passing, unknowns: FloatArray) -> tuple[FloatArray, FloatArra
 
     Notes
     -----
-    With Y near the inverse of the slopes J at the middle c, and D a bound of how they vary in the box, a box of
-    half-widths r holds exactly one zero of F where |Y F(c)| + (|1 - Y J| + |Y| D) r < r (Krawczyk,
+    With Y near the inverse of the slopes J at the middle c, and D a bound of how they vary in the box, a
+    box of half-widths r holds exactly one zero of F where |Y F(c)| + (|1 - Y J| + |Y| D) r < r (Krawczyk,
     *Computing* 4, 1969).
 
     Examples
@@ -50,7 +50,8 @@ def boxes(passing: Passing, unknowns: FloatArray) -> tuple[FloatArray, FloatArra
             middle = middle - _times(inverses(at.slopes), at.value)
         at = passing.rows(middle, np.zeros_like(middle))
         inverse = inverses(at.slopes)
-        left = _times(np.abs(inverse), np.abs(at.value) + at.rounding) * _WIDER
+        rounding = at.rounding + _ROUNDING * np.abs(at.value)
+        left = (np.abs(_times(inverse, at.value)) + _times(np.abs(inverse), rounding)) * _WIDER
         radius, proven = np.full_like(middle, np.nan), np.zeros(len(middle), dtype=bool)
         for factor in _INFLATED:
             tried = factor * left + _LEAST * (1 + np.abs(middle))
@@ -63,7 +64,7 @@ def boxes(passing: Passing, unknowns: FloatArray) -> tuple[FloatArray, FloatArra
 def holds_one(
     passing: Passing, middle: FloatArray, inverse: FloatArray, left: FloatArray, radius: FloatArray
 ) -> BoolArray:
-    """Krawczyk's test: which boxes of half-widths `radius`, shape (n, K), hold exactly one zero, shape (n,)."""
+    """Krawczyk's test: which boxes of half-widths `radius`, (n, K), hold exactly one zero, shape (n,)."""
     at = passing.rows(middle, radius)
     product, size = inverse @ at.slopes, np.abs(inverse) @ np.abs(at.slopes)
     varies = np.abs(np.eye(middle.shape[1]) - product) + _ROUNDING * size + np.abs(inverse) @ at.spread

@@ -15,6 +15,8 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
 
 _ROUNDING = 32 * np.finfo(float).eps  # of what is added up; no value takes more than ten operations
+# The same of values, in extended precision where the machine has it; pairs of doubles are not relied on.
+_FINE = 32 * max(float(np.finfo(np.longdouble).eps), 1e-19)
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +75,7 @@ class Passing:
     Parameters
     ----------
     points : ndarray of complex, shape (N,), sizes
-        The first at the origin.
+        The first at the origin; in extended precision, for values as precise.
     kind : str
         Of linkage.
     """
@@ -103,14 +105,18 @@ class Passing:
         """
         second, own = _SECOND[self.kind]
         points = self.points[1:]
-        half = unknowns[:, 4 + own :] / 2
+        exact: FloatArray = np.asarray(unknowns, np.longdouble)
+        half = exact[:, 4 + own :] / 2
         turned = Turned(2j * np.sin(half) * np.exp(1j * half), points, radius[:, 4 + own :])
-        crank = _link(unknowns[:, :4], radius[:, :4], turned)
-        other = second(unknowns[:, 4 : 4 + own], radius[:, 4 : 4 + own], turned)
-        both = np.concatenate([crank.value, other.value], axis=1)
-        size = np.concatenate([crank.size, other.size], axis=1)
-        slopes, spread = (_joined(getattr(crank, x), getattr(other, x)) for x in ("slopes", "spread"))
-        return Rows(both, _ROUNDING * size, slopes, spread)
+        dyads = (
+            _link(exact[:, :4], radius[:, :4], turned),
+            second(exact[:, 4 : 4 + own], radius[:, 4 : 4 + own], turned),
+        )
+        value, size = (
+            np.concatenate([getattr(x, name) for x in dyads], axis=1) for name in ("value", "size")
+        )
+        slopes, spread = (_joined(*(getattr(x, name) for x in dyads)) for name in ("slopes", "spread"))
+        return Rows(*(np.asarray(part, np.float64) for part in (value, _FINE * size, slopes, spread)))
 
 
 def _joined(crank: FloatArray, other: FloatArray) -> FloatArray:
@@ -144,7 +150,8 @@ def _link(own: FloatArray, radius: FloatArray, turned: Turned) -> Dyad:
         np.stack([
             *2 * [off_t * (arm + off_m) + chord * off_m + _ROUNDING * (near + np.abs(moved))],
             *2 * [off_t * (far + off_o) + chord * off_o + _ROUNDING * (near + np.abs(o) * chord)],
-            (far + off_o) * ((arm + off_m) * off_t + off_m) + off_o * arm + _ROUNDING * (near + np.abs(o)) * arm,
+            (far + off_o) * ((arm + off_m) * off_t + off_m)
+            + (off_o + _ROUNDING * (near + np.abs(o))) * arm,
         ], axis=-1),
     )  # fmt: skip
 

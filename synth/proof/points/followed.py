@@ -69,7 +69,12 @@ class Enclosed:
 
 
 def proof_of_points(
-    scaled: ScaledProblem, designs: Sequence[Candidate], counts: Mapping[str, int], *, stopped: bool, whole: bool
+    scaled: ScaledProblem,
+    designs: Sequence[Candidate],
+    counts: Mapping[str, int],
+    *,
+    stopped: bool,
+    whole: bool,
 ) -> Proof | None:
     """What is known of a list where finitely many linkages pass the points exactly; None of other problems.
 
@@ -108,7 +113,8 @@ def enclosed_designs(scaled: ScaledProblem, designs: Sequence[Candidate]) -> Enc
     """Designs of one kind that pass all points of a problem, each beside an exact one."""
     points = _points(scaled)
     size = scaled.problem.task.size
-    passing = Passing((points - points[0]) / size, scaled.kind.mechanism)
+    exact = np.asarray(points, np.clongdouble)
+    passing = Passing((exact - exact[0]) / size, scaled.kind.mechanism)
     unknowns = [unknowns_of(one, points, size) for one in designs]
     return Enclosed.of(passing, np.array(unknowns).reshape(len(unknowns), 2 * (len(points) - 1)))
 
@@ -152,7 +158,8 @@ def _leaves_no_freedom(scaled: ScaledProblem) -> bool:
 def _points(scaled: ScaledProblem) -> ComplexArray:
     """The points, length, without a last one that repeats the first."""
     task = scaled.problem.task
-    return task.positions[: -1 if task.returns else None] @ np.array([1, 1j])
+    points: ComplexArray = task.positions[: -1 if task.returns else None] @ np.array([1, 1j])
+    return points
 
 
 def _why_not_all(known: int, counts: Mapping[str, int], *, stopped: bool, whole: bool) -> str:
