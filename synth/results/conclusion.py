@@ -68,8 +68,14 @@ def conclude(
     elif bounds is not None:
         proof = proof_of(problem, bounds, best_listed(problem, designs), run.proving.gap)
     else:
-        found = ledger.tally.found
-        proof = proof_of_points(scaled, designs, found, stopped=not ledger.complete, whole=ledger.whole)
+        proof = proof_of_points(
+            scaled,
+            designs,
+            ledger.tally.found,
+            stopped=not ledger.complete,
+            whole=ledger.whole,
+            enough=ledger.enough,
+        )
     if proof is not None and atlas is not None:
         proof = replace(proof, regions=atlas.count, region_size=atlas.size)
     return Result(

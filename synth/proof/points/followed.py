@@ -75,6 +75,7 @@ def proof_of_points(
     *,
     stopped: bool,
     whole: bool,
+    enough: bool = False,
 ) -> Proof | None:
     """What is known of a list where finitely many linkages pass the points exactly; None of other problems.
 
@@ -84,8 +85,9 @@ def proof_of_points(
     designs : sequence of Candidate
     counts : mapping of str to int
         Of what the search looked at.
-    stopped, whole : bool
-        Whether the search was stopped; and whether it tried all that it found.
+    stopped, whole, enough : bool
+        Whether the search was stopped; whether it tried all that it found; whether it did not as it had as
+        many designs as it was asked for.
     """
     if not _leaves_no_freedom(scaled):
         return None
@@ -96,9 +98,10 @@ def proof_of_points(
     if not isinstance(finder, EveryLinkage):
         why = f"the search does not follow the {known} solutions that are known"
     else:
-        why = _why_not_all(known, counts, stopped=stopped, whole=whole)
+        why = _why_not_all(known, counts, stopped=stopped, whole=whole or enough)
     claim = Claim.REFUSED if why else Claim.FOLLOWED
     said = why or f"{known} of {known} known solutions"
+    said += "; as many designs as were asked for are listed, not all" * (enough and not why)
     return Proof(
         claim=claim,
         quantity=quantity_of(problem).column,

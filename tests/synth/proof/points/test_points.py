@@ -180,20 +180,29 @@ def test_wrong_slopes_prove_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def said_of(
-    scaled: ScaledProblem, design: Candidate, *, stopped: bool = False, whole: bool = True, **counts: int
+    scaled: ScaledProblem,
+    design: Candidate,
+    *,
+    stopped: bool = False,
+    whole: bool = True,
+    enough: bool = False,
+    **counts: int,
 ) -> tuple[Claim, str]:
     """What is claimed of a list of one design, and why, without what is enclosed."""
     named = {{"through": THROUGH, "followed": FOLLOWED}[name]: value for name, value in counts.items()}
-    made = proof_of_points(scaled, [design], named, stopped=stopped, whole=whole)
+    made = proof_of_points(scaled, [design], named, stopped=stopped, whole=whole, enough=enough)
     assert made is not None
     assert (made.complete, made.upper) == (False, None)
     assert made.lower == pytest.approx(np.degrees(design.verdict.transmission_min_task))
-    return made.claim, made.why.partition(";")[0]
+    return made.claim, made.why.rpartition("; ")[0]
 
 
 def test_only_a_whole_search_without_losses_is_followed() -> None:
     one = planted("four-bar", 9, 1)
     assert said_of(*one, through=9, followed=1442) == (Claim.FOLLOWED, "1442 of 1442 known solutions")
+    short = "1442 of 1442 known solutions; as many designs as were asked for are listed, not all"
+    assert said_of(*one, through=9, followed=1442, whole=False, enough=True) == (Claim.FOLLOWED, short)
+    assert said_of(*one, whole=False, enough=True)[0] is Claim.REFUSED
     lost = (Claim.REFUSED, "of 1442 known solutions 2 were lost on the way")
     assert said_of(*one, through=9, followed=1440) == lost
     assert said_of(*one, through=9, followed=1443)[0] is Claim.REFUSED
