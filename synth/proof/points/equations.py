@@ -150,8 +150,7 @@ def _link(own: FloatArray, radius: FloatArray, turned: Turned) -> Dyad:
         np.stack([
             *2 * [off_t * (arm + off_m) + chord * off_m + _ROUNDING * (near + np.abs(moved))],
             *2 * [off_t * (far + off_o) + chord * off_o + _ROUNDING * (near + np.abs(o) * chord)],
-            (far + off_o) * ((arm + off_m) * off_t + off_m)
-            + (off_o + _ROUNDING * (near + np.abs(o))) * arm,
+            far * (arm * off_t + off_m) + off_o * (arm + off_m) + _ROUNDING * (near + np.abs(o)) * arm,
         ], axis=-1),
     )  # fmt: skip
 

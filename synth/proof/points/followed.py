@@ -51,20 +51,19 @@ class Enclosed:
         within = np.max(np.abs(unknowns - middle) + radius, axis=1, initial=0.0)
         return cls(middle, radius, np.where(within <= NEAR, within, np.nan))
 
-    @property
-    def words(self) -> str:
-        """How many are enclosed, and how near they are.
+    def words(self, kind: str) -> str:
+        """How many linkages of a kind are enclosed, and how near they are.
 
         Examples
         --------
         >>> box = np.zeros((2, 16))
-        >>> Enclosed(box, box, np.array([3.2e-12, np.nan])).words
-        '1 of 2 listed linkages enclosed, within 4e-12 sizes of an exact one'
+        >>> Enclosed(box, box, np.array([3.2e-12, np.nan])).words("four-bar")
+        '1 of 2 listed four-bars enclosed, within 4e-12 sizes of an exact one'
         """
         proven = self.within[np.isfinite(self.within)]
         if not len(self.within):
-            return "no linkage is listed"
-        said = f"{len(proven)} of {counted(len(self.within), 'listed linkage')} enclosed"
+            return f"no {kind} is listed"
+        said = f"{len(proven)} of {counted(len(self.within), f'listed {kind}')} enclosed"
         return f"{said}, within {_up(float(proven.max()))} sizes of an exact one" if len(proven) else said
 
 
@@ -108,7 +107,7 @@ def proof_of_points(
         lower=best_listed(problem, designs),
         seconds=round(perf_counter() - since, 4),
         rounding=ROUNDING,
-        why=f"{said}; {enclosed.words}",
+        why=f"{said}; {enclosed.words(scaled.kind.mechanism)}",
     )
 
 

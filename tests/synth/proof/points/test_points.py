@@ -90,7 +90,7 @@ def test_the_slopes_are_those_of_the_equations(kind: str, count: int) -> None:
 
 
 @pytest.mark.parametrize(("kind", "count"), KINDS)
-@pytest.mark.parametrize("width", [1e-4, 1e-2, 0.3])
+@pytest.mark.parametrize("width", [1e-4, 1e-2, 0.3, 3.0])
 def test_slopes_in_a_box_keep_within_the_spread(kind: str, count: int, width: float) -> None:
     # Corners and random points; the spread is not idle either.
     rng, closest = np.random.default_rng(0), 0.0
