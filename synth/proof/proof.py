@@ -41,7 +41,7 @@ class Proof:
         design has more than `upper`; none: there is no design; followed: every solution that is known
         numerically was followed; refused: there is no proof.
     complete : bool
-        Whether all solutions are known.
+        Whether all solutions are known; not where they are only followed.
     mechanism : str
         Of which kind of linkage.
     quantity : str
@@ -50,7 +50,7 @@ class Proof:
         Of the best design that is listed, as judged; and what no design exceeds.
     pieces : tuple of int
         Pieces of the curve, or plane, of dyads, to begin with: that may be drivers, and driven; of five poses
-        dyads; of a stroke pieces of families of one number, and 0.
+        dyads; of a stroke pieces of families of one number, and 0; of points listed linkages, and 0.
     pairs, levels : int
         Pairs of pieces, or pieces, that were bounded, and how often what was left was halved; of three poses,
         a part.
@@ -62,7 +62,8 @@ class Proof:
     region_size : float, sizes
         Half the length of the pieces that they were told apart by; 0 where they are not known.
     rounding, why : str
-        How rounding is accounted for; why there is no proof, no closer bound, or no design on one side.
+        How rounding is accounted for; why there is no proof, no closer bound, or no design on one side; what
+        was followed.
     """
 
     claim: Claim

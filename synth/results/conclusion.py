@@ -8,6 +8,7 @@ from dataclasses import replace
 from grashof.synth.designs.families import listed
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.bounds import Bounds
+from grashof.synth.proof.points.followed import proof_of_points
 from grashof.synth.proof.poses.atlas import Atlas
 from grashof.synth.proof.poses.five_poses import Certified
 from grashof.synth.proof.proof import best_listed, proof_of, proof_of_all
@@ -66,6 +67,15 @@ def conclude(
         proof = proof_of_all(problem, bounds, designs, whole=ledger.exhaustive)
     elif bounds is not None:
         proof = proof_of(problem, bounds, best_listed(problem, designs), run.proving.gap)
+    else:
+        proof = proof_of_points(
+            scaled,
+            designs,
+            ledger.tally.found,
+            stopped=not ledger.complete,
+            whole=ledger.whole,
+            enough=ledger.enough,
+        )
     if proof is not None and atlas is not None:
         proof = replace(proof, regions=atlas.count, region_size=atlas.size)
     return Result(

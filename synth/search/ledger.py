@@ -212,6 +212,11 @@ class Ledger:
         return self.complete and not self.enough and self.solved < self.starts
 
     @property
+    def whole(self) -> bool:
+        """Whether all rounds were gone through, and none ended for want of use."""
+        return self.exhaustive and not self._no_use
+
+    @property
     def _came_up(self) -> int:
         """In how many rounds the least error came up."""
         return sum(error <= max(self.least * (1 + SAME), EXACT_ERROR) for error in self._errors)

@@ -25,11 +25,13 @@ from grashof.synth.starts.search_targets import judged, search_targets
 from grashof.synth.starts.selection import starts_of
 from grashof.synth.theory.cognates import cognate_points, driven_at_o4
 from grashof.synth.theory.eight_point_linkages import Through, slider_cranks_through
-from grashof.synth.theory.nine_points import coupler_turns, linkages_through
+from grashof.synth.theory.eight_points import SLIDER_CRANKS
+from grashof.synth.theory.nine_points import TRIPLETS, coupler_turns, linkages_through
 
 BARREN = 12  # so many rounds on end without a start end the search
 SEARCHES = 6  # rounds of the search before all linkages through nine points are computed
 THROUGH = "linkages through the points"  # counted
+FOLLOWED = "known solutions followed"  # counted: complex ones among them, cognates as one
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +60,7 @@ class EveryLinkage(PrecisionPoints, ABC):
     patience: ClassVar[float] = np.inf
     points: ClassVar[int]
     mechanism: ClassVar[str]
+    solutions: ClassVar[int]  # that are known for general points
 
     @property
     def rounds_a_pass(self) -> int:  # type: ignore[override]
@@ -90,9 +93,10 @@ class EveryLinkage(PrecisionPoints, ABC):
     def _all_linkages(self, rng: np.random.Generator) -> Round:
         """The feasible ones of all linkages through the points."""
 
-    def _settled(self, linkages: Screened, chosen: IntArray, every: int) -> Round:
+    def _settled(self, linkages: Screened, chosen: IntArray, every: int, followed: int) -> Round:
         starts = [replace(start, settled=True) for start in starts_of(self.scaled, linkages, chosen)]
-        return Round(starts, {"feasible finds": int(_usable(linkages).sum()), THROUGH: every})
+        feasible = int(_usable(linkages).sum())
+        return Round(starts, {"feasible finds": feasible, THROUGH: every, FOLLOWED: followed})
 
     def obstacle(self, _rng: np.random.Generator, counts: Mapping[str, int], /) -> str:
         """That none of all linkages does it; empty where they were not computed."""
@@ -106,16 +110,18 @@ class NinePoints(EveryLinkage):
 
     points: ClassVar[int] = 9
     mechanism: ClassVar[str] = FourBar.MECHANISM
+    solutions: ClassVar[int] = TRIPLETS
 
     def _all_linkages(self, rng: np.random.Generator) -> Round:
         """Of every triplet of cognates through the points the first feasible one; the others follow."""
         target = search_targets(self.scaled)
-        through = linkages_through(target.points, rng)
+        through, followed = linkages_through(target.points, rng)
         linkages = judged(self.scaled, target, *_at_points(_driven_from_both_sides(through), target))
         feasible = _usable(linkages).reshape(-1, 3, 2)
         usable = feasible.any(axis=2)
         first = usable & (np.cumsum(usable, axis=1) == 1)
-        return self._settled(linkages, np.flatnonzero(feasible & first[..., None]), 3 * len(through))
+        chosen = np.flatnonzero(feasible & first[..., None])
+        return self._settled(linkages, chosen, 3 * len(through), followed)
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,13 +130,15 @@ class EightPoints(EveryLinkage):
 
     points: ClassVar[int] = 8
     mechanism: ClassVar[str] = SliderCrank.MECHANISM
+    solutions: ClassVar[int] = SLIDER_CRANKS.count
 
     def _all_linkages(self, rng: np.random.Generator) -> Round:
         """All that are feasible; cognates among them are linkages of their own."""
         target = search_targets(self.scaled)
         through = slider_cranks_through(target.points, rng)
         linkages = judged(self.scaled, target, *_sliders_at_points(through, target))
-        return self._settled(linkages, np.flatnonzero(_usable(linkages)), len(through.theta2))
+        chosen = np.flatnonzero(_usable(linkages))
+        return self._settled(linkages, chosen, len(through.theta2), through.solutions)
 
 
 def _usable(linkages: Screened) -> BoolArray:

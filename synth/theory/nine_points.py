@@ -8,17 +8,21 @@ points (`monodromy`), are kept as data, and are followed from there to the point
 
 from __future__ import annotations
 
+from contextlib import suppress
 from importlib.resources import files
 
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, ComplexArray
 from grashof.synth.theory.homotopy import corrected, follow
+from grashof.synth.theory.stopping import Stopped
 
 TRIPLETS = 1442
 REAL = 1e-6  # a vector and its conjugate agree so far, relative to the largest, in a real linkage
 SAME = 1e-6  # relative difference of two triplets
-CAREFUL = 1e-9  # tolerance for paths that failed or met
+CAREFUL, STEPS = 1e-8, 4000  # tolerance and most steps, in more digits, for paths that failed or met
+REFINED = 4  # Newton steps on ends, so that equal ones are seen to be
+RUNS = 3  # with paths of their own, until all solutions are found
 
 
 def system(
@@ -83,7 +87,7 @@ def triplet_invariants(unknowns: ComplexArray) -> ComplexArray:
     return np.stack(invariants, axis=1)
 
 
-def linkages_through(points: ComplexArray, rng: np.random.Generator) -> ComplexArray:
+def linkages_through(points: ComplexArray, rng: np.random.Generator) -> tuple[ComplexArray, int]:
     """One real linkage of every triplet of cognates that passes nine points, in any order and branch.
 
     Parameters
@@ -91,32 +95,68 @@ def linkages_through(points: ComplexArray, rng: np.random.Generator) -> ComplexA
     points : ndarray of complex, shape (9,)
         Distinct.
     rng : numpy.random.Generator
-        Turns the path from the known solutions, so that it meets no singular point.
+        Turns the paths from the known solutions, so that they meet no singular point.
 
     Returns
     -------
-    ndarray of complex, shape (n, 5)
+    linkages : ndarray of complex, shape (n, 5)
         O2, O4, and A, B, P at the first point. All of them, except that now and then a path is lost.
+    solutions : int
+        Complex triplets that were found: where none is lost, `TRIPLETS`.
 
     Examples
     --------
     >>> from grashof import load
     >>> points = load("nine-points").task.points @ [1, 1j]  # near a circle
-    >>> found = linkages_through(points, np.random.default_rng(0))
+    >>> found, solutions = linkages_through(points, np.random.default_rng(0))
     >>> len(found), bool(np.abs(np.abs(coupler_turns(found, points)) - 1).max() < 1e-6)
     (21, True)
     """
     size = np.abs(points[:, None] - points).max() / 2
     steps = (points[1:] - points[0]) / size
     target = np.concatenate([steps, steps.conj()])
+    found = _all_solutions(target, rng)
+    real = _real(found, target)
+    x, _, a, _, y, _, b, _ = real.T
+    placed: ComplexArray = points[0] + size * np.stack([a, b, x, y, np.zeros_like(a)], axis=1)
+    return placed, len(found)
+
+
+def _all_solutions(target: ComplexArray, rng: np.random.Generator) -> ComplexArray:
+    """One solution of every triplet for the displacements of real points, complex ones and all, (n, 8).
+
+    What one run has lost, another one finds; so does the mirror image of a solution, which is one, too.
+    """
+    found = _run(target, rng)
+    with suppress(Stopped):
+        for _ in range(RUNS - 1):
+            if len(found) >= TRIPLETS:
+                break
+            found = distinct(np.concatenate([found, _run(target, rng)]))
+    return found
+
+
+def _run(target: ComplexArray, rng: np.random.Generator) -> ComplexArray:
+    """Where paths of their own lead from all known solutions, each end once, with its mirror image."""
     start, solutions = _turned(*known(), rng)
     found, reached = follow(system, solutions, start, target)
     again = ~reached | _met_another(found, reached)
-    found[again], reached[again] = follow(system, solutions[again], start, target, CAREFUL)
-    found = _real(found[reached], target)
-    x, _, a, _, y, _, b, _ = found.T
-    placed: ComplexArray = points[0] + size * np.stack([a, b, x, y, np.zeros_like(a)], axis=1)
-    return placed
+    found[again], reached[again] = follow(_precise, solutions[again], start, target, CAREFUL, STEPS)
+    ends = found[reached]
+    ends = np.concatenate([ends, ends[:, [1, 0, 3, 2, 5, 4, 7, 6]].conj()])
+    for _ in range(REFINED):
+        ends, _ = corrected(_precise, ends, np.broadcast_to(target, (len(ends), 16)))
+    return distinct(ends[np.isfinite(ends).all(axis=1)])
+
+
+def _precise(
+    unknowns: ComplexArray, displacements: ComplexArray, change: ComplexArray
+) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    """The same as `system` in extended precision, where the machine has it."""
+    exact = (np.asarray(value, np.clongdouble) for value in (unknowns, displacements, change))
+    residual, jacobian, moved = system(*exact)  # type: ignore[arg-type]
+    double = np.complex128
+    return residual.astype(double), jacobian.astype(double), moved.astype(double)
 
 
 def coupler_turns(points: ComplexArray, targets: ComplexArray) -> ComplexArray:

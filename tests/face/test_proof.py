@@ -139,6 +139,10 @@ def a_proof(**parts: Any) -> Proof:
             a_proof(claim=Claim.REFUSED, upper=None, why="poses 1 and 2 are equal"),
             "Not proven: poses 1 and 2 are equal.",
         ),
+        (
+            a_proof(claim=Claim.FOLLOWED, lower=3.0, upper=None, why="1442 of 1442 known solutions; 1 of 1"),
+            "All followed, which is no proof of all: 1442 of 1442 known solutions; 1 of 1.",
+        ),
     ],
 )
 def test_lines_say_what_is_and_is_not_proven(proof: Proof, line: str) -> None:

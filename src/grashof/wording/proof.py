@@ -62,6 +62,8 @@ def _reached(proof: Proof, at_least: float | None) -> bool:
 def _line(proof: Proof, known: str) -> str:
     if proof.claim is Claim.REFUSED:
         return f"Not proven: {proof.why}."
+    if proof.claim is Claim.FOLLOWED:
+        return f"All followed, which is no proof of all: {proof.why}."
     if proof.upper is None or (not proof.pairs and proof.upper == proof.lower):
         return _all_line(proof, known)
     angle, none = f"{_up(proof.upper)} deg", f"no {proof.mechanism} meets these requirements"
@@ -131,6 +133,8 @@ def work_line(proof: Proof) -> str:
     halved = f"halved {counted(proof.levels, 'time')}, {proof.seconds:.2f} s"
     if not first:
         return f"{proof.seconds:.2f} s"
+    if not proof.pairs and not second:
+        return f"Krawczyk's test of {counted(first, 'listed linkage')}, {proof.seconds:.2f} s"
     if not proof.pairs:
         return f"{counted(first, 'dyad')}, each in a box of its own, {proof.seconds:.2f} s"
     if not second:

@@ -23,6 +23,7 @@ from grashof.synth.theory.nine_points import (
     system,
     triplet_invariants,
 )
+from grashof.synth.theory.stopping import Stopped
 
 
 def test_system_vanishes_on_a_planted_linkage_and_its_slopes_are_right():
@@ -76,10 +77,26 @@ def test_general_problem_has_its_solution():
     assert np.abs(np.linalg.solve(jacobian[0], residual[0])).max() < 1e-10
 
 
+def test_what_one_run_has_lost_another_finds_and_a_stop_loses_nothing(monkeypatch):
+    _, solutions = known()
+    runs = [solutions[1:], solutions[:9]]
+
+    def run(_target, _rng):
+        if not runs:
+            raise Stopped
+        return runs.pop(0)
+
+    monkeypatch.setattr(nine_points, "_run", run)
+    found = nine_points._all_solutions(np.zeros(16, complex), np.random.default_rng(0))
+    assert (len(found), runs) == (TRIPLETS, [])
+    runs = [solutions[:9]]
+    assert len(nine_points._all_solutions(np.zeros(16, complex), np.random.default_rng(0))) == 9
+
+
 @pytest.fixture(scope="module")
 def planted():
     task, linkage = planted_path(np.random.default_rng([2, 8]), 9)
-    return task, linkage, linkages_through(task.points @ [1, 1j], np.random.default_rng(1))
+    return task, linkage, linkages_through(task.points @ [1, 1j], np.random.default_rng(1))[0]
 
 
 @pytest.mark.slow
@@ -116,7 +133,8 @@ def computed_once():
         key = np.round(standing, 6).tobytes()
         if key not in computed:
             computed[key] = linkages_through(standing, rng)
-        return points[0] + along * computed[key]
+        found, solutions = computed[key]
+        return points[0] + along * found, solutions
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(precision_points, "linkages_through", linkages)

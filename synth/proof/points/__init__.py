@@ -1,0 +1,1 @@
+"""Linkages that pass as many points as leave no freedom."""

@@ -1,0 +1,189 @@
+"""What is proven of a list of linkages that pass as many points as leave no freedom."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from time import perf_counter
+
+import numpy as np
+
+from grashof.analysis import solve_position
+from grashof.problems import FourBar, InvertedSliderCrank, SliderCrank
+from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.checks import counted
+from grashof.problems.values.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.proof.points.boxes import boxes
+from grashof.synth.proof.points.equations import Passing
+from grashof.synth.proof.poses.lookout import quantity_of
+from grashof.synth.proof.proof import Claim, Proof, best_listed
+from grashof.synth.starts.finder import finder_for
+from grashof.synth.starts.precision_points import FOLLOWED, THROUGH, EveryLinkage
+from grashof.synth.theory.eight_points import INVERTED_SLIDER_CRANKS
+
+NEAR = 1e-6  # sizes: a linkage farther from the exact one does not count as enclosed
+ROUNDING = "doubles, enclosures widened for rounding; points as stored"
+_POINTS = {FOUR_BAR: 9, SLIDER_CRANK: 8, INVERTED: 8}
+
+
+@dataclass(frozen=True, slots=True)
+class Enclosed:
+    """Linkages, each beside one that passes all points exactly.
+
+    Parameters
+    ----------
+    middle, radius : ndarray, shape (n, K)
+        A box that holds exactly one solution of `Passing`; NaN where none is proven.
+    within : ndarray, shape (n,), sizes and rad
+        Greatest difference of an unknown from that solution at most; NaN where none is proven.
+    """
+
+    middle: FloatArray
+    radius: FloatArray
+    within: FloatArray
+
+    @classmethod
+    def of(cls, passing: Passing, unknowns: FloatArray) -> Enclosed:
+        """Enclose what is near some linkages, given by their unknowns."""
+        middle, radius = boxes(passing, unknowns)
+        within = np.max(np.abs(unknowns - middle) + radius, axis=1, initial=0.0)
+        return cls(middle, radius, np.where(within <= NEAR, within, np.nan))
+
+    def words(self, kind: str) -> str:
+        """How many linkages of a kind are enclosed, and how near they are.
+
+        Examples
+        --------
+        >>> box = np.zeros((2, 16))
+        >>> Enclosed(box, box, np.array([3.2e-12, np.nan])).words("four-bar")
+        '1 of 2 listed four-bars enclosed, within 4e-12 sizes of an exact one'
+        """
+        proven = self.within[np.isfinite(self.within)]
+        if not len(self.within):
+            return f"no {kind} is listed"
+        said = f"{len(proven)} of {counted(len(self.within), f'listed {kind}')} enclosed"
+        return f"{said}, within {_up(float(proven.max()))} sizes of an exact one" if len(proven) else said
+
+
+def proof_of_points(
+    scaled: ScaledProblem,
+    designs: Sequence[Candidate],
+    counts: Mapping[str, int],
+    *,
+    stopped: bool,
+    whole: bool,
+    enough: bool = False,
+) -> Proof | None:
+    """What is known of a list where finitely many linkages pass the points exactly; None of other problems.
+
+    Parameters
+    ----------
+    scaled : ScaledProblem
+    designs : sequence of Candidate
+    counts : mapping of str to int
+        Of what the search looked at.
+    stopped, whole, enough : bool
+        Whether the search was stopped; whether it tried all that it found; whether it did not as it had as
+        many designs as it was asked for.
+    """
+    if not _leaves_no_freedom(scaled):
+        return None
+    since, problem = perf_counter(), scaled.problem
+    enclosed = enclosed_designs(scaled, designs)
+    finder = finder_for(scaled)
+    known = finder.solutions if isinstance(finder, EveryLinkage) else INVERTED_SLIDER_CRANKS.count
+    if not isinstance(finder, EveryLinkage):
+        why = f"the search does not follow the {known} solutions that are known"
+    else:
+        why = _why_not_all(known, counts, stopped=stopped, whole=whole or enough)
+    claim = Claim.REFUSED if why else Claim.FOLLOWED
+    said = why or f"{known} of {known} known solutions"
+    said += "; as many designs as were asked for are listed, not all" * (enough and not why)
+    return Proof(
+        claim=claim,
+        mechanism=scaled.kind.mechanism,
+        quantity=quantity_of(problem).column,
+        lower=best_listed(problem, designs),
+        pieces=(len(designs), 0),
+        seconds=round(perf_counter() - since, 4),
+        rounding=ROUNDING,
+        why=f"{said}; {enclosed.words(scaled.kind.mechanism)}",
+    )
+
+
+def enclosed_designs(scaled: ScaledProblem, designs: Sequence[Candidate]) -> Enclosed:
+    """Designs of one kind that pass all points of a problem, each beside an exact one."""
+    points = _points(scaled)
+    size = scaled.problem.task.size
+    exact = np.asarray(points, np.clongdouble)
+    passing = Passing((exact - exact[0]) / size, scaled.kind.mechanism)
+    unknowns = [unknowns_of(one, points, size) for one in designs]
+    return Enclosed.of(passing, np.array(unknowns).reshape(len(unknowns), 2 * (len(points) - 1)))
+
+
+def unknowns_of(design: Candidate, points: ComplexArray, size: float) -> FloatArray:
+    """Where a design is, as `Passing.rows` has it, shape (K,).
+
+    Parameters
+    ----------
+    design : Candidate
+    points : ndarray of complex, shape (N,), length
+    size : float, length
+    """
+    linkage, count = design.linkage, len(points)
+    at = solve_position(linkage, design.verdict.theta2[:count], design.verdict.assembly[:count])
+    a, b = (_z(joint[0] - at.p[0]) / size for joint in (at.a, at.b))
+    turns = (at.theta3 - at.theta3[0])[1:].tolist()
+    joints = [(_z(linkage.o2) - points[0]) / size, a]
+    angle: list[float] = []
+    if isinstance(linkage, FourBar):
+        joints += [(_z(linkage.o4) - points[0]) / size, b]
+    elif isinstance(linkage, SliderCrank):
+        joints, angle = [*joints, b], [float(linkage.slide_angle)]
+    elif isinstance(linkage, InvertedSliderCrank):
+        joints, angle = [*joints, (_z(linkage.o4) - points[0]) / size], [float(at.theta3[0])]
+    return np.array([part for z in joints for part in (z.real, z.imag)] + angle + turns)
+
+
+def _leaves_no_freedom(scaled: ScaledProblem) -> bool:
+    """Whether finitely many linkages meet the targets exactly: distinct points without timing."""
+    problem = scaled.problem
+    if not scaled.exact or scaled.bounded or scaled.timed or problem.driver is not None:
+        return False
+    points = _points(scaled)
+    if not problem.task.only_points or len(points) != _POINTS[scaled.kind.mechanism]:
+        return False
+    apart = np.abs(points[:, None] - points) / problem.task.size + np.eye(len(points))
+    return bool(apart.min() > 1e-9)
+
+
+def _points(scaled: ScaledProblem) -> ComplexArray:
+    """The points, length, without a last one that repeats the first."""
+    task = scaled.problem.task
+    points: ComplexArray = task.positions[: -1 if task.returns else None] @ np.array([1, 1j])
+    return points
+
+
+def _why_not_all(known: int, counts: Mapping[str, int], *, stopped: bool, whole: bool) -> str:
+    """Why not all linkages that are known numerically are listed that do it; empty where they are."""
+    if THROUGH not in counts:
+        ended = "was stopped" if stopped else "ended"
+        return f"the search {ended} before the {known} known solutions were followed"
+    if stopped or not whole:
+        return "not all linkages that pass the points were tried"
+    found = counts.get(FOLLOWED, 0)
+    if found < known:
+        return f"of {known} known solutions {known - found} were lost on the way"
+    return "" if found == known else f"{found} solutions came up where {known} are known"
+
+
+def _z(pair: FloatArray) -> complex:
+    return complex(pair[0], pair[1])
+
+
+def _up(value: float) -> str:
+    """A small number with one digit, rounded up."""
+    power = np.floor(np.log10(value))
+    return f"{np.ceil(value / 10**power - 1e-9) * 10**power:.0e}"
