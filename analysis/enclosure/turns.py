@@ -35,7 +35,8 @@ class Pieces:
         first = np.repeat(np.cumsum(count) - count, count)
         width = (high - low) / count
         middle = low[row] + (np.arange(len(row)) - first + 0.5) * width[row]
-        return cls.wide(row, middle, width[row] / 2)
+        rounded = 8 * EPS * (np.abs(low) + np.abs(high))  # of a middle, which may be near 0
+        return cls.wide(row, middle, (width / 2 + rounded)[row])
 
     @classmethod
     def wide(cls, row: IntArray, middle: FloatArray, half: FloatArray) -> Pieces:

@@ -1,6 +1,8 @@
 """Enclosures over the driver's range against dense samples of the closed forms, for every kind."""
 
 from collections.abc import Callable
+from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -76,13 +78,31 @@ def test_closure_alone_takes_any_positive_bound(batch: Linkage) -> None:
 
 
 def test_a_range_that_opens_between_its_ends_has_none() -> None:
-    """The driver passes 1e-5 rad of dead positions, far less than any sample is wide."""
+    """The loop is open for some 1e-5 rad, far less than any sample is wide."""
     linkage = FourBar((0, 0), (4, 0), 1, 3, 2 - 1e-10)  # stretched: r1 + r2 = r3 + r4 + 1e-10
     least = least_transmission(stacked([linkage]), np.array([3.0]), np.array([3.3]))
     assert least.lo[0] == 0
     assert least.hi[0] < 1e-4
     closes = least_transmission(stacked([linkage]), np.array([2.0]), np.array([3.1]))
     assert closes.lo[0] > 0
+
+
+def test_pieces_leave_no_gap_in_exact_arithmetic() -> None:
+    """About 0, too, where a middle has lost the digits of the ends."""
+    rng = np.random.default_rng(5)
+    start = rng.uniform(-7, 7, 40)
+    end = start + rng.uniform(-6.3, 6.3, 40)
+    pieces = Pieces.covering(start, end)
+    pieces = pieces.halves(np.arange(len(pieces.row)))
+    for row in range(40):
+        own = pieces.row == row
+        middle, half = pieces.middle[own], pieces.half[own]
+        ends = sorted(
+            (Fraction(m) - Fraction(h), Fraction(m) + Fraction(h)) for m, h in zip(middle, half, strict=True)
+        )
+        assert ends[0][0] <= min(start[row], end[row])
+        assert ends[-1][1] >= max(start[row], end[row])
+        assert all(one[1] >= other[0] for one, other in pairwise(ends))
 
 
 def test_places_hold_dense_samples_of_points(batch: Linkage) -> None:
