@@ -90,7 +90,7 @@ class Interval:
 def _outward(lo: FloatArray, hi: FloatArray) -> Interval:
     with np.errstate(invalid="ignore"):
         lo, hi = lo - (2 * EPS * np.abs(lo) + _TINY), hi + (2 * EPS * np.abs(hi) + _TINY)
-    return Interval(np.where(np.isnan(lo), -np.inf, lo), np.where(np.isnan(hi), np.inf, hi))
+        return Interval(np.fmax(lo, -np.inf), np.fmin(hi, np.inf))  # which replace NaN alone
 
 
 def unit(angle: FloatArray, error: FloatArray | float = 0.0) -> tuple[Interval, Interval]:
