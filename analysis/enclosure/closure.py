@@ -32,10 +32,10 @@ class Rod(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Closure:
-    """A kind of dyad: `margins` of a linkage by the driver's direction; `rod` besides by what they are.
+    """A kind of dyad, as functions of a batch of linkages.
 
-    Square root of near times far with the sign of the assembly is what `rod` is given last. `reach` is of
-    the order of near and far.
+    `margins` takes the driver's direction; `rod` besides the square root of near times far, with the sign of
+    the assembly; `reach` is of the order of near and far.
     """
 
     margins: Callable[[Any, Vector], Margins]

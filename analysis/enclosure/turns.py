@@ -57,8 +57,8 @@ class Pieces:
 class Least:
     """The least min(mu, pi - mu) over each range, in [lo, hi], shape (R,), rad; 0 where the loop opens.
 
-    `gap` is how far it is from open, at the worst middle, as a share of what the margins are of: at most so
-    far. `pieces` counts the intervals.
+    `gap` bounds from above how far the loop is from open at the worst middle, as a share of `Closure.reach`:
+    less than 0 where it is open. `pieces` counts the intervals.
     """
 
     lo: FloatArray
