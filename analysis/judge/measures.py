@@ -18,7 +18,7 @@ from grashof.analysis.judge.over_task import OverTask, over_task
 from grashof.analysis.judge.sampled_motion import motion_ends
 from grashof.analysis.judge.task_peaks import task_peaks
 from grashof.analysis.judge.tolerance import robustness
-from grashof.analysis.judge.verdict import Verdict
+from grashof.analysis.judge.verdict import Enclosure, Verdict
 from grashof.problems import Cylinder, FourBar, Linkage, Problem, SliderCrank
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.mechanisms import LENGTHS, PARAMETERS
@@ -46,6 +46,7 @@ class Values(Mapping[str, float]):
         self.linkage, self.verdict, self.problem = linkage, verdict, problem
         self._known: dict[str, float] = {}
         self._peaks: FloatArray | None = None
+        self.enclosure: Enclosure | None = None  # once `find_enclosures` has looked at it
 
     def __getitem__(self, key: str) -> float:
         if key not in self._known:

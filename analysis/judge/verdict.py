@@ -124,3 +124,30 @@ class Verdict:
     def _unplaced(self) -> bool:
         """Whether no position is asked for."""
         return bool(np.isnan(self.position_error).all())
+
+
+@dataclass(frozen=True, slots=True)
+class Enclosure:
+    """What intervals of the driver angle show of a design that the judge accepted.
+
+    Parameters
+    ----------
+    holds : bool
+        The loop closes over the motion that is required, without a dead position and so on one branch;
+        transmission angle, order, targets and places of joints at them are as required: proven, with
+        every rounding enclosed.
+    transmission : pair of float, rad
+        Holds the least min(mu, pi - mu) over the motion for which the requirements ask.
+    intervals : int
+        Of the driver angle, as many as that took.
+    why : str
+        What is not shown; empty where it holds.
+    contradicts : bool
+        Whether the judge is shown to be wrong, which is a defect of this program.
+    """
+
+    holds: bool
+    transmission: tuple[float, float]
+    intervals: int
+    why: str = ""
+    contradicts: bool = False

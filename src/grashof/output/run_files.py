@@ -27,6 +27,7 @@ from grashof.problems.values.checks import no_formula
 from grashof.synth import Candidate, Result
 from grashof.synth.designs.table import LISTED, OWN, Row, facts, known, rows_of, rows_of_nearest
 from grashof.synth.search.story import Ending, now
+from grashof.wording.enclosure import enclosure_record
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -234,6 +235,7 @@ def _record(
         "designs": len(result),
         "note": result.note,
         "proof": None if result.proof is None else result.proof.stated,
+        "intervals": enclosure_record(result),
         "counts": result.counts,
         "guards_hit": guards,
         "seconds": {stage: round(time, 4) for stage, time in result.seconds.items()},

@@ -24,6 +24,7 @@ from grashof.problems.values.quantities import Over, Quantity, Unit
 from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth import Candidate, Progress, Result
 from grashof.synth.designs.ranking import pareto_optimal
+from grashof.wording.enclosure import enclosure_line, enclosures
 from grashof.wording.problem import error_meaning, goals
 from grashof.wording.proof import proof_line
 
@@ -103,6 +104,9 @@ def print_table(result: Result, verified: int | None = None) -> None:
     doubted = [f"{row['#'].rstrip(' *')}: {row[CAUTION]}" for row in best_rows(result) if row.get(CAUTION)]
     for line in folded([f"caution: {'; '.join(doubted)}"] if doubted else []):
         say(line)
+    if not all(each.holds for each in enclosures(result)):
+        for line in folded([enclosure_line(result)]):
+            say(line)
     for line in folded([proven] if (proven := proof_line(result)) else []):
         say(line)
 

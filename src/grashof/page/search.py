@@ -19,6 +19,7 @@ from grashof.synth import Candidate, Result
 from grashof.synth.designs.table import Row, rows_of, rows_of_nearest
 from grashof.synth.results.explain import note_parts
 from grashof.synth.search.tally import DISTINCT, Tally
+from grashof.wording.enclosure import enclosure_line
 from grashof.wording.problem import goals, summary
 from grashof.wording.proof import proof_line, work_line
 
@@ -69,6 +70,7 @@ def search_page(
         found=bool(result.candidates),
         headline=headline(result),
         proven=proof_line(result),
+        enclosed=enclosure_line(result),
         loci=data["loci"],
         proof_work="" if result.proof is None else work_line(result.proof),
         note=note,

@@ -1,0 +1,52 @@
+"""What intervals of the driver angle show of a list, in one line and for the record."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from grashof.analysis.judge.enclosed import find_enclosures
+from grashof.analysis.judge.verdict import Enclosure
+from grashof.problems.values.checks import counted
+from grashof.synth import Result
+
+
+def enclosure_line(result: Result) -> str:
+    """How many designs are verified by intervals, and what is not shown of which; empty without designs.
+
+    Examples
+    --------
+    >>> from grashof import load, synthesize
+    >>> enclosure_line(synthesize(load("luggage"), enough=5).top(3)).partition(" by ")[2]
+    'intervals of the driver angle, over their whole motion.'
+    """
+    named = list(zip((each.id for each in result.candidates), enclosures(result), strict=True))
+    wrong = [f"{name} ({each.why})" for name, each in named if each.contradicts]
+    if wrong:
+        return f"Intervals contradict the judge, an error of this program to report: {', '.join(wrong)}."
+    if not named:
+        return ""
+    undecided = [f"{name} ({each.why})" for name, each in named if not each.holds]
+    shown = len(named) - len(undecided)
+    many = counted(shown, "design") if not undecided else f"{shown} of {counted(len(named), 'design')}"
+    rest = f"; undecided: {', '.join(undecided)}" if undecided else ""
+    shown_of = f"Closure and transmission angle of {many} verified by intervals of the driver angle"
+    return f"{shown_of}, over their whole motion{rest}."
+
+
+def enclosures(result: Result) -> tuple[Enclosure, ...]:
+    """Of each design of a list."""
+    return find_enclosures([each.values for each in result.candidates])
+
+
+def enclosure_record(result: Result) -> dict[str, Any] | None:
+    """The same for `run.json`; None without designs."""
+    found = enclosures(result)
+    if not found:
+        return None
+    named = list(zip((each.id for each in result.candidates), found, strict=True))
+    return {
+        "designs": sum(each.holds for each in found),
+        "intervals": sum(each.intervals for each in found),
+        "undecided": {name: each.why for name, each in named if not (each.holds or each.contradicts)},
+        "contradicted": {name: each.why for name, each in named if each.contradicts},
+    }
