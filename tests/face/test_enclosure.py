@@ -27,7 +27,10 @@ def told(result: Result, *shown: Enclosure) -> None:
 
 def test_all_verified(found: Result, capsys: pytest.CaptureFixture[str]) -> None:
     line = enclosure_line(found)
-    assert line == f"{len(found)} designs verified by intervals of the driver angle over their whole motion."
+    assert line == (
+        f"Closure and transmission angle of {len(found)} designs verified by intervals of the driver angle, "
+        "over their whole motion."
+    )
     assert line in search_page(found, {"versions": {"grashof": "0"}, "settings": {}})
     print_table(found)
     assert "intervals" not in capsys.readouterr().out
