@@ -70,16 +70,8 @@ class Asked:
     first_turn : float, rad
         Angle of the body in the first pose.
     driver, driven : Dyad
-    r1, r3 : tuple of float, sizes
-    ratio : float
-        Longest to shortest link at most.
-    ordered, one_branch : bool
-    turns : bool
-        Whether the driver turns fully.
-    margin : float
-        Of full rotation, a share of the sum of lengths.
-    longer_ground : tuple of int
-        Signs of r1 - r2 that are allowed where the driver turns fully.
+    loop : LoopLimits
+    ordered : bool
     over_turn : bool
         Whether the transmission angle counts over the whole turn.
     sense : int
@@ -97,14 +89,8 @@ class Asked:
     first_turn: float
     driver: Dyad
     driven: Dyad
-    r1: Limits
-    r3: Limits
-    ratio: float
+    loop: LoopLimits
     ordered: bool
-    one_branch: bool
-    turns: bool
-    margin: float
-    longer_ground: tuple[int, ...]
     over_turn: bool
     sense: int
     rotation: Limits
@@ -131,15 +117,16 @@ class Asked:
             first_turn=motion.first_turn,
             driver=_dyad(wanted, "o2", "a", r2, origin),
             driven=_dyad(wanted, "o4", "b", r4, origin),
-            r1=r1,
-            r3=r3,
-            ratio=wanted.link_ratio_max * (1 + SLACK),
+            loop=LoopLimits(
+                lengths=(r1, r2, r3, r4),
+                ratio=wanted.link_ratio_max * (1 + SLACK),
+                turns=turns,
+                margin=margin - SLACK,
+                longer_ground=_SIGNS.get(wanted.rotatability, (1, -1)),
+                # Without a motion on one branch nothing is transmitted over the task.
+                one_branch=wanted.same_branch or not over_turn,
+            ),
             ordered=wanted.order,
-            # Without a motion on one branch nothing is transmitted over the task.
-            one_branch=wanted.same_branch or not over_turn,
-            turns=turns,
-            margin=margin - SLACK,
-            longer_ground=_SIGNS.get(wanted.rotatability, (1, -1)),
             over_turn=over_turn,
             sense=int(np.sign(sum(senses))) if wanted.order else 0,
             rotation=_widened((float(rotation[0]), float(rotation[1]))) if wanted.order else (0.0, TURN),
@@ -159,14 +146,8 @@ class Asked:
             first_turn=0.0,
             driver=dyad,
             driven=dyad,
-            r1=ANY_LENGTH,
-            r3=ANY_LENGTH,
-            ratio=np.inf,
+            loop=LoopLimits((ANY_LENGTH, limits, ANY_LENGTH, limits), np.inf, False, 0.0, (1, -1), False),
             ordered=False,
-            one_branch=False,
-            turns=False,
-            margin=0.0,
-            longer_ground=(1, -1),
             over_turn=False,
             sense=0,
             rotation=(0.0, TURN),
@@ -174,12 +155,6 @@ class Asked:
             ground_angle=None,
             floor=LEAST,
         )
-
-    @property
-    def loop(self) -> LoopLimits:
-        """What is asked of the loop."""
-        lengths = self.r1, self.driver.length, self.r3, self.driven.length
-        return LoopLimits(lengths, self.ratio, self.turns, self.margin, self.longer_ground, self.one_branch)
 
     @property
     def longest(self) -> float:

@@ -89,7 +89,7 @@ def _stated(scaled: ScaledProblem, asked: Asked, upper: float) -> dict[str, Any]
             "rotatability": str(wanted.rotatability),
             "rotatability_margin": wanted.rotatability_margin,
             "order": asked.ordered,
-            "same_branch": asked.one_branch,
+            "same_branch": asked.loop.one_branch,
             "transmission_over": "cycle" if asked.over_turn else "task",
         },
         "upper_deg": upper,
