@@ -16,7 +16,7 @@ import numpy as np
 
 from grashof import load, synthesize
 from grashof.analysis.judge.planted import planted_motion
-from grashof.problems import Box, FunctionTask, MotionTask, Problem, Requirements
+from grashof.problems import Box, FunctionTask, MotionTask, Problem, Requirements, StrokeTask
 from grashof.synth import Claim, Proof
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.bounds import Proving
@@ -144,9 +144,17 @@ def three_pairs(number: int) -> bool:
     return proof is not None and proof.claim in (Claim.BEST, Claim.NONE)
 
 
+def stroke(number: int) -> bool:
+    """Whether the best crank-rocker of a random swing and time ratio is proven, or that there is none."""
+    rng = np.random.default_rng(6000 + number)
+    task = StrokeTask(swing=np.radians(rng.uniform(20, 120)), time_ratio=rng.uniform(1, 1.6))
+    made = bounds_of(ScaledProblem.of(Problem(task=task)), Proving())
+    return made is not None and made.closed
+
+
 def others(count: int) -> None:
     """Print how many of other tasks are decided, and in what time."""
-    for decided in (five_poses, five_pairs, four_pairs, three_pairs):
+    for decided in (five_poses, five_pairs, four_pairs, three_pairs, stroke):
         done, times = 0, []
         for number in range(count):
             since = process_time()
@@ -166,7 +174,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         "--compare", type=int, default=0, help="tasks that are also searched, with ten times the effort"
     )
     parser.add_argument(
-        "--others", type=int, default=0, help="sets of five poses, and of five, four and three pairs"
+        "--others", type=int, default=0, help="sets of five poses, of five, four and three pairs, and strokes"
     )
     options = parser.parse_args(argv)
     if options.others:
