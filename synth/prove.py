@@ -105,11 +105,15 @@ def prove(
         return beyond
     alone = problem.for_kind(kind)
     function, count = bool(problem.task.has_output.any()), len(problem.task)
-    if stroke or (count == FIVE and problem.task.is_whole) or (function and count in (THREE, FOUR, FIVE)):
+    whole = problem.task.is_whole
+    # Of three poses a good design to begin with is worth more than all pairs that it takes to find it.
+    by_list = stroke or (whole and (count == FIVE or (count == THREE and at_least is None)))
+    if by_list or (function and count in (THREE, FOUR, FIVE)):
         found = synthesize(
             alone, constraints=constraints, time_limit=time_limit, stop=stop, gap=gap, prove=True
         ).proof
-        return beyond if found is None else _of_at_least(found, at_least)
+        if found is not None or count != THREE:
+            return beyond if found is None else _of_at_least(found, at_least)
     if function:
         return beyond
     scaled = ScaledProblem.of(alone, constraints)

@@ -86,7 +86,8 @@ class BestFirst(Bracket):
         self.begun = self.left is not None
         while self.left is not None and len(self.left):
             best, rest = _parted(self.left)
-            self.lower = max(self.lower, look(sides, best, max(self.lower, self.asked.floor)))
+            self.left = Pairs.joined([best, rest])
+            self.lower = max(self.lower, look(sides, self.left, max(self.lower, self.asked.floor)))
             if content and self.lower:
                 return
             best, rest = (part[part.bound > self.threshold] for part in (best, rest))

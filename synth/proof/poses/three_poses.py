@@ -22,7 +22,7 @@ from grashof.synth.theory.stopping import Stopped
 
 FEW = 100  # pairs of first tiles, as where pivots are given: these are bounded at once
 FEW_PAIRS = 20_000  # in all, then
-LOOKED_AT = 1000  # pairs of each step, those with the greatest bounds
+LOOKED_AT = 1000  # pairs of each step with the greatest bounds, and about as many spread over all
 SIDES = {True: "link 2, with O2 and A,", False: "link 4, with O4 and B,"}
 
 
@@ -40,7 +40,10 @@ class _Middles:
         motion = self.scaled.motion
         if motion is None:
             raise TypeError("only whole poses that are met exactly have dyads")
-        best = pairs[np.argsort(-pairs.bound, kind="stable")[:LOOKED_AT]]
+        # Those with the greatest bounds are the least resolved; good designs are elsewhere, too.
+        every = max(1, len(pairs) // LOOKED_AT)
+        best = Pairs.joined([pairs[:LOOKED_AT], pairs[self.steps % every :: every]])
+        self.steps += 1
         driver, driven = (
             polish(motion, Dyads(*(each.middle[which] + self.asked.origin for each in (of.z, of.c))), steps=2)
             for of, which in ((sides.driver.sites, best.driver), (sides.driven.sites, best.driven))
