@@ -142,9 +142,12 @@ def _ranges(box: Sequence[Ends], term: tuple[int, int]) -> Ends:
     """Bounds of a power product of degree 2 or 3 in a box."""
     factors = []
     for (low, high), power in zip(box, term, strict=True):
-        a, b = low**power, high**power
-        inside = (power == 2) & (low < 0) & (high > 0)
-        factors.append((np.where(inside, 0.0, np.minimum(a, b)), np.maximum(a, b)))
+        if power:
+            a, b = low**power, high**power
+            inside = (power == 2) & (low < 0) & (high > 0)
+            factors.append((np.where(inside, 0.0, np.minimum(a, b)), np.maximum(a, b)))
+    if len(factors) == 1:
+        return factors[0]
     every = [x * y for x in factors[0] for y in factors[1]]
     return np.minimum.reduce(every), np.maximum.reduce(every)
 
