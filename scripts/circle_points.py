@@ -173,7 +173,7 @@ class CirclePoints:
             place = self.on_tube(k, Poly.of((first + last) / 2, length), Poly.of(0.0 * e, 0.0, e))
             out = zero_free(self.cubic(place))
             for c, at, reach in zip(self.within(place, k), (s, t), (ds, dt), strict=True):
-                out |= (most(c + (-at - reach)) < 0) | (most(-c + (at - reach)) < 0)
+                out |= (most(c + (reach - at)) < 0) | (most(-c + (at + reach)) < 0)
             held &= ~there | out
         inside = (low < end) & (high > -end) & ~good
         cuts = np.linspace(np.clip(low, -end, end), np.clip(high, -end, end), 13)
