@@ -149,8 +149,8 @@ def test_polynomials_hold_exact_values_whatever_is_rounded(checker: ModuleType) 
         s, t = (Fraction(float(x)) for x in rng.choice([-1, 1, rng.uniform(-1, 1)], 2))
 
         def at(poly: Any, k: int = k, s: Fraction = s, t: Fraction = t) -> Fraction:
-            return sum((Fraction(float(c)) * s**i * t**j for c, (i, j) in zip(poly.c[:, k], terms, strict=True)),
-                       Fraction(0))  # fmt: skip
+            parts = zip(poly.c[:, k], terms, strict=True)
+            return sum((Fraction(float(c)) * s**i * t**j for c, (i, j) in parts), Fraction(0))
 
         x, y = at(first), at(other)
         for poly, value in zip(made, [x + y, x - y, x * y, x * y * x, 1 / x], strict=False):
