@@ -29,6 +29,7 @@ from grashof.synth.starts.finder import refuse_unsearchable
 from grashof.synth.synthesize import synthesize
 from grashof.synth.theory.stopping import stopping
 
+_RIGHT = 90.0  # deg: a bound that says nothing
 _BEYOND = (
     "there are proofs of three to five whole poses, and pairs of a function, that a four-bar meets exactly, "
     "and of a swing or a stroke; of no other task yet"
@@ -62,7 +63,8 @@ def prove(
     time_limit, stop
         As for `synthesize`; the bound so far holds.
     certificate : str or Path, optional
-        File to write what was proven of four poses to, for ``scripts/check_certificate.py``.
+        File to write what was proven of four poses to, for ``scripts/check_certificate.py``; it is not
+        written where no bound was reached.
 
     Returns
     -------
@@ -125,13 +127,15 @@ def prove(
             bounds = bounds_of_four(scaled, proving, at_least, trail)
     if bounds is None:
         return beyond
-    if trail is not None and certificate is not None:
-        if bounds.refused or bounds.upper >= np.pi / 2:
-            raise ProblemError(
-                f"certificate {certificate}: not written, for no bound was reached: {bounds.why}"
-            )
+    proof = proof_of(scaled.problem, bounds, _known(scaled, bounds), gap)
+    if trail is not None and certificate is not None and has_certificate(proof):
         write(certificate_of(scaled, trail, float(np.degrees(bounds.upper)), at_least), Path(certificate))
-    return proof_of(scaled.problem, bounds, _known(scaled, bounds), gap)
+    return proof
+
+
+def has_certificate(proof: Proof) -> bool:
+    """Whether a proof of four poses reached a bound, so that there is a certificate of it."""
+    return proof.claim is not Claim.REFUSED and proof.upper is not None and proof.upper < _RIGHT
 
 
 def _certifiable(problem: Problem, constraints: Sequence[Constraint], path: Path) -> None:

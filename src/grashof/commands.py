@@ -342,6 +342,7 @@ def prove(
 ) -> Exit:
     """Print what is proven of a problem."""
     from grashof.synth import prove as proven
+    from grashof.synth.prove import has_certificate
     from grashof.wording.proof import bound_line, is_decided, work_line
 
     loaded = load(problem)
@@ -357,6 +358,8 @@ def prove(
         say(bound_line(proof, at_least))
         if proof.pairs:
             say(work_line(proof))
+        if certificate is not None and not has_certificate(proof):
+            say(f"certificate {certificate}: not written, for no bound was reached", err=True)
         if interrupted():
             return interrupted.code
     return Exit.OK if is_decided(proof, at_least) else Exit.NO_DESIGN

@@ -4,17 +4,24 @@ from __future__ import annotations
 
 import copy
 import json
+import subprocess
+import sys
 from collections.abc import Callable
+from fractions import Fraction
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 from grashof import load
+from grashof.cli import app
 from grashof.problems import ProblemError, problem_text
 from grashof.synth import prove
+from grashof.synth.proof.poses import certificate
 
 SCRIPTS = Path(__file__).parents[2] / "scripts"
 Certificate = dict[str, Any]
@@ -42,16 +49,18 @@ def checked(checker: ModuleType, certificate: Certificate, folder: Path, *more: 
 
 
 @pytest.mark.slow
-def test_the_proof_of_luggage_is_confirmed(
-    checker: ModuleType, luggage: Certificate, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    problem = tmp_path / "luggage.toml"
+def test_the_commands_in_the_documentation_prove_and_confirm(grashof: Any, tmp_path: Path) -> None:
+    path, problem = tmp_path / "luggage.json", tmp_path / "luggage.toml"
     problem.write_text(problem_text("luggage"))
-    assert checked(checker, luggage, tmp_path, str(problem)) == 0
-    assert "no four-bar within these limits transmits more than 27.3425" in capsys.readouterr().out
-    luggage = copy.deepcopy(luggage)
-    luggage["poses"][1][0] += 1e-3
-    assert checked(checker, luggage, tmp_path, str(problem)) == 1
+    assert grashof("prove", "luggage", "--certificate", str(path)).exit_code == 0
+    command = [sys.executable, str(SCRIPTS / "check_certificate.py"), str(path), str(problem)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0
+    assert "no four-bar within these limits transmits more than 27.3425" in done.stdout
+    path.write_text(path.read_text().replace("3.5", "3.501", 1))
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 1
+    assert "poses" in done.stdout
 
 
 def first(certificate: Certificate, fate: str) -> int:
@@ -64,7 +73,11 @@ def leaf_removed(one: Certificate) -> None:
 
 
 def leaf_shrunk(one: Certificate) -> None:
-    one["rectangles"][first(one, "missed")][4] *= 0.9
+    """One that holds a part of the curve."""
+    pairs = zip(one["parents"], one["fates"], strict=True)
+    one["rectangles"][next(k for k, (parent, fate) in enumerate(pairs) if parent >= 0 and fate == "either")][
+        4
+    ] *= 0.5
 
 
 def reason_changed(one: Certificate) -> None:
@@ -103,18 +116,74 @@ def piece_forgotten(one: Certificate) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "tamper",
+    ("tamper", "fault"),
     [
-        leaf_removed, leaf_shrunk, reason_changed, fate_changed, role_changed, child_moved, tube_shortened,
-        upper_lowered, limits_widened, piece_forgotten,
+        (leaf_removed, "pairs without a reason: 1,"),
+        (leaf_shrunk, "halves: "),
+        (reason_changed, "pairs dropped by lengths: 1 not confirmed"),
+        (tube_shortened, "tubes: "),
+        (limits_widened, "not cover every place that the arms reach"),
+        (piece_forgotten, "neither dropped, nor kept, nor halved"),
+        pytest.param(fate_changed, "missed rectangles: 1 not confirmed", marks=pytest.mark.study),
+        pytest.param(role_changed, "1 not confirmed", marks=pytest.mark.study),
+        pytest.param(child_moved, "halves: ", marks=pytest.mark.study),
+        pytest.param(upper_lowered, "pairs dropped by transmission: ", marks=pytest.mark.study),
     ],
-)  # fmt: skip
-def test_tampering_is_found(
-    checker: ModuleType, luggage: Certificate, tmp_path: Path, tamper: Callable[[Certificate], None]
-) -> None:
+)
+def test_tampering_is_found_for_its_own_reason(
+    checker: ModuleType, luggage: Certificate, tmp_path: Path, capsys: pytest.CaptureFixture[str],
+    tamper: Callable[[Certificate], None], fault: str,
+) -> None:  # fmt: skip
     one = copy.deepcopy(luggage)
     tamper(one)
     assert checked(checker, one, tmp_path) == 1
+    assert fault in capsys.readouterr().out
+
+
+def test_certificates_are_json_and_others_are_refused(
+    checker: ModuleType, luggage: Certificate, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert certificate._finite({"r1": [0.0, np.inf], "order": True}) == {"r1": [0.0, None], "order": True}
+    assert checked(checker, {**luggage, "size": np.inf}, tmp_path) == 1
+    assert "Infinity is not a number" in capsys.readouterr().out
+
+
+def test_polynomials_hold_exact_values_whatever_is_rounded(checker: ModuleType) -> None:
+    """Sums, products, inverses and roots at random points, in fractions."""
+    enclosures, rng = import_module("enclosures"), np.random.default_rng(1)
+    terms, n = enclosures.TERMS, 40
+    sizes = 10.0 ** rng.uniform(-8, 0, (10, n))
+    first, other = (enclosures.Poly(rng.normal(size=(10, n)) * sizes, np.zeros(n)) for _ in range(2))
+    first.c[0] = rng.uniform(20, 30, n)
+    made = [first + other, first - other, first * other, first * other * first, first.inverse(), first.root()]
+    for k in range(n):
+        s, t = (Fraction(float(x)) for x in rng.choice([-1, 1, rng.uniform(-1, 1)], 2))
+
+        def at(poly: Any, k: int = k, s: Fraction = s, t: Fraction = t) -> Fraction:
+            parts = zip(poly.c[:, k], terms, strict=True)
+            return sum((Fraction(float(c)) * s**i * t**j for c, (i, j) in parts), Fraction(0))
+
+        x, y = at(first), at(other)
+        for poly, value in zip(made, [x + y, x - y, x * y, x * y * x, 1 / x], strict=False):
+            assert abs(at(poly) - value) <= Fraction(float(poly.r[k]))
+        root, off = at(made[-1]), Fraction(float(made[-1].r[k]))
+        assert (root - off) ** 2 <= x <= (root + off) ** 2
+
+
+@pytest.fixture
+def grashof() -> Callable[..., Any]:
+    return lambda *arguments: CliRunner().invoke(app, arguments)
+
+
+def test_a_proof_without_a_bound_is_told_and_so_is_its_lack_of_a_certificate(
+    grashof: Any, tmp_path: Path
+) -> None:
+    path = tmp_path / "one.json"
+    done = grashof("prove", "luggage", "--at-least", "20", "--certificate", str(path))
+    assert done.exit_code == 0
+    assert done.stdout.startswith("Proven: a design that the judge accepts has")
+    assert f"certificate {path}: not written, for no bound was reached" in done.stderr
+    assert not path.exists()
 
 
 def test_certificates_are_of_four_poses_and_files(tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ from grashof.synth.proof.forms.forms import Span
 WIDER = 1e-12  # share of all magnitudes by which enclosures are widened for rounding
 LITTLE = 0.5  # a contraction that leaves more of the area of a wide rectangle is not worth its place
 SLENDER = 0.15  # width over length of a tube that is no longer wide
+_SPARE = 1e-9  # sizes by which halves are at most wider than need be: others may round more
 _ROUNDS = 6
 _LEAST = 1e-300  # divisor in place of zero
 
@@ -92,7 +93,7 @@ class Tubes:
     def halves(self) -> Tubes:
         """Rectangles about the tubes for s <= 0, then those for s >= 0; of what is wide, both sides."""
         long = self.half >= self.side
-        hair = WIDER * (np.abs(self.middle) + self.half + self.side)
+        hair = WIDER * (np.abs(self.middle) + self.half + self.side) + np.minimum(16 * self.rest, _SPARE)
         step = np.where(long, self.along, 1j * self.direction * self.side) / 2
         half = np.where(long, self.half / 2, self.half) + hair
         side = np.where(long, np.abs(self.tilt) / 2 + self.stray, self.side / 2) + hair

@@ -61,7 +61,7 @@ def write(certificate: dict[str, Any], path: Path) -> None:
     """Write a certificate, wholly or not at all."""
     fresh = path.with_name(f".{path.name}.{os.getpid()}")
     try:
-        fresh.write_text(json.dumps(certificate), encoding="utf-8")
+        fresh.write_text(json.dumps(certificate, allow_nan=False), encoding="utf-8")
         fresh.replace(path)
     except OSError as error:
         with suppress(OSError):
@@ -81,20 +81,31 @@ def _stated(scaled: ScaledProblem, asked: Asked, upper: float) -> dict[str, Any]
         "problem": scaled.problem.name,
         "length_unit": scaled.problem.length_unit,
         "poses": np.column_stack([task.positions, np.degrees(task.angles)]).tolist(),
-        "limits": {
-            **limits,
-            "coupler_arms": list(wanted.coupler_arms or (0.0, np.inf)),
-            "link_ratio_max": wanted.link_ratio_max,
-            **{name: {"x": list(box.x), "y": list(box.y)} for name, box in boxes.items()},
-            "rotatability": str(wanted.rotatability),
-            "rotatability_margin": wanted.rotatability_margin,
-            "order": asked.ordered,
-            "same_branch": asked.loop.one_branch,
-            "transmission_over": "cycle" if asked.over_turn else "task",
-        },
+        "limits": _finite(
+            {
+                **limits,
+                "coupler_arms": list(wanted.coupler_arms or (0.0, np.inf)),
+                "link_ratio_max": wanted.link_ratio_max,
+                **{name: {"x": list(box.x), "y": list(box.y)} for name, box in boxes.items()},
+                "rotatability": str(wanted.rotatability),
+                "rotatability_margin": wanted.rotatability_margin,
+                "order": asked.ordered,
+                "same_branch": asked.loop.one_branch,
+                "transmission_over": "cycle" if asked.over_turn else "task",
+            }
+        ),
         "upper_deg": upper,
         "size": size,
     }
+
+
+def _finite(limit: Any) -> Any:
+    """Limits as JSON has them: null where one is infinite."""
+    if isinstance(limit, dict):
+        return {name: _finite(each) for name, each in limit.items()}
+    if isinstance(limit, list):
+        return [_finite(each) for each in limit]
+    return None if limit in (np.inf, -np.inf) else limit
 
 
 def _tree(asked: Asked, trail: Trail, upper: float) -> dict[str, Any]:
