@@ -19,11 +19,11 @@ from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, FunctionTask, MotionTask, Problem, Requirements, StrokeTask
 from grashof.synth import Claim, Proof
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.proof.bounds import Proving
+from grashof.synth.proof.claims.bounds import Proving
+from grashof.synth.proof.claims.proof import proof_of
 from grashof.synth.proof.functions.few_pairs import bounds_of_pairs
 from grashof.synth.proof.functions.five_pairs import certified_functions
 from grashof.synth.proof.poses.five_poses import certified_of
-from grashof.synth.proof.proof import proof_of
 from grashof.synth.proof.provers import bounds_of
 from grashof.synth.starts.function_aims import FunctionAims
 

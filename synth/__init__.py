@@ -1,7 +1,7 @@
 """How designs are found: starts, the CasADi programme, Ipopt, verification, ranking."""
 
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.proof.proof import Claim, Proof
+from grashof.synth.proof.claims.proof import Claim, Proof
 from grashof.synth.prove import prove
 from grashof.synth.results.result import Result
 from grashof.synth.search.run import Progress

@@ -14,15 +14,14 @@ from grashof.problems import Problem, ProblemError, StrokeTask
 from grashof.problems.values.checks import number_within
 from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.proof.bounds import Bounds, Proving
+from grashof.synth.proof.claims.bounds import Bounds, Proving
+from grashof.synth.proof.claims.proof import Claim, Proof, proof_of, quantity_of
 from grashof.synth.proof.curve.asked import refusal
 from grashof.synth.proof.curve.trail import Trail
 from grashof.synth.proof.functions.few_pairs import FOUR, THREE
 from grashof.synth.proof.poses.certificate import certificate_of, without_check, writable, write
 from grashof.synth.proof.poses.five_poses import FIVE
 from grashof.synth.proof.poses.four_poses import bounds_of_four
-from grashof.synth.proof.poses.lookout import quantity_of
-from grashof.synth.proof.proof import Claim, Proof, proof_of
 from grashof.synth.proof.provers import bounds_of
 from grashof.synth.search.asked import asking
 from grashof.synth.starts.finder import refuse_unsearchable

@@ -14,7 +14,7 @@ from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.values.checks import readable
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.user_functions import refuse_no_list, refuse_unusable
-from grashof.synth.proof.bounds import Proving
+from grashof.synth.proof.claims.bounds import Proving
 from grashof.synth.proof.poses.atlas import atlas_of
 from grashof.synth.proof.poses.first_round import round_of_regions
 from grashof.synth.proof.poses.five_poses import certified_of

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.proof.bounds import Bounds, Proving
+from grashof.synth.proof.claims.bounds import Bounds, Proving
+from grashof.synth.proof.claims.proof import quantity_of
 from grashof.synth.proof.poses.four_poses import bounds_of_four
-from grashof.synth.proof.poses.lookout import quantity_of
 from grashof.synth.proof.poses.three_poses import bounds_of_three
 from grashof.synth.proof.strokes.bounds import bounds_of_stroke
 

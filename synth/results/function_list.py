@@ -15,11 +15,11 @@ from grashof.analysis.judge.design import Constraint, OwnObjective
 from grashof.problems import Problem, ProblemError, Search
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.families import listed
-from grashof.synth.proof.bounds import Bounds, Proving
+from grashof.synth.proof.claims.bounds import Bounds, Proving
+from grashof.synth.proof.claims.proof import Proof, best_listed, proof_of
 from grashof.synth.proof.functions.few_pairs import bounds_of_pairs
 from grashof.synth.proof.functions.five_pairs import certified_functions
-from grashof.synth.proof.poses.five_poses import Certified
-from grashof.synth.proof.proof import Proof, best_listed, proof_of, proof_of_all
+from grashof.synth.proof.poses.five_poses import Certified, proof_of_all
 from grashof.synth.results.result import Result
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.run import Progress

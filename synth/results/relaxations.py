@@ -20,7 +20,7 @@ from grashof.synth.programme.screening import (
 )
 from grashof.synth.programme.start import UNSMOOTH, Start
 from grashof.synth.programme.whole_screening import fully_screened
-from grashof.synth.proof.bounds import Bounds
+from grashof.synth.proof.claims.bounds import Bounds
 from grashof.synth.proof.provers import bounds_before
 from grashof.synth.results.relaxed_limits import (
     Relaxation,

@@ -14,7 +14,7 @@ from grashof.problems import Search
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Round, Start
-from grashof.synth.proof.bounds import Proving
+from grashof.synth.proof.claims.bounds import Proving
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.journal import Journal, Unrecorded
 from grashof.synth.search.ledger import Ledger

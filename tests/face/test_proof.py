@@ -16,8 +16,8 @@ from grashof.notebook import html
 from grashof.page.search import search_page
 from grashof.problems import Problem, load
 from grashof.synth import Claim, Proof, Result
-from grashof.synth.proof.bounds import Bounds
-from grashof.synth.proof.proof import proof_of
+from grashof.synth.proof.claims.bounds import Bounds
+from grashof.synth.proof.claims.proof import proof_of
 from grashof.wording.proof import bound_line, is_decided, proof_line
 
 Grashof = Callable[..., Any]

@@ -6,8 +6,7 @@ import math
 
 from grashof.problems.values.checks import counted
 from grashof.synth import Result
-from grashof.synth.proof.poses.lookout import quantity_of
-from grashof.synth.proof.proof import Claim, Proof
+from grashof.synth.proof.claims.proof import Claim, Proof, quantity_of
 
 _DECIMALS = 2
 _SAME = 1e-9  # deg: rounding

@@ -16,7 +16,8 @@ from grashof.analysis import verify
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray
 from grashof.problems.values.mechanisms import FOUR_BAR
-from grashof.synth.proof.bounds import TOO_SMALL, Bounds, Proving
+from grashof.synth.proof.claims.bounds import TOO_SMALL, Bounds, Proving
+from grashof.synth.proof.claims.proof import quantity_of
 from grashof.synth.proof.curve.asked import LEAST, SLACK
 from grashof.synth.proof.curve.table import TooMany
 from grashof.synth.proof.forms.forms import Form, Span
@@ -24,7 +25,6 @@ from grashof.synth.proof.forms.loop import LoopLimits, lengths_allowed, transmis
 from grashof.synth.proof.forms.square import nothing_left
 from grashof.synth.proof.functions.couplers import CurveOfCouplers, PlaneOfCouplers
 from grashof.synth.proof.poses.branch_and_bound import MOST_LEVELS
-from grashof.synth.proof.poses.lookout import quantity_of
 from grashof.synth.starts.function_aims import FunctionAims
 from grashof.synth.starts.function_search import FoundFunction
 from grashof.synth.theory.burmester import Displacements, Dyads

@@ -15,10 +15,9 @@ from grashof.problems.values.checks import counted
 from grashof.problems.values.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.proof.claims.proof import Claim, Proof, best_listed, quantity_of
 from grashof.synth.proof.points.boxes import boxes
 from grashof.synth.proof.points.equations import Passing
-from grashof.synth.proof.poses.lookout import quantity_of
-from grashof.synth.proof.proof import Claim, Proof, best_listed
 from grashof.synth.starts.finder import finder_for
 from grashof.synth.starts.precision_points import FOLLOWED, THROUGH, EveryLinkage
 from grashof.synth.theory.eight_points import INVERTED_SLIDER_CRANKS

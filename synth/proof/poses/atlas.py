@@ -16,7 +16,7 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
-from grashof.synth.proof.bounds import Bounds
+from grashof.synth.proof.claims.bounds import Bounds
 from grashof.synth.proof.curve.asked import POSES, Asked, with_forms
 from grashof.synth.proof.curve.table import Table
 from grashof.synth.proof.poses.branch_and_bound import Search

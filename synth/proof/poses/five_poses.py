@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from time import perf_counter
 
 import numpy as np
 
+from grashof.problems import Problem
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.problems.values.checks import counted
+from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.proof.claims.proof import Claim, Proof, best_listed, quantity_of
 from grashof.synth.proof.curve.asked import Asked, unusable
 from grashof.synth.proof.curve.pieces import WIDER, Tubes
 from grashof.synth.proof.curve.table import Pieces, squares
@@ -232,3 +236,20 @@ def _newton(motion: Displacements, pieces: Pieces, which: IntArray) -> Dyads:
         step = (np.linalg.pinv(slopes) @ miss[..., None])[..., 0]
         z, c = z - step[:, 0] - 1j * step[:, 1], c - step[:, 2] - 1j * step[:, 3]
     return Dyads(z, c)
+
+
+def proof_of_all(problem: Problem, dyads: Certified, designs: Sequence[Candidate], *, whole: bool) -> Proof:
+    """What certified dyads of five poses prove of listed designs, where the search was whole."""
+    best = best_listed(problem, designs)
+    proof = Proof(
+        claim=Claim.REFUSED,
+        quantity=quantity_of(problem).column,
+        lower=best,
+        pieces=(dyads.within, dyads.within),
+        seconds=round(dyads.seconds, 4),
+        why=dyads.why or ("" if whole else "the search was not whole"),
+    )
+    if proof.why:
+        return proof
+    claim = Claim.NONE if best is None else Claim.BEST
+    return replace(proof, claim=claim, complete=True, upper=best)

@@ -7,7 +7,7 @@ from time import perf_counter
 import numpy as np
 
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.proof.bounds import STOPPED, TOO_SMALL, Bounds, Proving, logged
+from grashof.synth.proof.claims.bounds import STOPPED, TOO_SMALL, Bounds, Proving, logged
 from grashof.synth.proof.curve.asked import Asked, left_out, refusal, with_forms
 from grashof.synth.proof.curve.table import Table, TooMany
 from grashof.synth.proof.curve.trail import Trail

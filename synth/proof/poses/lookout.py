@@ -6,10 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from grashof.problems import Problem
 from grashof.problems.values.arrays import ComplexArray
-from grashof.problems.values.quantities import Quantity
-from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged
 from grashof.synth.designs.polishing import polished_solve
@@ -17,6 +14,7 @@ from grashof.synth.programme.exchange import solve_by_exchange
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Start
+from grashof.synth.proof.claims.proof import quantity_of
 from grashof.synth.proof.curve.asked import Asked
 from grashof.synth.proof.curve.table import Table
 from grashof.synth.proof.poses.pairs import Pairs
@@ -100,8 +98,3 @@ def screened_pairs(scaled: ScaledProblem, asked: Asked, table: Table, pairs: Pai
         dyads.moving[near], dyads.ground[near] = z, c
     driver, driven = dyads[back[: len(pairs)]], dyads[back[len(pairs) :]]
     return judged_pairs(motion, complex(scaled.targets[0]), driver, driven, scaled.wanted)
-
-
-def quantity_of(problem: Problem) -> Quantity:
-    """The transmission angle that a problem is about."""
-    return problem.requirements.meant(QUANTITIES["transmission"])

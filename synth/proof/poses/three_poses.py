@@ -9,7 +9,7 @@ import numpy as np
 
 from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.proof.bounds import STOPPED, Bounds, Proving, logged
+from grashof.synth.proof.claims.bounds import STOPPED, Bounds, Proving, logged
 from grashof.synth.proof.curve.asked import THREE, Asked, left_out, refusal, unusable, with_forms
 from grashof.synth.proof.curve.table import TooMany
 from grashof.synth.proof.poses.best_first import MOST_LEFT, BestFirst, Tilings

@@ -8,7 +8,7 @@ import numpy as np
 
 from grashof.problems import StrokeTask
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.proof.bounds import Bounds, Proving
+from grashof.synth.proof.claims.bounds import Bounds, Proving
 from grashof.synth.proof.strokes.asked import families_of_stroke, floor_of, refusal_of_stroke, sizes_left_out
 from grashof.synth.proof.strokes.cover import covered
 

@@ -8,7 +8,7 @@ from grashof.analysis import verify
 from grashof.problems import FunctionTask, Problem, Requirements
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 from grashof.synth import Claim
-from grashof.synth.proof.bounds import Proving
+from grashof.synth.proof.claims.bounds import Proving
 from grashof.synth.proof.curve.patches import Patches
 from grashof.synth.proof.forms.forms import Span
 from grashof.synth.proof.functions.couplers import ABOUT, PlaneOfCouplers

@@ -11,7 +11,7 @@ from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, ProblemError, Requirements
 from grashof.synth import Claim, prove
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.proof.bounds import Bounds, Proving
+from grashof.synth.proof.claims.bounds import Bounds, Proving
 from grashof.synth.proof.curve.asked import Asked
 from grashof.synth.proof.curve.table import Table
 from grashof.synth.proof.poses.branch_and_bound import Search

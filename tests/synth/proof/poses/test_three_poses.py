@@ -11,7 +11,7 @@ from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, Requirements
 from grashof.synth import Claim, prove
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.proof.bounds import Bounds, Proving
+from grashof.synth.proof.claims.bounds import Bounds, Proving
 from grashof.synth.proof.provers import bounds_before, bounds_of_three
 from grashof.synth.theory.stopping import stopping
 from grashof.wording.proof import bound_line

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
@@ -11,10 +11,10 @@ import numpy as np
 
 from grashof.problems import Problem
 from grashof.problems.values.mechanisms import FOUR_BAR
+from grashof.problems.values.quantities import Quantity
+from grashof.problems.values.requirements import QUANTITIES
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.proof.bounds import Bounds
-from grashof.synth.proof.poses.five_poses import Certified
-from grashof.synth.proof.poses.lookout import quantity_of
+from grashof.synth.proof.claims.bounds import Bounds
 
 ROUNDING = "doubles, enclosures widened for rounding; poses as stored, limits by 2e-9"
 _NOISE = 1e-6  # deg: targets are met up to rounding, and so are bounds
@@ -125,18 +125,6 @@ def proof_of(problem: Problem, bounds: Bounds, lower: float | None, gap: float) 
     )
 
 
-def proof_of_all(problem: Problem, dyads: Certified, designs: Sequence[Candidate], *, whole: bool) -> Proof:
-    """What certified dyads of five poses prove of listed designs, where the search was whole."""
-    best = best_listed(problem, designs)
-    proof = Proof(
-        claim=Claim.REFUSED,
-        quantity=quantity_of(problem).column,
-        lower=best,
-        pieces=(dyads.within, dyads.within),
-        seconds=round(dyads.seconds, 4),
-        why=dyads.why or ("" if whole else "the search was not whole"),
-    )
-    if proof.why:
-        return proof
-    claim = Claim.NONE if best is None else Claim.BEST
-    return replace(proof, claim=claim, complete=True, upper=best)
+def quantity_of(problem: Problem) -> Quantity:
+    """The transmission angle that a problem is about."""
+    return problem.requirements.meant(QUANTITIES["transmission"])

@@ -1,0 +1,1 @@
+"""What proofs come to: bounds, and what is claimed of a list."""
