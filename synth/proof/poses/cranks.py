@@ -10,6 +10,7 @@ from grashof.problems import Box, Requirements
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray, Limits
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve.asked import ANY_LENGTH, SLACK, Asked, Dyad
+from grashof.synth.proof.curve.curve import Curve
 from grashof.synth.proof.curve.dyads import allowed, lengths_of
 from grashof.synth.proof.curve.sliding import Slide
 from grashof.synth.proof.forms.forms import Form, Span, greatest_quotient
@@ -50,6 +51,11 @@ class Cranks:
         slider = replace(asked.driven, length=ANY_LENGTH, ground=Box(), keep_out=())
         return cls(replace(asked, driven=_NOBODY), slider, slide, around, _directions(scaled.wanted, slide))
 
+    @staticmethod
+    def curve_of(scaled: ScaledProblem) -> Curve:
+        """The curve of a problem with displacements of the body."""
+        return Asked.of(scaled).curve
+
     @property
     def may_slide(self) -> bool:
         """Whether B and its slide may be within their limits."""
@@ -58,7 +64,7 @@ class Cranks:
         inside = arm.within(self.slider.arm) & allowed(self.asked, self.slider, point, point)
         return bool(self.directions) and bool(inside.all())
 
-    def rows_left(self, z: Span, c: Span, sense: IntArray, least: float) -> tuple[IntArray, FloatArray]:
+    def rows_left(self, z: Span, c: Span, sense: IntArray, least: FloatArray) -> tuple[IntArray, FloatArray]:
         """Which cranks may belong to a linkage that transmits more than `least`, rad, and their bounds.
 
         Parameters
@@ -67,7 +73,7 @@ class Cranks:
             A at the first pose, and O2, of one symbol.
         sense : ndarray of int
             In which they meet the poses; 0 where that is open.
-        least : float, rad
+        least : ndarray, rad
         """
         point, along = self.slide.spans(len(z))
         rod, across = point - z, along.placed(1j)
@@ -108,14 +114,13 @@ class Cranks:
         seen = [offset.times(sign) for sign in self.directions]
         return np.flatnonzero(np.logical_or.reduce([(each.sup >= low) & (each.inf <= high) for each in seen]))
 
-    def _at_poses(self, rod: Span, along: Span, r3: Form, least: float) -> tuple[FloatArray, list[Form]]:
+    def _at_poses(self, rod: Span, along: Span, r3: Form, least: FloatArray) -> tuple[FloatArray, list[Form]]:
         """By the poses: sin mu is the component of AB along the slide over r3, as the body sees both."""
         seen = [along.placed(complex(turn.conj())) for turn in self.asked.curve.rotation]
-        limits, sine = self.asked.loop, np.full(len(rod), np.sin(least))
-        bound, forms = at_targets(limits, [each.dot(rod) for each in seen], r3, sine)
-        if least > STEEP:
-            cosine = np.full(len(rod), np.cos(least))
-            closer, more = square_at_targets([each.placed(1j).dot(rod) for each in seen], r3, cosine)
+        bound, forms = at_targets(self.asked.loop, [each.dot(rod) for each in seen], r3, np.sin(least))
+        if least.size and least.min() > STEEP:
+            beside = [each.placed(1j).dot(rod) for each in seen]
+            closer, more = square_at_targets(beside, r3, np.cos(least))
             bound, forms = np.minimum(bound, closer), forms + more
         return bound, forms
 

@@ -18,7 +18,6 @@ from grashof.synth.designs.judging import judged
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.bounds import STOPPED, TOO_SMALL, Bounds, Proving, logged
 from grashof.synth.proof.curve.asked import POSES, left_out, not_bounded, unusable, with_forms
-from grashof.synth.proof.curve.curve import Curve
 from grashof.synth.proof.curve.dyads import roles_of
 from grashof.synth.proof.curve.sliding import Slide
 from grashof.synth.proof.curve.table import Table, TooMany
@@ -29,7 +28,8 @@ from grashof.synth.theory.burmester import Displacements, Dyads, centre_points, 
 from grashof.synth.theory.stopping import Stopped, asked_to_stop
 
 MOST_LEVELS = 60  # pieces are as small as rounding then
-MOST, JUDGED = 4000, 4  # pieces looked at of each level, and how many of them by the judge
+MOST, JUDGED = 4000, 4  # pieces looked at of each level, and how many of them by the judge, twice
+MOST_PIECES = 50_000  # bounded; practical tasks take some hundred
 # Fields of the requirements that have forms.
 FORMS = (
     "transmission_min_deg",
@@ -58,7 +58,7 @@ def bounds_of_slider_cranks(
     moving = _with_motion(scaled)
     if why := not_bounded(moving) or unusable(moving):
         return Bounds(why=why, refused=True)
-    slide = Slide.of(_curve(moving))
+    slide = Slide.of(Cranks.curve_of(moving))
     if slide is None:
         return Bounds(why="the poses have a line of points that can slide, or nearly so", refused=True)
     without = left_out(scaled, FORMS)
@@ -68,7 +68,7 @@ def bounds_of_slider_cranks(
         why = _outside(about, slide)
         made = Bounds(upper=cranks.asked.floor, closed=True, left_out=without, why=why)
         return logged(replace(made, seconds=perf_counter() - since))
-    search = _Search(about, cranks, float(np.radians(proving.gap)), proving.most_pairs)
+    search = _Search(about, cranks, float(np.radians(proving.gap)), min(proving.most_pairs, MOST_PIECES))
     try:
         search.run(content=at_least is not None)
         why = "" if search.done or (search.best and at_least is not None) else search.why
@@ -102,12 +102,6 @@ def _suits(scaled: ScaledProblem) -> bool:
 def _with_motion(scaled: ScaledProblem) -> ScaledProblem:
     """The same with displacements of the body."""
     return replace(scaled, motion=Displacements.from_poses(scaled.targets, scaled.turns))
-
-
-def _curve(scaled: ScaledProblem) -> Curve:
-    if scaled.motion is None:
-        raise TypeError("only whole poses that are met exactly have a curve of dyads")
-    return Curve.of(scaled.motion, complex(scaled.targets[0]))
 
 
 def _outside(scaled: ScaledProblem, slide: Slide) -> str:
@@ -188,7 +182,8 @@ class _Search:
 
     def _rows_left(self, table: Table, pieces: IntArray) -> tuple[IntArray, FloatArray]:
         some = table.pieces[pieces]
-        return self.cranks.rows_left(some.tubes.span, some.centres.span, some.sense, self.threshold)
+        least = np.full(len(pieces), self.threshold)
+        return self.cranks.rows_left(some.tubes.span, some.centres.span, some.sense, least)
 
     def _look(self, table: Table, pieces: IntArray) -> None:
         """Take the best design in the middle of pieces that the judge accepts, where it is better."""
@@ -202,8 +197,11 @@ class _Search:
         dyads = polish(motion, Dyads(z[known], c[known]), steps=2)
         a, o2 = _alone(dyads.moving), _alone(dyads.ground)
         sense = roles_of(self.cranks.asked, a, o2).sense
-        rows, bound = self.cranks.rows_left(a, o2, sense, least)
-        for row in rows[np.argsort(-bound, kind="stable")][:JUDGED]:
+        rows, bound = self.cranks.rows_left(a, o2, sense, np.full(len(sense), least))
+        order = rows[np.argsort(-bound, kind="stable")]
+        # Between limits of no width the best are at the edge of the slack, which the judge does not grant.
+        spread = order[np.linspace(0, len(order) - 1, JUDGED).astype(int)] if len(order) else order
+        for row in dict.fromkeys([*order[:JUDGED].tolist(), *spread.tolist()]):
             if self._taken(complex(dyads.moving[row]), complex(dyads.ground[row])):
                 return
 
