@@ -16,7 +16,7 @@ from grashof.problems.values.mechanisms import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.claims.bounds import Bounds, Proving
 from grashof.synth.proof.claims.proof import Claim, Proof, proof_of, quantity_of
-from grashof.synth.proof.curve.asked import refusal
+from grashof.synth.proof.curve.asked import POSES, refusal
 from grashof.synth.proof.curve.trail import Trail
 from grashof.synth.proof.functions.few_pairs import FOUR, THREE
 from grashof.synth.proof.poses.certificate import certificate_of, without_check, writable, write
@@ -31,7 +31,7 @@ from grashof.synth.theory.stopping import stopping
 _RIGHT = 90.0  # deg: a bound that says nothing
 _BEYOND = (
     "there are proofs of three to five whole poses, and pairs of a function, that a four-bar meets exactly, "
-    "and of a swing or a stroke; of no other task yet"
+    "of four whole poses of a slider-crank, and of a swing or a stroke; of no other task yet"
 )
 
 
@@ -51,8 +51,8 @@ def prove(
     ----------
     problem : Problem
         For a four-bar, met exactly: three or four whole poses, the transmission angle to be maximised; five
-        whole poses; a function of three to five pairs. For every kind of linkage a swing or a stroke; of a
-        list of kinds for the first.
+        whole poses; a function of three to five pairs. For a slider-crank four whole poses. For every kind of
+        linkage a swing or a stroke; of a list of kinds for the first.
     at_least : float, deg, optional
         Only decide whether a design has a transmission angle of so much.
     gap : float, deg
@@ -99,13 +99,13 @@ def prove(
     proving = Proving.patient(gap)
     beyond = Proof(claim=Claim.REFUSED, quantity=quantity_of(problem).column, why=_BEYOND)
     stroke = isinstance(problem.task, StrokeTask)
-    kind = problem.mechanism[0] if stroke else FOUR_BAR
+    kind = problem.mechanism[0] if stroke or FOUR_BAR not in problem.mechanism else FOUR_BAR
     if certificate is not None:
         _certifiable(problem, constraints, Path(certificate))
-    if kind not in problem.mechanism:
-        return beyond
     alone = problem.for_kind(kind)
     function, count = bool(problem.task.has_output.any()), len(problem.task)
+    if kind != FOUR_BAR and (function or (count != POSES and not stroke)):
+        return beyond
     whole = problem.task.is_whole
     # Of three poses a good design to begin with is worth more than all pairs that it takes to find it.
     by_list = stroke or (whole and (count == FIVE or (count == THREE and at_least is None)))
@@ -142,7 +142,9 @@ def _certifiable(problem: Problem, constraints: Sequence[Constraint], path: Path
     four_bar = FOUR_BAR in problem.mechanism
     scaled = ScaledProblem.of(problem.for_kind(FOUR_BAR) if four_bar else problem, constraints)
     if refusal(scaled) is None:
-        raise ProblemError(f"certificate {path}: there are certificates of four whole poses only")
+        raise ProblemError(
+            f"certificate {path}: there are certificates of four whole poses only, met by a four-bar"
+        )
     if without := without_check(scaled):
         raise ProblemError(f"certificate {path}: certificates cannot state {' and '.join(without)} yet")
     writable(path)

@@ -10,10 +10,11 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.claims.bounds import Bounds, Proving
 from grashof.synth.proof.claims.proof import quantity_of
 from grashof.synth.proof.poses.four_poses import bounds_of_four
+from grashof.synth.proof.poses.slider_cranks import bounds_of_slider_cranks
 from grashof.synth.proof.poses.three_poses import bounds_of_three
 from grashof.synth.proof.strokes.bounds import bounds_of_stroke
 
-_PROVERS = bounds_of_stroke, bounds_of_four, bounds_of_three
+_PROVERS = bounds_of_stroke, bounds_of_four, bounds_of_three, bounds_of_slider_cranks
 
 
 def bounds_of(scaled: ScaledProblem, proving: Proving, at_least: float | None = None) -> Bounds | None:

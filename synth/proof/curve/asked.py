@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Any
@@ -198,8 +199,10 @@ def _directions(wanted: Requirements) -> Limits | None:
     return _widened((float(low), float(high))) if high - low < np.pi else None
 
 
-def left_out(scaled: ScaledProblem) -> tuple[str, ...]:
+def left_out(scaled: ScaledProblem, forms: Sequence[str] = _FORMS) -> tuple[str, ...]:
     """Requirements that are stated and have no form, or not one for all that they ask, by their fields.
+
+    `forms` are the fields that have some; of four-bars by default.
 
     Examples
     --------
@@ -210,7 +213,7 @@ def left_out(scaled: ScaledProblem) -> tuple[str, ...]:
     ((), ('size',))
     """
     wanted = scaled.problem.requirements
-    without = [name for name in wanted.limited if name not in _FORMS and not _says_nothing(wanted, name)]
+    without = [name for name in wanted.limited if name not in forms and not _says_nothing(wanted, name)]
     if not wanted.order:
         without += [name for name in wanted.limited if name in _OF_ORDER and not _says_nothing(wanted, name)]
     moving = wanted.keep_out and not set(wanted.keep_out_for) <= _GROUND
@@ -223,12 +226,12 @@ def _says_nothing(wanted: Requirements, name: str) -> bool:
     return bool(limit.words) and getattr(wanted, name) == limit.widest
 
 
-def with_forms(scaled: ScaledProblem) -> ScaledProblem:
+def with_forms(scaled: ScaledProblem, forms: Sequence[str] = _FORMS) -> ScaledProblem:
     """The problem without the requirements that have no form."""
     wanted = scaled.problem.requirements
     changed: dict[str, Any] = {
         name: LIMITS[name].widest if LIMITS[name].words else None
-        for name in left_out(scaled)
+        for name in left_out(scaled, forms)
         if name in LIMITS
     }
     for_ground = tuple(name for name in wanted.keep_out_for if name in _GROUND)
@@ -263,13 +266,19 @@ def refusal(scaled: ScaledProblem, poses: int = POSES) -> str | None:
     problem = scaled.problem
     if scaled.motion is None or len(scaled.targets) != poses or problem.mechanism[0] != FOUR_BAR:
         return None
+    return not_bounded(scaled) or unusable(scaled)
+
+
+def not_bounded(scaled: ScaledProblem) -> str:
+    """Why what a problem asks for bounds no transmission angle; empty where it does."""
+    problem = scaled.problem
     if scaled.objective is None or set(scaled.objective.goals) != {"transmission"}:
         return "the objective has no forms; transmission alone has"
     if problem.driver is not None:
         return "a cylinder drives it, through dead positions of link 2, perhaps"
     if (without := _transmits_nothing(scaled)) and not scaled.wanted.transmission_min_deg:
         return f"{without} allows designs that transmit nothing"
-    return unusable(scaled)
+    return ""
 
 
 def unusable(scaled: ScaledProblem) -> str:

@@ -94,8 +94,8 @@ def same_lengths(motion: Curve | Displacements, z: Span, c: Span) -> BoolArray:
 def roles_of(asked: Asked, z: Span, c: Span) -> Roles:
     """What pieces with these moving and ground pivots may be."""
     sense, ordered = _senses(asked.curve, z)
-    driver = _allowed(asked, asked.driver, z, c)
-    driven = _allowed(asked, asked.driven, z, c)
+    driver = allowed(asked, asked.driver, z, c)
+    driven = allowed(asked, asked.driven, z, c)
     if asked.ordered:
         driver &= ordered
         driver &= (sense == 0) | (asked.sense == 0) | (sense == asked.sense)
@@ -108,7 +108,7 @@ def roles_of(asked: Asked, z: Span, c: Span) -> Roles:
     return Roles(driver, driven, sense)
 
 
-def _allowed(asked: Asked, dyad: Dyad, z: Span, c: Span) -> BoolArray:
+def allowed(asked: Asked, dyad: Dyad, z: Span, c: Span) -> BoolArray:
     """Which pieces may meet the limits of a dyad."""
     curve = asked.curve
     keep = lengths_of(z, c).within(dyad.length)

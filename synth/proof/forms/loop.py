@@ -76,9 +76,9 @@ def transmission_bound(
     """
     r1, r2, r3, r4 = lengths
     product = r3 * r4
-    bound, forms = _at_targets(limits, [u.cross(v) for u, v in arms], product, np.sin(least))
+    bound, forms = at_targets(limits, [u.cross(v) for u, v in arms], product, np.sin(least))
     if least.size and least.min() > STEEP:
-        closer, more = _square_at_targets([u.dot(v) for u, v in arms], product, np.cos(least))
+        closer, more = square_at_targets([u.dot(v) for u, v in arms], product, np.cos(least))
         bound, forms = np.minimum(bound, closer), forms + more
     apart, together = r1 + r2, r1 - r2
     squares = r3 * r3 + r4 * r4
@@ -98,7 +98,7 @@ def transmission_bound(
     return bound, forms
 
 
-def _at_targets(
+def at_targets(
     limits: LoopLimits, areas: list[Form], product: Form, sine: FloatArray
 ) -> tuple[FloatArray, list[Form]]:
     """Bounds by the sine of the transmission angle at the targets; of one sign on one branch."""
@@ -115,7 +115,7 @@ def _at_targets(
     return np.arcsin(np.clip(best, -1.0, 1.0)), forms
 
 
-def _square_at_targets(dots: list[Form], product: Form, cosine: FloatArray) -> tuple[FloatArray, list[Form]]:
+def square_at_targets(dots: list[Form], product: Form, cosine: FloatArray) -> tuple[FloatArray, list[Form]]:
     """The same by the cosine, which is accurate where the sine is not: near 90 deg."""
     least = np.zeros_like(product.centre)
     forms = []

@@ -87,14 +87,14 @@ class Atlas:
 
 
 def atlas_of(scaled: ScaledProblem, bounds: Bounds) -> Atlas | None:
-    """All linkages of four poses above half the best that bounds know; None where they know none.
+    """All four-bars of four poses above half the best that bounds know; None where they know none.
 
     Raises
     ------
     Stopped
         Asked to stop.
     """
-    if not bounds.closed or not bounds.lower or len(scaled.targets) != POSES:
+    if not bounds.closed or not bounds.lower or len(scaled.targets) != POSES or scaled.motion is None:
         return None
     about = with_forms(scaled) if bounds.left_out else scaled
     asked = Asked.of(about)
