@@ -143,6 +143,7 @@ def test_different_zeros_have_boxes_apart_and_no_box_of_both_is_accepted() -> No
 
 
 @pytest.mark.slow
+@pytest.mark.study
 def test_all_linkages_through_the_nine_points_of_the_catalogue_are_enclosed() -> None:
     points = load("nine-points").task.positions @ np.array([1, 1j])
     found, solutions = linkages_through(points, np.random.default_rng(0))

@@ -210,7 +210,7 @@ def test_a_cover_that_stays_open_is_bounded_by_what_is_left() -> None:
 
 
 @KINDS
-@pytest.mark.parametrize("count", [8, pytest.param(300, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [8, pytest.param(300, marks=[pytest.mark.slow, pytest.mark.study])])
 def test_no_linkage_is_lost(kind: type[Linkage], count: int) -> None:
     """Under limits that just hold it, and with its own transmission angle as what counts."""
     for seed in range(count):
