@@ -22,7 +22,7 @@ from grashof.synth.proof.functions.few_pairs import FOUR, THREE
 from grashof.synth.proof.poses.certificate import certificate_of, without_check, writable, write
 from grashof.synth.proof.poses.five_poses import FIVE
 from grashof.synth.proof.poses.four_poses import bounds_of_four
-from grashof.synth.proof.provers import bounds_of
+from grashof.synth.proof.provers import bounds_before, bounds_of
 from grashof.synth.search.asked import asking
 from grashof.synth.starts.finder import refuse_unsearchable
 from grashof.synth.synthesize import synthesize
@@ -107,9 +107,9 @@ def prove(
     if kind != FOUR_BAR and (function or (count != POSES and not stroke)):
         return beyond
     whole = problem.task.is_whole
-    # Of three poses a good design to begin with is worth more than all pairs that it takes to find it.
-    by_list = stroke or (whole and (count == FIVE or (count == THREE and at_least is None)))
-    if by_list or (function and count in (THREE, FOUR, FIVE)):
+    three = whole and count == THREE and at_least is None
+    by_list = stroke or (function and count in (THREE, FOUR, FIVE)) or (whole and count == FIVE)
+    if by_list or (three and _takes_minutes(ScaledProblem.of(alone, constraints), proving)):
         found = synthesize(
             alone, constraints=constraints, time_limit=time_limit, stop=stop, gap=gap, prove=True
         ).proof
@@ -130,6 +130,11 @@ def prove(
     if trail is not None and certificate is not None and has_certificate(proof):
         write(certificate_of(scaled, trail, float(np.degrees(bounds.upper)), at_least), Path(certificate))
     return proof
+
+
+def _takes_minutes(scaled: ScaledProblem, proving: Proving) -> bool:
+    """Whether three poses stay open at first: a good design of a list is then worth more than many pairs."""
+    return not refusal(scaled, THREE) and bounds_before(scaled, proving) is None
 
 
 def has_certificate(proof: Proof) -> bool:
