@@ -15,6 +15,7 @@ _FIRST = np.pi / 24  # rad: the widest interval to begin with
 # How near the least transmission angle is known, rad, where rounding allows it; nearer beside its limit.
 _SHARP, _AT_LIMIT = 1e-8, 2e-10
 _ROUNDS = 48  # of bisection; those that are left then keep what they have
+_MOST = 2000  # intervals of a range at once, as where the angle hardly varies: then all keep what they have
 _ARCTANGENT = 8 * EPS  # relative error of a computed arctangent, and a margin
 
 
@@ -111,7 +112,8 @@ def least_transmission(
         least = _angle(*(margin.over for margin in margins)).lo
         sharp = np.where(np.abs(hi - required) < 2 * _SHARP, _AT_LIMIT, _SHARP)
         wanted = np.where(np.isnan(required), 0.0, hi - sharp)[pieces.row]
-        done = (least > 0) & (least >= wanted) | (hi[pieces.row] <= 0) | (turn == _ROUNDS - 1)
+        crowded = (np.bincount(pieces.row, minlength=rows) > _MOST)[pieces.row]
+        done = (least > 0) & (least >= wanted) | (hi[pieces.row] <= 0) | (turn == _ROUNDS - 1) | crowded
         np.minimum.at(lo, pieces.row[done], least[done])
         pieces = pieces.halves(np.flatnonzero(~done))
     return Least(lo, hi, gap, count)

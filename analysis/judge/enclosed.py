@@ -40,13 +40,13 @@ _UNJOINED = _Claim("a motion of link 2 through all targets", _Shown.OPEN)
 
 
 def find_enclosures(designs: Sequence[Values]) -> tuple[Enclosure, ...]:
-    """Enclose designs of a problem that the judge accepted, each once."""
-    wanted = [each for each in designs if each.enclosure is None]
-    if wanted:
-        problem = wanted[0].problem
-        linkages, verdicts = zip(*((each.linkage, each.verdict) for each in wanted), strict=True)
+    """Enclose designs that the judge accepted, each once and for its own problem."""
+    wanted = [each for each in designs if each.enclosure is None]  # of a list of kinds, several problems
+    for problem in {id(each.problem): each.problem for each in wanted}.values():
+        mine = [each for each in wanted if each.problem is problem]
+        linkages, verdicts = zip(*((each.linkage, each.verdict) for each in mine), strict=True)
         found = enclose(linkages, problem.task, problem.requirements, verdicts)
-        for each, enclosure in zip(wanted, found, strict=True):
+        for each, enclosure in zip(mine, found, strict=True):
             each.enclosure = enclosure
     return tuple(each.enclosure for each in designs if each.enclosure is not None)
 

@@ -275,8 +275,9 @@ def prove(
 ) -> None:
     """Prove how large the transmission angle of the best design can be, or that there is no design.
 
-    For three to five whole poses, or pairs of a function, and a four-bar. Exit code 0: decided;
-    1: not decided; 2: bad input; 3: environment error; 130: interrupted (Ctrl-C).
+    For three to five whole poses, or pairs of a function, of a four-bar; four whole poses of a
+    slider-crank; a swing or a stroke. Exit code 0: decided; 1: not decided; 2: bad input;
+    3: environment error; 130: interrupted (Ctrl-C).
     """
     with _errors_told():
         raise typer.Exit(commands.prove(problem, at_least, gap, time_limit, certificate))

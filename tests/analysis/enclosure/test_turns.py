@@ -77,6 +77,18 @@ def test_closure_alone_takes_any_positive_bound(batch: Linkage) -> None:
     assert (least.pieces <= sharp.pieces).all()
 
 
+def test_an_angle_that_hardly_varies_takes_few_intervals() -> None:
+    flat = [
+        InvertedSliderCrank(o2=(0, 0), o4=(1, 0), r2=r2, offset=offset)
+        for r2, offset in ((0.5, 0.0), (0.5, 1e-9), (0.9, -1e-10), (2.0, 0.0))
+    ]
+    found = least_transmission(stacked(flat), np.zeros(4), np.full(4, 6.3), np.zeros(4))
+    assert np.all(found.pieces < 20_000)
+    assert np.all(found.lo > np.radians(89.9))
+    assert np.all(found.lo <= found.hi)
+    assert np.all(found.hi <= np.pi / 2)
+
+
 def test_a_range_that_opens_between_its_ends_has_none() -> None:
     """The loop is open for some 1e-5 rad, far less than any sample is wide."""
     linkage = FourBar((0, 0), (4, 0), 1, 3, 2 - 1e-10)  # stretched: r1 + r2 = r3 + r4 + 1e-10
