@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from time import perf_counter
 
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, IntArray
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.proof.claims.bounds import Bounds, logged
 from grashof.synth.proof.curve.asked import Asked
 from grashof.synth.proof.curve.table import NOTHING, Table
 from grashof.synth.proof.poses.pairs import Pairs, bounded
@@ -69,6 +72,30 @@ class Bracket:
         if not self.begun or self.left is None:
             return float(np.pi / 2)
         return max(self.threshold, float(self.left.bound.max(initial=0.0)))
+
+    def bounds(
+        self,
+        since: float,
+        begun: tuple[int, int],
+        found: Candidate | None,
+        left_out: tuple[str, ...],
+        why: str,
+    ) -> Bounds:
+        """What it has come to since a time, with the pieces that it began with and the best design."""
+        return logged(
+            Bounds(
+                lower=self.lower,
+                upper=self.upper,
+                closed=self.done,
+                found=found,
+                pieces=begun,
+                pairs=self.pairs,
+                levels=self.levels,
+                seconds=perf_counter() - since,
+                left_out=left_out,
+                why=why,
+            )
+        )
 
     def bounded(self, blocks: Blocks, bound: Callable[[IntArray, IntArray, float], Pairs]) -> Pairs | None:
         """What is left of pairs; None where the budget ends, or it is asked to stop."""

@@ -7,7 +7,7 @@ from time import perf_counter
 import numpy as np
 
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.proof.claims.bounds import STOPPED, TOO_SMALL, Bounds, Proving, logged
+from grashof.synth.proof.claims.bounds import STOPPED, TOO_SMALL, Bounds, Proving
 from grashof.synth.proof.curve.asked import Asked, left_out, refusal, with_forms
 from grashof.synth.proof.curve.table import Table, TooMany
 from grashof.synth.proof.curve.trail import Trail
@@ -51,19 +51,7 @@ def bounds_of_four(
         why = str(ended)
     except Stopped:
         why = STOPPED
-    made = Bounds(
-        lower=search.lower,
-        upper=search.upper,
-        closed=search.done,
-        found=look.best,
-        pieces=begun,
-        pairs=search.pairs,
-        levels=search.levels,
-        seconds=perf_counter() - since,
-        left_out=without,
-        why=why,
-    )
-    return logged(made)
+    return search.bounds(since, begun, look.best, without, why)
 
 
 def _open(search: Search) -> str:

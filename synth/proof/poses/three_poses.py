@@ -120,19 +120,7 @@ def bounds_of_three(
         why = STOPPED
     if not (proving.minutes or search.done):
         return None
-    made = Bounds(
-        lower=search.lower,
-        upper=search.upper,
-        closed=search.done,
-        found=look.best,
-        pieces=begun,
-        pairs=search.pairs,
-        levels=search.levels,
-        seconds=perf_counter() - since,
-        left_out=without,
-        why=why,
-    )
-    return logged(made)
+    return search.bounds(since, begun, look.best, without, why)
 
 
 def _open(search: BestFirst) -> str:
