@@ -1,9 +1,9 @@
 """Check a certificate of `grashof prove PROBLEM --certificate FILE`, with mathematics of its own.
 
-Nothing of Grashof is used. Quantities are polynomials with remainders (enclosures.py), of
-curves in tubes (circle_points.py). Square roots and
-the four operations are taken as IEEE 754 has them, sines and cosines as right to 2e-16. Where an enclosure
-is too wide for a claim, its part is quartered, up to ten times.
+Nothing of Grashof is used. Quantities are polynomials with remainders (`enclosures.py`) over tubes about the
+circle-point curve (`circle_points.py`). The four operations and square roots are rounded as IEEE 754 rounds
+them; sines and cosines are taken to be right within 2e-16. Where an enclosure is too wide for a claim, its
+part is quartered, up to ten times.
 """
 
 from __future__ import annotations
