@@ -20,6 +20,7 @@ from grashof.problems import Linkage, Requirements, Rotatability, Task
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.box import ANYWHERE
 
+_AT_ONCE = 100  # linkages, so that memory is bounded
 _OPEN = 1e-8  # share of the margins: an open loop, beyond what the judge takes for rounding
 
 
@@ -90,9 +91,11 @@ def enclose(
     wanted = requirements.for_task(task).resolved(task.size, scale_free=task.scale_free)
     found: dict[int, Enclosure] = {}
     for kind in dict.fromkeys(map(type, linkages)):
-        chosen = [k for k, linkage in enumerate(linkages) if type(linkage) is kind]
-        batch = [linkages[k] for k in chosen], [verdicts[k] for k in chosen]
-        found |= zip(chosen, _of_kind(*batch, task, wanted), strict=True)
+        alike = [k for k, linkage in enumerate(linkages) if type(linkage) is kind]
+        for begin in range(0, len(alike), _AT_ONCE):
+            chosen = alike[begin : begin + _AT_ONCE]
+            batch = [linkages[k] for k in chosen], [verdicts[k] for k in chosen]
+            found |= zip(chosen, _of_kind(*batch, task, wanted), strict=True)
     return tuple(found[k] for k in range(len(linkages)))
 
 
