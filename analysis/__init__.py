@@ -1,6 +1,5 @@
 """How a given linkage moves and how good it is: the independent judge of the synthesis, without CasADi."""
 
-from grashof.analysis.curves.coupler_circles import Centrodes, CouplerCircles, centrodes, coupler_circles
 from grashof.analysis.curves.curvature import curvature, cusps
 from grashof.analysis.curves.curve_distance import curve_distances
 from grashof.analysis.curves.double_points import DoublePoints, all_double_points, double_points
@@ -52,7 +51,18 @@ from grashof.analysis.forces.mass import (
     uniform_bars,
 )
 from grashof.analysis.forces.motor import motor_torque
-from grashof.analysis.forces.pumping_unit import (
+from grashof.analysis.forces.reciprocating import (
+    ReciprocatingBalance,
+    balance_reciprocating,
+    shaking_harmonics,
+)
+from grashof.analysis.forces.stated import stated_loads, stated_masses
+from grashof.analysis.forces.statics import Advantage, Holding, advantage, holding
+from grashof.analysis.forces.system_of_equations import SystemOfEquations, system_of_equations
+from grashof.analysis.four_bar.coupler_circles import Centrodes, CouplerCircles, centrodes, coupler_circles
+from grashof.analysis.four_bar.instant_centres import InstantCentres, instant_centres
+from grashof.analysis.four_bar.newton_raphson import NewtonPosition, newton_position
+from grashof.analysis.four_bar.pumping_unit import (
     ReducerTorque,
     RodMotion,
     beam_limits,
@@ -61,45 +71,6 @@ from grashof.analysis.forces.pumping_unit import (
     reducer_torque,
     rod_load,
     rod_motion,
-)
-from grashof.analysis.forces.reciprocating import (
-    ReciprocatingBalance,
-    balance_reciprocating,
-    shaking_harmonics,
-)
-from grashof.analysis.forces.section_forces import BarForces, SectionForce, section_forces
-from grashof.analysis.forces.stated import stated_loads, stated_masses
-from grashof.analysis.forces.statics import Advantage, Holding, advantage, holding
-from grashof.analysis.forces.strength import StrengthHistory, strength_at
-from grashof.analysis.forces.strength_peaks import SafetyFactor, StrengthPeak, StrengthSummary, strength_over
-from grashof.analysis.forces.structure import BAR_MEASURES, PIN_MEASURES, Structure
-from grashof.analysis.forces.system_of_equations import SystemOfEquations, system_of_equations
-from grashof.analysis.four_bar.differences import Deviation, central_differences, compare_differences
-from grashof.analysis.four_bar.driver import DriverMotion, driver_motion
-from grashof.analysis.four_bar.driver_law import DriverLaw
-from grashof.analysis.four_bar.driver_samples import driver_samples
-from grashof.analysis.four_bar.even_motion import EvenMotion, even_motion
-from grashof.analysis.four_bar.extremes import Extremes, extremes, extremes_of, transmission_extremes
-from grashof.analysis.four_bar.instant_centres import InstantCentres, instant_centres
-from grashof.analysis.four_bar.kinematics import Kinematics, PointMotion, SlideMotion, solve_kinematics
-from grashof.analysis.four_bar.mobility import (
-    branch_index,
-    circuit_index,
-    dead_ends,
-    driver_ranges,
-    full_rotation,
-    grashof_class,
-    rotatability,
-    triple_rocker_kind,
-)
-from grashof.analysis.four_bar.newton_raphson import NewtonPosition, newton_position
-from grashof.analysis.four_bar.position import Position, solve_position
-from grashof.analysis.four_bar.reach import reach_box
-from grashof.analysis.four_bar.stroke import OutputStroke, output_stroke
-from grashof.analysis.four_bar.transmission import (
-    transmission_angle,
-    worst_transmission,
-    worst_transmission_cycle,
 )
 from grashof.analysis.judge.design import Constraint, Design
 from grashof.analysis.judge.driven import cylinder_forces
@@ -110,6 +81,40 @@ from grashof.analysis.judge.tolerance import Robustness, robustness, sensitivity
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.judge.verify import verify
 from grashof.analysis.loops.loop import GrashofClass
+from grashof.analysis.mechanism.differences import Deviation, central_differences, compare_differences
+from grashof.analysis.mechanism.driver import DriverMotion, driver_motion
+from grashof.analysis.mechanism.driver_law import DriverLaw
+from grashof.analysis.mechanism.driver_samples import driver_samples
+from grashof.analysis.mechanism.even_motion import EvenMotion, even_motion
+from grashof.analysis.mechanism.extremes import Extremes, extremes, extremes_of, transmission_extremes
+from grashof.analysis.mechanism.kinematics import Kinematics, PointMotion, SlideMotion, solve_kinematics
+from grashof.analysis.mechanism.mobility import (
+    branch_index,
+    circuit_index,
+    dead_ends,
+    driver_ranges,
+    full_rotation,
+    grashof_class,
+    rotatability,
+    triple_rocker_kind,
+)
+from grashof.analysis.mechanism.position import Position, solve_position
+from grashof.analysis.mechanism.reach import reach_box
+from grashof.analysis.mechanism.stroke import OutputStroke, output_stroke
+from grashof.analysis.mechanism.transmission import (
+    transmission_angle,
+    worst_transmission,
+    worst_transmission_cycle,
+)
+from grashof.analysis.strength.section_forces import BarForces, SectionForce, section_forces
+from grashof.analysis.strength.strength import StrengthHistory, strength_at
+from grashof.analysis.strength.strength_peaks import (
+    SafetyFactor,
+    StrengthPeak,
+    StrengthSummary,
+    strength_over,
+)
+from grashof.analysis.strength.structure import BAR_MEASURES, PIN_MEASURES, Structure
 
 __all__ = [
     "BAR_MEASURES",

@@ -8,8 +8,10 @@ from grashof.problems.files.linkage_file import (
 )
 from grashof.problems.files.problem_file import catalogue, load, load_with_text, problem_text
 from grashof.problems.values.box import Box
-from grashof.problems.values.cylinder import Cylinder, CylinderSpec
-from grashof.problems.values.dynamics_spec import DynamicsSpec
+from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
+from grashof.problems.values.dynamics.manufacturing import Manufacturing
+from grashof.problems.values.dynamics.section import CrossSection, SectionSpec
+from grashof.problems.values.dynamics.strength import StrengthSpec
 from grashof.problems.values.errors import (
     AssemblyError,
     DeadPositionWarning,
@@ -19,23 +21,21 @@ from grashof.problems.values.errors import (
     ProblemError,
     SolverError,
 )
-from grashof.problems.values.four_bar import FourBar
-from grashof.problems.values.function_law import FunctionLaw
-from grashof.problems.values.function_task import FunctionTask
-from grashof.problems.values.inverted_slider_crank import InvertedSliderCrank
-from grashof.problems.values.linkage import Linkage
-from grashof.problems.values.linkage_spec import LinkageSpec
-from grashof.problems.values.manufacturing import Manufacturing
-from grashof.problems.values.motion_task import MotionTask
-from grashof.problems.values.objective import Objective
-from grashof.problems.values.path_task import PathTask
-from grashof.problems.values.problem import Problem, Search
-from grashof.problems.values.requirements import Requirements, Rotatability, TransmissionOver
-from grashof.problems.values.section import CrossSection, SectionSpec
-from grashof.problems.values.slider_crank import SliderCrank
-from grashof.problems.values.strength import StrengthSpec
-from grashof.problems.values.stroke_task import StrokeTask
-from grashof.problems.values.task import Task
+from grashof.problems.values.linkages.cylinder import Cylinder, CylinderSpec
+from grashof.problems.values.linkages.four_bar import FourBar
+from grashof.problems.values.linkages.inverted_slider_crank import InvertedSliderCrank
+from grashof.problems.values.linkages.linkage import Linkage
+from grashof.problems.values.linkages.slider_crank import SliderCrank
+from grashof.problems.values.requirements.objective import Objective
+from grashof.problems.values.requirements.requirements import Requirements, Rotatability, TransmissionOver
+from grashof.problems.values.specs.linkage_spec import LinkageSpec
+from grashof.problems.values.specs.problem import Problem, Search
+from grashof.problems.values.tasks.function_law import FunctionLaw
+from grashof.problems.values.tasks.function_task import FunctionTask
+from grashof.problems.values.tasks.motion_task import MotionTask
+from grashof.problems.values.tasks.path_task import PathTask
+from grashof.problems.values.tasks.stroke_task import StrokeTask
+from grashof.problems.values.tasks.task import Task
 
 __all__ = [
     "AssemblyError",

@@ -37,7 +37,7 @@ from grashof.problems import LinkageSpec, Problem, ProblemError, load_linkage_sp
 from grashof.problems.files.linkage_file import load_design
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.problem_writing import problem_toml
-from grashof.problems.values.linkage_spec import ListedDesign
+from grashof.problems.values.specs.linkage_spec import ListedDesign
 from grashof.study.asked import ON_REQUEST, Asked
 from grashof.survey import report_on
 from grashof.synth import Result

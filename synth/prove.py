@@ -12,7 +12,7 @@ from grashof.analysis import verify
 from grashof.analysis.judge.design import Constraint
 from grashof.problems import Problem, ProblemError, StrokeTask
 from grashof.problems.values.checks import number_within
-from grashof.problems.values.mechanisms import FOUR_BAR
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.claims.bounds import Bounds, Proving
 from grashof.synth.proof.claims.proof import Claim, Proof, proof_of, quantity_of

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from grashof.problems import Requirements
-from grashof.problems.values.quantities import Unit
-from grashof.problems.values.requirements import LIMITS
+from grashof.problems.values.requirements.requirements import LIMITS
+from grashof.problems.values.units import Unit
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")

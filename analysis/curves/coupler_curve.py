@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.four_bar.mobility import driver_ranges, range_index, rotatability
-from grashof.analysis.four_bar.position import Position, solve_position
 from grashof.analysis.loops.kinds import kind_of
+from grashof.analysis.mechanism.mobility import driver_ranges, range_index, rotatability
+from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.analysis.numerics.minimisation import Model
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray

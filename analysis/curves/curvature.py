@@ -6,8 +6,8 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.analysis.curves.coupler_curve import coupler_curve
-from grashof.analysis.four_bar.even_motion import even_motion
-from grashof.analysis.four_bar.mobility import driver_ranges, full_rotation
+from grashof.analysis.mechanism.even_motion import even_motion
+from grashof.analysis.mechanism.mobility import driver_ranges, full_rotation
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.checks import number_within

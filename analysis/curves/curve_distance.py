@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.analysis.curves.coupler_curve import coupler_curve, tracks
-from grashof.analysis.four_bar.even_motion import even_motion
-from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.mechanism.even_motion import even_motion
+from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.peaks import greatest
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray

@@ -7,15 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.analysis.four_bar.even_motion import even_motion
-from grashof.analysis.four_bar.extremes import (
+from grashof.analysis.mechanism.even_motion import even_motion
+from grashof.analysis.mechanism.extremes import (
     Curve,
     Quantity,
     counted_on,
     dense_places,
     motion_between,
 )
-from grashof.analysis.four_bar.kinematics import solve_kinematics
+from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.analysis.numerics.peaks import greatest
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray, IntArray

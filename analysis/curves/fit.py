@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import chebyshev, legendre
 
-from grashof.analysis.four_bar.even_motion import EvenMotion, even_motion
-from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.mechanism.even_motion import EvenMotion, even_motion
+from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.quadrature import gauss_legendre
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray, frozen_array

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.four_bar.even_motion import even_motion
-from grashof.analysis.four_bar.mobility import full_rotation
-from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.mechanism.even_motion import even_motion
+from grashof.analysis.mechanism.mobility import full_rotation
+from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.peaks import greatest, own
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.mechanism.position import solve_position
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.checks import finite_rows, whole_number

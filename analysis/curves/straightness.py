@@ -8,11 +8,11 @@ import numpy as np
 
 from grashof.analysis.curves.coupler_curve import coupler_curve
 from grashof.analysis.curves.line_and_circle import BestLine
-from grashof.analysis.four_bar.even_motion import EvenMotion, even_motion
-from grashof.analysis.four_bar.mobility import full_rotation
-from grashof.analysis.four_bar.position import solve_position
-from grashof.analysis.four_bar.transmission import transmission_angle
 from grashof.analysis.loops.kinds import kind_of
+from grashof.analysis.mechanism.even_motion import EvenMotion, even_motion
+from grashof.analysis.mechanism.mobility import full_rotation
+from grashof.analysis.mechanism.position import solve_position
+from grashof.analysis.mechanism.transmission import transmission_angle
 from grashof.analysis.numerics.peaks import greatest, own
 from grashof.analysis.numerics.quadrature import Panels, gauss_legendre, integrate
 from grashof.problems import AssemblyError, Linkage

@@ -11,7 +11,7 @@ from grashof.analysis.cylinder.lengths import cylinder_state
 from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.loads import AppliedForce, Loads
 from grashof.analysis.forces.mass import Masses
-from grashof.analysis.four_bar.kinematics import Kinematics
+from grashof.analysis.mechanism.kinematics import Kinematics
 from grashof.problems import Cylinder
 from grashof.problems.values.arrays import BoolArray, FloatArray
 

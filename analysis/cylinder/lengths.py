@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.analysis.cylinder.travel import Travel
-from grashof.analysis.four_bar.kinematics import Kinematics
-from grashof.analysis.four_bar.position import Position
 from grashof.analysis.loops.kinds import kind_of, way_to
+from grashof.analysis.mechanism.kinematics import Kinematics
+from grashof.analysis.mechanism.position import Position
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import Cylinder, Linkage
 from grashof.problems.values.arrays import ComplexArray, FloatArray
@@ -99,7 +99,7 @@ def cylinder_state(cylinder: Cylinder, linkage: Linkage, at: Position | Kinemati
 
     Examples
     --------
-    >>> from grashof.analysis.four_bar.position import solve_position
+    >>> from grashof.analysis.mechanism.position import solve_position
     >>> from grashof.problems import FourBar
     >>> linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
     >>> jack = Cylinder("driver", base=(0, -2), point=(1, 0))

@@ -7,15 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.four_bar.driver_samples import driver_samples
-from grashof.analysis.four_bar.mobility import (
+from grashof.analysis.mechanism.driver_samples import driver_samples
+from grashof.analysis.mechanism.mobility import (
     circuit_index,
     dead_ends,
     driver_ranges,
     full_rotation,
     range_index,
 )
-from grashof.analysis.four_bar.position import Position, solve_position
+from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray
 

@@ -11,17 +11,17 @@ import scipy
 from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.loads import Loads, cross, turned
 from grashof.analysis.forces.mass import Body, Masses
-from grashof.analysis.four_bar.even_motion import even_motion
-from grashof.analysis.four_bar.extremes import extremes_of
-from grashof.analysis.four_bar.kinematics import Kinematics, solve_kinematics
-from grashof.analysis.four_bar.means import mean_over
-from grashof.analysis.four_bar.mobility import full_rotation
+from grashof.analysis.mechanism.even_motion import even_motion
+from grashof.analysis.mechanism.extremes import extremes_of
+from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
+from grashof.analysis.mechanism.means import mean_over
+from grashof.analysis.mechanism.mobility import full_rotation
 from grashof.analysis.numerics.minimax import least_peak
 from grashof.analysis.numerics.quadrature import Curve
 from grashof.problems import AssemblyError, FourBar, InvertedSliderCrank, ProblemError, SolverError
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 from grashof.problems.values.errors import wrong_value
-from grashof.problems.values.linkage import Linkage
+from grashof.problems.values.linkages.linkage import Linkage
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -95,7 +95,7 @@ def balance_force(
 
     Examples
     --------
-    >>> from grashof.analysis.four_bar.kinematics import solve_kinematics
+    >>> from grashof.analysis.mechanism.kinematics import solve_kinematics
     >>> from grashof.analysis.forces.mass import system_centre, uniform_bars
     >>> jack = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
     >>> balanced = balance_force(jack, uniform_bars(jack, 300.0))

@@ -8,7 +8,7 @@ import numpy as np
 
 from grashof.problems import FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkage import Linkage
+from grashof.problems.values.linkages.linkage import Linkage
 
 
 @dataclass(frozen=True, slots=True, eq=False)

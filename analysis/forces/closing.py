@@ -9,10 +9,10 @@ import numpy as np
 
 from grashof.analysis.forces.joints import Joint, joint_motion, slide_direction, slide_normal
 from grashof.analysis.forces.loads import Wrench, cross
-from grashof.analysis.four_bar.kinematics import Kinematics
+from grashof.analysis.mechanism.kinematics import Kinematics
 from grashof.problems import FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkage import Linkage
+from grashof.problems.values.linkages.linkage import Linkage
 
 
 class Closing(NamedTuple):

@@ -18,7 +18,7 @@ from grashof.analysis.forces.joints import (
 )
 from grashof.analysis.forces.loads import Loads, Wrench, cross, known_joint_moments, turned, wrenches
 from grashof.analysis.forces.mass import Masses
-from grashof.analysis.four_bar.kinematics import Kinematics, solve_kinematics
+from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
 from grashof.problems.values.arrays import FloatArray
 
 _MOST_ROUNDS = 200
@@ -103,7 +103,7 @@ def inverse_dynamics(
 
     Examples
     --------
-    >>> from grashof.analysis.four_bar.kinematics import solve_kinematics
+    >>> from grashof.analysis.mechanism.kinematics import solve_kinematics
     >>> from grashof.analysis.forces.mass import uniform_bars
     >>> from grashof.problems import FourBar
     >>> jack = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)

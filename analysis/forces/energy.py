@@ -11,7 +11,7 @@ from grashof.analysis.forces.joints import Joint, joint_motion
 from grashof.analysis.forces.loads import Friction, Loads, spring_ends, torsion_moments
 from grashof.analysis.forces.mass import Masses
 from grashof.analysis.forces.statics import load_power
-from grashof.analysis.four_bar.kinematics import Kinematics
+from grashof.analysis.mechanism.kinematics import Kinematics
 from grashof.problems.values.arrays import FloatArray
 
 
@@ -71,7 +71,7 @@ def energies(state: Kinematics, masses: Masses, loads: Loads | None = None) -> E
     Examples
     --------
     >>> from grashof.analysis.forces.mass import Body
-    >>> from grashof.analysis.four_bar.kinematics import solve_kinematics
+    >>> from grashof.analysis.mechanism.kinematics import solve_kinematics
     >>> from grashof.problems import FourBar
     >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
     >>> at_a = Masses(Body(2.0, 0.0, (1.0, 0.0)), Body(0.0), Body(0.0))

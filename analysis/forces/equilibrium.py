@@ -15,7 +15,7 @@ from grashof.analysis.forces.mass import Masses
 from grashof.analysis.forces.statics import load_power, virtual_power
 from grashof.analysis.forces.virtual_motion import virtual_motion
 from grashof.problems.values.arrays import TURN, FloatArray
-from grashof.problems.values.linkage import Linkage
+from grashof.problems.values.linkages.linkage import Linkage
 
 _SAMPLES = 721
 _NOTHING = 1e-12  # share of what the loads do at most: no torque

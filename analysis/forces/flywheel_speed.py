@@ -8,11 +8,11 @@ from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.flywheel import Flywheel
 from grashof.analysis.forces.loads import Loads
 from grashof.analysis.forces.mass import Masses
-from grashof.analysis.four_bar.even_motion import even_motion
-from grashof.analysis.four_bar.kinematics import solve_kinematics
+from grashof.analysis.mechanism.even_motion import even_motion
+from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.analysis.numerics.quadrature import integrate
 from grashof.problems.values.arrays import TURN, FloatArray
-from grashof.problems.values.linkage import Linkage
+from grashof.problems.values.linkages.linkage import Linkage
 
 _PANELS = 36
 

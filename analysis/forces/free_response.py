@@ -16,11 +16,11 @@ from grashof.analysis.forces.joints import Joint, joint_motion, margin
 from grashof.analysis.forces.loads import Friction, Loads, known_joint_moments, torsion_moments
 from grashof.analysis.forces.mass import Masses
 from grashof.analysis.forces.statics import load_power
-from grashof.analysis.four_bar.kinematics import Kinematics, SlideMotion, solve_kinematics
+from grashof.analysis.mechanism.kinematics import Kinematics, SlideMotion, solve_kinematics
 from grashof.analysis.numerics.collocation import Acceleration, Events, Panel, Path, integrate_motion
 from grashof.problems import AssemblyError, DeadPositionWarning, ProblemError
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkage import Linkage
+from grashof.problems.values.linkages.linkage import Linkage
 
 Drive = float | Callable[[float, float, float], float]
 

@@ -6,10 +6,10 @@ from enum import IntEnum
 
 import numpy as np
 
-from grashof.analysis.four_bar.kinematics import Kinematics, PointMotion
 from grashof.analysis.loops.kinds import kind_of
+from grashof.analysis.mechanism.kinematics import Kinematics, PointMotion
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkage import Linkage
+from grashof.problems.values.linkages.linkage import Linkage
 
 
 class Joint(IntEnum):

@@ -18,11 +18,11 @@ from grashof.analysis.forces.joints import (
     origin,
     slide_of,
 )
-from grashof.analysis.four_bar.kinematics import Kinematics, PointMotion
+from grashof.analysis.mechanism.kinematics import Kinematics, PointMotion
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.errors import wrong_value
-from grashof.problems.values.linkage import Linkage
+from grashof.problems.values.linkages.linkage import Linkage
 
 Varying: TypeAlias = npt.ArrayLike | Callable[[Kinematics], npt.ArrayLike]
 Pair: TypeAlias = tuple[float, float]

@@ -9,11 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.analysis.forces.bars import Bar, bars_of
-from grashof.analysis.four_bar.kinematics import Kinematics, PointMotion
+from grashof.analysis.mechanism.kinematics import Kinematics, PointMotion
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.errors import wrong_value
-from grashof.problems.values.linkage import Linkage
+from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.read_only import ReadOnly
 
 
@@ -241,7 +241,7 @@ def system_centre(masses: Masses, state: Kinematics) -> PointMotion:
     >>> from grashof.problems import FourBar
     >>> jack = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
     >>> bars = uniform_bars(jack, (312, 312, 314))
-    >>> from grashof.analysis.four_bar.kinematics import solve_kinematics
+    >>> from grashof.analysis.mechanism.kinematics import solve_kinematics
     >>> system_centre(bars, solve_kinematics(jack, np.radians(90))).position.round(6).tolist()
     [1.382152, 4.431897]
     """

@@ -10,8 +10,8 @@ import numpy.typing as npt
 from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.joints import slide_direction, slide_normal
 from grashof.analysis.forces.mass import Body, Masses
-from grashof.analysis.four_bar.kinematics import solve_kinematics
-from grashof.analysis.four_bar.mobility import full_rotation
+from grashof.analysis.mechanism.kinematics import solve_kinematics
+from grashof.analysis.mechanism.mobility import full_rotation
 from grashof.problems import AssemblyError, SliderCrank
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 from grashof.problems.values.checks import number_within

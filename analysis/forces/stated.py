@@ -17,11 +17,11 @@ from grashof.analysis.forces.loads import (
     TorsionSpring,
 )
 from grashof.analysis.forces.mass import Body, Masses, given_masses, uniform_bars
-from grashof.analysis.four_bar.kinematics import Kinematics
+from grashof.analysis.mechanism.kinematics import Kinematics
 from grashof.problems import DynamicsSpec, ProblemError
-from grashof.problems.values.acting import TURNING, LoadSpec, Place
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkage import Linkage
+from grashof.problems.values.dynamics.acting import TURNING, LoadSpec, Place
+from grashof.problems.values.linkages.linkage import Linkage
 
 TRAVEL_ROUNDING = 1e-9  # share of the greatest travel by which it may pass the rows of a load
 

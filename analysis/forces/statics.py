@@ -11,9 +11,9 @@ from grashof.analysis.forces.joints import Joint, joint_motion, moving_origins, 
 from grashof.analysis.forces.loads import Friction, Loads, known_joint_moments, wrenches
 from grashof.analysis.forces.mass import Masses
 from grashof.analysis.forces.virtual_motion import virtual_motion
-from grashof.analysis.four_bar.kinematics import Kinematics
+from grashof.analysis.mechanism.kinematics import Kinematics
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkage import Linkage
+from grashof.problems.values.linkages.linkage import Linkage
 
 
 @dataclass(frozen=True, slots=True, eq=False)

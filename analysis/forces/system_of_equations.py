@@ -11,7 +11,7 @@ from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics
 from grashof.analysis.forces.joints import Joint, origin, slide_direction, slide_normal, slide_of
 from grashof.analysis.forces.loads import Loads, cross, known_joint_moments, wrenches
 from grashof.analysis.forces.mass import Masses
-from grashof.analysis.four_bar.kinematics import Kinematics
+from grashof.analysis.mechanism.kinematics import Kinematics
 from grashof.problems.values.arrays import FloatArray
 
 # Each link with its joints: the columns of the force in it, and +1 or -1 as the link feels it.
@@ -83,7 +83,7 @@ def system_of_equations(
 
     Examples
     --------
-    >>> from grashof.analysis.four_bar.kinematics import solve_kinematics
+    >>> from grashof.analysis.mechanism.kinematics import solve_kinematics
     >>> from grashof.analysis.forces.mass import uniform_bars
     >>> from grashof.problems import FourBar
     >>> jack = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)

@@ -7,12 +7,12 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.four_bar.kinematics import Kinematics, SlideMotion
-from grashof.analysis.four_bar.position import close_loop, sides
 from grashof.analysis.loops.loop import Loop
+from grashof.analysis.mechanism.kinematics import Kinematics, SlideMotion
+from grashof.analysis.mechanism.position import close_loop, sides
 from grashof.problems import FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkage import Linkage
+from grashof.problems.values.linkages.linkage import Linkage
 
 # Of links 3 and 4 and of the slide; a four-bar has none.
 _Rates = tuple[FloatArray, FloatArray, FloatArray | None]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.mechanism.position import solve_position
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 

@@ -9,9 +9,9 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.judge.one_at_a_time import one_at_a_time
 from grashof.analysis.judge.verdict import Verdict
+from grashof.analysis.mechanism.position import solve_position
 from grashof.problems import FourBar, Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray, IntArray
 

@@ -12,14 +12,14 @@ from grashof.analysis.cylinder.force import cylinder_force
 from grashof.analysis.cylinder.lengths import CylinderFigures, cylinder_figures
 from grashof.analysis.cylinder.travel import Travel, travel
 from grashof.analysis.forces.stated import BeyondLoadError, stated_loads, stated_masses
-from grashof.analysis.four_bar.kinematics import Kinematics, solve_kinematics
 from grashof.analysis.judge.sampled_motion import as_used, driver_law, motion_ends, sampled
 from grashof.analysis.judge.verdict import Defect, Verdict
+from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import Cylinder, CylinderSpec, DeadPositionWarning, Linkage, Problem, Task
 from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.box import Box
-from grashof.problems.values.dynamics_spec import metres
+from grashof.problems.values.dynamics.dynamics_spec import metres
 
 SLACK = 1e-9  # share of a limit, or of the size of the task
 _KEY = "driver.cylinder"

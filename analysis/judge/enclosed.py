@@ -19,6 +19,7 @@ from grashof.analysis.judge.verdict import Enclosure, Verdict
 from grashof.problems import Linkage, Requirements, Rotatability, Task
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.box import ANYWHERE
+from grashof.problems.values.requirements.function_ground import grounded
 
 _AT_ONCE = 100  # linkages, so that memory is bounded
 _OPEN = 1e-8  # share of the margins: an open loop, beyond what the judge takes for rounding
@@ -87,7 +88,7 @@ def enclose(
     >>> shown[0].holds, shown[0].why
     (True, '')
     """
-    task = task.under(requirements)
+    task = grounded(task, requirements)
     wanted = requirements.for_task(task).resolved(task.size, scale_free=task.scale_free)
     found: dict[int, Enclosure] = {}
     for kind in dict.fromkeys(map(type, linkages)):

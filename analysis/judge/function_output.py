@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.judge.function_start import Beginning, begins, moved_output, way_of
 from grashof.analysis.judge.task_motion import Targets, TaskMotion
 from grashof.analysis.judge.verdict import Verdict
+from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import FunctionTask, Linkage, Requirements, TransmissionOver
 from grashof.problems.values.arrays import TURN, FloatArray

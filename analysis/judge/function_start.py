@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.analysis.four_bar.mobility import driver_ranges, rotatability
-from grashof.analysis.four_bar.position import Position, solve_position
-from grashof.analysis.four_bar.slide import slide_travel
-from grashof.analysis.four_bar.transmission import worst_transmission
 from grashof.analysis.loops.kinds import kind_of
+from grashof.analysis.mechanism.mobility import driver_ranges, rotatability
+from grashof.analysis.mechanism.position import Position, solve_position
+from grashof.analysis.mechanism.slide import slide_travel
+from grashof.analysis.mechanism.transmission import worst_transmission
 from grashof.problems import FunctionTask, Linkage, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 

@@ -10,8 +10,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from grashof.analysis.four_bar.position import places, solve_position
 from grashof.analysis.judge.task_motion import Targets, TaskMotion
+from grashof.analysis.mechanism.position import places, solve_position
 from grashof.problems import Linkage, Requirements, Task
 from grashof.problems.values.areas import solid
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray

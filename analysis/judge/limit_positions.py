@@ -6,12 +6,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from grashof.analysis.four_bar.stroke import output_stroke
 from grashof.analysis.judge.task_motion import Targets, TaskMotion
 from grashof.analysis.judge.verdict import Defect
+from grashof.analysis.mechanism.stroke import output_stroke
 from grashof.problems import Linkage, Requirements
 from grashof.problems.values.arrays import TURN
-from grashof.problems.values.stroke_task import StrokeTask
+from grashof.problems.values.tasks.stroke_task import StrokeTask
 
 _EVEN = 1e-12  # rad: strokes that differ by less take as long
 

@@ -10,7 +10,8 @@ from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.verdict import Defect
 from grashof.problems import Problem, ProblemError, Requirements
 from grashof.problems.values.arrays import Limits, turned_beyond
-from grashof.problems.values.quantities import Limit, Needs, Over, Quantity, Unit
+from grashof.problems.values.requirements.quantities import Limit, Needs, Over, Quantity
+from grashof.problems.values.units import Unit
 
 # Limits are inclusive; rounding may carry a design this far past them (sizes, rad or ratio).
 SLACK = 1e-9

@@ -7,10 +7,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from grashof.analysis.forces.stated import TRAVEL_ROUNDING
-from grashof.analysis.four_bar.position import solve_position
-from grashof.analysis.four_bar.slide import slide_travel
 from grashof.analysis.judge.sampled_motion import as_used, joins, motion_ends, sampled
 from grashof.analysis.judge.verdict import Defect, Verdict
+from grashof.analysis.mechanism.position import solve_position
+from grashof.analysis.mechanism.slide import slide_travel
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import Linkage, Problem
 from grashof.problems.values.arrays import FloatArray
@@ -24,7 +24,7 @@ def load_defects(linkage: Linkage, problem: Problem, verdict: Verdict) -> Iterat
     >>> from grashof.analysis.judge.planted import planted_path
     >>> from grashof.analysis.judge.verify import verify
     >>> from grashof.problems import DynamicsSpec
-    >>> from grashof.problems.values.acting import LoadSpec
+    >>> from grashof.problems.values.dynamics.acting import LoadSpec
     >>> task, slider = planted_path(np.random.default_rng(0), points=5, mechanism="slider-crank")
     >>> short = LoadSpec(4, values=[(0, -9, 0), (0.1, -9, 0)], over="travel")
     >>> problem = Problem(

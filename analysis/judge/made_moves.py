@@ -8,9 +8,9 @@ from itertools import product
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.judge.tolerance import sensitivity
 from grashof.analysis.loops.kinds import kind_of
+from grashof.analysis.mechanism.position import solve_position
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 

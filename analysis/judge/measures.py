@@ -11,19 +11,19 @@ import numpy as np
 
 from grashof.analysis.curves.curve_distance import curve_distances
 from grashof.analysis.cylinder.lengths import CylinderFigures
-from grashof.analysis.four_bar.position import Position, solve_position
-from grashof.analysis.four_bar.stroke import OutputStroke, output_stroke
 from grashof.analysis.judge.driven import cylinder_force_peak, figures_of
 from grashof.analysis.judge.over_task import OverTask, over_task
 from grashof.analysis.judge.sampled_motion import motion_ends
 from grashof.analysis.judge.task_peaks import task_peaks
 from grashof.analysis.judge.tolerance import robustness
 from grashof.analysis.judge.verdict import Enclosure, Verdict
+from grashof.analysis.mechanism.position import Position, solve_position
+from grashof.analysis.mechanism.stroke import OutputStroke, output_stroke
 from grashof.problems import Cylinder, FourBar, Linkage, Problem, SliderCrank
 from grashof.problems.values.arrays import TURN, FloatArray
-from grashof.problems.values.mechanisms import LENGTHS, PARAMETERS
-from grashof.problems.values.quantities import Needs
-from grashof.problems.values.requirements import QUANTITIES, TRAVEL_ERRORS
+from grashof.problems.values.linkages.mechanisms import LENGTHS, PARAMETERS
+from grashof.problems.values.requirements.quantities import Needs
+from grashof.problems.values.requirements.requirements import QUANTITIES, TRAVEL_ERRORS
 
 
 class Values(Mapping[str, float]):

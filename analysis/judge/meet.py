@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from grashof.analysis.four_bar.mobility import branch_index
 from grashof.analysis.judge.limit_positions import at_limits
 from grashof.analysis.judge.nearest_points import met_singly
 from grashof.analysis.judge.nearest_poses import nearest_to_poses
@@ -12,6 +11,7 @@ from grashof.analysis.judge.points_in_order import met_in_order
 from grashof.analysis.judge.poses_in_order import poses_in_order
 from grashof.analysis.judge.task_motion import Targets, TaskMotion, task_motion
 from grashof.analysis.judge.timed_targets import met_in_time
+from grashof.analysis.mechanism.mobility import branch_index
 from grashof.problems import Linkage, Requirements, StrokeTask, Task
 from grashof.problems.values.arrays import TURN
 

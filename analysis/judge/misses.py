@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from grashof.analysis.curves.coupler_curve import coupler_rates
-from grashof.analysis.four_bar.position import solve_position
+from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.minimisation import Model
 from grashof.problems import Linkage, Task
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from grashof.analysis.four_bar.mobility import driver_ranges
 from grashof.analysis.judge.misses import misses, squares, wrapped
 from grashof.analysis.judge.task_motion import Targets
+from grashof.analysis.mechanism.mobility import driver_ranges
 from grashof.problems import Linkage, Task
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from grashof.analysis.four_bar.mobility import rotatability
-from grashof.analysis.four_bar.position import solve_position
-from grashof.analysis.four_bar.slide import slide_travel
-from grashof.analysis.four_bar.transmission import worst_transmission
+from grashof.analysis.mechanism.mobility import rotatability
+from grashof.analysis.mechanism.position import solve_position
+from grashof.analysis.mechanism.slide import slide_travel
+from grashof.analysis.mechanism.transmission import worst_transmission
 from grashof.problems import (
     FourBar,
     FunctionTask,

@@ -17,8 +17,8 @@ from grashof.analysis.curves.coupler_curve import (
     squared_distance,
     tracks,
 )
-from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.judge.assignment import Guess, ordered_guesses
+from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.minimisation import lowest, lowest_in_order
 from grashof.problems import Linkage, Task
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray

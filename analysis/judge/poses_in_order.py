@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.analysis.curves.coupler_curve import ROUNDING
-from grashof.analysis.four_bar.mobility import driver_ranges, range_index, rotatability
 from grashof.analysis.judge.assignment import assigned, assigned_around
 from grashof.analysis.judge.misses import misses, squares
 from grashof.analysis.judge.nearest_poses import valleys
 from grashof.analysis.judge.task_motion import Targets, TaskMotion, task_motion
+from grashof.analysis.mechanism.mobility import driver_ranges, range_index, rotatability
 from grashof.analysis.numerics.minimisation import lowest_in_order
 from grashof.problems import Linkage, Task
 from grashof.problems.values.arrays import TURN, FloatArray

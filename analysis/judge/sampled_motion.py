@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from grashof.analysis.four_bar.driver_law import DriverLaw
-from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.judge.verdict import Verdict
+from grashof.analysis.mechanism.driver_law import DriverLaw
+from grashof.analysis.mechanism.position import solve_position
 from grashof.problems import Linkage, Problem, Task
 from grashof.problems.values.arrays import TURN, FloatArray
-from grashof.problems.values.motor import MotorSpec
+from grashof.problems.values.dynamics.motor import MotorSpec
 
 _SAMPLES = 361
 _NEAR = np.logspace(-8, -2, 31)  # rad, about the positions that come closest to a dead one

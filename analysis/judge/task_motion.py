@@ -6,9 +6,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from grashof.analysis.four_bar.mobility import range_index, rotatability
-from grashof.analysis.four_bar.position import solve_position
 from grashof.analysis.judge.misses import wrapped
+from grashof.analysis.mechanism.mobility import range_index, rotatability
+from grashof.analysis.mechanism.position import solve_position
 from grashof.problems import Linkage, Task
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray
 

@@ -11,14 +11,14 @@ import numpy as np
 from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.joints import Joint
 from grashof.analysis.forces.stated import BeyondLoadError, stated_loads, stated_masses
-from grashof.analysis.four_bar.driver_law import DriverLaw, SteadyDrivers
-from grashof.analysis.four_bar.kinematics import solve_kinematics
 from grashof.analysis.judge.sampled_motion import as_used, driver_law, joins, motion_ends, sampled
 from grashof.analysis.judge.verdict import Verdict
+from grashof.analysis.mechanism.driver_law import DriverLaw, SteadyDrivers
+from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import DeadPositionWarning, DynamicsSpec, Linkage, Problem
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.dynamics_spec import metres
+from grashof.problems.values.dynamics.dynamics_spec import metres
 
 _TOGETHER = 32  # more at a time are no faster
 

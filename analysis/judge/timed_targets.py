@@ -7,9 +7,9 @@ from collections.abc import Callable
 import numpy as np
 
 from grashof.analysis.curves.coupler_curve import ROUNDING
-from grashof.analysis.four_bar.mobility import driver_ranges, rotatability
 from grashof.analysis.judge.misses import misses, squares
 from grashof.analysis.judge.points_in_order import Met
+from grashof.analysis.mechanism.mobility import driver_ranges, rotatability
 from grashof.analysis.numerics.minimisation import Model, lowest
 from grashof.problems import Linkage, Task
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray

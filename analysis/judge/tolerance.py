@@ -14,10 +14,10 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.four_bar.position import solve_position
-from grashof.analysis.four_bar.transmission import transmission_angle
 from grashof.analysis.judge.verdict import Verdict
 from grashof.analysis.loops.kinds import kind_of
+from grashof.analysis.mechanism.position import solve_position
+from grashof.analysis.mechanism.transmission import transmission_angle
 from grashof.problems import Linkage, Manufacturing, Task
 from grashof.problems.values.arrays import BoolArray, FloatArray
 

@@ -8,16 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from grashof.analysis.four_bar.mobility import (
-    branch_index,
-    circuit_index,
-    full_rotation,
-    grashof_class,
-    passes_change_point,
-    rotatability,
-)
-from grashof.analysis.four_bar.reach import diagonal, reach_box
-from grashof.analysis.four_bar.transmission import worst_transmission, worst_transmission_cycle
 from grashof.analysis.judge.design import Constraint, Design, greatest, name_of
 from grashof.analysis.judge.driven import cylinder_defects, driven_travel
 from grashof.analysis.judge.function_output import StructuralError, met_as_function
@@ -28,6 +18,16 @@ from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.meet import meet
 from grashof.analysis.judge.task_motion import STEADY, Targets, TaskMotion
 from grashof.analysis.judge.verdict import Defect, Verdict
+from grashof.analysis.mechanism.mobility import (
+    branch_index,
+    circuit_index,
+    full_rotation,
+    grashof_class,
+    passes_change_point,
+    rotatability,
+)
+from grashof.analysis.mechanism.reach import diagonal, reach_box
+from grashof.analysis.mechanism.transmission import worst_transmission, worst_transmission_cycle
 from grashof.problems import (
     Cylinder,
     FunctionTask,
@@ -39,6 +39,7 @@ from grashof.problems import (
     Task,
 )
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.requirements.function_ground import grounded
 
 
 def verify(
@@ -85,7 +86,7 @@ def verify(
     >>> verdict.ok, bool(verdict.error_max < 1e-12 * task.size)
     (True, True)
     """
-    task = task.under(requirements)
+    task = grounded(task, requirements)
     wanted = requirements.for_task(task).resolved(task.size, scale_free=task.scale_free)
     error: StructuralError | None = None
     if isinstance(task, FunctionTask):

@@ -18,7 +18,7 @@ from grashof.analysis.loops.loop import (
     infinite_where,
 )
 from grashof.problems.values.arrays import BoolArray, FloatArray
-from grashof.problems.values.four_bar import FourBar
+from grashof.problems.values.linkages.four_bar import FourBar
 
 _BY_SHORTEST = (
     GrashofClass.DOUBLE_CRANK,

@@ -19,7 +19,7 @@ from grashof.analysis.loops.loop import (
     infinite_where,
 )
 from grashof.problems.values.arrays import BoolArray, FloatArray
-from grashof.problems.values.inverted_slider_crank import InvertedSliderCrank
+from grashof.problems.values.linkages.inverted_slider_crank import InvertedSliderCrank
 
 
 class InvertedSides(NamedTuple):

@@ -9,10 +9,10 @@ from grashof.analysis.loops.inverted_slider_crank import InvertedSliderCrankKind
 from grashof.analysis.loops.loop import Kind
 from grashof.analysis.loops.slider_crank import SliderCrankKind
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.four_bar import FourBar
-from grashof.problems.values.inverted_slider_crank import InvertedSliderCrank
-from grashof.problems.values.linkage import Linkage
-from grashof.problems.values.slider_crank import SliderCrank
+from grashof.problems.values.linkages.four_bar import FourBar
+from grashof.problems.values.linkages.inverted_slider_crank import InvertedSliderCrank
+from grashof.problems.values.linkages.linkage import Linkage
+from grashof.problems.values.linkages.slider_crank import SliderCrank
 
 _KINDS: dict[type[Linkage], Kind[Any]] = {
     FourBar: FourBarKind(),

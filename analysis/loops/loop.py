@@ -10,7 +10,7 @@ from typing import Generic, NamedTuple, Protocol, TypeVar
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, FloatArray
-from grashof.problems.values.linkage import Linkage
+from grashof.problems.values.linkages.linkage import Linkage
 
 CHANGE = 1e-12  # share of the lengths within which a linkage has a change point
 EPS = float(np.finfo(np.float64).eps)

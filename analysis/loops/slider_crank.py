@@ -19,7 +19,7 @@ from grashof.analysis.loops.loop import (
     infinite_where,
 )
 from grashof.problems.values.arrays import BoolArray, FloatArray
-from grashof.problems.values.slider_crank import SliderCrank
+from grashof.problems.values.linkages.slider_crank import SliderCrank
 
 
 class SliderCrankSides(NamedTuple):

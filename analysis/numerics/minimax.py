@@ -65,7 +65,7 @@ def least_peak(
     --------
     Chebyshev: x^2 less the best straight line on [0, 1] leaves 1/8.
 
-    >>> from grashof.analysis.four_bar.extremes import extremes_of
+    >>> from grashof.analysis.mechanism.extremes import extremes_of
     >>> def outermost(curve):
     ...     found = extremes_of(curve, 0.0, 1.0)
     ...     return found.at_low, found.at_high

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from marking import code, row, sentence
 
-from grashof.problems.values.mechanisms import KINDS
-from grashof.problems.values.quantities import Needs, Over, Quantity
+from grashof.problems.values.linkages.mechanisms import KINDS
+from grashof.problems.values.requirements.quantities import Needs, Over, Quantity
 from grashof.synth.designs.table import ABOUT, COLUMNS, LISTED, NAMES, OWN
 
 _BY_COLUMN = {quantity.column: quantity for quantity in (*LISTED, OWN)}

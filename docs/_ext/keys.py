@@ -26,12 +26,12 @@ from grashof.problems.files.linkage_schema import FILES, LinkageTable
 from grashof.problems.files.problem_schema import ProblemFile, WeightsTable
 from grashof.problems.files.tables import Table, tables_of
 from grashof.problems.values.checks import GREATEST
-from grashof.problems.values.linkage_spec import LinkageSpec
-from grashof.problems.values.mechanisms import KINDS
-from grashof.problems.values.objective import GOALS
-from grashof.problems.values.problem import Search
-from grashof.problems.values.quantities import Limit, Needs, Quantity
-from grashof.problems.values.requirements import LIMITS, Rotatability
+from grashof.problems.values.linkages.mechanisms import KINDS
+from grashof.problems.values.requirements.objective import GOALS
+from grashof.problems.values.requirements.quantities import Limit, Needs, Quantity
+from grashof.problems.values.requirements.requirements import LIMITS, Rotatability
+from grashof.problems.values.specs.linkage_spec import LinkageSpec
+from grashof.problems.values.specs.problem import Search
 from grashof.sweep.study import SearchOptions, StudyFile
 
 _UNITS = {

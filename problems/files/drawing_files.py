@@ -12,7 +12,7 @@ from grashof.problems.files.dxf_lines import dxf_drawing
 from grashof.problems.files.svg_lines import svg_drawing
 from grashof.problems.files.toml_file import file_bytes
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.dynamics_spec import METRES
+from grashof.problems.values.dynamics.dynamics_spec import METRES
 from grashof.problems.values.errors import ProblemError
 
 ENDINGS = (".dxf", ".svg")

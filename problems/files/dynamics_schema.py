@@ -10,7 +10,8 @@ from pydantic import Field, ValidationInfo, field_validator
 
 from grashof.problems.files.number_table import Names, number_table
 from grashof.problems.files.tables import Table, listed
-from grashof.problems.values.acting import (
+from grashof.problems.values.checks import located
+from grashof.problems.values.dynamics.acting import (
     OVER,
     CounterweightSpec,
     DamperSpec,
@@ -20,13 +21,12 @@ from grashof.problems.values.acting import (
     SpringSpec,
     TorsionSpringSpec,
 )
-from grashof.problems.values.checks import located
-from grashof.problems.values.dynamics_spec import DynamicsSpec
+from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
+from grashof.problems.values.dynamics.motor import PROFILES, MotorSpec
+from grashof.problems.values.dynamics.pumping_unit import CRANK, POSITION, PumpingUnitSpec
+from grashof.problems.values.dynamics.section import SectionSpec
+from grashof.problems.values.dynamics.strength import StrengthSpec
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.motor import PROFILES, MotorSpec
-from grashof.problems.values.pumping_unit import CRANK, POSITION, PumpingUnitSpec
-from grashof.problems.values.section import SectionSpec
-from grashof.problems.values.strength import StrengthSpec
 
 Point = Annotated[list[float], listed("[u, v]")]
 # Columns of files, with or without their units.

@@ -28,13 +28,13 @@ from grashof.problems.values.checks import (
     number_within,
     readable,
 )
-from grashof.problems.values.cylinder import CARRIERS, Cylinder
-from grashof.problems.values.dynamics_spec import DynamicsSpec
+from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
-from grashof.problems.values.linkage import Linkage
-from grashof.problems.values.linkage_spec import LinkageSpec, ListedDesign
-from grashof.problems.values.mechanisms import FOUR_BAR, KINDS, mechanism
-from grashof.problems.values.problem import Problem
+from grashof.problems.values.linkages.cylinder import CARRIERS, Cylinder
+from grashof.problems.values.linkages.linkage import Linkage
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR, KINDS, mechanism
+from grashof.problems.values.specs.linkage_spec import LinkageSpec, ListedDesign
+from grashof.problems.values.specs.problem import Problem
 
 _LINKAGES = Catalogue("linkage", "linkages")
 _LAST_RANK = 10**9

@@ -12,12 +12,12 @@ from pydantic import AfterValidator, Field, ValidationInfo, create_model, field_
 from grashof.problems.files.dynamics_schema import MachineTables, PumpingUnitTable
 from grashof.problems.files.tables import Table, Text, listed, of_length, stated
 from grashof.problems.values.checks import GREATEST, MOST_TURNS, finite_number, noted, number_within, refused
-from grashof.problems.values.dynamics_spec import metres
+from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.linkage import Linkage
-from grashof.problems.values.linkage_parts import Parameter
-from grashof.problems.values.linkage_spec import LinkageSpec
-from grashof.problems.values.mechanisms import FOUR_BAR, KINDS, PARAMETERS, mechanism, not_had
+from grashof.problems.values.linkages.linkage import Linkage
+from grashof.problems.values.linkages.linkage_parts import Parameter
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR, KINDS, PARAMETERS, mechanism, not_had
+from grashof.problems.values.specs.linkage_spec import LinkageSpec
 
 
 def linkage_from(document: dict[str, Any], name: str, folder: Path | None = None) -> LinkageSpec:

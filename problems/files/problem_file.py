@@ -8,7 +8,7 @@ from pathlib import Path
 from grashof.problems.files.toml_file import Catalogue, document_of, exists, file_text, looks_like_path
 from grashof.problems.values.checks import located, readable
 from grashof.problems.values.errors import ProblemError, shown
-from grashof.problems.values.problem import Problem
+from grashof.problems.values.specs.problem import Problem
 
 _PROBLEMS = Catalogue("problem")
 

@@ -39,20 +39,20 @@ from grashof.problems.files.tables import (
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.box import Box
 from grashof.problems.values.checks import near_miss, noted, outline, refuse, refused
-from grashof.problems.values.cylinder import CARRIERS, CylinderSpec
-from grashof.problems.values.dynamics_spec import metres
+from grashof.problems.values.dynamics.dynamics_spec import metres
+from grashof.problems.values.dynamics.manufacturing import Manufacturing
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.function_task import FunctionTask
-from grashof.problems.values.manufacturing import Manufacturing
-from grashof.problems.values.mechanisms import ANY_KINDS, FOUR_BAR, mechanisms
-from grashof.problems.values.motion_task import MotionTask
-from grashof.problems.values.objective import GOALS, Objective
-from grashof.problems.values.path_task import PathTask
-from grashof.problems.values.problem import MOST_TARGETS, NO_OBJECTIVE, Problem, Search
-from grashof.problems.values.quantities import Kind
-from grashof.problems.values.requirements import LIMITS, MAY_KEEP_OUT, Requirements, Rotatability
-from grashof.problems.values.stroke_task import StrokeTask
-from grashof.problems.values.task import Task
+from grashof.problems.values.linkages.cylinder import CARRIERS, CylinderSpec
+from grashof.problems.values.linkages.mechanisms import ANY_KINDS, FOUR_BAR, mechanisms
+from grashof.problems.values.requirements.objective import GOALS, Objective
+from grashof.problems.values.requirements.quantities import Kind
+from grashof.problems.values.requirements.requirements import LIMITS, MAY_KEEP_OUT, Requirements, Rotatability
+from grashof.problems.values.specs.problem import MOST_TARGETS, NO_OBJECTIVE, Problem, Search
+from grashof.problems.values.tasks.function_task import FunctionTask
+from grashof.problems.values.tasks.motion_task import MotionTask
+from grashof.problems.values.tasks.path_task import PathTask
+from grashof.problems.values.tasks.stroke_task import StrokeTask
+from grashof.problems.values.tasks.task import Task
 
 
 def problem_from(document: dict[str, Any], name: str, folder: Path | None = None) -> Problem:

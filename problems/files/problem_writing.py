@@ -11,11 +11,11 @@ import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.box import Box
-from grashof.problems.values.function_task import FunctionTask
-from grashof.problems.values.mechanisms import FOUR_BAR
-from grashof.problems.values.problem import Problem
-from grashof.problems.values.requirements import Requirements
-from grashof.problems.values.task import Task
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR
+from grashof.problems.values.requirements.requirements import Requirements
+from grashof.problems.values.specs.problem import Problem
+from grashof.problems.values.tasks.function_task import FunctionTask
+from grashof.problems.values.tasks.task import Task
 
 
 def problem_toml(problem: Problem) -> str:

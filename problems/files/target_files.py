@@ -8,7 +8,7 @@ from typing import Any
 from grashof.problems.files.spreadsheet import rows_of
 from grashof.problems.values.checks import bounded, noted, refuse
 from grashof.problems.values.errors import ProblemError, shown
-from grashof.problems.values.problem import MOST_TARGETS
+from grashof.problems.values.specs.problem import MOST_TARGETS
 
 _ANGLES = ("angle_deg", "angle")
 _TIMING = "timing_deg"

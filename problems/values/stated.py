@@ -17,7 +17,7 @@ class Stated:
 
         Examples
         --------
-        >>> from grashof.problems.values.motor import MotorSpec
+        >>> from grashof.problems.values.dynamics.motor import MotorSpec
         >>> MotorSpec(gear_ratio=30).stated
         {'gear_ratio': 30.0}
         """

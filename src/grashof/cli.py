@@ -32,7 +32,7 @@ from grashof.problems import (
     problem_text,
 )
 from grashof.problems.values.errors import wrong_value
-from grashof.problems.values.problem import EFFORTS
+from grashof.problems.values.specs.problem import EFFORTS
 from grashof.study.asked import FIT_POINTS, ON_REQUEST, STEP
 
 TRACEBACK = "GRASHOF_TRACEBACK"  # environment variable: unexpected errors with their traceback

@@ -14,7 +14,7 @@ from grashof.analysis.judge.design import greatest
 from grashof.analysis.judge.measures import Values
 from grashof.problems import Linkage, Problem
 from grashof.problems.values.display import Displayed
-from grashof.problems.values.mechanisms import FOUR_BAR, lengths_text
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR, lengths_text
 from grashof.synth.programme.merit import same_error
 from grashof.synth.theory.distinct import signature
 

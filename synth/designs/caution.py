@@ -6,8 +6,8 @@ import numpy as np
 
 from grashof.analysis import rotatability
 from grashof.problems import Objective, Problem
-from grashof.problems.values.problem import SMALLEST
-from grashof.problems.values.requirements import Rotatability, TransmissionOver
+from grashof.problems.values.requirements.requirements import Rotatability, TransmissionOver
+from grashof.problems.values.specs.problem import SMALLEST
 from grashof.synth.designs.candidate import Candidate
 
 # In sizes of the task; rad of the driver; rad over the turn of a full crank; as `rotatability_margin`.

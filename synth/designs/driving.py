@@ -13,7 +13,7 @@ from grashof.analysis.forces.stated import BeyondLoadError
 from grashof.analysis.judge.sampled_motion import as_used, driver_law, motion_ends
 from grashof.problems import Cylinder, DeadPositionWarning, Linkage, Problem
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.dynamics_spec import metres
+from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.synth.cylinder.choice import best_cylinder
 
 _SAMPLES = 129

@@ -11,9 +11,9 @@ from grashof.analysis import Design
 from grashof.analysis.judge.limits import SLACK
 from grashof.problems import Problem
 from grashof.problems.values.arrays import BoolArray, FloatArray
-from grashof.problems.values.problem import SMALLEST
-from grashof.problems.values.quantities import Quantity
-from grashof.problems.values.requirements import QUANTITIES
+from grashof.problems.values.requirements.quantities import Quantity
+from grashof.problems.values.requirements.requirements import QUANTITIES
+from grashof.problems.values.specs.problem import SMALLEST
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.merit import same_error
 from grashof.synth.theory.distinct import DISTINCT, pick_apart, signature

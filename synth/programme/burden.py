@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems import FourBar, Problem
-from grashof.problems.values.acting import JOINTS, DamperSpec, FrictionSpec, LoadSpec, SpringSpec
-from grashof.problems.values.dynamics_spec import metres
+from grashof.problems.values.dynamics.acting import JOINTS, DamperSpec, FrictionSpec, LoadSpec, SpringSpec
+from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.synth.programme.frame import Frame
 
 Numbers = tuple[float, ...]

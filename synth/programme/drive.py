@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from grashof.problems.values.acting import JOINTS, TURNING
+from grashof.problems.values.dynamics.acting import JOINTS, TURNING
 from grashof.synth.programme.burden import Burden, Mass, Push
 from grashof.synth.programme.driver_way import pieces
 from grashof.synth.programme.instant import Instant

@@ -12,7 +12,7 @@ import scipy
 
 from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.motor import MotorSpec
+from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.synth.programme.instant import Moment
 
 

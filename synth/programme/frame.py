@@ -9,7 +9,7 @@ import numpy as np
 
 from grashof.problems import Box, Requirements, Task
 from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
-from grashof.problems.values.quantities import Kind, Limit
+from grashof.problems.values.requirements.quantities import Kind, Limit
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from grashof.problems.values.acting import JOINTS
+from grashof.problems.values.dynamics.acting import JOINTS
 from grashof.synth.programme.vector import Vector
 
 

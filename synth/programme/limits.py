@@ -8,8 +8,8 @@ import casadi as ca
 import numpy as np
 
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
-from grashof.problems.values.quantities import Unit
-from grashof.problems.values.requirements import LIMITS, QUANTITIES
+from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
+from grashof.problems.values.units import Unit
 from grashof.synth.programme.along_motion import (
     AGREES,
     ALONG,

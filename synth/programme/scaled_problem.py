@@ -10,7 +10,7 @@ import numpy as np
 from grashof.analysis.judge.design import Constraint, OwnObjective
 from grashof.problems import Linkage, Objective, Problem, Requirements, Rotatability, Task
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.problems.values.quantities import Quantity
+from grashof.problems.values.requirements.quantities import Quantity
 from grashof.synth.programme.frame import Frame
 from grashof.synth.programme.kind import Kind
 from grashof.synth.programme.kinds import FOUR_BAR, KINDS

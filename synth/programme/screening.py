@@ -10,7 +10,7 @@ import numpy as np
 
 from grashof.problems import Requirements, Rotatability, TransmissionOver
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, turned_beyond
-from grashof.problems.values.requirements import LIMITS
+from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.programme.formulas import Part, View, parts_of, range_of
 from grashof.synth.programme.kind import Kind, as_vector
 from grashof.synth.programme.kinds import FOUR_BAR

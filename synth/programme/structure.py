@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.problems import Rotatability, TransmissionOver
-from grashof.problems.values.motor import MotorSpec
-from grashof.problems.values.quantities import Needs, Over
-from grashof.problems.values.requirements import LIMITS, QUANTITIES
+from grashof.problems.values.dynamics.motor import MotorSpec
+from grashof.problems.values.requirements.quantities import Needs, Over
+from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
 from grashof.synth.programme.along_motion import ALONG
 from grashof.synth.programme.burden import Burden
 from grashof.synth.programme.driver_way import drive_of

@@ -17,7 +17,7 @@ from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.problems.values.errors import wrong_value
-from grashof.problems.values.problem import NO_OBJECTIVE
+from grashof.problems.values.specs.problem import NO_OBJECTIVE
 from grashof.synth.programme.kind import Kind
 from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.on_symbols import on_symbols

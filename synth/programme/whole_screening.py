@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.requirements import LIMITS
+from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.programme.along_motion import ALONG, SCREENED, magnitudes, value_of
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS, Screened

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.problems import Problem, StrokeTask
-from grashof.problems.values.mechanisms import FOUR_BAR, SLIDER_CRANK
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR, SLIDER_CRANK
 from grashof.synth.theory.limit_positions import best_transmission
 
 GOOD = float(np.radians(40))  # transmission angle that textbooks ask for (Norton, sec. 3.3)

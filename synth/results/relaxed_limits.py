@@ -12,8 +12,8 @@ from grashof.analysis import Defect, verify
 from grashof.analysis.judge.design import Constraint, Design, name_of
 from grashof.problems import Box, FourBar, Problem, Requirements, Rotatability
 from grashof.problems.values.arrays import Limits, turned_beyond, turned_from
-from grashof.problems.values.quantities import Kind
-from grashof.problems.values.requirements import LIMITS
+from grashof.problems.values.requirements.quantities import Kind
+from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import UNSMOOTH
 

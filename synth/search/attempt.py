@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from grashof.problems.values.requirements import LIMITS
+from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.designs.alike import verified_alike
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged

@@ -17,7 +17,7 @@ from grashof.problems import (
     TransmissionOver,
 )
 from grashof.problems.values.arrays import FloatArray, Limits
-from grashof.problems.values.function_law import lobatto_with_weights
+from grashof.problems.values.tasks.function_law import lobatto_with_weights
 from grashof.synth.programme.kinds import KINDS
 from grashof.synth.theory.function_fit import Wanted
 from grashof.synth.theory.function_limits import ShapeLimits, offset_rows

@@ -14,7 +14,7 @@ import numpy as np
 
 from grashof.problems import TransmissionOver
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from grashof.problems.values.requirements import LIMITS
+from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.programme.formulas import FORMULAS
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS, Screened

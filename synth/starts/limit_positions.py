@@ -11,7 +11,7 @@ import numpy as np
 
 from grashof.problems import Box, Requirements, StrokeTask
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.problems.values.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Configurations, Screened, judge, violations_apart
 from grashof.synth.programme.start import Round, Start

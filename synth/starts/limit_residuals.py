@@ -9,7 +9,7 @@ import numpy as np
 
 from grashof.problems import Rotatability, TransmissionOver
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, Limits, turned_beyond
-from grashof.problems.values.requirements import LIMITS
+from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.programme.dual import Dual
 from grashof.synth.programme.formulas import LOGARITHMIC, View
 from grashof.synth.programme.kind import Lengths

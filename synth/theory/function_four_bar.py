@@ -9,7 +9,7 @@ import numpy as np
 
 from grashof.problems import FourBar, Requirements
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray, Limits
-from grashof.problems.values.function_ground import FunctionGround
+from grashof.problems.values.requirements.function_ground import FunctionGround
 from grashof.synth.theory.five_poses import five_pose_dyads_of_sets
 from grashof.synth.theory.function_limits import (
     Rows,

@@ -9,7 +9,7 @@ import numpy as np
 
 from grashof.problems import InvertedSliderCrank, Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray, Limits
-from grashof.problems.values.function_ground import FunctionGround
+from grashof.problems.values.requirements.function_ground import FunctionGround
 from grashof.synth.theory.function_limits import (
     Rows,
     ShapeLimits,

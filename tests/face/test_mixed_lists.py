@@ -27,7 +27,7 @@ from grashof.problems import (
     load_linkage_spec,
 )
 from grashof.problems.files.linkage_file import load_design
-from grashof.problems.values.mechanisms import KINDS
+from grashof.problems.values.linkages.mechanisms import KINDS
 from grashof.synth import Candidate, Result
 from grashof.workshop.export import Making, export_files
 from grashof.workshop.plates import PlateSizes

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from grashof.analysis.four_bar.mobility import GrashofClass
+from grashof.analysis.mechanism.mobility import GrashofClass
 from grashof.output.terminal import best_rows, folded, heading, print_table, search_progress
 from grashof.problems import (
     Box,

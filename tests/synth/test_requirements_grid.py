@@ -22,8 +22,8 @@ from grashof.problems import (
     Requirements,
 )
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.quantities import Kind
-from grashof.problems.values.requirements import LIMITS
+from grashof.problems.values.requirements.quantities import Kind
+from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.programme.along_motion import ALONG
 from grashof.synth.programme.formulas import FORMULAS
 from grashof.synth.programme.scaled_problem import ScaledProblem

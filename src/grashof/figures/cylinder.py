@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from grashof.analysis.cylinder.lengths import cylinder_state
-from grashof.analysis.four_bar.position import Position, places
 from grashof.analysis.judge.driven import figures_of
+from grashof.analysis.mechanism.position import Position, places
 from grashof.figures.parts import COLOURS
 from grashof.figures.subject import Subject
 from grashof.problems.values.arrays import FloatArray

@@ -15,13 +15,13 @@ from matplotlib.patches import Polygon
 from matplotlib.text import Annotation
 
 from grashof.analysis import Position, solve_position
-from grashof.analysis.four_bar.position import places
+from grashof.analysis.mechanism.position import places
 from grashof.analysis.numerics.smooth_polygon import smooth_polygon
 from grashof.figures.slides import ARM, CORNERS, ROD, Travel, draw_guide, slide_points
 from grashof.figures.subject import Subject
 from grashof.problems import FunctionTask, Linkage, Problem, Task
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkage_parts import Link
+from grashof.problems.values.linkages.linkage_parts import Link
 
 # Distinct to the colour-blind, too (after Okabe & Ito, *Color Universal Design*, 2008).
 DRIVER, COUPLER, OUTPUT, PATH = "#d55e00", "#0072b2", "#009e73", "#8c3f78"

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from grashof.analysis import Position
-from grashof.analysis.four_bar.slide import slide_travel
+from grashof.analysis.mechanism.slide import slide_travel
 from grashof.problems import InvertedSliderCrank, Linkage, SliderCrank
 from grashof.problems.values.arrays import FloatArray
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.analysis import Verdict, solve_position, verify
-from grashof.analysis.four_bar.slide import slide_travel
+from grashof.analysis.mechanism.slide import slide_travel
 from grashof.figures.slides import Travel
 from grashof.problems import DynamicsSpec, LinkageSpec, Problem, ProblemError
 from grashof.problems import Linkage as AnyKind

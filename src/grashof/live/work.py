@@ -20,7 +20,7 @@ from grashof.page.search import headline, search_data
 from grashof.problems import Problem, ProblemError
 from grashof.problems.files.problem_schema import problem_from
 from grashof.problems.files.problem_writing import problem_toml
-from grashof.problems.values.mechanisms import DIMENSIONS
+from grashof.problems.values.linkages.mechanisms import DIMENSIONS
 from grashof.synth import Candidate, Progress, Result, synthesize, track
 from grashof.synth.designs.table import LISTED, rows_of
 from grashof.wording.problem import summary

@@ -8,7 +8,7 @@ from typing import cast
 import numpy as np
 
 from grashof.analysis import solve_position
-from grashof.analysis.four_bar.slide import slide_travel
+from grashof.analysis.mechanism.slide import slide_travel
 from grashof.models.model import Model
 from grashof.models.xml import add
 from grashof.problems import InvertedSliderCrank, ProblemError, SliderCrank

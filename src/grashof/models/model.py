@@ -12,8 +12,8 @@ from grashof.analysis.forces.mass import Masses, uniform_bars
 from grashof.analysis.forces.stated import stated_masses
 from grashof.problems import Linkage, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import TURN
-from grashof.problems.values.dynamics_spec import METRES, DynamicsSpec
-from grashof.problems.values.linkage_spec import ListedDesign
+from grashof.problems.values.dynamics.dynamics_spec import METRES, DynamicsSpec
+from grashof.problems.values.specs.linkage_spec import ListedDesign
 
 _BAR = 1.0  # kg/m, of the bars of a linkage whose file states no masses
 

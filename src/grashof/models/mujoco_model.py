@@ -9,7 +9,7 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from grashof.analysis.four_bar.slide import slide_travel
+from grashof.analysis.mechanism.slide import slide_travel
 from grashof.models.model import Model
 from grashof.models.xml import add
 from grashof.problems import FourBar, InvertedSliderCrank, Linkage, SliderCrank

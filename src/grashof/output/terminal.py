@@ -19,9 +19,10 @@ from grashof.output.streams import say
 from grashof.problems import FunctionTask, Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
-from grashof.problems.values.mechanisms import LENGTHS, having, without_noise
-from grashof.problems.values.quantities import Over, Quantity, Unit
-from grashof.problems.values.requirements import QUANTITIES
+from grashof.problems.values.linkages.mechanisms import LENGTHS, having, without_noise
+from grashof.problems.values.requirements.quantities import Over, Quantity
+from grashof.problems.values.requirements.requirements import QUANTITIES
+from grashof.problems.values.units import Unit
 from grashof.synth import Candidate, Progress, Result
 from grashof.synth.designs.ranking import pareto_optimal
 from grashof.wording.enclosure import enclosure_line, enclosures

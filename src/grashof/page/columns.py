@@ -11,8 +11,9 @@ import numpy as np
 
 from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.mechanisms import DIMENSIONS, NOISE
-from grashof.problems.values.quantities import Needs, Quantity, Unit
+from grashof.problems.values.linkages.mechanisms import DIMENSIONS, NOISE
+from grashof.problems.values.requirements.quantities import Needs, Quantity
+from grashof.problems.values.units import Unit
 from grashof.synth.designs.table import LISTED, NAMES, OWN, Row, known
 from grashof.wording.problem import error_meaning
 

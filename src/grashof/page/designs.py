@@ -18,13 +18,13 @@ from grashof.analysis import (
     stated_loads,
     stated_masses,
 )
-from grashof.analysis.four_bar.mobility import range_index
 from grashof.analysis.judge.sampled_motion import driver_law, motion_ends
+from grashof.analysis.mechanism.mobility import range_index
 from grashof.page.render import compact
 from grashof.problems import Cylinder, DynamicsSpec, FunctionTask, Linkage, Problem
 from grashof.problems.values.arrays import TURN, FloatArray
-from grashof.problems.values.dynamics_spec import metres
-from grashof.problems.values.mechanisms import KINDS
+from grashof.problems.values.dynamics.dynamics_spec import metres
+from grashof.problems.values.linkages.mechanisms import KINDS
 from grashof.study.sweep import INSET, dead_positions_unwarned, driver_angles
 from grashof.synth import Candidate
 from grashof.synth.designs.table import Row

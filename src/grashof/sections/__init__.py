@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from grashof.problems import ProblemError
-from grashof.problems.values.mechanisms import FOUR_BAR, not_had
-from grashof.problems.values.quantities import TURNING
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR, not_had
+from grashof.problems.values.requirements.quantities import TURNING
 from grashof.sections.balancing import balancing
 from grashof.sections.coupler_plane import coupler_plane
 from grashof.sections.cylinder import cylinder

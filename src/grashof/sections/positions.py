@@ -7,7 +7,7 @@ import pandas as pd
 
 from grashof.analysis import Kinematics, solve_position
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
 from grashof.sections.mass_centres import centres_of
 from grashof.study.quantities import dynamic_quantities, kinematic_quantities, table_of
 from grashof.study.section import Plot, Section

@@ -24,8 +24,8 @@ from grashof.analysis.forces.loads import wrenches
 from grashof.analysis.numerics.minimax import least_peak
 from grashof.analysis.numerics.quadrature import integrate
 from grashof.problems.values.arrays import TURN, FloatArray
-from grashof.problems.values.dynamics_spec import metres
-from grashof.problems.values.pumping_unit import PumpingUnitSpec
+from grashof.problems.values.dynamics.dynamics_spec import metres
+from grashof.problems.values.dynamics.pumping_unit import PumpingUnitSpec
 from grashof.study.columns import line
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy

@@ -6,7 +6,7 @@ import numpy as np
 
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
 
 # The two shares of `rotatability`, in words; empty where one of them says nothing.
 SHARES = {

@@ -16,7 +16,7 @@ from grashof.analysis import (
     solve_kinematics,
     transmission_angle,
 )
-from grashof.analysis.four_bar.transmission import quality
+from grashof.analysis.mechanism.transmission import quality
 from grashof.problems import LinkageSpec
 from grashof.problems.values.arrays import FloatArray
 from grashof.study.kinds import forces_of, turning

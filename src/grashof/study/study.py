@@ -11,7 +11,7 @@ from grashof.analysis import DriverLaw, DriverMotion, Kinematics, Loads, Masses,
 from grashof.problems import FourBar, Linkage, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.checks import refuse
-from grashof.problems.values.dynamics_spec import metres
+from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.study.asked import Asked as Asked
 from grashof.study.sweep import Sweep
 

@@ -24,7 +24,7 @@ from grashof.analysis import (
 from grashof.problems import DeadPositionWarning, Linkage, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
 from grashof.problems.values.checks import GREATEST, number_within
-from grashof.problems.values.motor import MotorSpec
+from grashof.problems.values.dynamics.motor import MotorSpec
 
 INSET = 1e-6  # rad: extremes of rates are sought so far from a dead position
 _DEAD = 1e-7  # sin(theta4 - theta3), as `solve_kinematics` counts it

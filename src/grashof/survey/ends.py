@@ -8,8 +8,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from grashof.analysis import rotatability, transmission_angle
-from grashof.analysis.four_bar.transmission import quality
 from grashof.analysis.loops.loop import CHANGE
+from grashof.analysis.mechanism.transmission import quality
 from grashof.analysis.numerics.quadrature import Curve, held
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray

@@ -16,9 +16,9 @@ from grashof.analysis import (
     transmission_angle,
     transmission_extremes,
 )
-from grashof.analysis.four_bar.even_motion import EvenMotion
-from grashof.analysis.four_bar.extremes import counted_on, dense_places, refined
-from grashof.analysis.four_bar.transmission import quality
+from grashof.analysis.mechanism.even_motion import EvenMotion
+from grashof.analysis.mechanism.extremes import counted_on, dense_places, refined
+from grashof.analysis.mechanism.transmission import quality
 from grashof.analysis.numerics.quadrature import held
 from grashof.problems import AssemblyError
 from grashof.problems.values.arrays import TURN, FloatArray

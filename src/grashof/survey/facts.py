@@ -24,11 +24,11 @@ from grashof.analysis import (
     triple_rocker_kind,
     worst_transmission_cycle,
 )
-from grashof.analysis.four_bar.means import mean_in_time
+from grashof.analysis.mechanism.means import mean_in_time
 from grashof.analysis.numerics.quadrature import held
 from grashof.problems import FourBar, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.mechanisms import FOUR_BAR, SLIDER_CRANK
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR, SLIDER_CRANK
 from grashof.study.kinds import LIMIT_POSITIONS, SHARES, turning
 from grashof.study.quantities import counted_with, dynamic_quantities
 from grashof.study.section import Fact

@@ -16,7 +16,7 @@ from grashof.page.designs import legend
 from grashof.page.render import DRAWING, render
 from grashof.page.scene import scene_of
 from grashof.problems.files.problem_file import problem_of
-from grashof.problems.values.mechanisms import FOUR_BAR, KINDS
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR, KINDS
 from grashof.sweep.plot import measures, number_axes
 from grashof.sweep.result import Sweep
 from grashof.sweep.table import varied_columns

@@ -25,7 +25,7 @@ from grashof.problems.values.checks import (
     whole_number,
 )
 from grashof.problems.values.errors import wrong_value
-from grashof.problems.values.problem import Search
+from grashof.problems.values.specs.problem import Search
 from grashof.sweep.keys import key_parts, overlap
 from grashof.sweep.target_table import NAME, target_rows
 

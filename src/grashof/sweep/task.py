@@ -114,7 +114,7 @@ _DRAWN = ("id", "linkage", "low", "high", "turns", "direction", "theta2", "assem
 
 def decides_of(problem: Problem) -> dict[str, Any]:
     """What decides which design is best: its column, what it is called, and which way is better."""
-    from grashof.problems.values.requirements import QUANTITIES
+    from grashof.problems.values.requirements.requirements import QUANTITIES
 
     goals, lengths = problem.goals, {"length_unit": problem.length_unit}
     if problem.by_objective and len(goals) > 1:

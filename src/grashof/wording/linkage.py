@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from grashof.problems import LinkageSpec
-from grashof.problems.values.mechanisms import FOUR_BAR, lengths_text
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR, lengths_text
 
 
 def dimensions_text(spec: LinkageSpec) -> str:

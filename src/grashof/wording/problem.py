@@ -17,8 +17,8 @@ from grashof.problems import (
 )
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
-from grashof.problems.values.mechanisms import FOUR_BAR
-from grashof.problems.values.quantities import Unit
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR
+from grashof.problems.values.units import Unit
 from grashof.synth.designs.ranking import pareto_goals
 from grashof.synth.programme.merit import same_error
 from grashof.synth.results.trade_offs import FACTORS

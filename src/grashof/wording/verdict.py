@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.problems import LinkageSpec, Problem, ProblemError
-from grashof.problems.values.quantities import Over
-from grashof.problems.values.requirements import QUANTITIES
+from grashof.problems.values.requirements.quantities import Over
+from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.caution import caution
 from grashof.synth.designs.judging import driven_verdict

@@ -11,9 +11,9 @@ from grashof.models import Model, freecad, geogebra, linkage2, mjcf, solidworks
 from grashof.problems import LinkageSpec, ProblemError, load_linkage_spec
 from grashof.problems.files.linkage_file import load_design
 from grashof.problems.values.checks import finite_number, positive_number
-from grashof.problems.values.dynamics_spec import METRES
+from grashof.problems.values.dynamics.dynamics_spec import METRES
 from grashof.problems.values.errors import wrong_value
-from grashof.problems.values.linkage_spec import ListedDesign
+from grashof.problems.values.specs.linkage_spec import ListedDesign
 from grashof.workshop.dxf import dxf
 from grashof.workshop.files import write_whole
 from grashof.workshop.plan import Plan, plan_parts

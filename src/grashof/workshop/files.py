@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grashof.problems import LinkageSpec
-from grashof.problems.values.linkage_spec import ListedDesign
+from grashof.problems.values.specs.linkage_spec import ListedDesign
 from grashof.workshop.dxf import dxf
 from grashof.workshop.plan import Plan
 from grashof.workshop.sheet import sheet

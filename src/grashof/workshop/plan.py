@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.analysis import full_rotation, solve_position
-from grashof.analysis.four_bar.position import places
+from grashof.analysis.mechanism.position import places
 from grashof.problems import FourBar, InvertedSliderCrank, Linkage, ProblemError, SliderCrank
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import positive_number

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from grashof.problems import FourBar, ProblemError
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.checks import number_within, positive_number
-from grashof.problems.values.linkage_parts import Link
+from grashof.problems.values.linkages.linkage_parts import Link
 
 # A link longer than so many widths is a slip in the unit, and no plate.
 _SLENDEREST = 1000

@@ -9,11 +9,11 @@ import numpy as np
 import shapely
 
 from grashof.analysis import output_stroke, solve_position
-from grashof.analysis.four_bar.slide import slide_travel
+from grashof.analysis.mechanism.slide import slide_travel
 from grashof.problems import FourBar, InvertedSliderCrank, Linkage, ProblemError, SliderCrank
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.errors import wrong_value
-from grashof.problems.values.mechanisms import KINDS
+from grashof.problems.values.linkages.mechanisms import KINDS
 from grashof.workshop.plates import Plate, PlateSizes, bar, link_plates, refuse_length, with_point
 
 _SAMPLES = 361

@@ -19,8 +19,8 @@ import numpy.typing as npt
 import shapely
 
 from grashof.analysis import driver_ranges, full_rotation, solve_position
-from grashof.analysis.four_bar.mobility import range_index
-from grashof.analysis.four_bar.position import places
+from grashof.analysis.mechanism.mobility import range_index
+from grashof.analysis.mechanism.position import places
 from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.workshop.plates import Plate, PlateSizes

@@ -23,11 +23,11 @@ from grashof.analysis import (
     transmission_angle,
     worst_transmission_cycle,
 )
-from grashof.analysis.four_bar.transmission import quality
+from grashof.analysis.mechanism.transmission import quality
 from grashof.problems import LinkageSpec, ProblemError
 from grashof.problems.values.checks import no_formula
-from grashof.problems.values.linkage_spec import ListedDesign
-from grashof.problems.values.requirements import QUANTITIES
+from grashof.problems.values.requirements.requirements import QUANTITIES
+from grashof.problems.values.specs.linkage_spec import ListedDesign
 from grashof.workshop.sheet import printable
 
 if TYPE_CHECKING:

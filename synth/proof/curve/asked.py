@@ -11,8 +11,8 @@ import numpy as np
 
 from grashof.problems import Box, MotionTask, Problem, Requirements, Rotatability, TransmissionOver
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
-from grashof.problems.values.mechanisms import FOUR_BAR
-from grashof.problems.values.requirements import LIMITS
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR
+from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve.curve import Curve
 from grashof.synth.proof.curve.poles import poles

@@ -15,7 +15,7 @@ import numpy as np
 from grashof.analysis import verify
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray
-from grashof.problems.values.mechanisms import FOUR_BAR
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR
 from grashof.synth.proof.claims.bounds import TOO_SMALL, Bounds, Proving
 from grashof.synth.proof.claims.proof import quantity_of
 from grashof.synth.proof.curve.asked import LEAST, SLACK

@@ -7,7 +7,7 @@ from time import perf_counter
 
 import numpy as np
 
-from grashof.problems.values.mechanisms import FOUR_BAR
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR
 from grashof.synth.proof.curve.asked import Asked
 from grashof.synth.proof.poses.five_poses import FIVE, STOPPED, Certified, certified_dyads, why_open
 from grashof.synth.starts.function_aims import FunctionAims

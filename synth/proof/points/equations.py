@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.problems.values.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
 
 _ROUNDING = 32 * np.finfo(float).eps  # of what is added up; no value takes more than ten operations
 # The same of values, in extended precision where the machine has it; pairs of doubles are not relied on.

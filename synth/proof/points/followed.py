@@ -12,7 +12,7 @@ from grashof.analysis import solve_position
 from grashof.problems import FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.checks import counted
-from grashof.problems.values.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.claims.proof import Claim, Proof, best_listed, quantity_of

@@ -12,7 +12,7 @@ from time import perf_counter
 import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
-from grashof.problems.values.mechanisms import SLIDER_CRANK
+from grashof.problems.values.linkages.mechanisms import SLIDER_CRANK
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged
 from grashof.synth.programme.scaled_problem import ScaledProblem

@@ -7,7 +7,7 @@ from time import perf_counter
 
 import numpy as np
 
-from grashof.problems.values.mechanisms import FOUR_BAR
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.claims.bounds import STOPPED, Bounds, Proving, logged
 from grashof.synth.proof.curve.asked import THREE, Asked, left_out, refusal, unusable, with_forms

@@ -9,7 +9,7 @@ import numpy as np
 
 from grashof.problems import Requirements, Rotatability, StrokeTask
 from grashof.problems.values.arrays import Limits
-from grashof.problems.values.mechanisms import FOUR_BAR, INVERTED, KINDS, SLIDER_CRANK
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR, INVERTED, KINDS, SLIDER_CRANK
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve.asked import SLACK
 from grashof.synth.proof.strokes.members import (

@@ -14,7 +14,7 @@ from grashof.analysis import (
 )
 from grashof.analysis.cylinder.lengths import cylinder_figures, cylinder_state
 from grashof.analysis.cylinder.travel import travel
-from grashof.analysis.four_bar.slide import slide_travel
+from grashof.analysis.mechanism.slide import slide_travel
 from grashof.problems import Cylinder, InvertedSliderCrank, Linkage, SliderCrank
 
 LINKS = ("driver", "coupler", "output")

@@ -12,14 +12,14 @@ from grashof.analysis import transmission_angle
 from grashof.analysis.enclosure.closure import CLOSURES, places
 from grashof.analysis.enclosure.interval import Centred, Interval, crank
 from grashof.analysis.enclosure.turns import Pieces, least_transmission
-from grashof.analysis.four_bar.kinematics import solve_kinematics
-from grashof.analysis.four_bar.transmission import worst_transmission
 from grashof.analysis.judge.enclosed import stacked
 from grashof.analysis.judge.planted import (
     random_full_crank,
     random_inverted_slider_crank,
     random_slider_crank,
 )
+from grashof.analysis.mechanism.kinematics import solve_kinematics
+from grashof.analysis.mechanism.transmission import worst_transmission
 from grashof.problems import FourBar, InvertedSliderCrank, Linkage, SliderCrank
 
 MAKERS = (random_full_crank, random_slider_crank, random_inverted_slider_crank)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from grashof.problems import DynamicsSpec, FourBar, InvertedSliderCrank, SliderCrank
-from grashof.problems.values.acting import (
+from grashof.problems.values.dynamics.acting import (
     CounterweightSpec,
     DamperSpec,
     FrictionSpec,
@@ -16,8 +16,8 @@ from grashof.problems.values.acting import (
     SpringSpec,
     TorsionSpringSpec,
 )
-from grashof.problems.values.linkage import Linkage
-from grashof.problems.values.section import SectionSpec
+from grashof.problems.values.dynamics.section import SectionSpec
+from grashof.problems.values.linkages.linkage import Linkage
 
 CARD = ((0, 0.3, -9), (90, 0.4, -20), (180, -0.1, -20), (250, 0, -11), (360, 0.3, -9))
 EVERYTHING = DynamicsSpec(

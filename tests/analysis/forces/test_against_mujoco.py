@@ -17,14 +17,14 @@ from grashof.analysis import (
     stated_masses,
 )
 from grashof.problems import DynamicsSpec, FourBar
-from grashof.problems.values.acting import (
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.dynamics.acting import (
     CounterweightSpec,
     Place,
     SpringSpec,
     TorsionSpringSpec,
 )
-from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.section import SectionSpec
+from grashof.problems.values.dynamics.section import SectionSpec
 
 mujoco: Any = pytest.importorskip("mujoco")
 

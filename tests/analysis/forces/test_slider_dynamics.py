@@ -30,8 +30,8 @@ from grashof.analysis.forces.bars import bars_of
 from grashof.analysis.forces.joints import frame_angle, joint_motion, margin, origin, slide_of
 from grashof.analysis.forces.loads import cross, wrenches
 from grashof.problems import DynamicsSpec, FourBar, InvertedSliderCrank, ProblemError, SliderCrank
-from grashof.problems.values.linkage import Linkage
-from grashof.problems.values.motor import MotorSpec
+from grashof.problems.values.dynamics.motor import MotorSpec
+from grashof.problems.values.linkages.linkage import Linkage
 
 TURN = 2 * np.pi
 KINDS = (SliderCrank, InvertedSliderCrank)

@@ -31,8 +31,8 @@ from grashof.analysis import (
 )
 from grashof.analysis.numerics import collocation
 from grashof.problems import DynamicsSpec, InvertedSliderCrank, ProblemError, SliderCrank
-from grashof.problems.values.acting import FrictionSpec, LoadSpec
-from grashof.problems.values.linkage import Linkage
+from grashof.problems.values.dynamics.acting import FrictionSpec, LoadSpec
+from grashof.problems.values.linkages.linkage import Linkage
 
 TURN = 2 * np.pi
 KINDS = (SliderCrank, InvertedSliderCrank)

@@ -28,7 +28,7 @@ from grashof.analysis.forces.bars import bars_of, longest_travel
 from grashof.analysis.forces.loads import cross
 from grashof.problems import InvertedSliderCrank, ProblemError, SectionSpec, SliderCrank, StrengthSpec
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkage import Linkage
+from grashof.problems.values.linkages.linkage import Linkage
 
 TURN = 2 * np.pi
 KINDS = (SliderCrank, InvertedSliderCrank)

@@ -18,10 +18,10 @@ from grashof.analysis import (
     stated_masses,
 )
 from grashof.problems import DynamicsSpec, InvertedSliderCrank, SliderCrank
-from grashof.problems.values.acting import CounterweightSpec, Place, SpringSpec, TorsionSpringSpec
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkage import Linkage
-from grashof.problems.values.section import SectionSpec
+from grashof.problems.values.dynamics.acting import CounterweightSpec, Place, SpringSpec, TorsionSpringSpec
+from grashof.problems.values.dynamics.section import SectionSpec
+from grashof.problems.values.linkages.linkage import Linkage
 
 mujoco: Any = pytest.importorskip("mujoco")
 

@@ -17,15 +17,15 @@ from grashof.analysis import (
 )
 from grashof.analysis.forces.curve_through import curve_through
 from grashof.problems import DynamicsSpec, FourBar
-from grashof.problems.values.acting import (
+from grashof.problems.values.dynamics.acting import (
     CounterweightSpec,
     DamperSpec,
     FrictionSpec,
     Place,
     SpringSpec,
 )
-from grashof.problems.values.motor import MotorSpec
-from grashof.problems.values.section import SectionSpec
+from grashof.problems.values.dynamics.motor import MotorSpec
+from grashof.problems.values.dynamics.section import SectionSpec
 
 CARD = ((0, -9), (90, -20), (180, -20), (250, -11), (360, -9))
 INCH = 0.0254

@@ -5,8 +5,8 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from grashof.analysis import function_curves, solve_position, verify
-from grashof.analysis.four_bar.transmission import worst_transmission
 from grashof.analysis.judge.planted import planted_function
+from grashof.analysis.mechanism.transmission import worst_transmission
 from grashof.problems import (
     FourBar,
     FunctionTask,

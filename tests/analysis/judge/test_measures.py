@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from grashof.analysis import solve_position, verify
-from grashof.analysis.four_bar.stroke import output_stroke
 from grashof.analysis.judge.limits import missed
 from grashof.analysis.judge.measures import MEASURES, PARTS, Values
 from grashof.analysis.judge.over_task import over_task
 from grashof.analysis.judge.planted import planted_motion, planted_path, random_full_crank
 from grashof.analysis.judge.sampled_motion import motion_ends
+from grashof.analysis.mechanism.stroke import output_stroke
 from grashof.problems import (
     DynamicsSpec,
     Manufacturing,
@@ -24,8 +24,9 @@ from grashof.problems import (
     Requirements,
     TransmissionOver,
 )
-from grashof.problems.values.quantities import MEASURED, Kind, Limit, Over, Unit
-from grashof.problems.values.requirements import LIMITS, QUANTITIES
+from grashof.problems.values.requirements.quantities import MEASURED, Kind, Limit, Over
+from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
+from grashof.problems.values.units import Unit
 
 SAMPLES = 20_001
 STATED: dict[str, Any] = {

@@ -17,8 +17,8 @@ from grashof.analysis import (
 )
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import DynamicsSpec, Problem
-from grashof.problems.values.acting import DamperSpec, FrictionSpec, LoadSpec, Place, SpringSpec
-from grashof.problems.values.motor import MotorSpec
+from grashof.problems.values.dynamics.acting import DamperSpec, FrictionSpec, LoadSpec, Place, SpringSpec
+from grashof.problems.values.dynamics.motor import MotorSpec
 
 ACTING = DynamicsSpec(
     2.0,

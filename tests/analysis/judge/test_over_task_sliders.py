@@ -16,8 +16,8 @@ from grashof.analysis import (
 from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.sampled_motion import motion_ends
 from grashof.problems import DynamicsSpec, InvertedSliderCrank, PathTask, Problem, Requirements, SliderCrank
-from grashof.problems.values.acting import FrictionSpec, LoadSpec
-from grashof.problems.values.linkage import Linkage
+from grashof.problems.values.dynamics.acting import FrictionSpec, LoadSpec
+from grashof.problems.values.linkages.linkage import Linkage
 
 ENGINE = SliderCrank((0.3, 0), 0.4, 1.5, 0.2, 0.7, (0.5, 0.2))
 SHAPER = InvertedSliderCrank((0, 0), (0, -1.6), 0.6, 0.2, (2.5, 0.3))

@@ -7,15 +7,15 @@ import pytest
 
 from grashof.analysis import verify
 from grashof.analysis.forces.joints import Joint, joint_motion
-from grashof.analysis.four_bar.kinematics import solve_kinematics
 from grashof.analysis.judge.planted import random_full_crank, random_slider_crank
 from grashof.analysis.judge.sampled_motion import as_used, driver_law, motion_ends
 from grashof.analysis.judge.task_peaks import load_curves, task_peaks
 from grashof.analysis.judge.verdict import Verdict
+from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.problems import DynamicsSpec, Linkage, PathTask, Problem, Requirements
-from grashof.problems.values.acting import LoadSpec
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.motor import MotorSpec
+from grashof.problems.values.dynamics.acting import LoadSpec
+from grashof.problems.values.dynamics.motor import MotorSpec
 
 HEAVY = DynamicsSpec(speed_rpm=40, mass_per_length=2.0, payload=3.0, gravity=(0.0, -9.81))
 SOME = 8

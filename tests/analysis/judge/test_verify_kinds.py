@@ -32,8 +32,8 @@ from grashof.problems import (
     Requirements,
     SliderCrank,
 )
-from grashof.problems.values.quantities import Needs
-from grashof.problems.values.requirements import QUANTITIES
+from grashof.problems.values.requirements.quantities import Needs
+from grashof.problems.values.requirements.requirements import QUANTITIES
 
 ANY = Requirements(
     exact=True, rotatability="any", link_length=(0.0, 1e9), coupler_arms=(0.0, 1e9), link_ratio_max=1e6

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from grashof.analysis import solve_position, verify
-from grashof.analysis.four_bar.mobility import full_rotation, passes_change_point
+from grashof.analysis.mechanism.mobility import full_rotation, passes_change_point
 from grashof.problems import FourBar, MotionTask, Requirements
 
 ANY: dict[str, Any] = {"rotatability": "any", "link_length": (0, 1e3), "link_ratio_max": 1e4}

@@ -22,11 +22,11 @@ from grashof.analysis import (
     worst_transmission_cycle,
 )
 from grashof.analysis.curves.coupler_curve import coupler_curve, coupler_rates
-from grashof.analysis.four_bar.even_motion import even_motion
-from grashof.analysis.four_bar.mobility import dead_ends
-from grashof.analysis.four_bar.position import close_loop, sides
-from grashof.analysis.four_bar.transmission import quality
 from grashof.analysis.loops.kinds import kind_of
+from grashof.analysis.mechanism.even_motion import even_motion
+from grashof.analysis.mechanism.mobility import dead_ends
+from grashof.analysis.mechanism.position import close_loop, sides
+from grashof.analysis.mechanism.transmission import quality
 from grashof.problems import DeadPositionWarning, FourBar, InvertedSliderCrank, SliderCrank
 
 SWINGING = [

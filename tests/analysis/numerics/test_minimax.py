@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from grashof.analysis.four_bar.extremes import extremes_of
+from grashof.analysis.mechanism.extremes import extremes_of
 from grashof.analysis.numerics.minimax import Curve, least_peak
 
 

@@ -18,7 +18,7 @@ from grashof import load, synthesize, track
 from grashof.analysis import solve_kinematics
 from grashof.problems import Problem
 from grashof.problems.files.problem_schema import problem_from
-from grashof.problems.values.mechanisms import KINDS
+from grashof.problems.values.linkages.mechanisms import KINDS
 
 State = dict[str, Any]
 

@@ -6,7 +6,7 @@ import pytest
 
 from grashof.analysis import full_rotation, solve_kinematics, solve_position
 from grashof.analysis.forces.energy import energies
-from grashof.analysis.four_bar.slide import slide_travel
+from grashof.analysis.mechanism.slide import slide_travel
 from grashof.models import Model, mjcf
 from grashof.problems import LinkageSpec, SliderCrank
 

@@ -14,9 +14,9 @@ from playwright.sync_api import Page
 
 from grashof.analysis import driver_ranges, solve_position, transmission_angle
 from grashof.analysis.cylinder.lengths import cylinder_state
-from grashof.analysis.four_bar.position import places
-from grashof.analysis.four_bar.slide import slide_travel
-from grashof.analysis.four_bar.transmission import quality
+from grashof.analysis.mechanism.position import places
+from grashof.analysis.mechanism.slide import slide_travel
+from grashof.analysis.mechanism.transmission import quality
 from grashof.page import designs
 from grashof.page.analysis import analysis_page
 from grashof.page.designs import linkage_data

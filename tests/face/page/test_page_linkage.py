@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Locator, Page
 
 from grashof.analysis import driver_ranges, solve_position, transmission_angle
-from grashof.analysis.four_bar.transmission import quality
+from grashof.analysis.mechanism.transmission import quality
 from grashof.problems import FourBar
 from grashof.synth import Result
 

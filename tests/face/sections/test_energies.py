@@ -5,9 +5,9 @@ import pytest
 
 from grashof.analysis import inverse_dynamics, stated_loads, stated_masses
 from grashof.problems import FourBar, LinkageSpec
-from grashof.problems.values.acting import FrictionSpec, LoadSpec
-from grashof.problems.values.dynamics_spec import DynamicsSpec
-from grashof.problems.values.motor import MotorSpec
+from grashof.problems.values.dynamics.acting import FrictionSpec, LoadSpec
+from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
+from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.sections.energies import energy_section
 from grashof.study.study import Asked, LinkageStudy
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, load_linkage_spec
-from grashof.problems.values.acting import (
+from grashof.problems.values.dynamics.acting import (
     DamperSpec,
     FrictionSpec,
     LoadSpec,
@@ -20,7 +20,7 @@ from grashof.problems.values.acting import (
     SpringSpec,
     TorsionSpringSpec,
 )
-from grashof.problems.values.motor import MotorSpec
+from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.study.asked import ON_REQUEST
 from grashof.survey import Section
 

@@ -14,7 +14,7 @@ from scipy.interpolate import CubicSpline
 
 from grashof.analysis import balance_force, stated_masses
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, ProblemError, load_linkage_spec
-from grashof.problems.values.acting import CounterweightSpec, FrictionSpec, LoadSpec
+from grashof.problems.values.dynamics.acting import CounterweightSpec, FrictionSpec, LoadSpec
 from grashof.survey import Section
 
 Sections = Callable[..., dict[str, Section]]

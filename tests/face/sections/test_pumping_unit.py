@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from grashof.problems import DynamicsSpec, ProblemError, load_linkage_spec
-from grashof.problems.values.acting import LoadSpec
-from grashof.problems.values.pumping_unit import PumpingUnitSpec
+from grashof.problems.values.dynamics.acting import LoadSpec
+from grashof.problems.values.dynamics.pumping_unit import PumpingUnitSpec
 from grashof.survey import Section, report_on
 
 Sections = Callable[..., dict[str, Section]]

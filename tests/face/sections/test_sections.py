@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, load_linkage
-from grashof.problems.values.section import SectionSpec
+from grashof.problems.values.dynamics.section import SectionSpec
 from grashof.study.asked import ON_REQUEST
 from grashof.study.section import Section
 from grashof.study.sweep import Sweep

@@ -7,10 +7,10 @@ import pytest
 
 from grashof.analysis import Structure, solve_kinematics, strength_at
 from grashof.problems import FourBar, LinkageSpec, load_linkage_spec
-from grashof.problems.values.acting import LoadSpec
-from grashof.problems.values.dynamics_spec import DynamicsSpec
-from grashof.problems.values.section import SectionSpec
-from grashof.problems.values.strength import StrengthSpec
+from grashof.problems.values.dynamics.acting import LoadSpec
+from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
+from grashof.problems.values.dynamics.section import SectionSpec
+from grashof.problems.values.dynamics.strength import StrengthSpec
 from grashof.sections.strength import strength
 from grashof.study.section import Section
 from grashof.study.study import Asked, LinkageStudy

@@ -10,7 +10,7 @@ from grashof.problems.files.linkage_schema import linkage_from
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.files.toml_file import document_of
-from grashof.problems.values.acting import (
+from grashof.problems.values.dynamics.acting import (
     CounterweightSpec,
     DamperSpec,
     FrictionSpec,
@@ -19,9 +19,9 @@ from grashof.problems.values.acting import (
     SpringSpec,
     TorsionSpringSpec,
 )
-from grashof.problems.values.dynamics_spec import DynamicsSpec
-from grashof.problems.values.motor import MotorSpec
-from grashof.problems.values.section import SectionSpec
+from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
+from grashof.problems.values.dynamics.motor import MotorSpec
+from grashof.problems.values.dynamics.section import SectionSpec
 
 BARE = 'length_unit = "m"\no4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n'
 PROBLEM = 'kind = "motion"\nlength_unit = "m"\n[motion]\nposes = [[0, 0, 0], [3, 4, 9]]\n'

@@ -18,7 +18,7 @@ from grashof.problems import (
     load_linkage,
     load_linkage_spec,
 )
-from grashof.problems.values.mechanisms import KINDS
+from grashof.problems.values.linkages.mechanisms import KINDS
 
 SLIDER = 'mechanism = "slider-crank"\nr2 = 1\nr3 = 4\n'
 INVERTED = 'mechanism = "inverted-slider-crank"\no4 = [2, 0]\nr2 = 1\n'

@@ -9,8 +9,8 @@ from grashof.problems import Objective, PathTask, Problem, ProblemError, Require
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.problem_schema import problem_from
 from grashof.problems.files.problem_writing import problem_toml
-from grashof.problems.values.mechanisms import KINDS, having
-from grashof.problems.values.requirements import LIMITS, QUANTITIES
+from grashof.problems.values.linkages.mechanisms import KINDS, having
+from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
 
 POINTS = "[path]\npoints = [[0, 0], [1, 0], [2, 1], [3, 0]]\n"
 TASK = PathTask([[0, 0], [1, 0], [2, 1], [3, 0]])

@@ -22,7 +22,7 @@ from grashof.problems import (
     Search,
 )
 from grashof.problems.files.problem_schema import RequirementsTable, problem_from
-from grashof.problems.values.mechanisms import KINDS
+from grashof.problems.values.linkages.mechanisms import KINDS
 
 POSES = "poses = [[5, 4, 0], [3.5, 4, -5], [2, 3, -5], [1, 0, 0]]"
 HEAD = f'kind = "motion"\n[motion]\n{POSES}\n'

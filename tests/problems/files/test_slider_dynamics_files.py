@@ -9,7 +9,7 @@ from grashof.problems.files.linkage_schema import linkage_from
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.files.toml_file import document_of
-from grashof.problems.values.acting import FrictionSpec, LoadSpec
+from grashof.problems.values.dynamics.acting import FrictionSpec, LoadSpec
 
 ENGINE = 'length_unit = "mm"\nmechanism = "slider-crank"\nr2 = 40\nr3 = 120\n'
 DYNAMICS = """

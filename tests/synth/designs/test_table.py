@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 from grashof.problems import Problem
-from grashof.problems.values.quantities import MEASURED
+from grashof.problems.values.requirements.quantities import MEASURED
 from grashof.synth import Result
 from grashof.synth.designs.table import LISTED, NAMES, to_frame
 

@@ -24,7 +24,8 @@ from grashof.problems import (
     Requirements,
     SliderCrank,
 )
-from grashof.problems.values.acting import (
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.dynamics.acting import (
     CounterweightSpec,
     DamperSpec,
     FrictionSpec,
@@ -33,11 +34,10 @@ from grashof.problems.values.acting import (
     SpringSpec,
     TorsionSpringSpec,
 )
-from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.dynamics_spec import metres
-from grashof.problems.values.motor import MotorSpec
-from grashof.problems.values.requirements import QUANTITIES
-from grashof.problems.values.section import SectionSpec
+from grashof.problems.values.dynamics.dynamics_spec import metres
+from grashof.problems.values.dynamics.motor import MotorSpec
+from grashof.problems.values.dynamics.section import SectionSpec
+from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.synth import Result
 from grashof.synth.programme.along_motion import ALONG
 from grashof.synth.programme.burden import Burden

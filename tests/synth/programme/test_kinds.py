@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from grashof.analysis import output_stroke, solve_position, transmission_angle, verify
-from grashof.analysis.four_bar.mobility import full_rotation
 from grashof.analysis.judge.planted import RANDOM
+from grashof.analysis.mechanism.mobility import full_rotation
 from grashof.problems import FourBar, InvertedSliderCrank, Linkage, PathTask, Problem, SliderCrank
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.programme.kinds import KINDS

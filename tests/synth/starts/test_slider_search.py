@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from grashof.analysis import solve_position
-from grashof.analysis.four_bar.mobility import rotatability
+from grashof.analysis.mechanism.mobility import rotatability
 from grashof.problems import Box, MotionTask, PathTask, Problem, Requirements
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.programme.scaled_problem import ScaledProblem

@@ -11,7 +11,7 @@ from hypothesis.extra.numpy import arrays
 from grashof.analysis import solve_position
 from grashof.problems import FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkage import Linkage
+from grashof.problems.values.linkages.linkage import Linkage
 from grashof.synth.theory.distinct import DISTINCT, MIRRORED, apart, best_first, pick_apart, signature
 
 bounded = settings(max_examples=25)

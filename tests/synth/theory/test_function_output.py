@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from grashof.analysis import solve_position
-from grashof.analysis.four_bar.slide import slide_travel
 from grashof.analysis.judge.planted import planted_function
+from grashof.analysis.mechanism.slide import slide_travel
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.programme.kinds import KINDS

@@ -5,9 +5,9 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq, minimize_scalar
 
 from grashof.analysis import solve_position, verify
-from grashof.analysis.four_bar.mobility import grashof_class
-from grashof.analysis.four_bar.stroke import output_stroke
-from grashof.analysis.four_bar.transmission import worst_transmission_cycle
+from grashof.analysis.mechanism.mobility import grashof_class
+from grashof.analysis.mechanism.stroke import output_stroke
+from grashof.analysis.mechanism.transmission import worst_transmission_cycle
 from grashof.problems import FourBar, Requirements, SliderCrank, StrokeTask
 from grashof.synth.theory.limit_positions import (
     best_of,

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from grashof.analysis.four_bar.mobility import rotatability
-from grashof.analysis.four_bar.stroke import output_stroke
-from grashof.analysis.four_bar.transmission import worst_transmission_cycle
+from grashof.analysis.mechanism.mobility import rotatability
+from grashof.analysis.mechanism.stroke import output_stroke
+from grashof.analysis.mechanism.transmission import worst_transmission_cycle
 from grashof.problems import FourBar, InvertedSliderCrank, Linkage, SliderCrank
 from grashof.synth.proof.strokes.cover import Cover, covered
 from grashof.synth.proof.strokes.members import (

@@ -1,0 +1,298 @@
+"""Where a quantity is largest and smallest over the motion, to rounding."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+import scipy
+from numpy.polynomial import chebyshev
+
+from grashof.analysis.loops.loop import CHANGE
+from grashof.analysis.mechanism.even_motion import even_motion
+from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
+from grashof.analysis.mechanism.mobility import dead_ends, driver_ranges, full_rotation, rotatability
+from grashof.analysis.mechanism.transmission import ground_line_transmission, quality, transmission_angle
+from grashof.problems import AssemblyError, Linkage, ProblemError
+from grashof.problems.values.arrays import TURN, FloatArray
+
+Quantity: TypeAlias = Callable[[Kinematics], FloatArray]
+Curve: TypeAlias = Callable[[FloatArray], FloatArray]
+
+_SAMPLES = 2881
+_DEGREE = 16
+_CANDIDATES = 6
+_DEAD = 1e-7  # rad
+_NODES = np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
+
+
+@dataclass(frozen=True, slots=True)
+class Extremes:
+    """Least and largest value of a quantity, and where.
+
+    Parameters
+    ----------
+    low, high : float
+    at_low, at_high : float
+        Driver angle in rad, or whatever the curve runs over.
+    """
+
+    low: float
+    high: float
+    at_low: float
+    at_high: float
+
+    @property
+    def stroke(self) -> float:
+        """Largest minus least value."""
+        return self.high - self.low
+
+
+def extremes(
+    linkage: Linkage,
+    quantity: Quantity,
+    omega2: float = 1.0,
+    start: float | None = None,
+    end: float | None = None,
+    period: float | None = None,
+) -> Extremes:
+    """Least and largest value of any quantity while the driver turns steadily.
+
+    Parameters
+    ----------
+    linkage : Linkage
+        A single linkage.
+    quantity : callable
+        From a `Kinematics` to values, such as ``lambda state: state.b.speed``.
+    omega2 : float, rad/s
+    start, end : float, rad, optional
+        Driver angles; by default the whole turn, or the first of `driver_ranges`.
+    period : float, optional
+        By which the quantity may jump: 2 pi for an angle, which is then unwrapped.
+
+    Returns
+    -------
+    Extremes
+
+    Raises
+    ------
+    AssemblyError
+        The linkage cannot close in between.
+
+    Notes
+    -----
+    Dense sampling, then the stationary points of Chebyshev polynomials through the quantity about
+    the outermost samples: where the quantity is smooth, value and angle are right to rounding.
+
+    Examples
+    --------
+    >>> from grashof.problems import FourBar
+    >>> norton = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
+    >>> swing = extremes(norton, lambda state: state.theta4)
+    >>> np.degrees([swing.stroke, swing.at_low, swing.at_high]).round(4).tolist()
+    [73.7818, 24.1468, 231.3178]
+    """
+    start, end, closed = motion_between(linkage, start, end)
+
+    motion = even_motion(linkage, start, end)
+
+    def curve(share: FloatArray) -> FloatArray:
+        return np.asarray(quantity(solve_kinematics(linkage, motion.theta2(share), omega2)), dtype=np.float64)
+
+    at = dense_places(0.0, 1.0, closed)
+    values = counted_on(motion.theta2(at), curve(at), period)
+    found = refined(curve, at, values, closed, period)
+    at_low, at_high = motion.theta2([found.at_low, found.at_high]).tolist()
+    return Extremes(found.low, found.high, at_low, at_high)
+
+
+def transmission_extremes(linkage: Linkage, start: float, end: float) -> Extremes:
+    """Least and largest transmission angle between two driver angles, in closed form.
+
+    Parameters
+    ----------
+    linkage : Linkage
+        A single linkage that closes all the way.
+    start, end : float, rad
+        In either order.
+
+    Returns
+    -------
+    Extremes
+        In rad: 0 and pi themselves where an end is a dead position, folded or stretched.
+
+    Notes
+    -----
+    See `worst_transmission`.
+
+    Examples
+    --------
+    >>> from grashof.problems import FourBar
+    >>> rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3)
+    >>> found = transmission_extremes(rocker, *driver_ranges(rocker)[0])
+    >>> np.degrees([found.low, found.high]).round(4).tolist()
+    [41.4096, 180.0]
+    """
+    theta1, (low, high) = float(linkage.theta1), sorted((start, end))
+    along = np.arange(np.ceil((low - theta1) / np.pi), np.floor((high - theta1) / np.pi) + 1)
+    at = np.concatenate([[start, end], theta1 + np.pi * along])
+    ground = np.stack(ground_line_transmission(linkage))
+    change = np.abs(rotatability(linkage)[::-1]) <= CHANGE
+    ground = np.where(change, [0.0, np.pi], ground)
+    mu = np.concatenate([transmission_angle(linkage, at[:2]), ground[along.astype(np.int64) % 2]])
+    if not full_rotation(linkage):  # what rounding of an end leaves of a dead position
+        mu = np.where(quality(mu) <= _DEAD, np.where(mu < 1, 0.0, np.pi), mu)
+    least, most = int(np.argmin(mu)), int(np.argmax(mu))
+    return Extremes(float(mu[least]), float(mu[most]), float(at[least]), float(at[most]))
+
+
+def extremes_of(
+    curve: Curve, start: float, end: float, closed: bool = False, period: float | None = None
+) -> Extremes:
+    """Least and largest value of a function of one variable between two ends.
+
+    Parameters
+    ----------
+    curve : callable
+        Takes and returns arrays of shape (N,).
+    start, end : float
+    closed : bool
+        The curve goes on beyond its ends as it began.
+    period : float, optional
+        By which its values may jump; they are then unwrapped.
+
+    Returns
+    -------
+    Extremes
+    """
+    return refined(curve, *sampled(curve, start, end, closed, period), closed, period)
+
+
+def refined(
+    curve: Curve, at: FloatArray, values: FloatArray, closed: bool = False, period: float | None = None
+) -> Extremes:
+    """Least and largest value of a function of one variable, from its samples.
+
+    Parameters
+    ----------
+    curve, closed, period
+        As for `extremes_of`.
+    at, values : ndarray, shape (N,)
+        Where the curve is sampled, and its values there, unwrapped.
+
+    Returns
+    -------
+    Extremes
+    """
+    low, at_low = _outermost(curve, at, -values, closed, period, -1.0)
+    high, at_high = _outermost(curve, at, values, closed, period, 1.0)
+    return Extremes(-low, high, at_low, at_high)
+
+
+def motion_between(linkage: Linkage, start: float | None, end: float | None) -> tuple[float, float, bool]:
+    """Ends of the motion, and whether it is a whole turn."""
+    turns = bool(full_rotation(linkage))
+    if start is None or end is None:
+        if start is not end:
+            raise ProblemError("one of start and end is given; give both or neither")
+        low, high = driver_ranges(linkage)[0].tolist()
+        if np.isnan(low):
+            raise AssemblyError("the linkage cannot close at any driver angle")
+        start, end = (0.0, TURN) if turns else dead_ends(linkage, low, high)
+    if not end > start:
+        raise ProblemError(f"start is {start:.6g} and end {end:.6g}; start must be less than end")
+    return start, end, turns and abs(end - start - TURN) < 1e-12
+
+
+def sampled(
+    curve: Curve, start: float, end: float, closed: bool, period: float | None
+) -> tuple[FloatArray, FloatArray]:
+    """Where a curve is sampled, and its values there, unwrapped by `period`; shapes (N,)."""
+    at = dense_places(start, end, closed)
+    return at, counted_on(at, np.asarray(curve(at), dtype=np.float64), period)
+
+
+def dense_places(start: float, end: float, closed: bool) -> FloatArray:
+    """Where a curve is sampled when its extremes are sought, shape (N,)."""
+    share = np.linspace(0, 1, _SAMPLES)
+    if not closed:  # closer towards ends that may be dead positions
+        share = (1 - np.cos(np.pi * share)) / 2
+    at = start + (end - start) * share
+    at[-1] = end
+    return at
+
+
+def counted_on(theta2: FloatArray, values: FloatArray, period: float | None) -> FloatArray:
+    """Values at driver angles, unwrapped by `period`, shape (N,).
+
+    Raises
+    ------
+    AssemblyError
+        One is NaN.
+    """
+    if values.shape != theta2.shape:
+        raise ProblemError(f"the quantity has shape {values.shape}; it must have one value for each angle")
+    if np.isnan(values).any():
+        angle = np.degrees(theta2[np.isnan(values)][0])
+        raise AssemblyError(f"the quantity has no value at driver angle {angle:.6g} deg")
+    return values if period is None else np.unwrap(values, period=period)
+
+
+def _outermost(
+    curve: Curve, at: FloatArray, heights: FloatArray, closed: bool, period: float | None, sign: float
+) -> tuple[float, float]:
+    """Largest height (the curve's value times sign) and where it is."""
+    top = int(np.argmax(heights))
+    best, where = float(heights[top]), float(at[top])
+    beyond = (heights[-2], heights[1]) if closed else (-np.inf, -np.inf)
+    padded = np.concatenate([beyond[:1], heights, beyond[1:]])
+    before, after = padded[:-2], padded[2:]
+    with np.errstate(invalid="ignore"):
+        bend = heights - before + heights - after  # a peak rises by less
+        inside = np.isfinite(bend) & (heights >= before) & (heights >= after)
+    peaks = np.flatnonzero(inside & (heights + bend >= best))
+    for peak in peaks[np.argsort(-heights[peaks], kind="stable")[:_CANDIDATES]]:
+        near = sign * heights[peak]
+
+        def counted(theta2: FloatArray, near: float = near) -> FloatArray:
+            values = np.asarray(curve(theta2), dtype=np.float64)
+            if period is not None:
+                values = values - period * np.round((values - near) / period)
+            return sign * values
+
+        places = np.array(_stationary(counted, at, int(peak), closed))
+        for place, height in zip(places.tolist(), counted(places).tolist(), strict=True):
+            if height >= best or (height >= best - 4e-16 * abs(best) and abs(place - where) < 1e-3):
+                best, where = max(height, best), place
+    return best, where
+
+
+def _stationary(curve: Curve, at: FloatArray, peak: int, closed: bool) -> list[float]:
+    """Stationary points about a sample, from the widest window in which a polynomial is exact."""
+    middle = at[peak]
+    step = max(at[min(peak + 1, len(at) - 1)] - middle, middle - at[max(peak - 1, 0)])
+    for width in (16.0, 4.0, 1.0):
+        low, high = middle - width * step, middle + width * step
+        if not closed:
+            low, high = max(low, at[0]), min(high, at[-1])
+        values = curve((low + high) / 2 + (high - low) / 2 * _NODES)
+        if not np.isfinite(values).all():
+            if closed:  # it is not known beyond its ends
+                return _stationary(curve, at, peak, closed=False)
+            continue
+        terms = chebyshev.chebfit(_NODES, values, _DEGREE)
+        if np.abs(terms[-3:]).max() <= 1e-14 * np.abs(values).max() + 1e-9 * np.ptp(values) * (width == 1):
+            terms = chebyshev.chebtrim(terms, 1e-15 * np.abs(values).max())
+            roots = chebyshev.chebroots(chebyshev.chebder(terms))
+            roots = roots.real[(np.abs(roots.imag) < 1e-9) & (np.abs(roots.real) <= 1)]
+            return [float((low + high) / 2 + (high - low) / 2 * root) for root in roots]
+    low, high = middle - step, middle + step
+    if not closed:
+        low, high = max(low, at[0]), min(high, at[-1])
+    found = scipy.optimize.minimize_scalar(
+        lambda place: -float(curve(np.array([place]))[0]), bounds=(low, high), method="bounded",
+        options={"xatol": 1e-12},
+    )  # fmt: skip
+    return [float(found.x)]

@@ -1,0 +1,271 @@
+"""How far a linkage can move: its class, rotatability, driver ranges, circuits and branches."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from grashof.analysis.loops.kinds import kind_of
+from grashof.analysis.loops.loop import CHANGE, GrashofClass
+from grashof.analysis.mechanism.position import close_loop, sides
+from grashof.problems import FourBar, Linkage
+from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
+
+_OUTWARDS = np.concatenate([[0], 2.0 ** np.arange(14)]) * np.finfo(np.float64).eps  # rad: rounding of an end
+
+
+def grashof_class(linkage: Linkage, tolerance: float = CHANGE) -> GrashofClass:
+    """Grashof class of a single linkage, or what takes its place with a slide.
+
+    Parameters
+    ----------
+    linkage : Linkage
+    tolerance : float
+        s + l and p + q count as equal (change point) within this share of their sum; of a linkage with a
+        slide, its `rotatability` counts as zero.
+
+    Returns
+    -------
+    GrashofClass
+
+    Notes
+    -----
+    With shortest s, longest l and the others p, q: s + l < p + q is Grashof, and the shortest
+    link names the kind (Grashof 1883; Norton, *Design of Machinery*, sec. 2.13). With a slide the driver
+    of a slider-crank turns fully and that of a slider-rocker swings; of an inverted one whose driver turns
+    fully the block swings (crank-shaper) or turns (Whitworth).
+
+    Examples
+    --------
+    >>> str(grashof_class(FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)))
+    'crank-rocker'
+    """
+    return kind_of(linkage).class_of(linkage, tolerance)
+
+
+def triple_rocker_kind(linkage: Linkage) -> str:
+    """Barker's kind of a non-Grashof linkage, RRR1 to RRR4 by its longest link; '' for the others.
+
+    Notes
+    -----
+    Barker 1985, *A complete classification of planar four-bar linkages*: the number is that of the
+    longest link (ground, driver, coupler, output).
+    """
+    if not isinstance(linkage, FourBar) or grashof_class(linkage) is not GrashofClass.NON_GRASHOF:
+        return ""
+    return f"RRR{int(np.argmax(linkage.lengths)) + 1}"
+
+
+def rotatability(linkage: Linkage) -> FloatArray:
+    """The two differences whose signs decide how the driver turns, as shares of the lengths.
+
+    Parameters
+    ----------
+    linkage : Linkage
+
+    Returns
+    -------
+    ndarray, shape (..., 2)
+        (r3 + r4 - r1 - r2) and (|r1 - r2| - |r3 - r4|), as shares of r1 + r2 + r3 + r4. Of a slider-crank
+        (r3 - r2 - offset) and (r3 - r2 + offset), of r2 + r3 + |offset|; of an inverted one 1 and
+        (|r1 - r2| - |offset|), of r1 + r2 + |offset|. Both positive: the driver turns fully. Both
+        negative: it swings in two separate ranges. Otherwise it swings in one, through
+        theta1 + pi when the first is positive, through theta1 when the second is.
+
+    Notes
+    -----
+    The diagonal A-O4 runs from |r1 - r2| to r1 + r2 and has to stay between |r3 - r4| and r3 + r4
+    (McCarthy & Soh, *Geometric Design of Linkages*, sec. 2.2).
+    """
+    return kind_of(linkage).shares(linkage)
+
+
+def full_rotation(linkage: Linkage) -> BoolArray:
+    """Whether the driver turns fully without a dead position, shape (...).
+
+    A linkage with a change point does not: it has one there.
+    """
+    turns: BoolArray = np.all(rotatability(linkage) > CHANGE, axis=-1)
+    return turns
+
+
+def passes_change_point(linkage: Linkage, start: float, end: float) -> bool:
+    """Whether a motion of the driver takes a linkage to a change point, where all joints are in line.
+
+    Parameters
+    ----------
+    linkage : Linkage
+        A single linkage.
+    start, end : float, rad
+        Driver angles of the motion, in either order.
+
+    Notes
+    -----
+    A parallelogram linkage has them at theta1 and theta1 + pi. It can leave them as an antiparallelogram,
+    and a driver at rest there cannot decide which: a dead position like others.
+
+    Examples
+    --------
+    >>> parallelogram = FourBar(o2=(0, 0), o4=(3, 0), r2=2, r3=3, r4=2)
+    >>> passes_change_point(parallelogram, 0.1, 3.1), passes_change_point(parallelogram, 3.1, 3.2)
+    (False, True)
+    """
+    stretched, folded = np.abs(rotatability(linkage)) <= CHANGE
+    low, high = (np.array(sorted((start, end))) - linkage.theta1) / np.pi
+    passed = np.arange(np.ceil(low - CHANGE), np.floor(high + CHANGE) + 1)
+    return bool((folded and (passed % 2 == 0).any()) or (stretched and (passed % 2 == 1).any()))
+
+
+def driver_ranges(linkage: Linkage, transmission: float = 0.0) -> FloatArray:
+    """Driver angles at which the linkage can be assembled.
+
+    Parameters
+    ----------
+    linkage : Linkage
+    transmission : float, rad
+        Only angles at which min(mu, pi - mu) is at least this; below pi / 2.
+
+    Returns
+    -------
+    ndarray, shape (..., 2, 2), rad
+        Up to two ranges [low, high] of theta2, NaN for those that do not exist. A driver that
+        turns fully has one range of a whole turn. The middle of each lies within half a turn.
+
+    Notes
+    -----
+    With phi = theta2 - theta1, counted across the slide of a slider-crank, the loop closes where
+    sin^2(phi/2) + a >= 0 and cos^2(phi/2) + b >= 0. Of a four-bar cos(phi) runs between
+    (r1^2 + r2^2 - (r3 +- r4)^2) / (2 r1 r2) (McCarthy & Soh, sec. 2.2.2); with a limit of the transmission
+    angle mu the diagonal A-O4 takes the place of r3 +- r4 at which it is met.
+
+    Examples
+    --------
+    >>> triple_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3)
+    >>> np.degrees(driver_ranges(triple_rocker)[0]).round(3).tolist()
+    [-108.21, 108.21]
+    """
+    a, more_a, b, more_b, assembled = kind_of(linkage).span(linkage, float(np.cos(transmission)))
+    # Half-angle forms keep their digits near 0 and pi.
+    half_stretched = np.arctan2(np.sqrt(np.maximum(more_b, 0)), np.sqrt(np.maximum(-b, 0)))
+    half_folded = np.arctan2(np.sqrt(np.maximum(-a, 0)), np.sqrt(np.maximum(more_a, 0)))
+    reach, gap = 2 * half_stretched, 2 * half_folded  # pi and 0 where there is no limit
+    through_ground, through_back = half_folded == 0, half_stretched == np.pi / 2
+    low = np.where(through_ground, -reach, gap)
+    high = np.where(through_back & ~through_ground, 2 * np.pi - gap, reach)
+    two = ~through_ground & ~through_back & assembled
+    first = np.stack([np.where(assembled, low, np.nan), np.where(assembled, high, np.nan)], axis=-1)
+    second = np.stack([np.where(two, -reach, np.nan), np.where(two, -gap, np.nan)], axis=-1)
+    ranges = np.stack([first, second], axis=-2)
+    theta1 = linkage.theta1[..., None, None]
+    middle = theta1 + ranges.mean(axis=-1, keepdims=True)
+    counted: FloatArray = theta1 + (ranges - 2 * np.pi * np.round(middle / (2 * np.pi)))
+    return counted
+
+
+def dead_ends(linkage: Linkage, low: float, high: float) -> tuple[float, float]:
+    """Ends of a driver's range, put outwards by so much of their rounding that they are dead positions.
+
+    Parameters
+    ----------
+    linkage : Linkage
+        A single linkage.
+    low, high : float, rad
+        A range of `driver_ranges`.
+
+    Returns
+    -------
+    low, high : float, rad
+        `solve_position` has a transmission angle of 0 or 180 deg there. As they are where that cannot be.
+
+    Notes
+    -----
+    The links move with the root of the driver angle: an end that is a rounding of 1e-16 inside is
+    1e-8 off the dead position.
+    """
+    scale = max(abs(low), abs(high), 1.0)
+    places = np.array([[low], [high]]) + np.array([[-scale], [scale]]) * _OUTWARDS
+    dead = close_loop(sides(linkage), places).sine == 0
+    first = np.where(dead.any(axis=1), dead.argmax(axis=1), 0)
+    return float(places[0, first[0]]), float(places[1, first[1]])
+
+
+def range_index(linkage: Linkage, theta2: npt.ArrayLike, slack: float = 1e-9) -> tuple[IntArray, FloatArray]:
+    """The driver range that each angle lies in, and the angle as counted inside that range.
+
+    Parameters
+    ----------
+    linkage : Linkage
+        A single linkage.
+    theta2 : array_like, shape (...), rad
+    slack : float, rad
+        An angle so close to the end of a range still counts as inside.
+
+    Returns
+    -------
+    index : ndarray of int, shape (...)
+        0 or 1; -1 outside all ranges.
+    theta2 : ndarray, shape (...), rad
+        The same angle moved by whole turns into [low, high]; NaN outside all ranges.
+    """
+    angle = np.asarray(theta2, dtype=np.float64)
+    index = np.full(angle.shape, -1, dtype=np.int64)
+    inside = np.full(angle.shape, np.nan)
+    for number, (low, high) in enumerate(driver_ranges(linkage)):
+        if np.isnan(low):
+            continue
+        lifted = low + (angle - low + slack) % (2 * np.pi) - slack
+        hit = (lifted <= high + slack) & (index < 0)
+        index, inside = np.where(hit, number, index), np.where(hit, lifted, inside)
+    return index, inside
+
+
+def circuit_index(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike) -> IntArray:
+    """Circuit that each position lies on: positions on different ones cannot be joined by motion.
+
+    Parameters
+    ----------
+    linkage : Linkage
+        A single linkage.
+    theta2 : array_like, shape (...), rad
+    assembly : array_like, shape (...)
+        +1 or -1.
+
+    Returns
+    -------
+    ndarray of int, shape (...)
+        0 or 1; -1 where the linkage cannot be assembled.
+
+    Notes
+    -----
+    With a driver that turns fully each assembly is a circuit. Otherwise each range of the driver
+    is one, its two assemblies meeting in the dead positions at its ends (Chase & Mirth 1993).
+    At a change point the circuits meet; they are distinguished as on the nearest Grashof linkage.
+
+    Examples
+    --------
+    >>> double_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=3, r3=1, r4=3)
+    >>> circuit_index(double_rocker, np.radians([60, -60]), assembly=1).tolist()
+    [0, 1]
+    """
+    index, _ = range_index(linkage, theta2)
+    if _turns(linkage):
+        return np.where(index < 0, -1, np.where(np.asarray(assembly) > 0, 0, 1))
+    return np.broadcast_to(index, np.broadcast_shapes(np.shape(index), np.shape(assembly)))
+
+
+def branch_index(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike) -> IntArray:
+    """Branch that each position lies on: between different ones of a circuit lies a dead position.
+
+    Parameters and shapes as for `circuit_index`.
+
+    Returns
+    -------
+    ndarray of int, shape (...)
+        0 to 3; -1 where the linkage cannot be assembled.
+    """
+    index, _ = range_index(linkage, theta2)
+    return np.where(index < 0, -1, 2 * index + (np.asarray(assembly) < 0))
+
+
+def _turns(linkage: Linkage) -> bool:
+    return bool((rotatability(linkage) >= 0).all())

@@ -1,0 +1,1 @@
+"""Forces inside bars and pins, stresses and safety factors."""

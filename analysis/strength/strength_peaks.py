@@ -1,0 +1,215 @@
+"""The greatest of what the bars and pins of a linkage bear in its motion, and how safe they are."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from grashof.analysis.forces.bars import bar_lengths
+from grashof.analysis.forces.dynamics import inverse_dynamics
+from grashof.analysis.forces.joints import Joint, pins_of
+from grashof.analysis.mechanism.kinematics import Kinematics
+from grashof.analysis.numerics.peaks import peaks
+from grashof.analysis.strength.along_bar import Along
+from grashof.analysis.strength.strength import most_telling, pin_measures, strength_at
+from grashof.analysis.strength.structure import BAR_MEASURES, PIN_MEASURES, Structure, limits_of
+from grashof.problems import AssemblyError, DeadPositionWarning
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.linkages.linkage import Linkage
+
+Motion = Callable[[FloatArray], Kinematics]
+_MEASURES = {measure.key: measure for measure in (*BAR_MEASURES, *PIN_MEASURES)}
+
+
+@dataclass(frozen=True, slots=True)
+class StrengthPeak:
+    """The greatest value of a measure over the motion.
+
+    Parameters
+    ----------
+    key, label, unit : str
+        Those of the `Measure`.
+    part : str
+        "link 2", or the joint: "O2".
+    value : float
+        Infinite where the motion touches a dead position.
+    place : float
+        What the motion is a function of: driver angle, rad.
+    at : float, length
+        Where along the bar, from its link's origin; NaN of a pin, and of an infinite value.
+    """
+
+    key: str
+    label: str
+    unit: str
+    part: str
+    value: float
+    place: float
+    at: float
+
+
+@dataclass(frozen=True, slots=True)
+class SafetyFactor:
+    """What a part stands over what it bears at most in the motion.
+
+    Parameters
+    ----------
+    key, label : str
+        Of `FAILURES`.
+    part : str
+        "link 2" or "O2".
+    value : float
+        Above 1 it holds; infinite where nothing is borne.
+    limit : float
+        What it stands, Pa or N.
+    place : float
+        Where in the motion, as of a `StrengthPeak`.
+    at : float, length
+        Where along the bar; NaN of a pin.
+    """
+
+    key: str
+    label: str
+    part: str
+    value: float
+    limit: float
+    place: float
+    at: float
+
+
+@dataclass(frozen=True, slots=True)
+class StrengthSummary:
+    """Peaks and safety factors of a motion.
+
+    Parameters
+    ----------
+    peaks : tuple of StrengthPeak
+        Of the links that are bars and the joints that are pins, in turn.
+    factors : tuple of SafetyFactor
+        Of the same; none without strengths.
+    """
+
+    peaks: tuple[StrengthPeak, ...]
+    factors: tuple[SafetyFactor, ...]
+
+    @property
+    def worst(self) -> SafetyFactor | None:
+        """The least safety factor of all; None without strengths."""
+        return min(self.factors, key=lambda factor: factor.value, default=None)
+
+    @property
+    def worst_bar(self) -> StrengthPeak:
+        """The peak of `most_telling` in the bar where it is highest."""
+        key = most_telling({peak.key for peak in self.peaks})
+        return max((peak for peak in self.peaks if peak.key == key), key=lambda peak: peak.value)
+
+    def peak(self, key: str, part: str) -> StrengthPeak:
+        """The peak of a measure of "link 2" or "O2"; KeyError where there is none."""
+        return {(peak.key, peak.part): peak for peak in self.peaks}[key, part]
+
+
+def strength_over(structure: Structure, motion: Motion, stretches: Sequence[FloatArray]) -> StrengthSummary:
+    """Greatest of what bars and pins bear in a motion, and how safe they are.
+
+    Parameters
+    ----------
+    structure : Structure
+        Of a single linkage.
+    motion : callable
+        From driver angles, or whatever else it runs over, shape (N,), to a `Kinematics`.
+    stretches : sequence of ndarray, shape (N,)
+        Ascending samples of each interval of the motion, such as of `driver_samples`.
+
+    Returns
+    -------
+    StrengthSummary
+
+    Raises
+    ------
+    AssemblyError
+        The linkage cannot close in between.
+
+    Examples
+    --------
+    >>> from grashof.analysis.mechanism.driver_samples import driver_samples
+    >>> from grashof.analysis.mechanism.kinematics import solve_kinematics
+    >>> from grashof.analysis.forces.mass import uniform_bars
+    >>> from grashof.analysis.forces.loads import Loads
+    >>> from grashof.problems import FourBar, SectionSpec, StrengthSpec
+    >>> jack = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
+    >>> steel = StrengthSpec(235e6, 210e9, pin_diameter=0.1)
+    >>> structure = Structure(
+    ...     uniform_bars(jack, 312), Loads(gravity=(0, -9.81)), SectionSpec(0.2, 0.2), steel
+    ... )
+    >>> turn = [driver_samples(jack, 0.0, 2 * np.pi)]
+    >>> found = strength_over(structure, lambda angle: solve_kinematics(jack, angle, 2 * np.pi / 3), turn)
+    >>> found.worst_bar.part, round(found.worst.value, 2)
+    ('link 2', 12.99)
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeadPositionWarning)
+        linkage = _closing(motion, stretches)
+        lengths, pins = bar_lengths(linkage), pins_of(linkage)
+        found = [peak for link in lengths for peak in _bar_peaks(structure, motion, stretches, link)]
+        found += _pin_peaks(structure, motion, stretches, pins)
+    by_part = {(peak.part, peak.key): peak for peak in found}
+    factors = []
+    for limit in limits_of(structure, lengths, pins):
+        peak = by_part[limit.part, limit.measure]
+        value = limit.value / peak.value if peak.value > 0 else np.inf
+        factors.append(
+            SafetyFactor(limit.key, limit.label, limit.part, value, limit.value, peak.place, peak.at)
+        )
+    return StrengthSummary(tuple(found), tuple(factors))
+
+
+def _closing(motion: Motion, stretches: Sequence[FloatArray]) -> Linkage:
+    """The linkage, which has to close all the way; at the very ends rounding may open it."""
+    for samples in stretches:
+        state = motion(samples[1:-1])
+        if np.isnan(state.theta3).any():
+            open_at = np.degrees(np.broadcast_to(state.theta2, state.shape)[np.isnan(state.theta3)][0])
+            raise AssemblyError(f"the linkage cannot close at driver angle {open_at:.6g} deg")
+    return state.linkage
+
+
+def _bar_peaks(
+    structure: Structure, motion: Motion, stretches: Sequence[FloatArray], link: int
+) -> list[StrengthPeak]:
+    def measures(places: FloatArray) -> dict[str, Along]:
+        return dict(strength_at(motion(places), structure, links=[link]).bars[link])
+
+    def values(places: FloatArray) -> FloatArray:
+        return np.stack([along.value for along in measures(places).values()])
+
+    greatest, places = peaks(values, stretches)
+    along = measures(places)
+    return [
+        _peak(key, f"link {link}", greatest[row], places[row], along[key].at[row])
+        for row, key in enumerate(along)
+    ]
+
+
+def _pin_peaks(
+    structure: Structure, motion: Motion, stretches: Sequence[FloatArray], joints: Sequence[Joint]
+) -> list[StrengthPeak]:
+    def values(places: FloatArray) -> FloatArray:
+        found = inverse_dynamics(motion(places), structure.masses, structure.loads)
+        return np.stack([found.joint_force(joint) for joint in joints])
+
+    greatest, places = peaks(values, stretches)
+    pins = pin_measures(dict(zip(joints, greatest, strict=True)), structure)
+    return [
+        _peak(key, joint.name, float(value), places[row], np.nan)
+        for row, (joint, measures) in enumerate(pins.items())
+        for key, value in measures.items()
+    ]
+
+
+def _peak(key: str, part: str, value: float, place: float, at: float) -> StrengthPeak:
+    measure = _MEASURES[key]
+    at = float(at) if np.isfinite(value) else np.nan
+    return StrengthPeak(key, measure.label, measure.unit, part, float(value), float(place), at)

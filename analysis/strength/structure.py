@@ -1,0 +1,183 @@
+"""The bars of a linkage, what is known of them, and the loads at which they fail."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from grashof.analysis.forces.joints import JOINED, Joint
+from grashof.analysis.forces.loads import Loads
+from grashof.analysis.forces.mass import Masses
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.dynamics.section import SectionSpec
+from grashof.problems.values.dynamics.strength import StrengthSpec, check_strength
+
+_BUCKLING = {
+    "buckling": "buckling in the plane of motion",
+    "buckling_across": "buckling out of the plane of motion",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """Something that a bar or a pin bears: of a bar the greatest along it.
+
+    Parameters
+    ----------
+    key, label : str
+    unit : str
+        "N", "N m", "Pa", "length" (the linkage's own unit) or "" of a share.
+    """
+
+    key: str
+    label: str
+    unit: str
+
+
+#: What is known of a bar at a position: forces, stresses, deflection, the share of its strength in use.
+BAR_MEASURES = (
+    Measure("tension", "tension", "N"),
+    Measure("compression", "compression", "N"),
+    Measure("thrust", "compression between the joints", "N"),
+    Measure("shear", "shear force", "N"),
+    Measure("moment", "bending moment", "N m"),
+    Measure("normal_stress", "normal stress", "Pa"),
+    Measure("shear_stress", "shear stress", "Pa"),
+    Measure("stress", "equivalent stress", "Pa"),
+    Measure("deflection", "deflection", "length"),
+    Measure("utilisation", "share of its strength in use", ""),
+)
+#: The same of a pin.
+PIN_MEASURES = (
+    Measure("pin_force", "force", "N"),
+    Measure("pin_shear", "shear stress of the pin", "Pa"),
+    Measure("bearing", "bearing pressure", "Pa"),
+)
+UNITS = {measure.key: measure.unit for measure in (*BAR_MEASURES, *PIN_MEASURES)}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Structure:
+    """What is known of the bars of a linkage and of what acts on them.
+
+    Parameters
+    ----------
+    masses : Masses
+    loads : Loads
+        In kg, s and the length unit: newtons over `metre`.
+    section : SectionSpec, optional
+        Without it there are forces and moments alone.
+    strength : StrengthSpec, optional
+        Needs `section`.
+    metre : float
+        The length unit in metres.
+
+    Raises
+    ------
+    ProblemError
+        Strength without the sections that it needs.
+    """
+
+    masses: Masses
+    loads: Loads
+    section: SectionSpec | None = None
+    strength: StrengthSpec | None = None
+    metre: float = 1.0
+
+    def __post_init__(self) -> None:
+        check_strength(self.section, self.strength)
+
+    def in_si(self, unit: str) -> float:
+        """A unit of `Measure` as it is reckoned with (kg, s, length unit), in SI: the only conversion."""
+        return {"N": self.metre, "N m": self.metre**2, "Pa": 1 / self.metre}.get(unit, 1.0)
+
+    @property
+    def modulus(self) -> float | None:
+        """Elastic modulus in the units that are reckoned with; None where it is not known."""
+        given = None if self.strength is None else self.strength.elastic_modulus
+        return None if given is None else given / self.in_si("Pa")
+
+    def buckling_loads(self, link: int, length: npt.ArrayLike) -> dict[str, FloatArray]:
+        """Loads at which a bar buckles, N, of the length between its joints; by `Limit.key`.
+
+        Notes
+        -----
+        Euler's, pi^2 E I / l^2, both ends pinned in the plane of motion and, on the safe side, out of it;
+        of bars so stocky that it exceeds half their yield load A Sy, Johnson's parabola,
+        A Sy (1 - A Sy / (4 Euler's)) (Shigley, *Mechanical Engineering Design*, secs. 4-12 and 4-13).
+        """
+        if self.section is None or self.strength is None or self.modulus is None:
+            return {}
+        section, square = self.section.of(link), np.square(length)
+        crushing = self.strength.yield_stress / self.in_si("Pa") * section.area
+        found = {}
+        for key, inertia in (("buckling", section.inertia), ("buckling_across", section.inertia_across)):
+            if inertia is not None:
+                euler = np.pi**2 * self.modulus * inertia / square
+                johnson = crushing * (1 - crushing / (4 * euler))
+                found[key] = np.where(2 * euler < crushing, euler, johnson) * self.in_si("N")
+        return found
+
+    def pin_areas(self, joint: Joint) -> dict[str, float]:
+        """Areas that share a joint's force, length^2, by key of `PIN_MEASURES`; none without diameters.
+
+        Notes
+        -----
+        The pin's in one section or two, and its diameter times the thickness of the thinner link (mean
+        stress and pressure: Shigley, sec. 8-12; Norton, *Machine Design*, sec. 4.8).
+        """
+        strength = self.strength
+        diameters = None if strength is None else strength.diameters()
+        if strength is None or diameters is None:
+            return {}
+        thicknesses = strength.thicknesses(self.section)
+        own = [thicknesses[link - 2] for link in JOINED[joint] if link != 1]
+        sections = 2 if strength.double_shear else 1
+        diameter = diameters[joint]
+        return {
+            "pin_shear": sections * np.pi * diameter**2 / 4,
+            "bearing": diameter * min(each for each in own if each is not None),
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """What a part stands.
+
+    Parameters
+    ----------
+    key, label : str
+        The kind of failure.
+    part : str
+        "link 2", or the joint: "O2".
+    measure : str
+        Key of the `Measure` that it limits.
+    value : float
+        In the unit of that.
+    """
+
+    key: str
+    label: str
+    part: str
+    measure: str
+    value: float
+
+
+def limits_of(
+    structure: Structure, lengths: Mapping[int, float], pins: Sequence[Joint] = tuple(Joint)
+) -> Iterator[Limit]:
+    """All that the strength limits, by links (of lengths between their joints) and pins in turn."""
+    strength = structure.strength
+    if strength is None:
+        return
+    for link, length in lengths.items():
+        part = f"link {link}"
+        yield Limit("yield", "yield", part, "stress", strength.yield_stress)
+        for key, load in structure.buckling_loads(link, length).items():
+            yield Limit(key, _BUCKLING[key], part, "thrust", float(load))
+    for joint in pins if strength.pin_diameter is not None else ():
+        yield Limit("pin_shear", "shear of the pin", joint.name, "pin_shear", strength.shear_limit)
+        yield Limit("bearing", "bearing pressure", joint.name, "bearing", strength.bearing_limit)

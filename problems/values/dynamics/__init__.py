@@ -1,0 +1,1 @@
+"""What loads, drives and stresses a linkage, as stated in files."""

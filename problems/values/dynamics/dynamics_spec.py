@@ -1,0 +1,236 @@
+"""What the links weigh, how fast the driver turns, where gravity points, and what else acts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from grashof.problems.values.checks import bounded, from_zero, numbers, positive_number
+from grashof.problems.values.dynamics.acting import (
+    CounterweightSpec,
+    DamperSpec,
+    FrictionSpec,
+    LoadSpec,
+    Pair,
+    SpringSpec,
+    TorsionSpringSpec,
+)
+from grashof.problems.values.dynamics.motor import MotorSpec
+from grashof.problems.values.dynamics.section import SectionSpec
+from grashof.problems.values.dynamics.strength import StrengthSpec, check_strength
+from grashof.problems.values.errors import ProblemError, wrong_value
+from grashof.problems.values.stated import Stated
+
+METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048}
+STEADY = 30 / np.pi  # rpm: 1 rad/s
+Triple = tuple[float, float, float]
+_LISTS: dict[str, type] = {
+    "loads": LoadSpec,
+    "springs": SpringSpec,
+    "dampers": DamperSpec,
+    "torsion_springs": TorsionSpringSpec,
+    "counterweights": CounterweightSpec,
+}
+# Keys of the table [dynamics]; the other fields have tables of their own.
+DYNAMICS_KEYS = (
+    "mass_per_length", "density", "masses", "inertias", "centres", "payload", "speed_rpm", "gravity",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class DynamicsSpec(Stated):
+    """Masses, speed, gravity and what else acts, of a problem or of one linkage; kg, s and its length unit.
+
+    Forces are in N, moments in N m, stiffness in N/m, whatever the length unit.
+
+    Parameters
+    ----------
+    mass_per_length : float, kg/length, optional
+        The links are slender uniform bars from joint to joint.
+    masses : three floats, kg, optional
+        Instead, with `inertias`: of links 2, 3 and 4.
+    inertias : three floats, kg length^2, optional
+        Of links 2, 3 and 4 about their centres of mass.
+    centres : three pairs of float, length, optional
+        Centres of mass of links 2, 3 and 4 in their frames; by default halfway between the joints of
+        each link (the coupler's between A and B, wherever P is).
+    density : float, kg/m^3, optional
+        Instead: the links are uniform bars of the `section`.
+    payload : float, kg
+        Carried at P, as a point.
+    speed_rpm : float
+        Of the driver; 1 rad/s by default. Of a linkage counter-clockwise; of a problem greater than
+        zero, in the sense that the task asks for.
+    gravity : two floats, m/s^2
+        In metres whatever the length unit; none by default.
+    loads : tuple of LoadSpec
+        Forces and moments on the links.
+    springs : tuple of SpringSpec
+        Straight ones, between points of two links.
+    dampers : tuple of DamperSpec
+        Against the speed at which points of two links part.
+    torsion_springs : tuple of TorsionSpringSpec
+        About joints, between the two links there.
+    counterweights : tuple of CounterweightSpec
+        Point masses on the links, besides their own.
+    friction : FrictionSpec, optional
+        In joints and in a slide.
+    motor : MotorSpec, optional
+        Speed profile, gear and inertia of the drive; steady speed without it.
+    section : SectionSpec, optional
+        Of the bars; `density` needs it, and strength.
+    strength : StrengthSpec, optional
+        Of the bars and pins.
+
+    Raises
+    ------
+    ProblemError
+        Numbers that are not finite or beyond 1e20, negative masses, or links whose masses are given
+        twice or in part.
+
+    Examples
+    --------
+    >>> round(DynamicsSpec(mass_per_length=2.0, speed_rpm=30).omega2, 6)
+    3.141593
+    """
+
+    mass_per_length: float | None = None
+    masses: Triple | None = None
+    inertias: Triple | None = None
+    centres: tuple[Pair, Pair, Pair] | None = None
+    density: float | None = None
+    payload: float = 0.0
+    speed_rpm: float = STEADY
+    gravity: Pair = (0.0, 0.0)
+    loads: tuple[LoadSpec, ...] = ()
+    springs: tuple[SpringSpec, ...] = ()
+    dampers: tuple[DamperSpec, ...] = ()
+    torsion_springs: tuple[TorsionSpringSpec, ...] = ()
+    counterweights: tuple[CounterweightSpec, ...] = ()
+    friction: FrictionSpec | None = None
+    motor: MotorSpec | None = None
+    section: SectionSpec | None = None
+    strength: StrengthSpec | None = None
+
+    def __post_init__(self) -> None:
+        self._check_masses()
+        for name in ("mass_per_length", "density"):
+            if (given := getattr(self, name)) is not None:
+                self._set(name, positive_number(bounded(given, f"dynamics.{name}"), f"dynamics.{name}"))
+        for name in ("masses", "inertias"):
+            self._set(name, _triple(getattr(self, name), f"dynamics.{name}"))
+        if self.masses is not None and not any(self.masses):
+            raise ProblemError("dynamics.masses are all zero; one at least has a mass")
+        if self.centres is not None:
+            self._set("centres", _places(self.centres, "dynamics.centres"))
+        self._set("payload", from_zero(self.payload, "dynamics.payload"))
+        self._set("speed_rpm", bounded(self.speed_rpm, "dynamics.speed_rpm"))
+        self._set("gravity", numbers(self.gravity, 2, "dynamics.gravity"))
+        for name, kind in _LISTS.items():
+            entries = getattr(self, name)
+            if not isinstance(entries, Sequence) or not all(isinstance(each, kind) for each in entries):
+                raise wrong_value(name, entries, f"a list of {kind.__name__}")
+            self._set(name, tuple(entries))
+
+    def _check_masses(self) -> None:
+        given = [name for name in ("mass_per_length", "density") if getattr(self, name) is not None]
+        given += ["masses and inertias"] if (self.masses, self.inertias) != (None, None) else []
+        if len(given) > 1:
+            raise ProblemError(f"dynamics.{given[0]} does not go with {given[1]}; give one or the other")
+        if (self.masses is None) != (self.inertias is None):
+            absent = "masses" if self.masses is None else "inertias"
+            raise ProblemError(f"dynamics.{absent} is missing; masses and inertias are needed together")
+        if self.centres is not None and self.masses is None:
+            raise ProblemError("dynamics.masses is missing; centres are those of given masses and inertias")
+        if self.density is not None and self.section is None:
+            raise ProblemError("section is missing; dynamics.density needs it")
+        check_strength(self.section, self.strength)
+
+    def _set(self, name: str, value: Any) -> None:
+        object.__setattr__(self, name, value)
+
+    @property
+    def tables(self) -> dict[str, Any]:
+        """The tables of a file that state it, by their names, and lists of tables."""
+        own = {key: getattr(self, key) for key in DYNAMICS_KEYS if getattr(self, key) is not None}
+        return {
+            "dynamics": own,
+            **{key: given for key, given in self.stated.items() if key not in DYNAMICS_KEYS},
+        }
+
+    def turning(self, direction: int) -> DynamicsSpec:
+        """The dynamics of a linkage whose driver turns counter-clockwise (+1) or clockwise (-1).
+
+        Examples
+        --------
+        >>> DynamicsSpec(payload=1.0, speed_rpm=20).turning(-1).speed_rpm
+        -20.0
+        """
+        return replace(self, speed_rpm=direction * abs(self.speed_rpm))
+
+    @property
+    def has_masses(self) -> bool:
+        """Whether the links, the payload or counterweights have a mass."""
+        bars = (self.mass_per_length, self.density, self.masses)
+        return any(given is not None for given in bars) or self.payload > 0 or bool(self.counterweights)
+
+    @property
+    def acts(self) -> bool:
+        """Whether anything takes a torque: masses, loads, springs, dampers, friction."""
+        given = (self.loads, self.springs, self.dampers, self.torsion_springs)
+        return self.has_masses or any(given) or self.friction is not None
+
+    def too_short(self, duration: float, where: str) -> list[str]:
+        """What is wrong with loads over time in a motion of a duration (s), which `where` explains."""
+        return [
+            f"loads[{index}] covers {load.values[0][0]:g} to {load.values[-1][0]:g} s; "
+            f"it must cover 0 to {duration:.6g} s, {where}"
+            for index, load in enumerate(self.loads)
+            if load.values is not None and load.over == "time"
+            if load.values[0][0] > 0 or not load.values[-1][0] >= duration * (1 - 1e-12)
+        ]
+
+    @property
+    def turn_time(self) -> float:
+        """What a turn of the driver takes, s: at its mean speed, or as the motor's table has it."""
+        if self.motor is not None and self.motor.values is not None:
+            return self.motor.values[-1][0] - self.motor.values[0][0]
+        return 60 / abs(self.speed_rpm) if self.speed_rpm else np.inf
+
+    @property
+    def omega2(self) -> float:
+        """Speed of the driver, rad/s; its mean where a motor starts and stops."""
+        return self.speed_rpm * np.pi / 30
+
+
+def metres(length_unit: str, needed_by: str = "dynamics") -> float:
+    """Length of a unit in metres.
+
+    Raises
+    ------
+    ProblemError
+        The unit is none of those known.
+
+    Examples
+    --------
+    >>> metres("in")
+    0.0254
+    """
+    if length_unit not in METRES:
+        raise wrong_value("length_unit", length_unit, f"one of {', '.join(METRES)} with {needed_by}")
+    return METRES[length_unit]
+
+
+def _triple(values: Sequence[float] | None, where: str) -> tuple[float, ...] | None:
+    if values is None:
+        return None
+    return tuple(from_zero(value, f"{where}[{i}]") for i, value in enumerate(numbers(values, 3, where)))
+
+
+def _places(values: Any, where: str) -> tuple[tuple[float, ...], ...]:
+    if not isinstance(values, Sequence) or len(values) != 3:
+        raise wrong_value(where, values, "three places [u, v], of links 2, 3 and 4")
+    return tuple(numbers(value, 2, f"{where}[{index}]") for index, value in enumerate(values))

@@ -1,0 +1,148 @@
+"""What the links and their pins are made of, and how much of it there is at the pins."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from grashof.problems.values.checks import one_or_each, size_number
+from grashof.problems.values.dynamics.section import LINKS, SHAPES, OneOrEach, SectionSpec
+from grashof.problems.values.errors import ProblemError, wrong_value
+from grashof.problems.values.stated import Stated
+
+JOINTS = ("O2", "A", "B", "O4")
+
+
+@dataclass(frozen=True, slots=True, init=False)
+class StrengthSpec(Stated):
+    """Strengths of the links and of their pins; Pa, and the length unit.
+
+    Parameters
+    ----------
+    yield_stress : float, Pa
+        Of the links.
+    elastic_modulus : float, Pa, optional
+        Of the links; deflection and buckling need it.
+    pin_diameter : float or four floats, length, optional
+        Of the pins in O2, A, B, O4.
+    pin_shear_strength : float, Pa, optional
+        Of the pins; yield_stress / sqrt(3) by default.
+    bearing_strength : float, Pa, optional
+        Pressure that pins and links stand; yield_stress by default.
+    pin_thickness : float or three floats, length, optional
+        Of links 2, 3 and 4 where a pin goes through; the height of the section by default.
+    double_shear : bool
+        The links' ends are forks, so that two sections of each pin share its force.
+
+    Raises
+    ------
+    ProblemError
+        Numbers that are not finite and greater than zero or beyond 1e20, lists of another length, or
+        strengths of pins that have no diameter.
+
+    Notes
+    -----
+    A ductile material yields in shear at 0.577 of its yield stress (von Mises; Shigley, *Mechanical
+    Engineering Design*, sec. 5-5).
+
+    Examples
+    --------
+    >>> round(StrengthSpec(235e6).shear_limit / 1e6, 1)
+    135.7
+    """
+
+    yield_stress: float
+    elastic_modulus: float | None
+    pin_diameter: OneOrEach | None
+    pin_shear_strength: float | None
+    bearing_strength: float | None
+    pin_thickness: OneOrEach | None
+    double_shear: bool
+
+    def __init__(
+        self,
+        yield_stress: float,
+        elastic_modulus: float | None = None,
+        *,
+        pin_diameter: OneOrEach | None = None,
+        pin_shear_strength: float | None = None,
+        bearing_strength: float | None = None,
+        pin_thickness: OneOrEach | None = None,
+        double_shear: bool = False,
+    ) -> None:
+        if not isinstance(double_shear, bool):
+            raise wrong_value("strength.double_shear", double_shear, "true or false")
+        of_pins = {
+            "pin_shear_strength": pin_shear_strength, "bearing_strength": bearing_strength,
+            "pin_thickness": pin_thickness, "double_shear": double_shear or None,
+        }  # fmt: skip
+        for name, value in of_pins.items():
+            if pin_diameter is None and value is not None:
+                raise ProblemError(f"strength.pin_diameter is missing; {name} is of no use without it")
+        object.__setattr__(self, "yield_stress", size_number(yield_stress, "strength.yield_stress"))
+        for name, pressure in (
+            ("elastic_modulus", elastic_modulus),
+            ("pin_shear_strength", pin_shear_strength),
+            ("bearing_strength", bearing_strength),
+        ):
+            stated = None if pressure is None else size_number(pressure, f"strength.{name}")
+            object.__setattr__(self, name, stated)
+        for name, lengths, owners in (
+            ("pin_diameter", pin_diameter, JOINTS),
+            ("pin_thickness", pin_thickness, LINKS),
+        ):
+            checked = None if lengths is None else one_or_each(lengths, owners, f"strength.{name}")
+            object.__setattr__(self, name, checked)
+        object.__setattr__(self, "double_shear", double_shear)
+
+    @property
+    def stated(self) -> dict[str, Any]:
+        """The arguments that give this value, without those that are not given: a file's table."""
+        every = {name: getattr(self, name) for name in self.__slots__}
+        return {name: value for name, value in every.items() if value is not None}
+
+    @property
+    def shear_limit(self) -> float:
+        """Shear stress at which pins yield, Pa."""
+        return (
+            self.yield_stress / math.sqrt(3) if self.pin_shear_strength is None else self.pin_shear_strength
+        )
+
+    @property
+    def bearing_limit(self) -> float:
+        """Pressure at which pins and links yield, Pa."""
+        return self.yield_stress if self.bearing_strength is None else self.bearing_strength
+
+    def diameters(self) -> tuple[float, ...] | None:
+        """Of the pins in O2, A, B, O4, length; None where none is given."""
+        return None if self.pin_diameter is None else _each(self.pin_diameter, len(JOINTS))
+
+    def thicknesses(self, section: SectionSpec | None) -> tuple[float | None, ...]:
+        """Of links 2, 3 and 4 at their pins, length; None where neither table gives one."""
+        if self.pin_thickness is not None:
+            return _each(self.pin_thickness, len(LINKS))
+        return tuple(None if section is None else section.of(link).height for link in (2, 3, 4))
+
+
+def check_strength(section: SectionSpec | None, strength: StrengthSpec | None) -> None:
+    """Refuse a strength without the sections that it needs.
+
+    Raises
+    ------
+    ProblemError
+        No section, or neither height nor thickness of a link whose pins are given.
+    """
+    if strength is None:
+        return
+    if section is None:
+        raise ProblemError(f"section is missing, which strength needs; give {SHAPES}")
+    if strength.pin_diameter is not None and None in strength.thicknesses(section):
+        raise ProblemError(
+            "strength.pin_thickness is missing; bearing pressure needs it where section has no height"
+        )
+
+
+def _each(value: OneOrEach, count: int) -> tuple[float, ...]:
+    return tuple(value) if isinstance(value, Sequence) else (value,) * count

@@ -1,0 +1,1 @@
+"""Linkages as values: what they are made of, not how they move."""

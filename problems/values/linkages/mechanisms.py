@@ -1,0 +1,135 @@
+"""The kinds of linkages: which there are, which of them has what, and which a problem asks for."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+from grashof.problems.values.checks import near_miss, noted, refuse
+from grashof.problems.values.errors import ProblemError, shown, wrong_value
+from grashof.problems.values.linkages.four_bar import FourBar
+from grashof.problems.values.linkages.inverted_slider_crank import InvertedSliderCrank
+from grashof.problems.values.linkages.linkage import Linkage
+from grashof.problems.values.linkages.linkage_parts import Parameter
+from grashof.problems.values.linkages.slider_crank import SliderCrank
+
+# By the word for it in files and tables; the first is what is meant where none is named.
+KINDS: dict[str, type[Linkage]] = {
+    kind.MECHANISM: kind for kind in (FourBar, SliderCrank, InvertedSliderCrank)
+}
+FOUR_BAR, SLIDER_CRANK, INVERTED = KINDS
+NOISE = 1e-9  # share of a linkage's longest link that rounding leaves of a length of zero
+# The parameters of all kinds, each once, in the order of tables.
+PARAMETERS: tuple[Parameter, ...] = tuple(
+    dict.fromkeys(row for kind in KINDS.values() for row in kind.PARAMETERS)
+)
+LENGTHS: tuple[str, ...] = tuple(sorted({name for kind in KINDS.values() for name in kind.LENGTHS}))
+DIMENSIONS: tuple[str, ...] = (
+    *LENGTHS,
+    *(row.name for row in PARAMETERS if row.kind == "distance"),
+    "u",
+    "v",
+)
+_ANY = f"{', '.join(list(KINDS)[:-1])} or {list(KINDS)[-1]}"
+ANY_KINDS = f"{_ANY}, or a list of these"
+
+
+def having(column: str) -> tuple[str, ...]:
+    """The kinds that have a length or parameter, by its name or its column in tables.
+
+    Examples
+    --------
+    >>> having("r4"), having("offset")
+    (('four-bar',), ('slider-crank', 'inverted-slider-crank'))
+    """
+    return tuple(
+        word
+        for word, kind in KINDS.items()
+        if column in (*kind.LENGTHS, *kind.DIMENSIONS)
+        or any(column in (row.name, row.key, *row.columns) for row in kind.PARAMETERS)
+    )
+
+
+def freedoms(kind: str) -> int:
+    """How many numbers describe a linkage of a kind, how the guided body sits on it apart.
+
+    Examples
+    --------
+    >>> [freedoms(kind) for kind in KINDS]
+    [9, 8, 8]
+    """
+    rows = [row for row in KINDS[kind].PARAMETERS if row.kind != "sign" and row.name != "body_angle"]
+    return sum(1 + row.paired for row in rows)
+
+
+def lengths_text(linkage: Linkage, digits: int = 4) -> str:
+    """The lengths of a single linkage, and the offset of its slide.
+
+    Examples
+    --------
+    >>> lengths_text(FourBar((0, 0), (4, 0), 1, 4, 3)), lengths_text(SliderCrank((0, 0), 1, 4))
+    ('r1 to r4 4, 1, 4, 3', 'r2 1, r3 4, offset 0')
+    """
+    if linkage.MECHANISM == FOUR_BAR:
+        return f"r1 to r4 {', '.join(f'{length:.{digits}g}' for length in linkage.lengths)}"
+    names = (*linkage.LENGTHS, *(row.name for row in linkage.PARAMETERS if row.kind == "distance"))
+    sizes = {name: without_noise(float(getattr(linkage, name)), linkage) for name in names}
+    return ", ".join(f"{name} {value:.{digits}g}" for name, value in sizes.items())
+
+
+def without_noise(length: float, linkage: Linkage) -> float:
+    """A length of a single linkage as people read it: 0 where it is less than rounding leaves of zero.
+
+    Examples
+    --------
+    >>> rod = SliderCrank((0, 0), 1, 4, offset=-3e-12)
+    >>> without_noise(float(rod.offset), rod), without_noise(0.1, rod)
+    (0.0, 0.1)
+    """
+    return 0.0 if abs(length) < NOISE * float(linkage.lengths.max()) else length
+
+
+def not_had(what: str, asked: Sequence[str], kinds: Sequence[str]) -> str:
+    """What is wrong where something is given that only other kinds of linkages have."""
+    ending = "has it" if len(kinds) == 1 else "have it"
+    return f"{what} does not go with mechanism {' and '.join(asked)}; only {' and '.join(kinds)} {ending}"
+
+
+def mechanisms(given: str | Sequence[str]) -> tuple[str, ...]:
+    """Words for kinds of linkages, checked: one of them, or a list.
+
+    Raises
+    ------
+    ProblemError
+        No such kind, none at all, or one twice.
+
+    Examples
+    --------
+    >>> mechanisms("slider-crank"), mechanisms(["four-bar", "slider-crank"])
+    (('slider-crank',), ('four-bar', 'slider-crank'))
+    >>> mechanisms(["four-bar", "slider-crnk"])
+    Traceback (most recent call last):
+        ...
+    grashof.problems.values.errors.ProblemError: mechanism[1] is 'slider-crnk'; did you mean slider-crank?
+    """
+    if isinstance(given, str):
+        return (mechanism(given),)
+    if not isinstance(given, Sequence) or not len(given):
+        raise wrong_value("mechanism", given, ANY_KINDS)
+    wrong: list[str] = []
+    for index, word in enumerate(given):
+        with noted(wrong):
+            mechanism(word, f"mechanism[{index}]")
+    refuse(wrong)
+    refuse([f"mechanism has {word} {count} times" for word, count in Counter(given).items() if count > 1])
+    return tuple(given)
+
+
+def mechanism(word: str, where: str = "mechanism") -> str:
+    """A word for a kind of linkages, checked."""
+    if isinstance(word, str) and word in KINDS:
+        return word
+    meant = near_miss(word, list(KINDS)) if isinstance(word, str) else None
+    if meant is not None:
+        raise ProblemError(f"{where} is {shown(word)}; did you mean {meant}?")
+    raise wrong_value(where, word, _ANY)

@@ -1,0 +1,108 @@
+"""The slider-crank as a value: crank, connecting rod, and a slide on the ground."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.linkages.linkage import Linkage
+from grashof.problems.values.linkages.linkage_parts import Link, Parameter
+
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class SliderCrank(Linkage):
+    """A planar slider-crank, or a batch of them: crank and dyad RRP.
+
+    Link 2 (O2-A) is the driver, link 3 (A-B) the connecting rod, which carries the coupler point, link 4
+    the slider, pinned to the rod in B, which moves along a line of the ground. A batch has the same
+    leading axes on every field.
+
+    Parameters
+    ----------
+    o2 : array_like, shape (..., 2), length
+        Ground pivot of the driver.
+    r2 : array_like, shape (...), length
+        Length O2A, of the crank.
+    r3 : array_like, shape (...), length
+        Length AB, of the connecting rod.
+    offset : array_like, shape (...), length
+        Of the slide's line from O2, positive to the left of its direction.
+    slide_angle : array_like, shape (...), rad
+        Direction of the slide, counter-clockwise from +x.
+    coupler_point : array_like, shape (..., 2), length
+        P in the rod's frame: origin A, u along AB, v to its left.
+    assembly : array_like, shape (...)
+        Sign of cos(theta3 - slide_angle): +1 when B lies ahead of A along the slide's direction, else -1.
+    body_angle : array_like, shape (...), rad
+        Orientation of the guided body minus theta3.
+
+    Raises
+    ------
+    ProblemError
+        A length that is not positive, an assembly other than +1 or -1, a number that is not
+        finite, or shapes that do not fit together.
+
+    Notes
+    -----
+    Norton, *Design of Machinery*, sec. 4.6. As a four-bar whose O4 lies at infinity on the left of the
+    slide it has theta1 = theta4 = slide_angle + 90 deg, so the assembly is the sign of
+    sin(theta4 - theta3) here, too.
+
+    Examples
+    --------
+    >>> engine = SliderCrank(o2=(0, 0), r2=40, r3=120)
+    >>> float(engine.offset), engine.shape
+    (0.0, ())
+    """
+
+    MECHANISM: ClassVar[str] = "slider-crank"
+    PARAMETERS: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("o2", "place"),
+        Parameter("r2", "length"),
+        Parameter("r3", "length"),
+        Parameter("offset", "distance"),
+        Parameter("slide_angle", "angle"),
+        Parameter("coupler_point", "arm", column="p"),
+        Parameter("assembly", "sign"),
+        Parameter("body_angle", "angle"),
+    )
+    LINKS: ClassVar[tuple[Link, ...]] = (
+        Link(1, "ground", ("o2",)),
+        Link(2, "driver", ("o2", "a")),
+        Link(3, "coupler", ("a", "b", "p")),
+        Link(4, "slider", ("b",)),
+    )
+    SLIDES: ClassVar[tuple[tuple[int, int], ...]] = ((1, 4),)
+    LENGTHS: ClassVar[tuple[str, ...]] = ("r2", "r3")
+    DIMENSIONS: ClassVar[tuple[str, ...]] = (*LENGTHS, "offset", "u", "v")
+
+    o2: FloatArray
+    r2: FloatArray
+    r3: FloatArray
+    offset: FloatArray
+    slide_angle: FloatArray
+    coupler_point: FloatArray
+    assembly: FloatArray
+    body_angle: FloatArray
+
+    def __init__(
+        self,
+        o2: npt.ArrayLike,
+        r2: npt.ArrayLike,
+        r3: npt.ArrayLike,
+        offset: npt.ArrayLike = 0.0,
+        slide_angle: npt.ArrayLike = 0.0,
+        coupler_point: npt.ArrayLike = (0.0, 0.0),
+        assembly: npt.ArrayLike = 1,
+        body_angle: npt.ArrayLike = 0.0,
+    ) -> None:
+        self._keep(o2, r2, r3, offset, slide_angle, coupler_point, assembly, body_angle)
+
+    @property
+    def theta1(self) -> FloatArray:
+        """Direction across the slide, to its left, in rad, shape (...): where O4 lies, at infinity."""
+        return np.asarray(self.slide_angle + np.pi / 2)

@@ -1,0 +1,1 @@
+"""What may be limited, weighed and listed: quantities, requirements, objectives."""

@@ -1,0 +1,344 @@
+"""Quantities of a design. Each is declared here, once, without its formula.
+
+Limited, a quantity is a requirement; weighed, an objective; listed, a column; missed, a defect. The judge
+has a measure of each by its key (`grashof.analysis.judge.measures`), the search a formula of those that it
+can steer (`grashof.synth.programme.formulas`); the two share nothing but the key.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import Enum, StrEnum, auto
+from typing import Any
+
+import numpy as np
+
+from grashof.problems.values.arrays import Limits
+from grashof.problems.values.linkages.cylinder import Cylinder
+from grashof.problems.values.linkages.four_bar import FourBar
+from grashof.problems.values.linkages.mechanisms import DIMENSIONS, KINDS, LENGTHS, PARAMETERS, having
+from grashof.problems.values.units import Unit
+
+
+class Over(StrEnum):
+    """Where a quantity is taken."""
+
+    DESIGN = "the design"
+    TARGETS = "the targets"
+    TASK = "the task motion, from the first target to the last"
+    CYCLE = "the whole turn"
+
+
+class Needs(Enum):
+    """What the problem has to state for a quantity to have a value."""
+
+    NOTHING = "nothing"
+    DYNAMICS = "dynamics"
+    MANUFACTURING = "manufacturing"
+    CLOSED = "a closed path"
+    LEAST_SQUARES = "exact = false"
+    ANGLES = "targets with angles"
+    CYLINDER = "driver.cylinder"
+    LOADED_CYLINDER = "driver.cylinder and dynamics"
+    OUTPUTS = "a function"
+    ROTATION = "a function whose output turns"
+    TRAVEL = "a function whose output slides"
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A quantity of a design.
+
+    Parameters
+    ----------
+    key : str
+    label : str
+        Heading in tables.
+    unit : Unit
+    over : Over
+    better : int
+        +1 where more is better, -1 where less is, 0 for neither.
+    needs : Needs
+    digits : int
+        Significant digits of the largest value in a table; 0 where it is listed in files only.
+    about : str
+        What it is, where its label does not show it.
+    listed : bool
+        Whether it is a column; what has several parts, such as a place, is not.
+    words : str
+        What it is called in a sentence, where that is not its label.
+    short : str
+        Heading where there is little room, where that is not its label.
+    kinds : tuple of str
+        The kinds of linkages that have it.
+    named : str
+        Its name in candidates.csv, where that is not its key.
+    full : str
+        Its name in words in a list of all values, where that is not `words`.
+    """
+
+    key: str
+    label: str
+    unit: Unit
+    over: Over = Over.DESIGN
+    better: int = 0
+    needs: Needs = Needs.NOTHING
+    digits: int = 0
+    about: str = ""
+    listed: bool = True
+    words: str = ""
+    short: str = ""
+    kinds: tuple[str, ...] = tuple(KINDS)
+    named: str = ""
+    full: str = ""
+
+    def __post_init__(self) -> None:
+        for name in ("words", "short"):
+            object.__setattr__(self, name, getattr(self, name) or self.label)
+        object.__setattr__(self, "full", self.full or self.words)
+
+    @property
+    def column(self) -> str:
+        """Its name in candidates.csv."""
+        return self.named or (f"{self.key}_deg" if self.unit is Unit.ANGLE else self.key)
+
+    @property
+    def deviates(self) -> bool:
+        """Whether it is a length or an angle by which something is missed: none at all is best."""
+        return self.better < 0 and self.key != "size" and self.unit in (Unit.LENGTH, Unit.AREA, Unit.ANGLE)
+
+
+# What the lengths and places that a linkage is stated by are called, by their columns.
+_STATED = {
+    "o2_x": "O2, x",
+    "o2_y": "O2, y",
+    "o4_x": "O4, x",
+    "o4_y": "O4, y",
+    "r1": "r1, ground link O2-O4",
+    "r2": "r2, driver O2-A",
+    "r3": "r3, coupler A-B",
+    "r4": "r4, output link O4-B",
+    "p_u": "P from A, along the coupler",
+    "p_v": "P from A, square to the coupler",
+    "offset": "offset of the slide",
+    "cylinder_base_x": "cylinder, fixed pivot, x",
+    "cylinder_base_y": "cylinder, fixed pivot, y",
+    "cylinder_u": "cylinder, moving pivot, along its link",
+    "cylinder_v": "cylinder, moving pivot, square to its link",
+}
+
+
+def _length(key: str, label: str = "", **others: Any) -> Quantity:
+    return Quantity(key, label or key, Unit.LENGTH, **{"full": _STATED.get(key, ""), **others})
+
+
+def _stated(kind: str, digits: int = 0) -> list[Quantity]:
+    """The columns of such parameters."""
+    rows = [row for row in PARAMETERS if row.kind == kind]
+    return [_length(name, kinds=having(name), digits=digits) for row in rows for name in row.columns]
+
+
+def _move(name: str) -> Quantity:
+    about = f"how far the worst target moves per unit of change of {name}"
+    return Quantity(
+        f"move_{name}", f"move by {name}", Unit.RATIO, Over.TARGETS, -1, Needs.MANUFACTURING, about=about,
+        kinds=having(name), full=f"sensitivity to {name}",
+    )  # fmt: skip
+
+
+_BOX = "diagonal of the box around O2, O4 and all that A, B and P reach from the first target to the last"
+_FITTED = "what least squares makes small: root mean square of positions and angles together, weighted"
+_RMS = " (root mean square)"
+_ALL = f"error of positions and angles{_RMS}"
+_WORST = "worst transmission angle over the"
+_LEVER = (
+    "between cylinder and arm; on coupler and slider 90 deg less that between cylinder and path of its pivot"
+)
+_MISSED: dict[str, Any] = {"over": Over.TARGETS, "better": -1}
+_OVERALL: dict[str, Any] = {"over": Over.TASK, "about": "from the first target to the last"}
+TURNING = having("o4")  # kinds whose link 4 turns
+_DRIVEN: dict[str, Any] = {**_OVERALL, "better": -1, "needs": Needs.DYNAMICS}
+
+# In the order of the columns of candidates.csv; those that a field of `Requirements` declares follow.
+MEASURED: dict[str, Quantity] = {
+    quantity.key: quantity
+    for quantity in (
+        *_stated("place"),
+        *(_length(name, digits=4, kinds=having(name)) for name in LENGTHS),
+        *_stated("arm"),
+        Quantity("body_angle", "body angle", Unit.ANGLE, about="orientation of the body minus theta3"),
+        Quantity("theta2_start", "driver angle at the first target", Unit.ANGLE, Over.TARGETS),
+        Quantity("theta2_end", "driver angle at the last target", Unit.ANGLE, Over.TARGETS),
+        _length(
+            "error", "error rms", digits=3, needs=Needs.LEAST_SQUARES, about=_FITTED, full=_ALL, **_MISSED
+        ),
+        _length("error_max", "largest position error", over=Over.TARGETS, better=-1),
+        _length("error_rms", "position error rms", full=f"position error{_RMS}", **_MISSED),
+        Quantity("error_sse", "sum of squared position errors", Unit.AREA, Over.TARGETS, -1),
+        Quantity("angle_error_max", "largest angle error", Unit.ANGLE, Over.TARGETS, -1),
+        Quantity(
+            "angle_error_rms", "angle error rms", Unit.ANGLE, full=f"angle error{_RMS}", **_MISSED,
+        ),
+        Quantity(
+            "transmission_min_task", "mu task", Unit.ANGLE, Over.TASK, +1, digits=3, words=f"{_WORST} task"
+        ),
+        Quantity(
+            "transmission_min_cycle", "mu turn", Unit.ANGLE, Over.CYCLE, +1, digits=3, words=f"{_WORST} turn"
+        ),
+        Quantity(
+            "omega4_max", "omega4", Unit.ANGULAR_VELOCITY, better=-1, kinds=TURNING,
+            full="largest angular velocity of link 4", **_OVERALL,
+        ),
+        Quantity(
+            "point_speed_max", "speed of P", Unit.VELOCITY, better=-1, full="largest speed of P", **_OVERALL
+        ),
+        Quantity(
+            "point_acceleration_max", "acceleration of P", Unit.ACCELERATION, better=-1,
+            full="largest acceleration of P", **_OVERALL,
+        ),
+        Quantity(
+            "torque_peak", "peak torque, task", Unit.TORQUE, digits=4, words="peak torque", short="torque",
+            full="peak drive torque", **_DRIVEN,
+        ),
+        Quantity(
+            "torque_rms", "rms torque, task", Unit.TORQUE, words="rms torque",
+            full=f"drive torque{_RMS}", **_DRIVEN,
+        ),
+        Quantity(
+            "joint_force_peak", "peak force, task", Unit.FORCE, digits=4, words="peak joint force",
+            short="force", **_DRIVEN,
+        ),
+        Quantity(
+            "coupler_fit_r2", "fit of P", Unit.RATIO, better=+1,
+            full="R2 of a polynomial through the path of P", **_OVERALL,
+        ),
+        _length("size", over=Over.TASK, better=-1, digits=4, about=_BOX, full="size of the linkage"),
+        _length("hausdorff", "Hausdorff distance", over=Over.CYCLE, better=-1, needs=Needs.CLOSED),
+        _length("frechet", "Fréchet distance", over=Over.CYCLE, better=-1, needs=Needs.CLOSED),
+        *(_move(name) for name in FourBar.DIMENSIONS),
+        _length(
+            "worst_move", "worst move", needs=Needs.MANUFACTURING,
+            full="largest move of a target within the tolerances", **_MISSED,
+        ),
+        Quantity(
+            "share_within_linear", "within, linear", Unit.SHARE, Over.TARGETS, +1, Needs.MANUFACTURING,
+            full="share made within the allowed error, linearised",
+        ),
+        Quantity(
+            "share_within_made", "made within", Unit.SHARE, Over.TARGETS, +1, Needs.MANUFACTURING, digits=3,
+            full="share made within the allowed error",
+        ),
+        *_stated("distance", digits=4),
+        Quantity("slide_angle", "direction of the slide", Unit.ANGLE, kinds=having("slide_angle")),
+        *(_move(name) for name in DIMENSIONS if name not in FourBar.DIMENSIONS),
+        *(_length(name, name.replace("_", " "), needs=Needs.CYLINDER) for name in Cylinder.COLUMNS),
+        _length(
+            "cylinder_closed", "closed cylinder", over=Over.TASK, needs=Needs.CYLINDER, digits=4,
+            full="cylinder, closed length",
+        ),
+        _length(
+            "cylinder_stroke", "cylinder stroke", over=Over.TASK, needs=Needs.CYLINDER, digits=4,
+            full="cylinder, stroke",
+        ),
+        Quantity(
+            "cylinder_angle_min", "lever angle", Unit.ANGLE, Over.TASK, +1, Needs.CYLINDER, digits=3,
+            about=_LEVER, words="worst lever angle of the cylinder", full="cylinder, worst lever angle",
+        ),
+        Quantity(
+            "cylinder_force_max", "cylinder force", Unit.FORCE, Over.TASK, -1, Needs.LOADED_CYLINDER,
+            digits=4, words="peak force of the cylinder", full="cylinder, peak force",
+        ),
+    )
+}  # fmt: skip
+
+
+class Kind(Enum):
+    """How a requirement limits its quantity."""
+
+    BETWEEN = auto()  # [lo, hi]
+    AT_LEAST = auto()
+    AT_MOST = auto()
+    EQUAL = auto()  # an angle
+    DIRECTION = auto()  # an angle, or [lo, hi]
+    INSIDE = auto()  # a box in the plane
+    ON_BODY = auto()  # a box in the body's frame
+    WORD = auto()  # one of several words, each of which allows a range
+
+    @property
+    def is_angle(self) -> bool:
+        """Whether it limits a direction, which counts alike by whole turns."""
+        return self in (Kind.EQUAL, Kind.DIRECTION)
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """How a field of `Requirements` limits a quantity.
+
+    Parameters
+    ----------
+    quantity : Quantity
+    kind : Kind
+    allowed : tuple of float
+        Least and greatest number that may be asked for, as files state it.
+    usual : tuple of float, optional
+        Limits where none are given, in sizes of the task.
+    words : mapping of str to tuple of float
+        What each word allows.
+    """
+
+    quantity: Quantity
+    kind: Kind
+    allowed: tuple[float, float]
+    usual: tuple[float, float] | None = None
+    words: Mapping[str, Limits] = field(default_factory=dict)
+
+    @property
+    def widest(self) -> str:
+        """The word that allows most."""
+        return max(self.words, key=lambda word: self.words[word][1] - self.words[word][0])
+
+    def ranges(self, value: Any) -> dict[str, Limits]:
+        """What a value of the field allows, in rad where it is an angle: by axis of a box, else by "".
+
+        Examples
+        --------
+        >>> Limit(MEASURED["theta2_end"], Kind.AT_LEAST, (0, 360)).ranges(180.0)
+        {'': (3.141592653589793, inf)}
+        """
+        if self.kind in (Kind.INSIDE, Kind.ON_BODY):
+            return {"x": value.x, "y": value.y}
+        if self.kind is Kind.WORD:
+            return {"": self.words[value]}
+        low, high = value if isinstance(value, tuple) else (value, value)
+        if self.kind is Kind.AT_LEAST:
+            high = np.inf
+        if self.kind is Kind.AT_MOST:
+            low = -np.inf
+        return {"": (float(low / self.quantity.unit.shown), float(high / self.quantity.unit.shown))}
+
+    def range_text(self, limits: Limits) -> str:
+        """Limits as files state them: "0.3 to 8", "from 15", "up to 20", "ccw"; empty where none are."""
+        for word, allowed in self.words.items():
+            if allowed == limits:
+                return word
+        low, high = (f"{side * self.quantity.unit.shown:.6g}" for side in limits)
+        if np.isinf(limits[0]):
+            return "" if np.isinf(limits[1]) else f"up to {high}"
+        if np.isinf(limits[1]):
+            return f"from {low}"
+        return low if low == high else f"{low} to {high}"
+
+
+def limit(
+    quantity: str | Quantity,
+    kind: Kind,
+    *,
+    default: Any = None,
+    allowed: tuple[float, float] = (-np.inf, np.inf),
+    usual: tuple[float, float] | None = None,
+    words: Mapping[str, Limits] | None = None,
+) -> Any:
+    """A field of `Requirements` that limits a quantity: one of `MEASURED`, or one declared with the field."""
+    limited = MEASURED[quantity] if isinstance(quantity, str) else quantity
+    return field(default=default, metadata={"limit": Limit(limited, kind, allowed, usual, words or {})})

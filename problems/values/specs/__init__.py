@@ -1,0 +1,1 @@
+"""Whole files as values: a problem, or a linkage with its loads."""

@@ -1,0 +1,107 @@
+"""A linkage with what else its file, or the list it comes from, states."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from grashof.problems.values.checks import plain_text, refuse
+from grashof.problems.values.display import Displayed
+from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
+from grashof.problems.values.dynamics.pumping_unit import PumpingUnitSpec
+from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.linkages.cylinder import Cylinder
+from grashof.problems.values.linkages.four_bar import FourBar
+from grashof.problems.values.linkages.linkage import Linkage
+from grashof.problems.values.specs.dynamics_of_kind import misplaced
+from grashof.problems.values.specs.problem import Problem
+
+
+@dataclass(frozen=True, slots=True)
+class LinkageSpec(Displayed):
+    """A linkage with what else its file states.
+
+    Parameters
+    ----------
+    linkage : Linkage
+    name, title, source, length_unit : str
+    output_arm : float, length, optional
+        Radius about O4 of what the output link drives, such as a horsehead: its stroke and torque
+        factor are reported.
+    dynamics : DynamicsSpec, optional
+        Masses, speed, gravity and what else acts; it need not have masses.
+    pumping_unit : PumpingUnitSpec, optional
+        Where the linkage is one; `output_arm` is then that of its horsehead.
+    problem : Problem, optional
+        Of a design out of a list: what it was found for.
+    cylinder : Cylinder, optional
+        That drives it.
+    """
+
+    linkage: Linkage
+    name: str
+    title: str = ""
+    source: str = ""
+    length_unit: str = ""
+    output_arm: float | None = None
+    dynamics: DynamicsSpec | None = None
+    pumping_unit: PumpingUnitSpec | None = None
+    problem: Problem | None = field(default=None, compare=False, repr=False)
+    cylinder: Cylinder | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("name", "title", "source", "length_unit"):
+            plain_text(getattr(self, name), name)
+        if self.pumping_unit is not None and self.output_arm is None:
+            raise ProblemError("output_arm is missing; pumping_unit needs that of the horsehead")
+        if self.pumping_unit is not None and not isinstance(self.linkage, FourBar):
+            raise ProblemError(
+                f"pumping_unit does not go with mechanism {self.linkage.MECHANISM}; only four-bar has it"
+            )
+        if self.dynamics is not None:
+            refuse(misplaced(self.dynamics, type(self.linkage)))
+
+    @property
+    def four_bar(self) -> FourBar:
+        """The linkage, which has to be a four-bar."""
+        if not isinstance(self.linkage, FourBar):
+            raise ProblemError(f"{self.name} is a {self.linkage.MECHANISM}; it must be a four-bar")
+        return self.linkage
+
+    @property
+    def unit(self) -> str:
+        """The length unit, or the word length where the file names none."""
+        return self.length_unit or "length"
+
+
+@dataclass(frozen=True, slots=True)
+class ListedDesign:
+    """A design of a candidates list, with what the list states of its targets.
+
+    Parameters
+    ----------
+    spec : LinkageSpec
+    rank : int
+    id : str
+    theta2 : tuple of float, rad
+        Driver angle at each target.
+    assembly : tuple of int
+        Of the linkage at each target.
+    position_error : tuple of float or None, length
+        Distance from each target; None where it has no position.
+    angle_error : tuple of float or None, rad
+        The same of its angle; empty for a path.
+    """
+
+    spec: LinkageSpec
+    rank: int
+    id: str
+    theta2: tuple[float, ...]
+    assembly: tuple[int, ...]
+    position_error: tuple[float | None, ...]
+    angle_error: tuple[float | None, ...]
+
+    def __post_init__(self) -> None:
+        counts = {len(self.theta2), len(self.assembly), len(self.position_error)}
+        counts |= {len(self.angle_error)} if self.angle_error else set()
+        if len(counts) > 1 or 0 in counts or any(sign not in (1, -1) for sign in self.assembly):
+            raise ProblemError("theta2, assembly and errors have different numbers of targets")

@@ -1,0 +1,475 @@
+"""A problem: the task, the requirements, what is best, and how hard to search."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.problems.values.checks import (
+    counted,
+    noted,
+    number_within,
+    outline,
+    plain_text,
+    positive_number,
+    refuse,
+    whole_number,
+)
+from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec, metres
+from grashof.problems.values.dynamics.manufacturing import Manufacturing
+from grashof.problems.values.errors import ProblemError, shown, wrong_value
+from grashof.problems.values.linkages.cylinder import CylinderSpec
+from grashof.problems.values.linkages.mechanisms import (
+    FOUR_BAR,
+    INVERTED,
+    KINDS,
+    SLIDER_CRANK,
+    freedoms,
+    mechanisms,
+    not_had,
+)
+from grashof.problems.values.read_only import ReadOnly
+from grashof.problems.values.requirements.function_ground import grounded
+from grashof.problems.values.requirements.objective import GOALS, Objective
+from grashof.problems.values.requirements.quantities import TURNING, Needs, Quantity
+from grashof.problems.values.requirements.requirements import (
+    LIMITS,
+    QUANTITIES,
+    TRAVEL_ERRORS,
+    Requirements,
+    Rotatability,
+)
+from grashof.problems.values.requirements.stroke_limits import stated_size, strokes_wrong
+from grashof.problems.values.specs.dynamics_of_kind import misplaced
+from grashof.problems.values.tasks.function_task import FunctionTask
+from grashof.problems.values.tasks.motion_task import MotionTask
+from grashof.problems.values.tasks.path_task import PathTask
+from grashof.problems.values.tasks.stroke_task import StrokeTask
+from grashof.problems.values.tasks.task import Task
+from grashof.problems.values.units import Unit
+
+LEAST_TOLERANCE = 1e-4  # sizes: from here on a tolerance is a zone about each target
+NO_OBJECTIVE = (
+    "objective is of no effect in least squares; it needs within (zones about the targets) or "
+    "requirements.error_factor"
+)
+EFFORTS = (0.2, 10_000.0)
+MOST_TARGETS = 10_000
+# Of inverted slider-cranks: with offset 0 the transmission angle is 90 deg, and size decides.
+SMALLEST = Objective(transmission=1.0, compactness=0.05)
+ROCKING = (Rotatability.CRANK_ROCKER, Rotatability.DOUBLE_CRANK)  # told by link 4, which has to turn
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """How hard to search.
+
+    Parameters
+    ----------
+    starts : int
+        Most Ipopt solves.
+    enough : int
+        Stop between batches once so many distinct designs are verified.
+    seed : int
+        Random seed.
+    effort : float
+        How long to look for better designs before giving up, 0.2 to 10 000: the rounds of a search with
+        1 come first and unchanged.
+    """
+
+    starts: int = 200
+    enough: int = 50
+    seed: int = 0
+    effort: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name, least in (("starts", 1), ("enough", 1), ("seed", 0)):
+            object.__setattr__(self, name, whole_number(getattr(self, name), least, f"search.{name}"))
+        object.__setattr__(self, "effort", number_within(self.effort, *EFFORTS, "search.effort"))
+
+
+_KINDS: dict[str, Any] = {
+    "task": MotionTask | PathTask | StrokeTask | FunctionTask,
+    "requirements": Requirements,
+    "objective": Objective,
+    "search": Search,
+    "name": str,
+    "title": str,
+    "source": str,
+    "length_unit": str,
+    "manufacturing": Manufacturing | None,
+    "driver": CylinderSpec | None,
+}
+
+
+def _named(kind: Any) -> str:
+    return " or ".join(each.__name__ for each in getattr(kind, "__args__", (kind,))).replace("Type", "")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Problem(ReadOnly):
+    """All that is asked, as a problem file states it.
+
+    Parameters
+    ----------
+    task : MotionTask, PathTask, StrokeTask or FunctionTask
+    requirements : Requirements
+    objective : Objective
+    search : Search
+    name, title, source, length_unit : str
+        For people: file names, headings, axis labels.
+    outlines : sequence of array_like, shape (M, 2), length
+        The scene: drawn, no constraint.
+    manufacturing : Manufacturing, optional
+        How exactly linkages are made; without it there are no columns of made ones.
+    dynamics : DynamicsSpec, optional
+        Masses, speed and gravity; without it there are no torques and forces.
+    mechanism : str or sequence of str
+        The kinds of linkages that may do it, such as ("four-bar", "slider-crank"); one list of all.
+    driver : CylinderSpec, optional
+        The cylinder that drives the linkage, in place of a crank on link 2.
+    """
+
+    task: Task
+    requirements: Requirements = field(default_factory=Requirements)
+    objective: Objective = field(default_factory=Objective)
+    search: Search = field(default_factory=Search)
+    name: str = "problem"
+    title: str = ""
+    source: str = ""
+    length_unit: str = ""
+    outlines: tuple[FloatArray, ...] = ()
+    manufacturing: Manufacturing | None = None
+    dynamics: DynamicsSpec | None = None
+    mechanism: Sequence[str] = (FOUR_BAR,)  # a tuple, once it is checked
+    driver: CylinderSpec | None = None
+
+    def __post_init__(self) -> None:
+        for name, kind in _KINDS.items():
+            if not isinstance(value := getattr(self, name), kind):
+                raise ProblemError(f"problem.{name} is {shown(value)}; it must be {_named(kind)}")
+        if len(self.task) > MOST_TARGETS:
+            raise ProblemError(f"the task has {len(self.task)} targets; it must have at most {MOST_TARGETS}")
+        object.__setattr__(self, "requirements", self.requirements.for_task(self.task))
+        object.__setattr__(self, "task", grounded(self.task, self.requirements))
+        for name in ("name", "title", "source", "length_unit"):
+            plain_text(getattr(self, name), name)
+        object.__setattr__(self, "mechanism", mechanisms(self.mechanism))
+        object.__setattr__(self, "requirements", self._met_by_all_kinds())
+        if isinstance(self.outlines, str) or not isinstance(self.outlines, Iterable):
+            raise wrong_value("scene.outlines", self.outlines, "a list of outlines")
+        wrong: list[str] = []
+        if self.dynamics is not None:
+            with noted(wrong):
+                metres(self.length_unit)  # refuses one that is not known
+            with noted(wrong):
+                positive_number(self.dynamics.speed_rpm, "dynamics.speed_rpm")
+            for word in self.mechanism:
+                wrong += misplaced(self.dynamics, KINDS[word])
+            wrong += self.dynamics.too_short(self.dynamics.turn_time, "a turn of the driver")
+            if not self.dynamics.acts:
+                wrong.append(
+                    "dynamics has no mass; mass_per_length is needed, masses and inertias, density or "
+                    "payload, or else loads, springs or friction"
+                )
+        wrong += self._not_of_these_kinds()
+        wrong += self._without_value()
+        wrong += self._undecided()
+        wrong += self._not_for_cylinders()
+        wrong += self._not_for_functions()
+        if isinstance(self.task, StrokeTask):
+            wrong += strokes_wrong(self.task, self.requirements, self.mechanism)
+            object.__setattr__(self, "task", self.task.sized(stated_size(self.requirements)))
+        refuse(wrong)
+        checked = tuple(
+            outline(corners, f"scene.outlines[{index}]") for index, corners in enumerate(self.outlines)
+        )
+        object.__setattr__(self, "outlines", checked)
+
+    def _met_by_all_kinds(self) -> Requirements:
+        """Where files leave it open, targets are to be met if all kinds asked for can be expected to."""
+        fewest = min(freedoms(kind) for kind in self.mechanism)
+        exact = self.task.exact_for(fewest)
+        if self.requirements.exact is not None or exact == self.task.exact_by_default:
+            return self.requirements
+        return replace(self.requirements, exact=exact)
+
+    def _without_value(self) -> list[str]:
+        """What is weighed or limited though the problem does not state what it takes."""
+        asked = self._asked
+        missing = {
+            Needs.DYNAMICS: "dynamics is missing",
+            Needs.MANUFACTURING: "manufacturing is missing",
+            Needs.CLOSED: f"{self.task.kind}.closed is false; it must be true",
+            Needs.LEAST_SQUARES: "requirements.exact = false is missing",
+            Needs.ANGLES: f"{self.task.kind} has no angles",
+            Needs.CYLINDER: "driver.cylinder is missing",
+            Needs.LOADED_CYLINDER: self._unloaded,
+            **self._no_output,
+        }
+        wrong = [
+            f"{missing[quantity.needs]}; {where} needs it"
+            for where, quantity in asked.items()
+            if not self.states(quantity.needs)
+        ]
+        wrong += self._without_meaning(asked)
+        if not self.requirements.same_branch:
+            wrong += [
+                f"requirements.same_branch is false; it must be true when {where} is given"
+                for where, quantity in asked.items()
+                if quantity.needs in (Needs.DYNAMICS, Needs.LOADED_CYLINDER)
+            ]
+        return wrong
+
+    @property
+    def _asked(self) -> dict[str, Quantity]:
+        """What is weighed or limited, by its key path."""
+        stated = self.objective.stated.items()
+        goals = {f"objective.maximise.{name}": self.meant(GOALS[name]) for name, w in stated if w}
+        limited = self.requirements.limited.items()
+        return goals | {f"requirements.{name}": limit.quantity for name, limit in limited}
+
+    @property
+    def _no_output(self) -> dict[Needs, str]:
+        """What is missing where a structural error is asked for, in words."""
+        if not isinstance(self.task, FunctionTask):
+            none = f'{self.task.kind} asks for no output; kind = "function" does'
+            return dict.fromkeys((Needs.OUTPUTS, Needs.ROTATION, Needs.TRAVEL), none)
+        return {
+            Needs.ROTATION: "function has an output that slides, not one that turns",
+            Needs.TRAVEL: "function has an output that turns, not one that slides",
+        }
+
+    def meant(self, quantity: Quantity) -> Quantity:
+        """The quantity that is meant by a name: see `Requirements.meant`; of a slide errors are lengths."""
+        meant = self.requirements.meant(quantity)
+        travels = isinstance(self.task, FunctionTask) and self.task.travels
+        return QUANTITIES[TRAVEL_ERRORS.get(meant.key, meant.key)] if travels else meant
+
+    def _not_of_these_kinds(self) -> list[str]:
+        """What is weighed or limited though no kind of linkage that is asked for has it."""
+        having = {where: quantity.kinds for where, quantity in self._asked.items()}
+        if self.requirements.rotatability in ROCKING:
+            having[f'requirements.rotatability = "{self.requirements.rotatability}"'] = (FOUR_BAR,)
+        return [
+            not_had(where, self.mechanism, kinds)
+            for where, kinds in having.items()
+            if not set(kinds) & set(self.mechanism)
+        ]
+
+    def for_kind(self, kind: str) -> Problem:
+        """The same for one kind of linkage alone, without the limits and goals that it has not.
+
+        By default inverted slider-cranks are searched for a small size, too.
+
+        Examples
+        --------
+        >>> from grashof.problems import PathTask
+        >>> task, wanted = PathTask([[0, 0], [1, 0], [2, 0]]), Requirements(r2=(1, 2), r4=(3, 4))
+        >>> alone = Problem(task=task, requirements=wanted, mechanism=["four-bar", "slider-crank"])
+        >>> alone.for_kind("slider-crank").requirements == Requirements(r2=(1, 2))
+        True
+        """
+        usual = Requirements()
+        lacking = {name for name, limit in LIMITS.items() if kind not in limit.quantity.kinds}
+        wanted = replace(self.requirements, **{name: getattr(usual, name) for name in lacking})
+        if kind != FOUR_BAR and wanted.rotatability in ROCKING:
+            wanted = replace(wanted, rotatability=Rotatability.FULL_CRANK)
+        weights = {name: w for name, w in self.objective.stated.items() if kind in GOALS[name].kinds}
+        objective = Objective(**{"transmission": 0.0} | weights) if any(weights.values()) else Objective()
+        if kind == INVERTED and objective == Objective() and self.by_objective:
+            objective = SMALLEST
+        return replace(self, mechanism=(kind,), requirements=wanted, objective=objective)
+
+    def _without_meaning(self, asked: Mapping[str, Quantity]) -> list[str]:
+        """What is asked though it means nothing for the task."""
+        wanted, kind = self.requirements, self.task.kind
+        wrong = [
+            f"{where} means nothing for a {kind}; leave it out"
+            for where, quantity in asked.items()
+            if quantity.key in self.task.without
+        ]
+        if wanted.keep_out:
+            wrong += [
+                f"requirements.keep_out_for has {part}, which means nothing for a {kind}; leave it out"
+                for part in wanted.keep_out_for
+                if part in self.task.without
+            ]
+        if self.task.has_output.any():
+            wrong += [
+                f"requirements.{name} is false; it must be true for a {kind}"
+                for name in ("order", "same_branch")
+                if not getattr(wanted, name)
+            ]
+        return wrong
+
+    def period(self, key: str) -> float:
+        """See `Requirements.period`; functions and strokes give a slide its sense."""
+        return self.requirements.period(key) if self.task.has_position.any() else TURN
+
+    def states(self, needs: Needs) -> bool:
+        """Whether it states what a quantity needs to have a value."""
+        stated = _STATED.get(needs)
+        return stated is None or stated(self)
+
+    @property
+    def _unloaded(self) -> str:
+        """What a cylinder's force lacks, in words."""
+        lacks = {"driver.cylinder": self.driver, "dynamics": self.dynamics}
+        missing = [name for name, given in lacks.items() if given is None]
+        return f"{' and '.join(missing)} {'are' if len(missing) > 1 else 'is'} missing"
+
+    def _not_for_functions(self) -> list[str]:
+        """Kinds of linkages whose output does not move as a function asks for."""
+        if not isinstance(self.task, FunctionTask):
+            return []
+        travels = self.task.travels
+        kinds, what, unit = ((SLIDER_CRANK,), "travel", "") if travels else (TURNING, "rotation", "_deg")
+        others = [word for word in self.mechanism if word not in kinds]
+        if not others:
+            return []
+        key = f"output{'' if self.task.law is None else '_range'}{unit}"
+        return [
+            f"function.{key} is a {what}, which mechanism {' and '.join(others)} does not put out; "
+            f"it goes with {' and '.join(kinds)}"
+        ]
+
+    def _not_for_cylinders(self) -> list[str]:
+        """What a cylinder cannot do, where one is the driver."""
+        if self.driver is None:
+            return []
+        wrong, wanted = [], self.requirements
+        if isinstance(self.task, FunctionTask):
+            wrong.append("driver.cylinder does not go with function, whose driver is link 2")
+        elif isinstance(self.task, StrokeTask):
+            wrong.append("driver.cylinder does not go with stroke, whose driver turns all round")
+        elif self.task.closed:
+            wrong.append(
+                f"{self.task.kind}.closed is true; it must be false with driver.cylinder, which reverses"
+            )
+        if wanted.rotatability is not Rotatability.ANY:
+            wrong.append(
+                f"requirements.rotatability is {wanted.rotatability}; it must be any with driver.cylinder, "
+                "which turns nothing fully"
+            )
+        return wrong
+
+    def _undecided(self) -> list[str]:
+        """What is contradictory about the task and the requirements, and about what decides."""
+        wrong = self.requirements.contradictions(self.task)
+        if self.objective != Objective() and not self.by_objective:
+            wrong.append(NO_OBJECTIVE)
+        return wrong
+
+    @property
+    def goals(self) -> tuple[tuple[Quantity, float], ...]:
+        """What the objective weighs, with its weights; the transmission angle over the motion required."""
+        goals = self.objective.goals.items()
+        return tuple((self.meant(QUANTITIES[key]), weight) for key, weight in goals)
+
+    @property
+    def by_objective(self) -> bool:
+        """Whether the objective decides which design is better; otherwise the error does."""
+        wanted = self.requirements
+        bounded = self.task.zones is not None or wanted.error_factor is not None
+        return bounded or wanted.is_exact(self.task)
+
+    @property
+    def zones(self) -> FloatArray | None:
+        """How far positions (length) and angles (rad) may be missed, shape (2, N), where that is given.
+
+        Each target's own zone, or a tolerance of `LEAST_TOLERANCE` and more where every target has
+        to be met.
+        """
+        task, wanted = self.task, self.requirements
+        if task.zones is not None or task.has_output.any():
+            return task.zones
+        if isinstance(task, StrokeTask) or wanted.tolerance < LEAST_TOLERANCE or not wanted.is_exact(task):
+            return None
+        radii = np.full((2, len(task)), wanted.tolerance * task.size)
+        radii[1] /= task.angle_length
+        return np.where([task.has_position, task.has_angle], radii, np.inf)
+
+    def without_zones(self, *, exact: bool | None = False) -> Problem:
+        """The same problem with no target to be missed, by least squares unless it states otherwise."""
+        task = self.task.without_zones() if self.task.zones is not None else self.task
+        tight = min(self.requirements.tolerance, Requirements().tolerance)
+        wanted = replace(self.requirements, exact=exact, error_factor=None, tolerance=tight)
+        objective = self.objective if wanted.is_exact(task) else Objective()
+        return replace(self, task=task, requirements=wanted, objective=objective)
+
+    def __repr__(self) -> str:
+        return f"<Problem {self.name}: {type(self.task).__name__} of {counted(len(self.task), 'target')}>"
+
+    def scale(self, quantity: Quantity) -> float:
+        """What the objective counts a quantity in, so that weights are pure numbers.
+
+        Lengths and areas in sizes of the task, angles in 90 deg, velocities by a point one size from O2 on
+        a driver at the problem's speed (1 rad/s without dynamics), torques and forces in `reference_torque`,
+        forces at an arm of one size.
+        """
+        size, omega2 = self.task.size, 1.0 if self.dynamics is None else self.dynamics.omega2
+        by_unit = {
+            Unit.LENGTH: size,
+            Unit.AREA: size**2,
+            Unit.ANGLE: math.pi / 2,
+            Unit.ANGULAR_VELOCITY: omega2,
+            Unit.VELOCITY: omega2 * size,
+            Unit.ACCELERATION: omega2**2 * size,
+        }
+        if quantity.unit is Unit.TORQUE:
+            return self.reference_torque
+        if quantity.unit is Unit.FORCE:
+            return self.reference_torque / (size * metres(self.length_unit))
+        return by_unit.get(quantity.unit, 1.0)
+
+    @property
+    def reference_torque(self) -> float:
+        """What the objective counts the torque in, N m; it depends on the problem alone.
+
+        M S (g + omega2^2 S): the mass of links, payload and counterweights, held and turned at a radius
+        of the task's size S. `mass_per_length` and `density` count as one bar of length S. To it come the
+        greatest moments, the greatest forces at a radius of S, springs and dampers stretched by S (and
+        omega2 S), or turned by 1 rad (and at omega2), and friction. 1 where nothing acts.
+
+        Raises
+        ------
+        ProblemError
+            The problem has no dynamics.
+        """
+        spec = self.dynamics
+        if spec is None:
+            raise ProblemError("dynamics is missing; without masses there is no torque")
+        size = self.task.size * metres(self.length_unit)
+        mass = (spec.mass_per_length or 0.0) * self.task.size + sum(spec.masses or ()) + spec.payload
+        mass += sum(weight.mass for weight in spec.counterweights)
+        if spec.density is not None and spec.section is not None:
+            mass += spec.density * max(spec.section.areas) * metres(self.length_unit) ** 2 * size
+        torque = mass * size * (math.hypot(*spec.gravity) + spec.omega2**2 * size)
+        torque += sum(load.greatest * (1.0 if load.is_moment else size) for load in spec.loads)
+        torque += sum(spring.stiffness for spring in spec.springs) * size**2
+        torque += sum(damper.damping for damper in spec.dampers) * spec.omega2 * size**2
+        torque += sum(spring.stiffness for spring in spec.torsion_springs)
+        if spec.friction is not None:
+            torque += max(spec.friction.moment) + max(spec.friction.viscous) * spec.omega2
+        return torque or 1.0
+
+
+# Whether a problem states what quantities need to have a value; any problem what is not here.
+_STATED: dict[Needs, Callable[[Problem], bool]] = {
+    Needs.DYNAMICS: lambda problem: problem.dynamics is not None,
+    Needs.MANUFACTURING: lambda problem: problem.manufacturing is not None,
+    Needs.CLOSED: lambda problem: problem.task.closed,
+    Needs.LEAST_SQUARES: lambda problem: not problem.requirements.is_exact(problem.task),
+    Needs.ANGLES: lambda problem: bool(problem.task.has_angle.any()),
+    Needs.CYLINDER: lambda problem: problem.driver is not None,
+    Needs.LOADED_CYLINDER: lambda problem: problem.driver is not None and problem.dynamics is not None,
+    Needs.OUTPUTS: lambda problem: isinstance(problem.task, FunctionTask),
+    Needs.ROTATION: lambda problem: isinstance(problem.task, FunctionTask) and not problem.task.travels,
+    Needs.TRAVEL: lambda problem: isinstance(problem.task, FunctionTask) and problem.task.travels,
+}

@@ -1,0 +1,451 @@
+"""The function task: output angles or travels for input angles, as a value."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from grashof.problems.values.arrays import TURN, FloatArray, IntArray, frozen_array
+from grashof.problems.values.checks import (
+    GREATEST,
+    counted,
+    finite_number,
+    near_miss,
+    number_array,
+    positive_number,
+    whole_number,
+)
+from grashof.problems.values.errors import ProblemError, shown, wrong_value
+from grashof.problems.values.tasks.function_law import (
+    FunctionLaw,
+    chebyshev_spacing,
+    lobatto_with_weights,
+)
+from grashof.problems.values.tasks.task import Task
+from grashof.problems.values.units import Unit
+
+SENSES = ("given", "either")
+NORMS = ("rms", "max")
+INPUT, OUTPUT_DEG, OUTPUT = "input_deg", "output_deg", "output"  # keys of files
+LAW_PAIRS = 41  # of a law that is fitted over its whole range
+FEWEST, MOST_EXACT, MOST = 3, 5, 100_000
+_LEAST_STEP = 1e-6  # rad, between two inputs
+_SLIDING = 8  # freedoms of slider kinds
+_LEAST_OUTPUT = 1e-6  # rad, between the least and the greatest output
+
+
+@dataclass(frozen=True, slots=True, init=False, eq=False)
+class FunctionTask(Task):
+    """Function generation: link 4 turns, or slides, with the driver as wanted.
+
+    Angles are relative: both start angles are free, and where pairs need not be met exactly the output's
+    zero is, too, so that the first pair may err as the others.
+
+    Parameters
+    ----------
+    inputs : array_like, shape (N,), rad
+        Driver rotation from the first pair, zero there, then growing over at most one turn. Designs may
+        turn the driver either way.
+    outputs : array_like, shape (N,), rad or length
+        Rotation of link 4 from the first pair, positive where it turns as the driver does; or the travel of
+        a slide from there, positive along its direction.
+    sense : {"given", "either"}
+        Either: the opposite output will do, too.
+    norm : {"rms", "max"}
+        What is made least where pairs are not met exactly: the root mean square of the errors at the pairs
+        (of a law over its range), or the structural error, greatest over the range.
+    length : float, length
+        Usual length of the ground, that others are compared with; a problem takes it from its requirements.
+    law : FunctionLaw, optional
+        That the pairs are of; between pairs without one the wanted output is the cubic spline through them.
+    travels : bool
+        The output is the travel of a slide.
+
+    Raises
+    ------
+    ProblemError
+        Fewer than three pairs, angles that are not finite, inputs that do not grow from zero, more than a
+        turn, or outputs that do not move.
+
+    Examples
+    --------
+    >>> task = FunctionTask.from_degrees([0, 20, 45, 90], [0, 12, 31, 80])
+    >>> len(task), task.exact_by_default, task.outputs.round(6).tolist()
+    (4, True, [0.0, 0.20944, 0.541052, 1.396263])
+    """
+
+    kind: ClassVar[Literal["function"]] = "function"
+    target: ClassVar[Literal["pair"]] = "pair"
+    usual_rotatability: ClassVar[str] = "any"
+    without: ClassVar[tuple[str, ...]] = (
+        "coupler_arms", "coupler_fit_r2", "point_speed_max", "point_acceleration_max", "p", "body",
+    )  # fmt: skip
+
+    inputs: FloatArray
+    outputs: FloatArray
+    sense: str
+    norm: str
+    law: FunctionLaw | None
+    length: float
+    travels: bool
+
+    def __init__(
+        self,
+        inputs: npt.ArrayLike,
+        outputs: npt.ArrayLike,
+        *,
+        sense: str = "given",
+        norm: str = "rms",
+        law: FunctionLaw | None = None,
+        length: float = 1.0,
+        travels: bool = False,
+    ) -> None:
+        turned, output = _numbers(inputs, INPUT), _numbers(outputs, _output_key(travels))
+        if len(turned) != len(output):
+            counts = counted(len(turned), "angle"), counted(len(output), "travel" if travels else "angle")
+            raise ProblemError(
+                f"function.{INPUT} has {counts[0]}, function.{_output_key(travels)} {counts[1]}; "
+                "it must be as many"
+            )
+        if len(turned) < FEWEST:
+            raise ProblemError(f"function has {counted(len(turned), 'pair')}; it must have three or more")
+        if len(turned) > MOST:
+            raise ProblemError(f"function has {len(turned)} pairs; it must have at most {MOST}")
+        for key, values in ((INPUT, turned), (_output_key(travels), output)):
+            if values[0] != 0:
+                raise ProblemError(
+                    f"function.{key}[0] is {_shown(values[0], key)}; it must be 0, at the first pair"
+                )
+        for index in np.flatnonzero(np.diff(turned) < _LEAST_STEP) + 1:
+            raise ProblemError(
+                f"function.{INPUT}[{index}] is {_deg(turned[index])} after {_deg(turned[index - 1])}; "
+                "inputs must grow (the driver may turn either way all the same)"
+            )
+        for key, angles in ((INPUT, turned), *(() if travels else ((OUTPUT_DEG, output),))):
+            if np.ptp(angles) > TURN * (1 + 1e-12):
+                raise ProblemError(
+                    f"function.{key} covers {_deg(np.ptp(angles))} deg; it must be at most one turn, 360"
+                )
+        if travels and not np.ptp(output) > 0:
+            raise ProblemError(f"function.{OUTPUT} does not move; the slide must travel")
+        if np.ptp(output) > GREATEST:
+            raise ProblemError(
+                f"function.{OUTPUT} covers {np.ptp(output):.6g}; it must be at most {GREATEST:g}"
+            )
+        if not travels and np.ptp(output) < _LEAST_OUTPUT:
+            raise ProblemError(f"function.{OUTPUT_DEG} does not move; the output must turn")
+        if law is not None and not isinstance(law, FunctionLaw):
+            raise wrong_value("function.law", law, "a FunctionLaw")
+        object.__setattr__(self, "inputs", frozen_array(turned))
+        object.__setattr__(self, "outputs", frozen_array(output))
+        object.__setattr__(self, "sense", _word(sense, SENSES, "function.sense"))
+        object.__setattr__(self, "norm", _word(norm, NORMS, "function.norm"))
+        object.__setattr__(self, "law", law)
+        object.__setattr__(self, "length", positive_number(length, "function.length"))
+        object.__setattr__(self, "travels", bool(travels))
+
+    @classmethod
+    def of_law(
+        cls, law: FunctionLaw, *, pairs: int | None = None, sense: str = "given", norm: str = "rms"
+    ) -> FunctionTask:
+        """The task of a law over its whole range.
+
+        Parameters
+        ----------
+        law : FunctionLaw
+        pairs : int, optional
+            So many, by Chebyshev spacing; by default as many as fit the whole range.
+        sense, norm : str
+        """
+        if pairs is None:
+            places = lobatto_with_weights(LAW_PAIRS)[0]
+        else:
+            if whole_number(pairs, FEWEST, "function.pairs") > MOST:
+                raise ProblemError(f"function.pairs is {shown(pairs)}; it must be at most {MOST}")
+            places = chebyshev_spacing(pairs)
+        turned = law.input_range * places
+        output = law.output(turned)
+        turned, output = turned - turned[0], output - output[0]
+        return cls(turned, output, sense=sense, norm=norm, law=law, travels=law.travels)
+
+    @classmethod
+    def from_degrees(
+        cls,
+        input_deg: npt.ArrayLike | None = None,
+        output_deg: npt.ArrayLike | None = None,
+        *,
+        output: npt.ArrayLike | None = None,
+        law: str | Callable[[FloatArray], FloatArray] | None = None,
+        x: tuple[float, float] | None = None,
+        exponent: float | None = None,
+        input_range_deg: float | None = None,
+        output_range_deg: float | None = None,
+        output_range: float | None = None,
+        pairs: int | None = None,
+        sampled: npt.ArrayLike | None = None,
+        sense: str = "given",
+        norm: str = "rms",
+    ) -> FunctionTask:
+        """Task with its angles in degrees, as problem files write it: pairs, or a law with its ranges.
+
+        In Python `law` may be any function of x; it is sampled.
+
+        Parameters
+        ----------
+        input_deg : array_like, deg, optional
+            Driver rotation from the first pair: zero, then growing over at most one turn.
+        output_deg : array_like, deg, optional
+            Rotation of link 4 from the first pair, one for each input; positive as the driver turns.
+        output : array_like, length, optional
+            Instead, travel of a slide from the first pair.
+        law : str, optional
+            Instead of pairs, a function y(x): log10, ln, exp, sin, cos, tan (of degrees), sqrt, reciprocal,
+            power or sampled.
+        x : pair of float, optional
+            Range of the law, from and to.
+        exponent : float, optional
+            Of a power.
+        input_range_deg : float, deg, optional
+            Driver rotation over the range of x.
+        output_range_deg : float, deg, optional
+            Rotation of link 4 over the range of y.
+        output_range : float, length, optional
+            Instead, travel of a slide over the range of y.
+        pairs : int, optional
+            Pairs that are met exactly, at Chebyshev's spacing; without them the law is fitted over its range.
+        sampled : array_like, optional
+            Of a sampled law, as Grashof saves one that was a function in Python: y at Chebyshev-Lobatto
+            points of `x`.
+
+        Examples
+        --------
+        >>> ranges = {"input_range_deg": 60, "output_range_deg": 90}
+        >>> task = FunctionTask.from_degrees(law="log10", x=(1, 2), **ranges, pairs=5)
+        >>> np.degrees(task.inputs).round(3).tolist()
+        [0.0, 10.898, 28.532, 46.165, 57.063]
+        """
+        table: dict[str, Any] = {INPUT: input_deg, OUTPUT_DEG: output_deg, OUTPUT: output}
+        stated: dict[str, Any] = {
+            "x": x,
+            "input_range_deg": input_range_deg,
+            "output_range_deg": output_range_deg,
+            "output_range": output_range,
+        }
+        travels = _either(output_deg, output, OUTPUT) or _either(
+            output_range_deg, output_range, "output_range"
+        )
+        if law is None:
+            _refuse_beside(
+                {**stated, "exponent": exponent, "pairs": pairs, "sampled": sampled},
+                "goes with function.law only",
+            )
+            _refuse_missing(table, OUTPUT, travels)
+            turned = np.radians(_numbers(input_deg, INPUT))
+            if travels:
+                return cls(turned, _numbers(output, OUTPUT), sense=sense, norm=norm, travels=True)
+            return cls(turned, np.radians(_numbers(output_deg, OUTPUT_DEG)), sense=sense, norm=norm)
+        _refuse_beside(table, "does not go with function.law; give pairs or a law")
+        _refuse_missing(stated, "output_range", travels)
+        key = "output_range" if travels else "output_range_deg"
+        ranges = [finite_number(stated[name], f"function.{name}") for name in ("input_range_deg", key)]
+        over = float(np.radians(ranges[0])), ranges[1] if travels else float(np.radians(ranges[1]))
+        if callable(law):
+            made = FunctionLaw.of_callable(law, stated["x"], *over, travels=travels)
+        else:
+            known = None if sampled is None else np.asarray(sampled, dtype=np.float64)
+            made = FunctionLaw(law, stated["x"], *over, exponent=exponent, samples=known, travels=travels)
+        return cls.of_law(made, pairs=pairs, sense=sense, norm=norm)
+
+    def __len__(self) -> int:
+        return len(self.inputs)
+
+    @property
+    def timing(self) -> FloatArray:  # type: ignore[override]
+        """Driver rotation from the first pair, shape (N,), rad."""
+        return self.inputs
+
+    @property
+    def closed(self) -> bool:  # type: ignore[override]
+        """The range is what is asked, not a whole turn."""
+        return False
+
+    @property
+    def within(self) -> None:  # type: ignore[override]
+        """Pairs have no zones; `structural_error_max_deg` limits the error."""
+
+    @property
+    def positions(self) -> FloatArray:
+        """None is asked for, shape (N, 2)."""
+        return np.full((len(self), 2), np.nan)
+
+    @property
+    def weights(self) -> FloatArray:
+        """Of the squared errors, shape (N,); of a law's own pairs those of the integral over its range."""
+        if self.law is None or not self.fits_range:
+            return np.ones(len(self))
+        return lobatto_with_weights(len(self))[1]
+
+    @property
+    def fits_range(self) -> bool:
+        """Whether the pairs stand for the whole range of a law, from its first x to its last."""
+        return self.law is not None and abs(self.inputs[-1] - self.law.input_range) < 1e-9
+
+    @property
+    def angle_length(self) -> float:
+        """Angles count as they are."""
+        return 1.0
+
+    @property
+    def size(self) -> float:
+        """The whole travel of a slide; lengths of a rotation are free but for a scale.
+
+        That is r1, as limits or else (0, 0) and (1, 0) place the ground.
+        """
+        if not self.travels:
+            return self.length
+        return float(np.ptp(self.outputs) if self.law is None else self.law.output_range)
+
+    @property
+    def output_unit(self) -> float:
+        """What errors of the output count in: 1 rad, or the whole travel."""
+        return self.size if self.travels else 1.0
+
+    @property
+    def counted_in(self) -> Unit:
+        """The unit of outputs and their errors in files and tables."""
+        return Unit.LENGTH if self.travels else Unit.ANGLE
+
+    @property
+    def output_words(self) -> str:
+        """What the output is called."""
+        return "travel of the slide" if self.travels else "output rotation"
+
+    def shown(self, output: float, length_unit: str) -> str:
+        """An output or its error, with its unit, as people read it.
+
+        Examples
+        --------
+        >>> FunctionTask([0, 1, 2], [0, 1, 3], travels=True).shown(0.25, "mm")
+        '0.25 mm'
+        """
+        unit = length_unit if self.travels else self.counted_in
+        return f"{self.counted_in.shown * output:.3g} {unit}".strip()
+
+    @property
+    def error_field(self) -> str:
+        """The field of `Requirements` that limits the structural error."""
+        return "structural_error_max" if self.travels else "structural_error_max_deg"
+
+    def with_ground(self, length: float) -> FunctionTask:
+        """The task with a usual length of the ground; a travel has a size of its own."""
+        return self if self.travels or length == self.length else replace(self, length=length)
+
+    @property
+    def returns(self) -> bool:
+        """A range is not a cycle."""
+        return False
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """First and last driver rotation of the range, from the first pair, rad."""
+        if self.law is None:
+            return 0.0, float(self.inputs[-1])
+        before = float(self._before)
+        return 0.0 - before, self.law.input_range - before
+
+    @property
+    def beyond(self) -> tuple[float, float]:
+        """Driver rotation of the range before the first pair and after the last, rad."""
+        low, high = self.span
+        return 0.0 - low, max(0.0, high - float(self.inputs[-1]))
+
+    @property
+    def _before(self) -> float:
+        """Driver rotation from the beginning of a law to the first pair."""
+        if self.law is None or self.fits_range:
+            return 0.0
+        return (self.law.input_range - float(self.inputs[-1])) / 2  # Chebyshev's spacing is symmetric
+
+    def output(self, turned: npt.ArrayLike) -> FloatArray:
+        """Wanted output at driver rotations from the first pair: of the law, or the cubic spline.
+
+        Examples
+        --------
+        >>> task = FunctionTask([0, 1, 2, 3], [0, 0.1, 0.8, 2.7])
+        >>> round(float(task.output(1.5)), 9)
+        0.3375
+        """
+        at = np.asarray(turned, dtype=np.float64)
+        if self.law is None:
+            from scipy.interpolate import CubicSpline  # here: few problems need it
+
+            found: FloatArray = CubicSpline(self.inputs, self.outputs)(at)
+            return found
+        before = self._before
+        return self.law.output(at + before) - self.law.output(np.array(before))
+
+    def exact_for(self, freedoms: int) -> bool:
+        """Whether every pair is met: up to five, since the starts and three lengths are free.
+
+        Of an inverted slider-crank, whose output is a rotation too, one length less is.
+        """
+        return len(self) <= (MOST_EXACT if self.travels or freedoms > _SLIDING else MOST_EXACT - 1)
+
+    def some(self, index: IntArray, positions: FloatArray, angles: FloatArray) -> FunctionTask:  # noqa: ARG002
+        """Some of the pairs, from the first of them on."""
+        turned, output = self.inputs[index], self.outputs[index]
+        return replace(self, inputs=turned - turned[0], outputs=output - output[0], law=None)
+
+
+def _numbers(values: Any, key: str) -> FloatArray:
+    where, what = f"function.{key}", "lengths" if key == OUTPUT else "angles"
+    numbers = number_array(values, f"{where} is {shown(values)}; it must be a list of {what}", (1,))
+    for index in np.flatnonzero(~np.isfinite(numbers)):
+        raise ProblemError(f"{where}[{index}] is {numbers[index]}; all numbers must be finite")
+    return numbers.astype(np.float64)
+
+
+def _output_key(travels: bool) -> str:
+    return OUTPUT if travels else OUTPUT_DEG
+
+
+def _either(angles: object, travel: object, key: str) -> bool:
+    """Whether the output is given as travel; not as both."""
+    if angles is not None and travel is not None:
+        raise ProblemError(
+            f"function.{key}_deg does not go with function.{key}; an output turns or slides, give one of them"
+        )
+    return travel is not None
+
+
+def _word(value: str, words: tuple[str, ...], where: str) -> str:
+    if value not in words:
+        meant = near_miss(value, words) if isinstance(value, str) else None
+        hint = f" (did you mean {meant}?)" if meant else ""
+        raise wrong_value(where, value, f"{' or '.join(words)}{hint}")
+    return str(value)
+
+
+def _refuse_beside(values: Mapping[str, object], why: str) -> None:
+    for name, value in values.items():
+        if value is not None:
+            raise ProblemError(f"function.{name} {why}")
+
+
+def _refuse_missing(values: Mapping[str, object], output: str, travels: bool) -> None:
+    other = f"{output}_deg" if travels else output
+    missing = [f"function.{name}" for name, value in values.items() if value is None and name != other]
+    if missing:
+        raise ProblemError("\n".join(f"{name} is missing" for name in missing))
+
+
+def _shown(value: float, key: str) -> str:
+    return _deg(value) if key.endswith("_deg") else f"{value:.6g}"
+
+
+def _deg(angle: float) -> str:
+    return f"{np.degrees(angle):.6g}"

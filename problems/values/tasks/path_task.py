@@ -1,0 +1,98 @@
+"""The path task: points to trace, as a value."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import ClassVar, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from grashof.problems.values.arrays import FloatArray, IntArray
+from grashof.problems.values.checks import GREATEST, counted, finite_rows, task_size
+from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.tasks.task import Task, some_columns
+from grashof.problems.values.tasks.timing import driver_timing, finite_angles, whole_turn
+from grashof.problems.values.zones import LEAST_ZONE, zone_sizes
+
+
+@dataclass(frozen=True, slots=True, init=False, eq=False)
+class PathTask(Task):
+    """Path generation: the coupler point P passes through points, in order.
+
+    Parameters
+    ----------
+    points : array_like, shape (N, 2), length
+        Where the coupler point P has to be, in order.
+    timing : array_like, shape (N,), rad, optional
+        Driver rotation from the first point, zero there, growing or falling throughout and over at
+        most one turn. Its sense is free: a design may turn the driver either way.
+    closed : bool
+        One turn of the driver takes P round all points and back to the first.
+    within : float or array_like, shape (N,), length, optional
+        How far each point may be missed; the objective then decides.
+
+    Raises
+    ------
+    ProblemError
+        Fewer than three points, numbers that are not finite or beyond 1e20, a size below 1e-20, two
+        consecutive equal points (the last may repeat the first), or a timing that is not one.
+
+    Examples
+    --------
+    >>> task = PathTask([[0, 0], [3, 0], [3, 4]])
+    >>> task.size, task.exact_by_default
+    (5.0, True)
+    """
+
+    kind: ClassVar[Literal["path"]] = "path"
+    target: ClassVar[Literal["point"]] = "point"
+
+    points: FloatArray
+    timing: FloatArray | None
+    closed: bool
+    within: FloatArray | None
+
+    def __init__(
+        self,
+        points: npt.ArrayLike,
+        *,
+        timing: npt.ArrayLike | None = None,
+        closed: bool = False,
+        within: npt.ArrayLike | None = None,
+    ) -> None:
+        places = finite_rows(points, 2, "path.points", "a point [x, y]", GREATEST)
+        if len(places) < 3:
+            raise ProblemError(f"path.points has {counted(len(places), 'point')}; it must have three or more")
+        for index in np.flatnonzero(np.abs(np.diff(places, axis=0)).max(axis=1) == 0):
+            raise ProblemError(
+                f"path.points[{index}] and path.points[{index + 1}] are equal; consecutive points must differ"
+            )
+        size = task_size(places, "path.points")
+        object.__setattr__(self, "closed", whole_turn(closed, "path"))
+        zone = zone_sizes(within, len(places), "path.within", least=LEAST_ZONE * size)
+        object.__setattr__(self, "within", zone)
+        object.__setattr__(self, "timing", driver_timing(timing, len(places), "path", "point"))
+        object.__setattr__(self, "points", places)
+
+    @classmethod
+    def from_degrees(
+        cls,
+        points: npt.ArrayLike,
+        *,
+        timing_deg: npt.ArrayLike | None = None,
+        closed: bool = False,
+        within: npt.ArrayLike | None = None,
+    ) -> PathTask:
+        """Task with its timing in degrees, as problem files write it."""
+        timing = None if timing_deg is None else np.radians(finite_angles(timing_deg, "path"))
+        return cls(points, timing=timing, closed=closed, within=within)
+
+    def some(self, index: IntArray, positions: FloatArray, angles: FloatArray) -> PathTask:  # noqa: ARG002
+        """Some of the points, moved; they have no angles."""
+        return replace(self, points=positions, **some_columns(self, index, "timing", "within"))
+
+    @property
+    def positions(self) -> FloatArray:
+        """The points, by the name that they have in every task; shape (N, 2), length."""
+        return self.points

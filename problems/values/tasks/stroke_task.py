@@ -1,0 +1,230 @@
+"""The stroke task: how far the output goes between its limit positions, and how fast there and back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import ClassVar, Literal, Self
+
+import numpy as np
+
+from grashof.problems.values.arrays import FloatArray, IntArray
+from grashof.problems.values.checks import finite_number, noted, refuse, size_number
+from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
+from grashof.problems.values.tasks.task import USUAL_MARGIN, Task
+
+LEAST_SWING = 1e-3  # rad
+# Of an offset slider-crank. Up to 3 there are some in theory, whose transmission angle is below
+# a thousandth of a degree: rounding locks them.
+MOST_SLIDE_RATIO = 2.999
+_SAME_RATIO = 1e-6  # share by which a time ratio may differ from that of a swing
+
+
+@dataclass(frozen=True, slots=True, init=False, eq=False)
+class StrokeTask(Task):
+    """Swing of a rocker, or stroke of a slide, and its time ratio.
+
+    Its two targets are the limit positions, where driver and coupler are in line: the slow stroke goes
+    from the first to the last. Where they are is free, and without a stroke so is the scale.
+
+    Parameters
+    ----------
+    swing : float, rad, optional
+        Of link 4 between its limit positions, below half a turn.
+    stroke : float, length, optional
+        Of a slide between its limit positions; either this or the swing is given.
+    time_ratio : float
+        Time of the slow stroke over that of the quick one, the driver turning steadily; from 1 on.
+
+    Raises
+    ------
+    ProblemError
+        Both of swing and stroke, or neither; a number that no linkage can have.
+
+    Examples
+    --------
+    >>> task = StrokeTask.from_degrees(swing_deg=80, time_ratio=1.25)
+    >>> len(task), round(float(np.degrees(task.driver_rotation)), 9)
+    (2, 200.0)
+    """
+
+    kind: ClassVar[Literal["stroke"]] = "stroke"
+    target: ClassVar[Literal["limit position"]] = "limit position"
+
+    swing: float | None
+    stroke: float | None
+    time_ratio: float
+    timing: FloatArray | None = field(init=False)
+    closed: bool = field(init=False)
+    within: FloatArray | None = field(init=False)
+    reference: float = field(init=False)  # length that counts as the size where the scale is free
+
+    def __init__(
+        self, *, swing: float | None = None, stroke: float | None = None, time_ratio: float = 1.0
+    ) -> None:
+        wrong: list[str] = []
+        with noted(wrong):
+            _one_of_the_two(swing, stroke)
+            if swing is not None:
+                object.__setattr__(self, "swing", _swing(swing))
+            if stroke is not None:
+                object.__setattr__(self, "stroke", size_number(stroke, "stroke.stroke"))
+        with noted(wrong):
+            object.__setattr__(self, "time_ratio", _ratio(time_ratio))
+        refuse(wrong)
+        if stroke is None:
+            object.__setattr__(self, "stroke", None)
+        if swing is None:
+            object.__setattr__(self, "swing", None)
+        for name, value in (("timing", None), ("closed", True), ("within", None), ("reference", 1.0)):
+            object.__setattr__(self, name, value)
+
+    @classmethod
+    def from_degrees(
+        cls, *, swing_deg: float | None = None, stroke: float | None = None, time_ratio: float = 1.0
+    ) -> StrokeTask:
+        """Task with its swing in degrees, as problem files write it."""
+        if swing_deg is not None:
+            swing_deg = float(np.radians(finite_number(swing_deg, "stroke.swing_deg")))
+        return cls(swing=swing_deg, stroke=stroke, time_ratio=time_ratio)
+
+    @property
+    def positions(self) -> FloatArray:
+        """Free in both limit positions, shape (2, 2)."""
+        return np.full((2, 2), np.nan)
+
+    @property
+    def driver_rotation(self) -> float:
+        """Of the slow stroke, rad: half a turn or more."""
+        return float(2 * np.pi * self.time_ratio / (self.time_ratio + 1))
+
+    @property
+    def size(self) -> float:
+        """The stroke of a slide; otherwise what its limits make it (`sized`), or 1."""
+        return self.reference if self.stroke is None else self.stroke
+
+    @property
+    def angle_length(self) -> float:
+        """The size: no target has an angle."""
+        return self.size
+
+    @property
+    def scale_free(self) -> bool:
+        """Whether linkages of any size do it."""
+        return self.stroke is None
+
+    @property
+    def limits_size(self) -> bool:
+        """Not that of a slide: the longer its rod, the better, as far as limits go."""
+        return self.stroke is None
+
+    @property
+    def returns(self) -> bool:
+        """No: the last limit position is the other one."""
+        return False
+
+    @property
+    def exact_by_default(self) -> bool:
+        """Yes: swing or stroke and time ratio are met."""
+        return True
+
+    @property
+    def usual_margin(self) -> float:
+        """None for a slide: it is tan²(mu / 2), so that near the greatest time ratios there is hardly any."""
+        return USUAL_MARGIN if self.stroke is None else 0.0
+
+    def sized(self, reference: float) -> Self:
+        """The same with another length that counts as the size where the scale is free."""
+        made = replace(self)
+        object.__setattr__(made, "reference", reference)
+        return made
+
+    def some(self, index: IntArray, positions: FloatArray, angles: FloatArray) -> StrokeTask:  # noqa: ARG002
+        """The same: neither limit position is one without the other."""
+        return self
+
+    def impossible(self, mechanism: str) -> str:
+        """Why a kind of linkage cannot do it, in one line; empty where it may.
+
+        Examples
+        --------
+        >>> StrokeTask(stroke=100.0).impossible("four-bar")
+        'stroke.stroke is of a slide; a four-bar has a swing, stroke.swing_deg'
+        """
+        return _IMPOSSIBLE[mechanism](self)
+
+
+def _for_rocker(task: StrokeTask) -> str:
+    if task.swing is None:
+        return _no_slide(FOUR_BAR)
+    # Beyond, limit positions on one assembly need a driver that does not turn fully.
+    most = (3 * np.pi + task.swing) / (np.pi - task.swing)
+    return _too_slow(task, most, f"a crank-rocker that swings by {np.degrees(task.swing):.6g} deg")
+
+
+def _for_slide(task: StrokeTask) -> str:
+    if task.stroke is None:
+        return "stroke.swing_deg is of a rocker; a slider-crank has a slide, stroke.stroke"
+    return _too_slow(task, MOST_SLIDE_RATIO, "a slider-crank, whose crank would not turn fully")
+
+
+def _for_block(task: StrokeTask) -> str:
+    if task.swing is None:
+        return _no_slide(INVERTED)
+    # In both limit positions the crank stands square to the rod.
+    ratio = (np.pi + task.swing) / (np.pi - task.swing)
+    if abs(task.time_ratio - ratio) <= _SAME_RATIO * ratio:
+        return ""
+    swing = f"swings by {np.degrees(task.swing):.6g} deg"
+    return (
+        f"stroke.time_ratio is {task.time_ratio:.6g}; it must be {ratio:.8g} for an {INVERTED} that {swing}, "
+        "(180 + swing) / (180 - swing)"
+    )
+
+
+def _no_slide(mechanism: str) -> str:
+    article = "an" if mechanism[0] in "aeiou" else "a"
+    return f"stroke.stroke is of a slide; {article} {mechanism} has a swing, stroke.swing_deg"
+
+
+def _too_slow(task: StrokeTask, most: float, whose: str) -> str:
+    if task.time_ratio < most:
+        return ""
+    return f"stroke.time_ratio is {task.time_ratio:.6g}; it must be less than {most:.6g} for {whose}"
+
+
+# Why a kind of linkage cannot do a stroke, or nothing where it may.
+_IMPOSSIBLE: Mapping[str, Callable[[StrokeTask], str]] = {
+    FOUR_BAR: _for_rocker,
+    SLIDER_CRANK: _for_slide,
+    INVERTED: _for_block,
+}
+
+
+def _one_of_the_two(swing: float | None, stroke: float | None) -> None:
+    either = "it must be one of the two: swing_deg for a rocker, stroke for a slide"
+    if swing is not None and stroke is not None:
+        raise ProblemError(f"stroke has both swing_deg and stroke; {either}")
+    if swing is None and stroke is None:
+        raise ProblemError(f"stroke has neither swing_deg nor stroke; {either}")
+
+
+def _swing(swing: float) -> float:
+    number = finite_number(swing, "stroke.swing_deg")
+    if not LEAST_SWING <= number < np.pi:
+        least = np.degrees(LEAST_SWING)
+        raise ProblemError(
+            f"stroke.swing_deg is {np.degrees(number):.6g}; "
+            f"it must be from {least:.3g} to less than 180, as a rocker swings"
+        )
+    return number
+
+
+def _ratio(ratio: float) -> float:
+    number = finite_number(ratio, "stroke.time_ratio")
+    if number < 1:
+        raise ProblemError(
+            f"stroke.time_ratio is {number:.6g}; it must be at least 1, the slow stroke over the quick one"
+        )
+    return number

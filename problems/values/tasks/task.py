@@ -1,0 +1,206 @@
+"""Tasks: what a linkage is asked to do, one table of targets however they are stated."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import replace
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
+from grashof.problems.values.extent import span
+from grashof.problems.values.read_only import ReadOnly
+
+_SAME = 1e-12  # sizes, rad
+USUAL_MARGIN = 1e-3  # of full rotation
+
+
+class Task(ReadOnly, ABC):
+    """N targets that a linkage has to meet in order; base of `MotionTask`, `PathTask` and others.
+
+    Each target is a row. Its columns are the position of the coupler point, the angle of the body, the
+    output, the driver rotation from the first target, and the weight; NaN where a target leaves that part
+    free.
+    """
+
+    __slots__ = ()
+
+    kind: ClassVar[str]  # its table in problem files
+    target: ClassVar[str]  # what a target is called in messages
+    usual_rotatability: ClassVar[str] = "full-crank"  # where requirements do not state one
+    without: ClassVar[tuple[str, ...]] = ()  # quantities and parts that mean nothing for it
+
+    timing: FloatArray | None
+    closed: bool
+    within: FloatArray | None
+
+    @property
+    @abstractmethod
+    def positions(self) -> FloatArray:
+        """Where the coupler point P has to be, shape (N, 2), length."""
+
+    @property
+    def angles(self) -> FloatArray:
+        """Angles of the body, shape (N,), rad."""
+        return np.full(len(self), np.nan)
+
+    @property
+    def outputs(self) -> FloatArray:
+        """Rotation of the output from the first target, positive as the driver turns, shape (N,), rad."""
+        return np.full(len(self), np.nan)
+
+    @property
+    def beyond(self) -> tuple[float, float]:
+        """Driver rotation of what is asked before the first target and after the last, rad."""
+        return 0.0, 0.0
+
+    @property
+    def driver_turns(self) -> FloatArray:
+        """Driver rotation from the first target, in either sense, shape (N,), rad."""
+        return np.full(len(self), np.nan) if self.timing is None else np.abs(self.timing)
+
+    @property
+    def weights(self) -> FloatArray:
+        """Of the squared errors, shape (N,)."""
+        return np.ones(len(self))
+
+    @property
+    def angle_length(self) -> float:
+        """Length that one radian of orientation error counts as."""
+        return span(self.positions)
+
+    @property
+    def body(self) -> FloatArray | None:
+        """Outline carried, in the body's frame, shape (M, 2), length."""
+        return None
+
+    @property
+    def angle_within(self) -> FloatArray | None:
+        """How far each angle may be missed, shape (N,), rad."""
+        return None
+
+    @property
+    def size(self) -> float:
+        """Greatest distance between two target positions; `angle_length` for a pure rotation."""
+        return span(self.positions[self.has_position]) or self.angle_length
+
+    @property
+    def scale_free(self) -> bool:
+        """Whether linkages of any size do it, so that the size is no measure of theirs."""
+        return False
+
+    @property
+    def middle(self) -> FloatArray:
+        """Mean of the target positions, shape (2,), length; the origin where all are free."""
+        return np.nanmean(self.positions, axis=0) if self.has_position.any() else np.zeros(2)
+
+    @property
+    def has_position(self) -> BoolArray:
+        """Which targets have a position, shape (N,)."""
+        given: BoolArray = ~np.isnan(self.positions[:, 0])
+        return given
+
+    @property
+    def has_angle(self) -> BoolArray:
+        """Which targets have an angle, shape (N,)."""
+        return ~np.isnan(self.angles)
+
+    @property
+    def has_output(self) -> BoolArray:
+        """Which targets have an output, shape (N,)."""
+        return ~np.isnan(self.outputs)
+
+    def with_ground(self, length: float) -> Self:  # noqa: ARG002
+        """The task with a usual length of the ground, where it has no size of its own."""
+        return self
+
+    @property
+    def is_timed(self) -> bool:
+        """Whether the driver rotations are prescribed."""
+        return self.timing is not None
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether every target has both position and angle."""
+        return bool((self.has_position & self.has_angle).all())
+
+    @property
+    def only_points(self) -> bool:
+        """Whether every target is a position alone."""
+        return bool((self.has_position & ~self.has_angle).all())
+
+    @property
+    def usual_margin(self) -> float:
+        """Of full rotation, where requirements do not state one."""
+        return USUAL_MARGIN
+
+    @property
+    def limits_size(self) -> bool:
+        """Whether nobody builds linkages many times its size; functions have none to compare with."""
+        return not self.has_output.any()
+
+    @property
+    def returns(self) -> bool:
+        """Whether the last target is the first again."""
+        first, last = np.column_stack([self.positions / self.size, np.exp(1j * self.angles)])[[0, -1]]
+        return np.allclose(first, last, rtol=0, atol=_SAME, equal_nan=True)
+
+    @property
+    def stated_zones(self) -> dict[str, FloatArray]:
+        """How far targets may be missed, by the name of the argument that states it, each of shape (N,)."""
+        both = {"within": self.within, "angle_within": self.angle_within}
+        return {name: zone for name, zone in both.items() if zone is not None}
+
+    @property
+    def zones(self) -> FloatArray | None:
+        """How far positions (length) and angles (rad) may be missed, shape (2, N); infinite where free."""
+        place, turn = self.within, self.angle_within
+        if turn is not None and place is None:
+            place = turn * self.angle_length
+        if place is None:
+            return None
+        if turn is None:
+            turn = np.minimum(place / self.angle_length, np.pi)
+        return np.where([self.has_position, self.has_angle], [place, turn], np.inf)
+
+    def with_zones(self, **zones: FloatArray | None) -> Self:
+        """The same targets with other zones, by the names of `stated_zones`."""
+        return replace(self, **zones)  # type: ignore[type-var]
+
+    def without_zones(self) -> Self:
+        """The same targets, none of them to be missed."""
+        return self.with_zones(**dict.fromkeys(self.stated_zones))
+
+    @abstractmethod
+    def some(self, index: IntArray, positions: FloatArray, angles: FloatArray) -> Self:
+        """Some of the targets in order, `index` (K,), moved to other positions (K, 2) and angles (K,).
+
+        What a target leaves free stays free.
+        """
+
+    @property
+    def exact_by_default(self) -> bool:
+        """Whether four-bars that meet every target can be expected; see `exact_for`."""
+        return self.exact_for(9)
+
+    def exact_for(self, freedoms: int) -> bool:
+        """Whether linkages with so many free dimensions that meet every target can be expected.
+
+        As long as the equations, two for a position and one for an angle, are not more than the
+        unknowns: nine of a four-bar, eight of slider kinds, how the body sits on its coupler, and a
+        driver angle for every target, or one where they are timed. So for four-bars up to nine points,
+        five timed ones, five whole poses (Burmester), three timed ones.
+        """
+        equations = 2 * np.count_nonzero(self.has_position) + np.count_nonzero(self.has_angle)
+        unknowns = freedoms + self.has_angle.any() + (1 if self.is_timed else len(self))
+        return bool(equations <= unknowns)
+
+    def __len__(self) -> int:
+        return len(self.positions)
+
+
+def some_columns(task: Task, index: IntArray, *names: str) -> dict[str, Any]:
+    """What some of the targets have in columns, by name; None where a task has no such column."""
+    columns = {name: getattr(task, name) for name in names}
+    return {name: None if column is None else column[index] for name, column in columns.items()}

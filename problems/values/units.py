@@ -1,0 +1,36 @@
+"""Units that quantities are counted in."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+import numpy as np
+
+
+class Unit(StrEnum):
+    """What a quantity is counted in; lengths in the problem's unit, angles in rad but in deg in files."""
+
+    LENGTH = "length"
+    AREA = "length²"
+    ANGLE = "deg"
+    RATIO = ""
+    SHARE = "share"
+    TORQUE = "N m"
+    FORCE = "N"
+    ANGULAR_VELOCITY = "rad/s"
+    VELOCITY = "length/s"
+    ACCELERATION = "length/s²"
+
+    @property
+    def lengths(self) -> int:
+        """Power of the length in it; torques and forces come in metres."""
+        return {"length²": 2}.get(self, int(self.startswith("length")))
+
+    @property
+    def shown(self) -> float:
+        """Factor from values inside to those in files and tables."""
+        return float(np.degrees(1.0)) if self is Unit.ANGLE else 1.0
+
+    def of(self, length_unit: str) -> str:
+        """The unit with the problem's own unit of length in it, where that has a name."""
+        return self.replace("length", length_unit or "length")

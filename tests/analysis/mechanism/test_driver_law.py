@@ -1,0 +1,75 @@
+"""The driver from rest to rest: its rates are its derivatives, its time the inverse of its way."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grashof.analysis import DriverLaw, solve_kinematics
+from grashof.problems import FourBar
+from grashof.problems.values.dynamics.motor import MotorSpec
+
+PROFILES = {
+    "constant": MotorSpec(),
+    "trapezoid": MotorSpec("trapezoid", 0.2),
+    "triangle": MotorSpec("trapezoid", 0.5),
+    "cycloid": MotorSpec("cycloid"),
+    "measured": MotorSpec(values=((1.0, 10), (2.0, 40), (2.5, 90), (4.0, 100))),
+}
+WAYS = [(0.3, 2.0), (0.3, -2.0), (-1.0, 2 * np.pi)]
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("kind", PROFILES)
+def test_rates_are_derivatives_and_the_inverse_is_one(kind: str, way: tuple[float, float]) -> None:
+    start, rotation = way
+    law = DriverLaw(start, rotation, np.copysign(1.7, rotation), PROFILES[kind])
+    time = np.linspace(0.013, 0.987, 60) * law.duration
+    smooth = np.abs(law.corners * law.duration - time[:, None]).min(axis=1) > 1e-3
+    h = 1e-5
+    before, now, after = (law.at_time(time + step) for step in (-h, 0.0, h))
+    np.testing.assert_allclose((after.theta2 - before.theta2) / (2 * h), now.omega2, rtol=1e-6, atol=1e-6)
+    slope = (after.omega2 - before.omega2) / (2 * h)
+    np.testing.assert_allclose(slope[smooth], now.alpha2[smooth], rtol=1e-5, atol=1e-5)
+    np.testing.assert_allclose(law.time_at(now.theta2), time, rtol=1e-9, atol=1e-12)
+    again = law.at_angle(now.theta2)
+    np.testing.assert_allclose(again.omega2, now.omega2, rtol=1e-7)
+    np.testing.assert_allclose(again.alpha2[smooth], now.alpha2[smooth], rtol=1e-6, atol=1e-9)
+    ends = law.at_time([0.0, law.duration])
+    np.testing.assert_allclose(ends.theta2, [start, start + rotation], atol=1e-12)
+    if kind not in ("constant", "measured"):
+        np.testing.assert_allclose(ends.omega2, 0, atol=1e-12)
+    if kind != "measured":
+        assert law.duration == pytest.approx(abs(rotation) / 1.7)
+    assert law.holds(now.theta2).all()
+    assert not law.holds([start - 0.1 * rotation, start + 1.1 * rotation]).any()
+
+
+@given(st.floats(0.01, 0.5), st.floats(0, 1))
+def test_a_trapezoid_is_what_its_speeds_add_up_to(ramp: float, share: float) -> None:
+    law = DriverLaw(0.0, 1.0, 1.0, MotorSpec("trapezoid", ramp))
+    grid = np.unique(np.concatenate([np.linspace(0, share, 2001), law.corners[law.corners <= share]]))
+    added = np.trapezoid(law.at_time(grid).omega2, grid)  # straight pieces: exact
+    assert float(law.at_time(share).theta2) == pytest.approx(added, abs=1e-12)
+
+
+def test_a_whole_turn_is_followed_by_the_next() -> None:
+    law = DriverLaw(0.0, 2 * np.pi, 1.0, PROFILES["cycloid"])
+    once, twice = (law.at_angle(np.array([1.0, 5.0]) + turn) for turn in (0.0, 2 * np.pi))
+    np.testing.assert_allclose(once.omega2, twice.omega2, rtol=1e-12)
+
+
+def test_the_speed_of_a_linkage_that_starts_and_stops() -> None:
+    linkage = FourBar((0, 0), (4, 0), 1, 4, 3, (1, 1))
+    law = DriverLaw(0.0, 2 * np.pi, 2.0, PROFILES["cycloid"])
+    theta2 = np.array([0.5, np.pi])
+    state, steady = law.state(linkage, theta2), solve_kinematics(linkage, theta2)
+    np.testing.assert_allclose(state.omega4, steady.omega4 * law.at_angle(theta2).omega2, rtol=1e-12)
+    assert float(law.at_angle(np.pi).omega2) == pytest.approx(4.0)  # twice the mean halfway
+
+
+def test_no_speed_takes_for_ever() -> None:
+    law = DriverLaw(0.0, 1.0, 0.0)
+    assert np.isinf(law.duration)
+    assert np.isnan(law.time_at(0.5))
+    assert float(law.at_angle(0.5).omega2) == 0

@@ -1,0 +1,154 @@
+"""The variable over which a linkage moves evenly: its definition, its ends, and means by quadrature in it."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import quad
+
+from grashof.analysis import (
+    DriverLaw,
+    GrashofClass,
+    dead_ends,
+    driver_ranges,
+    even_motion,
+    full_rotation,
+    solve_position,
+    transmission_angle,
+)
+from grashof.analysis.loops.four_bar import FOUR_BAR_CLASSES
+from grashof.analysis.mechanism.means import mean_in_time, mean_over
+from grashof.analysis.mechanism.transmission import quality
+from grashof.problems import FourBar
+from grashof.problems.values.dynamics.motor import MotorSpec
+
+CHECKED = settings(max_examples=20)
+TURN = 2 * np.pi
+Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
+SMOOTH = [kind for kind in FOUR_BAR_CLASSES if kind is not GrashofClass.CHANGE_POINT]
+NEARLY = [
+    FourBar((0, 0), (4, 0), 2, 4.5, 2.501),
+    FourBar((1, 2), (5, 2), 2, 4.5, 2.499),
+    FourBar((0, 0), (0, 4), 2, 3, 3.0001, assembly=-1),
+    FourBar((0, 0), (0, 4), 2, 3, 2.9999),
+    FourBar((0, 0), (-4, 0), 2, 4.5, 2.5 + 1e-7),
+]
+
+
+def check_evenness(linkage: FourBar, start: float, end: float) -> None:
+    """D theta2 / dt is in proportion to sin mu: what makes t an elliptic integral."""
+    motion, share = even_motion(linkage, start, end), np.linspace(0, 1, 41)
+    theta2 = motion.theta2(share)
+    assert (theta2[0], theta2[-1]) == (start, end)
+    assert (np.diff(theta2) * np.sign(end - start) > 0).all()
+    np.testing.assert_allclose(motion.share(theta2[1:-1]), share[1:-1], atol=1e-9)
+    quotient = motion.rate(share)[1:-1] / np.sin(transmission_angle(linkage, theta2[1:-1]))
+    np.testing.assert_allclose(quotient, quotient[20], rtol=2e-8)
+    h = 1e-6
+    slope = (motion.theta2(share[1:-1] + h) - motion.theta2(share[1:-1] - h)) / (2 * h)
+    np.testing.assert_allclose(motion.rate(share)[1:-1], slope, atol=1e-6 * np.abs(slope).max())
+
+
+def ranges(linkage: FourBar) -> list[tuple[float, float]]:
+    return [(low, high) for low, high in driver_ranges(linkage).tolist() if low < high]
+
+
+@pytest.mark.parametrize("kind", SMOOTH)
+@given(data=st.data())
+@CHECKED
+def test_the_driver_goes_as_the_sine_of_mu(
+    four_bars: Drawer, kind: GrashofClass, data: st.DataObject
+) -> None:
+    linkage = data.draw(four_bars(kind))
+    for low, high in ranges(linkage):
+        check_evenness(linkage, low, high)
+        check_evenness(linkage, high + TURN, low + TURN)
+        part = np.sort(data.draw(st.tuples(st.floats(0.1, 0.4), st.floats(0.6, 0.9))))
+        check_evenness(linkage, *(low + (high - low) * part).tolist())
+
+
+@pytest.mark.parametrize("linkage", NEARLY)
+def test_so_it_goes_near_a_change_point(linkage: FourBar) -> None:
+    for low, high in ranges(linkage):
+        check_evenness(linkage, low, high)
+        middle = solve_position(linkage, even_motion(linkage, low, high).theta2(np.linspace(0, 1, 1001))).b
+        way = np.hypot(*np.diff(middle, axis=0).T)
+        assert way.max() < 0.02 * way.sum()
+
+
+@pytest.mark.parametrize("turns", [(0.3, 0.3 + 3 * TURN), (5.0, -9.0)])
+def test_more_than_a_turn(turns: tuple[float, float]) -> None:
+    motion = even_motion(NEARLY[0], *turns)
+    around = motion.theta2(np.array([-0.1, 0.0, 1.0, 1.1]))
+    assert around[1:3].tolist() == list(turns)
+    assert (np.diff(around) * np.sign(turns[1] - turns[0]) > 0).all()
+
+
+@pytest.mark.parametrize(
+    ("linkage", "start", "end"),
+    [
+        (FourBar((0, 0), (4, 0), 2, 2, 3), 0.0, np.pi),  # closes to 108 deg
+        (FourBar((0, 0), (9, 0), 1, 1, 1), 0.0, 1.0),  # nowhere
+        (FourBar((0, 0), (4, 0), 3, 1, 3), -1.0, 1.0),  # two ranges
+    ],
+)
+def test_where_the_linkage_does_not_close_all_the_way(linkage: FourBar, start: float, end: float) -> None:
+    motion = even_motion(linkage, start, end)
+    theta2 = motion.theta2(np.linspace(0, 1, 101))
+    assert (theta2[0], theta2[-1]) == (start, end)
+    assert (np.diff(theta2) > 0).all()
+    np.testing.assert_allclose(motion.share(theta2), np.linspace(0, 1, 101), atol=1e-7)
+
+
+@pytest.mark.parametrize("kind", [kind for kind in SMOOTH if kind is not GrashofClass.CRANK_ROCKER])
+@given(data=st.data())
+@CHECKED
+def test_links_are_in_line_at_dead_ends(four_bars: Drawer, kind: GrashofClass, data: st.DataObject) -> None:
+    linkage = data.draw(four_bars(kind))
+    if full_rotation(linkage):
+        return
+    for low, high in ranges(linkage):
+        ends = np.array(dead_ends(linkage, low, high))
+        np.testing.assert_allclose(ends, [low, high], rtol=0, atol=1e-11)
+        state = solve_position(linkage, ends)
+        assert np.abs(np.sin(state.theta4 - state.theta3)).max() < 1e-15
+        assert quality(transmission_angle(linkage, ends)).max() < 1e-7
+
+
+def test_edges_of_panels_are_on_the_ground_line() -> None:
+    parallelogram = FourBar((0, 0), (4, 0), 2, 4, 2)
+    motion = even_motion(parallelogram, -3.0, 7.0)
+    edges = motion.theta2(motion.edges(10))
+    assert (np.diff(edges) > 0).all()
+    for angle in (0.0, np.pi, TURN):
+        assert np.abs(edges - angle).min() < 1e-12
+
+
+def test_means_near_a_change_point_are_those_of_adaptive_quadrature() -> None:
+    linkage, (low, high) = NEARLY[1], ranges(NEARLY[1])[0]
+
+    def height(theta2: float) -> float:
+        return float(solve_position(linkage, theta2).b[1])
+
+    middle = (low + high) / 2
+    for start, end in ((low, high), (high, low), (middle - 0.1, middle + 1.0)):
+        mean, error = mean_over(linkage, lambda at: solve_position(linkage, at).b[:, 1], start, end)
+        inside = [middle] if start < middle < end or end < middle < start else None
+        expected = quad(height, start, end, points=inside, limit=500, epsabs=1e-11)[0] / (end - start)
+        assert mean == pytest.approx(expected, abs=1e-8)
+        assert error < 1e-10
+    at = np.array(0.3)
+    assert mean_over(linkage, np.cos, 0.3, 0.3)[0] == np.cos(at)
+
+
+@pytest.mark.parametrize("profile", ["trapezoid", "cycloid"])
+def test_means_in_time_of_a_driver_that_starts_and_stops(profile: str) -> None:
+    """Half the speed is gone at when half the time has, by symmetry: the mean angle is that halfway."""
+    linkage = FourBar((0, 0), (4, 0), 1, 4, 3)
+    law = DriverLaw(0.2, 1.5, 2.0, MotorSpec(profile=profile))
+    (angle, speed), error = mean_in_time(linkage, law, lambda place: np.stack(law.at_place(place)[:2]))
+    assert angle == pytest.approx(0.95, abs=1e-9)
+    assert speed == pytest.approx(2.0, rel=1e-8)
+    assert error[0] < 1e-9

@@ -1,0 +1,164 @@
+"""Masses, speed and gravity: the value type, and its table in a problem file."""
+
+import math
+import pickle
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grashof.problems import DynamicsSpec, MotionTask, Problem, ProblemError, load, problem_text
+from grashof.problems.files.problem_schema import problem_from
+from grashof.problems.values.dynamics.dynamics_spec import metres
+
+HEAD = 'kind = "motion"\nlength_unit = "mm"\nmotion.poses = [[0, 0, 0], [3, 4, 90]]\n[dynamics]\n'
+BARS = "mass_per_length = 2\n"
+
+
+def stated(table: str, head: str = HEAD) -> DynamicsSpec | None:
+    return problem_from(tomllib.loads(head + table), "test").dynamics
+
+
+def test_by_default_the_driver_turns_at_one_radian_a_second_without_weight() -> None:
+    spec = DynamicsSpec(2.0)
+    assert spec.omega2 == pytest.approx(1.0, abs=1e-15)
+    assert (spec.gravity, spec.payload, spec.masses, spec.inertias) == ((0.0, 0.0), 0.0, None, None)
+    assert DynamicsSpec(2.0, speed_rpm=60).omega2 == pytest.approx(2 * math.pi)
+    assert pickle.loads(pickle.dumps(spec)) == spec == DynamicsSpec(2)
+    hash(spec)
+
+
+def test_a_linkage_may_turn_either_way_without_masses() -> None:
+    spec = DynamicsSpec(speed_rpm=-60, gravity=(0, -1))
+    assert not spec.has_masses
+    assert spec.omega2 == pytest.approx(-2 * math.pi)
+    assert DynamicsSpec(payload=1).has_masses
+    for each in (spec, DynamicsSpec(masses=(1, 2, 3), inertias=(0, 0, 1))):
+        assert DynamicsSpec(**each.stated) == each
+    assert "masses" not in spec.stated
+
+
+def test_nothing_is_driven_unless_the_problem_says_so() -> None:
+    assert Problem(task=MotionTask.from_degrees([[0, 0, 0], [3, 4, 90]])).dynamics is None
+    assert load("dwell").dynamics is None
+
+
+def test_the_luggage_has_the_masses_of_the_report() -> None:
+    spec = load("luggage").dynamics
+    assert spec is not None
+    assert spec.masses == (0.3764, 0.4762, 0.4308)
+    assert spec.inertias == (0.3282, 0.6646, 0.4920)
+    assert spec.omega2 == pytest.approx(1.0, abs=1e-15)
+    assert spec.gravity == (0.0, -9.81)
+
+
+@pytest.mark.parametrize(
+    ("table", "expected"),
+    [
+        (BARS, DynamicsSpec(2.0)),
+        (
+            BARS + "speed_rpm = 10\ngravity = [0, -9.80665]\npayload = 20",
+            DynamicsSpec(2.0, speed_rpm=10.0, gravity=(0.0, -9.80665), payload=20.0),
+        ),
+        (
+            "masses = [1, 2, 3]\ninertias = [0, 0.5, 0]",
+            DynamicsSpec(masses=(1.0, 2.0, 3.0), inertias=(0.0, 0.5, 0.0)),
+        ),
+    ],
+)
+def test_every_key_reaches_its_field(table: str, expected: DynamicsSpec) -> None:
+    assert stated(table) == expected
+
+
+def test_a_copied_problem_with_the_table_added_comes_back_from_its_file(tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    table = "\n[dynamics]\nmass_per_length = 1.5\npayload = 3\n"
+    path.write_text(problem_text("dwell") + table, encoding="utf-8")
+    assert load(path).dynamics == DynamicsSpec(1.5, payload=3.0)
+
+
+@pytest.mark.parametrize(
+    ("unit", "length"), [("mm", 0.001), ("cm", 0.01), ("m", 1.0), ("in", 0.0254), ("ft", 12 * 0.0254)]
+)
+def test_known_length_units(unit: str, length: float) -> None:
+    assert metres(unit) == pytest.approx(length, rel=1e-15)
+    assert stated(BARS, HEAD.replace('"mm"', f'"{unit}"')) == DynamicsSpec(2.0)
+
+
+@pytest.mark.parametrize("unit", ["", "M", "furlong", "metre"])
+def test_torque_needs_a_known_length_unit(unit: str) -> None:
+    expected = f"length_unit is {unit!r}; it must be one of mm, cm, m, in, ft with dynamics"
+    with pytest.raises(ProblemError) as caught:
+        stated(BARS, HEAD.replace('"mm"', f'"{unit}"'))
+    assert str(caught.value) == expected
+    with pytest.raises(ProblemError) as caught:
+        replace(load("luggage"), length_unit=unit)
+    assert str(caught.value) == expected
+
+
+def test_any_word_is_a_unit_without_dynamics() -> None:
+    assert replace(load("luggage"), dynamics=None, length_unit="furlong").length_unit == "furlong"
+
+
+ZERO = "it must be a number from zero"
+MORE = "it must be a number greater than zero"
+BAD = [
+    (
+        "",
+        "dynamics has no mass; mass_per_length is needed, masses and inertias, density or payload, "
+        "or else loads, springs or friction",
+    ),
+    ("masses = [1, 2, 3]", "dynamics.inertias is missing; masses and inertias are needed together"),
+    ("inertias = [1, 2, 3]", "dynamics.masses is missing; masses and inertias are needed together"),
+    (
+        BARS + "inertias = [1, 2, 3]",
+        "dynamics.mass_per_length does not go with masses and inertias; give one or the other",
+    ),
+    ("mass_per_length = 0", f"dynamics.mass_per_length is 0; {MORE}"),
+    ("mass_per_length = 'a'", "dynamics.mass_per_length is 'a'; it must be a number"),
+    ("mass_per_length = inf", "dynamics.mass_per_length is inf; it must be a finite number"),
+    (BARS + "speed_rpm = 0", f"dynamics.speed_rpm is 0; {MORE}"),
+    (BARS + "speed_rpm = -10", f"dynamics.speed_rpm is -10; {MORE}"),
+    (BARS + "payload = -1", f"dynamics.payload is -1; {ZERO}"),
+    (BARS + "gravity = 9.81", "dynamics.gravity is 9.81; it must be [x, y] in m/s2"),
+    (BARS + "gravity = [0]", "dynamics.gravity has 1 entry; it must have 2 numbers"),
+    (BARS + "gravity = [0, nan]", "dynamics.gravity[1] is nan; it must be a finite number"),
+    (
+        "masses = [1, 2]\ninertias = [1, 2, 3]",
+        "dynamics.masses has 2 entries; it must have 3 numbers",
+    ),
+    ("masses = [1, -2, 3]\ninertias = [1, 2, 3]", f"dynamics.masses[1] is -2; {ZERO}"),
+    ("masses = [1, 2, 3]\ninertias = [1, 2, -3]", f"dynamics.inertias[2] is -3; {ZERO}"),
+    ("masses = 3\ninertias = [1, 2, 3]", "dynamics.masses is 3; it must be [m2, m3, m4]"),
+    ("masses = [0, 0, 0]\ninertias = [0, 0, 0]", "dynamics.masses are all zero; one at least has a mass"),
+    (BARS + "speed = 10", "dynamics.speed is unknown; did you mean speed_rpm?"),
+    (
+        BARS + "colour = 10",
+        "dynamics.colour is unknown; the keys are speed_rpm, gravity, mass_per_length, density, masses, "
+        "inertias, centres, payload",
+    ),
+]
+
+
+@pytest.mark.parametrize(("table", "expected"), BAD)
+def test_bad_tables(table: str, expected: str) -> None:
+    with pytest.raises(ProblemError) as caught:
+        stated(table)
+    assert str(caught.value) == expected
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"masses": 3, "inertias": (1, 2, 3)},
+        {"mass_per_length": None, "masses": (1, 2, "3"), "inertias": (1, 2, 3)},
+        {"mass_per_length": True},
+        {"mass_per_length": 2, "gravity": None},
+        {"mass_per_length": 2, "payload": "heavy"},
+    ],
+)
+def test_bad_values_from_python(given: dict[str, Any]) -> None:
+    with pytest.raises(ProblemError, match=r"^dynamics\."):
+        DynamicsSpec(**given)
