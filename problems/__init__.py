@@ -25,6 +25,7 @@ from grashof.problems.values.linkages.cylinder import Cylinder, CylinderSpec
 from grashof.problems.values.linkages.four_bar import FourBar
 from grashof.problems.values.linkages.inverted_slider_crank import InvertedSliderCrank
 from grashof.problems.values.linkages.linkage import Linkage
+from grashof.problems.values.linkages.six_bar import SixBar
 from grashof.problems.values.linkages.slider_crank import SliderCrank
 from grashof.problems.values.requirements.objective import Objective
 from grashof.problems.values.requirements.requirements import Requirements, Rotatability, TransmissionOver
@@ -64,6 +65,7 @@ __all__ = [
     "Rotatability",
     "Search",
     "SectionSpec",
+    "SixBar",
     "SliderCrank",
     "SolverError",
     "StrengthSpec",

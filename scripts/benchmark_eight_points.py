@@ -72,7 +72,7 @@ def planted_points(
 
 def missed(planted: SliderCrank | InvertedSliderCrank, through: Through) -> float:
     """Greatest difference of pivots and r2 of the nearest linkage found, by the planted one's size."""
-    pivots = [name for name in planted.GROUND if name in type(planted).PIVOTS]
+    pivots = [name for name in planted.mechanism.ground if name in planted.mechanism.pivots]
     size = planted.r2 + np.hypot(*planted.coupler_point)
     apart = [np.abs(through.linkages.r2 - planted.r2)]
     apart += [np.hypot(*(getattr(through.linkages, name) - getattr(planted, name)).T) for name in pivots]

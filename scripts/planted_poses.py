@@ -94,7 +94,7 @@ def limits(cell: Cell, linkage: Linkage, rng: np.random.Generator) -> dict[str, 
     if cell.stated in ("o2", "both pivots"):
         found["o2"] = point(linkage.o2)
     if cell.stated in ("other pivot", "both pivots"):
-        found["o4"] = point(linkage.o4)  # type: ignore[attr-defined]
+        found["o4"] = point(linkage.o4)
     if "brackets" in cell.stated:
         found |= brackets(linkage)
     return found

@@ -89,7 +89,7 @@ def track(
         design = designs[number]
         share = errors[number] / least
         most = np.inf if share < _TRADED else max(share * max(reached, same_error(problem)), errors[number])
-        moved[number] = _moved(ready[design.linkage.MECHANISM], design, number, most)
+        moved[number] = _moved(ready[design.linkage.mechanism.word], design, number, most)
         if moved[number].verdict.ok:
             reached = min(reached, moved[number].error(problem))
     return tuple(replace(moved[number], problem=problem) for number in range(len(designs)))
@@ -101,7 +101,7 @@ def _kinds_of(designs: Sequence[Candidate], problem: Problem) -> list[str]:
     for number, design in enumerate(designs):
         if not isinstance(design, Candidate):
             raise wrong_value(f"designs[{number}]", design, "a Candidate, as results list them")
-        kind = design.linkage.MECHANISM
+        kind = design.linkage.mechanism.word
         if kind not in problem.mechanism:
             asked = ", ".join(problem.mechanism)
             raise ProblemError(f"designs[{number}] is a {kind}; the problem asks for {asked}")

@@ -27,7 +27,7 @@ def test_examples_of(name: str) -> None:
 
 def test_all_layers_are_seen() -> None:
     ends = {
-        "problems.values.task",
+        "problems.values.tasks.task",
         "analysis.judge.verify",
         "synth.programme.start",
         "output.terminal",

@@ -123,8 +123,8 @@ def _unbalanced(linkage: Linkage, masses: Masses) -> tuple[ComplexArray, Complex
     if isinstance(linkage, InvertedSliderCrank):  # theta3 is theta4 less a right angle
         return crank + masses.coupler.mass * linkage.r2, output - 1j * masses.coupler.mass * own
     raise ProblemError(
-        f"a {linkage.MECHANISM} has no link 4 that turns about the ground, so counterweights on links 2 and "
-        "4 cannot keep its centre of mass at rest; balance_reciprocating makes its shaking force less"
+        f"a {linkage.mechanism.word} has no link 4 that turns about the ground, so counterweights on links 2 "
+        "and 4 cannot keep its centre of mass at rest; balance_reciprocating makes its shaking force less"
     )
 
 

@@ -31,7 +31,7 @@ JOINED = ((1, 2), (2, 3), (3, 4), (1, 4))
 
 def slide_of(linkage: Linkage) -> Joint | None:
     """The joint that is a slide; None where all are pins."""
-    return Joint(JOINED.index(linkage.SLIDES[0])) if linkage.SLIDES else None
+    return Joint(JOINED.index(linkage.mechanism.slides[0])) if linkage.mechanism.slides else None
 
 
 def pins_of(linkage: Linkage) -> tuple[Joint, ...]:
@@ -96,8 +96,8 @@ def output_rate(state: Kinematics) -> FloatArray:
 
 def origin(state: Kinematics, link: int) -> PointMotion:
     """How the origin of a link's frame moves: O2, A, and O4 or the slider's B; of the ground O2."""
-    name = state.linkage.LINKS[link - 1].points[0]
-    if name not in state.linkage.GROUND:
+    name = state.linkage.mechanism.links[link - 1].points[0]
+    if name not in state.linkage.mechanism.ground:
         moving: PointMotion = getattr(state, name)
         return moving
     still = np.zeros(2)
@@ -106,7 +106,9 @@ def origin(state: Kinematics, link: int) -> PointMotion:
 
 def moving_origins(linkage: Linkage) -> tuple[int, ...]:
     """The links whose frames begin in a point that moves."""
-    return tuple(link.number for link in linkage.LINKS[1:] if link.points[0] not in linkage.GROUND)
+    return tuple(
+        link.number for link in linkage.mechanism.links[1:] if link.points[0] not in linkage.mechanism.ground
+    )
 
 
 def frame_angle(state: Kinematics, link: int) -> FloatArray:

@@ -172,8 +172,9 @@ class Friction:
             return each
         if np.ndim(getattr(self, name)) and each[slide]:
             raise ProblemError(
-                f"{name} friction in {slide.name} is {each[slide]:g}; that joint of a {linkage.MECHANISM} "
-                f"is a slide, so it must be 0, and {_OF_SLIDES[name]} states that of slides"
+                f"{name} friction in {slide.name} is {each[slide]:g}; that joint of a "
+                f"{linkage.mechanism.word} is a slide, so it must be 0, and {_OF_SLIDES[name]} states that of"
+                " slides"
             )
         found = each.copy()
         found[slide] = given

@@ -71,16 +71,16 @@ def instant_centres(
     o4 = np.broadcast_to(getattr(linkage, "o4", none), state.a.shape)
     across = np.stack([np.cos(state.theta4), np.sin(state.theta4)], axis=-1)  # square to a slide
     of4 = state.b - o4, o4 - o2, state.b - state.a  # along I14-I34, I12-I14, I23-I34
-    if (1, 4) in linkage.SLIDES:
+    if (1, 4) in linkage.mechanism.slides:
         of4 = across, across, state.b - state.a
-    if (3, 4) in linkage.SLIDES:
+    if (3, 4) in linkage.mechanism.slides:
         of4 = across, o4 - o2, across
     return InstantCentres(
         i12=o2,
         i23=state.a,
-        i34=none if (3, 4) in linkage.SLIDES else state.b,
+        i34=none if (3, 4) in linkage.mechanism.slides else state.b,
         i14=o4,
-        i13=_meeting(o2, state.a - o2, state.b if (1, 4) in linkage.SLIDES else o4, of4[0]),
+        i13=_meeting(o2, state.a - o2, state.b if (1, 4) in linkage.mechanism.slides else o4, of4[0]),
         i24=_meeting(o2, of4[1], state.a, of4[2]),
     )
 

@@ -55,14 +55,14 @@ class Design:
     p: Sequence[Any]
     offset: Any = None
     slide_angle: Any = None
-    mechanism: str = FourBar.MECHANISM
+    mechanism: str = FourBar.mechanism.word
 
     @classmethod
     def of(cls, linkage: Linkage, theta2: FloatArray, assembly: IntArray) -> Design:
         """The numbers of a linkage at driver angles in the order of visit, shape (N,)."""
         state = solve_position(linkage, theta2, assembly)
         # Not Python's floats: (r1 - 5)**0.5 would be complex below 5.
-        lengths = dict(zip(linkage.LENGTHS, linkage.lengths, strict=True))
+        lengths = dict(zip(linkage.mechanism.lengths, linkage.lengths, strict=True))
         return cls(
             o2=linkage.o2,
             o4=getattr(linkage, "o4", None),
@@ -75,7 +75,7 @@ class Design:
             p=list(state.p),
             offset=getattr(linkage, "offset", None),
             slide_angle=getattr(linkage, "slide_angle", None),
-            mechanism=linkage.MECHANISM,
+            mechanism=linkage.mechanism.word,
         )
 
     @classmethod

@@ -19,6 +19,7 @@ from grashof.analysis.judge.verdict import Enclosure, Verdict
 from grashof.problems import Linkage, Requirements, Rotatability, Task
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.box import ANYWHERE
+from grashof.problems.values.linkages.linkage import by_kind
 from grashof.problems.values.requirements.function_ground import grounded
 
 _AT_ONCE = 100  # linkages, so that memory is bounded
@@ -91,8 +92,7 @@ def enclose(
     task = grounded(task, requirements)
     wanted = requirements.for_task(task).resolved(task.size, scale_free=task.scale_free)
     found: dict[int, Enclosure] = {}
-    for kind in dict.fromkeys(map(type, linkages)):
-        alike = [k for k, linkage in enumerate(linkages) if type(linkage) is kind]
+    for alike in by_kind(linkages):
         for begin in range(0, len(alike), _AT_ONCE):
             chosen = alike[begin : begin + _AT_ONCE]
             batch = [linkages[k] for k in chosen], [verdicts[k] for k in chosen]
@@ -110,7 +110,7 @@ def _of_kind(
     if whole or cycle:
         ends = np.concatenate([ends, ends[:, :1] + [0.0, TURN + 1e-14]])
     count = len(linkages)
-    batch = stacked(linkages)
+    batch = linkages[0].stacked(linkages)
     over = batch[np.arange(len(ends)) % count]
     asked = np.arange(len(ends)) // count == int(cycle)
     required = np.where(asked, np.radians(wanted.transmission_min_deg) - SLACK, np.nan)
@@ -136,11 +136,6 @@ def _of_kind(
             why="; ".join(dict.fromkeys(claim.what for claim in undone)),
             contradicts=any(claim.shown is _Shown.FALSE for claim in claims),
         )
-
-
-def stacked(linkages: Sequence[Linkage]) -> Linkage:
-    """Single linkages of a kind as a batch."""
-    return type(linkages[0])(*map(np.stack, zip(*(each.parameters for each in linkages), strict=True)))
 
 
 def _closes(least: Least, row: int, motion: str) -> _Claim:

@@ -101,7 +101,7 @@ def begins(
     if task.travels == hasattr(linkage, "o4"):
         way = "slides" if task.travels else "turns"
         raise ProblemError(
-            f"mechanism {linkage.MECHANISM} has no output that {way}; the function asks for one"
+            f"mechanism {linkage.mechanism.word} has no output that {way}; the function asks for one"
         )
     search = _Search(linkage, task, exact or task.norm == "rms", transmission)
     found: list[tuple[float, int, float]] = []

@@ -151,7 +151,7 @@ def intrusions(
     area, deepest = Area.of(wanted.keep_out), dict[str, float]()
     parts: dict[str, tuple[str, ...]] = {}
     for name in wanted.keep_out_for:
-        if name not in (*linkage.POINTS, "links", "body"):  # O4 of a slider-crank
+        if name not in (*linkage.mechanism.points, "links", "body"):  # O4 of a slider-crank
             continue
         if name != "body":
             parts |= _lines(linkage) if name == "links" else {name.upper(): (name,)}
@@ -162,7 +162,7 @@ def intrusions(
             )
             deepest["the body"] = float(over)
     for part, ends in parts.items():
-        if set(ends) <= set(linkage.GROUND):
+        if set(ends) <= set(linkage.mechanism.ground):
             deepest[part] = float(depth(area, getattr(linkage, ends[0])))
             continue
         if joined:
@@ -176,13 +176,13 @@ def intrusions(
 
 def _lines(linkage: Linkage) -> dict[str, tuple[str, ...]]:
     """The links, then the lines to the coupler point, by name; the ends of each."""
-    joined = {*linkage.JOINTS, "b"}
+    joined = {*linkage.mechanism.joints, "b"}
     named = {
         f"{'link' if joined >= set(ends) else 'line'} {''.join(ends).upper()}": ends
-        for link in linkage.LINKS[1:]
+        for link in linkage.mechanism.links[1:]
         for ends in link.lines
     }
-    if (3, 4) in linkage.SLIDES:  # the rod reaches as far as its block
+    if (3, 4) in linkage.mechanism.slides:  # the rod reaches as far as its block
         named["link AB"] = ("a", "b")
     return dict(sorted(named.items(), key=lambda part: part[0].startswith("line")))
 

@@ -38,7 +38,7 @@ def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
     verdict = values.verdict  # another defect reports that no motion joins the targets
     joined = verdict.branch_ok or verdict.cylinder is not None or not wanted.same_branch
     for name, limit in limited.items():
-        if values.linkage.MECHANISM not in limit.quantity.kinds:  # of a list of several kinds
+        if values.linkage.mechanism.word not in limit.quantity.kinds:  # of a list of several kinds
             continue
         if limit.quantity.key in values.problem.task.without:  # a default
             continue

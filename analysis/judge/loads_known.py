@@ -35,7 +35,7 @@ def load_defects(linkage: Linkage, problem: Problem, verdict: Verdict) -> Iterat
     """
     loads = () if problem.dynamics is None else problem.dynamics.loads
     over = {index: load.values for index, load in enumerate(loads) if load.over == "travel" and load.values}
-    if not over or not linkage.SLIDES:
+    if not over or not linkage.mechanism.slides:
         return
     linkage = as_used(linkage, verdict)
     theta2 = sampled(linkage, *motion_ends(problem.task, verdict))

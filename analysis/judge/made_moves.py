@@ -73,7 +73,7 @@ def made_moves(linkage: Linkage, theta2: npt.ArrayLike, tolerance: float) -> Mad
     """
     slope = sensitivity(linkage, theta2) * tolerance
     turns = output_sensitivity(linkage, theta2) * tolerance
-    senses = np.array(list(product((1.0, -1.0), repeat=len(linkage.DIMENSIONS) - 1)))
+    senses = np.array(list(product((1.0, -1.0), repeat=len(linkage.mechanism.dimensions) - 1)))
     senses = np.concatenate([np.ones((len(senses), 1)), senses], axis=1)  # the others are their opposites
     with np.errstate(invalid="ignore", over="ignore"):
         moved = slope[..., :2, :] @ senses.T

@@ -51,7 +51,7 @@ class Values(Mapping[str, float]):
     def __getitem__(self, key: str) -> float:
         if key not in self._known:
             quantity = QUANTITIES[key]
-            has = self.linkage.MECHANISM in quantity.kinds and self.problem.states(quantity.needs)
+            has = self.linkage.mechanism.word in quantity.kinds and self.problem.states(quantity.needs)
             self._known[key] = float(MEASURES[key](self)) if has else np.nan
         return self._known[key]
 
@@ -99,7 +99,9 @@ class Values(Mapping[str, float]):
         if self.problem.manufacturing is None:
             return {}
         found = robustness(self.linkage, self.problem.task, self.verdict, self.problem.manufacturing)
-        moves = zip((f"move_{name}" for name in self.linkage.DIMENSIONS), found.moves.tolist(), strict=True)
+        moves = zip(
+            (f"move_{name}" for name in self.linkage.mechanism.dimensions), found.moves.tolist(), strict=True
+        )
         shares = {"share_within_linear": found.share_linear, "share_within_made": found.share_made}
         return {**dict(moves), "worst_move": found.worst_move, **shares}
 
@@ -132,7 +134,7 @@ def _angle_error(number: Callable[[FloatArray], float], values: Values) -> float
 
 
 def _column(name: str, values: Values) -> float:
-    return values.linkage.columns.get(name, np.nan)
+    return float(values.linkage.columns.get(name, np.nan))
 
 
 def _of_linkage(name: str, values: Values) -> float:
@@ -249,7 +251,7 @@ def _place(point: str, values: Values) -> dict[str, FloatArray]:
 
 
 def _lengths(values: Values) -> dict[str, FloatArray]:
-    return dict(zip(values.linkage.LENGTHS, values.linkage.lengths[:, None], strict=True))
+    return dict(zip(values.linkage.mechanism.lengths, values.linkage.lengths[:, None], strict=True))
 
 
 def _arms(values: Values) -> dict[str, FloatArray]:

@@ -99,9 +99,9 @@ def random_inverted_slider_crank(rng: np.random.Generator) -> InvertedSliderCran
 
 # By the word for the kind of linkage.
 RANDOM: dict[str, Callable[[np.random.Generator], Linkage]] = {
-    FourBar.MECHANISM: random_full_crank,
-    SliderCrank.MECHANISM: random_slider_crank,
-    InvertedSliderCrank.MECHANISM: random_inverted_slider_crank,
+    FourBar.mechanism.word: random_full_crank,
+    SliderCrank.mechanism.word: random_slider_crank,
+    InvertedSliderCrank.mechanism.word: random_inverted_slider_crank,
 }
 
 
@@ -118,7 +118,7 @@ def uneven_driver_angles(rng: np.random.Generator, count: int) -> FloatArray:
 
 
 def planted_motion(
-    rng: np.random.Generator, poses: int, *, timed: bool = False, mechanism: str = FourBar.MECHANISM
+    rng: np.random.Generator, poses: int, *, timed: bool = False, mechanism: str = FourBar.mechanism.word
 ) -> tuple[MotionTask, Any]:
     """A motion task, and a full-crank linkage that does it exactly, in order, on one assembly.
 
@@ -148,7 +148,7 @@ def planted_motion(
 
 
 def planted_path(
-    rng: np.random.Generator, points: int, *, timed: bool = False, mechanism: str = FourBar.MECHANISM
+    rng: np.random.Generator, points: int, *, timed: bool = False, mechanism: str = FourBar.mechanism.word
 ) -> tuple[PathTask, Any]:
     """A path task, and a full-crank linkage that does it exactly, in order, on one assembly.
 
@@ -172,7 +172,7 @@ def planted_path(
 
 
 def planted_function(
-    rng: np.random.Generator, pairs: int, *, full: bool = False, mechanism: str = FourBar.MECHANISM
+    rng: np.random.Generator, pairs: int, *, full: bool = False, mechanism: str = FourBar.mechanism.word
 ) -> tuple[FunctionTask, Any, float]:
     """Pairs that some linkage generates, its driver counter-clockwise.
 
@@ -212,7 +212,7 @@ def planted_function(
         state = solve_position(linkage, start + dense)
         if np.isnan(state.theta4).any() or np.diff(inputs).min() < span / pairs / 10:
             continue
-        travels = mechanism == SliderCrank.MECHANISM
+        travels = mechanism == SliderCrank.mechanism.word
         moved = slide_travel(linkage, state) if travels else np.unwrap(state.theta4)
         outputs = moved[np.searchsorted(dense, inputs)]
         if not travels and np.ptp(outputs) > TURN:
@@ -237,7 +237,7 @@ def _loose_inverted(rng: np.random.Generator) -> InvertedSliderCrank:
 
 # Linkages whose driver need not turn fully, by the word for their kind.
 _LOOSE: dict[str, Callable[[np.random.Generator], Linkage]] = {
-    FourBar.MECHANISM: lambda rng: FourBar((0, 0), (1, 0), *_lengths(rng, 3)),
-    SliderCrank.MECHANISM: _loose_slider_crank,
-    InvertedSliderCrank.MECHANISM: _loose_inverted,
+    FourBar.mechanism.word: lambda rng: FourBar((0, 0), (1, 0), *_lengths(rng, 3)),
+    SliderCrank.mechanism.word: _loose_slider_crank,
+    InvertedSliderCrank.mechanism.word: _loose_inverted,
 }

@@ -122,7 +122,7 @@ def _groups(motions: Mapping[int, _Motion]) -> Iterator[list[int]]:
     """Those of a kind, so many at a time; each by itself where the driver is not steady."""
     kinds: dict[object, list[int]] = {}
     for k, motion in motions.items():
-        kinds.setdefault(type(motion.linkage) if motion.law.motor.steady else k, []).append(k)
+        kinds.setdefault(motion.linkage.mechanism if motion.law.motor.steady else k, []).append(k)
     for group in kinds.values():
         for first in range(0, len(group), _TOGETHER):
             yield group[first : first + _TOGETHER]
@@ -133,8 +133,7 @@ def _together(some: Sequence[_Motion]) -> tuple[Linkage, DriverLaw | SteadyDrive
     linkage, law, theta2 = some[0]
     if not law.motor.steady:
         return linkage, law, law.stretches(theta2)
-    parameters = zip(*(each.linkage.parameters for each in some), strict=True)
-    batch = type(linkage)(*map(np.stack, parameters))[:, None]
+    batch = linkage.stacked([each.linkage for each in some])[:, None]
     start, omega2 = np.array([(each.law.start, each.law.omega2) for each in some]).T[..., None]
     most = max(len(each.theta2) for each in some)
     rows = [np.pad(each.theta2, (0, most - len(each.theta2)), mode="edge") for each in some]

@@ -83,7 +83,7 @@ def robustness(linkage: Linkage, task: Task, verdict: Verdict, manufacturing: Ma
     [3.56, 2.67, 3.59, 4.97, 1.0, 1.0]
     """
     samples = min(SAMPLES, max(_FEWEST, _POSITIONS // len(task)))
-    dimensions = len(linkage.DIMENSIONS)
+    dimensions = len(linkage.mechanism.dimensions)
     errors = dimension_errors(manufacturing, samples, np.random.default_rng(0), dimensions)
     slope = measured_sensitivity(linkage, task, verdict)
     senses = list(product((1.0, -1.0), repeat=dimensions))
@@ -133,7 +133,7 @@ def sensitivity(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike
         along, ahead = np.exp(1j * theta3), np.exp(1j * theta2)
         arm = (linkage.coupler_point @ np.array([1, 1j])) * along
         carried = 1j * arm[..., None] * turn
-    carried[..., linkage.DIMENSIONS.index("r2")] += ahead
+    carried[..., linkage.mechanism.dimensions.index("r2")] += ahead
     none = np.zeros((*theta3.shape, 2))
     moved = np.concatenate([carried, np.stack([along, 1j * along], axis=-1)], axis=-1)
     turned = np.concatenate([turn, none], axis=-1)
@@ -216,17 +216,16 @@ def made_linkages(linkage: AnyKind, errors: FloatArray) -> tuple[AnyKind, BoolAr
     Linkage, ndarray of bool
         Shape (S,); an impossible one is the nominal one.
     """
-    count = len(linkage.LENGTHS)  # which come first among the dimensions
+    count = len(linkage.mechanism.lengths)  # which come first among the dimensions
     possible: BoolArray = np.all(linkage.lengths + errors[:, :count] > 0, axis=1)
     errors = np.where(possible[:, None], errors, 0.0)
-    stated = {row.name: value for row, value in zip(linkage.PARAMETERS, linkage.parameters, strict=True)}
     made = {"coupler_point": linkage.coupler_point + errors[:, -2:]}
-    for column, name in enumerate(linkage.DIMENSIONS[:-2]):
+    for column, name in enumerate(linkage.mechanism.dimensions[:-2]):
         if name == "r1":
             along = np.array([np.cos(linkage.theta1), np.sin(linkage.theta1)])
-            made["o4"] = stated["o4"] + errors[:, column, None] * along
+            made["o4"] = linkage.o4 + errors[:, column, None] * along
         else:
-            made[name] = stated[name] + errors[:, column]
+            made[name] = getattr(linkage, name) + errors[:, column]
     return linkage.changed(**made), possible
 
 

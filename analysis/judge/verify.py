@@ -134,7 +134,9 @@ def verify(
         *_rotatability(linkage, task, wanted),
         *_covered(targets),
         *(load_defects(linkage, problem, verdict) if problem is not None else []),
-        *missed(Values(linkage, verdict, problem or Problem(task=task, mechanism=linkage.MECHANISM)), wanted),
+        *missed(
+            Values(linkage, verdict, problem or Problem(task=task, mechanism=linkage.mechanism.word)), wanted
+        ),
         *(_own(Design.judged(linkage, verdict), constraints) if constraints else []),
         *(_kept_out(linkage, targets, motion, task, wanted, joined=branch_ok) if wanted.keep_out else []),
     )

@@ -81,8 +81,10 @@ def solve_position(
 def places(linkage: Linkage, state: Position) -> dict[str, FloatArray]:
     """Where the points of a linkage are in some of its positions, each of shape (..., 2), by their names."""
     return {
-        point: np.broadcast_to(getattr(linkage if point in linkage.GROUND else state, point), state.a.shape)
-        for point in linkage.POINTS
+        point: np.broadcast_to(
+            getattr(linkage if point in linkage.mechanism.ground else state, point), state.a.shape
+        )
+        for point in linkage.mechanism.points
     }
 
 

@@ -44,13 +44,15 @@ def reach_box(linkage: Linkage, start: float, end: float) -> FloatArray:
     def tracks(share: FloatArray) -> FloatArray:
         """The coordinates of each point that moves, and the same turned round."""
         state = solve_position(linkage, motion.theta2(share))
-        rows = np.concatenate([np.moveaxis(getattr(state, point), -1, 0) for point in linkage.MOVING])
+        rows = np.concatenate(
+            [np.moveaxis(getattr(state, point), -1, 0) for point in linkage.mechanism.moving]
+        )
         both = own(np.concatenate([rows, -rows]))
         closed = np.isfinite(own(np.broadcast_to(state.theta3, (len(both), *state.theta3.shape))))
         return np.where(closed, both, -np.inf)
 
     furthest = greatest(tracks, np.linspace(0, 1, _SAMPLES), most=2, rounds=_ROUNDS)[0].reshape(2, -1, 2)
-    corners = np.stack([getattr(linkage, pivot) for pivot in linkage.GROUND])
+    corners = np.stack([getattr(linkage, pivot) for pivot in linkage.mechanism.ground])
     most, least = np.where(np.isfinite(furthest), furthest, -np.inf)
     return np.stack([np.min([*corners, *-least], axis=0), np.max([*corners, *most], axis=0)])
 

@@ -224,7 +224,8 @@ def _checked(state: Kinematics, links: Sequence[int] | None) -> Sequence[int]:
     for link in links or ():
         if link not in bars:
             raise ProblemError(
-                f"link {link} of a {state.linkage.MECHANISM} is no bar; section forces are of links {bars}"
+                f"link {link} of a {state.linkage.mechanism.word} is no bar; "
+                f"section forces are of links {bars}"
             )
     return bars if links is None else links
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from marking import code, row, sentence
 
-from grashof.problems.values.linkages.mechanisms import KINDS
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.requirements.quantities import Needs, Over, Quantity
 from grashof.synth.designs.table import ABOUT, COLUMNS, LISTED, NAMES, OWN
 
@@ -34,6 +34,6 @@ def _meaning(quantity: Quantity) -> str:
     parts = [sentence(quantity.full), sentence(about)]
     if quantity.needs is not Needs.NOTHING:
         parts.append(f"Needs {quantity.needs.value}.")
-    if set(quantity.kinds) != set(KINDS):
+    if set(quantity.kinds) != set(ONE_LOOP):
         parts.append(f"Of {', '.join(quantity.kinds)}.")
     return " ".join(filter(None, parts))

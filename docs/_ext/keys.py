@@ -26,7 +26,7 @@ from grashof.problems.files.linkage_schema import FILES, LinkageTable
 from grashof.problems.files.problem_schema import ProblemFile, WeightsTable
 from grashof.problems.files.tables import Table, tables_of
 from grashof.problems.values.checks import GREATEST
-from grashof.problems.values.linkages.mechanisms import KINDS
+from grashof.problems.values.linkages.mechanisms import CLASSES
 from grashof.problems.values.requirements.objective import GOALS
 from grashof.problems.values.requirements.quantities import Limit, Needs, Quantity
 from grashof.problems.values.requirements.requirements import LIMITS, Rotatability
@@ -108,7 +108,7 @@ def _sources(table: type[Table]) -> Iterator[object]:
     if issubclass(table, ProblemFile):
         yield from (Problem, DynamicsSpec)
     elif issubclass(table, LinkageTable):
-        yield from (KINDS[kind] for kind, file in FILES.items() if file is table)
+        yield from (CLASSES[kind] for kind, file in FILES.items() if file is table)
         yield from (LinkageSpec, DynamicsSpec)
     elif isinstance(made := _made(table), type):
         yield from (getattr(made, "from_degrees", made), made)

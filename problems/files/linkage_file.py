@@ -32,7 +32,8 @@ from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkages.cylinder import CARRIERS, Cylinder
 from grashof.problems.values.linkages.linkage import Linkage
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR, KINDS, mechanism
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR, mechanism
 from grashof.problems.values.specs.linkage_spec import LinkageSpec, ListedDesign
 from grashof.problems.values.specs.problem import Problem
 
@@ -201,7 +202,7 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
     design = designs[rank]
     with located_in(where):
         kind = mechanism(design.get("mechanism", FOUR_BAR))
-    keys = {row.name: row for row in KINDS[kind].PARAMETERS}
+    keys = {row.name: row for row in ONE_LOOP[kind].parameters}
     try:
         stated = {key: design["linkage"][key] for key in keys}
         turned = {key: stated.pop(key) for key, row in keys.items() if row.kind == "angle"}
@@ -218,7 +219,7 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
         driven = _cylinder(design.get("cylinder"))
         spec = linkage_from(document, readable(f"{path.parent.name or path.stem}-{rank}"))
         angles = {key: np.asarray(finite_number(angle, key)) for key, angle in turned.items()}
-        linkage = KINDS[kind](**{key: getattr(spec.linkage, key) for key in keys} | angles)
+        linkage = spec.linkage.changed(**angles)
     if direction not in (1, -1):
         raise ProblemError(f"{where}: direction is {shown(direction)}; it must be +1 or -1")
     problem = _listed_problem(content, path)

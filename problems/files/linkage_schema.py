@@ -16,7 +16,8 @@ from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.linkages.linkage_parts import Parameter
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR, KINDS, PARAMETERS, mechanism, not_had
+from grashof.problems.values.linkages.mechanism import ONE_LOOP, Mechanism
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR, PARAMETERS, linkage_of, mechanism, not_had
 from grashof.problems.values.specs.linkage_spec import LinkageSpec
 
 
@@ -70,7 +71,7 @@ _TYPES: dict[str, Any] = {"place": Point, "arm": Point, "sign": int}
 _USUAL: dict[str, Any] = {"arm": [0.0, 0.0], "distance": 0.0, "sign": 1, "angle": 0.0}
 
 
-Mechanism = Annotated[str, AfterValidator(mechanism)]
+_Word = Annotated[str, AfterValidator(mechanism)]
 
 
 class _Heading(Table):
@@ -91,7 +92,7 @@ class _Heading(Table):
     title: Text = ""
     source: Text = ""
     length_unit: Text = ""
-    mechanism: Mechanism = FOUR_BAR
+    mechanism: _Word = FOUR_BAR
 
 
 class LinkageTable(MachineTables, _Heading):
@@ -141,11 +142,11 @@ class LinkageTable(MachineTables, _Heading):
             metres(self.length_unit, "pumping_unit")
             if self._given("output_arm") is None:
                 raise ProblemError("output_arm is missing; pumping_unit needs that of the horsehead")
-        kind = KINDS[self.mechanism]
-        given = {row.name: getattr(self, row.key) for row in kind.PARAMETERS}
-        given |= {row.name: np.radians(given[row.name]) for row in kind.PARAMETERS if row.kind == "angle"}
-        linkage = kind(**given | ({"o4": self._o4()} if "o4" in given else {}))
-        if "r1" in kind.LENGTHS and not linkage.lengths[0] > 0:
+        kind = ONE_LOOP[self.mechanism]
+        given = {row.name: getattr(self, row.key) for row in kind.parameters}
+        given |= {row.name: np.radians(given[row.name]) for row in kind.parameters if row.kind == "angle"}
+        linkage = linkage_of(self.mechanism, given | ({"o4": self._o4()} if "o4" in given else {}))
+        if "r1" in kind.lengths and not linkage.lengths[0] > 0:
             raise ProblemError("o4 is where o2 is; the ground pivots must be distinct")
         return linkage
 
@@ -192,16 +193,17 @@ def _keys(row: Parameter) -> Iterator[tuple[str, Any]]:
         yield row.key, (_TYPES.get(row.kind, float), _USUAL.get(row.kind, ...))
 
 
-def _file(kind: type[Linkage]) -> type[LinkageTable]:
+def _file(kind: Mechanism) -> type[LinkageTable]:
     """The file of a kind: the parameters that it has, and what else goes with them."""
-    keys = {key: made for row in kind.PARAMETERS for key, made in _keys(row)}
+    keys = {key: made for row in kind.parameters for key, made in _keys(row)}
     also: dict[str, Any] = {"output_arm": (float | None, None)} if "o4" in keys else {}
-    if kind.MECHANISM == FOUR_BAR:
+    if kind.word == FOUR_BAR:
         also["pumping_unit"] = (PumpingUnitTable | None, None)
-    begin = create_model(f"_{kind.__name__}", __base__=_Heading, **keys)
+    name = kind.word.title().replace("-", "")
+    begin = create_model(f"_{name}", __base__=_Heading, **keys)
     bases: tuple[Any, ...] = (LinkageTable, MachineTables, begin)
-    file: type[LinkageTable] = create_model(f"{kind.__name__}Table", __base__=bases, **also)
+    file: type[LinkageTable] = create_model(f"{name}Table", __base__=bases, **also)
     return file
 
 
-FILES: dict[str, type[LinkageTable]] = {word: _file(kind) for word, kind in KINDS.items()}
+FILES: dict[str, type[LinkageTable]] = {word: _file(kind) for word, kind in ONE_LOOP.items()}

@@ -83,7 +83,7 @@ def _design(row: dict[str, str]) -> PublishedDesign:
     theta2 = np.array([float(angle) for angle in row["theta2"].split()])
     linkage = {
         each.name: np.squeeze([float(row[column]) for column in each.columns])
-        for each in FourBar.PARAMETERS
+        for each in FourBar.mechanism.parameters
         if row.keys() >= set(each.columns)
     }
     return PublishedDesign(

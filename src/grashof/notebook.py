@@ -67,13 +67,17 @@ def _result(result: Result) -> str:
 
 def _linkage(linkage: AnyKind) -> dict[str, str]:
     return {
-        **{name: f"{float(getattr(linkage, name)):.6g}" for name in linkage.DIMENSIONS if name not in "uv"},
+        **{
+            name: f"{float(getattr(linkage, name)):.6g}"
+            for name in linkage.mechanism.dimensions
+            if name not in "uv"
+        },
         **(
             {"slide": f"{np.degrees(linkage.slide_angle):.6g} deg"}
             if isinstance(linkage, SliderCrank)
             else {}
         ),
-        **{point.upper(): _pair(getattr(linkage, point)) for point in linkage.GROUND},
+        **{point.upper(): _pair(getattr(linkage, point)) for point in linkage.mechanism.ground},
         "P (u, v)": _pair(linkage.coupler_point),
         "assembly": f"{int(linkage.assembly):+d}",
         "Grashof class": str(grashof_class(linkage)),
@@ -104,11 +108,11 @@ def _error(candidate: Candidate) -> dict[str, str]:
 
 
 def _batch(linkages: AnyKind) -> str:
-    lengths = linkages.lengths.reshape(-1, len(linkages.LENGTHS))
+    lengths = linkages.lengths.reshape(-1, len(linkages.mechanism.lengths))
     rows = [[f"{length:.6g}" for length in each] for each in lengths[:_ROWS]]
     first = f", the first {_ROWS}" if len(lengths) > _ROWS else ""
     summary = f"batch of {counted(len(lengths), 'linkage')}, shape {linkages.shape}{first}"
-    return f"<p>{summary}</p>{_table(linkages.LENGTHS, rows)}"
+    return f"<p>{summary}</p>{_table(linkages.mechanism.lengths, rows)}"
 
 
 def _pair(point: FloatArray) -> str:

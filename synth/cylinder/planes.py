@@ -104,8 +104,8 @@ def _loop(linkage: Linkage, e2: ComplexArray, e3: ComplexArray, e4: ComplexArray
     the one that it slides on, or else i (w2 k + w3 c) = i w4 (B - O4). None of this is infinite in a dead
     position.
     """
-    sizes = dict(zip(linkage.LENGTHS, linkage.lengths.tolist(), strict=True))
-    ground = {name: complex(*getattr(linkage, name)) for name in linkage.GROUND}
+    sizes = dict(zip(linkage.mechanism.lengths, linkage.lengths.tolist(), strict=True))
+    ground = {name: complex(*getattr(linkage, name)) for name in linkage.mechanism.ground}
     r2, crank = sizes["r2"], sizes["r2"] * e2
     r4 = sizes.get("r4", r2)  # of what slides any length will do
     if "r3" in sizes:
@@ -119,7 +119,7 @@ def _loop(linkage: Linkage, e2: ComplexArray, e3: ComplexArray, e4: ComplexArray
         np.imag(np.conj(one) * other) / size
         for one, other in ((output, coupler), (crank, output), (crank, coupler))
     )
-    slides = {link: on for on, link in linkage.SLIDES}
+    slides = {link: on for on, link in linkage.mechanism.slides}
     turns = {1: np.zeros_like(w2), 2: w2, 3: w3, 4: w4}
     return _Loop(ground, r2, r4, crank, coupler, farthest, (w2, w3, turns[slides.get(4, 4)]))
 
@@ -128,7 +128,7 @@ def _link_4(linkage: Linkage, loop: _Loop, e4: ComplexArray, power: FloatArray |
     """The plane of link 4: about O4, or with B along a slide of the ground."""
     w2, w3, w4 = loop.turns
     if "o4" in loop.ground:
-        arm = float(getattr(linkage, "r4" if "r4" in linkage.LENGTHS else "offset"))
+        arm = float(getattr(linkage, "r4" if "r4" in linkage.mechanism.lengths else "offset"))
         still, reach = np.zeros_like(e4), max(loop.r4, abs(arm))
         return Plane(still + loop.ground["o4"], e4, still, w4, np.array([complex(arm)]), 0j, reach, power)
     b, way = loop.ground["o2"] + loop.crank + loop.coupler, 1j * (w2 * loop.crank + w3 * loop.coupler)

@@ -78,11 +78,13 @@ class Candidate(Displayed):
         """
         linkage = self.linkage
         others = [
-            x for row, x in zip(linkage.PARAMETERS, linkage.parameters, strict=True) if not row.in_length
+            x
+            for row, x in zip(linkage.mechanism.parameters, linkage.parameters, strict=True)
+            if not row.in_length
         ]
         numbers = [*signature(linkage), *others]
         text = " ".join(f"{number + 0.0:.5e}" for number in numbers)
-        text += "" if linkage.MECHANISM == FOUR_BAR else linkage.MECHANISM
+        text += "" if linkage.mechanism.word == FOUR_BAR else linkage.mechanism.word
         return "d" + hashlib.sha256(text.encode()).hexdigest()[:7]
 
     @property

@@ -85,7 +85,7 @@ def _dyads(candidate: Candidate) -> FloatArray:
     """Ground pivot and moving joint at the first target, of the driver and of the output, shape (2, 4)."""
     linkage, verdict = candidate.linkage, candidate.verdict
     at = solve_position(linkage, verdict.theta2[:1], int(verdict.assembly[0]))
-    ends = (getattr(linkage, name) for name in linkage.GROUND)
+    ends = (getattr(linkage, name) for name in linkage.mechanism.ground)
     return np.array([[*pivot, *joint[0]] for pivot, joint in zip(ends, (at.a, at.b), strict=True)])
 
 

@@ -136,7 +136,7 @@ def facts(candidate: Candidate) -> dict[str, Any]:
     driven = {} if verdict.cylinder is None else {"cylinder_on": verdict.cylinder.on}
     return {
         "id": candidate.id,
-        "mechanism": candidate.linkage.MECHANISM,
+        "mechanism": candidate.linkage.mechanism.word,
         "family": candidate.family or candidate.id,
         "region": candidate.region or None,
         "cognate_of": candidate.cognate_of or None,

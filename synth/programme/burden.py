@@ -13,7 +13,7 @@ from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.synth.programme.frame import Frame
 
 Numbers = tuple[float, ...]
-_LINKS = tuple(link.number for link in FourBar.LINKS[1:])
+_LINKS = tuple(link.number for link in FourBar.mechanism.links[1:])
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,7 +50,7 @@ class Symbols(View):
 
     def __init__(self, form: Form, x: Unknowns, places: Places) -> None:
         self.o2 = vector(x.o2)
-        if "o4" in form.kind.linkage.GROUND:
+        if "o4" in form.kind.linkage.mechanism.ground:
             self.o4 = vector(x.o4)
         self.r1, self.r2, self.r3, self.r4 = ca.vertsplit(x.r)
         self.offset = self.r4
@@ -158,7 +158,7 @@ def _closed(
         closing = [ca.dot(at - x.o4, side) - x.r[3] for at, side in zip(a, across, strict=True)]
         return b, across.__getitem__, closing
     b = [at + x.r[2] * along for at, along in zip(a, turned, strict=True)]
-    if "o4" in form.kind.linkage.GROUND:
+    if "o4" in form.kind.linkage.mechanism.ground:
         return b, lambda k: b[k] - x.o4, [(ca.sumsqr(point - x.o4) - x.r[3] ** 2) / 2 for point in b]
     normal = unit(x.theta1)
     return b, lambda _: normal, [ca.dot(point - x.o2, normal) - x.r[3] for point in b]
@@ -177,7 +177,7 @@ def square(form: Form, x: Unknowns, places: Places, targets: Targets) -> ca.SX:
 
 def require_modes(build: Builder, form: Form, x: Unknowns, places: Places) -> None:
     """The ground line, the order of the targets, one branch, and a driver that turns fully."""
-    if "o4" in form.kind.linkage.GROUND:
+    if "o4" in form.kind.linkage.mechanism.ground:
         build.zero(x.o4 - x.o2 - x.r[0] * unit(x.theta1))
     for k in range(form.targets - 1):
         least = LEAST_STEP if form.exact else 0.0
@@ -197,7 +197,7 @@ def _area(form: Form, x: Unknowns) -> ca.SX:
     """What the product of coupler and `across` comes to at its greatest, or of its order."""
     if form.kind.turns_with_coupler:
         return x.r[0]
-    return x.r[2] * x.r[3] if "o4" in form.kind.linkage.GROUND else x.r[2]
+    return x.r[2] * x.r[3] if "o4" in form.kind.linkage.mechanism.ground else x.r[2]
 
 
 def stand_nearest(build: Builder, form: Form, x: Unknowns, places: Places, targets: Targets) -> None:
@@ -260,7 +260,7 @@ def bound_transmission(build: Builder, form: Form, x: Unknowns, places: Places) 
 
 def _reach(form: Form, x: Unknowns, places: Places, k: int) -> ca.SX:
     """What decides the transmission angle (`Kind.at_angle`), at a target."""
-    if "o4" in form.kind.linkage.GROUND:
+    if "o4" in form.kind.linkage.mechanism.ground:
         return ca.sumsqr(places.a[k] - x.o4)
     return x.r[3] - ca.dot(places.a[k] - x.o2, places.across(k))
 

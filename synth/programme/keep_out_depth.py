@@ -16,7 +16,7 @@ def points_kept_out(wanted: Requirements) -> tuple[str, ...]:
     """Which of o2, o4, a, b, p must keep out of areas: those named, and the ends of links."""
     if not wanted.keep_out:
         return ()
-    return tuple(name for name in FourBar.POINTS if {name, "links"} & set(wanted.keep_out_for))
+    return tuple(name for name in FourBar.mechanism.points if {name, "links"} & set(wanted.keep_out_for))
 
 
 def depth(wanted: Requirements, name: str, points: ComplexArray) -> FloatArray:

@@ -31,8 +31,8 @@ def depth_on_the_way(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
         Zero where no sample lies inside: the judge looks closer.
     """
     wanted = scaled.wanted
-    kind = scaled.kind.linkage
-    names = [name for name in points_kept_out(wanted) if name in kind.MOVING]
+    kind = scaled.kind.linkage.mechanism
+    names = [name for name in points_kept_out(wanted) if name in kind.moving]
     links, body = "links" in wanted.keep_out_for, _body(scaled)
     deepest = np.zeros(len(linkages))
     for begin in range(0, len(linkages) if names or len(body) else 0, _ROWS):
@@ -40,7 +40,7 @@ def depth_on_the_way(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
         places = _places(scaled.kind, linkages[rows])
         tracks = [places[name] for name in names]
         if links:
-            for one, other in (line for link in kind.LINKS[1:] for line in link.lines):
+            for one, other in (line for link in kind.links[1:] for line in link.lines):
                 tracks += [places[one] + share * (places[other] - places[one]) for share in _ALONG]
         if len(body):
             turned = (places["b"] - places["a"]) * np.exp(1j * _from_coupler(scaled, linkages[rows]))[:, None]

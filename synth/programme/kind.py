@@ -88,7 +88,7 @@ class Kind(ABC):
     @property
     def mechanism(self) -> str:
         """As files name it."""
-        return self.linkage.MECHANISM
+        return self.linkage.mechanism.word
 
     @abstractmethod
     def folded(self, d: View) -> Any:
@@ -166,7 +166,7 @@ class Kind(ABC):
 
     def named(self, lengths: Iterable[Any], theta1: Any) -> dict[str, Any]:
         """What a `Design` has of r1, r2, r3, r4, or the offset there, and of the ground's direction."""
-        names, every = self.linkage.LENGTHS, dict(zip(_LENGTHS, lengths, strict=True))
+        names, every = self.linkage.mechanism.lengths, dict(zip(_LENGTHS, lengths, strict=True))
         found = {name: length if name in names else None for name, length in every.items()}
         offset = None if "r4" in names else every["r4"]
         slide = theta1 - np.pi / 2 if "slide_angle" in self.formulas else None
@@ -182,7 +182,7 @@ class Kind(ABC):
 
     def o4_of(self, linkage: Linkage, b: complex, frame: Frame) -> complex:
         """O4 in a frame, of a linkage whose B is there at the first target."""
-        return complex(frame.inward(linkage.o4))  # type: ignore[attr-defined]
+        return complex(frame.inward(linkage.o4))
 
     def theta1_of(self, points: ComplexArray) -> float:
         """Direction of the ground line from O2, O4, A, B, P, rad."""

@@ -107,7 +107,7 @@ def solve(scaled: ScaledProblem, start: Start, max_iter: int | None = None) -> S
     if programme.asking is not None and programme.asking.ended_by_another(status):
         raise KeyboardInterrupt
     found = {name: answer[place] for name, place in programme.places.items()}
-    pivots = {name: complex(*found[name]) for name in form.kind.linkage.PIVOTS}
+    pivots = {name: complex(*found[name]) for name in form.kind.linkage.mechanism.pivots}
     p, theta3 = complex(scaled.targets[0]), start.theta3
     if not form.poses:
         theta3 = tuple(found["theta3"].tolist())
@@ -185,7 +185,7 @@ def _stated(
     if form.fits:  # the error comes first; the rest only settles what the error leaves open
         cost = targets.error_scale * square(form, x, places, targets) - 1e-8 * x.tau
     if form.stay:
-        names = form.kind.linkage.PIVOTS
+        names = form.kind.linkage.mechanism.pivots
         begun = build.parameter(
             lambda _, start: interleaved(np.array([getattr(start, name) for name in names])), 2 * len(names)
         )

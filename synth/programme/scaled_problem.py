@@ -189,7 +189,7 @@ class ScaledProblem:
         arm = (points[..., 4] - points[..., 2]) * coupler.conj() * self.frame.scale
         if body_angle is None:
             body_angle = np.angle(np.exp(1j * self.turns[0]) * coupler.conj())
-        rows = {row.name: row for row in self.kind.linkage.PARAMETERS}
+        rows = {row.name: row for row in self.kind.linkage.mechanism.parameters}
         for name, value in given.items():
             if rows[name].kind == "place":
                 given[name] = self.frame.outward(value)

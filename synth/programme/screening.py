@@ -277,7 +277,7 @@ def judge(
     violate("rotatability", _rotatability_violation(view, wanted))
     for name, amount in _oversteps(view, wanted, None):
         violate(name, amount)
-    shortest = np.minimum.reduce([getattr(view, name) for name in found.kind.linkage.LENGTHS])
+    shortest = np.minimum.reduce([getattr(view, name) for name in found.kind.linkage.mechanism.lengths])
     violate("link_length", 1e-9 - shortest[:, 0])
     points = np.stack([found.o2, found.o4, found.a[:, 0], found.b[:, 0], p], axis=1)
     return Screened(
@@ -327,7 +327,7 @@ def dyad_violations(
     for name, amount in _oversteps(view, wanted, dyad):
         violations[:, GROUPS.index(name)] = amount
     for name, points in ((pivot, ground[:, None]), (joint, places)):
-        if name in kind.linkage.POINTS:
+        if name in kind.linkage.mechanism.points:
             violations[:, GROUPS.index("keep_out")] += keep_out_violation(name, points, wanted)
     return violations
 

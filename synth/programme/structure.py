@@ -142,7 +142,7 @@ class Form:
 
     def places_of(self, name: str) -> int:
         """At how many places a point is held in free regions."""
-        return 1 if name in self.kind.linkage.GROUND else self.targets
+        return 1 if name in self.kind.linkage.mechanism.ground else self.targets
 
 
 def _limited(scaled: ScaledProblem, start: Start) -> tuple[str, ...]:
@@ -166,7 +166,9 @@ def _nearest(scaled: ScaledProblem, start: Start) -> tuple[bool, ...]:
     wanted, count = scaled.wanted, len(start.visit)
     if scaled.exact or start.relaxed or start.loose:
         return (False,) * count
-    moving = set(wanted.keep_out_for) - set(scaled.kind.linkage.GROUND) if wanted.keep_out else set()
+    moving = (
+        set(wanted.keep_out_for) - set(scaled.kind.linkage.mechanism.ground) if wanted.keep_out else set()
+    )
     placed = any(
         limit.quantity.over is Over.TARGETS and name != "theta2_start_deg"
         for name, limit in wanted.limited.items()
@@ -191,5 +193,5 @@ def points_held(scaled: ScaledProblem) -> tuple[str, ...]:
         return ()
     from grashof.synth.programme.keep_out_depth import points_kept_out
 
-    held = (name for name in points_kept_out(scaled.wanted) if name in scaled.kind.linkage.POINTS)
+    held = (name for name in points_kept_out(scaled.wanted) if name in scaled.kind.linkage.mechanism.points)
     return tuple(name for name in held if name != "p" or not scaled.exact)

@@ -77,7 +77,10 @@ class Unknowns:
         n, none = form.targets, ca.SX(0, 1)
         wide, turns = always(-FAR, FAR), always(-100.0, 100.0)
         found = dict.fromkeys(("o4", "b"), none)
-        found |= {name: build.unknown(name, 2, *_pivot(form.kind, name)) for name in form.kind.linkage.PIVOTS}
+        found |= {
+            name: build.unknown(name, 2, *_pivot(form.kind, name))
+            for name in form.kind.linkage.mechanism.pivots
+        }
         found["r"] = _lengths(build, form.kind)
         found["theta1"] = build.unknown("theta1", 1, lambda _, start: start.theta1, always(-LIFTED, LIFTED))
         found["theta2"] = build.unknown("theta2", n, lambda _, start: start.theta2, _first_fixed)
@@ -107,7 +110,7 @@ class Unknowns:
 
 def _lengths(build: Builder, kind: Kind) -> ca.SX:
     """r1, r2, r3, r4 as far as the kind has them, and its offset."""
-    has = [k for k, name in enumerate(("r1", "r2", "r3", "r4")) if name in kind.linkage.LENGTHS]
+    has = [k for k, name in enumerate(("r1", "r2", "r3", "r4")) if name in kind.linkage.mechanism.lengths]
     found = build.unknown("r", len(has), lambda _, start: np.array(start.lengths)[has], always(SHORTEST, FAR))
     if len(has) == 4:
         return found
@@ -119,7 +122,7 @@ def _lengths(build: Builder, kind: Kind) -> ca.SX:
 
 def _pivot(kind: Kind, name: str) -> tuple[Fill, Fill]:
     """Guess and limits of a pivot, which may move by the radius of a start."""
-    far = (-FAR, FAR) if name in kind.linkage.GROUND else inset((-FAR, FAR))
+    far = (-FAR, FAR) if name in kind.linkage.mechanism.ground else inset((-FAR, FAR))
 
     def guess(_: ScaledProblem, start: Start) -> FloatArray:
         return interleaved(getattr(start, name))

@@ -159,7 +159,7 @@ def _design(scaled: ScaledProblem, start: Start) -> Design:
     arm = start.arm * scaled.frame.scale
     return Design(
         o2=scaled.frame.outward(np.array(start.o2)),
-        o4=scaled.frame.outward(np.array(start.o4)) if "o4" in scaled.kind.linkage.GROUND else None,
+        o4=scaled.frame.outward(np.array(start.o4)) if "o4" in scaled.kind.linkage.mechanism.ground else None,
         **scaled.kind.named(np.array(start.lengths) * scaled.frame.scale, np.float64(start.theta1)),
         coupler_point=np.array([arm.real, arm.imag]),
         theta2=np.array(start.theta2),
@@ -175,7 +175,7 @@ def _symbols(kind: Kind, targets: int) -> tuple[Design, ca.SX]:
     lengths, theta1 = [ca.SX.sym(name) for name in ("r1", "r2", "r3", "r4")], ca.SX.sym("theta1")
     theta2 = ca.SX.sym("theta2", targets)
     a, b, p = ([ca.SX.sym(name, 2) for _ in range(targets)] for name in "abp")
-    has_o4 = "o4" in kind.linkage.GROUND
+    has_o4 = "o4" in kind.linkage.mechanism.ground
     named = kind.named(lengths, theta1)
     design = Design(
         o2=o2, o4=o4 if has_o4 else None, coupler_point=arm, theta2=theta2, a=a, b=b, p=p, **named

@@ -28,7 +28,7 @@ def fully_screened(scaled: ScaledProblem, linkages: Screened) -> Screened:
         sound = linkages.feasible  # the others need not be looked at so closely
         violations[sound, GROUPS.index("keep_out")] = depth_on_the_way(scaled, linkages[sound])
     if wanted.size is not None:
-        size = _sizes(linkages, len(scaled.kind.linkage.GROUND))
+        size = _sizes(linkages, len(scaled.kind.linkage.mechanism.ground))
         low, high = wanted.size
         violations[:, GROUPS.index("size")] = np.maximum(np.maximum(low - size, size - high), 0.0)
     for name in along:

@@ -92,7 +92,9 @@ def loosest(problem: Problem, key: str) -> Requirements:
         return wanted
     given = getattr(wanted, key)
     loose: Any = None
-    usual = LIMITS["link_length" if key in FourBar.LENGTHS else key].usual if key in LIMITS else None
+    usual = (
+        LIMITS["link_length" if key in FourBar.mechanism.lengths else key].usual if key in LIMITS else None
+    )
     if usual is not None:
         low, high = (problem.task.size * share for share in usual)
         loose = (min(low, given[0]), max(high, given[1]))

@@ -118,7 +118,7 @@ class Result(Displayed):
         """
         numbers: dict[str, list[int]] = {}
         for k, family in enumerate(self.families):
-            numbers.setdefault(family[0].linkage.MECHANISM, []).append(k)
+            numbers.setdefault(family[0].linkage.mechanism.word, []).append(k)
         share = most // len(numbers) if numbers else 0
         shared = [k for each in numbers.values() for k in each[:share]]
         others = sorted(k for each in numbers.values() for k in each[share:])

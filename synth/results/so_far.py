@@ -46,7 +46,7 @@ class SoFar:
 
     def _judged(self, one: Candidate) -> Candidate:
         """The verdict under the requirements as they were stated, with the same cylinder."""
-        of = self._problem.for_kind(one.linkage.MECHANISM)
+        of = self._problem.for_kind(one.linkage.mechanism.word)
         cylinder = one.verdict.cylinder
         verdict = verify(one.linkage, of.task, of.requirements, problem=of, cylinder=cylinder)
         return replace(one, verdict=verdict, problem=self._problem)

@@ -109,7 +109,7 @@ class NinePoints(EveryLinkage):
     """Nine points, four-bars."""
 
     points: ClassVar[int] = 9
-    mechanism: ClassVar[str] = FourBar.MECHANISM
+    mechanism: ClassVar[str] = FourBar.mechanism.word
     solutions: ClassVar[int] = TRIPLETS
 
     def _all_linkages(self, rng: np.random.Generator) -> Round:
@@ -129,7 +129,7 @@ class EightPoints(EveryLinkage):
     """Eight points, slider-cranks."""
 
     points: ClassVar[int] = 8
-    mechanism: ClassVar[str] = SliderCrank.MECHANISM
+    mechanism: ClassVar[str] = SliderCrank.mechanism.word
     solutions: ClassVar[int] = SLIDER_CRANKS.count
 
     def _all_linkages(self, rng: np.random.Generator) -> Round:

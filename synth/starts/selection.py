@@ -170,7 +170,7 @@ def _worth(scaled: ScaledProblem, linkages: Screened, key: str) -> FloatArray:
     if key == "transmission":
         worth = linkages.transmission / (np.pi / 2)
     elif key == "size":
-        known = [0, 1, 2, 3, 4] if "o4" in scaled.kind.linkage.GROUND else [0, 2, 3, 4]
+        known = [0, 1, 2, 3, 4] if "o4" in scaled.kind.linkage.mechanism.ground else [0, 2, 3, 4]
         points = linkages.points[:, known]
         worth = -np.hypot(np.ptp(points.real, axis=1), np.ptp(points.imag, axis=1))
     elif key in ALONG:

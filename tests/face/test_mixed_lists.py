@@ -27,7 +27,7 @@ from grashof.problems import (
     load_linkage_spec,
 )
 from grashof.problems.files.linkage_file import load_design
-from grashof.problems.values.linkages.mechanisms import KINDS
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.synth import Candidate, Result
 from grashof.workshop.export import Making, export_files
 from grashof.workshop.plates import PlateSizes
@@ -40,7 +40,7 @@ LINKAGES: tuple[Linkage, ...] = (
 )
 
 
-def mixed(kinds: tuple[str, ...] = tuple(KINDS), linkages: tuple[Linkage, ...] = LINKAGES) -> Result:
+def mixed(kinds: tuple[str, ...] = tuple(ONE_LOOP), linkages: tuple[Linkage, ...] = LINKAGES) -> Result:
     points = solve_position(LINKAGES[0], np.linspace(0.3, 3.3, 6)).p
     problem = Problem(
         task=PathTask(points),
@@ -73,7 +73,7 @@ def test_every_design_comes_back_to_the_last_digit(folder: Path) -> None:
         assert design.spec.linkage == linkage
         assert type(design.spec.linkage) is type(linkage)
         assert design.spec.problem is not None
-        assert design.spec.problem.mechanism == tuple(KINDS)
+        assert design.spec.problem.mechanism == tuple(ONE_LOOP)
         assert load_linkage_spec(f"{folder / 'candidates.json'}#{design.id}").linkage == linkage
 
 
@@ -81,7 +81,7 @@ def test_columns_that_a_kind_has_not_are_empty(folder: Path) -> None:
     with (folder / "candidates.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     for row, linkage in zip(rows, LINKAGES, strict=True):
-        assert row["mechanism"] == linkage.MECHANISM
+        assert row["mechanism"] == linkage.mechanism.word
         for name, value in linkage.columns.items():
             if name not in ("assembly", "body_angle_deg"):  # the task has no angles
                 assert float(row[name]) == value
@@ -102,7 +102,7 @@ def test_quantities_that_no_kind_has_are_not_listed(tmp_path: Path) -> None:
 
 def test_the_terminal_has_a_column_of_the_mechanism() -> None:
     rows = best_rows(mixed())
-    assert [row["mechanism"] for row in rows] == [linkage.MECHANISM for linkage in LINKAGES]
+    assert [row["mechanism"] for row in rows] == [linkage.mechanism.word for linkage in LINKAGES]
     assert [row["offset"] for row in rows] == ["0.3", "-", "0.1", "-0.3"]
     assert [row["O4"] for row in rows] == ["-", "4, 0", "2, 1", "1, 0"]
     assert [row["r4"] for row in rows] == ["-", "3", "-", "-"]
@@ -118,18 +118,20 @@ def test_the_terminal_has_a_column_of_the_mechanism() -> None:
 def test_the_page_has_the_same_column_and_each_kind_in_its_legend(folder: Path) -> None:
     page = (folder / "report.html").read_text(encoding="utf-8")
     for linkage in LINKAGES:
-        assert f'<td class="text">{linkage.MECHANISM}</td>' in page
+        assert f'<td class="text">{linkage.mechanism.word}</td>' in page
     data = json.loads(page.split('id="data">')[1].split("</script>")[0])
-    assert [each["linkage"]["mechanism"] for each in data["designs"]] == [each.MECHANISM for each in LINKAGES]
+    assert [each["linkage"]["mechanism"] for each in data["designs"]] == [
+        each.mechanism.word for each in LINKAGES
+    ]
     assert all(len([x for x in each["torque"] if x is not None]) > 100 for each in data["designs"])
-    assert dict(legend(KINDS))["output"] == "output O4-B, slider B, block O4-B"
+    assert dict(legend(ONE_LOOP))["output"] == "output O4-B, slider B, block O4-B"
     assert "output O4-B, slider B, block O4-B" in page or "slider B, output O4-B, block O4-B" in page
 
 
 def test_each_design_is_drawn(folder: Path) -> None:
     for rank, linkage in enumerate(LINKAGES, start=1):
         text = (folder / f"design-{rank:02d}.svg").read_text(encoding="utf-8")
-        assert f"{linkage.LINKS[-1].name} {'-'.join(linkage.LINKS[-1].labels)}" in text
+        assert f"{linkage.mechanism.links[-1].name} {'-'.join(linkage.mechanism.links[-1].labels)}" in text
         assert (folder / f"design-{rank:02d}.png").stat().st_size > 1000
 
 

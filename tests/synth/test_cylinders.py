@@ -148,7 +148,7 @@ def test_slider_kinds_are_driven_and_judged_from_the_pivots_alone(linkage: Linka
     of = driven_problem(linkage, np.radians([75.0, 95.0, 115.0, 135.0]), np.ones(4, dtype=int), spec)
     loaded = DynamicsSpec(speed_rpm=30, mass_per_length=2.0)
     wanted = replace(of.requirements, cylinder_angle_min_deg=20)
-    of = replace(of, mechanism=linkage.MECHANISM, dynamics=loaded, length_unit="m", requirements=wanted)
+    of = replace(of, mechanism=linkage.mechanism.word, dynamics=loaded, length_unit="m", requirements=wanted)
     found = synthesize(of, enough=3, starts=16)
     assert len(found)
     for each in found.candidates:
@@ -182,7 +182,7 @@ def through_a_dead_position(linkage: Linkage) -> tuple[Problem, Linkage]:
     high = float(driver_ranges(linkage)[0, 1])
     theta2, assembly = high - np.array([0.3, 0.1, 0.2]), np.array([1, 1, -1])
     of = driven_problem(linkage, theta2, assembly, CylinderSpec(on=["coupler", "output"]))
-    return replace(of, mechanism=linkage.MECHANISM), linkage
+    return replace(of, mechanism=linkage.mechanism.word), linkage
 
 
 @pytest.mark.parametrize(

@@ -98,7 +98,7 @@ def test_the_list_does_not_depend_on_the_number_of_shards(kind: str, tmp_path: P
 def test_shards_search_every_kind_of_linkage(tmp_path: Path) -> None:
     problem, _ = KINDS["three kinds"]
     divided("three kinds", tmp_path, 2)
-    found = {design.linkage.MECHANISM for design in merge_shards(tmp_path).candidates}
+    found = {design.linkage.mechanism.word for design in merge_shards(tmp_path).candidates}
     assert found == set(problem.mechanism)
 
 

@@ -389,7 +389,7 @@ def test_kinds_whose_output_turns_share_a_list() -> None:
     result = synthesize(
         Problem(task=task, mechanism=kinds, requirements=Requirements(transmission_min_deg=20))
     )
-    assert {each.linkage.MECHANISM for each in result.candidates} == set(kinds)
+    assert {each.linkage.mechanism.word for each in result.candidates} == set(kinds)
     errors = [each.verdict.structural_error_max for each in result.candidates]
     assert errors[0] == min(errors)
     assert all(each.verdict.ok for each in result.candidates)

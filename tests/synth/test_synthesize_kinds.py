@@ -61,7 +61,7 @@ def test_planted_paths_are_met(mechanism: str, timed: bool) -> None:
         task, _ = planted_path(np.random.default_rng([1, seed]), count, timed=timed, mechanism=mechanism)
         problem = Problem(task=task, mechanism=mechanism)
         best = synthesize(problem, enough=1).best
-        assert mechanism == type(best.linkage).MECHANISM
+        assert mechanism == type(best.linkage).mechanism.word
         p = coupler_points(best.linkage, best.verdict.theta2)[:, :2]
         assert np.hypot(*(p - task.positions).T).max() < problem.requirements.tolerance * task.size
         assert (np.diff(best.verdict.theta2) * best.verdict.direction > 0).all()
@@ -124,7 +124,7 @@ def test_mixed_lists_have_one_ranking() -> None:
     task, _ = planted_motion(np.random.default_rng([2, 4]), 4, mechanism="slider-crank")
     every = ("four-bar", *SLIDERS)
     found = synthesize(Problem(task=task, mechanism=every), enough=10)
-    kinds = [each.linkage.MECHANISM for each in found.candidates]
+    kinds = [each.linkage.mechanism.word for each in found.candidates]
     assert {"four-bar", "slider-crank"} <= set(kinds)
     heads = [family[0] for family in found.families]
     worth = [(bool(each.caution), ranking_key(found.problem, each)) for each in heads]

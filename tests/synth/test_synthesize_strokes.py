@@ -365,7 +365,7 @@ def test_crank_rockers_and_crank_shapers_in_one_list() -> None:
         "stroke": {"swing_deg": 80, "time_ratio": 2.6},
     }
     result = synthesize(problem_from(document, "both"), enough=6)
-    kinds = [each.linkage.MECHANISM for each in result.candidates]
+    kinds = [each.linkage.mechanism.word for each in result.candidates]
     assert {"four-bar", "inverted-slider-crank"} == set(kinds)
     assert kinds[0] == "inverted-slider-crank"
     assert (result.to_frame()["time_ratio"] - 2.6).abs().max() < 1e-9

@@ -90,7 +90,7 @@ def test_slider_cranks_follow_and_other_kinds_are_refused() -> None:
     after = track(designs, there)
     assert len(after) == len(designs) > 0
     assert all(design.verdict.ok for design in after)
-    assert all(design.linkage.MECHANISM == "slider-crank" for design in after)
+    assert all(design.linkage.mechanism.word == "slider-crank" for design in after)
     with pytest.raises(ProblemError, match=r"designs\[0\] is a slider-crank; the problem asks for four-bar"):
         track(designs, replace(problem, mechanism="four-bar"))
 

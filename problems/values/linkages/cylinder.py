@@ -12,7 +12,7 @@ from grashof.problems.values.checks import finite_number, limits, numbers
 from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.linkages.four_bar import FourBar
 
-CARRIERS: dict[str, int] = {link.name: link.number for link in FourBar.LINKS[1:]}
+CARRIERS: dict[str, int] = {link.name: link.number for link in FourBar.mechanism.links[1:]}
 _WHERE = "driver.cylinder"
 
 

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
 
-import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.linkage import Linkage
-from grashof.problems.values.linkages.linkage_parts import Link, Parameter
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
@@ -53,25 +51,7 @@ class FourBar(Linkage):
     (4.0, ())
     """
 
-    MECHANISM: ClassVar[str] = "four-bar"
-    PARAMETERS: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("o2", "place"),
-        Parameter("o4", "place"),
-        Parameter("r2", "length"),
-        Parameter("r3", "length"),
-        Parameter("r4", "length"),
-        Parameter("coupler_point", "arm", column="p"),
-        Parameter("assembly", "sign"),
-        Parameter("body_angle", "angle"),
-    )
-    LINKS: ClassVar[tuple[Link, ...]] = (
-        Link(1, "ground", ("o2", "o4")),
-        Link(2, "driver", ("o2", "a")),
-        Link(3, "coupler", ("a", "b", "p")),
-        Link(4, "output", ("o4", "b")),
-    )
-    LENGTHS: ClassVar[tuple[str, ...]] = tuple(f"r{link.number}" for link in LINKS)
-    DIMENSIONS: ClassVar[tuple[str, ...]] = (*LENGTHS, "u", "v")
+    mechanism = ONE_LOOP["four-bar"]
 
     o2: FloatArray
     o4: FloatArray
@@ -94,15 +74,3 @@ class FourBar(Linkage):
         body_angle: npt.ArrayLike = 0.0,
     ) -> None:
         self._keep(o2, o4, r2, r3, r4, coupler_point, assembly, body_angle)
-
-    @property
-    def r1(self) -> FloatArray:
-        """Length O2O4, shape (...)."""
-        ground = self.o4 - self.o2
-        return np.hypot(ground[..., 0], ground[..., 1])
-
-    @property
-    def theta1(self) -> FloatArray:
-        """Direction O2->O4 in rad, shape (...)."""
-        ground = self.o4 - self.o2
-        return np.arctan2(ground[..., 1], ground[..., 0])

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
 
-import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.linkage import Linkage
-from grashof.problems.values.linkages.linkage_parts import Link, Parameter
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
@@ -57,25 +55,7 @@ class InvertedSliderCrank(Linkage):
     (2.0, ())
     """
 
-    MECHANISM: ClassVar[str] = "inverted-slider-crank"
-    PARAMETERS: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("o2", "place"),
-        Parameter("o4", "place"),
-        Parameter("r2", "length"),
-        Parameter("offset", "distance"),
-        Parameter("coupler_point", "arm", column="p"),
-        Parameter("assembly", "sign"),
-        Parameter("body_angle", "angle"),
-    )
-    LINKS: ClassVar[tuple[Link, ...]] = (
-        Link(1, "ground", ("o2", "o4")),
-        Link(2, "driver", ("o2", "a")),
-        Link(3, "coupler", ("a", "p")),
-        Link(4, "block", ("o4", "b")),
-    )
-    SLIDES: ClassVar[tuple[tuple[int, int], ...]] = ((3, 4),)
-    LENGTHS: ClassVar[tuple[str, ...]] = ("r1", "r2")
-    DIMENSIONS: ClassVar[tuple[str, ...]] = (*LENGTHS, "offset", "u", "v")
+    mechanism = ONE_LOOP["inverted-slider-crank"]
 
     o2: FloatArray
     o4: FloatArray
@@ -96,15 +76,3 @@ class InvertedSliderCrank(Linkage):
         body_angle: npt.ArrayLike = 0.0,
     ) -> None:
         self._keep(o2, o4, r2, offset, coupler_point, assembly, body_angle)
-
-    @property
-    def r1(self) -> FloatArray:
-        """Length O2O4, shape (...)."""
-        ground = self.o4 - self.o2
-        return np.hypot(ground[..., 0], ground[..., 1])
-
-    @property
-    def theta1(self) -> FloatArray:
-        """Direction O2->O4 in rad, shape (...)."""
-        ground = self.o4 - self.o2
-        return np.arctan2(ground[..., 1], ground[..., 0])

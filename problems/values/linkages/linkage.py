@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from typing import Any, ClassVar, Self
+from collections.abc import Iterable, Sequence
+from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -11,49 +11,32 @@ import numpy.typing as npt
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.display import Displayed
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.linkages.linkage_parts import Link, Parameter, joints_of, points_of
+from grashof.problems.values.linkages.linkage_parts import Parameter
+from grashof.problems.values.linkages.mechanism import Mechanism
 
 
-class Linkage(Displayed, ABC):
-    """A planar linkage, or a batch of them: base of `FourBar`, `SliderCrank` and `InvertedSliderCrank`.
+class Linkage(Displayed):
+    """A planar linkage, or a batch: base of `FourBar`, `SliderCrank`, `InvertedSliderCrank`, `SixBar`.
 
-    Link 2 (O2-A) is the driver, link 3 carries the coupler point P, link 4 closes the loop, link 1 is
-    the ground. A batch has the same leading axes on every field; index it to take linkages out or, as
-    with arrays, to add axes: ``batch[:, None]``.
+    Link 1 is the ground, link 2 (O2-A) the driver; links 3 and 4 close the first loop. A batch has
+    the same leading axes on every field; index it to take linkages out or, as with arrays, to add axes:
+    ``batch[:, None]``.
     """
 
     __slots__ = ()
 
-    # What the kind is; files, tables, drawings and plates go through these rows.
-    MECHANISM: ClassVar[str]  # in files and tables
-    PARAMETERS: ClassVar[tuple[Parameter, ...]]
-    LINKS: ClassVar[tuple[Link, ...]]  # the ground first
-    SLIDES: ClassVar[tuple[tuple[int, int], ...]] = ()  # links that slide on each other
-    LENGTHS: ClassVar[tuple[str, ...]]  # of links, all positive
-    DIMENSIONS: ClassVar[tuple[str, ...]]  # what is made, and may come out inexactly
-    # What follows from its links.
-    GROUND: ClassVar[tuple[str, ...]]  # points that stand still
-    POINTS: ClassVar[tuple[str, ...]]
-    MOVING: ClassVar[tuple[str, ...]]
-    JOINTS: ClassVar[dict[str, tuple[int, ...]]]
-    PIVOTS: ClassVar[tuple[str, ...]]  # joints with a pin
+    mechanism: Mechanism  # its kind; files, tables, drawings and plates go through the rows of it
 
     o2: FloatArray
+    o4: FloatArray
     r2: FloatArray
     coupler_point: FloatArray
     assembly: FloatArray
     body_angle: FloatArray
 
-    def __init_subclass__(cls) -> None:
-        cls.GROUND = cls.LINKS[0].points
-        cls.POINTS = points_of(cls.LINKS)
-        cls.MOVING = cls.POINTS[len(cls.GROUND) :]
-        cls.JOINTS = joints_of(cls.LINKS)
-        cls.PIVOTS = tuple(filter(cls.JOINTS.__contains__, cls.POINTS))
-
     def _keep(self, *given: npt.ArrayLike) -> None:
-        """Set the fields to values in the order of `PARAMETERS`, checked, with the same batch axes."""
-        arrays = {row: row.array(value) for row, value in zip(self.PARAMETERS, given, strict=True)}
+        """Set the fields, in the order of `Mechanism.parameters`, checked, with the same batch axes."""
+        arrays = {row: row.array(value) for row, value in zip(self.mechanism.parameters, given, strict=True)}
         shapes = [array.shape[:-1] if row.paired else array.shape for row, array in arrays.items()]
         try:
             batch = np.broadcast_shapes(*shapes)
@@ -71,53 +54,85 @@ class Linkage(Displayed, ABC):
         return np.shape(self.r2)
 
     @property
-    @abstractmethod
+    def r1(self) -> FloatArray:
+        """Length O2O4, shape (...)."""
+        x, y = self._ground
+        return np.hypot(x, y)
+
+    @property
     def theta1(self) -> FloatArray:
-        """Direction of the ground link in rad, shape (...)."""
+        """Direction O2->O4 in rad, shape (...)."""
+        x, y = self._ground
+        return np.arctan2(y, x)
+
+    @property
+    def _ground(self) -> tuple[FloatArray, FloatArray]:
+        """O2->O4 in x and y, each of shape (...)."""
+        ground = self.o4 - self.o2
+        return ground[..., 0], ground[..., 1]
+
+    @property
+    def choices(self) -> dict[str, Any]:
+        """Arguments that are no arrays and choose the kind; none of a linkage of one loop."""
+        return {}
 
     @property
     def lengths(self) -> FloatArray:
-        """Of the links, as `LENGTHS` names them; shape (..., L)."""
-        return np.stack([getattr(self, name) for name in self.LENGTHS], axis=-1)
+        """Of the links, as `Mechanism.lengths` names them; shape (..., L)."""
+        return np.stack([getattr(self, name) for name in self.mechanism.lengths], axis=-1)
 
     @property
     def parameters(self) -> tuple[FloatArray, ...]:
-        """The arguments that give this value, in the order of `PARAMETERS`."""
-        return tuple(getattr(self, row.name) for row in self.PARAMETERS)
+        """The arguments that give this value, in the order of `Mechanism.parameters`."""
+        return tuple(getattr(self, row.name) for row in self.mechanism.parameters)
 
     @property
     def stated(self) -> dict[str, Any]:
         """The same by name, as plain numbers and lists: lossless JSON. Of a single linkage."""
-        plain = {row.name: getattr(self, row.name).tolist() for row in self.PARAMETERS}
-        return plain | {"assembly": int(self.assembly)}
+        rows = zip(self.mechanism.parameters, self.parameters, strict=True)
+        plain = {row.name: int(x) if row.kind == "sign" else x.tolist() for row, x in rows}
+        return plain | self.choices
 
     @property
-    def columns(self) -> dict[str, float]:
+    def columns(self) -> dict[str, float | str]:
         """The lengths of the links and all parameters by their columns in tables. Of a single linkage."""
-        found = dict(zip(self.LENGTHS, self.lengths.tolist(), strict=True))
-        for row, value in zip(self.PARAMETERS, self.parameters, strict=True):
+        found = dict(zip(self.mechanism.lengths, self.lengths.tolist(), strict=True))
+        for row, value in zip(self.mechanism.parameters, self.parameters, strict=True):
             numbers = np.degrees(value) if row.kind == "angle" else value
             found |= zip(row.columns, np.ravel(numbers).tolist(), strict=True)
-        return found | {"assembly": int(self.assembly)}
+            if row.kind == "sign":
+                found[row.name] = int(value)
+        return found | {name: "-".join(map(str, np.ravel(x))) for name, x in self.choices.items()}
 
     def scaled(self, factor: float, origin: FloatArray) -> Self:
         """The linkage with all lengths times a factor, its places measured from `origin`, shape (2,)."""
 
         def change(row: Parameter, value: FloatArray) -> FloatArray:
-            moved = value - origin if row.kind == "place" else value
+            moved = value - origin if row.kind in ("place", "station") else value
             return moved * factor if row.in_length else moved
 
-        return type(self)(*map(change, self.PARAMETERS, self.parameters))
+        return self._with(map(change, self.mechanism.parameters, self.parameters))
 
     def changed(self, **parameters: npt.ArrayLike) -> Self:
         """The linkage with other values of some of its parameters."""
-        stated = {row.name: value for row, value in zip(self.PARAMETERS, self.parameters, strict=True)}
-        return type(self)(**(stated | parameters))
+        stated = {row.name: getattr(self, row.name) for row in self.mechanism.parameters}
+        return type(self)(**(stated | self.choices | parameters))
+
+    @classmethod
+    def stacked(cls, linkages: Sequence[Self]) -> Self:
+        """Linkages of one kind as a batch."""
+        parameters = zip(*(linkage.parameters for linkage in linkages), strict=True)
+        return linkages[0]._with(map(np.stack, parameters))
+
+    def _with(self, parameters: Iterable[npt.ArrayLike]) -> Self:
+        """A linkage of the same kind with other parameters, in their order."""
+        names = (row.name for row in self.mechanism.parameters)
+        return type(self)(**dict(zip(names, parameters, strict=True)), **self.choices)
 
     def __getitem__(self, index: Any) -> Self:
         index = index if isinstance(index, tuple) else (index,)
-        rows = zip(self.PARAMETERS, self.parameters, strict=True)
-        return type(self)(*(value[(*index, slice(None)) if row.paired else index] for row, value in rows))
+        rows = zip(self.mechanism.parameters, self.parameters, strict=True)
+        return self._with(value[(*index, slice(None)) if row.paired else index] for row, value in rows)
 
     def __repr__(self) -> str:
         """Of a single linkage: Python that makes it, in full precision."""
@@ -129,12 +144,27 @@ class Linkage(Displayed, ABC):
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
             return NotImplemented
-        return all(map(np.array_equal, self.parameters, other.parameters))
+        same = self.mechanism == other.mechanism
+        return same and all(map(np.array_equal, self.parameters, other.parameters))
 
     def __hash__(self) -> int:
         # Adding zero turns -0.0 into 0.0, which it equals.
-        return hash((self.MECHANISM, *((np.asarray(value) + 0.0).tobytes() for value in self.parameters)))
+        return hash((self.mechanism, *((np.asarray(value) + 0.0).tobytes() for value in self.parameters)))
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Through the constructor: arrays come out of a pickle writeable.
-        return type(self), self.parameters
+        named = {row.name: getattr(self, row.name) for row in self.mechanism.parameters}
+        return _rebuilt, (type(self), named | self.choices)
+
+
+def by_kind(linkages: Sequence[Linkage]) -> list[list[int]]:
+    """Where in a sequence the linkages of each kind are, which `Linkage.stacked` makes a batch."""
+    found: dict[Mechanism, list[int]] = {}
+    for index, linkage in enumerate(linkages):
+        found.setdefault(linkage.mechanism, []).append(index)
+    return list(found.values())
+
+
+def _rebuilt(kind: type[Linkage], given: dict[str, Any]) -> Linkage:
+    """A linkage out of a pickle."""
+    return kind(**given)

@@ -14,7 +14,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import MOST_TURNS
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 
-_ENDINGS = {"place": ("_x", "_y"), "arm": ("_u", "_v"), "angle": ("_deg",)}
+_ENDINGS = {"place": ("_x", "_y"), "station": ("_u", "_v"), "arm": ("_u", "_v"), "angle": ("_deg",)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,26 +25,26 @@ class Parameter:
     ----------
     name : str
         In Python and JSON.
-    kind : {"place", "arm", "length", "distance", "sign", "angle"}
-        x and y; u and v in the frame of a link; a distance may be negative or zero; angles are in rad,
-        in files and tables in deg.
+    kind : {"place", "station", "arm", "length", "distance", "sign", "angle"}
+        x and y; the same of a point on a link that is the ground, as u and v; u and v in the frame of a link;
+        a distance may be negative or zero; angles are in rad, in files and tables in deg.
     column : str
         What its columns in tables begin with, where that is not the name.
     """
 
     name: str
-    kind: Literal["place", "arm", "length", "distance", "sign", "angle"]
+    kind: Literal["place", "station", "arm", "length", "distance", "sign", "angle"]
     column: str = ""
 
     @property
     def paired(self) -> bool:
         """Whether it is two numbers, on a last axis."""
-        return self.kind in ("place", "arm")
+        return self.kind in ("place", "station", "arm")
 
     @property
     def in_length(self) -> bool:
         """Whether its numbers are in the unit of length."""
-        return self.kind in ("place", "arm", "length", "distance")
+        return self.kind not in ("sign", "angle")
 
     @property
     def key(self) -> str:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from grashof.problems.values.checks import near_miss, noted, refuse
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
@@ -11,27 +12,51 @@ from grashof.problems.values.linkages.four_bar import FourBar
 from grashof.problems.values.linkages.inverted_slider_crank import InvertedSliderCrank
 from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.linkages.linkage_parts import Parameter
+from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP
+from grashof.problems.values.linkages.six_bar import SixBar
 from grashof.problems.values.linkages.slider_crank import SliderCrank
 
-# By the word for it in files and tables; the first is what is meant where none is named.
-KINDS: dict[str, type[Linkage]] = {
-    kind.MECHANISM: kind for kind in (FourBar, SliderCrank, InvertedSliderCrank)
-}
-FOUR_BAR, SLIDER_CRANK, INVERTED = KINDS
+FOUR_BAR, SLIDER_CRANK, INVERTED = ONE_LOOP
+WORDS = tuple(dict.fromkeys(row.word for row in MECHANISMS))  # in linkage files and tables
 NOISE = 1e-9  # share of a linkage's longest link that rounding leaves of a length of zero
 # The parameters of all kinds, each once, in the order of tables.
 PARAMETERS: tuple[Parameter, ...] = tuple(
-    dict.fromkeys(row for kind in KINDS.values() for row in kind.PARAMETERS)
+    dict.fromkeys(row for kind in ONE_LOOP.values() for row in kind.parameters)
 )
-LENGTHS: tuple[str, ...] = tuple(sorted({name for kind in KINDS.values() for name in kind.LENGTHS}))
+LENGTHS: tuple[str, ...] = tuple(sorted({name for kind in ONE_LOOP.values() for name in kind.lengths}))
 DIMENSIONS: tuple[str, ...] = (
     *LENGTHS,
     *(row.name for row in PARAMETERS if row.kind == "distance"),
     "u",
     "v",
 )
-_ANY = f"{', '.join(list(KINDS)[:-1])} or {list(KINDS)[-1]}"
+_ANY = f"{', '.join(list(ONE_LOOP)[:-1])} or {list(ONE_LOOP)[-1]}"
 ANY_KINDS = f"{_ANY}, or a list of these"
+
+
+# What makes them in Python, and describes their parameters; six-bars are `SixBar`.
+CLASSES: dict[str, type[Linkage]] = dict(
+    zip(ONE_LOOP, (FourBar, SliderCrank, InvertedSliderCrank), strict=True)
+)
+
+
+def linkage_of(word: str, given: Mapping[str, Any]) -> Linkage:
+    """A linkage by the word for its kind, and its parameters by name, as `Linkage.stated` has them.
+
+    Raises
+    ------
+    ProblemError
+        The parameters make no linkage, or one of another kind.
+
+    Examples
+    --------
+    >>> linkage_of("slider-crank", {"o2": (0, 0), "r2": 1, "r3": 4}).mechanism.lengths
+    ('r2', 'r3')
+    """
+    linkage = CLASSES.get(word, SixBar)(**given)
+    if (made := linkage.mechanism.word) != word:
+        raise ProblemError(f"mechanism is {word}; links {linkage.choices['hosts']} carry C and D in a {made}")
+    return linkage
 
 
 def having(column: str) -> tuple[str, ...]:
@@ -44,9 +69,9 @@ def having(column: str) -> tuple[str, ...]:
     """
     return tuple(
         word
-        for word, kind in KINDS.items()
-        if column in (*kind.LENGTHS, *kind.DIMENSIONS)
-        or any(column in (row.name, row.key, *row.columns) for row in kind.PARAMETERS)
+        for word, kind in ONE_LOOP.items()
+        if column in (*kind.lengths, *kind.dimensions)
+        or any(column in (row.name, row.key, *row.columns) for row in kind.parameters)
     )
 
 
@@ -55,10 +80,10 @@ def freedoms(kind: str) -> int:
 
     Examples
     --------
-    >>> [freedoms(kind) for kind in KINDS]
+    >>> [freedoms(kind) for kind in ONE_LOOP]
     [9, 8, 8]
     """
-    rows = [row for row in KINDS[kind].PARAMETERS if row.kind != "sign" and row.name != "body_angle"]
+    rows = [row for row in ONE_LOOP[kind].parameters if row.kind != "sign" and row.name != "body_angle"]
     return sum(1 + row.paired for row in rows)
 
 
@@ -70,9 +95,12 @@ def lengths_text(linkage: Linkage, digits: int = 4) -> str:
     >>> lengths_text(FourBar((0, 0), (4, 0), 1, 4, 3)), lengths_text(SliderCrank((0, 0), 1, 4))
     ('r1 to r4 4, 1, 4, 3', 'r2 1, r3 4, offset 0')
     """
-    if linkage.MECHANISM == FOUR_BAR:
+    if linkage.mechanism.word == FOUR_BAR:
         return f"r1 to r4 {', '.join(f'{length:.{digits}g}' for length in linkage.lengths)}"
-    names = (*linkage.LENGTHS, *(row.name for row in linkage.PARAMETERS if row.kind == "distance"))
+    names = (
+        *linkage.mechanism.lengths,
+        *(row.name for row in linkage.mechanism.parameters if row.kind == "distance"),
+    )
     sizes = {name: without_noise(float(getattr(linkage, name)), linkage) for name in names}
     return ", ".join(f"{name} {value:.{digits}g}" for name, value in sizes.items())
 
@@ -127,9 +155,9 @@ def mechanisms(given: str | Sequence[str]) -> tuple[str, ...]:
 
 def mechanism(word: str, where: str = "mechanism") -> str:
     """A word for a kind of linkages, checked."""
-    if isinstance(word, str) and word in KINDS:
+    if isinstance(word, str) and word in ONE_LOOP:
         return word
-    meant = near_miss(word, list(KINDS)) if isinstance(word, str) else None
+    meant = near_miss(word, list(ONE_LOOP)) if isinstance(word, str) else None
     if meant is not None:
         raise ProblemError(f"{where} is {shown(word)}; did you mean {meant}?")
     raise wrong_value(where, word, _ANY)

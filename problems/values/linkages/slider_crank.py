@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.linkage import Linkage
-from grashof.problems.values.linkages.linkage_parts import Link, Parameter
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
@@ -59,26 +58,7 @@ class SliderCrank(Linkage):
     (0.0, ())
     """
 
-    MECHANISM: ClassVar[str] = "slider-crank"
-    PARAMETERS: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("o2", "place"),
-        Parameter("r2", "length"),
-        Parameter("r3", "length"),
-        Parameter("offset", "distance"),
-        Parameter("slide_angle", "angle"),
-        Parameter("coupler_point", "arm", column="p"),
-        Parameter("assembly", "sign"),
-        Parameter("body_angle", "angle"),
-    )
-    LINKS: ClassVar[tuple[Link, ...]] = (
-        Link(1, "ground", ("o2",)),
-        Link(2, "driver", ("o2", "a")),
-        Link(3, "coupler", ("a", "b", "p")),
-        Link(4, "slider", ("b",)),
-    )
-    SLIDES: ClassVar[tuple[tuple[int, int], ...]] = ((1, 4),)
-    LENGTHS: ClassVar[tuple[str, ...]] = ("r2", "r3")
-    DIMENSIONS: ClassVar[tuple[str, ...]] = (*LENGTHS, "offset", "u", "v")
+    mechanism = ONE_LOOP["slider-crank"]
 
     o2: FloatArray
     r2: FloatArray

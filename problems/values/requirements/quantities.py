@@ -17,7 +17,8 @@ import numpy as np
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.linkages.cylinder import Cylinder
 from grashof.problems.values.linkages.four_bar import FourBar
-from grashof.problems.values.linkages.mechanisms import DIMENSIONS, KINDS, LENGTHS, PARAMETERS, having
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
+from grashof.problems.values.linkages.mechanisms import DIMENSIONS, LENGTHS, PARAMETERS, having
 from grashof.problems.values.units import Unit
 
 
@@ -89,7 +90,7 @@ class Quantity:
     listed: bool = True
     words: str = ""
     short: str = ""
-    kinds: tuple[str, ...] = tuple(KINDS)
+    kinds: tuple[str, ...] = tuple(ONE_LOOP)
     named: str = ""
     full: str = ""
 
@@ -216,7 +217,7 @@ MEASURED: dict[str, Quantity] = {
         _length("size", over=Over.TASK, better=-1, digits=4, about=_BOX, full="size of the linkage"),
         _length("hausdorff", "Hausdorff distance", over=Over.CYCLE, better=-1, needs=Needs.CLOSED),
         _length("frechet", "Fréchet distance", over=Over.CYCLE, better=-1, needs=Needs.CLOSED),
-        *(_move(name) for name in FourBar.DIMENSIONS),
+        *(_move(name) for name in FourBar.mechanism.dimensions),
         _length(
             "worst_move", "worst move", needs=Needs.MANUFACTURING,
             full="largest move of a target within the tolerances", **_MISSED,
@@ -231,7 +232,7 @@ MEASURED: dict[str, Quantity] = {
         ),
         *_stated("distance", digits=4),
         Quantity("slide_angle", "direction of the slide", Unit.ANGLE, kinds=having("slide_angle")),
-        *(_move(name) for name in DIMENSIONS if name not in FourBar.DIMENSIONS),
+        *(_move(name) for name in DIMENSIONS if name not in FourBar.mechanism.dimensions),
         *(_length(name, name.replace("_", " "), needs=Needs.CYLINDER) for name in Cylinder.COLUMNS),
         _length(
             "cylinder_closed", "closed cylinder", over=Over.TASK, needs=Needs.CYLINDER, digits=4,

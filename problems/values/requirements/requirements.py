@@ -14,7 +14,8 @@ from grashof.problems.values.box import ANYWHERE, Box
 from grashof.problems.values.checks import GREATEST, finite_number, limits, number_within
 from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.linkages.four_bar import FourBar
-from grashof.problems.values.linkages.mechanisms import KINDS, SLIDER_CRANK, having
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
+from grashof.problems.values.linkages.mechanisms import SLIDER_CRANK, having
 from grashof.problems.values.read_only import ReadOnly
 from grashof.problems.values.requirements.quantities import (
     MEASURED,
@@ -56,7 +57,7 @@ TRAVEL_ERRORS = {f"structural_error_{key}": f"travel_error_{key}" for key in ("m
 
 
 def _place(name: str, over: Over) -> Quantity:
-    kinds = having(name) if over is Over.DESIGN else tuple(KINDS)
+    kinds = having(name) if over is Over.DESIGN else tuple(ONE_LOOP)
     return Quantity(name, f"place of {name.upper()}", Unit.LENGTH, over, listed=False, kinds=kinds)
 
 
@@ -73,7 +74,7 @@ def _structural(key: str, label: str, *, travels: bool = False) -> Quantity:
 
 def _bracket(name: str) -> Quantity:
     words = f"place of {name.upper()} on the body"
-    kinds = tuple(word for word, kind in KINDS.items() if name in kind.LINKS[2].points)
+    kinds = tuple(word for word, kind in ONE_LOOP.items() if name in kind.links[2].points)
     return Quantity(f"{name}_on_body", words, Unit.LENGTH, needs=Needs.ANGLES, listed=False, kinds=kinds)
 
 
@@ -474,7 +475,7 @@ def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float | st
     return number_within(value, low, high, where)
 
 
-MAY_KEEP_OUT = (*FourBar.POINTS, "links", "body")
+MAY_KEEP_OUT = (*FourBar.mechanism.points, "links", "body")
 
 
 def _areas(values: Sequence[FloatArray]) -> tuple[FloatArray, ...]:

@@ -55,16 +55,16 @@ class LinkageSpec(Displayed):
             raise ProblemError("output_arm is missing; pumping_unit needs that of the horsehead")
         if self.pumping_unit is not None and not isinstance(self.linkage, FourBar):
             raise ProblemError(
-                f"pumping_unit does not go with mechanism {self.linkage.MECHANISM}; only four-bar has it"
+                f"pumping_unit does not go with mechanism {self.linkage.mechanism.word}; only four-bar has it"
             )
         if self.dynamics is not None:
-            refuse(misplaced(self.dynamics, type(self.linkage)))
+            refuse(misplaced(self.dynamics, self.linkage.mechanism))
 
     @property
     def four_bar(self) -> FourBar:
         """The linkage, which has to be a four-bar."""
         if not isinstance(self.linkage, FourBar):
-            raise ProblemError(f"{self.name} is a {self.linkage.MECHANISM}; it must be a four-bar")
+            raise ProblemError(f"{self.name} is a {self.linkage.mechanism.word}; it must be a four-bar")
         return self.linkage
 
     @property

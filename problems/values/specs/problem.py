@@ -24,10 +24,10 @@ from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.values.dynamics.manufacturing import Manufacturing
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkages.cylinder import CylinderSpec
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import (
     FOUR_BAR,
     INVERTED,
-    KINDS,
     SLIDER_CRANK,
     freedoms,
     mechanisms,
@@ -170,7 +170,7 @@ class Problem(ReadOnly):
             with noted(wrong):
                 positive_number(self.dynamics.speed_rpm, "dynamics.speed_rpm")
             for word in self.mechanism:
-                wrong += misplaced(self.dynamics, KINDS[word])
+                wrong += misplaced(self.dynamics, ONE_LOOP[word])
             wrong += self.dynamics.too_short(self.dynamics.turn_time, "a turn of the driver")
             if not self.dynamics.acts:
                 wrong.append(

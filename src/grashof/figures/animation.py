@@ -181,7 +181,7 @@ class _Moving:
         self._clock: Text | None = None
         frames = len(state.p)
         self._drawn = np.searchsorted(turns, np.arange(frames) / frames, side="right")
-        self._links = Links(axes, type(linkage), self._stands[0], named=False)
+        self._links = Links(axes, linkage.mechanism, self._stands[0], named=False)
         self._rams = cylinder_places(subject, state)
         self._cylinder = [
             DrawnCylinder(axes, subject.cylinder_on, places, named=False) for places in self._rams[:1]
@@ -198,15 +198,17 @@ class _Moving:
         ]
         draw_ground(axes, linkage, travel)
         plane(axes, subject.spec.length_unit)
-        seen = {*linkage.JOINTS, *CORNERS, *ROD}
+        seen = {*linkage.mechanism.joints, *CORNERS, *ROD}
         joints = [place for stand in self._stands for name, place in stand.items() if name in seen]
         rams = self._rams[:, :3].reshape(-1, 2)
         axes.update_datalim(np.concatenate([joints, path, rams, *self._corners]))
-        name_points(axes, {name.upper(): getattr(linkage, name) for name in linkage.GROUND})
+        name_points(axes, {name.upper(): getattr(linkage, name) for name in linkage.mechanism.ground})
 
     def annotate(self, axes: Axes, subject: Subject, state: Position) -> None:
         """Name the moving points, and tell driver angle and time."""
-        named = {name: place for name, place in self._stands[0].items() if name in subject.linkage.MOVING}
+        named = {
+            name: place for name, place in self._stands[0].items() if name in subject.linkage.mechanism.moving
+        }
         self._names = {
             name: axes.annotate(
                 name.upper(), tuple(place), (6, 6), textcoords="offset points", color=GROUND, zorder=8

@@ -28,11 +28,11 @@ KINEMATICS: Mapping[str, Panel] = {
         {"theta3_deg": "theta3", "theta4_deg": "theta4", "mu_deg": "transmission angle mu"},
     ),
     "angular velocity": ("angular velocity (rad/s)", {"omega3": "omega3", "omega4": "omega4"}),
-    "speed": ("speed ({unit}/s)", {f"{name}_speed": name.upper() for name in FourBar.MOVING}),
+    "speed": ("speed ({unit}/s)", {f"{name}_speed": name.upper() for name in FourBar.mechanism.moving}),
     "angular acceleration": ("angular acceleration (rad/s²)", {"alpha3": "alpha3", "alpha4": "alpha4"}),
     "acceleration": (
         "acceleration ({unit}/s²)",
-        {f"{name}_acceleration": name.upper() for name in FourBar.MOVING},
+        {f"{name}_acceleration": name.upper() for name in FourBar.mechanism.moving},
     ),
 }
 # Of linkages with a slide besides.
@@ -43,7 +43,7 @@ SLIDE: Mapping[str, Panel] = {
 }
 DYNAMICS: Mapping[str, Panel] = {
     "torque": ("drive torque (N m)", {"torque": "torque"}),
-    "joint force": ("joint force (N)", forces_of(FourBar)),
+    "joint force": ("joint force (N)", forces_of(FourBar.mechanism)),
     "shaking force": (
         "shaking force (N)",
         {"shaking_force_x": "x", "shaking_force_y": "y", "shaking_force": "size"},
@@ -94,7 +94,7 @@ def plot_kinematics(
     ['angle (deg)', 'speed (m/s)']
     """
     spec = Subject.of(linkage, problem).spec
-    panels = _panels(quantities, {**KINEMATICS, **(SLIDE if spec.linkage.SLIDES else {})})
+    panels = _panels(quantities, {**KINEMATICS, **(SLIDE if spec.linkage.mechanism.slides else {})})
     sweep = Sweep.of(spec, speed_rpm)
     with dead_positions_unwarned():
         table = table_of(kinematic_quantities(sweep.spec), sweep.states_drawn())
@@ -179,7 +179,7 @@ def draw_curves(
 
 def _name(sweep: Sweep, column: str, words: str) -> str:
     """What a column is called; a joint force is one in a slide where the kind has one there."""
-    return forces_of(type(sweep.spec.linkage)).get(column, words)
+    return forces_of(sweep.spec.linkage.mechanism).get(column, words)
 
 
 def _rows(count: int, ax: Axes | Iterable[Axes] | None) -> AxesArray:

@@ -31,7 +31,10 @@ def cylinder_places(subject: Subject, position: Position) -> FloatArray:
     closed = float(found.length.min()) if figures is None else figures.closed
     base = np.broadcast_to(np.asarray(verdict.cylinder.base), found.pivot.shape)
     share = np.minimum(_SHARE * closed / np.maximum(found.length, 1e-300), 1.0)[:, None]
-    at, points = places(subject.linkage, position), subject.linkage.LINKS[verdict.cylinder.link - 1].points
+    at, points = (
+        places(subject.linkage, position),
+        subject.linkage.mechanism.links[verdict.cylinder.link - 1].points,
+    )
     one, other = at[points[0]], at[points[:2][-1]]  # a slider has one alone
     return np.stack([base, base + share * (found.pivot - base), found.pivot, one, other], axis=1)
 

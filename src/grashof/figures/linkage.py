@@ -87,7 +87,7 @@ def plot_linkage(
     draw_path(ax, subject)
     shades = np.linspace(0.3, 1, len(positions)) if len(positions) > 1 else [1.0]
     for points, shade in zip(positions, shades, strict=True):
-        Links(ax, type(subject.linkage), points, shade, named=points is positions[-1])
+        Links(ax, subject.linkage.mechanism, points, shade, named=points is positions[-1])
     for number, places in enumerate(cylinders, start=1):
         on, named = subject.cylinder_on, number == len(cylinders)
         DrawnCylinder(ax, on, places, shades[number - 1], named=named)
@@ -96,7 +96,7 @@ def plot_linkage(
     draw_sense(ax, subject)
     plane(ax, subject.spec.length_unit)
     names: dict[tuple[float, ...], str] = {}
-    for name in subject.linkage.POINTS:
+    for name in subject.linkage.mechanism.points:
         place = positions[-1][name]
         names.setdefault(tuple(place), name.upper())  # P may lie in a joint
     name_points(ax, {name: np.array(place) for place, name in names.items()})

@@ -22,6 +22,7 @@ from grashof.figures.subject import Subject
 from grashof.problems import FunctionTask, Linkage, Problem, Task
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.linkage_parts import Link
+from grashof.problems.values.linkages.mechanism import Mechanism
 
 # Distinct to the colour-blind, too (after Okabe & Ito, *Color Universal Design*, 2008).
 DRIVER, COUPLER, OUTPUT, PATH = "#d55e00", "#0072b2", "#009e73", "#8c3f78"
@@ -57,7 +58,7 @@ class Links:
     Parameters
     ----------
     axes : Axes
-    kind : type
+    kind : Mechanism
         Of the linkage.
     points : mapping of str to ndarray, shape (2,), length
         Where the points of the linkage are, as `stands` gives them.
@@ -70,7 +71,7 @@ class Links:
     def __init__(
         self,
         axes: Axes,
-        kind: type[Linkage],
+        kind: Mechanism,
         points: Mapping[str, FloatArray],
         shade: float = 1.0,
         *,
@@ -98,34 +99,34 @@ class Links:
                 artist.set_data(*corners.T)
 
 
-def _looks(kind: type[Linkage], named: bool) -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
+def _looks(kind: Mechanism, named: bool) -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
     """Through which points the bars, the sides of the plate, the joints and P are drawn, and how."""
-    for link in sorted(kind.LINKS[1:], key=lambda link: len(link.points)):
+    for link in sorted(kind.links[1:], key=lambda link: len(link.points)):
         label = f"{link.name} {'-'.join(link.labels)}" if named else None
         width = 2.4 if len(link.points) == 2 else 1.6
         for names in _outlines(kind, link):
             yield names, {"color": COLOURS[link.name], "linewidth": width, "label": label, "zorder": 4}
             label = None
     dot: dict[str, Any] = {"marker": "o", "linestyle": "none"}
-    joints = tuple(name for name in kind.MOVING if name in kind.JOINTS)
+    joints = tuple(name for name in kind.moving if name in kind.joints)
     yield joints, {**dot, "color": "white", "markeredgecolor": COUPLER, "markersize": 5, "zorder": 5}
     yield ("p",), {**dot, "color": PATH, "markersize": 4, "zorder": 6}
 
 
-def _faces(kind: type[Linkage]) -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
+def _faces(kind: Mechanism) -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
     """The corners of what is filled: plates, and blocks, which cover what is below."""
-    for link in kind.LINKS:
+    for link in kind.links:
         if len(link.points) > 2:
             yield _sides(link), {"color": COLOURS[link.name], "alpha": 0.1, "zorder": 3}
-    if kind.SLIDES:
-        yield CORNERS, {"color": COLOURS[kind.LINKS[-1].name], "alpha": 0.25, "zorder": 3}
+    if kind.slides:
+        yield CORNERS, {"color": COLOURS[kind.links[-1].name], "alpha": 0.25, "zorder": 3}
 
 
-def _outlines(kind: type[Linkage], link: Link) -> list[tuple[str, ...]]:
+def _outlines(kind: Mechanism, link: Link) -> list[tuple[str, ...]]:
     """The lines of a link: its bar or plate, its block and bar, or the rod that a block slides on."""
-    if not any(link.number in pair for pair in kind.SLIDES):
+    if not any(link.number in pair for pair in kind.slides):
         return [_sides(link)]
-    if link.number == kind.LINKS[-1].number:
+    if link.number == kind.links[-1].number:
         return [CORNERS, link.points] if len(link.points) > 1 else [CORNERS]
     return [ROD, ARM]
 
@@ -200,7 +201,7 @@ def apart(place: FloatArray, others: Sequence[FloatArray]) -> bool:
 def draw_ground(axes: Axes, linkage: Linkage, travel: Travel) -> None:
     """The ground pivots, and the guide of a slide."""
     draw_guide(axes, linkage, travel, {"color": GROUND, "zorder": 1.8})
-    for pivot in (getattr(linkage, name) for name in linkage.GROUND):
+    for pivot in (getattr(linkage, name) for name in linkage.mechanism.ground):
         axes.plot(*pivot[:, None], marker="^", color=GROUND, markersize=11, zorder=6)
         axes.plot(*pivot[:, None], marker="o", color="white", markersize=3, zorder=7)
 

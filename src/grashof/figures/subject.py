@@ -73,7 +73,7 @@ class Subject:
     @property
     def travel(self) -> Travel:
         """How far its slide goes; NaN where it has none."""
-        if not self.linkage.SLIDES:
+        if not self.linkage.mechanism.slides:
             return Travel(np.nan, np.nan)
         far = [slide_travel(self.linkage, solve_position(self.linkage, each)) for each in self.sweep.angles()]
         every = np.concatenate(far)

@@ -28,7 +28,7 @@ def plots(report: LinkageReport) -> Iterator[tuple[str, Figure]]:
     """Name and figure of each plot, with units; torque and forces only with masses."""
     yield "path", _path(report)
     kinds = [("kinematics", KINEMATICS, _KINEMATIC), ("dynamics", DYNAMICS, _DYNAMIC)]
-    if report.sweep.spec.linkage.SLIDES:
+    if report.sweep.spec.linkage.mechanism.slides:
         kinds.insert(1, ("kinematics", SLIDE, _SLIDE))
     for table, known, files in kinds:
         for name, quantities in files.items() if table in report.tables else ():
@@ -59,7 +59,7 @@ def _path(report: LinkageReport) -> Figure:
         figure = Figure(figsize=(8.5, 7.0), layout="constrained")
         axes = plot_linkage(replace(report.sweep.spec, problem=None), ax=figure.subplots())
         halfway = "" if report.masses is not None else " (halfway)"
-        links = report.sweep.spec.linkage.LINKS[1:]
+        links = report.sweep.spec.linkage.mechanism.links[1:]
         colours = {f"link {link.number}": COLOURS[link.name] for link in links}
         for name, track in mass_tracks(report).items():
             label = f"centre of mass, {name}{'' if name == 'all links' else halfway}"

@@ -87,7 +87,7 @@ class Shown:
 
 def _numbers(design: Candidate) -> np.ndarray[Any, np.dtype[np.float64]]:
     stated = [np.ravel(each) for each in design.linkage.parameters]
-    return np.concatenate([[len(design.linkage.MECHANISM)], *stated]).astype(float)
+    return np.concatenate([[len(design.linkage.mechanism.word)], *stated]).astype(float)
 
 
 def _alike(one: np.ndarray[Any, Any], other: np.ndarray[Any, Any]) -> bool:
@@ -127,7 +127,7 @@ def _track(job: Job, _stop: object, tell: Callable[[Line], object]) -> None:
     chosen = [key for key in job.options.get("keys", ()) if key in shown.designs]
     order = list(dict.fromkeys([*chosen, *shown.designs]))[:TRACKED]
     kept = {key: design for key, design in shown.designs.items() if key in order}
-    kept = {key: design for key, design in kept.items() if design.linkage.MECHANISM in problem.mechanism}
+    kept = {key: design for key, design in kept.items() if design.linkage.mechanism.word in problem.mechanism}
     moved = dict(zip(kept, track(list(kept.values()), problem), strict=True))
     there = {key: design for key, design in moved.items() if design.verdict.ok}
     lost = {

@@ -87,13 +87,13 @@ def worksheet(model: Model) -> str:
     _angle(made, model)
     for name, value in _numbers(linkage).items():
         _number(made, name, repr(value))
-    for name in linkage.GROUND:
+    for name in linkage.mechanism.ground:
         x, y = getattr(linkage, name).tolist()
         _point(made, name.upper(), f"({x!r}, {y!r})", fixed=True)
     for name, formula in _STEPS[type(linkage)].items():
         (_point if name.isupper() else _number)(made, name, formula)
     _point(made, "P", _P)
-    for link in linkage.LINKS[1:]:
+    for link in linkage.mechanism.links[1:]:
         for one, other in link.lines:
             _segment(made, link.name, one.upper(), other.upper())
     locus = add(made, "command", name="Locus")
@@ -162,8 +162,8 @@ def _segment(made: ET.Element, link: str, one: str, other: str) -> None:
 def _view(model: Model) -> ET.Element:
     """The window: all that moves, at equal scales."""
     state = solve_position(model.linkage, np.linspace(model.low, model.high, 361)[1:-1])
-    moving = [getattr(state, name) for name in model.linkage.MOVING]
-    fixed = [getattr(model.linkage, name)[None] for name in model.linkage.GROUND]
+    moving = [getattr(state, name) for name in model.linkage.mechanism.moving]
+    fixed = [getattr(model.linkage, name)[None] for name in model.linkage.mechanism.ground]
     every = np.concatenate([*moving, *fixed])
     low, high = np.nanmin(every, axis=0), np.nanmax(every, axis=0)
     width, height = _WINDOW

@@ -49,12 +49,12 @@ def linkage2(model: Model) -> str:
         raise ProblemError(
             "--linkage2 is for a four-bar or a slider-crank; Linkage has no block that swings about a pivot"
         )
-    fixed = {name: getattr(linkage, name) for name in linkage.GROUND}
-    links = {link.name: list(link.points) for link in linkage.LINKS[1:] if len(link.points) > 1}
+    fixed = {name: getattr(linkage, name) for name in linkage.mechanism.ground}
+    links = {link.name: list(link.points) for link in linkage.mechanism.links[1:] if len(link.points) > 1}
     if isinstance(linkage, SliderCrank):
         fixed |= dict(zip(_GUIDE, _guide(model), strict=True))
         links["guide"] = list(_GUIDE)
-    places = fixed | {name: getattr(at, name) for name in linkage.MOVING}
+    places = fixed | {name: getattr(at, name) for name in linkage.mechanism.moving}
     root = ET.Element("linkage2")
     shown = {"units": _UNITS.get(model.spec.length_unit, _UNITS["mm"])}
     add(root, "program", zoom="1", xoffset="0", yoffset="0", scalefactor="1", **shown)

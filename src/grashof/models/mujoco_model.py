@@ -85,7 +85,7 @@ def mjcf(model: Model) -> str:
     trees, loop = _TREES[type(model.linkage)](model)
     for link in trees:
         _add(world, link, model, size)
-    names = {link.number: link.name for link in model.linkage.LINKS}
+    names = {link.number: link.name for link in model.linkage.mechanism.links}
     closed = add(root, "equality")
     stiff = {"solref": _numbers((2 * turn / STEPS, 1)), "solimp": "0.9999 0.9999 0.001 0.5 2"}
     ends = {"body1": names[loop.one], "body2": names[loop.other]}
@@ -101,7 +101,7 @@ def mjcf(model: Model) -> str:
 
 def _add(parent: ET.Element, link: _Link, model: Model, size: float) -> None:
     """Add a link, and those that hang on it."""
-    metre, name = model.metre, model.linkage.LINKS[link.number - 1].name
+    metre, name = model.metre, model.linkage.mechanism.links[link.number - 1].name
     place = {"pos": _numbers((*link.place * metre, 0)), "euler": _numbers((0, 0, link.angle))}
     body = add(parent, "body", name=name, **place)
     joint = link.joint

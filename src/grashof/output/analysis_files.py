@@ -166,7 +166,7 @@ def _summary(report: LinkageReport) -> dict[str, Any]:
         "source": spec.source,
         "length_unit": spec.length_unit,
         "angle_unit": "rad",
-        "mechanism": spec.linkage.MECHANISM,
+        "mechanism": spec.linkage.mechanism.word,
         "linkage": spec.linkage.stated,
         "notes": list(report.notes),
         "facts": {

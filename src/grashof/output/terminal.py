@@ -261,7 +261,7 @@ def _cells(problem: Problem, candidate: Candidate, digits: int) -> dict[str, str
     return {
         **{each.short: _cell(each, candidate, digits) for each in _decided_by(problem)},
         **{name: _place(getattr(linkage, name.lower(), None), problem.task.size) for name in ("O2", "O4")},
-        "mechanism": linkage.MECHANISM,
+        "mechanism": linkage.mechanism.word,
         "class": str(candidate.verdict.grashof_class),
     }
 
@@ -274,7 +274,7 @@ def _place(place: FloatArray | None, size: float) -> str:
 def _cell(quantity: Quantity, candidate: Candidate, digits: int) -> str:
     if quantity.over is Over.CYCLE and not candidate.verdict.full_rotation:
         return "-"
-    if candidate.linkage.MECHANISM not in quantity.kinds:
+    if candidate.linkage.mechanism.word not in quantity.kinds:
         return "-"
     value = candidate.values[quantity.key] * quantity.unit.shown
     if quantity.unit is Unit.ANGLE and not quantity.deviates:

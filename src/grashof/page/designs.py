@@ -24,7 +24,8 @@ from grashof.page.render import compact
 from grashof.problems import Cylinder, DynamicsSpec, FunctionTask, Linkage, Problem
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics.dynamics_spec import metres
-from grashof.problems.values.linkages.mechanisms import KINDS
+from grashof.problems.values.linkages.linkage import by_kind
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.study.sweep import INSET, dead_positions_unwarned, driver_angles
 from grashof.synth import Candidate
 from grashof.synth.designs.table import Row
@@ -98,7 +99,7 @@ def legend(kinds: Iterable[str], cylinders: Iterable[Cylinder | None] = ()) -> l
     found: dict[str, list[str]] = {}
     every = list(kinds)
     for style, index in (("driver", 1), ("coupler", 2), ("output", 3)):
-        links = [KINDS[kind].LINKS[index] for kind in every]
+        links = [ONE_LOOP[kind].links[index] for kind in every]
         found[style] = [f"{link.name} {'-'.join(link.labels)}" for link in links]
     words = [(style, ", ".join(dict.fromkeys(names))) for style, names in found.items()]
     return words + [("cylinder", "cylinder")] * any(each is not None for each in cylinders)
@@ -106,7 +107,7 @@ def legend(kinds: Iterable[str], cylinders: Iterable[Cylinder | None] = ()) -> l
 
 def linkage_data(linkage: Linkage) -> dict[str, Any]:
     """A linkage as the scripts have it: its kind, and what it is stated by in full precision."""
-    return {"mechanism": linkage.MECHANISM, **linkage.stated}
+    return {"mechanism": linkage.mechanism.word, **linkage.stated}
 
 
 def designs_of(problem: Problem, designs: Sequence[Candidate], rows: Sequence[Row]) -> list[dict[str, Any]]:
@@ -185,8 +186,7 @@ def _torques(
     found: list[list[float | None] | None] = [None] * len(linkages)
     if problem.dynamics is None:
         return found
-    for kind in dict.fromkeys(map(type, linkages)):
-        rows = [row for row, linkage in enumerate(linkages) if type(linkage) is kind]
+    for rows in by_kind(linkages):
         torques = _of_one_kind(
             problem,
             problem.dynamics,
@@ -207,8 +207,7 @@ def _of_one_kind(
     travels: Sequence[Travel],
 ) -> list[list[float | None]]:
     metre = metres(problem.length_unit)
-    kind = type(linkages[0])
-    batch = kind(*map(np.stack, zip(*(each.parameters for each in linkages), strict=True)))[:, None]
+    batch = linkages[0].stacked(linkages)[:, None]
     laws = [driver_law(problem, *motion_ends(problem.task, each.verdict)) for each in designs]
     theta2 = np.stack(
         [_angles_of_motion(travel, each.verdict) for travel, each in zip(travels, designs, strict=True)]

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from grashof.problems import Linkage
+from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.study.kinds import forces_of
 from grashof.study.section import Plot, Section
 from grashof.survey.report import LinkageReport
@@ -42,7 +42,7 @@ def motion_sections(report: LinkageReport) -> list[Section]:
     table = _parted(table.loc[:, ~table.columns.duplicated()])
     theta2 = table["theta2_deg"].to_numpy()
     sections = []
-    for key, title, panels in _groups(report.sweep.spec.unit, type(report.sweep.spec.linkage)):
+    for key, title, panels in _groups(report.sweep.spec.unit, report.sweep.spec.linkage.mechanism):
         plots = tuple(
             Plot(name, heading, unit, {columns[each]: table[each].to_numpy() for each in known}, theta2)
             for name, heading, unit, columns in panels
@@ -53,9 +53,9 @@ def motion_sections(report: LinkageReport) -> list[Section]:
     return sections
 
 
-def _groups(unit: str, kind: type[Linkage]) -> list[tuple[str, str, list[Panel]]]:
+def _groups(unit: str, kind: Mechanism) -> list[tuple[str, str, list[Panel]]]:
     """Key, title and plots of each section."""
-    points, joints = {name: name.upper() for name in kind.MOVING}, forces_of(kind)
+    points, joints = {name: name.upper() for name in kind.moving}, forces_of(kind)
     speeds, accelerations = (
         {f"{name}_{size}": label for name, label in points.items()} for size in ("speed", "acceleration")
     )

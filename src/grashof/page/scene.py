@@ -20,7 +20,7 @@ _SAMPLES = 181
 def scene_of(problem: Problem) -> dict[str, Any]:
     """A problem as the scripts draw it; lengths in its unit, angles in rad, null where free or open."""
     wanted = problem.requirements
-    boxes = {name: box for name in FourBar.PIVOTS if (box := getattr(wanted, name)) is not None}
+    boxes = {name: box for name in FourBar.mechanism.pivots if (box := getattr(wanted, name)) is not None}
     return {
         **_targets(problem.task),
         "unit": problem.length_unit,

@@ -83,7 +83,7 @@ def search_page(
         caution=any(row["caution"] for row in told),
         regions=len({row["region"] for row in told} - {""}) > 1,
         classes=sorted({row["grashof_class"] for row in rows}),
-        mechanisms=(kinds := list(dict.fromkeys(each.linkage.MECHANISM for each in designs))),
+        mechanisms=(kinds := list(dict.fromkeys(each.linkage.mechanism.word for each in designs))),
         links=legend(kinds or problem.mechanism, (each.verdict.cylinder for each in designs)),
         counts=_counts(result.tally),
         seconds={stage: f"{time:.2f}" for stage, time in result.seconds.items()},

@@ -71,7 +71,7 @@ _ONLY: dict[Callable[[LinkageStudy], Section | None], tuple[tuple[str, ...], str
 
 def sections_of(study: LinkageStudy) -> tuple[Section, ...]:
     """The sections that a linkage has; `ProblemError` where one is asked for that its kind has not."""
-    kind, asked = study.linkage.MECHANISM, study.asked
+    kind, asked = study.linkage.mechanism.word, study.asked
     named = () if set(asked.sections) == set(ON_REQUEST) else asked.sections
     suited = [make for make in SECTIONS if make not in _ONLY or kind in _ONLY[make][0]]
     for make in SECTIONS:

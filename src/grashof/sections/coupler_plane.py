@@ -26,10 +26,10 @@ def coupler_plane(study: LinkageStudy) -> Section:
     theta2 = columns["theta2_deg"]
     far = np.hypot(columns["moving_u"], columns["moving_v"]) > reach
     fixed, moving = track(columns, "fixed"), track(columns, "moving", "uv")
-    pivots = {name.upper(): np.array([getattr(linkage, name)]) for name in linkage.GROUND}
+    pivots = {name.upper(): np.array([getattr(linkage, name)]) for name in linkage.mechanism.ground}
     frame = {"A": (0.0, 0.0)}
-    if "b" in linkage.LINKS[2].points:  # the B of an inverted slider-crank moves along its rod
-        frame["B"] = (float(linkage.lengths[linkage.LENGTHS.index("r3")]), 0.0)
+    if "b" in linkage.mechanism.links[2].points:  # the B of an inverted slider-crank moves along its rod
+        frame["B"] = (float(linkage.lengths[linkage.mechanism.lengths.index("r3")]), 0.0)
     frame["P"] = tuple(linkage.coupler_point.tolist())
     shown = [np.where(far[:, None], np.nan, points) for points in (fixed, moving)]
     circles, diameter = _circles(study, _angles(study)), {"diameter": "inflection_diameter"}

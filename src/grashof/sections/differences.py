@@ -113,7 +113,7 @@ def _even_samples(study: LinkageStudy) -> tuple[Samples, list[_Part]]:
 
 
 def _rates(study: LinkageStudy, parts: list[_Part]) -> Iterator[Rate]:
-    for link in turning(type(study.linkage)):
+    for link in turning(study.linkage.mechanism):
         angles = [np.unwrap(getattr(part.state, f"theta{link}")) for part in parts]
         for derivative, (name, unit) in enumerate(_ANGULAR, start=1):
             exact = [getattr(part.state, f"{name}{link}") for part in parts]

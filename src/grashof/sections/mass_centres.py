@@ -44,7 +44,7 @@ def mass_table(study: LinkageStudy) -> pd.DataFrame:
     if masses is None or given is None or not masses.total > 0:
         return pd.DataFrame()
     rows, bars = list[dict[str, object]](), bars_of(study.linkage)
-    for link in study.linkage.LINKS[1:]:
+    for link in study.linkage.mechanism.links[1:]:
         body = masses.of(link.number)
         u, v = body.centre.tolist()
         row: dict[str, object] = {"link": f"{link.number}, {link.name}"}
@@ -62,7 +62,7 @@ def mass_table(study: LinkageStudy) -> pd.DataFrame:
 def centres_of(study: LinkageStudy, state: Kinematics) -> dict[str, PointMotion]:
     """Motions of the centres of the links, g2 to g4, and with masses of the system's, g."""
     masses, found = study.masses, {}
-    for link in (link.number for link in study.linkage.LINKS[1:]):
+    for link in (link.number for link in study.linkage.mechanism.links[1:]):
         at = halfway(study.linkage, link) if masses is None else masses.of(link).centre
         found[f"g{link}"] = state.point(link, at)
     if masses is not None and masses.total > 0:
@@ -72,7 +72,9 @@ def centres_of(study: LinkageStudy, state: Kinematics) -> dict[str, PointMotion]
 
 def centre_labels(study: LinkageStudy) -> dict[str, str]:
     """The names of `centres_of` in words."""
-    labels = {f"g{link.number}": f"the centre of link {link.number}" for link in study.linkage.LINKS[1:]}
+    labels = {
+        f"g{link.number}": f"the centre of link {link.number}" for link in study.linkage.mechanism.links[1:]
+    }
     masses = study.masses
     return labels | ({"g": "the system's centre"} if masses is not None and masses.total > 0 else {})
 

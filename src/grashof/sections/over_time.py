@@ -35,7 +35,7 @@ def over_time(study: LinkageStudy) -> Section | None:
 
 def _plots(study: LinkageStudy, history: History, columns: dict[str, FloatArray]) -> tuple[Plot, ...]:
     samples, unit = Samples.over_time(study, history), study.spec.unit
-    moving = type(study.linkage).MOVING
+    moving = study.linkage.mechanism.moving
     speeds, accelerations = (
         {name.upper(): f"{name}_{size}" for name in moving} for size in ("speed", "acceleration")
     )

@@ -20,12 +20,12 @@ def pin_forces(study: LinkageStudy) -> Section | None:
     if masses is None:
         return None
     columns = over_driver(study, lambda s: _forces(s, inverse_dynamics(s, masses, loads), study.metre))
-    kind = type(study.linkage)
-    first = ", ".join(f"{joint.upper()} on {links[1]}" for joint, links in kind.JOINTS.items())
-    every = {joint.upper(): joint for joint in kind.JOINTS}
+    kind = study.linkage.mechanism
+    first = ", ".join(f"{joint.upper()} on {links[1]}" for joint, links in kind.joints.items())
+    every = {joint.upper(): joint for joint in kind.joints}
     plots = [tracks(columns, "pin-forces", f"pin forces, global axes: {first}", "N", every)]
-    for link in kind.LINKS[1:]:
-        joints = [joint for joint, links in kind.JOINTS.items() if link.number in links]
+    for link in kind.links[1:]:
+        joints = [joint for joint, links in kind.joints.items() if link.number in links]
         labels = {f"in {joint.upper()}": f"{joint}_on_{link.number}" for joint in joints}
         title = f"pin forces on link {link.number}, in its frame: u along it"
         plots.append(tracks(columns, f"pin-forces-on-{link.number}", title, "N", labels, "uv"))
@@ -36,7 +36,7 @@ def pin_forces(study: LinkageStudy) -> Section | None:
 
 def _forces(state: Kinematics, found: Dynamics, metre: float) -> Columns:
     columns: dict[str, FloatArray] = {}
-    for joint, links in state.linkage.JOINTS.items():
+    for joint, links in state.linkage.mechanism.joints.items():
         columns[joint] = _on(found, links, links[1]) * metre
         for link in links:
             if link != 1:

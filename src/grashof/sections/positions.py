@@ -48,15 +48,15 @@ def position_table(study: LinkageStudy, state: Kinematics) -> pd.DataFrame:
 
 def _drawing(study: LinkageStudy, state: Kinematics) -> Plot:
     linkage = study.linkage
-    places = {name: getattr(state, name).position for name in linkage.MOVING}
+    places = {name: getattr(state, name).position for name in linkage.mechanism.moving}
     p = places["p"]
-    places |= {name: np.broadcast_to(getattr(linkage, name), p.shape) for name in linkage.GROUND}
+    places |= {name: np.broadcast_to(getattr(linkage, name), p.shape) for name in linkage.mechanism.ground}
     gap = np.full(p.shape, np.nan)
-    bars = np.stack([places.get(name, gap) for name in _BARS[linkage.MECHANISM]], axis=1)
+    bars = np.stack([places.get(name, gap) for name in _BARS[linkage.mechanism.word]], axis=1)
     labels = [f"theta2 = {angle:.6g} deg" for angle in study.asked.at_deg]
     series: dict[str, FloatArray] = {"path of P": _path(study)}
     series |= {label: bars[number] for number, label in enumerate(labels)}
-    pivots = {name.upper(): getattr(linkage, name)[None] for name in linkage.GROUND}
+    pivots = {name.upper(): getattr(linkage, name)[None] for name in linkage.mechanism.ground}
     title = "the linkage at chosen driver angles"
     return Plot("positions", title, study.spec.unit, series, points={**pivots, "P": p})
 

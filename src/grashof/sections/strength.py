@@ -60,7 +60,10 @@ def _columns(state: Kinematics, structure: Structure) -> Columns:
 def _plots(study: LinkageStudy, columns: Columns) -> Iterator[Plot]:
     """A plot of each measure, a line for each bar or joint."""
     for measures, parts in (
-        (BAR_MEASURES, {str(link.number): f"link {link.number}" for link in study.linkage.LINKS[1:]}),
+        (
+            BAR_MEASURES,
+            {str(link.number): f"link {link.number}" for link in study.linkage.mechanism.links[1:]},
+        ),
         (PIN_MEASURES, {joint.name.lower(): joint.name for joint in Joint}),
     ):
         for measure in measures:

@@ -26,7 +26,7 @@ def tolerance(study: LinkageStudy) -> Section | None:
     off = number_within(positive_number(study.asked.tolerance, "tolerance"), 0.0, GREATEST, "tolerance")
     unit = study.spec.unit
     columns = over_driver(study, lambda state: _columns(state, off))
-    each = {dimension: f"p_{dimension}" for dimension in study.linkage.DIMENSIONS}
+    each = {dimension: f"p_{dimension}" for dimension in study.linkage.mechanism.dimensions}
     turns = {dimension: f"theta4_{dimension}_deg" for dimension in _of_loop(study.linkage)}
     whole = {"worst": "p_worst", "root of squares": "p_rms"}
     turned = {"worst": "theta4_worst_deg", "root of squares": "theta4_rms_deg"}
@@ -47,7 +47,7 @@ def tolerance(study: LinkageStudy) -> Section | None:
 def _columns(state: Kinematics, off: float) -> Columns:
     found = made_moves(state.linkage, state.theta2, off)
     columns: dict[str, FloatArray] = {
-        f"p_{dimension}": found.point[:, k] for k, dimension in enumerate(state.linkage.DIMENSIONS)
+        f"p_{dimension}": found.point[:, k] for k, dimension in enumerate(state.linkage.mechanism.dimensions)
     }
     columns |= {"p_worst": found.point_worst, "p_rms": found.point_rms}
     if not _turns(state.linkage):
@@ -64,11 +64,11 @@ def _columns(state: Kinematics, off: float) -> Columns:
 
 def _of_loop(linkage: Linkage) -> tuple[str, ...]:
     """The dimensions that turn link 4: all but the place of P; they come first."""
-    return tuple(name for name in linkage.DIMENSIONS if name not in ("u", "v"))
+    return tuple(name for name in linkage.mechanism.dimensions if name not in ("u", "v"))
 
 
 def _turns(linkage: Linkage) -> bool:
-    return 4 in turning(type(linkage))
+    return 4 in turning(linkage.mechanism)
 
 
 def _facts(study: LinkageStudy, off: float) -> Iterator[Fact]:
@@ -94,5 +94,5 @@ def _facts(study: LinkageStudy, off: float) -> Iterator[Fact]:
                 yield Fact(f"tolerance_{key}_worst_theta2_deg", f"{label}, at theta2", at, "deg")
     most = int(np.argmax(values[4:]))
     label = "dimension that moves P most"
-    yield Fact("tolerance_dimension", label, study.linkage.DIMENSIONS[most])
+    yield Fact("tolerance_dimension", label, study.linkage.mechanism.dimensions[most])
     yield Fact("tolerance_dimension_move", f"{label}: by", float(values[4 + most]), study.spec.unit)

@@ -6,6 +6,7 @@ import numpy as np
 
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.problems.values.linkages.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
 
 # The two shares of `rotatability`, in words; empty where one of them says nothing.
@@ -22,21 +23,21 @@ LIMIT_POSITIONS = {
 }
 
 
-def joints_with_forces(kind: type[Linkage]) -> dict[str, tuple[int, ...]]:
+def joints_with_forces(kind: Mechanism) -> dict[str, tuple[int, ...]]:
     """The joints in which links press on each other, slides among them, with the numbers of the links."""
-    pins = {name.upper(): links for name, links in kind.JOINTS.items()}
-    return pins | ({"slide": kind.SLIDES[0]} if kind.SLIDES else {})
+    pins = {name.upper(): links for name, links in kind.joints.items()}
+    return pins | ({"slide": kind.slides[0]} if kind.slides else {})
 
 
-def forces_of(kind: type[Linkage]) -> dict[str, str]:
+def forces_of(kind: Mechanism) -> dict[str, str]:
     """Keys of the joint forces (f32: on link 2 by link 3), and the joints that they act in.
 
     Examples
     --------
     >>> from grashof.problems import FourBar, SliderCrank
-    >>> forces_of(FourBar)
+    >>> forces_of(FourBar.mechanism)
     {'f12': 'O2', 'f32': 'A', 'f43': 'B', 'f14': 'O4'}
-    >>> forces_of(SliderCrank)
+    >>> forces_of(SliderCrank.mechanism)
     {'f12': 'O2', 'f32': 'A', 'f43': 'B', 'f14': 'slide'}
     """
     return {
@@ -45,10 +46,10 @@ def forces_of(kind: type[Linkage]) -> dict[str, str]:
     }
 
 
-def turning(kind: type[Linkage]) -> dict[int, str]:
+def turning(kind: Mechanism) -> dict[int, str]:
     """The links after the driver that turn, by their numbers, with their names."""
-    still = {number for pair in kind.SLIDES if 1 in pair for number in pair}
-    return {link.number: link.name for link in kind.LINKS[2:] if link.number not in still}
+    still = {number for pair in kind.slides if 1 in pair for number in pair}
+    return {link.number: link.name for link in kind.links[2:] if link.number not in still}
 
 
 def halfway(linkage: Linkage, link: int) -> FloatArray:

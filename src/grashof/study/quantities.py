@@ -55,7 +55,7 @@ class Quantity:
 
 def kinematic_quantities(spec: LinkageSpec) -> list[Quantity]:
     """Angles, rates and points, and the torque factor of an output arm."""
-    unit, kind = spec.unit, type(spec.linkage)
+    unit, kind = spec.unit, spec.linkage.mechanism
     driven = turning(kind)
     found = [
         Quantity(f"theta{n}_deg", f"angle of {name} {n}", "deg", _degrees(f"theta{n}"), 360.0, position=True)
@@ -67,9 +67,9 @@ def kinematic_quantities(spec: LinkageSpec) -> list[Quantity]:
         for key, rate, per in (("omega", "velocity", "rad/s"), ("alpha", "acceleration", "rad/s2"))
         for n in driven
     ]
-    if kind.SLIDES:
+    if kind.slides:
         found += _of_slide(unit)
-    for name in kind.MOVING:
+    for name in kind.moving:
         point, moves = name.upper(), lru_cache(maxsize=2)(attrgetter(name))
         place = _part_of(moves, "position")
         found += [
@@ -120,11 +120,11 @@ def dynamic_quantities(study: LinkageStudy) -> list[Quantity]:
         return Quantity(key, label, unit, lambda s: of(key)(s) * metre**2)
 
     found = [moment("torque", "drive torque", "N m"), moment("power", "drive power", "W")]
-    kind = type(study.linkage)
+    kind = study.linkage.mechanism
     for key, joint in forces_of(kind).items():
         labels = (f"force {key.upper()} in {joint}", f"joint force in {joint}")
         found += _vector((key, key), labels, "N", of(key), metre)
-    if kind.SLIDES:
+    if kind.slides:
         across = of("slide_force")
         found.append(Quantity("slide_force", "force across the slide", "N", lambda s: across(s) * metre))
         found.append(moment("slide_moment", "moment that the slide bears", "N m"))

@@ -55,7 +55,7 @@ class LinkageStudy:
     def four_bar(self) -> FourBar:
         """The linkage as a four-bar; `ProblemError` where it is none."""
         if not isinstance(self.linkage, FourBar):
-            raise ProblemError(f"{self.spec.name} is a {self.linkage.MECHANISM}; it must be a four-bar")
+            raise ProblemError(f"{self.spec.name} is a {self.linkage.mechanism.word}; it must be a four-bar")
         return self.linkage
 
     @property

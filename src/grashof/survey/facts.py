@@ -49,7 +49,7 @@ def facts_of(study: LinkageStudy, tables: Mapping[str, pd.DataFrame]) -> Iterato
     yield Fact("grashof_class", "Grashof class", f"{kind} {triple}".strip())
     stretched, folded = rotatability(linkage)
     both = (("stretched", stretched), ("folded", folded))
-    for (name, share), label in zip(both, SHARES[linkage.MECHANISM], strict=True):
+    for (name, share), label in zip(both, SHARES[linkage.mechanism.word], strict=True):
         if label:
             yield Fact(f"rotatability_{name}", label, float(share))
     yield Fact("full_rotation", "driver turns fully", turns)
@@ -73,8 +73,8 @@ def facts_of(study: LinkageStudy, tables: Mapping[str, pd.DataFrame]) -> Iterato
 
 def _stroke_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame) -> Iterator[Fact]:
     linkage, unit = spec.linkage, spec.unit
-    stroke, moved = output_stroke(linkage), linkage.LINKS[-1].name
-    if linkage.MECHANISM == SLIDER_CRANK:
+    stroke, moved = output_stroke(linkage), linkage.mechanism.links[-1].name
+    if linkage.mechanism.word == SLIDER_CRANK:
         yield from _slide_facts(spec, turns, extremes, float(stroke.chord))
     elif not turns:  # the two toggle positions may lie on different circuits
         swings = extremes[extremes["quantity"] == "theta4_deg"]
@@ -86,17 +86,17 @@ def _stroke_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame) -> Ite
                 yield Fact(f"output_stroke{mark}", f"stroke of the output arm{where}", way, unit)
     elif np.isfinite(stroke.swing):
         yield Fact("output_swing_deg", "swing of the output", float(np.degrees(stroke.swing)), "deg")
-        if linkage.MECHANISM == FOUR_BAR:
+        if linkage.mechanism.word == FOUR_BAR:
             yield Fact("stroke_chord", "stroke of B, chord", float(stroke.chord), unit)
         if spec.output_arm is not None:
             way = float(spec.output_arm * stroke.swing)
             yield Fact("output_stroke", "stroke of the output arm", way, unit)
     if np.isfinite(stroke.time_ratio):
         yield Fact("time_ratio", "time ratio of the strokes", float(stroke.time_ratio))
-    for index, (name, words) in enumerate(LIMIT_POSITIONS[linkage.MECHANISM].items()):
+    for index, (name, words) in enumerate(LIMIT_POSITIONS[linkage.mechanism.word].items()):
         if np.isfinite(stroke.theta4[index]):
             angles = {2: stroke.theta2[index], 4: stroke.theta4[index]}
-            for link, angle in ((n, angles[n]) for n in (2, *turning(type(linkage))) if n in angles):
+            for link, angle in ((n, angles[n]) for n in (2, *turning(linkage.mechanism)) if n in angles):
                 label, found = f"{moved} turns back, {words}: theta{link}", float(np.degrees(angle))
                 if link == 4:  # as the extremes count it
                     swings = extremes[extremes["quantity"] == "theta4_deg"]

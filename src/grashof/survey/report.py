@@ -116,7 +116,7 @@ def mass_tracks(report: LinkageReport) -> dict[str, FloatArray]:
             smooth_polygon(lambda t: solve_position(linkage, t).b, each)[0] for each in report.sweep.angles()
         )
         states = [report.sweep.state(angles) for angles in fine]
-        for link in (link.number for link in linkage.LINKS[1:]):
+        for link in (link.number for link in linkage.mechanism.links[1:]):
             at = halfway(linkage, link) if masses is None else masses.of(link).centre
             tracks[f"link {link}"] = np.concatenate([_gap(s.point(link, at).position) for s in states])
         if masses is not None and masses.total > 0:

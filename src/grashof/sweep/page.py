@@ -16,7 +16,8 @@ from grashof.page.designs import legend
 from grashof.page.render import DRAWING, render
 from grashof.page.scene import scene_of
 from grashof.problems.files.problem_file import problem_of
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR, KINDS
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR
 from grashof.sweep.plot import measures, number_axes
 from grashof.sweep.result import Sweep
 from grashof.sweep.table import varied_columns
@@ -94,7 +95,7 @@ def sweep_page(done: Sweep, frame: pd.DataFrame, record: Mapping[str, Any]) -> s
         compared=any(column.better for column in columns if column.key != "designs"),
         cells=len(axes) == 2,
         moves=any(done.results[place]["drawing"] for place in places),
-        links=legend(kind for kind in KINDS if kind in kinds),
+        links=legend(kind for kind in ONE_LOOP if kind in kinds),
         columns=columns,
         given=[column.key for column in columns].index("designs") + 1,
         rows=[

@@ -17,5 +17,5 @@ def dimensions_text(spec: LinkageSpec) -> str:
     >>> dimensions_text(load_linkage_spec("pumpjack"))
     'r1 to r4 5, 1.1938, 3.7719, 3.04876 m'
     """
-    kind = "" if spec.linkage.MECHANISM == FOUR_BAR else f"{spec.linkage.MECHANISM}, "
+    kind = "" if spec.linkage.mechanism.word == FOUR_BAR else f"{spec.linkage.mechanism.word}, "
     return f"{kind}{lengths_text(spec.linkage, 6)} {spec.length_unit}".rstrip()

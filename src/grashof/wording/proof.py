@@ -105,7 +105,7 @@ def _rank(result: Result, proof: Proof) -> int:
     key = quantity_of(result.problem).key
     least = math.inf if proof.lower is None else proof.lower - _SAME
     for rank, one in enumerate(result.candidates, start=1):
-        if proof.mechanism == one.linkage.MECHANISM and math.degrees(one.values[key]) >= least:
+        if proof.mechanism == one.linkage.mechanism.word and math.degrees(one.values[key]) >= least:
             return rank
     return 0
 

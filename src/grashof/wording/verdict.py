@@ -40,7 +40,7 @@ def judged_for(problem: Problem, spec: LinkageSpec) -> Candidate:
             f"{spec.name}: lengths are in {spec.length_unit}, those of {problem.name} in "
             f"{problem.length_unit}; they must be in the same unit"
         )
-    of = problem.for_kind(spec.linkage.MECHANISM)
+    of = problem.for_kind(spec.linkage.mechanism.word)
     verdict = driven_verdict(ScaledProblem.of(of), spec.linkage, known=spec.cylinder)
     return Candidate(spec.linkage, verdict, of, 0, 0)
 
@@ -58,7 +58,7 @@ def verdict_lines(candidate: Candidate, name: str) -> list[str]:
         quantity = QUANTITIES[key]
         if quantity.over is Over.CYCLE and not verdict.full_rotation:
             continue
-        if candidate.linkage.MECHANISM in quantity.kinds and np.isfinite(value := candidate.values[key]):
+        if candidate.linkage.mechanism.word in quantity.kinds and np.isfinite(value := candidate.values[key]):
             unit = quantity.unit.of(problem.length_unit)
             lines.append(f"  {quantity.full}: {value * quantity.unit.shown:.6g} {unit}".rstrip())
     return lines

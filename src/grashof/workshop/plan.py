@@ -126,7 +126,7 @@ def plan_parts(
     if isinstance(scaled, FourBar):
         link_plates(scaled, sizes)  # what is too short is refused before what cannot be assembled
     ranges = ranges_of_use(scaled, within, theta2)
-    slot = slot_ends(scaled, ranges, sizes) if scaled.SLIDES else np.zeros(2)
+    slot = slot_ends(scaled, ranges, sizes) if scaled.mechanism.slides else np.zeros(2)
     plates, note = moving_plates(scaled, sizes, slot)
     order = stack(plates, scaled, sweep(scaled, ranges, sizes.gap), sizes)
     low, high = ranges[0]
@@ -185,7 +185,7 @@ def _parts(
 
 def _joints(linkage: Linkage, theta2: float) -> dict[str, tuple[float, float]]:
     points = places(linkage, solve_position(linkage, theta2))
-    order = dict.fromkeys((*linkage.JOINTS, *linkage.POINTS))
+    order = dict.fromkeys((*linkage.mechanism.joints, *linkage.mechanism.points))
     return {name.upper(): (float(points[name][0]), float(points[name][1])) for name in order}
 
 
@@ -200,11 +200,11 @@ def _use(
 
 
 def _slot_note(linkage: Linkage, slot: FloatArray) -> list[str]:
-    if not linkage.SLIDES:
+    if not linkage.mechanism.slides:
         return []
     joint, plate = ("B", "base") if isinstance(linkage, SliderCrank) else ("O4", "coupler")
     long = f"{round(float(np.diff(slot)[0]), 3):.10g} mm between centres"
-    name = linkage.LINKS[-1].name
+    name = linkage.mechanism.links[-1].name
     return [f"the {name} is pin {joint} itself, in a slot of the {plate} {long}"]
 
 

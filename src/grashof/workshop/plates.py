@@ -168,12 +168,12 @@ def link_plates(linkage: FourBar, sizes: PlateSizes) -> tuple[dict[str, Plate], 
         A link too short or too long for its width.
     """
     u, v = linkage.coupler_point.tolist()
-    lengths = dict(zip(linkage.LENGTHS, linkage.lengths.tolist(), strict=True))
+    lengths = dict(zip(linkage.mechanism.lengths, linkage.lengths.tolist(), strict=True))
     reach = max(abs(u), abs(u - lengths["r3"]), abs(v))
     for name, length in (lengths | {"A-P": reach}).items():
         refuse_length(name, length, sizes)
     plates, note = dict[str, Plate](), ""
-    for link in linkage.LINKS[1:]:
+    for link in linkage.mechanism.links[1:]:
         length = lengths[f"r{link.number}"]
         if len(link.points) == 2:
             plates[link.name] = bar(link.name, link.labels, (0.0, length), sizes)

@@ -13,7 +13,7 @@ from grashof.analysis.mechanism.slide import slide_travel
 from grashof.problems import FourBar, InvertedSliderCrank, Linkage, ProblemError, SliderCrank
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.errors import wrong_value
-from grashof.problems.values.linkages.mechanisms import KINDS
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.workshop.plates import Plate, PlateSizes, bar, link_plates, refuse_length, with_point
 
 _SAMPLES = 361
@@ -51,7 +51,7 @@ def moving_plates(linkage: Linkage, sizes: PlateSizes, slot: FloatArray) -> tupl
         return _of_inverted(linkage, sizes, slot)
     if isinstance(linkage, FourBar):
         return link_plates(linkage, sizes)
-    raise wrong_value("linkage", linkage, f"one of {', '.join(KINDS)}")
+    raise wrong_value("linkage", linkage, f"one of {', '.join(ONE_LOOP)}")
 
 
 def _of_slider_crank(linkage: SliderCrank, sizes: PlateSizes) -> tuple[dict[str, Plate], str]:
@@ -59,7 +59,7 @@ def _of_slider_crank(linkage: SliderCrank, sizes: PlateSizes) -> tuple[dict[str,
     r2, r3 = float(linkage.r2), float(linkage.r3)
     for name, length in (("r2", r2), ("r3", r3), ("A-P", max(abs(u), abs(u - r3), abs(v)))):
         refuse_length(name, length, sizes)
-    driver, coupler = linkage.LINKS[1:3]
+    driver, coupler = linkage.mechanism.links[1:3]
     rod, note = with_point(coupler, r3, u, v, sizes)
     return {driver.name: bar(driver.name, driver.labels, (0.0, r2), sizes), coupler.name: rod}, note
 
@@ -73,7 +73,7 @@ def _of_inverted(
     reach = float(np.abs([u, v, *ends.ravel()]).max())
     for name, length in (("r1", float(linkage.r1)), ("r2", r2), ("A-P", reach)):
         refuse_length(name, length, sizes)
-    driver, coupler = linkage.LINKS[1:3]
+    driver, coupler = linkage.mechanism.links[1:3]
     _refuse_near("A", np.zeros(2), "the slot of O4", ends, sizes)
     near = min(float(np.hypot(u, v)), _distance(np.array([u, v]), ends))
     holes, note = {"A": np.zeros(2), "P": np.array([u, v])}, ""

@@ -23,6 +23,7 @@ from grashof.analysis.mechanism.mobility import range_index
 from grashof.analysis.mechanism.position import places
 from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.workshop.plates import Plate, PlateSizes
 
 GeometryArray: TypeAlias = npt.NDArray[np.object_]
@@ -30,24 +31,24 @@ _SAMPLES = 721
 _SHORTEST_STEP = 1e-9  # rad; a step across the jump at a change point is never short enough
 
 
-def plated(kind: type[Linkage]) -> tuple[str, ...]:
+def plated(kind: Mechanism) -> tuple[str, ...]:
     """The links that are plates: all that move, but for a slider or a block, which is a pin in a slot."""
-    return tuple(link.name for link in kind.LINKS[1:] if not (kind.SLIDES and link is kind.LINKS[-1]))
+    return tuple(link.name for link in kind.links[1:] if not (kind.slides and link is kind.links[-1]))
 
 
-def pinned(kind: type[Linkage]) -> dict[str, tuple[str, ...]]:
+def pinned(kind: Mechanism) -> dict[str, tuple[str, ...]]:
     """What each pin joins; what is no plate that moves is the base. The pin of a slide runs in a slot.
 
     Examples
     --------
     >>> from grashof.problems import SliderCrank
-    >>> pinned(SliderCrank)
+    >>> pinned(SliderCrank.mechanism)
     {'O2': ('ground', 'driver'), 'A': ('driver', 'coupler'), 'B': ('coupler', 'ground')}
     """
-    beside = {other: one for one, other in kind.SLIDES}
+    beside = {other: one for one, other in kind.slides}
     return {
-        joint.upper(): tuple(kind.LINKS[beside.get(number, number) - 1].name for number in numbers)
-        for joint, numbers in kind.JOINTS.items()
+        joint.upper(): tuple(kind.links[beside.get(number, number) - 1].name for number in numbers)
+        for joint, numbers in kind.joints.items()
     }
 
 
@@ -170,9 +171,10 @@ def poses(linkage: Linkage, theta2: FloatArray) -> dict[str, FloatArray]:
     state = solve_position(linkage, theta2)
     points, still = places(linkage, state), np.zeros_like(theta2)
     placed = {
-        link.name: (link.points[0], getattr(state, f"theta{link.number}")) for link in linkage.LINKS[1:]
+        link.name: (link.points[0], getattr(state, f"theta{link.number}"))
+        for link in linkage.mechanism.links[1:]
     }
-    placed |= {joint.upper(): (joint, still) for joint in linkage.JOINTS}
+    placed |= {joint.upper(): (joint, still) for joint in linkage.mechanism.joints}
     return {name: np.column_stack([points[at], angle]) for name, (at, angle) in placed.items()}
 
 
@@ -221,7 +223,7 @@ def stack(plates: Mapping[str, Plate], linkage: Linkage, motion: Motion, sizes: 
         worst = int(np.argmin(gaps))
         return float(gaps[worst]), float(motion.theta2[worst])
 
-    links, joints = plated(type(linkage)), pinned(type(linkage))
+    links, joints = plated(linkage.mechanism), pinned(linkage.mechanism)
     met: dict[str, None] = {}
     for layers in _orders(links, joints):
         pins = _pins(joints, layers)

@@ -180,7 +180,7 @@ def _facts(spec: LinkageSpec) -> list[tuple[str, Any, str]]:
     return [
         ("title", spec.title or spec.name, ""),
         ("source", spec.source, ""),
-        ("mechanism", linkage.MECHANISM, ""),
+        ("mechanism", linkage.mechanism.word, ""),
         *((name, value, _unit_of(name, unit)) for name, value in linkage.columns.items()),
         ("grashof_class", str(grashof_class(linkage)), ""),
         ("full_rotation", bool(full_rotation(linkage)), ""),
@@ -196,10 +196,10 @@ def _targets(design: ListedDesign) -> list[Sequence[Any]]:
     """Where the linkage stands at each target, under a heading."""
     linkage = design.spec.linkage
     state = solve_position(linkage, design.theta2, design.assembly)
-    places = [f"{name}_{axis}" for name in linkage.MOVING for axis in "xy"]
+    places = [f"{name}_{axis}" for name in linkage.mechanism.moving for axis in "xy"]
     heading = ["target", "theta2_deg", "assembly", *places, "position_error"]
     rows: list[Sequence[Any]] = [heading + ["angle_error_deg"] * bool(design.angle_error)]
-    numbers = np.column_stack([getattr(state, name) for name in linkage.MOVING]).tolist()
+    numbers = np.column_stack([getattr(state, name) for name in linkage.mechanism.moving]).tolist()
     for i, (angle, joints) in enumerate(zip(np.degrees(design.theta2).tolist(), numbers, strict=True)):
         row = [i + 1, angle, design.assembly[i], *joints, design.position_error[i]]
         if design.angle_error:

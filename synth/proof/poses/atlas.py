@@ -217,4 +217,4 @@ def _first_points(scaled: ScaledProblem, design: Candidate) -> list[complex]:
     """O2, O4 and A, B at the first target in the frame of the search."""
     linkage, verdict = design.linkage, design.verdict
     state = solve_position(linkage, verdict.theta2[0], verdict.assembly[0])
-    return [complex(scaled.frame.inward(np.asarray(x))) for x in (linkage.o2, linkage.o4, state.a, state.b)]  # type: ignore[attr-defined]
+    return [complex(scaled.frame.inward(np.asarray(x))) for x in (linkage.o2, linkage.o4, state.a, state.b)]

@@ -9,7 +9,8 @@ import numpy as np
 
 from grashof.problems import Requirements, Rotatability, StrokeTask
 from grashof.problems.values.arrays import Limits
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR, INVERTED, KINDS, SLIDER_CRANK
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve.asked import SLACK
 from grashof.synth.proof.strokes.members import (
@@ -96,7 +97,7 @@ class _Sizes:
         margin = 0.0 if wanted.rotatability is Rotatability.ANY else wanted.rotatability_margin
         low, high = wanted.offset or (-np.inf, np.inf)
         return cls(
-            lengths={name: _widened(each[name], slack) for name in KINDS[kind].LENGTHS},
+            lengths={name: _widened(each[name], slack) for name in ONE_LOOP[kind].lengths},
             ratio=wanted.link_ratio_max * (1 + SLACK),
             margin=margin - SLACK,
             offset=(low - slack, high + slack),

@@ -12,7 +12,6 @@ from grashof.analysis import transmission_angle
 from grashof.analysis.enclosure.closure import CLOSURES, places
 from grashof.analysis.enclosure.interval import Centred, Interval, crank
 from grashof.analysis.enclosure.turns import Pieces, least_transmission
-from grashof.analysis.judge.enclosed import stacked
 from grashof.analysis.judge.planted import (
     random_full_crank,
     random_inverted_slider_crank,
@@ -37,7 +36,7 @@ NEARLY = (
 @pytest.fixture(params=MAKERS, ids=lambda make: make.__name__)
 def batch(request: Any) -> Linkage:
     rng = np.random.default_rng(29)
-    return stacked([request.param(rng) for _ in range(12)])
+    return Linkage.stacked([request.param(rng) for _ in range(12)])
 
 
 def quality(linkage: Linkage, theta2: np.ndarray) -> np.ndarray:
@@ -60,7 +59,7 @@ def test_holds_the_least_transmission_angle_and_is_sharp(batch: Linkage) -> None
 
 @pytest.mark.parametrize("linkage", NEARLY)
 def test_holds_beside_change_points(linkage: Linkage) -> None:
-    one, turn = stacked([linkage]), np.array([0.3])
+    one, turn = Linkage.stacked([linkage]), np.array([0.3])
     least = least_transmission(one, turn, turn + 2 * np.pi)
     dense = quality(linkage, linkage.theta1 + np.linspace(-np.pi, np.pi, 20_001)).min()
     assert least.lo[0] <= dense + 1e-12
@@ -82,7 +81,7 @@ def test_an_angle_that_hardly_varies_takes_few_intervals() -> None:
         InvertedSliderCrank(o2=(0, 0), o4=(1, 0), r2=r2, offset=offset)
         for r2, offset in ((0.5, 0.0), (0.5, 1e-9), (0.9, -1e-10), (2.0, 0.0))
     ]
-    found = least_transmission(stacked(flat), np.zeros(4), np.full(4, 6.3), np.zeros(4))
+    found = least_transmission(Linkage.stacked(flat), np.zeros(4), np.full(4, 6.3), np.zeros(4))
     assert np.all(found.pieces < 20_000)
     assert np.all(found.lo > np.radians(89.5))
     assert np.all(found.lo <= found.hi)
@@ -92,10 +91,10 @@ def test_an_angle_that_hardly_varies_takes_few_intervals() -> None:
 def test_a_range_that_opens_between_its_ends_has_none() -> None:
     """The loop is open for some 1e-5 rad, far less than any sample is wide."""
     linkage = FourBar((0, 0), (4, 0), 1, 3, 2 - 1e-10)  # stretched: r1 + r2 = r3 + r4 + 1e-10
-    least = least_transmission(stacked([linkage]), np.array([3.0]), np.array([3.3]))
+    least = least_transmission(Linkage.stacked([linkage]), np.array([3.0]), np.array([3.3]))
     assert least.lo[0] == 0
     assert least.hi[0] < 1e-4
-    closes = least_transmission(stacked([linkage]), np.array([2.0]), np.array([3.1]))
+    closes = least_transmission(Linkage.stacked([linkage]), np.array([2.0]), np.array([3.1]))
     assert closes.lo[0] > 0
 
 

@@ -245,7 +245,11 @@ def test_structural_error_of_slides_is_that_of_dense_continuation(
     for _ in range(3):
         task, linkage, _ = planted_function(rng, 5, mechanism=mechanism)
         scale = size if task.travels else 1.0
-        numbers = {row.name: getattr(linkage, row.name) * size for row in linkage.PARAMETERS if row.in_length}
+        numbers = {
+            row.name: getattr(linkage, row.name) * size
+            for row in linkage.mechanism.parameters
+            if row.in_length
+        }
         linkage = linkage.changed(**numbers)
         outputs = task.outputs * 1.03 * scale
         task = FunctionTask(task.inputs, outputs, norm=norm, travels=task.travels)

@@ -158,7 +158,7 @@ def test_what_the_problem_does_not_state_has_no_value(values: Values) -> None:
     angles = (
         set() if values.problem.task.has_angle.any() else {"body_angle", "angle_error_max", "angle_error_rms"}
     )
-    lacking = {key for key in MEASURES if values.linkage.MECHANISM not in QUANTITIES[key].kinds}
+    lacking = {key for key in MEASURES if values.linkage.mechanism.word not in QUANTITIES[key].kinds}
     swings = output_stroke(values.linkage).time_ratio  # none where the output link has no limit positions
     assert unknown == needing | closed | angles | lacking | (set() if np.isfinite(swings) else {"time_ratio"})
 

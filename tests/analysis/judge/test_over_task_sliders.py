@@ -43,7 +43,7 @@ def test_figures_are_those_of_dense_samples(linkage: Linkage, sense: int, metre:
     wanted = Requirements(rotatability="any")
     problem = Problem(
         task=task, requirements=wanted, length_unit="m" if metre == 1 else "mm", dynamics=spec,
-        mechanism=own.MECHANISM,
+        mechanism=own.mechanism.word,
     )  # fmt: skip
     verdict = verify(own, task, wanted)
     found = over_task(own, problem, verdict)

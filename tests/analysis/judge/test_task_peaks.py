@@ -91,7 +91,9 @@ def test_the_torque_alone_is_that_with_the_rest(designs: list[tuple[Linkage, Ver
 
 
 def test_a_slide_beyond_its_load_costs_the_others_nothing(designs: list[tuple[Linkage, Verdict]]) -> None:
-    sliding = [design for design in designs if design[0].MECHANISM == "slider-crank" and design[1].branch_ok]
+    sliding = [
+        design for design in designs if design[0].mechanism.word == "slider-crank" and design[1].branch_ok
+    ]
     travels = []
     for linkage, verdict in sliding:
         ends = motion_ends(problem_with(None).task, verdict)

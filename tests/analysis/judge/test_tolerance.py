@@ -138,7 +138,7 @@ def test_towards_a_dead_position_moves_have_no_bound() -> None:
 
 def test_errors_have_three_deviations_in_the_tolerance() -> None:
     errors = dimension_errors(Manufacturing(0.3), 200_000, np.random.default_rng(5))
-    assert errors.shape == (200_000, len(FourBar.DIMENSIONS))
+    assert errors.shape == (200_000, len(FourBar.mechanism.dimensions))
     np.testing.assert_allclose(np.cov(errors.T), 0.01 * np.eye(6), atol=2e-4)
     np.testing.assert_allclose(errors.mean(axis=0), 0, atol=1e-3)
     np.testing.assert_allclose((np.abs(errors) <= 0.3).mean(axis=0), 0.9973, atol=5e-4)

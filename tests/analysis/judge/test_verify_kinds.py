@@ -180,7 +180,7 @@ def test_the_size_is_the_diagonal_of_a_dense_box(mechanism, seed) -> None:
     task, linkage = planted_path(np.random.default_rng(seed), 5, mechanism=mechanism)
     verdict = verify(linkage, task, ANY)
     state = solve_position(linkage, np.linspace(verdict.theta2[0], verdict.theta2[-1], 40001))
-    pivots = [getattr(linkage, name)[None] for name in linkage.GROUND]
+    pivots = [getattr(linkage, name)[None] for name in linkage.mechanism.ground]
     every = np.concatenate([state.a, state.b, state.p, *pivots])
     assert verdict.size == pytest.approx(np.hypot(*np.ptp(every, axis=0)), rel=1e-7)
 
@@ -192,8 +192,8 @@ def test_small_deviations_move_targets_as_exact_positions_do(mechanism, seed) ->
     verdict = verify(linkage, task, ANY)
     step = 1e-6 * task.size
     made = robustness(linkage, task, verdict, Manufacturing(step))
-    assert made.moves.shape == (len(linkage.DIMENSIONS),)
-    others, possible = made_linkages(linkage, step * np.eye(len(linkage.DIMENSIONS)))
+    assert made.moves.shape == (len(linkage.mechanism.dimensions),)
+    others, possible = made_linkages(linkage, step * np.eye(len(linkage.mechanism.dimensions)))
     assert possible.all()
     moved = solve_position(others[:, None], verdict.theta2).p - solve_position(linkage, verdict.theta2).p
     assert made.moves == pytest.approx(np.hypot(*np.moveaxis(moved, -1, 0)).max(axis=1) / step, rel=1e-3)
@@ -240,8 +240,12 @@ def test_a_verdict_does_not_depend_on_place_size_and_direction(mechanism) -> Non
     def moved(points):
         return scale * np.asarray(points) @ e.T + shift
 
-    changes = {row.name: scale * getattr(linkage, row.name) for row in linkage.PARAMETERS if row.in_length}
-    changes |= {name: moved(getattr(linkage, name)) for name in ("o2", "o4") if name in linkage.GROUND}
+    changes = {
+        row.name: scale * getattr(linkage, row.name) for row in linkage.mechanism.parameters if row.in_length
+    }
+    changes |= {
+        name: moved(getattr(linkage, name)) for name in ("o2", "o4") if name in linkage.mechanism.ground
+    }
     if isinstance(linkage, SliderCrank):
         changes["slide_angle"] = linkage.slide_angle + turn
     other = linkage.changed(**changes)

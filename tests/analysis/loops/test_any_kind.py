@@ -344,7 +344,7 @@ def test_dimensions_turn_the_links_as_linkages_made_so_show(linkages, kind) -> N
         assume(0.3 < mu < np.pi - 0.3)
         state = solve_position(linkage, theta2)
         step = 1e-6 * float(linkage.lengths.sum())
-        deviations = np.eye(len(linkage.DIMENSIONS)) * step
+        deviations = np.eye(len(linkage.mechanism.dimensions)) * step
         for found, name in zip(
             kind_of(linkage).turned(linkage, state.theta2, state.theta3, state.theta4),
             ("theta3", "theta4"),

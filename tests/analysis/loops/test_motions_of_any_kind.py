@@ -60,7 +60,7 @@ def test_extremes_and_boxes_are_those_of_dense_samples(linkages, kind) -> None:
         assert closed[1:-1].all()
         assert found.low == pytest.approx(state.p[closed, 0].min(), abs=1e-5 * size)
         assert found.high == pytest.approx(state.p[closed, 0].max(), abs=1e-5 * size)
-        pivots = [getattr(linkage, name)[None] for name in linkage.GROUND]
+        pivots = [getattr(linkage, name)[None] for name in linkage.mechanism.ground]
         every = np.concatenate([state.a[closed], state.b[closed], state.p[closed], *pivots])
         box = reach_box(linkage, start, end)
         assert np.allclose(box, [every.min(axis=0), every.max(axis=0)], rtol=0, atol=1e-5 * size)

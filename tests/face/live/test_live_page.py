@@ -18,7 +18,7 @@ from grashof import load, synthesize, track
 from grashof.analysis import solve_kinematics
 from grashof.problems import Problem
 from grashof.problems.files.problem_schema import problem_from
-from grashof.problems.values.linkages.mechanisms import KINDS
+from grashof.problems.values.linkages.mechanisms import linkage_of
 
 State = dict[str, Any]
 
@@ -75,7 +75,7 @@ def keys(found: State) -> list[int]:
 
 
 def stated(designs: Any) -> list[dict[str, Any]]:
-    return [{"mechanism": each.linkage.MECHANISM, **each.linkage.stated} for each in designs]
+    return [{"mechanism": each.linkage.mechanism.word, **each.linkage.stated} for each in designs]
 
 
 def place_of(page: Page, handle: str) -> tuple[float, float]:
@@ -431,7 +431,7 @@ def test_the_velocity_of_p_is_that_of_the_analysis(page: Page, kind: str) -> Non
     found = searched(page)
     given = next(one["linkage"] for one in found["designs"] if one["key"] == found["chosen"])
     assert given.pop("mechanism") == kind
-    linkage = KINDS[kind](**given)
+    linkage = linkage_of(kind, given)
     for _ in range(5):
         theta2 = state(page)["theta2"]
         speed = float(solve_kinematics(linkage, theta2, omega2=1.0).p.speed)

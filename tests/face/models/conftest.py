@@ -25,7 +25,7 @@ def models() -> list[Model]:
     for make in (random_full_crank, random_slider_crank, random_inverted_slider_crank):
         for number, unit in enumerate(("m", "mm", "in", "")):
             linkage = make(rng)
-            name = f"{linkage.MECHANISM} in {unit or 'no unit'}"
+            name = f"{linkage.mechanism.word} in {unit or 'no unit'}"
             spec = LinkageSpec(linkage, name, length_unit=unit, dynamics=DRIVEN if number % 2 else None)
             found.append(Model.of(spec))
     rocker = FourBar(o2=(1, 0), o4=(5, 1), r2=3.5, r3=3, r4=2, coupler_point=(1, 1), assembly=-1)

@@ -53,7 +53,7 @@ def test_points_are_where_the_linkage_has_them(model: Model) -> None:
     root = pairs(worksheet(model))
     for driver in np.linspace(model.low, model.high, 43)[1:-1].tolist():
         at, known = solve_position(model.linkage, driver), evaluated(root, driver)
-        for name in model.linkage.MOVING:
+        for name in model.linkage.mechanism.moving:
             size = 1e-9 * float(model.linkage.lengths.max())
             assert tuple(known[name.upper()]) == pytest.approx(tuple(getattr(at, name)), abs=size)
 

@@ -32,7 +32,7 @@ def test_read_back(model: Model) -> None:
     root, mm = opened(model), 1000 * model.metre
     assert root.tag == "linkage2"
     at, where = model.first, places(root)
-    for name in model.linkage.MOVING:
+    for name in model.linkage.mechanism.moving:
         np.testing.assert_allclose(where[name.upper()], mm * getattr(at, name), rtol=1e-12)
     assert distance(where["O2"], where["A"]) == pytest.approx(mm * float(model.linkage.r2), rel=1e-12)
     ids = {each.attrib["id"]: each for each in root.findall("connector")}

@@ -88,7 +88,7 @@ def test_positions_are_those_of_the_analysis(window: Page, name: str) -> None:
         np.testing.assert_allclose(np.angle(np.exp(1j * gap)), 0, atol=1e-9)
     mu = quality(transmission_angle(linkage, theta2))
     np.testing.assert_allclose([each["mu"] for each in found], mu, atol=1e-6)
-    if linkage.SLIDES:
+    if linkage.mechanism.slides:
         travel = slide_travel(linkage, state)
         np.testing.assert_allclose([each["slide"] for each in found], travel, atol=1e-9)
 
@@ -108,7 +108,7 @@ def test_the_loop_stays_closed_in_dead_positions_and_past_them(window: Page, nam
 
 
 @pytest.mark.quick("behind", "crank-shaper", "whitworth", "change point")
-@pytest.mark.parametrize("name", [name for name, linkage in LINKAGES.items() if linkage.SLIDES])
+@pytest.mark.parametrize("name", [name for name, linkage in LINKAGES.items() if linkage.mechanism.slides])
 def test_the_drawing_follows_the_driver(shown: Callable[[str], Page], name: str) -> None:
     linkage, page = LINKAGES[name], shown(name)
     drawn = "document.querySelector('#stage .linkage .block').getAttribute('d')"
@@ -148,7 +148,7 @@ def test_cylinders_are_where_the_analysis_has_them(window: Page, name: str, on: 
     there = cylinder_state(jack, linkage, state).pivot
     np.testing.assert_allclose([each["pivot"] for each in found], there, atol=1e-9)
     first, _, second = zip(*(each["bracket"] for each in found), strict=True)
-    joints = linkage.LINKS[jack.link - 1].points
+    joints = linkage.mechanism.links[jack.link - 1].points
     at = places(linkage, state)
     np.testing.assert_allclose(first, at[joints[0]], atol=1e-9)
     np.testing.assert_allclose(second, at[joints[:2][-1]], atol=1e-9)

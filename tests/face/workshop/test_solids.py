@@ -23,7 +23,7 @@ LINKAGES = [
 
 
 @pytest.fixture(
-    params=LINKAGES, ids=lambda linkage: f"{linkage.MECHANISM}-{float(linkage.r2):g}", scope="module"
+    params=LINKAGES, ids=lambda linkage: f"{linkage.mechanism.word}-{float(linkage.r2):g}", scope="module"
 )
 def plan(request: pytest.FixtureRequest) -> Plan:
     linkage: Linkage = request.param

@@ -9,7 +9,8 @@ from grashof.problems import Objective, PathTask, Problem, ProblemError, Require
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.problem_schema import problem_from
 from grashof.problems.files.problem_writing import problem_toml
-from grashof.problems.values.linkages.mechanisms import KINDS, having
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
+from grashof.problems.values.linkages.mechanisms import having
 from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
 
 POINTS = "[path]\npoints = [[0, 0], [1, 0], [2, 1], [3, 0]]\n"
@@ -122,15 +123,15 @@ def test_goals_that_no_kind_has_are_refused() -> None:
 @pytest.mark.parametrize("name", LIMITS)
 def test_kinds_that_have_a_limit_are_known(name: str) -> None:
     kinds = LIMITS[name].quantity.kinds
-    assert set(kinds) <= set(KINDS)
+    assert set(kinds) <= set(ONE_LOOP)
     for column in (name, f"{name}_x"):
         if having(column):
             assert kinds == having(column)
 
 
 def test_every_column_of_a_linkage_is_a_quantity_of_its_kind() -> None:
-    for word, kind in KINDS.items():
-        columns = {*kind.LENGTHS, *(name for row in kind.PARAMETERS for name in row.columns)} - {"assembly"}
+    for word, kind in ONE_LOOP.items():
+        columns = {*kind.lengths, *(name for row in kind.parameters for name in row.columns)} - {"assembly"}
         listed = {quantity.column: quantity for quantity in QUANTITIES.values()}
         assert columns <= listed.keys()
         assert all(word in listed[name].kinds for name in columns)
@@ -147,7 +148,7 @@ def test_a_problem_for_one_kind_keeps_what_the_kind_has() -> None:
         task=TASK,
         requirements=Requirements(r2=(1, 2), r4=(1, 2), offset=(0, 1), rotatability="crank-rocker"),  # type: ignore[arg-type]
         objective=Objective(0.0, output_swing=1.0, compactness=0.5),
-        mechanism=tuple(KINDS),
+        mechanism=tuple(ONE_LOOP),
     )
     assert every.for_kind("four-bar").requirements == replace(every.requirements, offset=None)
     assert every.for_kind("four-bar").objective == every.objective

@@ -22,7 +22,7 @@ from grashof.problems import (
     Search,
 )
 from grashof.problems.files.problem_schema import RequirementsTable, problem_from
-from grashof.problems.values.linkages.mechanisms import KINDS
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
 
 POSES = "poses = [[5, 4, 0], [3.5, 4, -5], [2, 3, -5], [1, 0, 0]]"
 HEAD = f'kind = "motion"\n[motion]\n{POSES}\n'
@@ -183,7 +183,7 @@ def test_the_examples_above_use_every_requirement() -> None:
     used: set[str] = set()
     driven, sliding = r"(torque_|joint_force).*\n", r"(offset|slide_angle_deg|stroke) .*\n"
     in_metres = EVERY_LIMIT.replace("[motion]", 'length_unit = "m"\n[motion]')
-    of_all_kinds = EVERY_LIMIT.replace("[motion]", f'length_unit = "m"\nmechanism = {[*KINDS]}\n[motion]')
+    of_all_kinds = EVERY_LIMIT.replace("[motion]", f'length_unit = "m"\nmechanism = {[*ONE_LOOP]}\n[motion]')
     for text in (
         EVERY_KEY,
         re.sub(sliding, "", in_metres),

@@ -97,7 +97,7 @@ def test_inverted_slider_cranks_at_90_deg_are_ranked_by_their_leverage() -> None
         upright = [
             each
             for each in found.candidates
-            if each.linkage.MECHANISM == "inverted-slider-crank"
+            if each.linkage.mechanism.word == "inverted-slider-crank"
             and each.family == each.id
             and not each.caution
             and np.degrees(each.verdict.transmission_min_task) > 90 - 1e-7

@@ -149,7 +149,7 @@ def placed(problem: Problem, linkage: Linkage) -> tuple[Vector, Vector, FloatArr
 
 def found(problem: Problem, linkage: Linkage, share: FloatArray, key: str) -> FloatArray:
     """The formula of the search on arrays, in the units of the judge."""
-    instant = KINDS[linkage.MECHANISM].instant
+    instant = KINDS[linkage.mechanism.word].instant
     at = instant.of(*placed(problem, linkage), driver_at(*drive_of(problem), share, *ENDS, 1.0))
     values: FloatArray = magnitude(ALONG[key](at, Burden.of(problem))) * problem.scale(QUANTITIES[key])
     return values
@@ -161,7 +161,7 @@ def on_symbols(problem: Problem, linkage: Linkage, share: FloatArray, key: str) 
     o2, ground, arm = (Vector(ca.SX(v.x), ca.SX(v.y)) for v in (o2, ground, arm))
     with numpy_on_symbols():
         driver = driver_at(*drive_of(problem), time, *ENDS, 1.0)
-        at = KINDS[linkage.MECHANISM].instant.of(o2, ground, lengths, arm, assembly, driver)
+        at = KINDS[linkage.mechanism.word].instant.of(o2, ground, lengths, arm, assembly, driver)
         every = ALONG[key](at, Burden.of(problem))
         values = [np.hypot(v.x, v.y) if isinstance(v, Vector) else np.abs(v) for v in every]
     curve = ca.Function("curve", [time], [ca.mmax(ca.vertcat(*values))])

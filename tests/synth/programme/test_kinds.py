@@ -52,7 +52,9 @@ def test_a_linkage_comes_back_from_its_points(mechanism: str) -> None:
         linkage = as_found(RANDOM[mechanism](rng))
         points = points_of(scaled, linkage, float(rng.uniform(-3, 3)))
         back = scaled.linkages(points, linkage.assembly, linkage.body_angle)
-        for row, one, other in zip(linkage.PARAMETERS, linkage.parameters, back.parameters, strict=True):
+        for row, one, other in zip(
+            linkage.mechanism.parameters, linkage.parameters, back.parameters, strict=True
+        ):
             turned = np.angle(np.exp(1j * (one - other))) if row.kind == "angle" else one - other
             np.testing.assert_allclose(turned, 0, atol=1e-9, err_msg=row.name)
         dimensions = scaled.kind.closure.dimensions(points)

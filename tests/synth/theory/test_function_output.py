@@ -18,9 +18,9 @@ SAMPLES = {"four-bar": 300, "slider-crank": 1500, "inverted-slider-crank": 800} 
 
 def generator_of(linkage: Linkage, start: float, unit: float) -> Generators:
     """As the search sees a linkage whose ground is (0, 0), (1, 0), or whose slide runs along x."""
-    kind, known = KINDS[linkage.MECHANISM].generators, linkage
+    kind, known = KINDS[linkage.mechanism.word].generators, linkage
     sign, numbers = float(known.assembly), []
-    match linkage.MECHANISM:
+    match linkage.mechanism.word:
         case "four-bar":
             numbers = np.log(known.lengths[1:]).tolist()
         case "slider-crank":

@@ -191,8 +191,11 @@ def families_of(linkage: Linkage, limits: StrokeLimits) -> list[Family]:
 def own_limits(linkage: Linkage, by: float) -> StrokeLimits:
     """Limits that hold a linkage by so much."""
     sizes = {**linkage.columns, "offset": abs(float(getattr(linkage, "offset", 0.0)))}
-    each = {name: (max(sizes[name] - by, 0.0), sizes[name] + by) for name in (*linkage.LENGTHS, "offset")}
-    lengths = {name: each[name] for name in linkage.LENGTHS}
+    each = {
+        name: (max(sizes[name] - by, 0.0), sizes[name] + by)
+        for name in (*linkage.mechanism.lengths, "offset")
+    }
+    lengths = {name: each[name] for name in linkage.mechanism.lengths}
     return StrokeLimits(lengths, 1e3, 0.0, each["offset"])
 
 

@@ -82,8 +82,8 @@ def test_limits_of_sizes_are_counted(problem: Problem, best: float) -> None:
 
 def test_of_several_kinds_the_first_is_bounded_and_its_rank_told() -> None:
     result = synthesize(problem_of(["four-bar", "inverted-slider-crank"], 2.6, 80.0), enough=3)
-    assert result.best.linkage.MECHANISM == "inverted-slider-crank"
-    rank = next(k for k, one in enumerate(result.candidates, 1) if one.linkage.MECHANISM == "four-bar")
+    assert result.best.linkage.mechanism.word == "inverted-slider-crank"
+    rank = next(k for k, one in enumerate(result.candidates, 1) if one.linkage.mechanism.word == "four-bar")
     told = f"no four-bar meets these requirements with more than 12.57 deg; number {rank} has 12.55 deg."
     assert told in proof_line(result)
 
