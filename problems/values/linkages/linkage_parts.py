@@ -112,11 +112,3 @@ class Link:
 def points_of(links: Sequence[Link]) -> tuple[str, ...]:
     """All points on some links, each once."""
     return tuple(dict.fromkeys(point for link in links for point in link.points))
-
-
-def joints_of(links: Sequence[Link]) -> dict[str, tuple[int, ...]]:
-    """The points where links are joined, in their order round the loop, with the numbers of these links."""
-    joined = {
-        point: tuple(link.number for link in links if point in link.points) for point in points_of(links[1:])
-    }
-    return {point: numbers for point, numbers in joined.items() if len(numbers) > 1}

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 
-from grashof.problems.values.linkages.linkage_parts import Link, Parameter, joints_of, points_of
+from grashof.problems.values.linkages.linkage_parts import Link, Parameter, points_of
 
 
 class DyadKind(StrEnum):
@@ -38,6 +38,25 @@ class Dyad:
     def slides(self) -> bool:
         """Whether one of its joints is a slide."""
         return self.kind is not DyadKind.RRR
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """What joins two links.
+
+    Parameters
+    ----------
+    name : str
+        O2, A, B, ...; of a slide the name of the point that would be its pin.
+    links : pair of int
+        Motions in it are those of the second relative to the first.
+    slides : bool
+        Whether it is a slide instead of a pin.
+    """
+
+    name: str
+    links: tuple[int, int]
+    slides: bool = False
 
 
 # Names of the points C, D and E of each dyad of a linkage, and of its two links where they are bars.
@@ -133,13 +152,20 @@ class Mechanism:
         return (*self.lengths, *offsets, *arms, "u", "v")
 
     @cached_property
+    def every_joint(self) -> tuple[Joint, ...]:
+        """The pins and slides, in the order of arrays that have an axis for them: three of a dyad."""
+        found = [Joint("O2", (1, 2))]
+        for (first, second), dyad in self._numbered():
+            c, d, e = (name.upper() for name in _POINTS[first // 2 - 1])
+            found.append(Joint(c, (dyad.hosts[0], first)))
+            found.append(Joint(e, (first, second), slides=dyad.kind is DyadKind.RPR))
+            found.append(Joint(d, (dyad.hosts[1], second), slides=dyad.kind is DyadKind.RRP))
+        return tuple(found)
+
+    @cached_property
     def slides(self) -> tuple[tuple[int, int], ...]:
         """Links that slide on each other."""
-        return tuple(
-            (dyad.hosts[1] if dyad.kind is DyadKind.RRP else first, second)
-            for (first, second), dyad in self._numbered()
-            if dyad.slides
-        )
+        return tuple(joint.links for joint in self.every_joint if joint.slides)
 
     @cached_property
     def ground(self) -> tuple[str, ...]:
@@ -157,9 +183,9 @@ class Mechanism:
         return self.points[len(self.ground) :]
 
     @cached_property
-    def joints(self) -> dict[str, tuple[int, ...]]:
+    def joints(self) -> dict[str, tuple[int, int]]:
         """Points where links are pinned to each other, with the numbers of these links."""
-        return joints_of(self.links)
+        return {joint.name.lower(): joint.links for joint in self.every_joint if not joint.slides}
 
     @cached_property
     def pivots(self) -> tuple[str, ...]:
